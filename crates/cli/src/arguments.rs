@@ -1,0 +1,111 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Photorealistic, physically exact pictures of invisibility cloaks.
+#[derive(Debug, Parser)]
+#[command(version, about, arg_required_else_help = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to pictures and data.
+    Render(RenderArguments),
+    /// Validate a scene and print facts and an estimate of the time, without rendering.
+    Check(SceneArguments),
+    /// Trace given rays through a scene; JSON in, JSON out.
+    Trace(TraceArguments),
+    /// Make the figures of Halimeh & Wegener, Opt. Express 21, 9457 (2013).
+    Figures(FiguresArguments),
+    /// List the devices with their keys and computed facts.
+    Devices(DevicesArguments),
+    /// Print the JSON Schema of scene files, for editors.
+    Schema,
+}
+
+/// A scene and what is changed in it.
+#[derive(Args, Debug)]
+pub struct SceneArguments {
+    /// The scene file (TOML).
+    pub scene: PathBuf,
+    /// Override a key of the scene, as in camera.samples=16 or device.0.rotation=5.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub overrides: Vec<String>,
+}
+
+/// Arguments of `render`.
+#[derive(Args, Debug)]
+pub struct RenderArguments {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// A file to write; its ending decides: .png, .exr or .npz. May be given several times.
+    #[arg(short, long = "output", value_name = "FILE", required = true)]
+    pub outputs: Vec<PathBuf>,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
+/// Arguments of `trace`.
+#[derive(Args, Debug)]
+pub struct TraceArguments {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The rays: a JSON file, or - for standard input.
+    #[arg(long, value_name = "FILE")]
+    pub rays: PathBuf,
+    /// Prune branches below this share of the launched power [default: the scene's, else 1e-9].
+    #[arg(long, value_name = "P")]
+    pub min_power: Option<f64>,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
+/// Arguments of `figures`.
+#[derive(Args, Debug)]
+pub struct FiguresArguments {
+    /// Only these figures or panels, as in 6,8c.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub only: Vec<String>,
+    /// The folder for the pictures.
+    #[arg(long, value_name = "DIR", default_value = "figures")]
+    pub out: PathBuf,
+    /// Another photograph (PNG, JPEG or EXR).
+    #[arg(long, value_name = "FILE")]
+    pub photo: Option<PathBuf>,
+    /// Size of a panel in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
+    pub size: [u32; 2],
+    /// Samples per pixel.
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub samples: u32,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
+/// Arguments of `devices`.
+#[derive(Args, Debug)]
+pub struct DevicesArguments {
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Reads a size such as 1024x768.
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once('x').map(|(w, h)| (w.parse(), h.parse()));
+    match sides {
+        Some((Ok(w), Ok(h))) if (1..=65536).contains(&w) && (1..=65536).contains(&h) => Ok([w, h]),
+        _ => Err("write WIDTHxHEIGHT in pixels, each from 1 to 65536, as in 1024x768".to_owned()),
+    }
+}

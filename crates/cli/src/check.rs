@@ -1,0 +1,57 @@
+//! `cloakroom check`: is the scene sound, what does it hold, how long will it take.
+
+use crate::arguments::SceneArguments;
+use crate::devices::fact_lines;
+use crate::report::{self, Failure};
+use crate::scene;
+use cloakroom::render::Studio;
+use cloakroom::scene::Show;
+use std::fmt::Write;
+
+/// Validates a scene and prints facts about it.
+pub fn run(arguments: &SceneArguments) -> Result<(), Failure> {
+    let loaded = scene::load(arguments)?;
+    let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let mut text = String::new();
+    describe(&studio, &loaded.scene, &mut text).map_err(Failure::from_error)?;
+    report::print(&text)
+}
+
+fn describe(
+    studio: &Studio<'_>,
+    scene: &cloakroom::scene::Scene,
+    text: &mut String,
+) -> std::fmt::Result {
+    let camera = &scene.camera;
+    let [width, height] = camera.resolution();
+    let [photo_width, photo_height] = studio.photograph_size();
+    writeln!(text, "The scene is sound.")?;
+    writeln!(
+        text,
+        "picture      {width} x {height} pixels, {} samples each, polarizer {}",
+        camera.samples(),
+        camera.polarizer()
+    )?;
+    writeln!(
+        text,
+        "photograph   {}, {photo_width:.2} x {photo_height:.2} cm at x = {} cm",
+        scene.photograph.image, scene.photograph.x
+    )?;
+    for (index, device) in scene.devices.iter().enumerate() {
+        let show = match device.show {
+            Show::Cloak => "cloak",
+            Show::Bare => "bare",
+            Show::Mirror => "mirror",
+        };
+        writeln!(
+            text,
+            "device {index}     {}, shown as {show}, rotation {} degrees",
+            device.entry.kind, device.rotation
+        )?;
+        for line in fact_lines(device.entry, &device.values) {
+            writeln!(text, "             {line}")?;
+        }
+    }
+    let seconds = studio.estimated_seconds();
+    writeln!(text, "estimate     {seconds:.1} s to render on {} threads", studio.threads())
+}

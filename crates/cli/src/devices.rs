@@ -1,0 +1,73 @@
+//! `cloakroom devices`: the catalogue with computed facts.
+
+use crate::arguments::DevicesArguments;
+use crate::report::{self, Failure};
+use cloakroom::device::{Entry, FactValue, CATALOGUE};
+use cloakroom::keys::Values;
+use serde_json::{json, Map, Value};
+use std::fmt::Write;
+
+/// Prints the catalogue.
+pub fn run(arguments: &DevicesArguments) -> Result<(), Failure> {
+    if arguments.json {
+        let list: Vec<Value> = CATALOGUE.iter().map(|entry| as_json(entry)).collect();
+        return report::print_json(&json!({ "devices": list }));
+    }
+    let mut text = String::new();
+    for entry in CATALOGUE {
+        describe(entry, &mut text).map_err(Failure::from_error)?;
+    }
+    report::print(&text)
+}
+
+fn as_json(entry: &Entry) -> Value {
+    let mut object = Map::new();
+    object.insert("kind".into(), json!(entry.kind));
+    object.insert("title".into(), json!(entry.title));
+    object.insert("summary".into(), json!(entry.summary));
+    let keys: Vec<Value> = entry
+        .keys
+        .iter()
+        .map(|key| {
+            json!({ "name": key.name, "doc": key.doc, "allowed": key.describe(), "default": key.default_value() })
+        })
+        .collect();
+    object.insert("keys".into(), json!(keys));
+    for fact in (entry.facts)(&Values::defaults(entry.keys)) {
+        let value = match fact.value {
+            FactValue::Number(number) => json!(number),
+            FactValue::Numbers(numbers) => json!(numbers),
+        };
+        object.insert(fact.name.into(), value);
+    }
+    Value::Object(object)
+}
+
+fn describe(entry: &Entry, text: &mut String) -> std::fmt::Result {
+    writeln!(text, "{}\n  {}\n", entry.kind, entry.summary)?;
+    for key in entry.keys {
+        writeln!(text, "  {:<12} {} ({})", key.name, key.doc, key.describe())?;
+    }
+    writeln!(text)?;
+    for line in fact_lines(entry, &Values::defaults(entry.keys)) {
+        writeln!(text, "  {line}")?;
+    }
+    writeln!(text)
+}
+
+/// The computed facts of a device, a line each.
+pub fn fact_lines(entry: &Entry, values: &Values) -> Vec<String> {
+    (entry.facts)(values)
+        .into_iter()
+        .map(|fact| {
+            let value = match fact.value {
+                FactValue::Number(number) => format!("{number:.6}"),
+                FactValue::Numbers(numbers) => {
+                    let parts: Vec<String> = numbers.iter().map(|n| format!("{n:.6}")).collect();
+                    parts.join(", ")
+                }
+            };
+            format!("{:<32} {value}", fact.name)
+        })
+        .collect()
+}

@@ -1,0 +1,91 @@
+//! `cloakroom render`: a scene to pictures and data.
+
+use crate::arguments::RenderArguments;
+use crate::progress;
+use crate::report::{say, Failure};
+use crate::scene;
+use cloakroom::illustration::scalar_map;
+use cloakroom::output::{self, Format, Picture};
+use cloakroom::render::{self, Rendered, RenderError, Studio, Supervision, Wanted};
+use cloakroom::scene::Scene;
+use cloakroom::trace::Rarities;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+/// Renders a scene and writes every file asked for.
+pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure> {
+    let formats = formats(&arguments.outputs)?;
+    scene::use_threads(arguments.threads)?;
+    let loaded = scene::load(&arguments.scene)?;
+    let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let data = formats.iter().any(|(_, format)| *format != Format::Png);
+    let wanted = if data || loaded.scene.picture.map.is_some() {
+        Wanted::Everything
+    } else {
+        Wanted::Image
+    };
+    for path in &arguments.outputs {
+        output::check_writable(path).map_err(Failure::from_error)?;
+    }
+    let Rendered { picture, rarities } = picture(&studio, wanted, "rendering", stop)?;
+    tell_rarities(&rarities);
+    for (path, format) in formats {
+        if format == Format::Png {
+            output::write_png(&rgb(&loaded.scene, &picture)?, &picture.metadata, path)
+        } else {
+            output::write(&picture, path)
+        }
+        .map_err(Failure::from_error)?;
+    }
+    Ok(())
+}
+
+/// The files to write with their formats.
+fn formats(outputs: &[PathBuf]) -> Result<Vec<(&PathBuf, Format)>, Failure> {
+    outputs
+        .iter()
+        .map(|path| Ok((path, Format::of(path).map_err(Failure::from_error)?)))
+        .collect()
+}
+
+/// Renders with a progress bar.
+pub fn picture(
+    studio: &Studio<'_>,
+    wanted: Wanted,
+    what: &str,
+    stop: &AtomicBool,
+) -> Result<Rendered, Failure> {
+    let bar = progress::bar(studio.rows(), what);
+    let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
+    let rendered = render::render(studio, wanted, &supervision);
+    bar.finish_and_clear();
+    rendered.map_err(|error| match error {
+        RenderError::Stopped => Failure::Interrupted,
+        RenderError::TooLarge { .. } => Failure::from_error(error),
+    })
+}
+
+/// What a PNG of the scene shows: the image, or the map of one channel.
+pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure> {
+    match scene.picture.map {
+        None => output::to_srgb(picture),
+        Some(channel) => scalar_map(picture, channel, scene.picture.color_bar),
+    }
+    .map_err(Failure::from_error)
+}
+
+/// Says what was rare, if anything was.
+pub fn tell_rarities(rarities: &Rarities) {
+    if rarities.endless > 0 {
+        say(&format!(
+            "note: {} ray trees met a million surfaces and were cut; their rest is in `pruned`",
+            rarities.endless
+        ));
+    }
+    if rarities.lost > 0 {
+        say(&format!(
+            "note: {} branches could not be followed through a device; their power is in `pruned`",
+            rarities.lost
+        ));
+    }
+}

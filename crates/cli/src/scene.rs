@@ -1,0 +1,23 @@
+//! Scenes from files, and errors that point back into them.
+
+use crate::arguments::SceneArguments;
+use crate::report::Failure;
+use cloakroom::render::StudioError;
+use cloakroom::scene_file::{self, Loaded};
+
+/// Reads a scene with its overrides.
+pub fn load(arguments: &SceneArguments) -> Result<Loaded, Failure> {
+    scene_file::load(&arguments.scene, &arguments.overrides).map_err(Failure::from_error)
+}
+
+/// An error of a scene that could be read but not built, at its place in the file.
+pub fn located(loaded: &Loaded, error: &StudioError) -> Failure {
+    Failure::from_error(loaded.locations.error_at(&error.key(), &error.to_string()))
+}
+
+/// Lets the work use the given number of threads, or all cores.
+pub fn use_threads(threads: Option<u16>) -> Result<(), Failure> {
+    let threads = threads.map_or(0, usize::from);
+    cloakroom::threads::use_threads(threads)
+        .map_err(|error| Failure::Failed(format!("cannot start {threads} threads: {error}")))
+}

@@ -1,0 +1,105 @@
+//! The catalogue of devices, and what devices are made of.
+//!
+//! A device is a set of cells filled with media and the skin of surfaces around them
+//! ([`Structure`]). Each kind is one file here that turns the keys of its table in a scene into a
+//! structure, and one line in [`CATALOGUE`]; nothing else in the program knows it.
+
+mod cell;
+
+mod skin;
+mod square_cloak;
+mod structure;
+
+pub use cell::{Cell, Face, Passage, Prism};
+pub use skin::Skin;
+pub use structure::{Beyond, Finish, Hull, SkinHit, Structure};
+
+use crate::keys::{Key, KeyError, Values};
+
+/// What of a device is looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Show {
+    /// The device.
+    #[default]
+    Cloak,
+    /// The metal alone, without its cloak.
+    Bare,
+    /// What it should look like: the flat mirror it imitates.
+    Mirror,
+}
+
+/// What every device is asked for beside its own keys.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Request {
+    /// What of it is looked at.
+    pub show: Show,
+    /// Its whole length along z, cm; endless if absent.
+    pub length: Option<f64>,
+}
+
+/// One kind of device.
+#[derive(Debug)]
+pub struct Entry {
+    /// The `kind` in a scene file.
+    pub kind: &'static str,
+    /// A title for people.
+    pub title: &'static str,
+    /// What it is, in a sentence or two, with its source.
+    pub summary: &'static str,
+    /// Its own keys, beside those every device has.
+    pub keys: &'static [Key],
+    /// Makes the device from the values of its keys.
+    ///
+    /// # Errors
+    ///
+    /// If values that are each allowed do not go together.
+    pub build: fn(&Values, Request) -> Result<Structure, KeyError>,
+    /// Computes what can be said about it in numbers. The values must be ones that `build` accepts.
+    pub facts: fn(&Values) -> Vec<Fact>,
+}
+
+/// A computed property of a device.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fact {
+    /// Its name in snake case, with the unit, as in `cloaked_area_cm2`.
+    pub name: &'static str,
+    /// Its value.
+    pub value: FactValue,
+}
+
+/// The value of a [`Fact`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum FactValue {
+    /// A number.
+    Number(f64),
+    /// A few numbers: a vector, or the principal values of a tensor.
+    Numbers(Vec<f64>),
+}
+
+impl Fact {
+    fn number(name: &'static str, value: f64) -> Self {
+        Self { name, value: FactValue::Number(value) }
+    }
+}
+
+/// Every kind of device the program knows.
+pub static CATALOGUE: &[&Entry] = &[&square_cloak::ENTRY];
+
+/// The entry of a kind, if there is one.
+#[must_use]
+pub fn entry(kind: &str) -> Option<&'static Entry> {
+    CATALOGUE.iter().copied().find(|entry| entry.kind == kind)
+}
+
+/// A two-sided flat metal strip on the x axis, |x| <= `half_width` (cm): what a cloak that opens a
+/// strip should look like.
+fn flat_strip(half_width: f64, extent: optics::geometry::Extent) -> Structure {
+    use glam::DVec2;
+    use optics::geometry::{Outline, Wall};
+    let ends = [DVec2::new(half_width, 0.0), DVec2::new(-half_width, 0.0)];
+    Structure {
+        cells: Vec::new(),
+        skin: vec![Skin::Strip(Wall::new(ends[0], ends[1], extent))],
+        hull: Hull::new(Outline::new(ends.to_vec()), extent),
+    }
+}

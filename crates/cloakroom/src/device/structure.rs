@@ -1,0 +1,124 @@
+//! What every device is made of: cells filled with media, and the skin that light in air meets.
+
+use super::{Cell, Skin};
+use glam::{DVec2, DVec3};
+use optics::geometry::{Extent, Outline};
+
+/// What lies on the other side of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beyond {
+    /// Air.
+    Air,
+    /// The device's cell of that number.
+    Cell(u16),
+    /// A perfect conductor.
+    Conductor,
+}
+
+/// How two media meet at a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finish {
+    /// Refraction and reflection as the media ask for.
+    Bare,
+    /// Refraction alone: a perfect antireflection coating.
+    Antireflection,
+}
+
+/// A device in its own frame.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    /// The regions filled with media.
+    pub cells: Vec<Cell>,
+    /// The surfaces that light in air can meet.
+    pub skin: Vec<Skin>,
+    /// The space the device takes up.
+    pub hull: Hull,
+}
+
+/// The space a device takes up: nothing else may be there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hull {
+    /// Its cross-section, convex.
+    pub outline: Outline,
+    /// Its extent along z.
+    pub extent: Extent,
+    radius: f64,
+}
+
+impl Hull {
+    /// The hull of a device that extends along z.
+    #[must_use]
+    pub fn new(outline: Outline, extent: Extent) -> Self {
+        let radius = outline.radius() * (1.0 + 1e-12);
+        Self { outline, extent, radius }
+    }
+
+    /// Whether a ray (in the device's frame) comes near enough that it may meet the device.
+    #[must_use]
+    pub fn may_be_met(&self, origin: DVec3, direction: DVec3) -> bool {
+        let (o, d) = (origin.truncate(), direction.truncate());
+        let beside = d.perp_dot(o);
+        let along = o.dot(d);
+        let reach = self.radius * self.radius;
+        // The closest approach to the axis, if it lies ahead; else the origin itself.
+        beside * beside <= reach * d.length_squared()
+            && (along <= 0.0 || o.length_squared() <= reach)
+    }
+
+    /// Whether a point (in the device's frame) lies inside, border excluded.
+    #[must_use]
+    pub fn holds(&self, point: DVec3) -> bool {
+        let p: DVec2 = point.truncate();
+        let inside = !self.outline.corners().is_empty()
+            && self.outline.sides().all(|(a, b)| (b - a).perp_dot(p - a) > 0.0);
+        inside && self.extent.min < point.z && point.z < self.extent.max
+    }
+}
+
+impl Structure {
+    /// A structure without anything: a cloak whose "mirror" view is empty space.
+    #[must_use]
+    pub fn empty() -> Self {
+        Self {
+            cells: Vec::new(),
+            skin: Vec::new(),
+            hull: Hull::new(Outline::new(Vec::new()), Extent::ENDLESS),
+        }
+    }
+
+    /// The nearest surface that a ray in air meets, `last` being the one it has just left.
+    #[must_use]
+    pub fn first_hit(&self, origin: DVec3, direction: DVec3, last: Option<u16>) -> Option<SkinHit> {
+        if !self.hull.may_be_met(origin, direction) {
+            return None;
+        }
+        let mut nearest: Option<SkinHit> = None;
+        for (index, skin) in (0u16..).zip(&self.skin) {
+            let Some((distance, outward)) = skin.hit(origin, direction, last == Some(index)) else {
+                continue;
+            };
+            if nearest.is_none_or(|hit| distance < hit.distance) {
+                let position = origin + direction * distance;
+                let beyond = skin.beyond(position);
+                nearest =
+                    Some(SkinHit { skin: index, distance, outward, beyond, finish: skin.finish() });
+            }
+        }
+        nearest
+    }
+}
+
+/// Where a ray in air meets a device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkinHit {
+    /// Which surface of the skin.
+    pub skin: u16,
+    /// How far along the ray, cm.
+    pub distance: f64,
+    /// Unit normal of the surface, against the ray.
+    pub outward: DVec3,
+    /// What lies behind it there.
+    pub beyond: Beyond,
+    /// How the media meet.
+    pub finish: Finish,
+}

@@ -1,0 +1,211 @@
+//! A value held against its key: type, limits, and the message if it does not fit.
+
+use super::nearest::nearest;
+use super::value::{Value, number_text, quoted};
+use super::{Key, KeyKind, Limits};
+
+/// A value that fits its key.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Fitted {
+    Number(f64),
+    Integer(i64),
+    Flag(bool),
+    Choice(&'static str),
+    Vector([f64; 3]),
+    IntegerPair([i64; 2]),
+    Text(String),
+}
+
+impl From<&Fitted> for Value {
+    fn from(value: &Fitted) -> Self {
+        match value {
+            Fitted::Number(number) => Value::Number(*number),
+            Fitted::Integer(integer) => Value::Integer(*integer),
+            Fitted::Flag(flag) => Value::Flag(*flag),
+            Fitted::Choice(word) => Value::from(*word),
+            Fitted::Vector(vector) => Value::from(*vector),
+            Fitted::IntegerPair(pair) => Value::from(*pair),
+            Fitted::Text(text) => Value::from(text.as_str()),
+        }
+    }
+}
+
+impl Limits {
+    /// Whether a number is allowed; NaN and the infinities never are.
+    pub fn allow(&self, number: f64) -> bool {
+        number.is_finite()
+            && match *self {
+                Limits::Finite => true,
+                Limits::Positive => number > 0.0,
+                Limits::NonNegative => number >= 0.0,
+                Limits::Between(low, high) => number > low && number < high,
+                Limits::Within(low, high) => number >= low && number <= high,
+            }
+    }
+
+    /// What is allowed, to be read after "must be": "above 0", "from 0 to 1".
+    pub fn describe(&self) -> String {
+        match *self {
+            Limits::Finite => "a finite number".to_owned(),
+            Limits::Positive => "above 0".to_owned(),
+            Limits::NonNegative => "0 or above".to_owned(),
+            Limits::Between(low, high) => {
+                format!("above {} and below {}", number_text(low), number_text(high))
+            }
+            Limits::Within(low, high) => {
+                format!("from {} to {}", number_text(low), number_text(high))
+            }
+        }
+    }
+}
+
+impl Key {
+    /// What the key takes, to be read after "must be": "a number (cm)", "true or false".
+    pub fn describe(&self) -> String {
+        match self.kind {
+            KeyKind::Number { unit, .. } => format!("a number{}", in_brackets(unit)),
+            KeyKind::Integer { .. } => "a whole number".to_owned(),
+            KeyKind::Flag { .. } => "true or false".to_owned(),
+            KeyKind::Choice { options } => words(options),
+            KeyKind::Vector { unit, .. } => format!("three numbers{}", in_brackets(unit)),
+            KeyKind::IntegerPair { .. } => "two whole numbers".to_owned(),
+            KeyKind::Text { .. } => "a text".to_owned(),
+            KeyKind::ChoiceOrNumber { options, unit } => {
+                let options = options.iter().map(|option| quoted(option, '"'));
+                let options = options.collect::<Vec<_>>().join(", ");
+                format!("{options} or a number{}", in_brackets(unit))
+            }
+        }
+    }
+
+    /// The value where the key is absent; `None` if absence itself means something.
+    pub fn default_value(&self) -> Option<Value> {
+        self.default_fitted().as_ref().map(Value::from)
+    }
+
+    pub(super) fn default_fitted(&self) -> Option<Fitted> {
+        match self.kind {
+            KeyKind::Number { default, .. } => default.map(Fitted::Number),
+            KeyKind::Integer { default, .. } => Some(Fitted::Integer(default)),
+            KeyKind::Flag { default } => Some(Fitted::Flag(default)),
+            KeyKind::Vector { default, .. } => Some(Fitted::Vector(default)),
+            KeyKind::IntegerPair { default, .. } => Some(Fitted::IntegerPair(default)),
+            KeyKind::Text { default } => default.map(|text| Fitted::Text(text.to_owned())),
+            KeyKind::Choice { options } | KeyKind::ChoiceOrNumber { options, .. } => {
+                options.first().map(|option| Fitted::Choice(option))
+            }
+        }
+    }
+
+    /// Holds a value against the key; the message says what it is and what it must be.
+    pub(super) fn check(&self, value: &Value) -> Result<Fitted, String> {
+        match self.kind {
+            KeyKind::Number { unit, limits, .. } => {
+                let number = value.as_number().ok_or_else(|| self.wrong_type(value))?;
+                self.limit(self.name, number, unit, limits)?;
+                Ok(Fitted::Number(number))
+            }
+            KeyKind::Integer { min, max, .. } => {
+                let integer = value.as_integer().ok_or_else(|| self.wrong_type(value))?;
+                limit_integer(self.name, integer, min, max)?;
+                Ok(Fitted::Integer(integer))
+            }
+            KeyKind::Flag { .. } => match *value {
+                Value::Flag(flag) => Ok(Fitted::Flag(flag)),
+                _ => Err(self.wrong_type(value)),
+            },
+            KeyKind::Choice { options } => self.choose(value, options).map(Fitted::Choice),
+            KeyKind::Vector { unit, limits, .. } => {
+                let numbers = self.list(value, Value::as_number)?;
+                for (number, axis) in numbers.iter().zip(["first", "second", "third"]) {
+                    let name = format!("the {axis} component of {}", self.name);
+                    self.limit(&name, *number, unit, limits)?;
+                }
+                Ok(Fitted::Vector(numbers))
+            }
+            KeyKind::IntegerPair { min, max, .. } => {
+                let integers = self.list(value, Value::as_integer)?;
+                for (integer, place) in integers.iter().zip(["first", "second"]) {
+                    let name = format!("the {place} number of {}", self.name);
+                    limit_integer(&name, *integer, min, max)?;
+                }
+                Ok(Fitted::IntegerPair(integers))
+            }
+            KeyKind::Text { .. } => match value {
+                Value::Text(text) if text.is_empty() => Err(format!("{} is empty", self.name)),
+                Value::Text(text) => Ok(Fitted::Text(text.clone())),
+                _ => Err(self.wrong_type(value)),
+            },
+            KeyKind::ChoiceOrNumber { options, unit } => match value.as_number() {
+                Some(number) => {
+                    self.limit(self.name, number, unit, Limits::Finite)?;
+                    Ok(Fitted::Number(number))
+                }
+                None => self.choose(value, options).map(Fitted::Choice),
+            },
+        }
+    }
+
+    fn wrong_type(&self, value: &Value) -> String {
+        format!("{} is {value}; it must be {}", self.name, self.describe())
+    }
+
+    fn limit(&self, name: &str, number: f64, unit: &str, limits: Limits) -> Result<(), String> {
+        if limits.allow(number) {
+            return Ok(());
+        }
+        if !number.is_finite() {
+            let what = if number.is_nan() { "not a number (nan)" } else { "infinite" };
+            return Err(format!("{name} is {what}; numbers must be finite"));
+        }
+        let space = if unit.is_empty() { "" } else { " " };
+        let shown = number_text(number);
+        Err(format!("{name} is {shown}{space}{unit}; it must be {}", limits.describe()))
+    }
+
+    fn choose(&self, value: &Value, options: &[&'static str]) -> Result<&'static str, String> {
+        let Value::Text(word) = value else { return Err(self.wrong_type(value)) };
+        if let Some(&option) = options.iter().find(|&&option| option == word) {
+            return Ok(option);
+        }
+        let meant = nearest(word, options.iter().copied());
+        let hint = meant.map(|meant| format!("; did you mean {}?", quoted(meant, '"')));
+        Err(self.wrong_type(value) + &hint.unwrap_or_default())
+    }
+
+    fn list<T, const N: usize>(
+        &self,
+        value: &Value,
+        item: impl Fn(&Value) -> Option<T>,
+    ) -> Result<[T; N], String> {
+        let Value::List(items) = value else { return Err(self.wrong_type(value)) };
+        let fitted: Option<Vec<T>> = items.iter().map(item).collect();
+        let fitted = fitted.and_then(|items| <[T; N]>::try_from(items).ok());
+        fitted.ok_or_else(|| self.wrong_type(value))
+    }
+}
+
+fn limit_integer(name: &str, integer: i64, min: i64, max: i64) -> Result<(), String> {
+    if (min..=max).contains(&integer) {
+        return Ok(());
+    }
+    let allowed = match max {
+        i64::MAX => format!("{min} or above"),
+        _ => format!("from {min} to {max}"),
+    };
+    Err(format!("{name} is {integer}; it must be {allowed}"))
+}
+
+/// `"a", "b" or "c"`.
+fn words(options: &[&str]) -> String {
+    let quoted: Vec<_> = options.iter().map(|option| quoted(option, '"')).collect();
+    match quoted.as_slice() {
+        [] => "nothing".to_owned(),
+        [only] => only.clone(),
+        [first @ .., last] => format!("{} or {last}", first.join(", ")),
+    }
+}
+
+fn in_brackets(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" ({unit})") }
+}

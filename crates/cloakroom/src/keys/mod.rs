@@ -1,0 +1,107 @@
+//! Keys: the name, type, default and limits of everything a scene can say.
+//!
+//! Each table of a scene file (the camera, the light, each kind of device) is described once, as a
+//! list of [`Key`]s. Reading, messages, the JSON Schema, the catalogue and the other front ends
+//! all follow from that list.
+
+mod check;
+mod nearest;
+#[cfg(test)]
+mod tests;
+mod value;
+mod values;
+
+pub(crate) use nearest::unknown;
+pub use nearest::{hint, nearest};
+pub use value::Value;
+pub(crate) use value::{number_text, quoted};
+pub use values::{ChoiceOrNumber, KeyError, Values};
+
+/// One key of a table.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// The key as written in a scene file.
+    pub name: &'static str,
+    /// One sentence: what it is.
+    pub doc: &'static str,
+    /// Its type, default and limits.
+    pub kind: KeyKind,
+}
+
+/// The type of a key, with its default and limits.
+#[derive(Clone, Copy, Debug)]
+pub enum KeyKind {
+    /// A finite number.
+    Number {
+        /// Used where the key is absent; `None` if absence itself means something.
+        default: Option<f64>,
+        /// The unit, `""` for a bare number.
+        unit: &'static str,
+        /// What values are allowed.
+        limits: Limits,
+    },
+    /// A whole number.
+    Integer {
+        /// Used where the key is absent.
+        default: i64,
+        /// Smallest allowed value.
+        min: i64,
+        /// Largest allowed value.
+        max: i64,
+    },
+    /// True or false.
+    Flag {
+        /// Used where the key is absent.
+        default: bool,
+    },
+    /// One of a few words; the first is the default.
+    Choice {
+        /// The words.
+        options: &'static [&'static str],
+    },
+    /// Three finite numbers.
+    Vector {
+        /// Used where the key is absent.
+        default: [f64; 3],
+        /// The unit of each component.
+        unit: &'static str,
+        /// What each component may be.
+        limits: Limits,
+    },
+    /// Two whole numbers, such as a resolution.
+    IntegerPair {
+        /// Used where the key is absent.
+        default: [i64; 2],
+        /// Smallest allowed value of either.
+        min: i64,
+        /// Largest allowed value of either.
+        max: i64,
+    },
+    /// A text, such as the name of a file.
+    Text {
+        /// Used where the key is absent; `None` if absence itself means something.
+        default: Option<&'static str>,
+    },
+    /// One of a few words, or a number: a polarizer is `"none"`, `"horizontal"` or an angle.
+    ChoiceOrNumber {
+        /// The words; the first is the default.
+        options: &'static [&'static str],
+        /// The unit of the number.
+        unit: &'static str,
+    },
+}
+
+/// The allowed values of a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limits {
+    /// Any finite number.
+    Finite,
+    /// Above zero.
+    Positive,
+    /// Zero or above.
+    NonNegative,
+    /// Above the first and below the second.
+    Between(f64, f64),
+    /// From the first to the second, both allowed.
+    Within(f64, f64),
+}

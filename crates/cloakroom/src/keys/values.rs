@@ -1,0 +1,205 @@
+//! The validated values of one table.
+
+use super::check::Fitted;
+use super::nearest::unknown;
+use super::{Key, KeyKind, Value};
+
+/// Why a table cannot be had: which key is impossible, and how.
+///
+/// A device whose keys are each allowed but impossible together (an inner radius larger than the
+/// outer one) refuses with the same error.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct KeyError {
+    /// The key at fault; `None` if no single one is.
+    pub key: Option<&'static str>,
+    /// What is wrong: quantity, value, unit, and what is allowed.
+    pub message: String,
+}
+
+impl KeyError {
+    /// An error of one key.
+    pub fn at(key: &'static str, message: impl Into<String>) -> Self {
+        KeyError { key: Some(key), message: message.into() }
+    }
+
+    /// An error of no single key.
+    pub fn general(message: impl Into<String>) -> Self {
+        KeyError { key: None, message: message.into() }
+    }
+}
+
+/// What a key that takes a word or a number was given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ChoiceOrNumber {
+    /// One of the key's words.
+    Choice(&'static str),
+    /// A finite number, in the key's unit.
+    Number(f64),
+}
+
+/// The values of one table: every key of a list has its value, given or by default, and every
+/// value fits its key.
+///
+/// # Panics
+///
+/// Every getter panics if its key is not in the list or is of another type: that is a mistake in
+/// the program, not in a scene.
+#[derive(Clone, Debug)]
+pub struct Values {
+    keys: &'static [Key],
+    /// One for each key, in the same order.
+    slots: Vec<Slot>,
+}
+
+#[derive(Clone, Debug)]
+struct Slot {
+    value: Option<Fitted>,
+    given: bool,
+}
+
+impl Values {
+    /// Every key at its default.
+    pub fn defaults(keys: &'static [Key]) -> Self {
+        let slots = keys.iter().map(|key| Slot { value: key.default_fitted(), given: false });
+        Values { keys, slots: slots.collect() }
+    }
+
+    /// The list of keys.
+    pub fn keys(&self) -> &'static [Key] {
+        self.keys
+    }
+
+    /// Gives a key a value.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such key, the value is of the wrong type or outside the limits; the old
+    /// value then stays.
+    pub fn set(&mut self, name: &str, value: impl Into<Value>) -> Result<(), KeyError> {
+        let Some(index) = self.keys.iter().position(|key| key.name == name) else {
+            let known: Vec<_> = self.keys.iter().map(|key| key.name).collect();
+            return Err(KeyError::general(unknown("key", name, "", &known)));
+        };
+        let key = &self.keys[index];
+        let fitted = key.check(&value.into()).map_err(|message| KeyError::at(key.name, message))?;
+        self.slots[index] = Slot { value: Some(fitted), given: true };
+        Ok(())
+    }
+
+    /// Whether the key was given a value, rather than left at its default.
+    pub fn is_given(&self, name: &str) -> bool {
+        self.slot(name).1.given
+    }
+
+    /// The value of any key, as one would hand it over; `None` where it is absent and its absence
+    /// means something.
+    pub fn get(&self, name: &str) -> Option<Value> {
+        self.slot(name).1.value.as_ref().map(Value::from)
+    }
+
+    /// A number that has a default, in its key's unit.
+    pub fn number(&self, name: &str) -> f64 {
+        match self.slot(name) {
+            // A key without default is refused even where it was given: the mistake should show
+            // in the first run, not in the first scene without it.
+            (Key { kind: KeyKind::Number { default: Some(_), .. }, .. }, slot) => {
+                match slot.value {
+                    Some(Fitted::Number(number)) => number,
+                    _ => mistaken(name, "number with a default"),
+                }
+            }
+            _ => mistaken(name, "number with a default"),
+        }
+    }
+
+    /// A number, in its key's unit; `None` where it is absent and has no default.
+    pub fn optional_number(&self, name: &str) -> Option<f64> {
+        match (self.slot(name).0.kind, &self.slot(name).1.value) {
+            (KeyKind::Number { .. }, Some(Fitted::Number(number))) => Some(*number),
+            (KeyKind::Number { .. }, None) => None,
+            _ => mistaken(name, "number"),
+        }
+    }
+
+    /// A whole number.
+    pub fn integer(&self, name: &str) -> i64 {
+        match self.slot(name).1.value {
+            Some(Fitted::Integer(integer)) => integer,
+            _ => mistaken(name, "whole number"),
+        }
+    }
+
+    /// True or false.
+    pub fn flag(&self, name: &str) -> bool {
+        match self.slot(name).1.value {
+            Some(Fitted::Flag(flag)) => flag,
+            _ => mistaken(name, "flag"),
+        }
+    }
+
+    /// One of the key's words.
+    pub fn choice(&self, name: &str) -> &'static str {
+        match (self.slot(name).0.kind, &self.slot(name).1.value) {
+            (KeyKind::Choice { .. }, Some(Fitted::Choice(word))) => word,
+            _ => mistaken(name, "choice"),
+        }
+    }
+
+    /// One of the key's words, or a number in its unit.
+    pub fn choice_or_number(&self, name: &str) -> ChoiceOrNumber {
+        match (self.slot(name).0.kind, &self.slot(name).1.value) {
+            (KeyKind::ChoiceOrNumber { .. }, Some(Fitted::Choice(word))) => {
+                ChoiceOrNumber::Choice(word)
+            }
+            (KeyKind::ChoiceOrNumber { .. }, Some(Fitted::Number(number))) => {
+                ChoiceOrNumber::Number(*number)
+            }
+            _ => mistaken(name, "choice or number"),
+        }
+    }
+
+    /// Three numbers, in the key's unit.
+    pub fn vector(&self, name: &str) -> [f64; 3] {
+        match self.slot(name).1.value {
+            Some(Fitted::Vector(vector)) => vector,
+            _ => mistaken(name, "vector"),
+        }
+    }
+
+    /// Two whole numbers.
+    pub fn integer_pair(&self, name: &str) -> [i64; 2] {
+        match self.slot(name).1.value {
+            Some(Fitted::IntegerPair(pair)) => pair,
+            _ => mistaken(name, "pair of whole numbers"),
+        }
+    }
+
+    /// A text that has a default.
+    pub fn text(&self, name: &str) -> &str {
+        match (self.slot(name).0.kind, &self.slot(name).1.value) {
+            (KeyKind::Text { default: Some(_) }, Some(Fitted::Text(text))) => text,
+            _ => mistaken(name, "text with a default"),
+        }
+    }
+
+    /// A text; `None` where it is absent and has no default.
+    pub fn optional_text(&self, name: &str) -> Option<&str> {
+        match (self.slot(name).0.kind, &self.slot(name).1.value) {
+            (KeyKind::Text { .. }, Some(Fitted::Text(text))) => Some(text),
+            (KeyKind::Text { .. }, None) => None,
+            _ => mistaken(name, "text"),
+        }
+    }
+
+    fn slot(&self, name: &str) -> (&'static Key, &Slot) {
+        let index = self.keys.iter().position(|key| key.name == name);
+        let Some(index) = index else { mistaken(name, "key of this table") };
+        (&self.keys[index], &self.slots[index])
+    }
+}
+
+/// A getter was asked for what its table does not have.
+fn mistaken(name: &str, what: &str) -> ! {
+    panic!("`{name}` is not a {what}")
+}

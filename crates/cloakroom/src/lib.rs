@@ -1,0 +1,22 @@
+//! What is looked at: scenes with invisibility cloaks and other transformation-optics devices, the
+//! rays that run through them, and the pictures they make.
+//!
+//! The physics of light in matter is in the crate [`optics`]; this crate builds devices from it,
+//! traces rays through scenes, and makes pictures and data of what they see. The way of a ray:
+//!
+//! scene file -> [`scene::Scene`] -> camera rays -> [`trace::Tracer`] -> leaves -> what each leaf
+//! sees -> [`output::Picture`] -> files.
+//!
+//! Lengths are in cm, angles in degrees, times in ns, unless a name says otherwise; axes and signs
+//! are those of [`optics::wave`].
+
+pub mod device;
+pub mod keys;
+mod memory;
+pub mod output;
+pub mod photograph;
+pub mod render;
+pub mod scene;
+pub mod scene_file;
+pub mod threads;
+pub mod trace;

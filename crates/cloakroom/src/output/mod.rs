@@ -1,0 +1,3 @@
+//! stub
+mod picture;
+pub use picture::{Channel, Picture, Samples};

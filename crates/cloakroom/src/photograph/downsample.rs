@@ -1,0 +1,131 @@
+//! Halving an image by exact area averages, whatever its size.
+
+use rayon::prelude::*;
+
+use super::Texels;
+
+/// The next coarser image: half as wide and high, rounded down, at least 1.
+///
+/// Each new texel is the average over the part of the image that it covers. Where a side is odd,
+/// this part is a little more than two texels, and the average weighs the outer of three texels
+/// accordingly, so that the image does not shift.
+///
+/// Returns the new width, height and linear texels.
+pub(super) fn halve(
+    width: usize,
+    height: usize,
+    texels: &Texels,
+    table: &[f32; 256],
+) -> (usize, usize, Vec<f32>) {
+    let (new_width, new_height) = ((width / 2).max(1), (height / 2).max(1));
+    let mut halved = vec![0.0; new_width * new_height * 3];
+    let columns: Vec<Part> = (0..new_width).map(|i| Part::new(i, width)).collect();
+    let row = |y: usize, row_out: &mut [f32], sum: &mut Vec<f32>| {
+        let part = Part::new(y, height);
+        sum.clear();
+        sum.resize(width * 3, 0.0);
+        for (offset, &weight) in part.weights.iter().enumerate() {
+            if weight > 0.0 {
+                let start = (part.first + offset) * width * 3;
+                let range = start..start + width * 3;
+                match texels {
+                    Texels::Srgb8(codes) => {
+                        add_row(sum, &codes[range], weight, |code| table[usize::from(code)])
+                    }
+                    Texels::Linear(values) => add_row(sum, &values[range], weight, |value| value),
+                }
+            }
+        }
+        for (texel, part) in row_out.chunks_exact_mut(3).zip(&columns) {
+            for (offset, &weight) in part.weights.iter().enumerate() {
+                if weight > 0.0 {
+                    let at = (part.first + offset) * 3;
+                    for (value, light) in texel.iter_mut().zip(&sum[at..at + 3]) {
+                        *value += weight * light;
+                    }
+                }
+            }
+        }
+    };
+    halved
+        .par_chunks_mut(new_width * 3)
+        .enumerate()
+        // Small levels are not worth a thread.
+        .with_min_len((65536 / new_width).max(1))
+        .for_each_init(Vec::new, |sum, (y, row_out)| row(y, row_out, sum));
+    (new_width, new_height, halved)
+}
+
+fn add_row<S: Copy>(sum: &mut [f32], row: &[S], weight: f32, light: impl Fn(S) -> f32) {
+    for (total, &value) in sum.iter_mut().zip(row) {
+        *total += weight * light(value);
+    }
+}
+
+/// The two or three texels under a texel of the next level, and their weights.
+struct Part {
+    first: usize,
+    weights: [f32; 3],
+}
+
+impl Part {
+    /// Part number `index` of a side of `length` texels.
+    fn new(index: usize, length: usize) -> Self {
+        let weights = match (length, length % 2) {
+            (1, _) => [1.0, 0.0, 0.0],
+            (_, 0) => [0.5, 0.5, 0.0],
+            _ => {
+                let half = length / 2;
+                [half - index, half, index + 1].map(|share| share as f32 / length as f32)
+            }
+        };
+        Self { first: index * 2, weights }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::decode_table;
+    use super::*;
+
+    fn halve_linear(width: usize, height: usize, texels: Vec<f32>) -> (usize, usize, Vec<f32>) {
+        halve(width, height, &Texels::Linear(texels), decode_table())
+    }
+
+    #[test]
+    fn keeps_the_mean_for_every_size() {
+        for width in 1..=9 {
+            for height in 1..=9 {
+                let texels: Vec<f32> =
+                    (0..width * height * 3).map(|i| ((i * 37) % 101) as f32).collect();
+                let mean = |values: &[f32]| values.iter().sum::<f32>() / values.len() as f32;
+                let expected = mean(&texels);
+                let (new_width, new_height, halved) = halve_linear(width, height, texels);
+                assert_eq!((new_width, new_height), ((width / 2).max(1), (height / 2).max(1)));
+                assert!((mean(&halved) - expected).abs() < 1e-3, "{width} x {height}");
+            }
+        }
+    }
+
+    #[test]
+    fn does_not_shift_a_ramp() {
+        // The value of a texel is the position of its middle, 0 to 1.
+        for width in [7, 8, 33] {
+            let ramp: Vec<f32> =
+                (0..width).flat_map(|x| [(x as f32 + 0.5) / width as f32; 3]).collect();
+            let (new_width, _, halved) = halve_linear(width, 1, ramp);
+            for x in 0..new_width {
+                let middle = (x as f32 + 0.5) / new_width as f32;
+                // An odd side's texels are steps, not a ramp: a twentieth of one.
+                assert!((halved[x * 3] - middle).abs() < 0.05 / width as f32, "{width}: {x}");
+            }
+        }
+    }
+
+    #[test]
+    fn averages_light_not_codes() {
+        let codes = Texels::Srgb8(vec![0, 0, 0, 255, 255, 255]);
+        let (_, _, halved) = halve(2, 1, &codes, decode_table());
+        assert_eq!(halved, vec![0.5; 3]);
+    }
+}

@@ -1,0 +1,400 @@
+//! Reading image files into linear light.
+
+use std::fs::File;
+use std::io::{self, Cursor, Read};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+
+use super::{jpeg_markers, srgb};
+
+#[cfg(test)]
+mod tests;
+
+/// The images that come with the program, by name.
+const BUILT_IN: [(&str, &[u8]); 1] = [("bookshelf", include_bytes!("../../assets/bookshelf.jpg"))];
+
+/// What a built-in image's name begins with.
+const BUILT_IN_PREFIX: &str = "builtin:";
+
+/// Largest number of pixels of an image.
+const MAX_PIXELS: u64 = 400_000_000;
+
+/// Largest memory an image may take while it is read, in bytes.
+const MAX_MEMORY: u64 = 4 << 30;
+
+/// Largest image file, in bytes.
+const MAX_FILE: u64 = 2 << 30;
+
+/// Where an image comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ImageSource {
+    /// One of the images that come with the program, by its name without `builtin:`.
+    BuiltIn(&'static str),
+    /// An image file.
+    File(PathBuf),
+}
+
+impl ImageSource {
+    /// What a scene's `image = "..."` means: `builtin:NAME`, or a file, relative to `folder`.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError::UnknownBuiltIn`] for a built-in name that does not exist. Files are looked at
+    /// only by [`load`] and [`dimensions`].
+    pub fn parse(text: &str, folder: &Path) -> Result<Self, LoadError> {
+        let Some(name) = text.strip_prefix(BUILT_IN_PREFIX) else {
+            return Ok(Self::File(folder.join(text)));
+        };
+        BUILT_IN
+            .iter()
+            .find(|(known, _)| *known == name)
+            .map(|(known, _)| Self::BuiltIn(known))
+            .ok_or_else(|| LoadError::UnknownBuiltIn { name: name.to_owned() })
+    }
+
+    /// The images that come with the program, as written in a scene: `builtin:NAME`.
+    pub fn built_in_names() -> impl Iterator<Item = String> {
+        BUILT_IN.iter().map(|(name, _)| format!("{BUILT_IN_PREFIX}{name}"))
+    }
+}
+
+impl std::fmt::Display for ImageSource {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::BuiltIn(name) => write!(f, "{BUILT_IN_PREFIX}{name}"),
+            Self::File(path) => write!(f, "{}", path.display()),
+        }
+    }
+}
+
+/// Why an image cannot be used. Each message names the image.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// No built-in image has this name.
+    #[error(
+        "there is no built-in image `{BUILT_IN_PREFIX}{name}`; there is {}",
+        ImageSource::built_in_names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+    )]
+    UnknownBuiltIn {
+        /// The name asked for, without `builtin:`.
+        name: String,
+    },
+    /// There is no such file.
+    #[error("there is no image file {image}")]
+    Missing {
+        /// The image.
+        image: ImageSource,
+    },
+    /// The path is a folder.
+    #[error("{image} is a folder, not an image file")]
+    Folder {
+        /// The image.
+        image: ImageSource,
+    },
+    /// The operating system refuses to read the file.
+    #[error("cannot read {image}: {reason}")]
+    Unreadable {
+        /// The image.
+        image: ImageSource,
+        /// What the operating system says.
+        reason: io::Error,
+    },
+    /// The file has no bytes.
+    #[error("{image} is empty")]
+    Empty {
+        /// The image.
+        image: ImageSource,
+    },
+    /// The file is no image, or of a kind that is not known.
+    #[error("{image} is not an image that can be read (PNG, JPEG or EXR)")]
+    NotAnImage {
+        /// The image.
+        image: ImageSource,
+    },
+    /// An image of a kind that is known but not read.
+    #[error("{image} is a {format} image; only PNG, JPEG and EXR can be read")]
+    OtherFormat {
+        /// The image.
+        image: ImageSource,
+        /// The kind.
+        format: String,
+    },
+    /// The file ends early or is damaged.
+    #[error("{image} is damaged or cut short: {reason}")]
+    Damaged {
+        /// The image.
+        image: ImageSource,
+        /// What the decoder says.
+        reason: String,
+    },
+    /// The image uses a feature of its format that is not read.
+    #[error("{image} uses a feature that is not supported: {reason}")]
+    Unsupported {
+        /// The image.
+        image: ImageSource,
+        /// What the decoder says.
+        reason: String,
+    },
+    /// The image has no pixels.
+    #[error("{image} has no pixels ({width} x {height})")]
+    NoPixels {
+        /// The image.
+        image: ImageSource,
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+    },
+    /// The image has too many pixels, or would take too much memory.
+    #[error(
+        "{image} is too large: at most {} million pixels and {} GiB of memory are allowed",
+        MAX_PIXELS / 1_000_000,
+        MAX_MEMORY >> 30
+    )]
+    TooLarge {
+        /// The image.
+        image: ImageSource,
+    },
+    /// A pixel of an EXR image is infinite or not a number.
+    #[error("{image} has a pixel that is not a finite number, in column {column} and row {row}")]
+    NotFinite {
+        /// The image.
+        image: ImageSource,
+        /// Column of the first such pixel, from 0.
+        column: usize,
+        /// Row of the first such pixel, from 0.
+        row: usize,
+    },
+}
+
+/// An image in linear light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearImage {
+    /// Width in pixels, at least 1.
+    pub width: usize,
+    /// Height in pixels, at least 1.
+    pub height: usize,
+    /// The pixels, row by row from the top left.
+    pub texels: Texels,
+}
+
+/// Red, green and blue of each pixel, row by row from the top left.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Texels {
+    /// 8-bit sRGB values, which stand for the linear light of [`super::decode_table`]. A quarter
+    /// of the memory of floats, and no less exact.
+    Srgb8(Vec<u8>),
+    /// Linear light.
+    Linear(Vec<f32>),
+}
+
+/// Width and height of an image in pixels, as it stands upright, without decoding its pixels.
+///
+/// # Errors
+///
+/// As [`load`], as far as the file's header tells.
+pub fn dimensions(source: &ImageSource) -> Result<(u32, u32), LoadError> {
+    let bytes = read_bytes(source)?;
+    let (mut decoder, _) = open(source, &bytes)?;
+    let (width, height) = decoder.dimensions();
+    let orientation = decoder.orientation().map_err(|error| from_decoder(source, error))?;
+    // The odd half of the orientations exchanges rows and columns.
+    Ok(if orientation.to_exif() >= 5 { (height, width) } else { (width, height) })
+}
+
+/// Reads an image into linear light.
+///
+/// PNG (1 to 16 bits, gray, palette, colour) and JPEG are taken as sRGB and turned upright as
+/// their EXIF orientation says; EXR is taken as linear light. Transparent pixels lie over black.
+/// The kind of file is seen from its content, not from its name.
+///
+/// # Errors
+///
+/// [`LoadError`] where the file is missing, unreadable, no image, damaged, without pixels or too
+/// large (decided before memory is taken), or where an EXR pixel is not finite: such a pixel would
+/// spread over the picture as soon as it is filtered.
+pub fn load(source: &ImageSource) -> Result<LinearImage, LoadError> {
+    let bytes = read_bytes(source)?;
+    let image = guarded(source, || decode(source, &bytes))?;
+    let image = linear(image);
+    if let Texels::Linear(values) = &image.texels {
+        if let Some(at) = values.iter().position(|value| !value.is_finite()) {
+            let (column, row) = (at / 3 % image.width, at / 3 / image.width);
+            return Err(LoadError::NotFinite { image: source.clone(), column, row });
+        }
+    }
+    Ok(image)
+}
+
+/// The bytes of an image file, once its beginning shows that it can be one.
+fn read_bytes(source: &ImageSource) -> Result<std::borrow::Cow<'static, [u8]>, LoadError> {
+    let path = match source {
+        ImageSource::BuiltIn(name) => {
+            let bytes = BUILT_IN.iter().find(|(known, _)| known == name).map(|(_, bytes)| *bytes);
+            return bytes
+                .map(std::borrow::Cow::Borrowed)
+                .ok_or_else(|| LoadError::UnknownBuiltIn { name: (*name).to_owned() });
+        }
+        ImageSource::File(path) => path,
+    };
+    let image = || source.clone();
+    let failed = |reason: io::Error| match reason.kind() {
+        io::ErrorKind::NotFound => LoadError::Missing { image: image() },
+        io::ErrorKind::IsADirectory => LoadError::Folder { image: image() },
+        _ => LoadError::Unreadable { image: image(), reason },
+    };
+    let mut file = File::open(path).map_err(failed)?;
+    let metadata = file.metadata().map_err(failed)?;
+    if metadata.is_dir() {
+        return Err(LoadError::Folder { image: image() });
+    }
+    if metadata.len() > MAX_FILE {
+        return Err(LoadError::TooLarge { image: image() });
+    }
+    // Devices and pipes have no length: look at the beginning before reading on.
+    let mut bytes = Vec::new();
+    file.by_ref().take(16).read_to_end(&mut bytes).map_err(failed)?;
+    format(source, &bytes)?;
+    bytes.reserve(usize::try_from(metadata.len()).unwrap_or(0));
+    file.take(MAX_FILE + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > MAX_FILE {
+        return Err(LoadError::TooLarge { image: image() });
+    }
+    Ok(bytes.into())
+}
+
+/// The format, from the first bytes.
+fn format(source: &ImageSource, bytes: &[u8]) -> Result<ImageFormat, LoadError> {
+    let image = || source.clone();
+    if bytes.is_empty() {
+        return Err(LoadError::Empty { image: image() });
+    }
+    match image::guess_format(bytes) {
+        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::OpenExr)) => Ok(format),
+        Ok(other) => Err(LoadError::OtherFormat {
+            image: image(),
+            format: format!("{other:?}").to_uppercase(),
+        }),
+        Err(_) => Err(LoadError::NotAnImage { image: image() }),
+    }
+}
+
+/// A decoder that has read the header and found the size acceptable.
+fn open<'b>(
+    source: &ImageSource,
+    bytes: &'b [u8],
+) -> Result<(impl ImageDecoder + use<'b>, ImageFormat), LoadError> {
+    let format = format(source, bytes)?;
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(MAX_MEMORY);
+    reader.limits(limits);
+    let decoder =
+        guarded(source, || reader.into_decoder().map_err(|error| from_decoder(source, error)))?;
+    let (width, height) = decoder.dimensions();
+    if width == 0 || height == 0 {
+        return Err(LoadError::NoPixels { image: source.clone(), width, height });
+    }
+    let pixels = u64::from(width) * u64::from(height);
+    // 8-bit images stay as they are; others become floats beside their decoded form, which the
+    // EXR decoder holds twice. The coarser levels of the pyramid add a third.
+    let color = decoder.color_type();
+    let decoded = u64::from(color.bytes_per_pixel());
+    let per_pixel = match color {
+        image::ColorType::Rgb8 | image::ColorType::L8 => decoded + 3 + 4,
+        _ => 2 * decoded + 12 + 4,
+    };
+    if pixels > MAX_PIXELS || pixels * per_pixel > MAX_MEMORY {
+        return Err(LoadError::TooLarge { image: source.clone() });
+    }
+    Ok((decoder, format))
+}
+
+/// The decoded image, upright.
+fn decode(source: &ImageSource, bytes: &[u8]) -> Result<DynamicImage, LoadError> {
+    let (mut decoder, format) = open(source, bytes)?;
+    if format == ImageFormat::Jpeg && !jpeg_markers::is_complete(bytes) {
+        let reason = "the end-of-image marker is missing".to_owned();
+        return Err(LoadError::Damaged { image: source.clone(), reason });
+    }
+    // An orientation that cannot be read is none.
+    let orientation = decoder.orientation().unwrap_or(image::metadata::Orientation::NoTransforms);
+    let mut image =
+        DynamicImage::from_decoder(decoder).map_err(|error| from_decoder(source, error))?;
+    image.apply_orientation(orientation);
+    Ok(image)
+}
+
+/// Runs a decoder; a panic inside it (a bug set off by a damaged file) becomes an error.
+fn guarded<T>(
+    source: &ImageSource,
+    work: impl FnOnce() -> Result<T, LoadError>,
+) -> Result<T, LoadError> {
+    // The decoder is dropped by the panic; nothing of it is looked at again.
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
+        let reason = "the decoder gave up".to_owned();
+        Err(LoadError::Damaged { image: source.clone(), reason })
+    })
+}
+
+fn from_decoder(source: &ImageSource, error: ImageError) -> LoadError {
+    let image = source.clone();
+    match error {
+        ImageError::Limits(_) => LoadError::TooLarge { image },
+        ImageError::Unsupported(reason) => {
+            LoadError::Unsupported { image, reason: reason.to_string() }
+        }
+        other => LoadError::Damaged { image, reason: other.to_string() },
+    }
+}
+
+/// Linear light from decoded pixels; transparent pixels lie over black.
+fn linear(image: DynamicImage) -> LinearImage {
+    let (width, height) = (image.width() as usize, image.height() as usize);
+    let texels = match image {
+        DynamicImage::ImageRgb8(pixels) => Texels::Srgb8(pixels.into_raw()),
+        DynamicImage::ImageLuma8(pixels) => {
+            Texels::Srgb8(pixels.iter().flat_map(|&gray| [gray; 3]).collect())
+        }
+        DynamicImage::ImageRgba8(pixels) if pixels.pixels().all(|pixel| pixel.0[3] == 255) => {
+            Texels::Srgb8(
+                pixels.pixels().flat_map(|pixel| [pixel.0[0], pixel.0[1], pixel.0[2]]).collect(),
+            )
+        }
+        DynamicImage::ImageLumaA8(_) | DynamicImage::ImageRgba8(_) => {
+            let table = srgb::decode_table();
+            over_black(&image.into_rgba8(), |code| table[usize::from(code)], 1.0 / 255.0)
+        }
+        // EXR colours come multiplied by their alpha already: they lie over black as they are.
+        DynamicImage::ImageRgb32F(pixels) => Texels::Linear(pixels.into_raw()),
+        DynamicImage::ImageRgba32F(pixels) => Texels::Linear(
+            pixels.pixels().flat_map(|pixel| [pixel.0[0], pixel.0[1], pixel.0[2]]).collect(),
+        ),
+        deep => {
+            let table: Vec<f32> =
+                (0..=u16::MAX).map(|code| srgb::decode(f64::from(code) / 65535.0) as f32).collect();
+            over_black(&deep.into_rgba16(), |code| table[usize::from(code)], 1.0 / 65535.0)
+        }
+    };
+    LinearImage { width, height, texels }
+}
+
+/// Linear light of pixels with alpha over black; `unit` is one over the largest alpha.
+fn over_black<S>(
+    pixels: &image::ImageBuffer<image::Rgba<S>, Vec<S>>,
+    light: impl Fn(S) -> f32,
+    unit: f32,
+) -> Texels
+where
+    S: image::Primitive + Into<f32>,
+    image::Rgba<S>: image::Pixel<Subpixel = S>,
+{
+    let mut values = Vec::with_capacity(pixels.len() / 4 * 3);
+    for texel in pixels.as_raw().chunks_exact(4) {
+        let alpha = texel[3].into() * unit;
+        values.extend(texel[..3].iter().map(|&value| light(value) * alpha));
+    }
+    Texels::Linear(values)
+}

@@ -1,0 +1,22 @@
+//! Pictures that rays look at: reading image files into linear light, and averaging them over the
+//! patch that a ray bundle covers.
+//!
+//! - [`ImageSource`] names an image, built in or a file; [`load`] reads it into a [`LinearImage`].
+//! - [`Pyramid`] answers what a point of the image looks like through a patch of any shape.
+//! - [`Equirectangular`] wraps a pyramid around the scene.
+//!
+//! Everything is linear light in the sRGB primaries from here on; files are read by their usual
+//! meaning (PNG and JPEG: sRGB, EXR: linear). Colour profiles are ignored.
+
+mod downsample;
+mod equirectangular;
+mod footprint;
+mod jpeg_markers;
+mod load;
+mod pyramid;
+mod srgb;
+
+pub use equirectangular::Equirectangular;
+pub use load::{ImageSource, LinearImage, LoadError, Texels, dimensions, load};
+pub use pyramid::{Edges, Pyramid};
+pub use srgb::{decode, decode_table};

@@ -1,0 +1,251 @@
+//! Rendering: from a scene to a picture.
+//!
+//! The picture is exposed in bands of rows, each by one thread; what a pixel shows depends on the
+//! scene and the pixel alone, so the result does not depend on the number of threads.
+
+mod channels;
+mod exposure;
+mod film;
+mod pixel;
+mod sampling;
+mod studio;
+
+pub use channels::{Channel, Wanted};
+pub use studio::{Studio, StudioError, bench, limits};
+
+use crate::output::Picture;
+use crate::trace::{Launch, Rarities, Tracer};
+use exposure::{Detection, Traced, expose};
+use film::{Band, Film};
+use glam::DVec3;
+use optics::wave::ComplexVector;
+use pixel::{Pixel, Pulses};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Rows in a band; even, so that bands hold whole blocks of 2 x 2 pixels.
+const BAND_ROWS: usize = 4;
+
+/// How a long work is watched and stopped.
+#[derive(Clone, Copy)]
+pub struct Supervision<'a> {
+    /// Called now and then, from any thread, with how many rows have been finished since the last call.
+    pub rows_done: &'a (dyn Fn(u64) + Sync),
+    /// Set from outside to stop the work.
+    pub stop: &'a AtomicBool,
+}
+
+/// Why no picture was made.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The work was stopped from outside.
+    #[error("stopped")]
+    Stopped,
+    /// The picture would not fit into memory.
+    #[error(
+        "a picture of {width} x {height} pixels needs {needed_mb} MB of memory, but only \
+         {available_mb} MB are free; make `camera.resolution` smaller"
+    )]
+    TooLarge {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+        /// Memory needed, in 10^6 bytes.
+        needed_mb: u64,
+        /// Memory free, in 10^6 bytes.
+        available_mb: u64,
+    },
+}
+
+/// A picture and what was rare in the making of it.
+#[derive(Debug)]
+pub struct Rendered {
+    /// The picture.
+    pub picture: Picture,
+    /// Rare events over all rays.
+    pub rarities: Rarities,
+}
+
+/// Renders a scene.
+///
+/// # Errors
+///
+/// If the picture would not fit into memory, or the work was stopped.
+pub fn render(
+    studio: &Studio<'_>,
+    wanted: Wanted,
+    supervision: &Supervision<'_>,
+) -> Result<Rendered, RenderError> {
+    let camera = &studio.scene.camera;
+    // Horizontal and vertical of the camera, or the polarizer's own direction.
+    match (wanted, camera.polarizer().amplitudes()) {
+        (_, None) => {
+            let detection = Detection { weights: [0.5, 0.5], separate: true };
+            expose_film(studio, wanted, supervision, &detection, |h, v| [h.into(), v.into()])
+        }
+        (Wanted::Image, Some([a, b])) => {
+            let detection = Detection { weights: [1.0], separate: false };
+            expose_film(studio, wanted, supervision, &detection, |h, v| [(h * a + v * b).into()])
+        }
+        (Wanted::Everything, Some([a, b])) => {
+            let detection = Detection { weights: [0.0, 0.0, 1.0], separate: true };
+            expose_film(studio, wanted, supervision, &detection, |h, v| {
+                [h.into(), v.into(), (h * a + v * b).into()]
+            })
+        }
+    }
+}
+
+fn expose_film<const N: usize>(
+    studio: &Studio<'_>,
+    wanted: Wanted,
+    supervision: &Supervision<'_>,
+    detection: &Detection<N>,
+    polarizations: impl Fn(DVec3, DVec3) -> [ComplexVector; N] + Sync,
+) -> Result<Rendered, RenderError> {
+    let [width, height] = studio.scene.camera.resolution();
+    refuse_too_large(width, height, wanted)?;
+    let mut film = Film::new(width as usize, height as usize, Channel::of(wanted));
+    let rarities = film
+        .bands(BAND_ROWS)
+        .into_par_iter()
+        .map_init(
+            || Exposer::new(studio, detection, &polarizations),
+            |exposer, mut band| {
+                if supervision.stop.load(Ordering::Relaxed) {
+                    return Err(RenderError::Stopped);
+                }
+                let rarities = exposer.expose_band(&mut band);
+                (supervision.rows_done)((band.len() / width as usize) as u64);
+                Ok(rarities)
+            },
+        )
+        .try_reduce(Rarities::default, |mut a, b| {
+            a += b;
+            Ok(a)
+        })?;
+    let picture = Picture {
+        width: width as usize,
+        height: height as usize,
+        channels: film.into_channels(),
+        metadata: metadata(studio),
+    };
+    Ok(Rendered { picture, rarities })
+}
+
+/// What every file carries: scene, version and seed.
+fn metadata(studio: &Studio<'_>) -> Vec<(String, String)> {
+    [
+        ("software", concat!("cloakroom ", env!("CARGO_PKG_VERSION")).to_owned()),
+        ("scene", studio.scene.source.clone()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("seed", studio.scene.camera.seed().to_string()),
+    ]
+    .map(|(key, value)| (key.to_owned(), value))
+    .to_vec()
+}
+
+/// Refuses a picture that would not fit into the memory that is free now.
+fn refuse_too_large(width: u32, height: u32, wanted: Wanted) -> Result<(), RenderError> {
+    let bytes: u64 = Channel::of(wanted).iter().map(|c| if c.is_time() { 8 } else { 4 }).sum();
+    // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
+    let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2);
+    match crate::memory::available() {
+        Some(available) if needed > available => Err(RenderError::TooLarge {
+            width,
+            height,
+            needed_mb: needed / 1_000_000,
+            available_mb: available / 1_000_000,
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// One thread's tracer and memory.
+struct Exposer<'a, F, const N: usize> {
+    studio: &'a Studio<'a>,
+    detection: &'a Detection<N>,
+    polarizations: &'a F,
+    tracer: Tracer<'a, N>,
+    block: [Traced<N>; 4],
+    pulses: Pulses,
+}
+
+impl<'a, F, const N: usize> Exposer<'a, F, N>
+where
+    F: Fn(DVec3, DVec3) -> [ComplexVector; N],
+{
+    fn new(studio: &'a Studio<'a>, detection: &'a Detection<N>, polarizations: &'a F) -> Self {
+        Self {
+            studio,
+            detection,
+            polarizations,
+            tracer: Tracer::new(&studio.bench, studio.limits).with_screen(studio.screen),
+            block: std::array::from_fn(|_| Traced::default()),
+            pulses: Vec::new(),
+        }
+    }
+
+    /// Exposes a band, 2 x 2 pixels at a time.
+    fn expose_band(&mut self, band: &mut Band<'_>) -> Rarities {
+        let camera = &self.studio.scene.camera;
+        let width = camera.resolution()[0] as usize;
+        let rows = band.len() / width;
+        let samples = camera.samples();
+        let mut rarities = Rarities::default();
+        for row in (0..rows).step_by(2) {
+            for column in (0..width).step_by(2) {
+                let corner = [column, band.first_row + row];
+                let mut pixels = [Pixel::default(); 4];
+                for sample in 0..samples {
+                    rarities += self.expose_block(corner, sample, &mut pixels);
+                }
+                for (i, pixel) in pixels.iter().enumerate() {
+                    let (x, y) = (column + i % 2, row + i / 2);
+                    if x < width && y < rows {
+                        band.set(y * width + x, |channel| pixel.value(channel, f64::from(samples)));
+                    }
+                }
+            }
+        }
+        rarities
+    }
+
+    /// Traces one sample of each pixel of a block and adds what they see.
+    fn expose_block(
+        &mut self,
+        [column, row]: [usize; 2],
+        sample: u32,
+        pixels: &mut [Pixel; 4],
+    ) -> Rarities {
+        let camera = &self.studio.scene.camera;
+        let samples = camera.samples();
+        let block = [column as u32 / 2, row as u32 / 2];
+        let offset = sampling::offset(sample, samples, block, camera.seed());
+        let mut rarities = Rarities::default();
+        for (i, traced) in self.block.iter_mut().enumerate() {
+            let x = (column + i % 2) as f64 + offset[0];
+            let y = (row + i / 2) as f64 + offset[1];
+            let ray = camera.ray(x, y);
+            let (horizontal, vertical) = camera.polarization_basis(ray.direction);
+            let launch = Launch {
+                origin: ray.origin,
+                direction: ray.direction,
+                electric: (self.polarizations)(horizontal, vertical),
+            };
+            let (leaves, outcome) = self.tracer.trace(&launch);
+            traced.ray = ray;
+            traced.leaves.clear();
+            traced.leaves.extend_from_slice(leaves);
+            traced.outcome = *outcome;
+            rarities += outcome.rarities;
+        }
+        let spacing = 1.0 / f64::from(samples).sqrt();
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            let rays = [&self.block[i], &self.block[i ^ 1], &self.block[i ^ 2]];
+            expose(self.studio, self.detection, rays, spacing, pixel, &mut self.pulses);
+        }
+        rarities
+    }
+}

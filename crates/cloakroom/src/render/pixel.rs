@@ -1,0 +1,63 @@
+//! What one pixel gathers from its samples.
+
+use super::Channel;
+
+/// Running sums over the samples of one pixel.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pixel {
+    pub image: [f64; 3],
+    pub horizontal: [f64; 3],
+    pub vertical: [f64; 3],
+    pub delivered: f64,
+    pub escaped: f64,
+    pub absorbed: f64,
+    pub pruned: f64,
+    /// Time of flight, its square spread and its difference, each weighted by power.
+    time: f64,
+    variance: f64,
+    difference: f64,
+    time_weight: f64,
+    difference_weight: f64,
+}
+
+/// The pulses of one camera ray: time of flight (ns) and power of each leaf on the photograph.
+pub(super) type Pulses = Vec<(f64, f64)>;
+
+impl Pixel {
+    /// Adds the pulses of one camera ray; `empty` is its time of flight in the empty scene, ns.
+    pub fn add_pulses(&mut self, pulses: &[(f64, f64)], empty: Option<f64>) {
+        let power: f64 = pulses.iter().map(|(_, power)| power).sum();
+        if power <= 0.0 {
+            return;
+        }
+        // Relative to the first pulse: differences of yoctoseconds survive.
+        let first = pulses[0].0;
+        let mean = pulses.iter().map(|(time, power)| (time - first) * power).sum::<f64>() / power;
+        let variance =
+            pulses.iter().map(|(time, power)| (time - first - mean).powi(2) * power).sum::<f64>();
+        self.time += (first + mean) * power;
+        self.variance += variance;
+        self.time_weight += power;
+        if let Some(empty) = empty {
+            self.difference += (first - empty + mean) * power;
+            self.difference_weight += power;
+        }
+    }
+
+    /// The value of a channel, the pixel having had `samples` samples.
+    pub fn value(&self, channel: Channel, samples: f64) -> f64 {
+        match channel {
+            Channel::Image(i) => self.image[i] / samples,
+            Channel::Horizontal(i) => self.horizontal[i] / samples,
+            Channel::Vertical(i) => self.vertical[i] / samples,
+            // 0/0 is the NaN that says: no leaf has reached the photograph.
+            Channel::TimeOfFlight => self.time / self.time_weight,
+            Channel::TimeOfFlightSpread => (self.variance / self.time_weight).sqrt(),
+            Channel::TimeOfFlightDifference => self.difference / self.difference_weight,
+            Channel::Delivered => self.delivered / samples,
+            Channel::Escaped => self.escaped / samples,
+            Channel::Absorbed => self.absorbed / samples,
+            Channel::Pruned => self.pruned / samples,
+        }
+    }
+}

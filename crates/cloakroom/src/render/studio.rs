@@ -1,0 +1,201 @@
+//! The studio: a scene made ready to be looked at, images read and devices built.
+
+use crate::device::Request;
+use crate::photograph::{self, Edges, Equirectangular, LoadError, Pyramid};
+use crate::scene::{Scene, SurroundingsSettings};
+use crate::trace::{Bench, Limits, Placed, Screen};
+use glam::DVec3;
+use optics::geometry::Pose;
+
+/// Width of the builtin photograph, cm.
+const BUILTIN_WIDTH: f64 = 110.0;
+
+/// Why a scene cannot be looked at.
+#[derive(Debug, thiserror::Error)]
+pub enum StudioError {
+    /// A device cannot be built.
+    #[error("{message}")]
+    Device {
+        /// Which device, counted from 0.
+        device: usize,
+        /// The key at fault, if one is.
+        key: Option<&'static str>,
+        /// What is wrong and what would be right.
+        message: String,
+    },
+    /// Two devices are in each other's way.
+    #[error(
+        "device {second} overlaps device {first}; move one of them (devices are counted from 0)"
+    )]
+    Overlap {
+        /// One of them, counted from 0.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
+    /// The camera is inside a device.
+    #[error("the camera stands inside device {device} (counted from 0); it must stand in air")]
+    CameraInside {
+        /// Which device, counted from 0.
+        device: usize,
+    },
+    /// A device cuts through the photograph.
+    #[error(
+        "device {device} (counted from 0) cuts through the photograph in the plane x = {x} cm; \
+         move one of them"
+    )]
+    PhotographInside {
+        /// Which device, counted from 0.
+        device: usize,
+        /// Where the photograph is, cm.
+        x: f64,
+    },
+    /// The photograph needs a width.
+    #[error(
+        "the camera's view does not end on the photograph's plane x = {x} cm, so the photograph \
+         cannot be made to cover it; give its `width`"
+    )]
+    NoCoveringWidth {
+        /// Where the photograph is, cm.
+        x: f64,
+    },
+    /// The photograph cannot be read.
+    #[error("{0}")]
+    Photograph(#[source] LoadError),
+    /// The image of the surroundings cannot be read.
+    #[error("{0}")]
+    Surroundings(#[source] LoadError),
+}
+
+impl StudioError {
+    /// The key of the scene file that the error is about, such as `device.0.side`.
+    #[must_use]
+    pub fn key(&self) -> String {
+        match self {
+            Self::Device { device, key: Some(key), .. } => format!("device.{device}.{key}"),
+            Self::Device { device, key: None, .. } | Self::PhotographInside { device, .. } => {
+                format!("device.{device}")
+            }
+            Self::Overlap { second, .. } => format!("device.{second}"),
+            Self::CameraInside { .. } => "camera.position".to_owned(),
+            Self::NoCoveringWidth { .. } => "photograph.x".to_owned(),
+            Self::Photograph(_) => "photograph.image".to_owned(),
+            Self::Surroundings(_) => "surroundings.image".to_owned(),
+        }
+    }
+}
+
+/// Builds the devices of a scene and puts them in their places. Neither the camera nor any image is
+/// looked at: this is all that tracing given rays needs.
+///
+/// # Errors
+///
+/// If a device is impossible or two overlap.
+pub fn bench(scene: &Scene) -> Result<Bench, StudioError> {
+    let mut placed = Vec::new();
+    for (index, device) in scene.devices.iter().enumerate() {
+        let request = Request { show: device.show, length: device.length };
+        let structure = (device.entry.build)(&device.values, request).map_err(|error| {
+            StudioError::Device { device: index, key: error.key, message: error.message }
+        })?;
+        placed.push(Placed { pose: Pose::new(device.position, device.rotation), structure });
+    }
+    let bench = Bench::new(placed);
+    match bench.overlap() {
+        Some((first, second)) => Err(StudioError::Overlap { first, second }),
+        None => Ok(bench),
+    }
+}
+
+/// The limits that a scene's `[trace]` table sets.
+#[must_use]
+pub fn limits(scene: &Scene) -> Limits {
+    Limits { min_power: scene.trace.min_power, tolerance: scene.trace.tolerance }
+}
+
+/// What rays see that hit nothing.
+#[derive(Clone, Debug)]
+pub(super) enum Surroundings {
+    Color([f64; 3]),
+    Image(Equirectangular),
+}
+
+/// A scene ready to be rendered.
+#[derive(Clone, Debug)]
+pub struct Studio<'s> {
+    pub(super) scene: &'s Scene,
+    pub(super) bench: Bench,
+    pub(super) limits: Limits,
+    pub(super) screen: Screen,
+    pub(super) image: Pyramid,
+    pub(super) surroundings: Surroundings,
+}
+
+impl<'s> Studio<'s> {
+    /// Reads the images and builds the devices of a scene.
+    ///
+    /// # Errors
+    ///
+    /// If an image cannot be read, a device is impossible, or something stands in something else.
+    pub fn new(scene: &'s Scene) -> Result<Self, StudioError> {
+        let bench = bench(scene)?;
+        let eye = scene.camera.position();
+        if let Some(device) = bench.holder(eye) {
+            return Err(StudioError::CameraInside { device });
+        }
+        let image = photograph::load(&scene.photograph.image).map_err(StudioError::Photograph)?;
+        let aspect = image.width as f64 / image.height as f64;
+        let screen = screen(scene, aspect)?;
+        if let Some(device) = screen.cut_by(&bench) {
+            return Err(StudioError::PhotographInside { device, x: screen.x });
+        }
+        let surroundings = match &scene.surroundings {
+            SurroundingsSettings::Color(color) => Surroundings::Color(*color),
+            SurroundingsSettings::Image(source) => Surroundings::Image(Equirectangular::new(
+                photograph::load(source).map_err(StudioError::Surroundings)?,
+            )),
+        };
+        Ok(Self {
+            scene,
+            bench,
+            limits: limits(scene),
+            screen,
+            image: Pyramid::new(image, Edges::Clamp),
+            surroundings,
+        })
+    }
+
+    /// Width and height of the photograph, cm.
+    #[must_use]
+    pub fn photograph_size(&self) -> [f64; 2] {
+        [2.0 * self.screen.half_width, 2.0 * self.screen.half_height]
+    }
+
+    /// The devices at their places.
+    #[must_use]
+    pub fn bench(&self) -> &Bench {
+        &self.bench
+    }
+}
+
+/// The photograph's rectangle, for an image of the given aspect (width over height).
+fn screen(scene: &Scene, aspect: f64) -> Result<Screen, StudioError> {
+    let x = scene.photograph.x;
+    let width = match scene.photograph.width {
+        Some(width) => width,
+        None if matches!(scene.photograph.image, photograph::ImageSource::BuiltIn(_)) => {
+            BUILTIN_WIDTH
+        }
+        None => scene.camera.covering_width(x, aspect).ok_or(StudioError::NoCoveringWidth { x })?,
+    };
+    Ok(Screen { x, half_width: width / 2.0, half_height: width / aspect / 2.0 })
+}
+
+impl Screen {
+    /// Image coordinates (u, v) of a point of the plane for a ray that looks along `direction`:
+    /// upright and unmirrored from either side.
+    pub(super) fn image_position(&self, point: DVec3, direction: DVec3) -> [f64; 2] {
+        let z = point.z * direction.x.signum();
+        [0.5 + z / (2.0 * self.half_width), 0.5 - point.y / (2.0 * self.half_height)]
+    }
+}

@@ -1,0 +1,301 @@
+//! The model of a scene: camera, light, photograph, surroundings and devices.
+//!
+//! Plain data, free of files: [`scene_file`](crate::scene_file) fills it from TOML, other front
+//! ends from [`Values`].
+
+mod camera;
+mod polarizer;
+mod tables;
+
+use std::path::Path;
+
+use glam::DVec3;
+
+pub use camera::{Camera, CameraRay, CameraSettings, Projection, RayDifferentials};
+pub use polarizer::Polarizer;
+pub use tables::{
+    CAMERA_KEYS, DEFAULT_PHOTOGRAPH, LIGHT_KEYS, PHOTOGRAPH_KEYS, PICTURE_KEYS, PLACEMENT_KEYS,
+    SCALAR_CHANNELS, SURROUNDINGS_KEYS, TABLES, TRACE_KEYS,
+};
+
+use crate::device::Entry;
+pub use crate::device::Show;
+use crate::keys::{KeyError, Values};
+use crate::photograph::ImageSource;
+
+/// Everything a picture depends on.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Who looks.
+    pub camera: Camera,
+    /// The light.
+    pub light: Light,
+    /// What hangs behind the devices.
+    pub photograph: PhotographSettings,
+    /// What rays see that hit nothing.
+    pub surroundings: SurroundingsSettings,
+    /// How rays are followed.
+    pub trace: TraceSettings,
+    /// What a PNG shows.
+    pub picture: PictureSettings,
+    /// The devices, in the order of the scene file.
+    pub devices: Vec<DeviceSettings>,
+    /// The scene as TOML, overrides applied: it goes into the metadata of pictures.
+    pub source: String,
+}
+
+/// The light that fills the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Wavelength in vacuum, in nm.
+    pub wavelength_nm: f64,
+}
+
+/// The photograph: a plane of constant x.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhotographSettings {
+    /// What hangs there.
+    pub image: ImageSource,
+    /// The plane it hangs in, in cm.
+    pub x: f64,
+    /// Its width in cm; `None`: 110 for the builtin one, for others as wide as the camera's view
+    /// ([`Camera::covering_width`]).
+    pub width: Option<f64>,
+}
+
+/// What rays see that hit nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SurroundingsSettings {
+    /// The same everywhere: linear red, green and blue.
+    Color([f64; 3]),
+    /// An equirectangular image.
+    Image(ImageSource),
+}
+
+/// How rays are followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TraceSettings {
+    /// Branches weaker than this share of the camera ray are pruned.
+    pub min_power: f64,
+    /// Whether the scene says so, rather than leaving it at the default.
+    pub min_power_given: bool,
+    /// Largest error of position and optical path on leaving a device, in cm.
+    pub tolerance: f64,
+}
+
+/// What a PNG shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureSettings {
+    /// One of [`SCALAR_CHANNELS`] in false colors; `None`: what the camera sees.
+    pub map: Option<&'static str>,
+    /// Whether the scale of a map is drawn beside it.
+    pub color_bar: bool,
+}
+
+/// What fills the hidden region of a device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Core {
+    /// Metal.
+    #[default]
+    Metal,
+    /// Air, in which bodies may stand.
+    Open,
+}
+
+/// One device of a scene.
+#[derive(Clone, Debug)]
+pub struct DeviceSettings {
+    /// Its kind.
+    pub entry: &'static Entry,
+    /// The values of its kind's own keys.
+    pub values: Values,
+    /// What of it is shown.
+    pub show: Show,
+    /// What fills its hidden region.
+    pub core: Core,
+    /// Degrees about its own axis, counterclockwise seen from +z.
+    pub rotation: f64,
+    /// Where its origin lies, in cm.
+    pub position: DVec3,
+    /// Whole length along its z axis in cm; `None`: endless.
+    pub length: Option<f64>,
+}
+
+impl Light {
+    /// The settings in a table of [`LIGHT_KEYS`].
+    pub fn from_values(values: &Values) -> Self {
+        Light { wavelength_nm: values.number("wavelength_nm") }
+    }
+}
+
+impl PhotographSettings {
+    /// The settings in a table of [`PHOTOGRAPH_KEYS`]; the name of a file is taken relative to
+    /// `folder`.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such builtin image.
+    pub fn from_values(values: &Values, folder: &Path) -> Result<Self, KeyError> {
+        Ok(PhotographSettings {
+            image: image_source(values.text("image"), folder)?,
+            x: values.number("x"),
+            width: values.optional_number("width"),
+        })
+    }
+}
+
+impl SurroundingsSettings {
+    /// The settings in a table of [`SURROUNDINGS_KEYS`]; the name of a file is taken relative to
+    /// `folder`.
+    ///
+    /// # Errors
+    ///
+    /// If both a color and an image are given, or there is no such builtin image.
+    pub fn from_values(values: &Values, folder: &Path) -> Result<Self, KeyError> {
+        match values.optional_text("image") {
+            None => Ok(SurroundingsSettings::Color(values.vector("color"))),
+            Some(_) if values.is_given("color") => {
+                let message = "color and image are both given; the surroundings take one of them";
+                Err(KeyError::at("image", message))
+            }
+            Some(image) => Ok(SurroundingsSettings::Image(image_source(image, folder)?)),
+        }
+    }
+}
+
+impl TraceSettings {
+    /// The settings in a table of [`TRACE_KEYS`].
+    pub fn from_values(values: &Values) -> Self {
+        TraceSettings {
+            min_power: values.number("min_power"),
+            min_power_given: values.is_given("min_power"),
+            tolerance: values.number("tolerance"),
+        }
+    }
+}
+
+impl PictureSettings {
+    /// The settings in a table of [`PICTURE_KEYS`].
+    pub fn from_values(values: &Values) -> Self {
+        let map = values.choice("map");
+        PictureSettings {
+            map: SCALAR_CHANNELS.iter().find(|&&channel| channel == map).copied(),
+            color_bar: values.flag("color_bar"),
+        }
+    }
+}
+
+impl DeviceSettings {
+    /// A device of a kind, with the values of the kind's own keys and of [`PLACEMENT_KEYS`].
+    pub fn from_values(entry: &'static Entry, values: Values, placement: &Values) -> Self {
+        DeviceSettings {
+            entry,
+            values,
+            show: match placement.choice("show") {
+                "bare" => Show::Bare,
+                "mirror" => Show::Mirror,
+                _ => Show::Cloak,
+            },
+            core: match placement.choice("core") {
+                "open" => Core::Open,
+                _ => Core::Metal,
+            },
+            rotation: placement.number("rotation"),
+            position: DVec3::from_array(placement.vector("position")),
+            length: placement.optional_number("length"),
+        }
+    }
+
+    /// A device of a kind with everything at its default.
+    pub fn new(entry: &'static Entry) -> Self {
+        let placement = Values::defaults(PLACEMENT_KEYS);
+        DeviceSettings::from_values(entry, Values::defaults(entry.keys), &placement)
+    }
+}
+
+impl Default for Light {
+    fn default() -> Self {
+        Light::from_values(&Values::defaults(LIGHT_KEYS))
+    }
+}
+
+impl Default for PhotographSettings {
+    fn default() -> Self {
+        let values = Values::defaults(PHOTOGRAPH_KEYS);
+        Self::from_values(&values, Path::new("")).expect("the default photograph is builtin")
+    }
+}
+
+impl Default for SurroundingsSettings {
+    fn default() -> Self {
+        SurroundingsSettings::Color([0.0; 3])
+    }
+}
+
+impl Default for TraceSettings {
+    fn default() -> Self {
+        TraceSettings::from_values(&Values::defaults(TRACE_KEYS))
+    }
+}
+
+impl Default for PictureSettings {
+    fn default() -> Self {
+        PictureSettings::from_values(&Values::defaults(PICTURE_KEYS))
+    }
+}
+
+/// What the key `image` of a table means.
+fn image_source(image: &str, folder: &Path) -> Result<ImageSource, KeyError> {
+    ImageSource::parse(image, folder).map_err(|error| KeyError::at("image", error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_scene_is_that_of_the_key_lists() {
+        let scene = Scene::default();
+        let camera = CameraSettings::from_values(&Values::defaults(CAMERA_KEYS));
+        assert_eq!(camera.as_ref(), Ok(scene.camera.settings()));
+        assert_eq!(scene.photograph.image, ImageSource::BuiltIn("bookshelf"));
+        assert_eq!((scene.photograph.x, scene.photograph.width), (50.0, None));
+        assert_eq!(scene.surroundings, SurroundingsSettings::Color([0.0; 3]));
+        assert_eq!((scene.trace.min_power, scene.trace.min_power_given), (1e-4, false));
+        assert_eq!(scene.trace.tolerance, 1e-6);
+        assert_eq!(scene.light.wavelength_nm, 550.0);
+        assert_eq!(scene.picture, PictureSettings { map: None, color_bar: true });
+        assert!(scene.devices.is_empty());
+    }
+
+    #[test]
+    fn the_view_is_sized_in_the_terms_of_its_projection() {
+        let key = |pairs: &[(&str, crate::keys::Value)]| {
+            let mut values = Values::defaults(CAMERA_KEYS);
+            for (name, value) in pairs {
+                values.set(name, value.clone()).expect(name);
+            }
+            CameraSettings::from_values(&values).map(|s| s.projection).map_err(|e| e.key)
+        };
+        let orthographic = ("projection", "orthographic".into());
+        assert_eq!(key(&[("width", 50.0.into())]), Err(Some("width")));
+        assert_eq!(key(std::slice::from_ref(&orthographic)), Err(Some("projection")));
+        let both = [orthographic.clone(), ("field_of_view", 40.0.into()), ("width", 50.0.into())];
+        assert_eq!(key(&both), Err(Some("field_of_view")));
+        let width = key(&[orthographic, ("width", 50.0.into())]);
+        assert_eq!(width, Ok(Projection::Orthographic { width: 50.0 }));
+    }
+
+    #[test]
+    fn images_are_files_unless_they_are_builtin() {
+        let image = |image: &str| {
+            let mut values = Values::defaults(PHOTOGRAPH_KEYS);
+            values.set("image", image).expect("a text");
+            PhotographSettings::from_values(&values, Path::new("scenes")).map(|p| p.image)
+        };
+        assert_eq!(image("me.png"), Ok(ImageSource::File("scenes/me.png".into())));
+        assert_eq!(image("/me.png"), Ok(ImageSource::File("/me.png".into())));
+        assert_eq!(image("builtin:bookshelf"), Ok(ImageSource::BuiltIn("bookshelf")));
+        assert_eq!(image("builtin:bookself").map_err(|error| error.key), Err(Some("image")));
+    }
+}

@@ -1,0 +1,206 @@
+//! What is wrong with a scene file, and where.
+
+use std::fmt;
+use std::ops::Range;
+
+/// What is wrong with a scene: one message, with the place it points at.
+///
+/// Its `Display` is the whole message for people, several lines where it quotes the file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub struct SceneFileError {
+    /// The scene file.
+    pub file: String,
+    /// The line in the file, counted from 1; `None` if the error is in no line of it.
+    pub line: Option<u32>,
+    /// The column in characters, counted from 1.
+    pub column: Option<u32>,
+    /// The override at fault, such as `camera.samples=16`; `None` if the file is.
+    pub override_text: Option<String>,
+    /// What is wrong.
+    pub message: String,
+    /// The quoted line with a mark under the place.
+    excerpt: Option<String>,
+}
+
+impl SceneFileError {
+    /// An error of the file as a whole.
+    pub fn whole(file: impl Into<String>, message: impl Into<String>) -> Self {
+        SceneFileError {
+            file: file.into(),
+            line: None,
+            column: None,
+            override_text: None,
+            message: message.into(),
+            excerpt: None,
+        }
+    }
+
+    /// An error of an override, given as it was written (`camera.samples=16`).
+    pub(super) fn in_override(file: &str, text: &str, message: impl Into<String>) -> Self {
+        let override_text = Some(text.to_owned());
+        SceneFileError { override_text, ..SceneFileError::whole(file, message) }
+    }
+
+    /// An error of some bytes of the file's text.
+    pub(super) fn in_text(
+        file: &str,
+        text: &str,
+        span: Range<usize>,
+        message: impl Into<String>,
+    ) -> Self {
+        let place = Place::find(text, span);
+        SceneFileError {
+            line: Some(place.line),
+            column: Some(place.column),
+            excerpt: Some(place.excerpt()),
+            ..SceneFileError::whole(file, message)
+        }
+    }
+}
+
+impl fmt::Display for SceneFileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.override_text, self.line, self.column) {
+            (Some(text), _, _) => write!(f, "--set {text}: ")?,
+            (None, Some(line), Some(column)) => write!(f, "{}:{line}:{column}: ", self.file)?,
+            (None, Some(line), None) => write!(f, "{}:{line}: ", self.file)?,
+            (None, None, _) => write!(f, "{}: ", self.file)?,
+        }
+        f.write_str(&self.message)?;
+        match &self.excerpt {
+            Some(excerpt) => write!(f, "\n{excerpt}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A stretch of one line of a text.
+struct Place<'a> {
+    /// Counted from 1.
+    line: u32,
+    /// Counted from 1, in characters.
+    column: u32,
+    /// How many characters to mark, at least 1.
+    length: usize,
+    /// The whole line.
+    content: &'a str,
+}
+
+impl<'a> Place<'a> {
+    fn find(text: &'a str, span: Range<usize>) -> Self {
+        let start = char_boundary(text, span.start);
+        let end = char_boundary(text, span.end).max(start);
+        let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
+        let content = text[line_start..line_end].trim_end_matches('\r');
+        // A byte order mark is no character of the first line.
+        let bom = if line_start == 0 { content.len() - without_bom(content).len() } else { 0 };
+        let before = &text[line_start + bom.min(start - line_start)..start];
+        let marked = &text[start..end.min(line_start + content.len()).max(start)];
+        Place {
+            line: small(text[..line_start].matches('\n').count() + 1),
+            column: small(before.chars().count() + 1),
+            length: marked.chars().count().max(1),
+            content: without_bom(content),
+        }
+    }
+
+    /// The line with its number, and a mark under the place.
+    fn excerpt(&self) -> String {
+        /// Of a longer line only the part around the place is shown.
+        const LONGEST: usize = 100;
+        const BEFORE: usize = 40;
+        let before = self.column as usize - 1;
+        let skipped =
+            if self.content.chars().count() > LONGEST { before.saturating_sub(BEFORE) } else { 0 };
+        // One character, one column: a tab or an escape code would shift the mark.
+        let plain = |c: char| if c.is_control() { ' ' } else { c };
+        let mut shown: String =
+            self.content.chars().skip(skipped).take(LONGEST).map(plain).collect();
+        let mut indent = before - skipped;
+        if skipped > 0 {
+            shown.insert_str(0, "...");
+            indent += 3;
+        }
+        if self.content.chars().nth(skipped + LONGEST).is_some() {
+            shown.push_str("...");
+        }
+        let length = self.length.min(shown.chars().count().saturating_sub(indent)).max(1);
+        let number = self.line.to_string();
+        let gutter = " ".repeat(number.len());
+        let (indent, mark) = (" ".repeat(indent), "^".repeat(length));
+        format!("  {number} | {shown}\n  {gutter} | {indent}{mark}")
+    }
+}
+
+fn without_bom(text: &str) -> &str {
+    text.trim_start_matches('\u{feff}')
+}
+
+/// The nearest start of a character at or before a byte.
+fn char_boundary(text: &str, byte: usize) -> usize {
+    let last = byte.min(text.len());
+    (0..=last).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0)
+}
+
+fn small(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(text: &str, span: Range<usize>) -> String {
+        SceneFileError::in_text("scene.toml", text, span, "wrong").to_string()
+    }
+
+    #[test]
+    fn the_line_is_quoted_and_the_place_marked() {
+        let text = "# a\n[camera]\npositon = 1\r\n";
+        let expected = "scene.toml:3:1: wrong\n  3 | positon = 1\n    | ^^^^^^^";
+        assert_eq!(shown(text, 13..20), expected);
+        let expected = "scene.toml:3:11: wrong\n  3 | positon = 1\n    |           ^";
+        assert_eq!(shown(text, 23..24), expected);
+    }
+
+    #[test]
+    fn columns_are_characters_and_tabs_do_not_shift_the_mark() {
+        let text = "\u{feff}\té = ü\n";
+        let at = text.find('ü').expect("there");
+        let expected = "scene.toml:1:6: wrong\n  1 |  é = ü\n    |      ^";
+        assert_eq!(shown(text, at..at + 2), expected);
+        assert!(shown("\u{feff}a = 1", 3..4).starts_with("scene.toml:1:1: "));
+    }
+
+    #[test]
+    fn a_place_at_the_end_or_over_several_lines_is_shown_in_one() {
+        assert_eq!(shown("a = [", 5..5), "scene.toml:1:6: wrong\n  1 | a = [\n    |      ^");
+        assert_eq!(
+            shown("a = [1,\n2]", 4..10),
+            "scene.toml:1:5: wrong\n  1 | a = [1,\n    |     ^^^"
+        );
+        assert!(shown("", 0..0).starts_with("scene.toml:1:1: "));
+        assert!(shown("a\n", 2..2).starts_with("scene.toml:2:1: "));
+    }
+
+    #[test]
+    fn long_lines_are_cut_around_the_place() {
+        let text = format!("a = \"{}\" b {}", "x".repeat(500), "y".repeat(500));
+        let at = text.find(" b ").expect("there") + 1;
+        let lines: Vec<String> = shown(&text, at..at + 1).lines().map(str::to_owned).collect();
+        let mark = lines[2].find('^').expect("a mark");
+        assert_eq!(lines[1].as_bytes()[mark], b'b');
+        assert!(lines[1].len() < 120 && lines[1].ends_with("..."));
+    }
+
+    #[test]
+    fn any_place_in_any_text_can_be_shown() {
+        let text = "é\r\n\r\n\tü\n\u{feff}x";
+        for start in 0..=text.len() + 2 {
+            for end in 0..=text.len() + 2 {
+                shown(text, start..end);
+            }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Scene files: TOML in, a [`Scene`] out, or one message that says what is wrong and where.
+//!
+//! The text becomes a tree whose nodes know where they were written, overrides are applied to the
+//! tree, and each table is held against its list of keys ([`crate::keys`]). The same lists make
+//! the JSON Schema of scene files ([`schema`]).
+
+mod error;
+mod locations;
+mod overrides;
+mod read;
+mod schema;
+#[cfg(test)]
+mod tests;
+mod tree;
+
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+pub use error::SceneFileError;
+pub use locations::Locations;
+pub use schema::schema;
+
+use crate::scene::Scene;
+
+/// Longer files are no scenes.
+const LONGEST_FILE: u64 = 16 << 20;
+
+/// A scene, and where its parts were written.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The scene.
+    pub scene: Scene,
+    /// Where its parts were written.
+    pub locations: Locations,
+}
+
+/// Reads a scene file and applies overrides such as `camera.samples=16` to it.
+///
+/// # Errors
+///
+/// If the file cannot be read, is not valid TOML, or says something a scene cannot say.
+pub fn load(path: &Path, overrides: &[String]) -> Result<Loaded, SceneFileError> {
+    let name = path.display().to_string();
+    let text = read_text(path, &name)?;
+    parse(&text, &name, path.parent().unwrap_or(Path::new("")), overrides)
+}
+
+/// Reads the text of a scene; `name` stands in messages, and files that the scene names are
+/// relative to `base_folder`.
+///
+/// # Errors
+///
+/// If the text is not valid TOML, or says something a scene cannot say.
+pub fn parse(
+    text: &str,
+    name: &str,
+    base_folder: &Path,
+    overrides: &[String],
+) -> Result<Loaded, SceneFileError> {
+    let mut root = tree::parse(name, text)?;
+    overrides::apply(&mut root, overrides, name)?;
+    let locations = Locations::new(name, text, overrides, &root);
+    let mut scene = read::read(&root, &locations, base_folder)?;
+    scene.source = if overrides.is_empty() { text.to_owned() } else { root.to_toml().to_string() };
+    Ok(Loaded { scene, locations })
+}
+
+fn read_text(path: &Path, name: &str) -> Result<String, SceneFileError> {
+    let fail = |message: String| SceneFileError::whole(name, message);
+    let unreadable = |error: std::io::Error| {
+        fail(match error.kind() {
+            ErrorKind::NotFound => "there is no such file".to_owned(),
+            ErrorKind::IsADirectory => "this is a folder, not a scene file".to_owned(),
+            ErrorKind::PermissionDenied => "reading it is not permitted".to_owned(),
+            _ => format!("it cannot be read: {error}"),
+        })
+    };
+    if path.is_dir() {
+        return Err(unreadable(ErrorKind::IsADirectory.into()));
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(unreadable)?;
+    file.take(LONGEST_FILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > LONGEST_FILE {
+        return Err(fail(format!("it is longer than {} MiB; no scene is", LONGEST_FILE >> 20)));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
+        let message = "the file is not UTF-8 text".to_owned();
+        let mut error = fail(message);
+        error.line = u32::try_from(line).ok();
+        error
+    })
+}

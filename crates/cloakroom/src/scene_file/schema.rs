@@ -1,0 +1,203 @@
+//! The JSON Schema of scene files, for editors that complete and check TOML.
+
+use serde_json::{Map, Value, json};
+
+use crate::device::{CATALOGUE, Entry};
+use crate::keys::{self, Key, KeyKind, Limits};
+use crate::scene::{PLACEMENT_KEYS, TABLES};
+
+/// The JSON Schema (draft 2020-12) of a scene file, made from the lists of keys and the catalogue
+/// of devices.
+pub fn schema() -> Value {
+    let mut tables: Map<String, Value> = TABLES
+        .iter()
+        .map(|&(name, keys)| {
+            let mut table = closed_table(properties(keys));
+            for (word, rule) in rules(name) {
+                table.insert(word.to_owned(), rule);
+            }
+            (name.to_owned(), Value::Object(table))
+        })
+        .collect();
+    let kinds: Vec<Value> = CATALOGUE
+        .iter()
+        .map(|entry| json!({ "$ref": format!("#/$defs/{}", entry.kind) }))
+        .collect();
+    let mut devices = json!({
+        "type": "array",
+        "description": "The devices, each a table [[device]].",
+    });
+    if !kinds.is_empty() {
+        devices["items"] = json!({ "type": "object", "required": ["kind"], "oneOf": kinds });
+    }
+    tables.insert("device".to_owned(), devices);
+    let definitions: Map<String, Value> =
+        CATALOGUE.iter().map(|entry| (entry.kind.to_owned(), device(entry))).collect();
+    let mut schema = closed_table(tables);
+    schema.insert("$schema".to_owned(), "https://json-schema.org/draft/2020-12/schema".into());
+    schema.insert("title".to_owned(), "cloakroom scene".into());
+    schema.insert(
+        "description".to_owned(),
+        "A scene of cloakroom. Lengths in cm, angles in degrees.".into(),
+    );
+    schema.insert("$defs".to_owned(), definitions.into());
+    schema.into()
+}
+
+fn device(entry: &Entry) -> Value {
+    let mut all = Map::new();
+    all.insert(
+        "kind".to_owned(),
+        json!({ "const": entry.kind, "description": "What the device is." }),
+    );
+    all.extend(properties(entry.keys));
+    all.extend(properties(PLACEMENT_KEYS));
+    let mut table = closed_table(all);
+    table.insert("title".to_owned(), entry.title.into());
+    table.insert("description".to_owned(), entry.summary.into());
+    table.insert("required".to_owned(), json!(["kind"]));
+    table.into()
+}
+
+/// What the keys of a table demand of each other.
+fn rules(table: &str) -> Vec<(&'static str, Value)> {
+    match table {
+        "camera" => vec![
+            (
+                "if",
+                json!({
+                    "required": ["projection"],
+                    "properties": { "projection": { "const": "orthographic" } },
+                }),
+            ),
+            ("then", json!({ "required": ["width"], "properties": { "field_of_view": false } })),
+            ("else", json!({ "properties": { "width": false } })),
+        ],
+        "surroundings" => vec![("not", json!({ "required": ["color", "image"] }))],
+        _ => Vec::new(),
+    }
+}
+
+fn closed_table(properties: Map<String, Value>) -> Map<String, Value> {
+    let mut table = Map::new();
+    table.insert("type".to_owned(), "object".into());
+    table.insert("additionalProperties".to_owned(), false.into());
+    table.insert("properties".to_owned(), properties.into());
+    table
+}
+
+fn properties(keys: &[Key]) -> Map<String, Value> {
+    keys.iter().map(|key| (key.name.to_owned(), property(key))).collect()
+}
+
+fn property(key: &Key) -> Value {
+    let (mut property, unit) = match key.kind {
+        KeyKind::Number { unit, limits, .. } => (number(limits), unit),
+        KeyKind::Integer { min, max, .. } => (integer(min, max), ""),
+        KeyKind::Flag { .. } => (json!({ "type": "boolean" }), ""),
+        KeyKind::Choice { options } => (json!({ "enum": options }), ""),
+        KeyKind::Vector { unit, limits, .. } => (list(number(limits), 3), unit),
+        KeyKind::IntegerPair { min, max, .. } => (list(integer(min, max), 2), ""),
+        KeyKind::Text { .. } => (json!({ "type": "string", "minLength": 1 }), ""),
+        KeyKind::ChoiceOrNumber { options, unit } => {
+            (json!({ "anyOf": [{ "enum": options }, { "type": "number" }] }), unit)
+        }
+    };
+    let unit = if unit.is_empty() { String::new() } else { format!(" Unit: {unit}.") };
+    property["description"] = format!("{}{unit}", key.doc).into();
+    if let Some(default) = key.default_value() {
+        property["default"] = plain(default);
+    }
+    property
+}
+
+fn number(limits: Limits) -> Value {
+    match limits {
+        Limits::Finite => json!({ "type": "number" }),
+        Limits::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
+        Limits::NonNegative => json!({ "type": "number", "minimum": 0 }),
+        Limits::Between(low, high) => {
+            json!({ "type": "number", "exclusiveMinimum": low, "exclusiveMaximum": high })
+        }
+        Limits::Within(low, high) => {
+            json!({ "type": "number", "minimum": low, "maximum": high })
+        }
+    }
+}
+
+fn integer(min: i64, max: i64) -> Value {
+    json!({ "type": "integer", "minimum": min, "maximum": max })
+}
+
+fn list(items: Value, length: usize) -> Value {
+    json!({ "type": "array", "items": items, "minItems": length, "maxItems": length })
+}
+
+fn plain(value: keys::Value) -> Value {
+    match value {
+        keys::Value::Number(number) => number.into(),
+        keys::Value::Integer(integer) => integer.into(),
+        keys::Value::Flag(flag) => flag.into(),
+        keys::Value::Text(text) => text.into(),
+        keys::Value::List(items) => items.into_iter().map(plain).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_table_and_every_kind_is_there_and_closed() {
+        let schema = schema();
+        assert_eq!(schema["additionalProperties"], false);
+        for &(table, keys) in TABLES {
+            let table = &schema["properties"][table];
+            assert_eq!(table["additionalProperties"], false);
+            assert_eq!(table["properties"].as_object().map(Map::len), Some(keys.len()));
+        }
+        for entry in CATALOGUE {
+            let device = &schema["$defs"][entry.kind];
+            assert_eq!(device["additionalProperties"], false);
+            assert_eq!(device["properties"]["kind"]["const"], entry.kind);
+            let keys = device["properties"].as_object().map(Map::len);
+            assert_eq!(keys, Some(1 + entry.keys.len() + PLACEMENT_KEYS.len()), "a name twice");
+        }
+    }
+
+    #[test]
+    fn keys_say_type_limits_unit_and_default() {
+        let schema = schema();
+        let camera = &schema["properties"]["camera"]["properties"];
+        let view = &camera["field_of_view"];
+        assert_eq!((&view["exclusiveMinimum"], &view["default"]), (&json!(0.0), &json!(40.0)));
+        assert!(view["description"].as_str().is_some_and(|d| d.ends_with("Unit: degrees.")));
+        assert_eq!(camera["position"]["default"], json!([-100.0, 0.0, 0.0]));
+        assert_eq!(camera["resolution"]["items"]["maximum"], 65_536);
+        assert_eq!(camera["projection"]["enum"], json!(["perspective", "orthographic"]));
+        assert!(camera["width"].get("default").is_none());
+    }
+
+    #[test]
+    fn every_reference_leads_somewhere() {
+        fn references(value: &Value, found: &mut Vec<String>) {
+            match value {
+                Value::Object(map) => {
+                    if let Some(Value::String(reference)) = map.get("$ref") {
+                        found.push(reference.clone());
+                    }
+                    map.values().for_each(|value| references(value, found));
+                }
+                Value::Array(items) => items.iter().for_each(|value| references(value, found)),
+                _ => {}
+            }
+        }
+        let schema = schema();
+        let mut found = Vec::new();
+        references(&schema, &mut found);
+        for reference in found {
+            let pointer = reference.strip_prefix('#').expect("inside the document");
+            assert!(schema.pointer(pointer).is_some(), "{reference}");
+        }
+    }
+}

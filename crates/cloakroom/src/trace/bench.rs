@@ -1,0 +1,101 @@
+//! The optical bench: all devices of a scene at their places.
+
+use crate::device::{SkinHit, Structure};
+use glam::DVec3;
+use optics::geometry::{Extent, Outline, Pose};
+
+/// A device at its place.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// Where it stands and how it is turned.
+    pub pose: Pose,
+    /// What it is made of.
+    pub structure: Structure,
+}
+
+impl Placed {
+    /// Whether a point of the world lies inside the device.
+    #[must_use]
+    pub fn holds(&self, point: DVec3) -> bool {
+        self.structure.hull.holds(self.pose.to_local(point))
+    }
+
+    /// The device's cross-section in the world's xy-plane, and its extent along z.
+    #[must_use]
+    pub fn footprint(&self) -> (Outline, Extent) {
+        let hull = &self.structure.hull;
+        let corners = hull.outline.corners().iter().map(|c| self.pose.point_to_world(*c)).collect();
+        let z = self.pose.origin().z;
+        (Outline::new(corners), Extent { min: hull.extent.min + z, max: hull.extent.max + z })
+    }
+}
+
+/// All devices of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Bench {
+    devices: Vec<Placed>,
+}
+
+/// How deep two devices may press into each other before they count as overlapping, cm.
+const TOUCHING: f64 = 1e-9;
+
+impl Bench {
+    /// The bench with the given devices, which must not overlap: see [`Bench::overlap`].
+    #[must_use]
+    pub fn new(devices: Vec<Placed>) -> Self {
+        Self { devices }
+    }
+
+    /// The devices, in the order of the scene.
+    #[must_use]
+    pub fn devices(&self) -> &[Placed] {
+        &self.devices
+    }
+
+    /// The first two devices that overlap, if any do.
+    #[must_use]
+    pub fn overlap(&self) -> Option<(usize, usize)> {
+        let footprints: Vec<_> = self.devices.iter().map(Placed::footprint).collect();
+        for (j, (outline, extent)) in footprints.iter().enumerate() {
+            for (i, (other, other_extent)) in footprints[..j].iter().enumerate() {
+                let empty = outline.corners().is_empty() || other.corners().is_empty();
+                if !empty && extent.overlaps(*other_extent) && outline.overlaps(other, TOUCHING) {
+                    return Some((i, j));
+                }
+            }
+        }
+        None
+    }
+
+    /// The device that holds a point, if any does.
+    #[must_use]
+    pub fn holder(&self, point: DVec3) -> Option<usize> {
+        self.devices.iter().position(|device| device.holds(point))
+    }
+
+    /// The nearest surface that a ray in air meets. `last` is the device and the surface of its skin
+    /// that the ray has just left.
+    #[must_use]
+    pub(super) fn first_hit(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        last: Option<(u16, u16)>,
+    ) -> Option<(u16, SkinHit)> {
+        let mut nearest: Option<(u16, SkinHit)> = None;
+        for (index, device) in (0u16..).zip(&self.devices) {
+            let last = last.filter(|(which, _)| *which == index).map(|(_, skin)| skin);
+            let hit = device.structure.first_hit(
+                device.pose.to_local(origin),
+                device.pose.vector_to_local(direction),
+                last,
+            );
+            if let Some(hit) = hit
+                && nearest.is_none_or(|(_, least)| hit.distance < least.distance)
+            {
+                nearest = Some((index, hit));
+            }
+        }
+        nearest
+    }
+}

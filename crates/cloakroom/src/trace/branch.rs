@@ -1,0 +1,66 @@
+//! A branch of a ray tree on its way.
+
+use glam::DVec3;
+use optics::interface::{IncidentWave, OutgoingWave};
+use optics::wave::ComplexVector;
+
+/// Where a branch runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// In air, in the world's frame, having just left a surface of a device's skin, if any.
+    Air { left: Option<(u16, u16)> },
+    /// In a cell of a device, in the device's frame.
+    Cell { device: u16, cell: u16 },
+}
+
+/// A branch: a ray with the fields of `N` launched polarizations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Branch<const N: usize> {
+    pub place: Place,
+    pub position: DVec3,
+    pub wave_vector: DVec3,
+    pub direction: DVec3,
+    pub electric: [ComplexVector; N],
+    pub power: [f64; N],
+    pub optical_path: f64,
+    pub met_device: bool,
+    pub path: u64,
+}
+
+impl<const N: usize> Branch<N> {
+    /// The wave as an interface sees it.
+    pub fn incident(&self) -> IncidentWave<N> {
+        IncidentWave {
+            wave_vector: self.wave_vector,
+            direction: self.direction,
+            electric: self.electric,
+            power: self.power,
+        }
+    }
+
+    /// The branch that goes on from here as `wave`, at `place`.
+    pub fn onward(&self, wave: &OutgoingWave<N>, place: Place, event: u64) -> Self {
+        Self {
+            place,
+            wave_vector: wave.wave_vector,
+            direction: wave.direction,
+            electric: wave.electric,
+            power: wave.power,
+            path: fingerprint(self.path, event),
+            ..*self
+        }
+    }
+
+    /// The power of its strongest polarization.
+    pub fn largest_power(&self) -> f64 {
+        self.power.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// Adds an event to the fingerprint of a path (the mixing step of `SplitMix64`).
+fn fingerprint(path: u64, event: u64) -> u64 {
+    let mut z = (path ^ event).wrapping_add(0x9E37_79B9_7F4A_7C15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}

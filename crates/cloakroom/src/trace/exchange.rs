@@ -1,0 +1,227 @@
+//! Rays in, leaves out, as JSON: the form of `cloakroom trace`.
+
+use super::{Bench, Launch, Leaf, Limits, Tracer};
+use glam::DVec3;
+use optics::wave::{ComplexVector, transverse_basis};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How far from transverse a given electric field may be: |E·d|/|E|.
+const TRANSVERSE: f64 = 1e-6;
+
+/// A ray to be traced.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct RayRequest {
+    /// Where it starts, cm.
+    pub origin: [f64; 3],
+    /// Where it goes, of any length.
+    pub direction: [f64; 3],
+    /// Its polarization.
+    #[serde(default)]
+    pub polarization: Polarization,
+}
+
+/// The polarization of a ray to be traced.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
+#[serde(rename_all = "snake_case")]
+pub enum Polarization {
+    /// E in the plane of the ray and z (along x for a ray along z).
+    #[default]
+    Horizontal,
+    /// E perpendicular to the ray and z.
+    Vertical,
+    /// Any transverse field, of any norm; each component as [re, im].
+    ElectricField([[f64; 2]; 3]),
+}
+
+/// What became of one ray.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct RayReport {
+    /// The leaves, strongest first.
+    pub leaves: Vec<LeafReport>,
+    /// Share of the power absorbed.
+    pub absorbed: f64,
+    /// Share of the power in branches too weak to follow.
+    pub pruned: f64,
+}
+
+/// One leaf of a ray tree.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct LeafReport {
+    /// The last point at which it left a device, cm; `None` if it met none.
+    pub position: Option<[f64; 3]>,
+    /// Its direction, a unit vector.
+    pub direction: [f64; 3],
+    /// Its share of the power.
+    pub power: f64,
+    /// Optical path length from the origin to `position`, cm; 0 if it met no device.
+    pub optical_path: f64,
+    /// Its electric field, each component as [re, im]; |E|² = power.
+    pub electric_field: [[f64; 2]; 3],
+}
+
+/// Why rays cannot be traced.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RayError {
+    /// A ray makes no sense.
+    #[error("ray {index} (counted from 0): {problem}")]
+    Ray {
+        /// Which ray, counted from 0.
+        index: usize,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The work was stopped from outside.
+    #[error("stopped")]
+    Stopped,
+}
+
+impl RayRequest {
+    /// The ray to launch.
+    ///
+    /// # Errors
+    ///
+    /// A sentence if a number is not finite, the direction or the field vanishes, or the field is not
+    /// transverse.
+    pub fn launch(&self) -> Result<Launch<1>, String> {
+        let origin = DVec3::from_array(self.origin);
+        let direction = DVec3::from_array(self.direction);
+        if !origin.is_finite() || !direction.is_finite() {
+            return Err("origin and direction must be finite numbers".to_owned());
+        }
+        let largest = direction.abs().max_element();
+        if largest == 0.0 {
+            return Err("the direction is zero".to_owned());
+        }
+        let direction = (direction / largest).normalize();
+        let (horizontal, vertical) = transverse_basis(direction, DVec3::Z, DVec3::X);
+        let electric = match self.polarization {
+            Polarization::Horizontal => horizontal.into(),
+            Polarization::Vertical => vertical.into(),
+            Polarization::ElectricField(components) => transverse(components, direction)?,
+        };
+        Ok(Launch { origin, direction, electric: [electric] })
+    }
+}
+
+/// A field of unit norm across the direction from one that is given nearly so.
+fn transverse(components: [[f64; 2]; 3], direction: DVec3) -> Result<ComplexVector, String> {
+    let part = |i: usize| DVec3::from_array(components.map(|component| component[i]));
+    let field = ComplexVector::new(part(0), part(1));
+    let largest = field.re.abs().max_element().max(field.im.abs().max_element());
+    if !field.re.is_finite() || !field.im.is_finite() {
+        return Err("the electric field must consist of finite numbers".to_owned());
+    }
+    if largest == 0.0 {
+        return Err("the electric field is zero".to_owned());
+    }
+    let field = field * (1.0 / largest);
+    let along = field.dot_real(direction);
+    let norm = field.norm_squared().sqrt();
+    if along.norm() > TRANSVERSE * norm {
+        return Err(format!(
+            "the electric field is not transverse: |E.d|/|E| is {:.3e}, at most {TRANSVERSE:.0e} is \
+             allowed",
+            along.norm() / norm
+        ));
+    }
+    let across = field - ComplexVector::new(direction * along.re, direction * along.im);
+    Ok(across * (1.0 / across.norm_squared().sqrt()))
+}
+
+/// Traces rays, in order.
+///
+/// # Errors
+///
+/// If a ray makes no sense or starts inside a device, or the work was stopped.
+pub fn trace_rays(
+    bench: &Bench,
+    limits: Limits,
+    rays: &[RayRequest],
+    stop: &AtomicBool,
+) -> Result<Vec<RayReport>, RayError> {
+    // One after the other, so that the first bad ray is the one that is named.
+    let launches = rays
+        .iter()
+        .enumerate()
+        .map(|(index, ray)| {
+            let launch = ray.launch().map_err(|problem| RayError::Ray { index, problem })?;
+            match bench.holder(launch.origin) {
+                None => Ok(launch),
+                Some(device) => {
+                    let problem = format!(
+                        "it starts inside device {device} (counted from 0); rays start in air"
+                    );
+                    Err(RayError::Ray { index, problem })
+                }
+            }
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    launches
+        .par_iter()
+        .map_init(
+            || Tracer::<1>::new(bench, limits),
+            |tracer, launch| {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(RayError::Stopped);
+                }
+                let (leaves, outcome) = tracer.trace(launch);
+                let mut leaves: Vec<LeafReport> = leaves.iter().map(LeafReport::from).collect();
+                leaves.sort_by(|a, b| b.power.total_cmp(&a.power));
+                Ok(RayReport { leaves, absorbed: outcome.absorbed[0], pruned: outcome.pruned[0] })
+            },
+        )
+        .collect()
+}
+
+impl From<&Leaf<1>> for LeafReport {
+    fn from(leaf: &Leaf<1>) -> Self {
+        Self {
+            position: leaf.met_device.then(|| leaf.position.to_array()),
+            direction: leaf.direction.to_array(),
+            power: leaf.power[0],
+            optical_path: if leaf.met_device { leaf.optical_path } else { 0.0 },
+            electric_field: leaf.electric[0].components().map(|c| [c.re, c.im]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(json: &str) -> RayRequest {
+        serde_json::from_str(json).expect("a ray")
+    }
+
+    #[test]
+    fn polarizations_are_read_as_documented() {
+        let horizontal = parse(r#"{"origin": [0,0,0], "direction": [2,0,0]}"#).launch();
+        assert_eq!(horizontal.map(|launch| launch.electric[0]), Ok(DVec3::Z.into()));
+        let vertical =
+            parse(r#"{"origin": [0,0,0], "direction": [1,0,0], "polarization": "vertical"}"#);
+        assert_eq!(vertical.launch().map(|launch| launch.electric[0]), Ok(DVec3::Y.into()));
+        let along_z = parse(r#"{"origin": [0,0,0], "direction": [0,0,-3]}"#).launch();
+        assert_eq!(along_z.map(|launch| launch.electric[0]), Ok(DVec3::X.into()));
+        let circular = parse(
+            r#"{"origin": [0,0,0], "direction": [1,0,0],
+                "polarization": {"electric_field": [[0,0],[3,0],[0,4]]}}"#,
+        );
+        let field = circular.launch().expect("transverse").electric[0];
+        assert!((field.re.y - 0.6).abs() < 1e-15 && (field.im.z - 0.8).abs() < 1e-15);
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let refused = |json: &str| parse(json).launch().expect_err("must be refused");
+        assert!(refused(r#"{"origin": [0,0,0], "direction": [0,0,0]}"#).contains("zero"));
+        let along = r#"{"origin": [0,0,0], "direction": [1,0,0],
+            "polarization": {"electric_field": [[1,0],[1,0],[0,0]]}}"#;
+        assert!(refused(along).contains("not transverse"));
+        let unknown: Result<RayRequest, _> =
+            serde_json::from_str(r#"{"origin": [0,0,0], "direction": [1,0,0], "colour": 1}"#);
+        assert!(unknown.is_err());
+    }
+}

@@ -1,0 +1,18 @@
+//! The ray tree: how a ray launched in air runs through the devices of a scene.
+//!
+//! The tracer knows only this: advance to the next surface; at a surface, split by the interface
+//! solver; at a conductor, reflect. Power is accounted for: what the leaves carry, what is
+//! absorbed and what is pruned add up to what was launched.
+
+mod bench;
+mod branch;
+mod exchange;
+mod leaf;
+mod screen;
+mod tracer;
+
+pub use bench::{Bench, Placed};
+pub use exchange::{LeafReport, Polarization, RayError, RayReport, RayRequest, trace_rays};
+pub use leaf::{Leaf, Outcome, Rarities};
+pub use screen::Screen;
+pub use tracer::{Launch, Limits, Tracer};

@@ -1,0 +1,263 @@
+//! The walk along the ray tree.
+
+use super::branch::{Branch, Place};
+use super::{Bench, Leaf, Outcome, Placed, Screen};
+use crate::device::{Beyond, Cell, Finish};
+use glam::DVec3;
+use optics::geometry::Pose;
+use optics::interface::{OutgoingWave, Side, reflect_at_conductor, split, transmit_antireflection};
+use optics::medium::Medium;
+use optics::wave::ComplexVector;
+
+/// A ray to launch in air, with `N` polarizations at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Launch<const N: usize> {
+    /// Where it starts, cm.
+    pub origin: DVec3,
+    /// Its direction, a unit vector.
+    pub direction: DVec3,
+    /// The electric fields, across the direction and of unit norm.
+    pub electric: [ComplexVector; N],
+}
+
+/// When a branch is followed no further, and how exactly graded media are traced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Branches below this share of the launched power, in every polarization, are pruned.
+    pub min_power: f64,
+    /// Largest error of position and optical path on leaving a device, cm.
+    pub tolerance: f64,
+}
+
+/// No sensible tree meets this many surfaces; the rest counts as pruned.
+const MOST_EVENTS: u32 = 1_000_000;
+
+/// What rounding leaves of a wave that is not there.
+const NO_POWER: f64 = 1e-24;
+
+/// Traces rays. It keeps its memory from ray to ray: make one a thread.
+#[derive(Debug)]
+pub struct Tracer<'a, const N: usize> {
+    bench: &'a Bench,
+    limits: Limits,
+    screen: Option<Screen>,
+    waiting: Vec<Branch<N>>,
+    leaves: Vec<Leaf<N>>,
+    outcome: Outcome<N>,
+}
+
+impl<'a, const N: usize> Tracer<'a, N> {
+    /// A tracer for the devices of `bench`.
+    #[must_use]
+    pub fn new(bench: &'a Bench, limits: Limits) -> Self {
+        let outcome = Outcome::default();
+        Self { bench, limits, screen: None, waiting: Vec::new(), leaves: Vec::new(), outcome }
+    }
+
+    /// Ends branches that meet a screen.
+    #[must_use]
+    pub fn with_screen(self, screen: Screen) -> Self {
+        Self { screen: Some(screen), ..self }
+    }
+
+    /// Follows one ray to the end of every branch: the leaves, in the order the tree was walked,
+    /// and the account of the rest of the power. The ray must start in air.
+    pub fn trace(&mut self, launch: &Launch<N>) -> (&[Leaf<N>], &Outcome<N>) {
+        self.leaves.clear();
+        self.outcome = Outcome::default();
+        self.waiting.clear();
+        self.waiting.push(Branch {
+            place: Place::Air { left: None },
+            position: launch.origin,
+            wave_vector: launch.direction,
+            direction: launch.direction,
+            electric: launch.electric,
+            power: launch.electric.map(ComplexVector::norm_squared),
+            optical_path: 0.0,
+            met_device: false,
+            path: 0,
+        });
+        let mut events = 0;
+        while let Some(branch) = self.waiting.pop() {
+            events += 1;
+            if events > MOST_EVENTS {
+                self.outcome.rarities.endless += 1;
+                self.prune(branch.power);
+                continue;
+            }
+            match branch.place {
+                Place::Air { left } => self.through_air(branch, left),
+                Place::Cell { device, cell } => self.through_cell(branch, device, cell),
+            }
+        }
+        (&self.leaves, &self.outcome)
+    }
+
+    fn through_air(&mut self, mut branch: Branch<N>, left: Option<(u16, u16)>) {
+        let screen = self.screen.and_then(|screen| screen.hit(branch.position, branch.direction));
+        let hit = self
+            .bench
+            .first_hit(branch.position, branch.direction, left)
+            .filter(|(_, hit)| screen.is_none_or(|distance| hit.distance < distance));
+        let Some((device_index, hit)) = hit else {
+            self.leaves.push(Leaf {
+                position: branch.position,
+                met_device: branch.met_device,
+                direction: branch.direction,
+                power: branch.power,
+                electric: branch.electric,
+                optical_path: branch.optical_path,
+                path: branch.path,
+            });
+            return;
+        };
+        branch.position += branch.direction * hit.distance;
+        branch.optical_path += hit.distance;
+        branch.met_device = true;
+        let device = &self.bench.devices()[usize::from(device_index)];
+        let into = -hit.outward;
+        let air = Place::Air { left: Some((device_index, hit.skin)) };
+        let event = u64::from(device_index) << 32 | u64::from(hit.skin) << 2;
+        let local = to_local(&branch, &device.pose);
+        match hit.beyond {
+            Beyond::Conductor => {
+                let wave = reflect_at_conductor(&Medium::AIR, &local.incident(), into);
+                self.go_on(to_world(&local.onward(&wave, air, event), &device.pose));
+            }
+            Beyond::Cell(cell) => {
+                let medium = self.cell(device, cell).medium_at(local.position);
+                let inside = Place::Cell { device: device_index, cell };
+                for wave in self.split(&Medium::AIR, &medium, &local, into, hit.finish) {
+                    let event = event | side_code(&wave);
+                    match wave.side {
+                        Side::Reflected => {
+                            self.go_on(to_world(&local.onward(&wave, air, event), &device.pose));
+                        }
+                        Side::Transmitted => self.go_on(local.onward(&wave, inside, event)),
+                    }
+                }
+            }
+            // A thin sheet of air: nothing there.
+            Beyond::Air => self.waiting.push(Branch { place: air, ..branch }),
+        }
+    }
+
+    fn through_cell(&mut self, mut branch: Branch<N>, device_index: u16, cell_index: u16) {
+        let device = &self.bench.devices()[usize::from(device_index)];
+        let cell = self.cell(device, cell_index);
+        let passage = cell.advance(
+            branch.position,
+            branch.wave_vector,
+            branch.direction,
+            self.limits.tolerance,
+        );
+        let Some(passage) = passage else {
+            self.outcome.rarities.lost += 1;
+            self.prune(branch.power);
+            return;
+        };
+        branch.position = passage.position;
+        branch.wave_vector = passage.wave_vector;
+        branch.direction = passage.direction;
+        branch.optical_path += passage.optical_path;
+        if let Some((rotation, factor)) = passage.transport {
+            branch.electric = branch.electric.map(|field| field.transformed(&rotation) * factor);
+        }
+        let event = u64::from(device_index) << 32
+            | (u64::from(cell_index) + 1) << 20
+            | u64::from(passage.face) << 2;
+        let here = branch.place;
+        let medium = cell.medium_at(branch.position);
+        match passage.beyond {
+            Beyond::Conductor => {
+                let wave = reflect_at_conductor(&medium, &branch.incident(), passage.outward);
+                self.go_on(branch.onward(&wave, here, event));
+            }
+            Beyond::Cell(next) => {
+                let next_medium = self.cell(device, next).medium_at(branch.position);
+                let there = Place::Cell { device: device_index, cell: next };
+                let waves =
+                    self.split(&medium, &next_medium, &branch, passage.outward, passage.finish);
+                for wave in waves {
+                    let place = if wave.side == Side::Reflected { here } else { there };
+                    self.go_on(branch.onward(&wave, place, event | side_code(&wave)));
+                }
+            }
+            Beyond::Air => {
+                let waves =
+                    self.split(&medium, &Medium::AIR, &branch, passage.outward, passage.finish);
+                for wave in waves {
+                    let event = event | side_code(&wave);
+                    match wave.side {
+                        Side::Reflected => self.go_on(branch.onward(&wave, here, event)),
+                        Side::Transmitted => {
+                            let air = Place::Air { left: None };
+                            self.go_on(to_world(&branch.onward(&wave, air, event), &device.pose));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn split(
+        &self,
+        from: &Medium,
+        to: &Medium,
+        branch: &Branch<N>,
+        normal: DVec3,
+        finish: Finish,
+    ) -> optics::interface::OutgoingWaves<N> {
+        match finish {
+            Finish::Bare => split(from, to, &branch.incident(), normal),
+            Finish::Antireflection => transmit_antireflection(from, to, &branch.incident(), normal),
+        }
+    }
+
+    /// Keeps a branch to be followed, or prunes it.
+    fn go_on(&mut self, branch: Branch<N>) {
+        if branch.largest_power() >= self.limits.min_power.max(NO_POWER) {
+            self.waiting.push(branch);
+        } else {
+            self.prune(branch.power);
+        }
+    }
+
+    fn prune(&mut self, power: [f64; N]) {
+        for (sum, power) in self.outcome.pruned.iter_mut().zip(power) {
+            *sum += power;
+        }
+    }
+
+    fn cell(&self, device: &'a Placed, index: u16) -> &'a Cell {
+        &device.structure.cells[usize::from(index)]
+    }
+}
+
+/// Tells the branches at one surface apart in the fingerprint of the path.
+fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
+    match wave.side {
+        Side::Reflected => 1,
+        Side::Transmitted => 2,
+    }
+}
+
+fn to_local<const N: usize>(branch: &Branch<N>, pose: &Pose) -> Branch<N> {
+    Branch {
+        position: pose.to_local(branch.position),
+        wave_vector: pose.vector_to_local(branch.wave_vector),
+        direction: pose.vector_to_local(branch.direction),
+        electric: branch.electric.map(|field| pose.field_to_local(field)),
+        ..*branch
+    }
+}
+
+fn to_world<const N: usize>(branch: &Branch<N>, pose: &Pose) -> Branch<N> {
+    Branch {
+        position: pose.to_world(branch.position),
+        wave_vector: pose.vector_to_world(branch.wave_vector),
+        direction: pose.vector_to_world(branch.direction),
+        electric: branch.electric.map(|field| pose.field_to_world(field)),
+        ..*branch
+    }
+}

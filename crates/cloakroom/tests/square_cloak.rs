@@ -1,0 +1,111 @@
+//! Design (iii) against its exact map: in virtual space it is a flat strip mirror in empty space.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use cloakroom::scene_file;
+use cloakroom::trace::{Bench, Launch, Leaf, Limits, Tracer};
+use glam::DVec3;
+use optics::wave::transverse_basis;
+use std::path::Path;
+
+const LIMITS: Limits = Limits { min_power: 1e-12, tolerance: 1e-8 };
+
+/// Half the width of the strip, cm.
+const HALF: f64 = 9.970_205_614_732_02;
+
+fn bench(text: &str) -> Bench {
+    let loaded = scene_file::parse(text, "test", Path::new(""), &[]).unwrap();
+    cloakroom::render::bench(&loaded.scene).unwrap()
+}
+
+fn cloak(extra: &str) -> Bench {
+    bench(&format!("[[device]]\nkind = \"square-cloak\"\n{extra}\n"))
+}
+
+/// Pseudo-random numbers in [0, 1), the same at each run.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    /// A ray from outside towards the device.
+    fn launch(&mut self) -> Launch<2> {
+        let angle = self.between(0.0, std::f64::consts::TAU);
+        let origin = DVec3::new(60.0 * angle.cos(), 60.0 * angle.sin(), self.between(-20.0, 20.0));
+        let target =
+            DVec3::new(self.between(-8.0, 8.0), self.between(-8.0, 8.0), self.between(-20.0, 20.0));
+        launch(origin, (target - origin).normalize())
+    }
+}
+
+fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
+    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
+    Launch { origin, direction, electric: [h.into(), v.into()] }
+}
+
+/// Where a ray goes that meets the strip mirror of half width `HALF` turned by `rotation` degrees:
+/// direction and a point of the line.
+fn strip_mirror(launch: &Launch<2>, rotation: f64) -> (DVec3, DVec3, bool) {
+    let turn = glam::DMat3::from_rotation_z(rotation.to_radians());
+    let (o, d) = (turn.transpose() * launch.origin, turn.transpose() * launch.direction);
+    let t = -o.y / d.y;
+    let hit = o + d * t;
+    if t > 0.0 && hit.x.abs() < HALF {
+        (turn * (d * DVec3::new(1.0, -1.0, 1.0)), turn * hit, true)
+    } else {
+        (launch.direction, launch.origin, false)
+    }
+}
+
+/// The strongest leaf and the share of everything else.
+fn main_leaf(leaves: &[Leaf<2>]) -> (&Leaf<2>, f64) {
+    let main = leaves.iter().max_by(|a, b| a.power[0].total_cmp(&b.power[0])).unwrap();
+    (main, (2.0 - main.power[0] - main.power[1]) / 2.0)
+}
+
+#[test]
+fn every_ray_leaves_as_from_the_flat_strip() {
+    for rotation in [0.0, 5.0, 10.0, 20.0, 47.3, 90.0, 180.0, -133.0] {
+        let bench = cloak(&format!("rotation = {rotation:?}"));
+        let mut tracer = Tracer::new(&bench, LIMITS);
+        let mut numbers = Numbers(1);
+        let (mut inside, mut mirrored) = (0, 0);
+        for _ in 0..4000 {
+            let launch = numbers.launch();
+            let (direction, point, hit) = strip_mirror(&launch, rotation);
+            // Rays that aim at the very edge of the strip may fall on either side.
+            let (leaves, outcome) = tracer.trace(&launch);
+            assert_eq!(outcome.rarities, cloakroom::trace::Rarities::default());
+            let (leaf, rest) = main_leaf(leaves);
+            let offset = leaf.position - point;
+            let beside = (offset - direction * offset.dot(direction)).length();
+            if (leaf.direction - direction).length() > 0.01 {
+                let near_edge = launch.origin + launch.direction * 60.0;
+                panic!("rotation {rotation}: {launch:?} {leaf:?} {near_edge}");
+            }
+            assert!((leaf.direction - direction).length() < 1e-12, "{:?}", leaf.direction);
+            assert!(beside < 6e-11, "rotation {rotation}: {beside}");
+            assert!(rest.abs() < 1e-12, "{rest}");
+            // The optical path to any point of the leaving line is that of the virtual line.
+            let virtual_path = if hit {
+                launch.origin.distance(point) + offset.dot(direction)
+            } else {
+                (leaf.position - launch.origin).dot(direction)
+            };
+            assert!(
+                (leaf.optical_path - virtual_path).abs()
+                    < 1e-11 * if leaf.met_device { 1.0 } else { 1e9 }
+            );
+            inside += usize::from(leaf.met_device);
+            mirrored += usize::from(hit);
+        }
+        assert!(inside > 2000 && mirrored > 500, "{inside} {mirrored}");
+    }
+}

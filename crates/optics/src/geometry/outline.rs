@@ -1,0 +1,84 @@
+//! Convex outlines in the xy-plane.
+
+use glam::DVec2;
+
+/// A convex polygon, its corners in counterclockwise order; two corners make a line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    corners: Vec<DVec2>,
+}
+
+impl Outline {
+    /// The convex polygon with the given corners, counterclockwise.
+    #[must_use]
+    pub fn new(corners: Vec<DVec2>) -> Self {
+        Self { corners }
+    }
+
+    /// A rectangle centred on the origin.
+    #[must_use]
+    pub fn rectangle(half_width: f64, half_height: f64) -> Self {
+        let (w, h) = (half_width, half_height);
+        Self::new([(-w, -h), (w, -h), (w, h), (-w, h)].map(DVec2::from).to_vec())
+    }
+
+    /// The corners.
+    #[must_use]
+    pub fn corners(&self) -> &[DVec2] {
+        &self.corners
+    }
+
+    /// The sides, from corner to corner.
+    pub fn sides(&self) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
+        let n = self.corners.len();
+        (0..n).map(move |i| (self.corners[i], self.corners[(i + 1) % n]))
+    }
+
+    /// Whether a point lies within, border included.
+    #[must_use]
+    pub fn contains(&self, point: DVec2) -> bool {
+        self.sides().all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
+    }
+
+    /// The largest distance of a corner from the origin.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.corners.iter().map(|corner| corner.length()).fold(0.0, f64::max)
+    }
+
+    /// Whether the insides of two outlines meet: no line separates them. Outlines that only touch
+    /// do not overlap; `slack` (cm) is how deep they may press into each other by rounding.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self, slack: f64) -> bool {
+        let separated_by = |a: &Self, b: &Self| {
+            a.sides().any(|(from, to)| {
+                let side = to - from;
+                if side.length_squared() == 0.0 {
+                    return false;
+                }
+                let outward = DVec2::new(side.y, -side.x).normalize();
+                let reach = a.corners.iter().map(|c| outward.dot(*c)).fold(f64::MIN, f64::max);
+                let start = b.corners.iter().map(|c| outward.dot(*c)).fold(f64::MAX, f64::min);
+                start >= reach - slack
+            })
+        };
+        !separated_by(self, other) && !separated_by(other, self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn squares_that_touch_do_not_overlap() {
+        let square = Outline::rectangle(1.0, 1.0);
+        let moved = |by: DVec2| Outline::new(square.corners.iter().map(|c| *c + by).collect());
+        assert!(!square.overlaps(&moved(DVec2::new(2.0, 0.5)), 1e-9));
+        assert!(square.overlaps(&moved(DVec2::new(1.99, 0.5)), 1e-9));
+        assert!(!square.overlaps(&moved(DVec2::new(0.0, -2.5)), 1e-9));
+        let strip = Outline::new(vec![DVec2::new(-3.0, 0.0), DVec2::new(3.0, 0.0)]);
+        assert!(square.overlaps(&strip, 1e-9));
+        assert!(!moved(DVec2::new(0.0, 1.5)).overlaps(&strip, 1e-9));
+    }
+}

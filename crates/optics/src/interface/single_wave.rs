@@ -1,0 +1,189 @@
+//! The interface of two media in which both polarizations share one wave vector.
+
+use super::admittance::{Frame, Number, TangentialWave};
+use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
+use crate::medium::{Medium, NormalComponent};
+use crate::wave::{ComplexVector, turn_transverse};
+use glam::DVec3;
+use num_complex::Complex64;
+
+/// Splits a wave at the interface between two media.
+///
+/// `normal` is the unit normal that points from the medium of incidence, `incident_medium`, into
+/// `transmitted_medium`. The list holds the reflected wave first, then the transmitted one unless
+/// it is evanescent.
+///
+/// # Example
+///
+/// Glass reflects 4 % of light that falls on it straight.
+///
+/// ```
+/// use glam::DVec3;
+/// use optics::interface::{split, IncidentWave};
+/// use optics::medium::Medium;
+///
+/// let wave = IncidentWave { wave_vector: DVec3::X, direction: DVec3::X, electric: [DVec3::Y.into()], power: [1.0] };
+/// let waves = split(&Medium::AIR, &Medium::dielectric(1.5), &wave, DVec3::X);
+/// assert!((waves[0].power[0] - 0.04).abs() < 1e-15);
+/// assert!((waves[1].power[0] - 0.96).abs() < 1e-15);
+/// ```
+#[must_use]
+pub fn split<const N: usize>(
+    incident_medium: &Medium,
+    transmitted_medium: &Medium,
+    wave: &IncidentWave<N>,
+    normal: DVec3,
+) -> OutgoingWaves<N> {
+    let tangential = wave.wave_vector - normal * wave.wave_vector.dot(normal);
+    let frame = Frame::new(normal, tangential);
+    let along = tangential.dot(frame.first);
+    // The incident wave is taken anew from its tangential part: near grazing incidence, where the
+    // normal part is a small difference, all waves of the matching must agree on it.
+    let (forward, backward) =
+        incident_medium.wave_surface().normal_component(tangential, normal).real_pair();
+    let incident = TangentialWave::new(incident_medium, &frame, along, forward);
+    let reflected = TangentialWave::new(incident_medium, &frame, along, backward);
+    let matching = Matching { wave, frame: &frame, incident };
+    let backward_wave = frame.first * along + normal * backward;
+    match transmitted_medium.wave_surface().normal_component(tangential, normal) {
+        NormalComponent::Propagating { forward: q, .. } => {
+            let transmitted = TangentialWave::new(transmitted_medium, &frame, along, q);
+            let [back, on] = matching.tangential_fields(reflected, transmitted);
+            let onward_wave = frame.first * along + normal * q;
+            let mut waves = OutgoingWaves::new();
+            let flux = |i: usize| [reflected.flux(back[i]).abs(), transmitted.flux(on[i]).abs()];
+            let share = |i: usize, side: usize| {
+                // Over the sum, not over the incident flux: the same, but for rounding near
+                // grazing incidence, which would show in the account of the power.
+                let flux = flux(i);
+                let sum = flux[0] + flux[1];
+                if sum > 0.0 { flux[side] / sum } else { 0.0 }
+            };
+            waves.push(OutgoingWave {
+                side: Side::Reflected,
+                ..matching
+                    .outgoing(incident_medium, backward_wave, &reflected, &back, |i| share(i, 0))
+            });
+            waves.push(OutgoingWave {
+                side: Side::Transmitted,
+                ..matching
+                    .outgoing(transmitted_medium, onward_wave, &transmitted, &on, |i| share(i, 1))
+            });
+            waves
+        }
+        NormalComponent::Evanescent { re, im } => {
+            let q = Complex64::new(re, im);
+            let transmitted = TangentialWave::new(transmitted_medium, &frame, along, q);
+            let [back, _] = matching.tangential_fields(reflected.into(), transmitted);
+            let wave =
+                matching.outgoing(incident_medium, backward_wave, &reflected, &back, |_| 1.0);
+            std::iter::once(wave).collect()
+        }
+    }
+}
+
+/// A wave through an interface between isotropic media whose reflection is suppressed by a perfect
+/// antireflection coating: refracted, all of its power transmitted, each polarization on its own.
+/// Beyond the critical angle it is totally reflected as at the bare interface.
+#[must_use]
+pub fn transmit_antireflection<const N: usize>(
+    incident_medium: &Medium,
+    transmitted_medium: &Medium,
+    wave: &IncidentWave<N>,
+    normal: DVec3,
+) -> OutgoingWaves<N> {
+    let tangential = wave.wave_vector - normal * wave.wave_vector.dot(normal);
+    let NormalComponent::Propagating { forward, .. } =
+        transmitted_medium.wave_surface().normal_component(tangential, normal)
+    else {
+        return split(incident_medium, transmitted_medium, wave, normal);
+    };
+    let wave_vector = tangential + normal * forward;
+    let direction = transmitted_medium.wave_surface().ray_direction(wave_vector);
+    let mut waves = OutgoingWaves::new();
+    let mut electric = wave.electric;
+    for (field, power) in electric.iter_mut().zip(wave.power) {
+        let turned = turn_transverse(*field, wave.direction, direction);
+        let carried = transmitted_medium.poynting(wave_vector, turned).length();
+        *field = if carried > 0.0 { turned * (power / carried).sqrt() } else { turned };
+    }
+    let power = wave.power;
+    waves.push(OutgoingWave { side: Side::Transmitted, wave_vector, direction, electric, power });
+    waves
+}
+
+/// Tangential electric fields (E·first, E·second) for each launched polarization.
+type TangentialFields<const N: usize> = [[Complex64; 2]; N];
+
+/// What the matching of one incident wave needs.
+struct Matching<'a, const N: usize> {
+    wave: &'a IncidentWave<N>,
+    frame: &'a Frame,
+    incident: TangentialWave<f64>,
+}
+
+impl<const N: usize> Matching<'_, N> {
+    /// The tangential electric fields of the reflected and the transmitted wave. With the
+    /// admittances Y, E_t = E_i + E_r and Y_t E_t = Y_i E_i + Y_r E_r give
+    /// (Y_t - Y_r) E_r = (Y_i - Y_t) E_i.
+    fn tangential_fields<T: Number>(
+        &self,
+        reflected: TangentialWave<T>,
+        transmitted: TangentialWave<T>,
+    ) -> [TangentialFields<N>; 2] {
+        let [[t00, t01], [t10, t11]] = transmitted.admittance;
+        let [[r00, r01], [r10, r11]] = reflected.admittance;
+        let [[i00, i01], [i10, i11]] = self.incident.admittance.map(|row| row.map(T::from));
+        let (a, b, c, d) = (t00 - r00, t01 - r01, t10 - r10, t11 - r11);
+        let inverse = T::from(1.0) / (a * d - b * c);
+        let mut back = [[Complex64::ZERO; 2]; N];
+        let mut on = back;
+        for (i, electric) in self.wave.electric.iter().enumerate() {
+            let [e0, e1] = self.tangential(*electric);
+            let x = (i00 - t00).times(e0) + (i01 - t01).times(e1);
+            let y = (i10 - t10).times(e0) + (i11 - t11).times(e1);
+            back[i] =
+                [inverse.times(d.times(x) - b.times(y)), inverse.times(a.times(y) - c.times(x))];
+            on[i] = [e0 + back[i][0], e1 + back[i][1]];
+        }
+        [back, on]
+    }
+
+    fn tangential(&self, field: ComplexVector) -> [Complex64; 2] {
+        [field.dot_real(self.frame.first), field.dot_real(self.frame.second)]
+    }
+
+    /// A propagating outgoing wave from its tangential fields and its share of the power.
+    fn outgoing(
+        &self,
+        medium: &Medium,
+        wave_vector: DVec3,
+        tangential: &TangentialWave<f64>,
+        fields: &TangentialFields<N>,
+        share: impl Fn(usize) -> f64,
+    ) -> OutgoingWave<N> {
+        let direction = medium.wave_surface().ray_direction(wave_vector);
+        let cosine = direction.dot(self.frame.normal).abs();
+        let mut power = [0.0; N];
+        let mut electric = [ComplexVector::ZERO; N];
+        for i in 0..N {
+            power[i] = self.wave.power[i] * share(i);
+            // |Re(E × H*)| of the matched fields is the normal flux over the cosine.
+            let carried = tangential.flux(fields[i]).abs() / cosine;
+            if carried > 0.0 {
+                electric[i] =
+                    tangential.lifted(self.frame, fields[i]) * (power[i] / carried).sqrt();
+            }
+        }
+        OutgoingWave { side: Side::Reflected, wave_vector, direction, electric, power }
+    }
+}
+
+impl From<TangentialWave<f64>> for TangentialWave<Complex64> {
+    fn from(wave: TangentialWave<f64>) -> Self {
+        Self {
+            lift: wave.lift.map(Complex64::from),
+            admittance: wave.admittance.map(|row| row.map(Complex64::from)),
+        }
+    }
+}

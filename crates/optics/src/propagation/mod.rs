@@ -1,0 +1,1 @@
+//! How a ray runs through a graded medium.

@@ -1,0 +1,250 @@
+//! Invariants of every interface over random pairs of media and random waves: energy, Maxwell's
+//! equations, continuity of the tangential fields, and limits from textbooks.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use glam::{DMat3, DVec3};
+use num_complex::Complex64;
+use optics::interface::{IncidentWave, Side, reflect_at_conductor, split, transmit_antireflection};
+use optics::medium::Medium;
+use optics::wave::{ComplexVector, PlaneWave, transverse_basis};
+use proptest::prelude::*;
+
+fn unit_vector() -> impl Strategy<Value = DVec3> {
+    (-1.0..1.0f64, 0.0..std::f64::consts::TAU).prop_map(|(z, angle)| {
+        let r = (1.0 - z * z).sqrt();
+        DVec3::new(r * angle.cos(), r * angle.sin(), z)
+    })
+}
+
+/// Isotropic media of either sign of the index.
+fn isotropic() -> impl Strategy<Value = Medium> {
+    (0.2..4.0f64, 0.2..4.0f64, prop_oneof![Just(1.0), Just(-1.0)])
+        .prop_map(|(e, m, sign)| Medium::isotropic(sign * e, sign * m).unwrap())
+}
+
+/// Isotropic media and positive impedance-matched ones.
+fn medium() -> impl Strategy<Value = Medium> {
+    prop_oneof![
+        isotropic(),
+        (unit_vector(), 0.0..6.3f64, (0.2..4.0f64, 0.2..4.0f64, 0.2..4.0f64)).prop_map(
+            |(axis, angle, (a, b, c))| {
+                let turn = DMat3::from_axis_angle(axis, angle);
+                let m = turn * DMat3::from_diagonal(DVec3::new(a, b, c)) * turn.transpose();
+                Medium::impedance_matched((m + m.transpose()) * 0.5).unwrap()
+            }
+        ),
+    ]
+}
+
+/// A wave in a medium that runs towards an interface, of unit power.
+fn incident(medium: &Medium, direction: DVec3, jones: [f64; 4]) -> IncidentWave<1> {
+    let wave_vector = medium.wave_surface().wave_vector_along(direction);
+    // Any field with p·εE = 0 is one of the medium's degenerate waves.
+    let displacement_normal = *medium.permittivity() * wave_vector;
+    let (a, b) = transverse_basis(displacement_normal.normalize(), DVec3::Z, DVec3::X);
+    let field = ComplexVector::new(a * jones[0] + b * jones[1], a * jones[2] + b * jones[3]);
+    let power = medium.poynting(wave_vector, field).length();
+    IncidentWave { wave_vector, direction, electric: [field * power.powf(-0.5)], power: [1.0] }
+}
+
+fn plane_wave(medium: &Medium, wave_vector: DVec3, electric: ComplexVector) -> PlaneWave {
+    PlaneWave { wave_vector, electric, magnetic: medium.magnetic_field(wave_vector, electric) }
+}
+
+fn jones() -> impl Strategy<Value = [f64; 4]> {
+    [-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64]
+        .prop_filter("not zero", |j| j.iter().map(|x| x * x).sum::<f64>() > 0.01)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+    #[test]
+    fn energy_maxwell_and_continuity(
+        from in medium(), to in medium(), normal in unit_vector(), direction in unit_vector(),
+        jones in jones(),
+    ) {
+        let facing = direction.dot(normal);
+        prop_assume!(facing.abs() > 1e-3);
+        let direction = direction * facing.signum();
+        let wave = incident(&from, direction, jones);
+        let waves = split(&from, &to, &wave, normal);
+
+        // Energy: outgoing power equals incident power, total internal reflection included.
+        let total: f64 = waves.iter().map(|w| w.power[0]).sum();
+        prop_assert!((total - 1.0).abs() < 1e-12, "power {total}");
+
+        // What goes in at the interface comes out: tangential E and H are continuous.
+        let mut electric = ComplexVector::ZERO;
+        let mut magnetic = ComplexVector::ZERO;
+        let mut add = |medium: &Medium, p: DVec3, e: ComplexVector, sign: f64| {
+            electric += e * sign;
+            magnetic += medium.magnetic_field(p, e) * sign;
+        };
+        add(&from, wave.wave_vector, wave.electric[0], 1.0);
+        for w in &waves {
+            let (medium, sign) = match w.side {
+                Side::Reflected => (&from, 1.0),
+                Side::Transmitted => (&to, -1.0),
+            };
+            let cosine = w.direction.dot(normal);
+            prop_assert!(cosine * sign < 0.0, "flux of {:?} runs the wrong way", w.side);
+            let narrowing = (cosine / direction.dot(normal)).abs().sqrt();
+            add(medium, w.wave_vector, w.electric[0] * (1.0 / narrowing), sign);
+
+            let solved = plane_wave(medium, w.wave_vector, w.electric[0]);
+            let residual = solved.maxwell_residual(medium.permittivity(), medium.permeability());
+            prop_assert!(w.power[0] < 1e-20 || residual < 1e-11, "Maxwell {residual}");
+            let poynting = solved.poynting();
+            let cosine = cosine.abs().min(facing.abs());
+            prop_assert!((poynting - w.direction * w.power[0]).length() < 1e-13 / cosine.powi(2));
+        }
+        if waves.len() == 2 {
+            // Near grazing, a direction known to 1e-16 fixes the beam's width less and less well.
+            let cosine =
+                waves.iter().map(|w| w.direction.dot(normal).abs()).fold(facing.abs(), f64::min);
+            let scale = wave.electric[0].norm_squared().sqrt();
+            for field in [electric, magnetic] {
+                let across = field.crossed_by(normal).norm_squared().sqrt();
+                prop_assert!(across < 1e-13 * scale.max(1.0) / cosine.powi(2), "jump {across}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_conductor_reflects_all_and_has_no_tangential_field(
+        medium in medium(), normal in unit_vector(), direction in unit_vector(), jones in jones(),
+    ) {
+        let facing = direction.dot(normal);
+        prop_assume!(facing.abs() > 1e-3);
+        let direction = direction * facing.signum();
+        let wave = incident(&medium, direction, jones);
+        let back = reflect_at_conductor(&medium, &wave, normal);
+        prop_assert!((back.power[0] - 1.0).abs() < 1e-12);
+        let solved = plane_wave(&medium, back.wave_vector, back.electric[0]);
+        prop_assert!(
+            solved.maxwell_residual(medium.permittivity(), medium.permeability()) < 1e-11
+        );
+        let cosine = back.direction.dot(normal).abs().min(facing.abs());
+        prop_assert!((solved.poynting() - back.direction).length() < 1e-13 / cosine.powi(2));
+        let narrowing = (back.direction.dot(normal) / direction.dot(normal)).abs().sqrt();
+        let total = wave.electric[0] + back.electric[0] * (1.0 / narrowing);
+        prop_assert!(total.crossed_by(normal).norm_squared().sqrt() < 1e-11);
+    }
+
+    #[test]
+    fn a_way_back_is_as_good_as_the_way_there(
+        from in isotropic(), to in isotropic(), normal in unit_vector(),
+        direction in unit_vector(),
+    ) {
+        // Reciprocity: unpolarized light is transmitted equally well either way.
+        let facing = direction.dot(normal);
+        prop_assume!(facing.abs() > 1e-2);
+        let direction = direction * facing.signum();
+        let transmitted = |from: &Medium, to: &Medium, direction: DVec3, normal: DVec3| {
+            let basis = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]];
+            let mut sum = None;
+            for jones in basis {
+                let wave = incident(from, direction, jones);
+                let out = split(from, to, &wave, normal);
+                let t = out.iter().find(|w| w.side == Side::Transmitted)?;
+                let share = t.power[0];
+                let (total, _) = sum.unwrap_or((0.0, t.direction));
+                sum = Some((total + share, t.direction));
+            }
+            sum
+        };
+        if let Some((there, onward)) = transmitted(&from, &to, direction, normal) {
+            let (back, _) = transmitted(&to, &from, -onward, -normal).unwrap();
+            prop_assert!((there - back).abs() < 1e-11, "{there} {back}");
+        }
+    }
+}
+
+/// Textbook amplitudes (Born & Wolf, 1.5.2) for s and p at an interface of dielectrics.
+fn fresnel(n1: f64, n2: f64, angle: f64) -> [Complex64; 2] {
+    let cos1 = Complex64::from(angle.cos());
+    let sin2 = n1 * angle.sin() / n2;
+    // The branch with Im > 0 decays.
+    let cos2 = Complex64::from(1.0 - sin2 * sin2).sqrt();
+    let s = (n1 * cos1 - n2 * cos2) / (n1 * cos1 + n2 * cos2);
+    let p = (n2 * cos1 - n1 * cos2) / (n2 * cos1 + n1 * cos2);
+    [s, p]
+}
+
+#[test]
+fn dielectrics_follow_fresnel() {
+    for (n1, n2) in [(1.0, 1.5), (1.5, 1.0), (1.918, 0.873)] {
+        let (from, to) = (Medium::dielectric(n1), Medium::dielectric(n2));
+        for step in 0..90 {
+            let angle = f64::from(step).to_radians();
+            let direction = DVec3::new(angle.cos(), angle.sin(), 0.0);
+            let [s, p] = fresnel(n1, n2, angle);
+            let reflect = |field: DVec3| {
+                let wave = IncidentWave {
+                    wave_vector: direction * n1,
+                    direction,
+                    electric: [(field * n1.powf(-0.5)).into()],
+                    power: [1.0],
+                };
+                split(&from, &to, &wave, DVec3::X)[0]
+            };
+            let scale = n1.sqrt();
+            let back_s = reflect(DVec3::Z);
+            assert!((back_s.electric[0].dot_real(DVec3::Z) * scale - s).norm() < 1e-13);
+            // For p the sign convention is that E and its reflection agree at grazing.
+            let back_p = reflect(direction.cross(DVec3::Z));
+            let along = back_p.direction.cross(DVec3::Z);
+            assert!((back_p.electric[0].dot_real(along) * scale - p).norm() < 1e-13, "{angle}");
+        }
+    }
+}
+
+#[test]
+fn brewsters_angle_transmits_all_of_p() {
+    let angle = 1.5f64.atan();
+    let direction = DVec3::new(angle.cos(), angle.sin(), 0.0);
+    let wave = IncidentWave {
+        wave_vector: direction,
+        direction,
+        electric: [direction.cross(DVec3::Z).into()],
+        power: [1.0],
+    };
+    let waves = split(&Medium::AIR, &Medium::dielectric(1.5), &wave, DVec3::X);
+    assert!(waves[0].power[0] < 1e-30);
+}
+
+#[test]
+fn a_perfect_lens_reflects_nothing() {
+    let lens = Medium::isotropic(-1.0, -1.0).unwrap();
+    let direction = DVec3::new(0.8, 0.36, 0.48);
+    let wave = incident(&Medium::AIR, direction, [0.3, 0.5, -0.2, 0.7]);
+    let waves = split(&Medium::AIR, &lens, &wave, DVec3::X);
+    assert!(waves[0].power[0] < 1e-30);
+    assert!((waves[1].direction - DVec3::new(0.8, -0.36, -0.48)).length() < 1e-15);
+}
+
+#[test]
+fn an_antireflection_coating_refracts_without_loss() {
+    let direction = DVec3::new(0.8, 0.36, 0.48);
+    let wave = incident(&Medium::AIR, direction, [0.3, 0.5, -0.2, 0.7]);
+    let glass = Medium::dielectric(1.5);
+    let waves = transmit_antireflection(&Medium::AIR, &glass, &wave, DVec3::X);
+    assert_eq!(waves.len(), 1);
+    assert!((waves[0].power[0] - 1.0).abs() < 1e-14);
+    assert!((waves[0].direction.y - 0.24).abs() < 1e-15);
+    let solved = plane_wave(&glass, waves[0].wave_vector, waves[0].electric[0]);
+    assert!(solved.maxwell_residual(glass.permittivity(), glass.permeability()) < 1e-14);
+}
+
+#[test]
+fn grazing_incidence_gives_the_limit() {
+    for cosine in [1e-6, 1e-9, 1e-12] {
+        let direction = DVec3::new(cosine, 1.0, 0.0);
+        let wave = incident(&Medium::AIR, direction.normalize(), [1.0, 0.3, 0.0, 0.2]);
+        let waves = split(&Medium::AIR, &Medium::dielectric(1.5), &wave, DVec3::X);
+        let total: f64 = waves.iter().map(|w| w.power[0]).sum();
+        assert!((total - 1.0).abs() < 1e-9, "{total}");
+        assert!(waves[0].power[0] > 0.999_99, "{}", waves[0].power[0]);
+    }
+}
