@@ -4,8 +4,9 @@ use crate::arguments::SceneArguments;
 use crate::devices::fact_lines;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::render::Studio;
+use cloakroom::render::{estimated_seconds, Studio};
 use cloakroom::scene::Show;
+use cloakroom::threads;
 use std::fmt::Write;
 
 /// Validates a scene and prints facts about it.
@@ -52,6 +53,6 @@ fn describe(
             writeln!(text, "             {line}")?;
         }
     }
-    let seconds = studio.estimated_seconds();
-    writeln!(text, "estimate     {seconds:.1} s to render on {} threads", studio.threads())
+    let seconds = estimated_seconds(studio);
+    writeln!(text, "estimate     {seconds:.1} s to render on {} threads", threads::count())
 }

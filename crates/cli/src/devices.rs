@@ -29,7 +29,7 @@ fn as_json(entry: &Entry) -> Value {
         .keys
         .iter()
         .map(|key| {
-            json!({ "name": key.name, "doc": key.doc, "allowed": key.describe(), "default": key.default_value() })
+            json!({ "name": key.name, "doc": key.doc, "allowed": key.describe(), "default": key.default_value().map(Value::from) })
         })
         .collect();
     object.insert("keys".into(), json!(keys));

@@ -4,18 +4,17 @@ use crate::arguments::FiguresArguments;
 use crate::render::{picture, rgb, tell_rarities};
 use crate::report::{say, Failure};
 use crate::scene;
-use cloakroom::illustration::figures::{self, Figure, Panel};
 use cloakroom::illustration::{sheet, SheetPanel};
 use cloakroom::output;
-use cloakroom::photograph::ImageSource;
+use cloakroom::paper::{self, Figure, Panel};
 use cloakroom::render::{Rendered, Studio, Wanted};
-use std::collections::BTreeSet;
+use cloakroom::scene_file;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// Makes panels and sheets.
 pub fn run(arguments: &FiguresArguments, stop: &AtomicBool) -> Result<(), Failure> {
-    let chosen = figures::select(&arguments.only).map_err(Failure::Usage)?;
+    let chosen = paper::select(&arguments.only).map_err(Failure::Usage)?;
     scene::use_threads(arguments.threads)?;
     std::fs::create_dir_all(&arguments.out).map_err(|error| {
         Failure::Failed(format!("cannot make the folder {}: {error}", arguments.out.display()))
@@ -24,4 +23,64 @@ pub fn run(arguments: &FiguresArguments, stop: &AtomicBool) -> Result<(), Failur
         make(figure, &panels, arguments, stop)?;
     }
     Ok(())
+}
+
+/// Renders the chosen panels of one figure, and its sheet if all of them are chosen.
+fn make(
+    figure: &Figure,
+    panels: &[&Panel],
+    arguments: &FiguresArguments,
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
+    let mut on_sheet = Vec::new();
+    for panel in panels {
+        let loaded = scene_file::parse(
+            panel.scene,
+            &format!("fig{}.toml", panel.name),
+            Path::new(""),
+            &overrides(arguments),
+        )
+        .map_err(Failure::from_error)?;
+        let scene = &loaded.scene;
+        let studio = Studio::new(scene).map_err(|e| scene::located(&loaded, &e))?;
+        let wanted =
+            if scene.picture.map.is_some() { Wanted::Everything } else { Wanted::Image };
+        let what = format!("figure {}", panel.name);
+        let Rendered { picture, rarities } = picture(&studio, wanted, &what, stop)?;
+        tell_rarities(&rarities);
+        let image = rgb(scene, &picture)?;
+        let path = arguments.out.join(format!("fig{}.png", panel.name));
+        output::write_png(&image, &picture.metadata, &path).map_err(Failure::from_error)?;
+        say(&format!("{}", path.display()));
+        on_sheet.push(SheetPanel {
+            image,
+            label: format!("({})", panel.letter()),
+            caption: panel.caption.to_owned(),
+        });
+    }
+    if panels.len() == figure.panels.len() {
+        let title = format!("Figure {}. {}", figure.number, figure.title);
+        let path = arguments.out.join(format!("fig{}.png", figure.number));
+        let metadata =
+            [("software".to_owned(), concat!("cloakroom ", env!("CARGO_PKG_VERSION")).to_owned())];
+        output::write_png(&sheet(&title, &on_sheet), &metadata, &path)
+            .map_err(Failure::from_error)?;
+        say(&format!("{}", path.display()));
+    }
+    Ok(())
+}
+
+/// What the command line changes in every panel's scene.
+fn overrides(arguments: &FiguresArguments) -> Vec<String> {
+    let [width, height] = arguments.size;
+    let mut list = vec![
+        format!("camera.resolution=[{width}, {height}]"),
+        format!("camera.samples={}", arguments.samples),
+        // Panels carry no lettering.
+        "picture.color_bar=false".to_owned(),
+    ];
+    if let Some(photo) = &arguments.photo {
+        list.push(format!("photograph.image={}", photo.display()));
+    }
+    list
 }

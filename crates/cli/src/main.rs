@@ -1,1 +1,42 @@
-fn main() {}
+//! The command `cloakroom`: arguments in, words and files out.
+//!
+//! Exit status: 0 done, 1 bad input or failed work (one message on standard error), 2 wrong usage,
+//! 130 on Ctrl-C.
+
+mod arguments;
+mod check;
+mod devices;
+mod figures;
+mod interruption;
+mod progress;
+mod render;
+mod report;
+mod scene;
+mod trace;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use report::Failure;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(&arguments.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.tell(),
+    }
+}
+
+fn run(command: &Command) -> Result<(), Failure> {
+    let stop = interruption::watch()?;
+    match command {
+        Command::Render(arguments) => render::run(arguments, stop),
+        Command::Check(arguments) => check::run(arguments),
+        Command::Trace(arguments) => trace::run(arguments, stop),
+        Command::Figures(arguments) => figures::run(arguments, stop),
+        Command::Devices(arguments) => devices::run(arguments),
+        Command::Schema => {
+            report::print_json(&cloakroom::scene_file::schema())
+        }
+    }
+}

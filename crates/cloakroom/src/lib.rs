@@ -11,9 +11,11 @@
 //! are those of [`optics::wave`].
 
 pub mod device;
+pub mod illustration;
 pub mod keys;
 mod memory;
 pub mod output;
+pub mod paper;
 pub mod photograph;
 pub mod render;
 pub mod scene;

@@ -9,3 +9,9 @@
 pub fn use_threads(threads: usize) -> Result<(), rayon::ThreadPoolBuildError> {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()
 }
+
+/// How many threads the work uses.
+#[must_use]
+pub fn count() -> usize {
+    rayon::current_num_threads()
+}

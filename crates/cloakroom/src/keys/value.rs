@@ -42,6 +42,18 @@ impl Value {
     }
 }
 
+impl From<Value> for serde_json::Value {
+    fn from(value: Value) -> Self {
+        match value {
+            Value::Number(number) => number.into(),
+            Value::Integer(integer) => integer.into(),
+            Value::Flag(flag) => flag.into(),
+            Value::Text(text) => text.into(),
+            Value::List(items) => items.into_iter().map(Self::from).collect(),
+        }
+    }
+}
+
 /// As messages write it: `-3`, `"text"`, `[1, 2, 3]`, long ones cut short.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

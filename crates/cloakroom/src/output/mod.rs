@@ -1,3 +1,117 @@
-//! stub
+//! Pictures into files: PNG, EXR and NPZ, each whole or not at all.
+
+mod exr_file;
+mod npz_file;
 mod picture;
+mod png_file;
+mod whole_file;
+
+pub use image::RgbImage;
 pub use picture::{Channel, Picture, Samples};
+pub use png_file::{to_srgb, write_png};
+pub use whole_file::{WriteSeek, check_writable, write_whole};
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a file cannot be written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OutputError {
+    /// The file could not be written.
+    #[error("cannot write {}: {reason}", path.display())]
+    Write {
+        /// Which file.
+        path: PathBuf,
+        /// Why not.
+        reason: String,
+    },
+    /// The ending of the file's name is not that of a format.
+    #[error(
+        "cannot tell the format of {} by its ending; use .png, .exr or .npz", path.display()
+    )]
+    UnknownFormat {
+        /// Which file.
+        path: PathBuf,
+    },
+    /// The picture has no image.
+    #[error("the picture has no channel `{name}`")]
+    MissingChannel {
+        /// The channel.
+        name: String,
+    },
+}
+
+impl OutputError {
+    fn new(path: &Path, error: &io::Error) -> Self {
+        let reason = match innermost(error).kind() {
+            io::ErrorKind::StorageFull => "no space left on the device".to_owned(),
+            io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+            io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only".to_owned(),
+            io::ErrorKind::QuotaExceeded => "the disk quota is used up".to_owned(),
+            io::ErrorKind::FileTooLarge => "the file would be larger than is allowed".to_owned(),
+            _ => error.to_string(),
+        };
+        Self::Write { path: path.to_owned(), reason }
+    }
+
+    fn with_reason(path: &Path, reason: &str) -> Self {
+        Self::Write { path: path.to_owned(), reason: reason.to_owned() }
+    }
+}
+
+/// The error of the system beneath those that encoders wrap around it.
+fn innermost(error: &io::Error) -> &io::Error {
+    let mut inner = error;
+    let mut next: Option<&(dyn std::error::Error + 'static)> =
+        error.get_ref().map(|wrapped| wrapped as _);
+    while let Some(wrapped) = next {
+        if let Some(found) = wrapped.downcast_ref::<io::Error>() {
+            inner = found;
+            next = found.get_ref().map(|wrapped| wrapped as _);
+        } else {
+            next = wrapped.source();
+        }
+    }
+    inner
+}
+
+/// A format of picture files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8-bit sRGB: what the camera with its polarizer sees.
+    Png,
+    /// All channels in single precision.
+    Exr,
+    /// All channels as arrays, times in double precision.
+    Npz,
+}
+
+impl Format {
+    /// The format that the ending of a file's name asks for.
+    ///
+    /// # Errors
+    ///
+    /// [`OutputError::UnknownFormat`] for any other ending.
+    pub fn of(path: &Path) -> Result<Self, OutputError> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("png") => Ok(Self::Png),
+            Some("exr") => Ok(Self::Exr),
+            Some("npz") => Ok(Self::Npz),
+            _ => Err(OutputError::UnknownFormat { path: path.to_owned() }),
+        }
+    }
+}
+
+/// Writes a picture in the format that the file's ending asks for.
+///
+/// # Errors
+///
+/// If the ending is unknown, the file cannot be written, or a PNG lacks the image.
+pub fn write(picture: &Picture, path: &Path) -> Result<(), OutputError> {
+    match Format::of(path)? {
+        Format::Png => write_png(&to_srgb(picture)?, &picture.metadata, path),
+        Format::Exr => exr_file::write_exr(picture, path),
+        Format::Npz => npz_file::write_npz(picture, path),
+    }
+}

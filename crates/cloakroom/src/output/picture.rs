@@ -1,29 +1,66 @@
-//! stub
-/// a
-#[derive(Debug, Clone)]
+//! A finished picture: named channels, and what goes into the metadata of its files.
+
+/// A picture of named channels.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// a
+    /// Width in pixels.
     pub width: usize,
-    /// a
+    /// Height in pixels.
     pub height: usize,
-    /// a
+    /// The channels, in the order of files.
     pub channels: Vec<Channel>,
-    /// a
+    /// Pairs of key and text that every file carries: scene, version, seed.
     pub metadata: Vec<(String, String)>,
 }
-/// a
-#[derive(Debug, Clone)]
+
+/// One channel of a picture.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// a
+    /// Its name in files, as in `horizontal.R` or `time_of_flight`.
     pub name: String,
-    /// a
+    /// One number a pixel, row by row from the top left.
     pub samples: Samples,
 }
-/// a
-#[derive(Debug, Clone)]
+
+/// The numbers of a channel.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Samples {
-    /// a
+    /// In single precision: colours and shares of power.
     F32(Vec<f32>),
-    /// a
+    /// In double precision: times, whose differences go down to yoctoseconds.
     F64(Vec<f64>),
+}
+
+impl Picture {
+    /// The channel of that name.
+    #[must_use]
+    pub fn channel(&self, name: &str) -> Option<&Channel> {
+        self.channels.iter().find(|channel| channel.name == name)
+    }
+}
+
+impl Samples {
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::F32(values) => values.len(),
+            Self::F64(values) => values.len(),
+        }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The number at an index below [`len`](Self::len).
+    #[must_use]
+    pub fn get(&self, index: usize) -> f64 {
+        match self {
+            Self::F32(values) => f64::from(values[index]),
+            Self::F64(values) => values[index],
+        }
+    }
 }

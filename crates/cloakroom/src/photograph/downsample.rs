@@ -20,45 +20,73 @@ pub(super) fn halve(
     let (new_width, new_height) = ((width / 2).max(1), (height / 2).max(1));
     let mut halved = vec![0.0; new_width * new_height * 3];
     let columns: Vec<Part> = (0..new_width).map(|i| Part::new(i, width)).collect();
-    let row = |y: usize, row_out: &mut [f32], sum: &mut Vec<f32>| {
-        let part = Part::new(y, height);
-        sum.clear();
-        sum.resize(width * 3, 0.0);
-        for (offset, &weight) in part.weights.iter().enumerate() {
-            if weight > 0.0 {
-                let start = (part.first + offset) * width * 3;
-                let range = start..start + width * 3;
-                match texels {
-                    Texels::Srgb8(codes) => {
-                        add_row(sum, &codes[range], weight, |code| table[usize::from(code)])
-                    }
-                    Texels::Linear(values) => add_row(sum, &values[range], weight, |value| value),
-                }
-            }
-        }
-        for (texel, part) in row_out.chunks_exact_mut(3).zip(&columns) {
-            for (offset, &weight) in part.weights.iter().enumerate() {
-                if weight > 0.0 {
-                    let at = (part.first + offset) * 3;
-                    for (value, light) in texel.iter_mut().zip(&sum[at..at + 3]) {
-                        *value += weight * light;
-                    }
-                }
-            }
-        }
-    };
     halved
         .par_chunks_mut(new_width * 3)
         .enumerate()
         // Small levels are not worth a thread.
         .with_min_len((65536 / new_width).max(1))
-        .for_each_init(Vec::new, |sum, (y, row_out)| row(y, row_out, sum));
+        .for_each_init(
+            || vec![0.0; width * 3],
+            |sum, (y, row)| {
+                let part = Part::new(y, height);
+                let stored = part.first * width * 3;
+                match texels {
+                    Texels::Srgb8(codes) => {
+                        let light = |code: u8| table[usize::from(code)];
+                        add_rows(sum, &codes[stored..], part.weights, light);
+                    }
+                    Texels::Linear(values) => {
+                        add_rows(sum, &values[stored..], part.weights, |value| value);
+                    }
+                }
+                if width.is_multiple_of(2) {
+                    halve_row(sum, row);
+                } else {
+                    shrink_row(sum, &columns, row);
+                }
+            },
+        );
     (new_width, new_height, halved)
 }
 
-fn add_row<S: Copy>(sum: &mut [f32], row: &[S], weight: f32, light: impl Fn(S) -> f32) {
-    for (total, &value) in sum.iter_mut().zip(row) {
-        *total += weight * light(value);
+/// Weighted sum of two or three rows.
+fn add_rows<S: Copy>(sum: &mut [f32], rows: &[S], weights: [f32; 3], light: impl Fn(S) -> f32) {
+    let length = sum.len();
+    let [first, second, third] = weights;
+    if second == 0.0 {
+        for (total, &value) in sum.iter_mut().zip(rows) {
+            *total = first * light(value);
+        }
+        return;
+    }
+    for ((total, &a), &b) in sum.iter_mut().zip(rows).zip(&rows[length..]) {
+        *total = first * light(a) + second * light(b);
+    }
+    if third != 0.0 {
+        for (total, &value) in sum.iter_mut().zip(&rows[2 * length..]) {
+            *total += third * light(value);
+        }
+    }
+}
+
+/// Averages of two texels each.
+fn halve_row(texels: &[f32], halved: &mut [f32]) {
+    for (texel, pair) in halved.chunks_exact_mut(3).zip(texels.chunks_exact(6)) {
+        for channel in 0..3 {
+            texel[channel] = 0.5 * (pair[channel] + pair[channel + 3]);
+        }
+    }
+}
+
+/// Weighted sums of up to three texels each.
+fn shrink_row(texels: &[f32], columns: &[Part], row: &mut [f32]) {
+    for (texel, part) in row.chunks_exact_mut(3).zip(columns) {
+        // A row of one texel has but one part.
+        for (source, &weight) in texels[part.first * 3..].chunks_exact(3).zip(&part.weights) {
+            for (value, light) in texel.iter_mut().zip(source) {
+                *value += weight * light;
+            }
+        }
     }
 }
 

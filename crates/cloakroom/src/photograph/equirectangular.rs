@@ -8,7 +8,7 @@ use super::{Edges, LinearImage, Pyramid};
 
 /// Largest ratio of a patch's axes: large, for near the poles a round patch of directions is a long
 /// one of the image.
-const MAX_RATIO: f64 = 64.0;
+const MAX_RATIO: f32 = 64.0;
 
 /// Closest distance to the poles at which derivatives are taken, in radians.
 const POLE: f64 = 1e-6;

@@ -2,7 +2,7 @@
 
 /// Ratio of the axes up to which one round probe stands for the patch. Above, the probe's width
 /// stays and a row of probes grows from its middle, so that nothing jumps.
-const ROUND: f64 = 1.2;
+const ROUND: f32 = 1.2;
 
 /// Largest derivative taken seriously, in texels: wider than any image.
 const WIDEST: f64 = 1e8;
@@ -10,18 +10,24 @@ const WIDEST: f64 = 1e8;
 /// A patch of an image: an ellipse with the axes `major >= minor`, in texels.
 ///
 /// The ellipse is the image of a sample's disc under the derivatives of the texture coordinates.
-/// What the patch looks like is the average over probes of the width [`Footprint::width`] along
-/// the major axis; along both axes the variance is that of an average over the exact patch.
+/// What the patch looks like is the average over probes of one width along the major axis; along
+/// both axes the variance is that of an average over the exact patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Footprint {
-    /// Width of each probe, in texels, at least 1.
-    pub(super) width: f64,
-    /// The major axis' true length, below 1 where the image is magnified.
-    pub(super) magnification: f64,
-    /// Length of the row of probes, in texels; 0 for one probe.
-    length: f64,
-    /// Direction of the row, a unit vector.
-    direction: [f64; 2],
+    /// Square of each probe's width, in texels; at least 1.
+    pub(super) width_squared: f32,
+    /// Square of the major axis' true length, below 1 where the image is magnified.
+    pub(super) major_squared: f32,
+    /// The row of probes; `None` for one probe.
+    row: Option<Row>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Row {
+    /// In texels.
+    length: f32,
+    /// A unit vector.
+    direction: [f32; 2],
 }
 
 impl Footprint {
@@ -29,31 +35,35 @@ impl Footprint {
     /// `max_ratio` between its axes: thinner patches are blurred across.
     ///
     /// Derivatives that are not numbers count as zero.
-    pub(super) fn new(dx: [f64; 2], dy: [f64; 2], max_ratio: f64) -> Self {
-        let clean = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-WIDEST, WIDEST) };
+    #[inline]
+    pub(super) fn new(dx: [f64; 2], dy: [f64; 2], max_ratio: f32) -> Self {
+        // Single precision is plenty for a shape, and its roots take half the time.
+        let clean =
+            |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-WIDEST, WIDEST) as f32 };
         let [[ax, ay], [bx, by]] = [dx.map(clean), dy.map(clean)];
-        // The axes are the singular values of the matrix with the columns dx and dy.
+        // The axes are the singular values of the matrix with the columns dx and dy. Few roots and
+        // divisions: this is computed for every sample.
         let (uu, uv, vv) = (ax * ax + bx * bx, ax * ay + bx * by, ay * ay + by * by);
         let half_difference = 0.5 * (uu - vv);
-        let root = half_difference.hypot(uv);
+        let root = (half_difference * half_difference + uv * uv).sqrt();
         let major_squared = 0.5 * (uu + vv) + root;
-        let true_major = major_squared.sqrt();
-        let true_minor =
-            if true_major > 0.0 { (ax * by - ay * bx).abs() / true_major } else { 0.0 };
+        let determinant = ax * by - ay * bx;
 
-        let major = true_major.max(1.0);
-        let minor = true_minor.max(major / max_ratio).max(1.0);
-        let round = major.min(ROUND * minor);
-        let width = (0.5 * (minor * minor + round * round)).sqrt();
-        let length = (major * major - ROUND * ROUND * minor * minor).max(0.0).sqrt();
-
-        // The better conditioned of the two expressions for the eigenvector. Where the axes are
-        // too similar for either, the row has no length.
-        let (x, y) =
-            if uu >= vv { (half_difference + root, uv) } else { (uv, root - half_difference) };
-        let norm = x.hypot(y);
-        let direction = if norm > 0.0 { [x / norm, y / norm] } else { [1.0, 0.0] };
-        Self { width, magnification: true_major.min(1.0), length, direction }
+        let major = major_squared.max(1.0);
+        // The true minor axis, where it is above one texel.
+        let minor =
+            (determinant * determinant / major).max(major / (max_ratio * max_ratio)).max(1.0);
+        let round = ROUND * ROUND * minor;
+        let width_squared = 0.5 * (minor + major.min(round));
+        let row = (major > round).then(|| {
+            // The better conditioned of the two expressions for the eigenvector. The axes differ
+            // enough for one of them.
+            let (x, y) =
+                if uu >= vv { (half_difference + root, uv) } else { (uv, root - half_difference) };
+            let norm = (x * x + y * y).sqrt();
+            Row { length: (major - round).sqrt(), direction: [x / norm, y / norm] }
+        });
+        Self { width_squared, major_squared, row }
     }
 
     /// Calls `visit` with the offset from the middle, in texels, and the weight of each probe. The
@@ -62,20 +72,19 @@ impl Footprint {
     /// Each half of the row is cut into cells one probe wide, counted from the middle; the last
     /// one is as long as what is left, so that a new cell begins without weight.
     #[inline]
-    pub(super) fn probes(&self, mut visit: impl FnMut([f64; 2], f64)) {
-        let half = 0.5 * self.length;
-        if half <= 0.0 {
+    pub(super) fn probes(&self, mut visit: impl FnMut([f32; 2], f32)) {
+        let Some(Row { length, direction }) = self.row else {
             return visit([0.0, 0.0], 1.0);
-        }
+        };
+        let (half, cell) = (0.5 * length, self.width_squared.sqrt());
         let mut start = 0.0;
         while start < half {
-            let end = (start + self.width).min(half);
-            let middle = 0.5 * (start + end);
-            let weight = (end - start) / self.length;
-            let [x, y] = self.direction.map(|component| component * middle);
+            let end = (start + cell).min(half);
+            let weight = (end - start) / length;
+            let [x, y] = direction.map(|component| component * 0.5 * (start + end));
             visit([x, y], weight);
             visit([-x, -y], weight);
-            start += self.width;
+            start += cell;
         }
     }
 }
@@ -84,7 +93,7 @@ impl Footprint {
 mod tests {
     use super::*;
 
-    fn probes(footprint: &Footprint) -> Vec<([f64; 2], f64)> {
+    fn probes(footprint: &Footprint) -> Vec<([f32; 2], f32)> {
         let mut list = Vec::new();
         footprint.probes(|offset, weight| list.push((offset, weight)));
         list
@@ -93,7 +102,7 @@ mod tests {
     #[test]
     fn round_patch_is_one_probe() {
         let footprint = Footprint::new([3.0, 0.0], [0.0, 3.0], 16.0);
-        assert!((footprint.width - 3.0).abs() < 1e-12);
+        assert!((footprint.width_squared - 9.0).abs() < 1e-5);
         assert_eq!(probes(&footprint), vec![([0.0, 0.0], 1.0)]);
     }
 
@@ -103,28 +112,28 @@ mod tests {
         let (sin, cos) = 30.0_f64.to_radians().sin_cos();
         let footprint = Footprint::new([12.0 * cos, 12.0 * sin], [-3.0 * sin, 3.0 * cos], 16.0);
         let list = probes(&footprint);
-        assert!((list.iter().map(|(_, weight)| weight).sum::<f64>() - 1.0).abs() < 1e-12);
+        assert!((list.iter().map(|(_, weight)| weight).sum::<f32>() - 1.0).abs() < 1e-5);
         let mut variance = 0.0;
         for ([x, y], weight) in &list {
-            assert!((x * sin - y * cos).abs() < 1e-12, "off the axis");
+            assert!((f64::from(*x) * sin - f64::from(*y) * cos).abs() < 1e-5, "off the axis");
             variance += weight * (x * x + y * y);
         }
         // Variance of a uniform average over 12 texels, less what each probe's own width adds.
-        let expected = (144.0 - footprint.width.powi(2)) / 12.0;
+        let expected = (144.0 - footprint.width_squared) / 12.0;
         assert!((variance / expected - 1.0).abs() < 0.1, "{variance} {expected}");
     }
 
     #[test]
     fn ratio_is_limited_and_degenerate_patches_are_harmless() {
         let line = Footprint::new([160.0, 0.0], [0.0, 0.0], 16.0);
-        assert!(line.width >= 10.0);
+        assert!(line.width_squared >= 100.0);
         assert!(probes(&line).len() <= 20);
         for bad in [0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 5e-324] {
             for other in [0.0, 1.0, f64::NAN] {
                 let footprint = Footprint::new([bad, other], [other, bad], 16.0);
                 let list = probes(&footprint);
                 assert!(list.len() <= 40, "{bad} {other}: {}", list.len());
-                assert!(footprint.width.is_finite());
+                assert!(footprint.width_squared.is_finite());
                 assert!(list.iter().all(|(at, weight)| at[0].is_finite() && weight.is_finite()));
             }
         }

@@ -1,173 +1,27 @@
 //! Reading image files into linear light.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
 
+use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
+use super::source::{ImageSource, LoadError};
 use super::{jpeg_markers, srgb};
 
 #[cfg(test)]
 mod tests;
 
-/// The images that come with the program, by name.
-const BUILT_IN: [(&str, &[u8]); 1] = [("bookshelf", include_bytes!("../../assets/bookshelf.jpg"))];
-
-/// What a built-in image's name begins with.
-const BUILT_IN_PREFIX: &str = "builtin:";
-
 /// Largest number of pixels of an image.
-const MAX_PIXELS: u64 = 400_000_000;
+pub(super) const MAX_PIXELS: u64 = 400_000_000;
 
 /// Largest memory an image may take while it is read, in bytes.
-const MAX_MEMORY: u64 = 4 << 30;
+pub(super) const MAX_MEMORY: u64 = 4 << 30;
 
 /// Largest image file, in bytes.
 const MAX_FILE: u64 = 2 << 30;
-
-/// Where an image comes from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ImageSource {
-    /// One of the images that come with the program, by its name without `builtin:`.
-    BuiltIn(&'static str),
-    /// An image file.
-    File(PathBuf),
-}
-
-impl ImageSource {
-    /// What a scene's `image = "..."` means: `builtin:NAME`, or a file, relative to `folder`.
-    ///
-    /// # Errors
-    ///
-    /// [`LoadError::UnknownBuiltIn`] for a built-in name that does not exist. Files are looked at
-    /// only by [`load`] and [`dimensions`].
-    pub fn parse(text: &str, folder: &Path) -> Result<Self, LoadError> {
-        let Some(name) = text.strip_prefix(BUILT_IN_PREFIX) else {
-            return Ok(Self::File(folder.join(text)));
-        };
-        BUILT_IN
-            .iter()
-            .find(|(known, _)| *known == name)
-            .map(|(known, _)| Self::BuiltIn(known))
-            .ok_or_else(|| LoadError::UnknownBuiltIn { name: name.to_owned() })
-    }
-
-    /// The images that come with the program, as written in a scene: `builtin:NAME`.
-    pub fn built_in_names() -> impl Iterator<Item = String> {
-        BUILT_IN.iter().map(|(name, _)| format!("{BUILT_IN_PREFIX}{name}"))
-    }
-}
-
-impl std::fmt::Display for ImageSource {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::BuiltIn(name) => write!(f, "{BUILT_IN_PREFIX}{name}"),
-            Self::File(path) => write!(f, "{}", path.display()),
-        }
-    }
-}
-
-/// Why an image cannot be used. Each message names the image.
-#[derive(Debug, thiserror::Error)]
-pub enum LoadError {
-    /// No built-in image has this name.
-    #[error(
-        "there is no built-in image `{BUILT_IN_PREFIX}{name}`; there is {}",
-        ImageSource::built_in_names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
-    )]
-    UnknownBuiltIn {
-        /// The name asked for, without `builtin:`.
-        name: String,
-    },
-    /// There is no such file.
-    #[error("there is no image file {image}")]
-    Missing {
-        /// The image.
-        image: ImageSource,
-    },
-    /// The path is a folder.
-    #[error("{image} is a folder, not an image file")]
-    Folder {
-        /// The image.
-        image: ImageSource,
-    },
-    /// The operating system refuses to read the file.
-    #[error("cannot read {image}: {reason}")]
-    Unreadable {
-        /// The image.
-        image: ImageSource,
-        /// What the operating system says.
-        reason: io::Error,
-    },
-    /// The file has no bytes.
-    #[error("{image} is empty")]
-    Empty {
-        /// The image.
-        image: ImageSource,
-    },
-    /// The file is no image, or of a kind that is not known.
-    #[error("{image} is not an image that can be read (PNG, JPEG or EXR)")]
-    NotAnImage {
-        /// The image.
-        image: ImageSource,
-    },
-    /// An image of a kind that is known but not read.
-    #[error("{image} is a {format} image; only PNG, JPEG and EXR can be read")]
-    OtherFormat {
-        /// The image.
-        image: ImageSource,
-        /// The kind.
-        format: String,
-    },
-    /// The file ends early or is damaged.
-    #[error("{image} is damaged or cut short: {reason}")]
-    Damaged {
-        /// The image.
-        image: ImageSource,
-        /// What the decoder says.
-        reason: String,
-    },
-    /// The image uses a feature of its format that is not read.
-    #[error("{image} uses a feature that is not supported: {reason}")]
-    Unsupported {
-        /// The image.
-        image: ImageSource,
-        /// What the decoder says.
-        reason: String,
-    },
-    /// The image has no pixels.
-    #[error("{image} has no pixels ({width} x {height})")]
-    NoPixels {
-        /// The image.
-        image: ImageSource,
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-    },
-    /// The image has too many pixels, or would take too much memory.
-    #[error(
-        "{image} is too large: at most {} million pixels and {} GiB of memory are allowed",
-        MAX_PIXELS / 1_000_000,
-        MAX_MEMORY >> 30
-    )]
-    TooLarge {
-        /// The image.
-        image: ImageSource,
-    },
-    /// A pixel of an EXR image is infinite or not a number.
-    #[error("{image} has a pixel that is not a finite number, in column {column} and row {row}")]
-    NotFinite {
-        /// The image.
-        image: ImageSource,
-        /// Column of the first such pixel, from 0.
-        column: usize,
-        /// Row of the first such pixel, from 0.
-        row: usize,
-    },
-}
 
 /// An image in linear light.
 #[derive(Clone, Debug, PartialEq)]
@@ -199,7 +53,7 @@ pub fn dimensions(source: &ImageSource) -> Result<(u32, u32), LoadError> {
     let bytes = read_bytes(source)?;
     let (mut decoder, _) = open(source, &bytes)?;
     let (width, height) = decoder.dimensions();
-    let orientation = decoder.orientation().map_err(|error| from_decoder(source, error))?;
+    let orientation = guarded(source, || Ok(orientation(&mut decoder)))?;
     // The odd half of the orientations exchanges rows and columns.
     Ok(if orientation.to_exif() >= 5 { (height, width) } else { (width, height) })
 }
@@ -219,22 +73,21 @@ pub fn load(source: &ImageSource) -> Result<LinearImage, LoadError> {
     let bytes = read_bytes(source)?;
     let image = guarded(source, || decode(source, &bytes))?;
     let image = linear(image);
-    if let Texels::Linear(values) = &image.texels {
-        if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-            let (column, row) = (at / 3 % image.width, at / 3 / image.width);
-            return Err(LoadError::NotFinite { image: source.clone(), column, row });
-        }
+    if let Texels::Linear(values) = &image.texels
+        && let Some(at) = values.iter().position(|value| !value.is_finite())
+    {
+        let (column, row) = (at / 3 % image.width, at / 3 / image.width);
+        return Err(LoadError::NotFinite { image: source.clone(), column, row });
     }
     Ok(image)
 }
 
 /// The bytes of an image file, once its beginning shows that it can be one.
-fn read_bytes(source: &ImageSource) -> Result<std::borrow::Cow<'static, [u8]>, LoadError> {
+fn read_bytes(source: &ImageSource) -> Result<Cow<'static, [u8]>, LoadError> {
     let path = match source {
         ImageSource::BuiltIn(name) => {
-            let bytes = BUILT_IN.iter().find(|(known, _)| known == name).map(|(_, bytes)| *bytes);
-            return bytes
-                .map(std::borrow::Cow::Borrowed)
+            return ImageSource::built_in(name)
+                .map(Cow::Borrowed)
                 .ok_or_else(|| LoadError::UnknownBuiltIn { name: (*name).to_owned() });
         }
         ImageSource::File(path) => path,
@@ -319,12 +172,16 @@ fn decode(source: &ImageSource, bytes: &[u8]) -> Result<DynamicImage, LoadError>
         let reason = "the end-of-image marker is missing".to_owned();
         return Err(LoadError::Damaged { image: source.clone(), reason });
     }
-    // An orientation that cannot be read is none.
-    let orientation = decoder.orientation().unwrap_or(image::metadata::Orientation::NoTransforms);
+    let orientation = orientation(&mut decoder);
     let mut image =
         DynamicImage::from_decoder(decoder).map_err(|error| from_decoder(source, error))?;
     image.apply_orientation(orientation);
     Ok(image)
+}
+
+/// How the image lies; an orientation that cannot be read is none.
+fn orientation(decoder: &mut impl ImageDecoder) -> Orientation {
+    decoder.orientation().unwrap_or(Orientation::NoTransforms)
 }
 
 /// Runs a decoder; a panic inside it (a bug set off by a damaged file) becomes an error.

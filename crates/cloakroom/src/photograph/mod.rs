@@ -14,9 +14,11 @@ mod footprint;
 mod jpeg_markers;
 mod load;
 mod pyramid;
+mod source;
 mod srgb;
 
 pub use equirectangular::Equirectangular;
-pub use load::{ImageSource, LinearImage, LoadError, Texels, dimensions, load};
+pub use load::{LinearImage, Texels, dimensions, load};
 pub use pyramid::{Edges, Pyramid};
+pub use source::{ImageSource, LoadError};
 pub use srgb::{decode, decode_table};

@@ -12,22 +12,22 @@ use super::footprint::Footprint;
 use super::{LinearImage, Texels, decode_table, downsample};
 
 /// Texels per axis that a probe can touch.
-const TAPS: usize = 6;
+const MAX_TAPS: usize = 6;
 
 /// Largest ratio of the axes of a patch.
-const MAX_RATIO: f64 = 16.0;
+const MAX_RATIO: f32 = 16.0;
 
 /// Largest averaging width d, in texels: as many as the taps can hold.
-const MAX_WIDTH: f64 = TAPS as f64 - 2.0;
+const MAX_WIDTH: f32 = MAX_TAPS as f32 - 2.0;
 
 /// Variance of the widest average on a level, in texels of that level.
-const MAX_VARIANCE: f64 = MAX_WIDTH * MAX_WIDTH / 12.0 + 0.25;
+const MAX_VARIANCE: f32 = MAX_WIDTH * MAX_WIDTH / 12.0 + 0.25;
 
 /// Part of this variance from which the next level fades in.
-const FADE: f64 = 0.8;
+const FADE: f32 = 0.8;
 
 /// Smallest averaging width d, in texels: keeps the weights smooth.
-const MIN_WIDTH: f64 = 0.25;
+const MIN_WIDTH: f32 = 0.25;
 
 /// What lies beyond the left and right edge of an image. Beyond top and bottom, the edge goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ pub enum Edges {
 pub struct Pyramid {
     levels: Vec<Level>,
     edges: Edges,
-    max_ratio: f64,
+    max_ratio: f32,
     table: &'static [f32; 256],
 }
 
@@ -52,14 +52,19 @@ struct Level {
     width: usize,
     height: usize,
     texels: Texels,
+    /// Texels of this level per texel of the image.
+    scale: [f64; 2],
 }
 
-/// How the levels answer one probe: `[level, width d, weight]`, the second only while fading.
+/// How the levels answer each probe of a patch.
 struct Plan {
     level: usize,
-    width: f64,
-    next: f64,
-    fade: f64,
+    /// Averaging width d on this level, in its texels.
+    width: f32,
+    /// Averaging width on the next level, if that has a share.
+    next: f32,
+    /// Share of the next level, 0 to 1.
+    fade: f32,
 }
 
 impl Pyramid {
@@ -67,20 +72,22 @@ impl Pyramid {
     pub fn new(image: LinearImage, edges: Edges) -> Self {
         let table = decode_table();
         let LinearImage { width, height, texels } = image;
-        let mut levels = vec![Level { width, height, texels }];
+        let size = [width as f64, height as f64];
+        let mut levels = vec![Level { width, height, texels, scale: [1.0; 2] }];
         while let Some(last) = levels.last()
             && (last.width > 1 || last.height > 1)
         {
             let (width, height, texels) =
                 downsample::halve(last.width, last.height, &last.texels, table);
-            levels.push(Level { width, height, texels: Texels::Linear(texels) });
+            let scale = [width as f64 / size[0], height as f64 / size[1]];
+            levels.push(Level { width, height, texels: Texels::Linear(texels), scale });
         }
         Self { levels, edges, max_ratio: MAX_RATIO, table }
     }
 
     /// The same pyramid with another limit for the ratio of a patch's axes (default 16); thinner
     /// patches are blurred across. Time grows with the ratio.
-    pub fn with_max_ratio(mut self, max_ratio: f64) -> Self {
+    pub fn with_max_ratio(mut self, max_ratio: f32) -> Self {
         self.max_ratio = max_ratio.max(1.0);
         self
     }
@@ -119,14 +126,16 @@ impl Pyramid {
         let footprint = Footprint::new(texels(dx), texels(dy), self.max_ratio);
         let plan = self.plan(&footprint);
         // Far outside there is nothing but the edge.
-        let [u, v] = position.map(|x| if x.is_nan() { 0.5 } else { x.clamp(-4.0, 5.0) });
+        let [u, v] = texels(position.map(|x| if x.is_nan() { 0.5 } else { x.clamp(-4.0, 5.0) }));
         let mut sum = [0.0; 3];
         footprint.probes(|offset, weight| {
-            let at = [u + offset[0] / size[0], v + offset[1] / size[1]];
-            let mut add = |level: usize, width: f64, weight: f64| {
-                let light = self.levels[level].average(at, width as f32, self.edges, self.table);
+            let at = [u + f64::from(offset[0]), v + f64::from(offset[1])];
+            let mut add = |level: usize, width: f32, weight: f32| {
+                let level = &self.levels[level];
+                let at = [at[0] * level.scale[0], at[1] * level.scale[1]];
+                let light = level.average(at, width, self.edges, self.table);
                 for (total, value) in sum.iter_mut().zip(light) {
-                    *total += weight as f32 * value;
+                    *total += weight * value;
                 }
             };
             add(plan.level, plan.width, weight * (1.0 - plan.fade));
@@ -140,63 +149,87 @@ impl Pyramid {
     fn plan(&self, footprint: &Footprint) -> Plan {
         let last = self.levels.len() - 1;
         // d^2 / 12 + 1/4 on the level at hand.
-        let mut variance = (footprint.width * footprint.width + 2.0) / 12.0;
+        let mut variance = (footprint.width_squared + 2.0) * (1.0 / 12.0);
         let mut level = 0;
         while variance >= MAX_VARIANCE && level < last {
             variance *= 0.25;
             level += 1;
         }
-        let width = (12.0 * variance.min(MAX_VARIANCE) - 3.0).max(0.0).sqrt();
-        // Magnified, towards a quadratic spline.
-        let width = width.max(1.0 - footprint.magnification).max(MIN_WIDTH);
-        let next = (3.0 * variance - 3.0).max(0.0).sqrt().max(MIN_WIDTH);
-        let share = variance / MAX_VARIANCE;
-        let fade = if level < last { ((share - FADE) / (1.0 - FADE)).max(0.0) } else { 0.0 };
+        let mut width = (12.0 * variance.min(MAX_VARIANCE) - 3.0).max(0.0).sqrt().max(MIN_WIDTH);
+        if footprint.major_squared < 1.0 {
+            // Magnified, towards a quadratic spline.
+            width = width.max(1.0 - footprint.major_squared.sqrt());
+        }
+        let share = variance * (1.0 / MAX_VARIANCE);
+        let (mut next, mut fade) = (MIN_WIDTH, 0.0);
+        if share > FADE && level < last {
+            next = (3.0 * variance - 3.0).max(0.0).sqrt().max(MIN_WIDTH);
+            fade = (share - FADE) / (1.0 - FADE);
+        }
         Plan { level, width, next, fade }
     }
 }
 
 impl Level {
-    /// The average of the bilinear interpolant over a square of `width` texels around `at` (0 to 1).
+    /// The average of the bilinear interpolant over a square of `width` texels around `at`, in
+    /// texels from the top left corner.
     #[inline]
     fn average(&self, at: [f64; 2], width: f32, edges: Edges, table: &[f32; 256]) -> [f32; 3] {
-        let (left, across) = taps(at[0] * self.width as f64, width);
-        let (top, down) = taps(at[1] * self.height as f64, width);
-        let inside = |first: i64, length: usize| first >= 0 && first as usize + TAPS <= length;
-        if inside(left, self.width) && inside(top, self.height) {
-            let start = (top as usize * self.width + left as usize) * 3;
+        // The square touches fewer than `width + 2` texels per axis, rounded up.
+        if width <= 1.0 {
+            self.average_of::<3>(at, width, edges, table)
+        } else if width <= 2.0 {
+            self.average_of::<4>(at, width, edges, table)
+        } else if width <= 3.0 {
+            self.average_of::<5>(at, width, edges, table)
+        } else {
+            self.average_of::<MAX_TAPS>(at, width, edges, table)
+        }
+    }
+
+    #[inline]
+    fn average_of<const TAPS: usize>(
+        &self,
+        at: [f64; 2],
+        width: f32,
+        edges: Edges,
+        table: &[f32; 256],
+    ) -> [f32; 3] {
+        let across = Taps::<TAPS>::new(at[0], width);
+        let down = Taps::<TAPS>::new(at[1], width);
+        if let Some(left) = across.inside(self.width)
+            && let Some(top) = down.inside(self.height)
+        {
+            let start = (top * self.width + left) * 3;
             let stride = self.width * 3;
+            let weights = (&across.weights, &down.weights);
             match &self.texels {
                 Texels::Srgb8(codes) => {
-                    weigh(&codes[start..], stride, &across, &down, |code| table[usize::from(code)])
+                    weigh(&codes[start..], stride, weights, |code| table[usize::from(code)])
                 }
-                Texels::Linear(values) => {
-                    weigh(&values[start..], stride, &across, &down, |value| value)
-                }
+                Texels::Linear(values) => weigh(&values[start..], stride, weights, |value| value),
             }
         } else {
-            self.average_at_edge(left, top, &across, &down, edges, table)
+            self.average_at_edge(&across, &down, edges, table)
         }
     }
 
     #[cold]
-    fn average_at_edge(
+    fn average_at_edge<const TAPS: usize>(
         &self,
-        left: i64,
-        top: i64,
-        across: &[f32; TAPS],
-        down: &[f32; TAPS],
+        across: &Taps<TAPS>,
+        down: &Taps<TAPS>,
         edges: Edges,
         table: &[f32; 256],
     ) -> [f32; 3] {
         let (columns, rows) = (self.width as i64, self.height as i64);
         let mut sum = [0.0; 3];
-        for (j, &row_weight) in (0..).zip(down) {
-            let y = (top + j).clamp(0, rows - 1) as usize;
-            for (i, &weight) in (0..).zip(across) {
+        for (y, &row_weight) in (down.first..).zip(&down.weights) {
+            let y = y.clamp(0, rows - 1) as usize;
+            for (x, &weight) in (across.first..).zip(&across.weights) {
                 let x = match edges {
-                    Edges::Clamp => (left + i).clamp(0, columns - 1),
-                    Edges::WrapHorizontally => (left + i).rem_euclid(columns),
+                    Edges::Clamp => x.clamp(0, columns - 1),
+                    Edges::WrapHorizontally => x.rem_euclid(columns),
                 } as usize;
                 let start = (y * self.width + x) * 3;
                 for (channel, total) in sum.iter_mut().enumerate() {
@@ -212,50 +245,70 @@ impl Level {
     }
 }
 
-/// The first texel and the weights of an average of the linear interpolant over `width` texels
-/// around `position` (in texels from the edge).
-#[inline]
-fn taps(position: f64, width: f32) -> (i64, [f32; TAPS]) {
-    // Texel i has its middle at i + 1/2.
-    let middle = position - 0.5;
-    let half = 0.5 * width;
-    let first = (middle - 1.0 - f64::from(half)).floor() + 1.0;
-    let offset = (first - middle) as f32;
-    let scale = 1.0 / width;
-    let weights = std::array::from_fn(|tap| {
-        let distance = offset + tap as f32;
-        (tent_integral(distance + half) - tent_integral(distance - half)) * scale
-    });
-    (first as i64, weights)
+/// Neighbouring texels along one axis and their weights in an average of the linear interpolant.
+struct Taps<const TAPS: usize> {
+    first: i64,
+    weights: [f32; TAPS],
 }
 
-/// Integral of the tent 1 - |x| from -1 to `x`.
+impl<const TAPS: usize> Taps<TAPS> {
+    /// The average over `width` texels around `position`, both in texels from the edge.
+    #[inline]
+    fn new(position: f64, width: f32) -> Self {
+        // Texel i has its middle at i + 1/2 and reaches one texel further on both sides.
+        let middle = position - 0.5;
+        let half = 0.5 * width;
+        let first = floor(middle - f64::from(half));
+        let offset = (first as f64 - middle) as f32;
+        let scale = 1.0 / width;
+        let weights = std::array::from_fn(|tap| {
+            let distance = offset + tap as f32;
+            (tent_integral(distance + half) - tent_integral(distance - half)) * scale
+        });
+        Self { first, weights }
+    }
+
+    /// The first texel's index if all lie within `length` texels.
+    #[inline]
+    fn inside(&self, length: usize) -> Option<usize> {
+        usize::try_from(self.first).ok().filter(|first| first + TAPS <= length)
+    }
+}
+
+/// Rounds down; whole numbers may become the number below. For numbers below 2^31; much faster than
+/// `f64::floor` on processors without an instruction for it.
+#[inline]
+fn floor(x: f64) -> i64 {
+    // Adding this leaves no bits for fractions, and the whole number in the lowest ones.
+    const SHIFT: f64 = (3_i64 << 51) as f64;
+    i64::from((x - 0.5 + SHIFT).to_bits() as i32)
+}
+
+/// Integral of the tent 1 - |x| from 0 to `x`.
 #[inline]
 fn tent_integral(x: f32) -> f32 {
     let x = x.clamp(-1.0, 1.0);
-    0.5 + x - 0.5 * x * x.abs()
+    x - 0.5 * x * x.abs()
 }
 
-/// Weighted sum of `TAPS` x `TAPS` texels from the beginning of `texels`.
+/// Weighted sum of a square of texels from the beginning of `texels`; weights across and down.
 #[inline]
-fn weigh<S: Copy>(
+fn weigh<S: Copy, const TAPS: usize>(
     texels: &[S],
     stride: usize,
-    across: &[f32; TAPS],
-    down: &[f32; TAPS],
+    (across, down): (&[f32; TAPS], &[f32; TAPS]),
     light: impl Fn(S) -> f32,
 ) -> [f32; 3] {
-    let mut columns = [0.0; TAPS * 3];
+    let mut columns = [[0.0; 3]; TAPS];
     for (row, &weight) in down.iter().enumerate() {
-        if weight != 0.0 {
-            let start = row * stride;
-            for (total, &value) in columns.iter_mut().zip(&texels[start..start + TAPS * 3]) {
-                *total += weight * light(value);
-            }
+        let start = row * stride;
+        let row = &texels[start..start + TAPS * 3];
+        for (total, &value) in columns.as_flattened_mut().iter_mut().zip(row) {
+            *total += weight * light(value);
         }
     }
     let mut sum = [0.0; 3];
-    for (texel, &weight) in columns.chunks_exact(3).zip(across) {
+    for (texel, &weight) in columns.iter().zip(across) {
         for (total, value) in sum.iter_mut().zip(texel) {
             *total += weight * value;
         }

@@ -134,6 +134,30 @@ fn expose_film<const N: usize>(
     Ok(Rendered { picture, rarities })
 }
 
+/// How long rendering will take on the threads there are, in seconds: a few thousand rays, spread
+/// over the picture, are traced and timed.
+#[must_use]
+pub fn estimated_seconds(studio: &Studio<'_>) -> f64 {
+    const GRID: [u32; 2] = [64, 48];
+    let camera = &studio.scene.camera;
+    let [width, height] = camera.resolution();
+    let [columns, rows] = [GRID[0].min(width), GRID[1].min(height)];
+    let detection = Detection { weights: [0.5, 0.5], separate: true };
+    let polarizations =
+        |h: DVec3, v: DVec3| -> [ComplexVector; 2] { [h.into(), v.into()] };
+    let mut exposer = Exposer::new(studio, &detection, &polarizations);
+    let start = std::time::Instant::now();
+    for row in 0..rows {
+        for column in 0..columns {
+            let corner = [column * width / columns, row * height / rows].map(|i| i as usize);
+            exposer.expose_block(corner, 0, &mut [Pixel::default(); 4]);
+        }
+    }
+    let traced = f64::from(4 * columns * rows);
+    let all = f64::from(width) * f64::from(height) * f64::from(camera.samples());
+    start.elapsed().as_secs_f64() * all / traced / rayon::current_num_threads() as f64
+}
+
 /// What every file carries: scene, version and seed.
 fn metadata(studio: &Studio<'_>) -> Vec<(String, String)> {
     [

@@ -2,7 +2,7 @@
 
 use crate::device::Request;
 use crate::photograph::{self, Edges, Equirectangular, LoadError, Pyramid};
-use crate::scene::{Scene, SurroundingsSettings};
+use crate::scene::{Projection, Scene, SurroundingsSettings};
 use crate::trace::{Bench, Limits, Placed, Screen};
 use glam::DVec3;
 use optics::geometry::Pose;
@@ -139,8 +139,7 @@ impl<'s> Studio<'s> {
     /// If an image cannot be read, a device is impossible, or something stands in something else.
     pub fn new(scene: &'s Scene) -> Result<Self, StudioError> {
         let bench = bench(scene)?;
-        let eye = scene.camera.position();
-        if let Some(device) = bench.holder(eye) {
+        if let Some(device) = camera_inside(scene, &bench) {
             return Err(StudioError::CameraInside { device });
         }
         let image = photograph::load(&scene.photograph.image).map_err(StudioError::Photograph)?;
@@ -171,10 +170,31 @@ impl<'s> Studio<'s> {
         [2.0 * self.screen.half_width, 2.0 * self.screen.half_height]
     }
 
+    /// Rows of the picture: the steps of its progress.
+    #[must_use]
+    pub fn rows(&self) -> u64 {
+        u64::from(self.scene.camera.resolution()[1])
+    }
+
     /// The devices at their places.
     #[must_use]
     pub fn bench(&self) -> &Bench {
         &self.bench
+    }
+}
+
+/// The device that a camera ray would start in. The rays of an orthographic camera start side by
+/// side: every pixel is looked at.
+fn camera_inside(scene: &Scene, bench: &Bench) -> Option<usize> {
+    let camera = &scene.camera;
+    match camera.settings().projection {
+        Projection::Perspective { .. } => bench.holder(camera.position()),
+        Projection::Orthographic { .. } => {
+            let [width, height] = camera.resolution();
+            (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).find_map(|(x, y)| {
+                bench.holder(camera.ray(f64::from(x) + 0.5, f64::from(y) + 0.5).origin)
+            })
+        }
     }
 }
 

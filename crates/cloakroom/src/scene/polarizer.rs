@@ -19,6 +19,18 @@ pub enum Polarizer {
     Angle(f64),
 }
 
+/// As scenes write it, with the unit of an angle.
+impl std::fmt::Display for Polarizer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Polarizer::None => f.write_str("none"),
+            Polarizer::Horizontal => f.write_str("horizontal"),
+            Polarizer::Vertical => f.write_str("vertical"),
+            Polarizer::Angle(degrees) => write!(f, "{degrees} degrees"),
+        }
+    }
+}
+
 impl Polarizer {
     /// A polarizer at an angle.
     ///

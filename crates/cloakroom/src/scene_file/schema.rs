@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::device::{CATALOGUE, Entry};
-use crate::keys::{self, Key, KeyKind, Limits};
+use crate::keys::{Key, KeyKind, Limits};
 use crate::scene::{PLACEMENT_KEYS, TABLES};
 
 /// The JSON Schema (draft 2020-12) of a scene file, made from the lists of keys and the catalogue
@@ -106,7 +106,7 @@ fn property(key: &Key) -> Value {
     let unit = if unit.is_empty() { String::new() } else { format!(" Unit: {unit}.") };
     property["description"] = format!("{}{unit}", key.doc).into();
     if let Some(default) = key.default_value() {
-        property["default"] = plain(default);
+        property["default"] = Value::from(default);
     }
     property
 }
@@ -131,16 +131,6 @@ fn integer(min: i64, max: i64) -> Value {
 
 fn list(items: Value, length: usize) -> Value {
     json!({ "type": "array", "items": items, "minItems": length, "maxItems": length })
-}
-
-fn plain(value: keys::Value) -> Value {
-    match value {
-        keys::Value::Number(number) => number.into(),
-        keys::Value::Integer(integer) => integer.into(),
-        keys::Value::Flag(flag) => flag.into(),
-        keys::Value::Text(text) => text.into(),
-        keys::Value::List(items) => items.into_iter().map(plain).collect(),
-    }
 }
 
 #[cfg(test)]

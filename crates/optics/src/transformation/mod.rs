@@ -1,5 +1,13 @@
 //! Coordinate maps and the material tensors that follow from them.
 
+mod conformal;
+mod faddeeva;
+mod gaussian;
+mod monotone_root;
 mod strip_to_rhombus;
 
+pub use conformal::{ConformalMap, MapJet, Truncation};
+pub use faddeeva::{FaddeevaJet, faddeeva, faddeeva_jet};
+pub use gaussian::{GaussianMap, GaussianMapError};
+pub(crate) use monotone_root::root_in_bracket;
 pub use strip_to_rhombus::StripToRhombus;

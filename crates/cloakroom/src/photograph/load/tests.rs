@@ -1,5 +1,6 @@
 use std::fs;
 use std::io::Cursor;
+use std::path::Path;
 
 use image::{ImageBuffer, ImageEncoder, Luma, LumaA, Rgb, Rgba};
 

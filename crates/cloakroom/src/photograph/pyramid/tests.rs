@@ -128,7 +128,6 @@ fn as_sharp_as_an_exact_area_average() {
         let contrast = (ours / exact).sqrt();
         let correlation = both / (ours * exact).sqrt();
 
-        println!("width {width}: contrast {contrast:.3}, correlation {correlation:.4}");
         assert!((0.93..1.08).contains(&contrast), "width {width}: contrast {contrast}");
         assert!(correlation > 0.9, "width {width}: correlation {correlation}");
     }

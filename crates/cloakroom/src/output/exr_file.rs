@@ -1,0 +1,86 @@
+//! EXR: every channel in single precision.
+
+use super::{OutputError, Picture, Samples, write_whole};
+use exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes, Layer,
+    LayerAttributes, Text, Vec2, WritableImage,
+};
+use std::io;
+use std::path::Path;
+
+/// Writes every channel as 32-bit floats under its name, and the metadata as text attributes.
+///
+/// # Errors
+///
+/// If the file cannot be written.
+pub(super) fn write_exr(picture: &Picture, path: &Path) -> Result<(), OutputError> {
+    let channels = picture
+        .channels
+        .iter()
+        .map(|channel| {
+            let values = match &channel.samples {
+                Samples::F32(values) => values.clone(),
+                Samples::F64(values) => values.iter().map(|value| *value as f32).collect(),
+            };
+            AnyChannel::new(text(&channel.name), FlatSamples::F32(values))
+        })
+        .collect();
+    let size = Vec2(picture.width, picture.height);
+    let mut attributes = LayerAttributes::default();
+    for (key, value) in &picture.metadata {
+        attributes.other.insert(text(key), AttributeValue::Text(text(value)));
+    }
+    let layer =
+        Layer::new(size, attributes, Encoding::FAST_LOSSLESS, AnyChannels::sort(channels));
+    let image = Image {
+        attributes: ImageAttributes::new(exr::prelude::IntegerBounds::from_dimensions(size)),
+        layer_data: layer,
+    };
+    write_whole(path, |out| {
+        // One thread: the bytes must not depend on how many there are.
+        image.write().non_parallel().to_buffered(out).map_err(io::Error::other)
+    })
+}
+
+/// The text type of EXR, which keeps one byte a character: others become question marks.
+fn text(words: &str) -> Text {
+    Text::new_or_none(words).unwrap_or_else(|| {
+        let plain: String =
+            words.chars().map(|c| if (c as u32) < 256 { c } else { '?' }).collect();
+        Text::new_or_none(&plain).unwrap_or_default()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Channel;
+    use super::*;
+    use exr::prelude::read_first_flat_layer_from_file;
+
+    #[test]
+    fn channels_can_be_read_back() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.exr");
+        let picture = Picture {
+            width: 3,
+            height: 2,
+            channels: vec![
+                Channel {
+                    name: "R".into(),
+                    samples: Samples::F32(vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0]),
+                },
+                Channel { name: "time_of_flight".into(), samples: Samples::F64(vec![1e-15; 6]) },
+            ],
+            metadata: vec![("scene".into(), "side = 3 # ≤ 4 µm".into())],
+        };
+        super::super::write(&picture, &path).expect("written");
+        let image = read_first_flat_layer_from_file(&path).expect("an EXR");
+        let channels = &image.layer_data.channel_data.list;
+        let names: Vec<String> = channels.iter().map(|c| c.name.to_string()).collect();
+        assert_eq!(names, ["R", "time_of_flight"]);
+        assert_eq!(channels[0].sample_data.value_by_flat_index(4).to_f32(), 4.0);
+        assert_eq!(channels[1].sample_data.value_by_flat_index(0).to_f32(), 1e-15);
+        let scene = &image.layer_data.attributes.other[&Text::from("scene")];
+        assert!(matches!(scene, AttributeValue::Text(t) if t.to_string().contains("side = 3")));
+    }
+}

@@ -1,0 +1,133 @@
+//! PNG: 8-bit sRGB.
+
+use super::{OutputError, Picture, RgbImage, Samples, write_whole};
+use std::io;
+use std::path::Path;
+
+/// The image `R`, `G`, `B` of a picture as 8-bit sRGB (IEC 61966-2-1), clamped to what that can show.
+///
+/// # Errors
+///
+/// [`OutputError::MissingChannel`] if the picture has no image.
+pub fn to_srgb(picture: &Picture) -> Result<RgbImage, OutputError> {
+    let find = |name: &str| {
+        picture
+            .channel(name)
+            .map(|channel| &channel.samples)
+            .ok_or_else(|| OutputError::MissingChannel { name: name.to_owned() })
+    };
+    let planes: [&Samples; 3] = [find("R")?, find("G")?, find("B")?];
+    let thresholds = thresholds();
+    let mut bytes = Vec::with_capacity(3 * picture.width * picture.height);
+    for i in 0..picture.width * picture.height {
+        bytes.extend(planes.map(|plane| code(plane.get(i), &thresholds)));
+    }
+    // Pictures are at most 65536 pixels a side, and the buffer has been made to measure.
+    RgbImage::from_raw(picture.width as u32, picture.height as u32, bytes)
+        .ok_or_else(|| OutputError::MissingChannel { name: "R".to_owned() })
+}
+
+/// The linear light from which on the next sRGB code is nearer: entry n lies between the codes n
+/// and n + 1.
+fn thresholds() -> [f64; 255] {
+    std::array::from_fn(|n| {
+        let encoded = (n as f64 + 0.5) / 255.0;
+        if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    })
+}
+
+/// The sRGB code nearest to linear light; NaN is black.
+fn code(linear: f64, thresholds: &[f64; 255]) -> u8 {
+    thresholds.partition_point(|threshold| *threshold <= linear) as u8
+}
+
+/// Writes an image as a PNG with text metadata.
+///
+/// # Errors
+///
+/// If the file cannot be written.
+pub fn write_png(
+    image: &RgbImage,
+    metadata: &[(String, String)],
+    path: &Path,
+) -> Result<(), OutputError> {
+    write_whole(path, |out| encode(image, metadata, out).map_err(io::Error::from))
+}
+
+fn encode(
+    image: &RgbImage,
+    metadata: &[(String, String)],
+    out: &mut dyn super::WriteSeek,
+) -> Result<(), png::EncodingError> {
+    let mut encoder = png::Encoder::new(out, image.width(), image.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    for (key, text) in metadata {
+        // The keyword PNG registers is capitalized.
+        let key = if key == "software" { "Software" } else { key };
+        encoder.add_itxt_chunk(key.to_owned(), text.clone())?;
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(image.as_raw())?;
+    writer.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Channel;
+    use super::*;
+
+    fn gray(values: &[f32]) -> Picture {
+        let channels = ["R", "G", "B"]
+            .map(|name| Channel { name: name.to_owned(), samples: Samples::F32(values.to_vec()) });
+        Picture {
+            width: values.len(),
+            height: 1,
+            channels: channels.to_vec(),
+            metadata: vec![("scene".to_owned(), "[camera]\nseed = 0 # µ".to_owned())],
+        }
+    }
+
+    #[test]
+    fn linear_light_becomes_srgb() {
+        // 0.2140411 is the linear light of code 127.5, 0.5 that of 187.52.
+        let image = to_srgb(&gray(&[0.0, 1.0, 0.5, 0.2139, 0.2142, -3.0, 7.0, f32::NAN]));
+        let codes: Vec<u8> = image.expect("an image").pixels().map(|pixel| pixel.0[0]).collect();
+        assert_eq!(codes[..7], [0, 255, 188, 127, 128, 0, 255]);
+        assert_eq!(codes[7], 0);
+    }
+
+    #[test]
+    fn every_code_survives_the_way_there_and_back() {
+        let thresholds = thresholds();
+        for n in 0..=255u8 {
+            let encoded = f64::from(n) / 255.0;
+            let linear = if encoded <= 0.040_45 {
+                encoded / 12.92
+            } else {
+                ((encoded + 0.055) / 1.055).powf(2.4)
+            };
+            assert_eq!(code(linear, &thresholds), n);
+        }
+    }
+
+    #[test]
+    fn a_file_can_be_read_back_with_its_metadata() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.png");
+        let picture = gray(&[0.0, 0.3, 1.0]);
+        super::super::write(&picture, &path).expect("written");
+        let decoder = png::Decoder::new(io::BufReader::new(
+            std::fs::File::open(&path).expect("a file"),
+        ));
+        let mut reader = decoder.read_info().expect("a PNG");
+        let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+        reader.next_frame(&mut bytes).expect("pixels");
+        assert_eq!(bytes, to_srgb(&picture).expect("an image").into_raw());
+        let text = &reader.info().utf8_text[0];
+        assert_eq!(text.keyword, "scene");
+        assert_eq!(text.get_text().expect("text"), "[camera]\nseed = 0 # µ");
+    }
+}

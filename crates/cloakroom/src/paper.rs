@@ -1,0 +1,155 @@
+//! The figures of the paper: Halimeh & Wegener, "Photorealistic rendering of unidirectional
+//! free-space invisibility cloaks", Opt. Express 21, 9457 (2013).
+//!
+//! Each panel is a scene file in `scenes/paper/`, carried along in the program.
+
+/// A figure of the paper.
+#[derive(Clone, Copy, Debug)]
+pub struct Figure {
+    /// Its number.
+    pub number: u8,
+    /// What it shows.
+    pub title: &'static str,
+    /// Its panels, in order.
+    pub panels: &'static [Panel],
+}
+
+/// A panel of a figure.
+#[derive(Clone, Copy, Debug)]
+pub struct Panel {
+    /// The figure's number and the panel's letter, as in `6c`.
+    pub name: &'static str,
+    /// A few words under the panel.
+    pub caption: &'static str,
+    /// Its scene file.
+    pub scene: &'static str,
+}
+
+impl Panel {
+    /// The panel's letter.
+    #[must_use]
+    pub fn letter(&self) -> &'static str {
+        self.name.trim_start_matches(|c: char| c.is_ascii_digit())
+    }
+}
+
+/// A panel with the scene file that is named for it.
+macro_rules! panel {
+    ($name:literal, $caption:literal) => {
+        Panel {
+            name: $name,
+            caption: $caption,
+            scene: include_str!(concat!("../../../scenes/paper/fig", $name, ".toml")),
+        }
+    };
+}
+
+/// The figures, in the order of the paper.
+pub static FIGURES: &[Figure] = &[
+    Figure {
+        number: 6,
+        title: "Impedance-matched square cloak (iii), along the transformation axis",
+        panels: &[
+            panel!("6a", "empty view"),
+            panel!("6b", "bare metal"),
+            panel!("6c", "cloaked"),
+            panel!("6d", "time-of-flight difference, (c) less (a)"),
+        ],
+    },
+    Figure {
+        number: 7,
+        title: "Impedance-matched square cloak (iii), turned about its axis",
+        panels: &[
+            panel!("7a", "bare metal, 5°"),
+            panel!("7b", "cloaked, 5°"),
+            panel!("7c", "bare metal, 10°"),
+            panel!("7d", "cloaked, 10°"),
+            panel!("7e", "bare metal, 20°"),
+            panel!("7f", "cloaked, 20°"),
+        ],
+    },
+    Figure {
+        number: 8,
+        title: "Double-Gaussian cloak (iv), along the transformation axis",
+        panels: &[
+            panel!("8a", "empty view"),
+            panel!("8b", "bare metal"),
+            panel!("8c", "cloaked"),
+            panel!("8d", "time-of-flight difference, (c) less (a)"),
+        ],
+    },
+    Figure {
+        number: 9,
+        title: "Double-Gaussian cloak (iv), turned about its axis",
+        panels: &[
+            panel!("9a", "bare metal, 5°"),
+            panel!("9b", "cloaked, 5°"),
+            panel!("9c", "bare metal, 10°"),
+            panel!("9d", "cloaked, 10°"),
+            panel!("9e", "bare metal, 20°"),
+            panel!("9f", "cloaked, 20°"),
+        ],
+    },
+];
+
+/// The panels that a list such as `6`, `8c` names, figure by figure in the order of the paper; all
+/// of them for an empty list.
+///
+/// # Errors
+///
+/// A sentence if the list names something that is not there.
+pub fn select(names: &[String]) -> Result<Vec<(&'static Figure, Vec<&'static Panel>)>, String> {
+    let names: Vec<String> = names.iter().map(|name| name.trim().to_ascii_lowercase()).collect();
+    let is_figure = |name: &str, figure: &Figure| name == figure.number.to_string();
+    for name in &names {
+        let known = FIGURES.iter().any(|figure| {
+            is_figure(name, figure) || figure.panels.iter().any(|panel| panel.name == name)
+        });
+        if !known {
+            let figures: Vec<String> =
+                FIGURES.iter().map(|figure| figure.number.to_string()).collect();
+            return Err(format!(
+                "there is no figure or panel `{name}`; there are the figures {} and their panels, \
+                 as in 6c",
+                figures.join(", ")
+            ));
+        }
+    }
+    let wanted = |panel: &Panel, figure: &Figure| {
+        names.is_empty()
+            || names.iter().any(|name| name == panel.name || is_figure(name, figure))
+    };
+    Ok(FIGURES
+        .iter()
+        .map(|figure| (figure, figure.panels.iter().filter(|p| wanted(p, figure)).collect()))
+        .filter(|(_, panels): &(_, Vec<_>)| !panels.is_empty())
+        .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn every_panel_is_a_sound_scene() {
+        for panel in FIGURES.iter().flat_map(|figure| figure.panels) {
+            let loaded = crate::scene_file::parse(panel.scene, panel.name, Path::new(""), &[]);
+            let scene = loaded.expect(panel.name).scene;
+            crate::render::bench(&scene).expect(panel.name);
+        }
+    }
+
+    #[test]
+    fn figures_and_panels_are_selected() {
+        let names = |list: &[&str]| {
+            let list: Vec<String> = list.iter().map(|&name| name.to_owned()).collect();
+            select(&list).map(|chosen| {
+                chosen.iter().flat_map(|(_, panels)| panels.iter().map(|p| p.name)).collect::<Vec<_>>()
+            })
+        };
+        assert_eq!(names(&["8c", "6"]), Ok(vec!["6a", "6b", "6c", "6d", "8c"]));
+        assert_eq!(names(&[]).map(|all| all.len()), Ok(20));
+        assert!(names(&["6x"]).is_err());
+    }
+}

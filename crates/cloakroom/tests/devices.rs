@@ -1,0 +1,145 @@
+//! One suite that every device of the catalogue must pass, whatever it is: the account of the power,
+//! the way back, no numbers that are none, and its bare and mirror views.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use cloakroom::device::{CATALOGUE, FactValue};
+use cloakroom::keys::Values;
+use cloakroom::scene_file;
+use cloakroom::trace::{Bench, Launch, Limits, Rarities, Tracer};
+use glam::DVec3;
+use optics::wave::transverse_basis;
+use std::path::Path;
+
+/// Every device in every view, endless and short, at a few rotations and places, with a description.
+fn benches() -> Vec<(String, Bench)> {
+    let mut benches = Vec::new();
+    for entry in CATALOGUE {
+        for show in ["cloak", "bare", "mirror"] {
+            for (rotation, length) in [(0.0, None), (13.0, Some(18.0)), (90.0, None)] {
+                let mut text = format!(
+                    "[[device]]\nkind = \"{}\"\nshow = \"{show}\"\nrotation = {rotation:?}\n\
+                     position = [1.5, -2.0, 0.5]\n",
+                    entry.kind
+                );
+                if let Some(length) = length {
+                    text += &format!("length = {length:?}\n");
+                }
+                let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
+                let bench = cloakroom::render::bench(&loaded.scene).unwrap();
+                benches.push((text, bench));
+            }
+        }
+    }
+    benches
+}
+
+/// Rays from all around, towards the device.
+fn launches(count: u32) -> impl Iterator<Item = Launch<2>> {
+    // Additive recurrence with the powers of a root of x^6 = x + 1: evenly spread in 5 dimensions.
+    let root: f64 = 1.134_724_138_401_519_4;
+    (1..=count).map(move |n| {
+        let u: [f64; 5] = std::array::from_fn(|i| (f64::from(n) * root.powi(-(i as i32) - 1)).fract());
+        let angle = std::f64::consts::TAU * u[0];
+        let origin = DVec3::new(80.0 * angle.cos(), 80.0 * angle.sin(), 60.0 * (u[1] - 0.5));
+        let target = DVec3::new(30.0 * (u[2] - 0.5), 24.0 * (u[3] - 0.5), 30.0 * (u[4] - 0.5));
+        let direction = (target - origin).normalize();
+        let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
+        Launch { origin, direction, electric: [h.into(), v.into()] }
+    })
+}
+
+#[test]
+fn power_is_accounted_for() {
+    for (what, bench) in benches() {
+        for min_power in [1e-4, 1e-9] {
+            let mut tracer = Tracer::new(&bench, Limits { min_power, tolerance: 1e-6 });
+            for launch in launches(2000) {
+                let (leaves, outcome) = tracer.trace(&launch);
+                for i in 0..2 {
+                    let sum: f64 = leaves.iter().map(|leaf| leaf.power[i]).sum();
+                    let total = sum + outcome.absorbed[i] + outcome.pruned[i];
+                    assert!((total - 1.0).abs() < 1e-12, "{what}{launch:?}: {total}");
+                }
+                assert_eq!(outcome.rarities, Rarities::default(), "{what}{launch:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn leaves_are_sound_waves_in_air() {
+    for (what, bench) in benches() {
+        let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-9, tolerance: 1e-6 });
+        for launch in launches(2000) {
+            let (leaves, _) = tracer.trace(&launch);
+            assert!(!leaves.is_empty());
+            for leaf in leaves {
+                assert!(leaf.position.is_finite() && leaf.optical_path.is_finite(), "{what}");
+                assert!((leaf.direction.length() - 1.0).abs() < 1e-12, "{what}");
+                for i in 0..2 {
+                    let size = leaf.electric[i].norm_squared();
+                    assert!((size - leaf.power[i]).abs() < 1e-9, "{what}{launch:?} {size} {leaf:?}");
+                    let along = leaf.electric[i].dot_real(leaf.direction).norm();
+                    assert!(along < 1e-9, "{what}{launch:?} {along}");
+                }
+            }
+        }
+    }
+}
+
+/// The strongest leaf, sent back where it came from, comes out where the ray started.
+#[test]
+fn the_way_back_leads_home() {
+    for (what, bench) in benches() {
+        let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-3, tolerance: 1e-9 });
+        let (mut off, mut all) = (0, 0);
+        for launch in launches(500) {
+            let (leaves, _) = tracer.trace(&launch);
+            let power = |leaf: &cloakroom::trace::Leaf<2>| leaf.power[0] + leaf.power[1];
+            let leaf = leaves.iter().max_by(|a, b| power(a).total_cmp(&power(b))).unwrap();
+            let there = power(leaf);
+            let path = leaf.optical_path;
+            if !leaf.met_device {
+                continue;
+            }
+            let back = Launch {
+                origin: leaf.position + leaf.direction * 10.0,
+                direction: -leaf.direction,
+                electric: launch.electric.map(|_| {
+                    let (h, _) = transverse_basis(-leaf.direction, DVec3::Z, DVec3::X);
+                    h.into()
+                }),
+            };
+            let (leaves, _) = tracer.trace(&back);
+            let home = leaves.iter().any(|leaf| {
+                let to_start = launch.origin - leaf.position;
+                let along = to_start.dot(leaf.direction);
+                let beside = (to_start - leaf.direction * along).length();
+                (leaf.direction + launch.direction).length() < 1e-6
+                    && beside < 1e-5
+                    && (leaf.optical_path + along - path - 10.0).abs() < 1e-5
+            });
+            all += 1;
+            off += u32::from(!home);
+            assert!(there > 0.0);
+        }
+        // Rays that meet an edge within rounding may go either way.
+        assert!(off * 200 <= all, "{what}: {off} of {all} rays do not come home");
+    }
+}
+
+#[test]
+fn facts_are_finite_and_named_with_units() {
+    for entry in CATALOGUE {
+        let facts = (entry.facts)(&Values::defaults(entry.keys));
+        assert!(!facts.is_empty(), "{}", entry.kind);
+        for fact in facts {
+            let finite = match &fact.value {
+                FactValue::Number(number) => number.is_finite(),
+                FactValue::Numbers(numbers) => numbers.iter().all(|number| number.is_finite()),
+            };
+            assert!(finite, "{} {}", entry.kind, fact.name);
+            assert!(fact.name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_'));
+        }
+    }
+}

@@ -1,0 +1,343 @@
+//! Conformal maps of the half plane above a flat mirror onto the space above a bumped one.
+
+use num_complex::Complex64;
+
+use super::gaussian::GaussianMap;
+
+/// Value and derivatives of a conformal map at one virtual point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapJet {
+    /// f(ζ) = x + iy, cm.
+    pub f: Complex64,
+    /// f'(ζ).
+    pub f1: Complex64,
+    /// f''(ζ), 1/cm.
+    pub f2: Complex64,
+}
+
+impl MapJet {
+    /// The Taylor polynomial of f at a small virtual distance `d`.
+    #[inline]
+    #[must_use]
+    pub fn value_near(&self, d: Complex64) -> Complex64 {
+        self.f + d * (self.f1 + 0.5 * d * self.f2)
+    }
+}
+
+/// A rectangle that a half-space device is cut to: x_min <= x <= x_max, y <= y_max, above the floor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Truncation {
+    /// Least x, cm.
+    pub x_min: f64,
+    /// Largest x, cm.
+    pub x_max: f64,
+    /// Largest y, cm.
+    pub y_max: f64,
+}
+
+impl Truncation {
+    /// `width` along x, centred, and `height` along y from the line Y = 0 upwards, in cm.
+    #[must_use]
+    pub fn centred(width: f64, height: f64) -> Self {
+        Self { x_min: -0.5 * width, x_max: 0.5 * width, y_max: height }
+    }
+}
+
+/// A conformal map x + iy = f(X + iY) of the virtual half plane Y >= 0 (capital = virtual; lengths in cm).
+///
+/// Filled with the isotropic index n = c/|f'|, the space above the bumped floor f(X) looks like the
+/// half plane of index c above a flat mirror (Leonhardt, Science 312, 1777 (2006)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ConformalMap {
+    /// The Gaussian carpet, one half of the double-Gaussian cloak.
+    Gaussian(GaussianMap),
+}
+
+impl From<GaussianMap> for ConformalMap {
+    fn from(map: GaussianMap) -> Self {
+        Self::Gaussian(map)
+    }
+}
+
+impl ConformalMap {
+    /// Value and derivatives at a virtual point.
+    #[inline]
+    #[must_use]
+    pub fn jet(&self, zeta: Complex64) -> MapJet {
+        match self {
+            Self::Gaussian(map) => map.jet(zeta),
+        }
+    }
+
+    /// The length over which the map varies, cm.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        match self {
+            Self::Gaussian(map) => map.width(),
+        }
+    }
+
+    /// The largest height of the floor, cm.
+    #[must_use]
+    pub fn peak(&self) -> f64 {
+        match self {
+            Self::Gaussian(map) => map.height(),
+        }
+    }
+
+    /// The virtual point of a physical one above or on the floor; it may lie below Y = 0 by rounding, or
+    /// by more for a point within the metal. None where there is no such point.
+    #[must_use]
+    pub fn invert(&self, z: Complex64) -> Option<Complex64> {
+        let guess = match self {
+            Self::Gaussian(map) => map.first_guess(z),
+        };
+        self.newton(z, guess).or_else(|| self.invert_from_above(z))
+    }
+
+    /// Newton's method for f(ζ) = z, each step shortened until the residual falls.
+    fn newton(&self, z: Complex64, mut zeta: Complex64) -> Option<Complex64> {
+        // Well below the floor f' has zeros, and the map branches.
+        let lowest = -0.25 * self.scale();
+        let mut jet = self.jet(zeta);
+        for _ in 0..40 {
+            let residual = z - jet.f;
+            let step = residual / jet.f1;
+            // What one more full step leaves: convergence is quadratic.
+            let remainder = 0.5 * step.norm_sqr() * jet.f2.norm() / jet.f1.norm();
+            if remainder <= 1e-16 * zeta.norm().max(self.scale()) {
+                let root = zeta + step;
+                return (root.im > lowest).then_some(root);
+            }
+            let mut factor = 1.0;
+            loop {
+                let mut trial = zeta + factor * step;
+                trial.im = trial.im.max(0.5 * lowest);
+                let trial_jet = self.jet(trial);
+                if (z - trial_jet.f).norm_sqr() < residual.norm_sqr() {
+                    (zeta, jet) = (trial, trial_jet);
+                    break;
+                }
+                factor *= 0.5;
+                // Also ends the search where a coordinate is not a number.
+                if factor < 1e-3 {
+                    return None;
+                }
+            }
+        }
+        None
+    }
+
+    /// Newton's method along the vertical line down to z, which stays above the floor.
+    #[cold]
+    fn invert_from_above(&self, z: Complex64) -> Option<Complex64> {
+        const ROUNDS: u32 = 24;
+        let reach = 8.0 * self.scale();
+        (0..=ROUNDS).rev().try_fold(z + Complex64::new(0.0, reach), |zeta, k| {
+            let share = f64::from(k) / f64::from(ROUNDS);
+            self.newton(z + Complex64::new(0.0, reach * share * share), zeta)
+        })
+    }
+
+    /// The point x + iy of the floor at virtual X.
+    #[must_use]
+    pub fn floor(&self, x_virtual: f64) -> Complex64 {
+        self.jet(Complex64::new(x_virtual, 0.0)).f
+    }
+
+    /// The virtual X of the floor point above physical `x`.
+    #[must_use]
+    pub fn floor_parameter(&self, x: f64) -> f64 {
+        match self {
+            Self::Gaussian(map) => map.floor_parameter(x),
+        }
+    }
+
+    /// The height y of the floor above physical `x`.
+    #[must_use]
+    pub fn floor_height_at(&self, x: f64) -> f64 {
+        match self {
+            Self::Gaussian(map) => map.floor_height_at(x),
+        }
+    }
+
+    /// The area between the whole floor and its mirror image under y -> -y, cm²: what a double cloak
+    /// hides. For the Gaussian map 2 (√π h w - h²).
+    #[must_use]
+    pub fn cloaked_area(&self) -> f64 {
+        match self {
+            Self::Gaussian(map) => 2.0 * map.area(),
+        }
+    }
+
+    /// The part of [`Self::cloaked_area`] that lies between the ends of a cut device.
+    #[must_use]
+    pub fn cloaked_area_within(&self, cut: &Truncation) -> f64 {
+        match self {
+            Self::Gaussian(map) => {
+                2.0 * (map.area_from_middle_to(cut.x_max) - map.area_from_middle_to(cut.x_min))
+            }
+        }
+    }
+
+    /// Least and largest 1/|f'| in a cut device: the range of its index for c = 1.
+    ///
+    /// log |f'| is harmonic, so both lie on the border; a search there finds them.
+    #[must_use]
+    pub fn index_range(&self, cut: &Truncation) -> (f64, f64) {
+        let (start, end) = (self.floor_parameter(cut.x_min), self.floor_parameter(cut.x_max));
+        let between = |a: f64, b: f64, s: f64| a + (b - a) * s;
+        let side = |x: f64, s: f64| {
+            let y = between(self.floor_height_at(x), cut.y_max, s);
+            self.invert(Complex64::new(x, y))
+        };
+        let index = |zeta: Complex64| self.jet(zeta).f1.norm().recip();
+        let floor = |s: f64| Some(index(between(start, end, s).into()));
+        let left = |s: f64| side(cut.x_min, s).map(index);
+        let right = |s: f64| side(cut.x_max, s).map(index);
+        let top = |s: f64| {
+            self.invert(Complex64::new(between(cut.x_min, cut.x_max, s), cut.y_max)).map(index)
+        };
+        [range_over(floor), range_over(left), range_over(right), range_over(top)]
+            .into_iter()
+            .fold((f64::INFINITY, 0.0), |a, b| (b.0.min(a.0), b.1.max(a.1)))
+    }
+}
+
+/// Least and largest value of a smooth positive function over 0 <= s <= 1.
+fn range_over(function: impl Fn(f64) -> Option<f64>) -> (f64, f64) {
+    const SAMPLES: u32 = 200;
+    let extreme = |sign: f64| {
+        let value = |s: f64| function(s).map_or(f64::INFINITY, |v| sign * v);
+        let best = (0..=SAMPLES)
+            .map(|k| f64::from(k) / f64::from(SAMPLES))
+            .min_by(|a, b| value(*a).total_cmp(&value(*b)))
+            .unwrap_or(0.0);
+        let spacing = f64::from(SAMPLES).recip();
+        let (mut a, mut b) = ((best - spacing).max(0.0), (best + spacing).min(1.0));
+        // Halving the bracket by thirds narrows it below the flatness of an extremum.
+        for _ in 0..50 {
+            let (p, q) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
+            if value(p) < value(q) {
+                b = q;
+            } else {
+                a = p;
+            }
+        }
+        sign * value(0.5 * (a + b)).min(value(best))
+    };
+    (extreme(1.0), extreme(-1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+    use errorfunctions::ComplexErrorFunctions;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::transformation::GaussianMapError;
+
+    fn map(w: f64, h: f64) -> ConformalMap {
+        GaussianMap::new(w, h).expect("a valid map").into()
+    }
+
+    const PAPER: Truncation = Truncation { x_min: -25.0, x_max: 25.0, y_max: 28.57 };
+
+    #[test]
+    fn has_the_numbers_of_the_paper() {
+        let (least, largest) = map(10.02, 4.25).index_range(&PAPER);
+        assert!((least - 0.873).abs() < 5e-4 && (largest - 1.918).abs() < 5e-4, "{least} {largest}");
+        let (_, largest) = map(10.0158, 4.2532).index_range(&PAPER);
+        assert!((largest - 1.920).abs() < 5e-4, "{largest}");
+        assert!((map(10.02, 4.25).cloaked_area() - 114.83).abs() < 0.1);
+    }
+
+    #[test]
+    fn range_is_not_exceeded_inside() {
+        let map = map(10.02, 4.25);
+        let (least, largest) = map.index_range(&PAPER);
+        for row in 0..60 {
+            for column in 0..=100 {
+                let x = f64::from(column - 50) * 0.5;
+                let low = map.floor_height_at(x);
+                let y = low + (PAPER.y_max - low) * f64::from(row) / 59.0;
+                let zeta = map.invert(Complex64::new(x, y)).expect("above the floor");
+                let n = map.jet(zeta).f1.norm().recip();
+                assert!(n > least - 1e-12 && n < largest + 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn area_within_the_cut_is_the_integral_of_the_height() {
+        let map = map(8.0, 5.0);
+        let cut = Truncation { x_min: -7.0, x_max: 13.0, y_max: 20.0 };
+        let count = 20_000;
+        let spacing = 20.0 / f64::from(count);
+        let sum: f64 =
+            (0..count).map(|k| map.floor_height_at(-7.0 + (f64::from(k) + 0.5) * spacing)).sum();
+        assert_relative_eq!(map.cloaked_area_within(&cut), 2.0 * sum * spacing, max_relative = 1e-7);
+        let wide = Truncation::centred(400.0, 20.0);
+        assert_relative_eq!(map.cloaked_area_within(&wide), map.cloaked_area(), max_relative = 1e-12);
+    }
+
+    #[test]
+    fn refuses_what_is_not_a_map() {
+        for (w, h) in [(0.0, 1.0), (1.0, 0.0), (-1.0, -0.5), (f64::NAN, 1.0), (1.0, f64::INFINITY)] {
+            assert!(matches!(GaussianMap::new(w, h), Err(GaussianMapError::Length { .. })));
+        }
+        assert!(matches!(GaussianMap::new(1.0, 0.9), Err(GaussianMapError::TooSteep { .. })));
+        assert!(GaussianMap::new(1.0, 0.886).is_ok());
+    }
+
+    #[test]
+    fn has_no_inverse_at_nonsense() {
+        assert_eq!(map(10.0, 4.0).invert(Complex64::new(f64::NAN, 1.0)), None);
+        assert_eq!(map(10.0, 4.0).invert(Complex64::new(1.0, f64::INFINITY)), None);
+        assert_eq!(map(10.0, 4.0).invert(Complex64::new(0.0, -80.0)), None);
+    }
+
+    proptest! {
+        #[test]
+        fn jet_agrees_with_an_independent_faddeeva_function(
+            w in 0.1..40.0, ratio in 0.001..0.88, x in -5.0..5.0, y in -0.2..8.0,
+        ) {
+            let (t, h) = (Complex64::new(x, y), ratio * w);
+            let exact = w * t + Complex64::i() * h * t.w();
+            let map = map(w, h);
+            prop_assert!((map.jet(w * t).f - exact).norm() < 1e-13 * w * (1.0 + t.norm()));
+            let d = 1e-4 * w;
+            let [before, at, after] = [t - 1e-4, t, t + 1e-4].map(|t| map.jet(w * t));
+            prop_assert!(((after.f - before.f) / (2.0 * d) - at.f1).norm() < 1e-7);
+            prop_assert!(((after.f1 - before.f1) / (2.0 * d) - at.f2).norm() < 1e-7 / w);
+        }
+
+        #[test]
+        fn inverse_undoes_the_map(
+            w in 0.01..100.0, ratio in 0.001..0.885, x in -6.0..6.0, y in 0.0..6.0, reach in 0..4,
+        ) {
+            let map = map(w, ratio * w);
+            let scale = w * [1.0, 0.03, 100.0, 1e6][reach as usize];
+            for zeta in [Complex64::new(x, y), Complex64::new(x, 0.0), Complex64::new(0.0, y)] {
+                let zeta = zeta * scale;
+                let z = map.jet(zeta).f;
+                let back = map.invert(z).ok_or(TestCaseError::fail(format!("{zeta}")))?;
+                prop_assert!((map.jet(back).f - z).norm() < 1e-13 * (w + z.norm()));
+                // Near the top of a steep bump f' almost vanishes, and the inverse is as badly conditioned.
+                let slack = 1e-14 * (w + zeta.norm()) / map.jet(zeta).f1.norm();
+                prop_assert!((back - zeta).norm() < 10.0 * slack, "{} {}", back, zeta);
+            }
+        }
+
+        #[test]
+        fn floor_is_where_y_is_zero(w in 0.1_f64..40.0, ratio in 0.001_f64..0.885, x in -5.0_f64..5.0) {
+            let map = map(w, ratio * w);
+            let parameter = map.floor_parameter(x * w);
+            let point = map.floor(parameter);
+            prop_assert!((point.re - x * w).abs() < 1e-13 * w);
+            prop_assert!((point.im - map.floor_height_at(x * w)).abs() < 1e-12 * w);
+            prop_assert!(point.im <= map.peak());
+        }
+    }
+}
