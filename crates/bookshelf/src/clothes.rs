@@ -10,6 +10,8 @@ use crate::random::noise;
 const SHOULDER: Vec3 = Vec3::new(14.9, -25.2, -4.2);
 const ELBOW: Vec3 = Vec3::new(19.6, -49.5, -6.8);
 const WRIST: Vec3 = Vec3::new(16.6, -70.5, 2.5);
+/// Where the left sleeve ends, above the pocket.
+const CUFF: Vec3 = Vec3::new(15.3, -76.0, 4.0);
 
 /// Distances to the clothes.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +40,8 @@ fn trunk(p: Vec3) -> f32 {
 /// Distance to the left arm's sleeve, for `m` on that side.
 fn sleeve(m: Vec3) -> f32 {
     let upper = limb(m, SHOULDER, ELBOW, 4.7, 3.9);
-    join(upper, limb(m, ELBOW, WRIST, 3.9, 2.9), 1.5)
+    let lower = join(limb(m, ELBOW, WRIST, 3.9, 2.7), limb(m, WRIST, CUFF, 2.7, 2.3), 0.8);
+    join(upper, lower, 1.5).max(-75.0 - m.y)
 }
 
 /// The folds of the cloth: how far it stands out at `p`.
@@ -122,11 +125,10 @@ pub fn clothes(p: Vec3, neck: Vec3) -> Clothes {
     let m = Vec3::new(p.x.abs(), p.y, p.z);
     let at = Vec3::new;
     let body = trunk(p);
-    let mut sweater = join(body, sleeve(m), 1.6) - 0.45;
+    let mut sweater = join(body.max(-70.5 - p.y), sleeve(m), 1.6) - 0.45;
     if sweater < 3.0 {
         sweater -= 0.55 * folds(p);
     }
-    sweater = sweater.max(-70.5 - p.y);
     // Each part is measured only near its heights; elsewhere the distance to
     // those heights will do.
     let (mut collared, mut skin) = (-28.0 - p.y, -26.0 - p.y);
@@ -146,8 +148,8 @@ pub fn clothes(p: Vec3, neck: Vec3) -> Clothes {
         let leg = limb(m, at(7.0, -80.0, -2.5), at(7.8, -120.0, -3.5), 8.2, 7.0);
         trousers = join(hips, leg, 3.0);
         // The hands are in the pockets.
-        trousers = join(trousers, ellipsoid(m, at(13.0, -79.5, 4.0), at(3.0, 4.6, 3.2)), 2.5);
-        skin = limb(m, WRIST, at(14.2, -78.5, 4.6), 2.6, 3.0);
+        trousers = join(trousers, ellipsoid(m, at(12.6, -80.6, 3.9), at(3.3, 4.2, 3.4)), 2.0);
+        skin = limb(m, WRIST, at(12.6, -79.5, 4.2), 2.0, 2.6);
     }
     Clothes { sweater, collar: collared, trousers, skin }
 }

@@ -110,9 +110,11 @@ impl Film {
         let twice = self.blur(&once, 2, 2, alike);
         // Under skin, red light travels some millimetres, green and blue less.
         let spread = Vec3::new(0.20, 0.09, 0.06) / self.pitch;
-        let reach = (2.0 * spread.x / 2.0).ceil() as isize;
+        // Every second pixel will do, as the light is smooth already.
+        let step = if spread.x > 2.0 { 2 } else { 1 };
+        let reach = (spread.x.ceil() as isize).min(5);
         let narrow = (-0.5 / (spread * spread)).max(Vec3::splat(-20.0));
-        self.blur(&twice, reach.min(5), if reach > 2 { 2 } else { 1 }, |a, b, away| {
+        self.blur(&twice, reach, step, |a, b, away| {
             if away == 0.0 {
                 return Vec3::ONE;
             }

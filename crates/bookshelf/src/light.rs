@@ -90,7 +90,7 @@ pub fn answer(surface: &Surface, view: Vec3, lamp: &Lamp, source: Vec3) -> Answe
         let gate = (cosine + 0.3).clamp(0.0, 1.0);
         return Answer {
             scattered: reach * (sine(light) * facing + 1.3 * second * gate),
-            mirrored: reach * surface.albedo * (1.1 * first * gate),
+            mirrored: reach * surface.albedo * (0.8 * first * gate),
         };
     }
     let scattered = if surface.kind == Kind::Skin {

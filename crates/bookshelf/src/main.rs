@@ -36,7 +36,7 @@ use crate::scene::{Detail, Scene};
 use crate::tracer::Effort;
 
 /// Quality of the JPEG: high enough that edges stay crisp.
-const QUALITY: u8 = 90;
+const QUALITY: u8 = 93;
 
 /// What the command line asks for.
 struct Request {

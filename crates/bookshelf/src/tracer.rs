@@ -221,20 +221,18 @@ mod tests {
     #[test]
     fn boards_are_straight_and_level() {
         let scene = scene();
-        for board in BOARDS {
+        // The top board is under the cornice, the lowest is the cabinet's ledge.
+        for board in &BOARDS[1..4] {
             // Where the board's upper front edge is seen from the camera.
-            let edge = (board + HALF_BOARD) * DISTANCE / (DISTANCE - FRONT);
+            let top = board + HALF_BOARD;
+            let edge = top * DISTANCE / (DISTANCE - FRONT);
             let wood = |x: f32, y: f32| {
                 let seen = scene.meet(&camera(x, y), 2000.0);
-                seen.is_some_and(|s| {
-                    s.point.z > FRONT - 0.1 && s.point.y < board + HALF_BOARD + 0.1
-                })
+                seen.is_some_and(|s| s.point.z > FRONT - 0.1 && s.point.y < top + 0.1)
             };
-            if board < 50.0 && board > -50.0 {
-                for x in [-54.0, -27.0, 27.0, 54.0] {
-                    assert!(wood(x, edge - 0.05), "no board under its edge at {x}, {edge}");
-                    assert!(!wood(x, edge + 0.05), "a board above its edge at {x}, {edge}");
-                }
+            for x in [-54.0, -27.0, 27.0, 54.0] {
+                assert!(wood(x, edge - 0.05), "no board under its edge at {x}, {edge}");
+                assert!(!wood(x, edge + 0.05), "a board above its edge at {x}, {edge}");
             }
         }
     }

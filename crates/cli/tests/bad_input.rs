@@ -1,0 +1,222 @@
+//! Bad input: one clear message, exit status 1, and no file left behind.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use assert_cmd::Command;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// A folder with a scene in it, small enough to render at once.
+struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    fn with_scene(scene: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("scene.toml"), scene).unwrap();
+        Self { folder }
+    }
+
+    fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) -> &Self {
+        fs::write(self.path().join(name), bytes).unwrap();
+        self
+    }
+
+    fn cloakroom(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::cargo_bin("cloakroom").unwrap();
+        command.current_dir(self.path()).args(arguments);
+        command
+    }
+
+    /// Renders, expecting one message with the given parts, and that no file has appeared.
+    fn refuses(&self, parts: &[&str]) {
+        self.refuses_with(&["render", "scene.toml", "-o", "out.png"], parts);
+    }
+
+    fn refuses_with(&self, arguments: &[&str], parts: &[&str]) {
+        let before = self.files();
+        let output = self.cloakroom(arguments).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{message}");
+        assert!(output.stdout.is_empty());
+        assert!(message.starts_with("error: "), "{message}");
+        assert_eq!(message.matches("error").count(), 1, "{message}");
+        for part in parts {
+            assert!(message.contains(part), "{part:?} is not in {message:?}");
+        }
+        assert_eq!(self.files(), before, "a file has appeared: {message}");
+    }
+
+    fn files(&self) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(self.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+const SMALL: &str = "[camera]\nresolution = [16, 12]\nsamples = 1\n";
+
+fn small(rest: &str) -> Desk {
+    Desk::with_scene(&format!("{SMALL}{rest}"))
+}
+
+#[test]
+fn missing_scene() {
+    small("").refuses_with(&["render", "nowhere.toml", "-o", "out.png"], &["nowhere.toml"]);
+}
+
+#[test]
+fn missing_photograph() {
+    small("[photograph]\nimage = \"holiday.jpg\"\n").refuses(&["scene.toml:5:9", "holiday.jpg"]);
+}
+
+#[test]
+fn not_an_image() {
+    let desk = small("[photograph]\nimage = \"notes.png\"\n");
+    desk.write("notes.png", b"these are words").refuses(&["scene.toml:5:9", "notes.png"]);
+}
+
+#[test]
+fn truncated_images() {
+    for (name, format) in
+        [("cut.png", image::ImageFormat::Png), ("cut.jpg", image::ImageFormat::Jpeg)]
+    {
+        let picture = image::RgbImage::from_fn(200, 200, |x, y| {
+            image::Rgb([(x * 7 + y) as u8, (x ^ y) as u8, (y * 3) as u8])
+        });
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, format).unwrap();
+        let bytes = bytes.into_inner();
+        let desk = small(&format!("[photograph]\nimage = \"{name}\"\n"));
+        desk.write(name, &bytes[..bytes.len() / 2]).refuses(&["scene.toml:5:9", name]);
+    }
+}
+
+#[test]
+fn unknown_keys_name_the_nearest() {
+    small("[[device]]\nkind = \"square-cloak\"\nrotatoin = 3\n")
+        .refuses(&["scene.toml:6:1", "rotatoin", "rotation"]);
+    small("[[device]]\nkind = \"square-cloack\"\n")
+        .refuses(&["scene.toml:5:8", "square-cloack", "square-cloak"]);
+    small("[camara]\n").refuses(&["scene.toml:4:", "camara", "camera"]);
+}
+
+#[test]
+fn wrong_types_and_values() {
+    small("field_of_view = \"wide\"\n").refuses(&["scene.toml:4:17", "field_of_view"]);
+    small("field_of_view = nan\n").refuses(&["scene.toml:4:17", "finite"]);
+    small("field_of_view = 0\n").refuses(&["scene.toml:4:17", "field_of_view is 0"]);
+    small("position = [-100, inf, 0]\n").refuses(&["scene.toml:4:12", "finite"]);
+    small("[[device]]\nkind = \"square-cloak\"\nside = -3\n")
+        .refuses(&["scene.toml:6:8", "side is -3 cm"]);
+    small("[[device]]\nkind = \"double-gaussian-cloak\"\nh = 20\n").refuses(&["scene.toml:6:5", "h"]);
+    small("[photograph]\nwidth = -110\n").refuses(&["scene.toml:5:9", "width is -110 cm"]);
+}
+
+#[test]
+fn impossible_resolutions() {
+    for size in ["[0, 0]", "[100000, 100000]"] {
+        Desk::with_scene(&format!("[camera]\nresolution = {size}\n"))
+            .refuses(&["scene.toml:2:14", "resolution", "65536"]);
+    }
+}
+
+#[test]
+fn more_pixels_than_memory() {
+    Desk::with_scene("[camera]\nresolution = [65536, 65536]\n").refuses(&["memory", "resolution"]);
+}
+
+#[test]
+fn camera_inside_metal() {
+    for kind in ["square-cloak", "double-gaussian-cloak"] {
+        for show in ["cloak", "bare"] {
+            small(&format!(
+                "position = [1, 0.5, 0]\n[[device]]\nkind = \"{kind}\"\nshow = \"{show}\"\n"
+            ))
+            .refuses(&["scene.toml:4:12", "camera", "device 0"]);
+        }
+    }
+}
+
+#[test]
+fn devices_in_each_others_way() {
+    small(
+        "[[device]]\nkind = \"square-cloak\"\n[[device]]\nkind = \"square-cloak\"\n\
+         position = [10, 0, 0]\n",
+    )
+    .refuses(&["scene.toml:6:1", "overlaps"]);
+    small("[photograph]\nx = 5\n[[device]]\nkind = \"square-cloak\"\n")
+        .refuses(&["cuts through the photograph"]);
+}
+
+#[test]
+fn outputs_that_cannot_be() {
+    let desk = small("");
+    let render = |to: &str, parts: &[&str]| {
+        desk.refuses_with(&["render", "scene.toml", "-o", to], parts);
+    };
+    render("out.tiff", &["out.tiff", ".png, .exr or .npz"]);
+    render("missing/out.png", &["missing/out.png", "there is no folder"]);
+    fs::create_dir(desk.path().join("folder.png")).unwrap();
+    render("folder.png", &["folder.png", "it is a folder"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn disk_full() {
+    let desk = small("");
+    for name in ["full.png", "full.exr", "full.npz"] {
+        std::os::unix::fs::symlink("/dev/full", desk.path().join(name)).unwrap();
+        desk.refuses_with(&["render", "scene.toml", "-o", name], &[name, "no space left"]);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn disk_quota_reached_in_the_middle() {
+    // A limit on the size of files stands for a disk that runs full while a file is written.
+    let desk = small("[picture]\nmap = \"delivered\"\n");
+    let program = assert_cmd::cargo::cargo_bin("cloakroom");
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 1; exec '{}' render scene.toml --set 'camera.resolution=[256, 256]' \
+         -o out.npz",
+        program.display()
+    );
+    let output =
+        Command::new("bash").args(["-c", &script]).current_dir(desk.path()).output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("cannot write out.npz"), "{message}");
+    assert_eq!(desk.files(), ["scene.toml"]);
+}
+
+#[test]
+fn overrides_are_pointed_at() {
+    let desk = small("");
+    desk.refuses_with(
+        &["render", "scene.toml", "-o", "out.png", "--set", "camera.sample=16"],
+        &["--set camera.sample=16", "samples"],
+    );
+}
+
+#[test]
+fn wrong_usage_is_another_status() {
+    let desk = small("");
+    for arguments in [
+        &["render", "scene.toml"][..],
+        &["paint"],
+        &["figures", "--only", "6x"],
+        &["figures", "--size", "0x4"],
+    ] {
+        let output = desk.cloakroom(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    }
+}

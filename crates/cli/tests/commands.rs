@@ -1,0 +1,221 @@
+//! The commands at work: what they print and write.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn cloakroom() -> Command {
+    Command::cargo_bin("cloakroom").unwrap()
+}
+
+fn paper(panel: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenes/paper/fig{panel}.toml"))
+}
+
+fn json(output: &[u8]) -> Value {
+    serde_json::from_slice(output).unwrap()
+}
+
+fn stdout(command: &mut Command) -> Vec<u8> {
+    command.assert().success().get_output().stdout.clone()
+}
+
+/// Renders a panel of the paper at a small size into a PNG and returns its pixels.
+fn pixels(folder: &Path, panel: &str, more: &[&str]) -> image::RgbImage {
+    let out = folder.join("out.png");
+    let mut command = cloakroom();
+    command.arg("render").arg(paper(panel)).arg("-o").arg(&out);
+    command.args(["--set", "camera.resolution=[320, 240]", "--set", "camera.samples=2"]);
+    for change in more {
+        command.args(["--set", change]);
+    }
+    command.assert().success().stdout("").stderr("");
+    image::open(&out).unwrap().into_rgb8()
+}
+
+/// The largest difference of two pictures and the share of pixels that differ at all.
+fn difference(a: &image::RgbImage, b: &image::RgbImage) -> (u8, f64) {
+    let differences: Vec<u8> = a
+        .pixels()
+        .zip(b.pixels())
+        .map(|(a, b)| (0..3).map(|i| a.0[i].abs_diff(b.0[i])).max().unwrap())
+        .collect();
+    let differing = differences.iter().filter(|d| **d > 0).count();
+    (*differences.iter().max().unwrap(), differing as f64 / differences.len() as f64)
+}
+
+#[test]
+fn the_cloaked_view_is_the_empty_view() {
+    let folder = tempfile::tempdir().unwrap();
+    let empty = pixels(folder.path(), "6a", &[]);
+    let cloaked = pixels(folder.path(), "6c", &[]);
+    let (largest, share) = difference(&empty, &cloaked);
+    assert!(largest <= 1 && share <= 1e-4, "{largest} {share}");
+    // The bare metal is far from invisible.
+    let (_, share) = difference(&empty, &pixels(folder.path(), "6b", &[]));
+    assert!(share > 0.1, "{share}");
+}
+
+#[test]
+fn the_turned_cloak_is_a_flat_mirror() {
+    let folder = tempfile::tempdir().unwrap();
+    for panel in ["7b", "7d", "7f"] {
+        let cloaked = pixels(folder.path(), panel, &[]);
+        let mirror = pixels(folder.path(), panel, &["device.0.show=mirror"]);
+        let (largest, share) = difference(&cloaked, &mirror);
+        assert!(largest <= 1 && share <= 1e-4, "{panel}: {largest} {share}");
+    }
+}
+
+#[test]
+fn pictures_do_not_depend_on_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |threads: &str, name: &str| {
+        let out = folder.path().join(name);
+        cloakroom()
+            .arg("render")
+            .arg(paper("9d"))
+            .args(["--set", "camera.resolution=[131, 97]", "--threads", threads, "-o"])
+            .arg(&out)
+            .assert()
+            .success();
+        fs::read(out).unwrap()
+    };
+    for ending in ["png", "exr", "npz"] {
+        let one = render("1", &format!("one.{ending}"));
+        let three = render("3", &format!("three.{ending}"));
+        assert!(one == three, "{ending} differs");
+    }
+}
+
+#[test]
+fn rays_are_traced() {
+    let rays = r#"[
+        {"origin": [-100, 3, 1], "direction": [1, 0, 0]},
+        {"origin": [-100, 30, 0], "direction": [1, 0, 0], "polarization": "vertical"},
+        {"origin": [-100, 1, 0], "direction": [2, 0.01, 0.1],
+         "polarization": {"electric_field": [[0.05, 0], [0, 0], [-1, 0]]}}]"#;
+    let mut command = cloakroom();
+    command.arg("trace").arg(paper("6c")).args(["--rays", "-"]).write_stdin(rays);
+    let reports = json(&stdout(&mut command));
+    let leaf = &reports[0]["leaves"][0];
+    assert!((leaf["power"].as_f64().unwrap() - 1.0).abs() < 1e-12);
+    assert!((leaf["direction"][0].as_f64().unwrap() - 1.0).abs() < 1e-12);
+    assert!((leaf["position"][1].as_f64().unwrap() - 3.0).abs() < 1e-12);
+    let x = leaf["position"][0].as_f64().unwrap();
+    assert!((leaf["optical_path"].as_f64().unwrap() - (100.0 + x)).abs() < 1e-11);
+    assert_eq!(leaf["electric_field"][2].as_array().unwrap().len(), 2);
+    let missed = &reports[1]["leaves"][0];
+    assert!(missed["position"].is_null());
+    assert_eq!(missed["optical_path"].as_f64(), Some(0.0));
+    assert_eq!(missed["electric_field"][1][0].as_f64().map(f64::abs), Some(1.0));
+    for report in reports.as_array().unwrap() {
+        let leaves = report["leaves"].as_array().unwrap();
+        let sum: f64 = leaves.iter().map(|leaf| leaf["power"].as_f64().unwrap()).sum();
+        let rest = report["absorbed"].as_f64().unwrap() + report["pruned"].as_f64().unwrap();
+        assert!((sum + rest - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn bad_rays_are_refused() {
+    for (rays, part) in [
+        (r#"[{"origin": [0, 0, 0], "direction": [1, 0, 0]}]"#, "inside device 0"),
+        (r#"[{"origin": [-50, 0, 0], "direction": [0, 0, 0]}]"#, "direction is zero"),
+        (r#"[{"origin": [-50, 0], "direction": [0, 0, 0]}]"#, "line 1"),
+        ("nonsense", "line 1"),
+    ] {
+        let mut command = cloakroom();
+        command.arg("trace").arg(paper("6c")).args(["--rays", "-"]).write_stdin(rays);
+        let output = command.output().unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        assert!(output.stdout.is_empty());
+        assert!(String::from_utf8(output.stderr).unwrap().contains(part), "{part}");
+    }
+}
+
+#[test]
+fn the_catalogue_has_the_papers_numbers() {
+    let catalogue = json(&stdout(cloakroom().args(["devices", "--json"])));
+    let devices = catalogue["devices"].as_array().unwrap();
+    let find = |kind: &str| devices.iter().find(|device| device["kind"] == kind).unwrap();
+    let number = |device: &Value, name: &str| device[name].as_f64().unwrap();
+    let gaussian = find("double-gaussian-cloak");
+    assert!((number(gaussian, "index_min") - 0.873).abs() < 5e-4);
+    assert!((number(gaussian, "index_max") - 1.918).abs() < 5e-4);
+    assert!((number(gaussian, "cloaked_area_cm2") - 114.83).abs() < 5e-3);
+    let square = find("square-cloak");
+    assert!((number(square, "cloaked_area_cm2") - 114.78).abs() < 5e-3);
+    assert!((number(square, "mirror_width_cm") - 19.94).abs() < 5e-3);
+    let text = String::from_utf8(stdout(cloakroom().arg("devices"))).unwrap();
+    for device in devices {
+        assert!(text.contains(device["kind"].as_str().unwrap()));
+    }
+}
+
+#[test]
+fn scenes_are_checked() {
+    let text = String::from_utf8(stdout(cloakroom().arg("check").arg(paper("8c")))).unwrap();
+    for part in ["1024 x 768", "double-gaussian-cloak", "index_max", "estimate"] {
+        assert!(text.contains(part), "{part} is not in {text}");
+    }
+}
+
+#[test]
+fn the_schema_knows_every_device() {
+    let schema = stdout(cloakroom().arg("schema"));
+    let text = String::from_utf8(schema).unwrap();
+    for part in ["square-cloak", "double-gaussian-cloak", "field_of_view", "min_power"] {
+        assert!(text.contains(part), "{part}");
+    }
+    assert!(json(text.as_bytes()).is_object());
+}
+
+#[test]
+fn figures_come_as_panels_and_sheets() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("figures");
+    cloakroom()
+        .args(["figures", "--only", "6,8d", "--size", "96x72", "--samples", "1", "--out"])
+        .arg(&out)
+        .assert()
+        .success();
+    for name in ["fig6a", "fig6b", "fig6c", "fig6d", "fig8d"] {
+        let panel = image::open(out.join(format!("{name}.png"))).unwrap();
+        assert_eq!((panel.width(), panel.height()), (96, 72), "{name}");
+    }
+    assert!(out.join("fig6.png").is_file());
+    assert!(!out.join("fig8.png").exists());
+}
+
+#[test]
+fn a_map_has_a_colour_bar() {
+    let folder = tempfile::tempdir().unwrap();
+    let map = pixels(folder.path(), "8d", &[]);
+    assert!(map.width() > 320 && map.height() == 240);
+    let plain = pixels(folder.path(), "8d", &["picture.color_bar=false"]);
+    assert_eq!(plain.dimensions(), (320, 240));
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out.png");
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("cloakroom"))
+        .arg("render")
+        .arg(paper("8c"))
+        .args(["--set", "camera.samples=4096", "-o"])
+        .arg(&out)
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(700));
+    assert!(child.try_wait().unwrap().is_none(), "it ended before it could be interrupted");
+    let id = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
