@@ -4,7 +4,7 @@ use crate::arguments::FiguresArguments;
 use crate::render::{picture, rgb, tell_rarities};
 use crate::report::{say, Failure};
 use crate::scene;
-use cloakroom::illustration::{sheet, SheetPanel};
+use cloakroom::illustration::{ScalarMap, SheetPanel, sheet};
 use cloakroom::output;
 use cloakroom::paper::{self, Figure, Panel};
 use cloakroom::render::{Rendered, Studio, Wanted};
@@ -49,6 +49,12 @@ fn make(
         let Rendered { picture, rarities } = picture(&studio, wanted, &what, stop)?;
         tell_rarities(&rarities);
         let image = rgb(scene, &picture)?;
+        let bar = match scene.picture.map {
+            Some(channel) => {
+                Some(ScalarMap::new(&picture, channel).map_err(Failure::from_error)?.bar)
+            }
+            None => None,
+        };
         let path = arguments.out.join(format!("fig{}.png", panel.name));
         output::write_png(&image, &picture.metadata, &path).map_err(Failure::from_error)?;
         say(&format!("{}", path.display()));
@@ -56,6 +62,7 @@ fn make(
             image,
             label: format!("({})", panel.letter()),
             caption: panel.caption.to_owned(),
+            bar,
         });
     }
     if panels.len() == figure.panels.len() {

@@ -68,10 +68,10 @@ pub fn picture(
 /// What a PNG of the scene shows: the image, or the map of one channel.
 pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure> {
     match scene.picture.map {
-        None => output::to_srgb(picture),
-        Some(channel) => scalar_map(picture, channel, scene.picture.color_bar),
+        None => output::to_srgb(picture).map_err(Failure::from_error),
+        Some(channel) => scalar_map(picture, channel, scene.picture.color_bar)
+            .map_err(Failure::from_error),
     }
-    .map_err(Failure::from_error)
 }
 
 /// Says what was rare, if anything was.

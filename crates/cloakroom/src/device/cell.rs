@@ -4,12 +4,26 @@ use super::{Beyond, Finish};
 use glam::{DMat3, DVec3};
 use optics::geometry::Plane;
 use optics::medium::Medium;
+use optics::propagation::{Boundary, ConformalFlow, Half};
 
 /// A region filled with one medium.
 #[derive(Clone, Debug)]
 pub enum Cell {
     /// A convex prism of a homogeneous medium, in which rays are straight.
     Prism(Prism),
+    /// One half of a cut conformal map, of graded index.
+    Conformal(ConformalCell),
+}
+
+/// One half of a cut conformal map above its mirror.
+#[derive(Clone, Debug)]
+pub struct ConformalCell {
+    /// How rays run in it.
+    pub flow: ConformalFlow,
+    /// Which half it is.
+    pub half: Half,
+    /// How the medium meets the air at the cut.
+    pub finish: Finish,
 }
 
 /// A convex region between planes, filled with a homogeneous medium.
@@ -44,6 +58,8 @@ pub struct Passage {
     pub transport: Option<(DMat3, f64)>,
     /// Optical path length, cm.
     pub optical_path: f64,
+    /// The medium at the surface.
+    pub medium: Medium,
     /// Which surface.
     pub face: u16,
     /// The unit normal of the surface, out of the cell.
@@ -55,11 +71,15 @@ pub struct Passage {
 }
 
 impl Cell {
-    /// The medium at a point of the cell or its border.
+    /// The medium at a point of the cell or its border; `None` if a graded medium has none there: the
+    /// point has been lost in rounding at an edge.
     #[must_use]
-    pub fn medium_at(&self, _position: DVec3) -> Medium {
+    pub fn medium_at(&self, position: DVec3) -> Option<Medium> {
         match self {
-            Self::Prism(prism) => prism.medium,
+            Self::Prism(prism) => Some(prism.medium),
+            Self::Conformal(cell) => {
+                Some(Medium::dielectric(cell.flow.foothold(cell.half, position).ok()?.index))
+            }
         }
     }
 
@@ -75,10 +95,11 @@ impl Cell {
         position: DVec3,
         wave_vector: DVec3,
         direction: DVec3,
-        _tolerance: f64,
+        tolerance: f64,
     ) -> Option<Passage> {
         match self {
             Self::Prism(prism) => prism.advance(position, wave_vector, direction),
+            Self::Conformal(cell) => cell.advance(position, wave_vector, tolerance),
         }
     }
 }
@@ -102,10 +123,37 @@ impl Prism {
             direction,
             transport: None,
             optical_path: wave_vector.dot(end - position),
+            medium: self.medium,
             face: index,
             outward: face.plane.normal,
             beyond: face.beyond,
             finish: Finish::Bare,
+        })
+    }
+}
+
+impl ConformalCell {
+    fn advance(
+        &self,
+        position: DVec3,
+        wave_vector: DVec3,
+        tolerance: f64,
+    ) -> Option<Passage> {
+        let start = self.flow.foothold(self.half, position).ok()?;
+        let end = self.flow.advance_from(&start, wave_vector, tolerance).ok()?;
+        let metal = end.boundary == Boundary::Floor;
+        Some(Passage {
+            position: end.at.position,
+            wave_vector: end.wave_vector,
+            direction: end.wave_vector.normalize(),
+            // |Re(E × H*)| = n |E|² is what stays.
+            transport: Some((end.transport, (start.index / end.at.index).sqrt())),
+            optical_path: end.optical_path,
+            medium: Medium::dielectric(end.at.index),
+            face: end.boundary as u16,
+            outward: end.normal,
+            beyond: if metal { Beyond::Conductor } else { Beyond::Air },
+            finish: if metal { Finish::Bare } else { self.finish },
         })
     }
 }

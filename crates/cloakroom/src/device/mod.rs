@@ -5,12 +5,12 @@
 //! structure, and one line in [`CATALOGUE`]; nothing else in the program knows it.
 
 mod cell;
-
+mod double_gaussian_cloak;
 mod skin;
 mod square_cloak;
 mod structure;
 
-pub use cell::{Cell, Face, Passage, Prism};
+pub use cell::{Cell, ConformalCell, Face, Passage, Prism};
 pub use skin::Skin;
 pub use structure::{Beyond, Finish, Hull, SkinHit, Structure};
 
@@ -83,7 +83,7 @@ impl Fact {
 }
 
 /// Every kind of device the program knows.
-pub static CATALOGUE: &[&Entry] = &[&square_cloak::ENTRY];
+pub static CATALOGUE: &[&Entry] = &[&square_cloak::ENTRY, &double_gaussian_cloak::ENTRY];
 
 /// The entry of a kind, if there is one.
 #[must_use]

@@ -2,7 +2,8 @@
 
 use super::{Beyond, Finish};
 use glam::DVec3;
-use optics::geometry::{Cap, Wall};
+use optics::geometry::{Cap, Extent, FloorCurve, Wall};
+use optics::transformation::ConformalMap;
 
 /// A surface between air and a device, with what lies behind it.
 #[derive(Clone, Debug)]
@@ -27,6 +28,31 @@ pub enum Skin {
         /// How the media meet.
         finish: Finish,
     },
+    /// A flat end of a conformal cloak: its two halves, and the metal between them.
+    HalvesCap {
+        /// Its shape.
+        cap: Cap,
+        /// The map whose floor bounds the metal.
+        map: ConformalMap,
+        /// The cells of the upper and the lower half.
+        cells: [u16; 2],
+        /// How the media meet.
+        finish: Finish,
+    },
+    /// The metal between the curved floor of a conformal map and its mirror image, in air.
+    Floor {
+        /// Its cross-section.
+        curve: FloorCurve,
+        /// Its extent along z.
+        extent: Extent,
+    },
+    /// A flat end of the metal between a floor and its mirror image.
+    FloorCap {
+        /// A shape around it.
+        cap: Cap,
+        /// The map whose floor bounds the metal.
+        map: ConformalMap,
+    },
 }
 
 impl Skin {
@@ -48,21 +74,32 @@ impl Skin {
                 let facing = -direction.dot(wall.normal()).signum();
                 Some((wall.hit(origin, direction)?, wall.normal() * facing))
             }
-            Self::Cap { cap, .. } => {
+            Self::Cap { cap, .. } | Self::HalvesCap { cap, .. } => {
                 if again || direction.dot(cap.normal) >= 0.0 {
                     return None;
                 }
                 Some((cap.hit(origin, direction)?, cap.normal))
+            }
+            Self::Floor { curve, extent } => floor_hit(curve, *extent, origin, direction, again),
+            Self::FloorCap { cap, map } => {
+                if again || direction.dot(cap.normal) >= 0.0 {
+                    return None;
+                }
+                let distance = cap.hit(origin, direction)?;
+                let point = origin + direction * distance;
+                within_floor(map, point).then_some((distance, cap.normal))
             }
         }
     }
 
     /// What lies behind the surface at a point of it.
     #[must_use]
-    pub fn beyond(&self, _position: DVec3) -> Beyond {
+    pub fn beyond(&self, position: DVec3) -> Beyond {
         match self {
+            Self::HalvesCap { map, .. } if within_floor(map, position) => Beyond::Conductor,
+            Self::HalvesCap { cells, .. } => Beyond::Cell(cells[usize::from(position.y < 0.0)]),
             Self::Wall { beyond, .. } | Self::Cap { beyond, .. } => *beyond,
-            Self::Strip(_) => Beyond::Conductor,
+            Self::Strip(_) | Self::Floor { .. } | Self::FloorCap { .. } => Beyond::Conductor,
         }
     }
 
@@ -70,8 +107,37 @@ impl Skin {
     #[must_use]
     pub fn finish(&self) -> Finish {
         match self {
-            Self::Wall { finish, .. } | Self::Cap { finish, .. } => *finish,
-            Self::Strip(_) => Finish::Bare,
+            Self::Wall { finish, .. }
+            | Self::Cap { finish, .. }
+            | Self::HalvesCap { finish, .. } => *finish,
+            Self::Strip(_) | Self::Floor { .. } | Self::FloorCap { .. } => Finish::Bare,
         }
+    }
+}
+
+/// Whether a point lies between the floor of a map and its mirror image.
+pub(super) fn within_floor(map: &ConformalMap, point: DVec3) -> bool {
+    point.y.abs() < map.peak() && point.y.abs() < map.floor_height_at(point.x)
+}
+
+/// A surface that a ray has just left is not met again closer than this, cm.
+const AGAIN: f64 = 1e-7;
+
+/// Where a ray meets the metal lens between a floor and its mirror image, within an extent along z.
+fn floor_hit(
+    curve: &FloorCurve,
+    extent: Extent,
+    origin: DVec3,
+    direction: DVec3,
+    again: bool,
+) -> Option<(f64, DVec3)> {
+    let mut least = if again { AGAIN } else { 0.0 };
+    loop {
+        let hit = curve.first_hit(origin.truncate(), direction.truncate(), least)?;
+        if extent.contains(origin.z + hit.t * direction.z) {
+            return Some((hit.t, hit.normal.extend(0.0)));
+        }
+        // Past an end: the lens may be met once more, for it is not convex.
+        least = hit.t + AGAIN;
     }
 }

@@ -1,8 +1,10 @@
 //! What every device is made of: cells filled with media, and the skin that light in air meets.
 
+use super::skin::within_floor;
 use super::{Cell, Skin};
 use glam::{DVec2, DVec3};
 use optics::geometry::{Extent, Outline};
+use optics::transformation::ConformalMap;
 
 /// What lies on the other side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +45,7 @@ pub struct Hull {
     /// Its extent along z.
     pub extent: Extent,
     radius: f64,
+    floor: Option<ConformalMap>,
 }
 
 impl Hull {
@@ -50,7 +53,14 @@ impl Hull {
     #[must_use]
     pub fn new(outline: Outline, extent: Extent) -> Self {
         let radius = outline.radius() * (1.0 + 1e-12);
-        Self { outline, extent, radius }
+        Self { outline, extent, radius, floor: None }
+    }
+
+    /// The hull of the metal between the floor of a map and its mirror image: it holds only that part
+    /// of its outline.
+    #[must_use]
+    pub fn with_floor(self, map: ConformalMap) -> Self {
+        Self { floor: Some(map), ..self }
     }
 
     /// Whether a ray (in the device's frame) comes near enough that it may meet the device.
@@ -71,7 +81,10 @@ impl Hull {
         let p: DVec2 = point.truncate();
         let inside = !self.outline.corners().is_empty()
             && self.outline.sides().all(|(a, b)| (b - a).perp_dot(p - a) > 0.0);
-        inside && self.extent.min < point.z && point.z < self.extent.max
+        inside
+            && self.extent.min < point.z
+            && point.z < self.extent.max
+            && self.floor.is_none_or(|map| within_floor(&map, point))
     }
 }
 

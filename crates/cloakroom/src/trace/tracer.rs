@@ -125,7 +125,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 self.go_on(to_world(&local.onward(&wave, air, event), &device.pose));
             }
             Beyond::Cell(cell) => {
-                let medium = self.cell(device, cell).medium_at(local.position);
+                let Some(medium) = self.cell(device, cell).medium_at(local.position) else {
+                    self.lose(branch.power);
+                    return;
+                };
                 let inside = Place::Cell { device: device_index, cell };
                 for wave in self.split(&Medium::AIR, &medium, &local, into, hit.finish) {
                     let event = event | side_code(&wave);
@@ -152,8 +155,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             self.limits.tolerance,
         );
         let Some(passage) = passage else {
-            self.outcome.rarities.lost += 1;
-            self.prune(branch.power);
+            self.lose(branch.power);
             return;
         };
         branch.position = passage.position;
@@ -167,14 +169,17 @@ impl<'a, const N: usize> Tracer<'a, N> {
             | (u64::from(cell_index) + 1) << 20
             | u64::from(passage.face) << 2;
         let here = branch.place;
-        let medium = cell.medium_at(branch.position);
+        let medium = passage.medium;
         match passage.beyond {
             Beyond::Conductor => {
                 let wave = reflect_at_conductor(&medium, &branch.incident(), passage.outward);
                 self.go_on(branch.onward(&wave, here, event));
             }
             Beyond::Cell(next) => {
-                let next_medium = self.cell(device, next).medium_at(branch.position);
+                let Some(next_medium) = self.cell(device, next).medium_at(branch.position) else {
+                    self.lose(branch.power);
+                    return;
+                };
                 let there = Place::Cell { device: device_index, cell: next };
                 let waves =
                     self.split(&medium, &next_medium, &branch, passage.outward, passage.finish);
@@ -221,6 +226,12 @@ impl<'a, const N: usize> Tracer<'a, N> {
         } else {
             self.prune(branch.power);
         }
+    }
+
+    /// Gives up a branch that cannot be followed.
+    fn lose(&mut self, power: [f64; N]) {
+        self.outcome.rarities.lost += 1;
+        self.prune(power);
     }
 
     fn prune(&mut self, power: [f64; N]) {

@@ -4,12 +4,14 @@
 //! flat [`Cap`]s at their ends. Inside a convex cell a ray leaves through the first [`Plane`] ahead.
 
 mod cap;
+mod floor_curve;
 mod outline;
 mod plane;
 mod pose;
 mod wall;
 
 pub use cap::Cap;
+pub use floor_curve::FloorCurve;
 pub use outline::Outline;
 pub use plane::Plane;
 pub use pose::Pose;

@@ -247,7 +247,10 @@ mod tests {
     #[test]
     fn has_the_numbers_of_the_paper() {
         let (least, largest) = map(10.02, 4.25).index_range(&PAPER);
-        assert!((least - 0.873).abs() < 5e-4 && (largest - 1.918).abs() < 5e-4, "{least} {largest}");
+        assert!(
+            (least - 0.873).abs() < 5e-4 && (largest - 1.918).abs() < 5e-4,
+            "{least} {largest}"
+        );
         let (_, largest) = map(10.0158, 4.2532).index_range(&PAPER);
         assert!((largest - 1.920).abs() < 5e-4, "{largest}");
         assert!((map(10.02, 4.25).cloaked_area() - 114.83).abs() < 0.1);
@@ -277,14 +280,23 @@ mod tests {
         let spacing = 20.0 / f64::from(count);
         let sum: f64 =
             (0..count).map(|k| map.floor_height_at(-7.0 + (f64::from(k) + 0.5) * spacing)).sum();
-        assert_relative_eq!(map.cloaked_area_within(&cut), 2.0 * sum * spacing, max_relative = 1e-7);
+        assert_relative_eq!(
+            map.cloaked_area_within(&cut),
+            2.0 * sum * spacing,
+            max_relative = 1e-7
+        );
         let wide = Truncation::centred(400.0, 20.0);
-        assert_relative_eq!(map.cloaked_area_within(&wide), map.cloaked_area(), max_relative = 1e-12);
+        assert_relative_eq!(
+            map.cloaked_area_within(&wide),
+            map.cloaked_area(),
+            max_relative = 1e-12
+        );
     }
 
     #[test]
     fn refuses_what_is_not_a_map() {
-        for (w, h) in [(0.0, 1.0), (1.0, 0.0), (-1.0, -0.5), (f64::NAN, 1.0), (1.0, f64::INFINITY)] {
+        for (w, h) in [(0.0, 1.0), (1.0, 0.0), (-1.0, -0.5), (f64::NAN, 1.0), (1.0, f64::INFINITY)]
+        {
             assert!(matches!(GaussianMap::new(w, h), Err(GaussianMapError::Length { .. })));
         }
         assert!(matches!(GaussianMap::new(1.0, 0.9), Err(GaussianMapError::TooSteep { .. })));

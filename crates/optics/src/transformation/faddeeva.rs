@@ -26,7 +26,9 @@ static TABLE: LazyLock<Vec<Patch>> = LazyLock::new(|| {
     (0..COLUMNS * ROWS)
         .map(|index| {
             let (column, row) = (index / ROWS, index % ROWS);
-            taylor_coefficients(Complex64::new(column as f64, (row as i64 + LOWEST_ROW) as f64) / DENSITY)
+            taylor_coefficients(
+                Complex64::new(column as f64, (row as i64 + LOWEST_ROW) as f64) / DENSITY,
+            )
         })
         .collect()
 });
@@ -97,7 +99,8 @@ fn tabulated(t: Complex64) -> Complex64 {
 /// of polynomials in 1/t².
 fn continued_fraction(t: Complex64) -> Complex64 {
     const NUMERATOR: [f64; 6] = [1.0, -32.5, 355.5, -1_569.75, 2_605.312_5, -1_115.156_25];
-    const DENOMINATOR: [f64; 7] = [1.0, -33.0, 371.25, -1_732.5, 3_248.437_5, -1_949.062_5, 162.421_875];
+    const DENOMINATOR: [f64; 7] =
+        [1.0, -33.0, 371.25, -1_732.5, 3_248.437_5, -1_949.062_5, 162.421_875];
     let inverse = t.inv();
     let v = inverse * inverse;
     let polynomial = |c: &[f64]| c.iter().rev().fold(Complex64::ZERO, |sum, c| sum * v + c);

@@ -63,7 +63,9 @@ mod tests {
         assert!((root_between(-10.0, 3.0, steep) - 0.3).abs() < 1e-12);
         let flat = |x: f64| ((x - 0.3).powi(5), 5.0 * (x - 0.3).powi(4));
         assert!((root_between(3.0, -10.0, flat) - 0.3).abs() < 1e-3);
-        assert!((root_between(0.0, 1.0, |x| (x * x - 0.5, 2.0 * x)) - 0.5_f64.sqrt()).abs() < 1e-15);
+        assert!(
+            (root_between(0.0, 1.0, |x| (x * x - 0.5, 2.0 * x)) - 0.5_f64.sqrt()).abs() < 1e-15
+        );
     }
 
     #[test]

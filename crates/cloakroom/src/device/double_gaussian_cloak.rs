@@ -1,0 +1,154 @@
+//! The double-Gaussian cloak: two Gaussian carpet cloaks back to back (design (iv) of Halimeh & Wegener,
+//! Opt. Express 21, 9457 (2013), after Leonhardt, Science 312, 1777 (2006) and Schmied, Halimeh & Wegener,
+//! Opt. Express 18, 24361 (2010)).
+//!
+//! A rectangle of locally isotropic graded index around a metal lens; the index is n = c/|f'| of the map
+//! [`GaussianMap`], in the lower half that of its mirror image. At the cut the index steps.
+
+use super::{
+    Beyond, Cell, ConformalCell, Entry, Fact, Finish, Hull, Request, Show, Skin, Structure,
+};
+use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
+use glam::DVec2;
+use optics::geometry::{Cap, Extent, FloorCurve, Outline, Wall};
+use optics::propagation::{ConformalFlow, Half};
+use optics::transformation::{ConformalMap, GaussianMap, Truncation};
+
+pub(super) static ENTRY: Entry = Entry {
+    kind: "double-gaussian-cloak",
+    title: "Double-Gaussian cloak",
+    summary: "Unidirectional, polarization-independent cloak of locally isotropic graded index around a \
+              metal lens, from a conformal map. Design (iv) of Halimeh & Wegener 2013.",
+    keys: &[
+        Key {
+            name: "w",
+            doc: "Width parameter of the map.",
+            kind: KeyKind::Number { default: Some(10.02), unit: "cm", limits: Limits::Positive },
+        },
+        Key {
+            name: "h",
+            doc: "Half the height of the metal lens; below 0.886 w.",
+            kind: KeyKind::Number { default: Some(4.25), unit: "cm", limits: Limits::Positive },
+        },
+        Key {
+            name: "width",
+            doc: "Size of the cut along x.",
+            kind: KeyKind::Number { default: Some(50.0), unit: "cm", limits: Limits::Positive },
+        },
+        Key {
+            name: "height",
+            doc: "Size of the cut along y; above twice h.",
+            kind: KeyKind::Number { default: Some(57.14), unit: "cm", limits: Limits::Positive },
+        },
+        Key {
+            name: "fresnel",
+            doc: "Reflect at the cut as the index step asks for; false is a perfect antireflection coating.",
+            kind: KeyKind::Flag { default: true },
+        },
+        Key {
+            name: "referenced",
+            doc: "Divide the index by its minimum, so that it is 1 at least.",
+            kind: KeyKind::Flag { default: false },
+        },
+    ],
+    build,
+    facts,
+};
+
+/// The cells of the two halves.
+const UPPER: u16 = 0;
+const LOWER: u16 = 1;
+
+/// The map and the cut of the upper half.
+fn parts(values: &Values) -> Result<(ConformalMap, Truncation), KeyError> {
+    let (w, h) = (values.number("w"), values.number("h"));
+    let map = GaussianMap::new(w, h).map_err(|error| KeyError::at("h", error.to_string()))?;
+    let height = values.number("height");
+    if height <= 2.0 * h {
+        let message = format!(
+            "height is {height} cm; it must be above twice h, {} cm, to hold the metal",
+            2.0 * h
+        );
+        return Err(KeyError::at("height", message));
+    }
+    Ok((map.into(), Truncation::centred(values.number("width"), height / 2.0)))
+}
+
+/// The factor c of the index n = c/|f'|.
+fn strength(values: &Values, map: &ConformalMap, cut: &Truncation) -> f64 {
+    if values.flag("referenced") { 1.0 / map.index_range(cut).0 } else { 1.0 }
+}
+
+fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
+    let (map, cut) = parts(values)?;
+    let extent = Extent::centred(request.length);
+    Ok(match request.show {
+        Show::Cloak => {
+            let finish = if values.flag("fresnel") { Finish::Bare } else { Finish::Antireflection };
+            cloak(&ConformalFlow::new(map, cut, extent, strength(values, &map, &cut)), finish, extent)
+        }
+        Show::Bare => bare(map, cut, extent),
+        Show::Mirror => super::flat_strip(cut.x_max, extent),
+    })
+}
+
+fn cloak(flow: &ConformalFlow, finish: Finish, extent: Extent) -> Structure {
+    let cut = flow.cut();
+    let (x, y) = (cut.x_max, cut.y_max);
+    let outline = Outline::rectangle(x, y);
+    // The metal ends bluntly at the cut.
+    let tip = flow.map().floor_height_at(x);
+    let wall = |from: [f64; 2], to: [f64; 2], beyond: Beyond| Skin::Wall {
+        wall: Wall::new(DVec2::from(from), DVec2::from(to), extent),
+        beyond,
+        finish: if beyond == Beyond::Conductor { Finish::Bare } else { finish },
+    };
+    let (upper, lower) = (Beyond::Cell(UPPER), Beyond::Cell(LOWER));
+    let mut skin = vec![
+        wall([x, -y], [x, -tip], lower),
+        wall([x, -tip], [x, tip], Beyond::Conductor),
+        wall([x, tip], [x, y], upper),
+        wall([x, y], [-x, y], upper),
+        wall([-x, y], [-x, tip], upper),
+        wall([-x, tip], [-x, -tip], Beyond::Conductor),
+        wall([-x, -tip], [-x, -y], lower),
+        wall([-x, -y], [x, -y], lower),
+    ];
+    if let Some(ends) = extent.ends() {
+        skin.extend(Cap::both(&outline, ends).map(|cap| Skin::HalvesCap {
+            cap,
+            map: *flow.map(),
+            cells: [UPPER, LOWER],
+            finish,
+        }));
+    }
+    let cells = [Half::Upper, Half::Lower]
+        .map(|half| Cell::Conformal(ConformalCell { flow: *flow, half, finish }))
+        .to_vec();
+    Structure { cells, skin, hull: Hull::new(outline, extent) }
+}
+
+fn bare(map: ConformalMap, cut: Truncation, extent: Extent) -> Structure {
+    let x = cut.x_max;
+    let curve = FloorCurve::new(map, cut.x_min, x);
+    let mut skin = vec![Skin::Floor { curve, extent }];
+    if let Some(ends) = extent.ends() {
+        let around = Outline::rectangle(x, map.peak());
+        skin.extend(Cap::both(&around, ends).map(|cap| Skin::FloorCap { cap, map }));
+    }
+    let hull = Hull::new(Outline::rectangle(x, map.peak()), extent).with_floor(map);
+    Structure { cells: Vec::new(), skin, hull }
+}
+
+fn facts(values: &Values) -> Vec<Fact> {
+    let Ok((map, cut)) = parts(values) else { return Vec::new() };
+    let c = strength(values, &map, &cut);
+    let (least, largest) = map.index_range(&cut);
+    vec![
+        Fact::number("index_min", c * least),
+        Fact::number("index_max", c * largest),
+        Fact::number("cloaked_area_cm2", map.cloaked_area()),
+        Fact::number("cloaked_area_within_cut_cm2", map.cloaked_area_within(&cut)),
+        Fact::number("mirror_width_cm", 2.0 * cut.x_max),
+    ]
+}

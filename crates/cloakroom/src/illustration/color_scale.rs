@@ -1,0 +1,184 @@
+//! Which colour a number gets.
+
+use colorous::Gradient;
+use image::Rgb;
+
+/// The colours for a set of numbers.
+///
+/// The range goes from the least to the greatest of the finite numbers, unless a few outliers
+/// would leave the rest without contrast: where the extreme 0.1 % on one side stretch further than
+/// the 99.8 % in the middle, the range ends at the 0.1 or 99.9 percentile on that side, and
+/// numbers beyond get the colour of its end ([`is_clipped`](Self::is_clipped)).
+///
+/// The colours are viridis, which is perceptually uniform, and reads in gray and with most
+/// deficiencies of colour vision. Where numbers lie on both sides of zero, the smaller side
+/// reaching at least 5 % of the larger, they are ColorBrewer's blue (negative) to red (positive)
+/// with a nearly white zero, over a range symmetric about zero: what is early, late or unchanged is
+/// told by the hue, and equal amounts by equal depth. Less than 5 % is taken as the trace of
+/// rounding and keeps viridis.
+///
+/// Numbers that are not finite are gray. Numbers that all agree get the middle of viridis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColorScale {
+    range: Option<(f64, f64)>,
+    diverging: bool,
+    clipped: (bool, bool),
+}
+
+/// The colour where there is no number: a neutral gray that is in neither map.
+const NOTHING: Rgb<u8> = Rgb([160, 160, 160]);
+
+/// The smaller side of zero must reach this share of the larger for a diverging map.
+const TWO_SIDED: f64 = 0.05;
+
+impl ColorScale {
+    /// The colours for those numbers. Numbers that differ by no more than `rounding`, relative to
+    /// the largest, count as equal.
+    #[must_use]
+    pub fn new(numbers: impl Iterator<Item = f64>, rounding: f64) -> Self {
+        let mut finite: Vec<f64> = numbers.filter(|number| number.is_finite()).collect();
+        let Some(last) = finite.len().checked_sub(1) else {
+            return Self { range: None, diverging: false, clipped: (false, false) };
+        };
+        let least = finite.iter().copied().fold(f64::INFINITY, f64::min);
+        let greatest = finite.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let rank = last / 1000;
+        let from = *finite.select_nth_unstable_by(rank, f64::total_cmp).1;
+        let to = *finite.select_nth_unstable_by(last - rank, f64::total_cmp).1;
+        let most = to - from;
+        let low = if most > 0.0 && from - least > most { from } else { least };
+        let high = if most > 0.0 && greatest - to > most { to } else { greatest };
+        let size = low.abs().max(high.abs());
+        let (low, high, diverging) = if high - low <= rounding * size {
+            let middle = low / 2.0 + high / 2.0;
+            (middle, middle, false)
+        } else if -low >= TWO_SIDED * high && high >= TWO_SIDED * -low {
+            (-size, size, true)
+        } else {
+            (low, high, false)
+        };
+        let clipped = if low < high { (least < low, greatest > high) } else { (false, false) };
+        Self { range: Some((low, high)), diverging, clipped }
+    }
+
+    /// The least and the greatest number that have a colour of their own; equal if all numbers
+    /// agree, none if no number is finite.
+    #[must_use]
+    pub fn range(&self) -> Option<(f64, f64)> {
+        self.range
+    }
+
+    /// Whether the colours tell the sign: the range is symmetric about zero.
+    #[must_use]
+    pub fn is_diverging(&self) -> bool {
+        self.diverging
+    }
+
+    /// Whether there are numbers below and above the range.
+    #[must_use]
+    pub fn is_clipped(&self) -> (bool, bool) {
+        self.clipped
+    }
+
+    /// The colour of a number.
+    #[must_use]
+    pub fn color(&self, number: f64) -> Rgb<u8> {
+        match self.range {
+            Some((low, high)) if number.is_finite() => {
+                // Halves, for the difference may be beyond the largest number.
+                let width = high / 2.0 - low / 2.0;
+                let place = (number / 2.0 - low / 2.0) / width;
+                self.color_at(if width > 0.0 { place } else { 0.5 })
+            }
+            _ => NOTHING,
+        }
+    }
+
+    /// The colour at a place in the range, 0 being its lower and 1 its upper end.
+    #[must_use]
+    pub fn color_at(&self, place: f64) -> Rgb<u8> {
+        let (gradient, place): (Gradient, f64) = match self.range {
+            None => return NOTHING,
+            Some((low, high)) if low == high => (colorous::VIRIDIS, 0.5),
+            // Red is at the lower end of that map.
+            Some(_) if self.diverging => (colorous::RED_BLUE, 1.0 - place),
+            Some(_) => (colorous::VIRIDIS, place),
+        };
+        Rgb(gradient.eval_continuous(place).into_array())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scale(numbers: &[f64]) -> ColorScale {
+        ColorScale::new(numbers.iter().copied(), 1e-15)
+    }
+
+    fn lightness(Rgb([r, g, b]): Rgb<u8>) -> f64 {
+        0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
+    }
+
+    #[test]
+    fn the_range_is_that_of_the_finite_numbers() {
+        let scale = scale(&[3.0, f64::NAN, 1.0, f64::INFINITY, 2.0]);
+        assert_eq!(scale.range(), Some((1.0, 3.0)));
+        assert!(!scale.is_diverging());
+        assert_eq!(scale.color(f64::NAN), NOTHING);
+        assert_eq!(scale.color(f64::NEG_INFINITY), NOTHING);
+        assert_eq!(scale.color(1.0), Rgb(colorous::VIRIDIS.eval_continuous(0.0).into_array()));
+        assert_eq!(scale.color(9.0), scale.color(3.0));
+    }
+
+    #[test]
+    fn more_is_lighter() {
+        let scale = scale(&[1e-15, 2e-15]);
+        let steps: Vec<f64> =
+            (0..=20).map(|i| lightness(scale.color(1e-15 + f64::from(i) * 5e-17))).collect();
+        assert!(steps.windows(2).all(|pair| pair[0] < pair[1]));
+    }
+
+    #[test]
+    fn signs_are_told_about_zero() {
+        let scale = scale(&[-1.0, 0.5, 4.0]);
+        assert_eq!((scale.range(), scale.is_diverging()), (Some((-4.0, 4.0)), true));
+        let (early, zero, late) = (scale.color(-4.0), scale.color(0.0), scale.color(4.0));
+        assert!(early.0[2] > early.0[0] && late.0[0] > late.0[2]);
+        assert!(zero.0.iter().all(|part| *part > 235));
+        // A trace on the other side is no sign.
+        assert!(!self::scale(&[-0.01, 4.0]).is_diverging());
+        assert!(!self::scale(&[-4.0, 0.01]).is_diverging());
+        assert!(!self::scale(&[0.0, 4.0]).is_diverging());
+    }
+
+    #[test]
+    fn degenerate_sets_have_colours() {
+        assert_eq!(scale(&[]).range(), None);
+        assert_eq!(scale(&[f64::NAN]).color(1.0), NOTHING);
+        for number in [0.0, -0.0, 7.0, 1e-300, f64::MAX] {
+            let same = scale(&[number; 4]);
+            assert_eq!(same.range(), Some((number, number)));
+            assert_eq!(same.color(number), same.color_at(0.0));
+            assert_eq!(same.is_clipped(), (false, false));
+        }
+        let noise = scale(&[1.0, 1.0 + f64::EPSILON]);
+        assert!(noise.range().is_some_and(|(low, high)| low == high));
+        let all = scale(&[-f64::MAX, f64::MAX]);
+        assert!(all.color(0.0).0.iter().all(|part| *part > 235));
+    }
+
+    #[test]
+    fn outliers_do_not_take_the_contrast() {
+        let mut numbers: Vec<f64> = (0..10_000).map(f64::from).collect();
+        assert_eq!(scale(&numbers).range(), Some((0.0, 9999.0)));
+        numbers[17] = 1e9;
+        let clipped = scale(&numbers);
+        assert_eq!(clipped.is_clipped(), (false, true));
+        assert!(clipped.range().is_some_and(|(low, high)| low == 0.0 && high < 10_000.0));
+        // Where nearly all agree, the exceptions are what there is to see.
+        let mut few = vec![1.0; 10_000];
+        few[3] = 0.0;
+        assert_eq!(scale(&few).range(), Some((0.0, 1.0)));
+    }
+}

@@ -1,0 +1,156 @@
+//! Maps of scalar channels in colour.
+
+use super::color_bar::ColorBar;
+use super::color_scale::ColorScale;
+use super::quantity::Quantity;
+use super::{IllustrationError, PAPER, frame, line_width, text_height};
+use crate::output::{Picture, RgbImage, Samples};
+
+/// A channel of a picture in colour, with the key to its colours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScalarMap {
+    /// One pixel for each of the picture.
+    pub image: RgbImage,
+    /// Which colour stands for which number.
+    pub bar: ColorBar,
+}
+
+impl ScalarMap {
+    /// The map of a channel over the range of its numbers ([`ColorScale`] says which).
+    ///
+    /// # Errors
+    ///
+    /// If the picture has no such channel, or the channel not one number a pixel.
+    pub fn new(picture: &Picture, channel: &str) -> Result<Self, IllustrationError> {
+        let samples = &picture
+            .channel(channel)
+            .ok_or_else(|| IllustrationError::UnknownChannel {
+                name: channel.to_owned(),
+                known: picture.channels.iter().map(|channel| channel.name.clone()).collect(),
+            })?
+            .samples;
+        let wrong_size = || IllustrationError::WrongSize {
+            name: channel.to_owned(),
+            samples: samples.len(),
+            width: picture.width,
+            height: picture.height,
+        };
+        if picture.width.checked_mul(picture.height) != Some(samples.len()) {
+            return Err(wrong_size());
+        }
+        let width = u32::try_from(picture.width).map_err(|_| wrong_size())?;
+        let height = u32::try_from(picture.height).map_err(|_| wrong_size())?;
+        // A few units in the last place.
+        let rounding = match samples {
+            Samples::F32(_) => 8.0 * f64::from(f32::EPSILON),
+            Samples::F64(_) => 8.0 * f64::EPSILON,
+        };
+        let scale = ColorScale::new((0..samples.len()).map(|i| samples.get(i)), rounding);
+        let colors = (0..samples.len()).flat_map(|i| scale.color(samples.get(i)).0).collect();
+        let image = RgbImage::from_raw(width, height, colors).ok_or_else(wrong_size)?;
+        Ok(Self { image, bar: ColorBar { scale, quantity: Quantity::of_channel(channel) } })
+    }
+
+    /// The least and the greatest number that have a colour of their own, in the unit of the
+    /// channel; none if no number is finite.
+    #[must_use]
+    pub fn range(&self) -> Option<(f64, f64)> {
+        self.bar.scale.range()
+    }
+
+    /// The map, framed, with the colour bar to its right and a margin around both.
+    #[must_use]
+    pub fn with_color_bar(&self) -> RgbImage {
+        let (width, height) = self.image.dimensions();
+        let text = text_height(width, height);
+        let margin = text;
+        // A very low map gets a bar that has room for ticks and some title.
+        let bar_height = height.max(8 * text);
+        let bar_width = self.bar.width(bar_height, text);
+        let mut canvas = RgbImage::from_pixel(
+            margin + width + margin + bar_width + margin / 2,
+            bar_height + 2 * margin,
+            PAPER,
+        );
+        let top = margin + (bar_height - height) / 2;
+        frame(&mut canvas, &self.image, margin, top, line_width(text));
+        self.bar.draw(&mut canvas, margin + width + margin, margin, bar_height, text);
+        canvas
+    }
+}
+
+/// The map of a channel of a picture: without a colour bar exactly as large as the picture; with one,
+/// in a frame with the bar to its right ([`ScalarMap::with_color_bar`]).
+///
+/// # Errors
+///
+/// If the picture has no such channel, or the channel not one number a pixel.
+pub fn scalar_map(
+    picture: &Picture,
+    channel: &str,
+    color_bar: bool,
+) -> Result<RgbImage, IllustrationError> {
+    let map = ScalarMap::new(picture, channel)?;
+    Ok(if color_bar { map.with_color_bar() } else { map.image })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::Channel;
+
+    fn picture(width: usize, height: usize) -> Picture {
+        let times = (0..width * height).map(|i| i as f64 * 1e-15).collect();
+        let channel = |name: &str, samples| Channel { name: name.to_owned(), samples };
+        Picture {
+            width,
+            height,
+            channels: vec![
+                channel("time_of_flight_difference", Samples::F64(times)),
+                channel("delivered", Samples::F32(vec![1.0; width * height])),
+                channel("broken", Samples::F32(vec![1.0; 3])),
+            ],
+            metadata: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_map_has_a_pixel_for_each_of_the_picture() {
+        let picture = picture(5, 3);
+        let map = scalar_map(&picture, "time_of_flight_difference", false).expect("a map");
+        assert_eq!(map.dimensions(), (5, 3));
+        assert_ne!(map.get_pixel(0, 0), map.get_pixel(4, 2));
+        let range = ScalarMap::new(&picture, "time_of_flight_difference").map(|map| map.range());
+        assert_eq!(range, Ok(Some((0.0, 14.0 * 1e-15))));
+    }
+
+    #[test]
+    fn a_color_bar_stands_beside_the_map() {
+        for (width, height) in [(1, 1), (320, 240), (40, 2000), (2000, 40)] {
+            let picture = picture(width, height);
+            for channel in ["time_of_flight_difference", "delivered"] {
+                let map = ScalarMap::new(&picture, channel).expect("a map");
+                let image = map.with_color_bar();
+                assert!(image.width() > width as u32 && image.height() > height as u32);
+                let text = text_height(width as u32, height as u32);
+                let top = (image.height() - height as u32) / 2;
+                assert_eq!(image.get_pixel(text, top), map.image.get_pixel(0, 0));
+            }
+        }
+    }
+
+    #[test]
+    fn odd_pictures_do_no_harm() {
+        let empty = picture(0, 0);
+        assert!(scalar_map(&empty, "delivered", true).is_ok());
+        let error = scalar_map(&picture(2, 2), "pruned", false).expect_err("no such channel");
+        assert_eq!(
+            error.to_string(),
+            "the picture has no channel `pruned`; it has time_of_flight_difference, delivered, broken"
+        );
+        let error = scalar_map(&picture(2, 2), "broken", false).expect_err("too few numbers");
+        assert!(error.to_string().contains("3 numbers"));
+        let huge = Picture { width: usize::MAX, height: 2, ..picture(2, 2) };
+        assert!(scalar_map(&huge, "delivered", false).is_err());
+    }
+}

@@ -1,0 +1,286 @@
+//! The bare metal of a conformal cloak: the curve x + iy = f(X) and its mirror image.
+
+use glam::DVec2;
+use num_complex::Complex64;
+
+use crate::transformation::{ConformalMap, root_in_bracket};
+
+/// The outline of the metal of a double conformal cloak, cut at two virtual X: the floor f(X), its mirror
+/// image under y -> -y, and the blunt ends between the two. Lengths in cm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloorCurve {
+    map: ConformalMap,
+    /// Between neighbours the slope of the curve is monotone: the ends and the inflection points.
+    knots: Vec<Knot>,
+    /// Half the height of the metal's bounding box.
+    peak: f64,
+}
+
+/// A part of the metal's outline.
+#[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
+pub enum MetalSide {
+    /// The curve above y = 0.
+    Upper,
+    /// Its mirror image.
+    Lower,
+    /// The cut at one of the ends.
+    End,
+}
+
+/// Where a ray meets the metal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FloorHit {
+    /// Distance along the ray, in units of its direction's length.
+    pub t: f64,
+    /// The virtual X.
+    pub x_virtual: f64,
+    /// Unit normal out of the metal.
+    pub normal: DVec2,
+    /// Which part of the metal.
+    pub side: MetalSide,
+}
+
+/// A point of the curve and its derivative by X.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Knot {
+    x_virtual: f64,
+    point: Complex64,
+    tangent: Complex64,
+}
+
+impl FloorCurve {
+    /// The metal between physical `x_min` and `x_max`.
+    #[must_use]
+    pub fn new(map: ConformalMap, x_min: f64, x_max: f64) -> Self {
+        const SAMPLES: u32 = 400;
+        let (start, end) = (map.floor_parameter(x_min), map.floor_parameter(x_max));
+        let bend = |x: f64| {
+            let jet = map.jet(x.into());
+            (jet.f1.conj() * jet.f2).im
+        };
+        let sample = |k: u32| start + (end - start) * f64::from(k) / f64::from(SAMPLES);
+        let inflections =
+            (0..SAMPLES).map(|k| (sample(k), sample(k + 1))).filter_map(|(mut a, mut b)| {
+                let rising = bend(b) > 0.0;
+                if rising == (bend(a) > 0.0) {
+                    return None;
+                }
+                while b - a > 4.0 * f64::EPSILON * (a.abs() + b.abs()) {
+                    let middle = 0.5 * (a + b);
+                    if rising == (bend(middle) > 0.0) {
+                        b = middle;
+                    } else {
+                        a = middle;
+                    }
+                }
+                Some(0.5 * (a + b))
+            });
+        let knots = std::iter::once(start)
+            .chain(inflections)
+            .chain(std::iter::once(end))
+            .map(|x| knot(&map, x))
+            .collect();
+        let peak = map.peak();
+        Self { map, knots, peak }
+    }
+
+    /// The first point with t >= `t_min` where the ray `origin + t direction` enters the metal; points where
+    /// it leaves do not count, so a ray may start on the metal (where the metal is thinner than rounding,
+    /// far out, only a positive `t_min` keeps such a ray off the other side). None if there is none.
+    #[must_use]
+    pub fn first_hit(&self, origin: DVec2, direction: DVec2, t_min: f64) -> Option<FloorHit> {
+        let inverse_square = direction.length_squared().recip();
+        if !(inverse_square.is_finite() && origin.is_finite() && self.may_hit(origin, direction)) {
+            return None;
+        }
+        let mirrored = |v: DVec2| DVec2::new(v.x, -v.y);
+        let upper = self.first_on_curve(origin, direction, t_min, MetalSide::Upper);
+        let lower = self
+            .first_on_curve(mirrored(origin), mirrored(direction), t_min, MetalSide::Lower)
+            .map(|hit| FloorHit { normal: mirrored(hit.normal), ..hit });
+        [upper, lower, self.first_on_ends(origin, direction, t_min)]
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| a.t.total_cmp(&b.t))
+    }
+
+    /// Whether the ray's line meets the bounding box.
+    fn may_hit(&self, origin: DVec2, direction: DVec2) -> bool {
+        let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
+            return false;
+        };
+        let (low, high) = (
+            DVec2::new(first.point.re, -self.peak) - origin,
+            DVec2::new(last.point.re, self.peak) - origin,
+        );
+        let sides = [low, high, DVec2::new(low.x, high.y), DVec2::new(high.x, low.y)]
+            .map(|v| v.perp_dot(direction));
+        let slack = 1e-12 * self.peak * direction.length();
+        sides.iter().any(|s| *s >= -slack) && sides.iter().any(|s| *s <= slack)
+    }
+
+    /// The first hit of the curve above y = 0.
+    ///
+    /// On the ray, F(X) = cross(f(X) - origin, direction) vanishes. Its slope vanishes where the curve is
+    /// parallel to the ray: at most once between two knots. So F is monotone on known intervals, and
+    /// no root can be missed.
+    fn first_on_curve(
+        &self,
+        origin: DVec2,
+        direction: DVec2,
+        t_min: f64,
+        side: MetalSide,
+    ) -> Option<FloorHit> {
+        let along = Complex64::new(direction.x, direction.y);
+        let cross = |v: Complex64| (v.conj() * along).im;
+        let offset = Complex64::new(origin.x, origin.y);
+        let height = |knot: &Knot| cross(knot.point - offset);
+        let mut best: Option<FloorHit> = None;
+        let mut consider = |a: &Knot, b: &Knot| {
+            let (at_a, at_b) = (height(a), height(b));
+            if at_a * at_b > 0.0 {
+                return;
+            }
+            let root = root_in_bracket((a.x_virtual, at_a), (b.x_virtual, at_b), |x| {
+                let here = knot(&self.map, x);
+                (height(&here), cross(here.tangent))
+            });
+            let here = knot(&self.map, root);
+            let t = ((here.point - offset) * along.conj()).re / along.norm_sqr();
+            let normal = Complex64::i() * here.tangent / here.tangent.norm();
+            let entering = (normal.conj() * along).re < 0.0;
+            if entering && t >= t_min && best.is_none_or(|hit| t < hit.t) {
+                let normal = DVec2::new(normal.re, normal.im);
+                best = Some(FloorHit { t, x_virtual: root, normal, side });
+            }
+        };
+        for pair in self.knots.windows(2) {
+            let [a, b] = pair else { continue };
+            let (slope_a, slope_b) = (cross(a.tangent), cross(b.tangent));
+            if slope_a * slope_b < 0.0 {
+                let ends = ((a.x_virtual, slope_a), (b.x_virtual, slope_b));
+                let turning = root_in_bracket(ends.0, ends.1, |x| {
+                    let jet = self.map.jet(x.into());
+                    (cross(jet.f1), cross(jet.f2))
+                });
+                let turning = knot(&self.map, turning);
+                consider(a, &turning);
+                consider(&turning, b);
+            } else {
+                consider(a, b);
+            }
+        }
+        best
+    }
+
+    /// A hit of the vertical cuts through the metal.
+    fn first_on_ends(&self, origin: DVec2, direction: DVec2, t_min: f64) -> Option<FloorHit> {
+        let ends = [(self.knots.first()?, -1.0), (self.knots.last()?, 1.0)];
+        ends.into_iter()
+            .filter(|(_, outward)| outward * direction.x < 0.0)
+            .map(|(end, outward)| {
+                let t = (end.point.re - origin.x) / direction.x;
+                let inside = (origin.y + t * direction.y).abs() < end.point.im;
+                let normal = DVec2::new(outward, 0.0);
+                (inside, FloorHit { t, x_virtual: end.x_virtual, normal, side: MetalSide::End })
+            })
+            .find(|(inside, hit)| *inside && hit.t >= t_min)
+            .map(|(_, hit)| hit)
+    }
+}
+
+fn knot(map: &ConformalMap, x_virtual: f64) -> Knot {
+    let jet = map.jet(x_virtual.into());
+    Knot { x_virtual, point: jet.f, tangent: jet.f1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::transformation::GaussianMap;
+
+    fn map(w: f64, h: f64) -> ConformalMap {
+        GaussianMap::new(w, h).expect("a valid map").into()
+    }
+
+    /// The first entry into the metal by walking: slow, and blind to what is thinner than a step.
+    fn by_walking(map: &ConformalMap, reach: f64, origin: DVec2, direction: DVec2) -> Option<f64> {
+        let inside = |t: f64| {
+            let p = origin + t * direction;
+            p.x.abs() <= reach && p.y.abs() < map.floor_height_at(p.x)
+        };
+        let (step, count) = (0.01 / direction.length(), 12_000);
+        let first = (1..count).map(|k| f64::from(k) * step).find(|t| inside(*t))?;
+        let (mut low, mut high) = (first - step, first);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if inside(middle) { high = middle } else { low = middle }
+        }
+        Some(high)
+    }
+
+    #[test]
+    fn is_met_from_all_sides() {
+        let map = map(10.02, 4.25);
+        let curve = FloorCurve::new(map, -25.0, 25.0);
+        assert_eq!(curve.knots.len(), 4);
+        let hit =
+            curve.first_hit(DVec2::new(0.0, 30.0), DVec2::new(0.0, -2.0), 0.0).expect("a hit");
+        assert!((hit.t - 0.5 * (30.0 - 4.25)).abs() < 1e-13 && hit.side == MetalSide::Upper);
+        assert!((hit.normal - DVec2::Y).length() < 1e-13);
+        let hit = curve.first_hit(DVec2::new(0.0, -30.0), DVec2::Y, 0.0).expect("a hit");
+        assert!((hit.t - 25.75).abs() < 1e-13 && hit.side == MetalSide::Lower);
+        assert!((hit.normal + DVec2::Y).length() < 1e-13);
+        let hit = curve.first_hit(DVec2::new(-40.0, 0.0), DVec2::X, 0.0).expect("a hit");
+        assert!(
+            (hit.t - 15.0).abs() < 1e-13 && hit.side == MetalSide::End && hit.normal == -DVec2::X
+        );
+        assert_eq!(curve.first_hit(DVec2::new(-40.0, 4.26), DVec2::X, 0.0), None);
+        assert_eq!(curve.first_hit(DVec2::new(-40.0, 0.0), DVec2::X, 15.1), None);
+        assert_eq!(curve.first_hit(DVec2::new(-40.0, 0.0), -DVec2::X, 0.0), None);
+        assert_eq!(curve.first_hit(DVec2::ZERO, DVec2::ZERO, 0.0), None);
+        assert_eq!(curve.first_hit(DVec2::NAN, DVec2::X, 0.0), None);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(300))]
+
+        #[test]
+        fn agrees_with_walking(
+            w in 3.0_f64..12.0, ratio in 0.05_f64..0.88, x in -40.0_f64..40.0, up in -1.5_f64..1.5,
+            aim in -25.0_f64..25.0, share in -1.2_f64..1.2, length in 0.1_f64..10.0,
+        ) {
+            let map = map(w, ratio * w);
+            let curve = FloorCurve::new(map, -25.0, 25.0);
+            let origin = DVec2::new(x, up * ratio * w);
+            prop_assume!(x.abs() > 25.0 || origin.y.abs() > map.floor_height_at(x) + 0.02);
+            let target = DVec2::new(aim, share * map.floor_height_at(aim));
+            let direction = (target - origin).normalize() * length;
+            let hit = curve.first_hit(origin, direction, 0.0);
+            let walked = by_walking(&map, 25.0, origin, direction);
+            match (hit, walked) {
+                (Some(hit), Some(t)) => {
+                    // Walking may step over a corner; the exact hit is then earlier, and real.
+                    let earlier = hit.t < t && (t - hit.t) * length > 0.005;
+                    prop_assert!(earlier || (hit.t - t).abs() * length < 1e-9, "{hit:?} {t}");
+                }
+                (None, Some(t)) => prop_assert!(false, "missed the hit at {t}"),
+                _ => {}
+            }
+            if let Some(hit) = hit {
+                let point = origin + hit.t * direction;
+                let height = map.floor_height_at(point.x);
+                prop_assert!(hit.side == MetalSide::End || (point.y.abs() - height).abs() < 1e-10);
+                prop_assert!((hit.normal.length() - 1.0).abs() < 1e-14);
+                prop_assert!(hit.normal.dot(direction) < 0.0);
+                // A reflected ray does not hit the same place again, where the metal is thicker than rounding.
+                let reflected = direction - 2.0 * direction.dot(hit.normal) * hit.normal;
+                if let Some(next) = curve.first_hit(point, reflected, 0.0) {
+                    prop_assert!(next.t * length > 1e-9 || height < 1e-9);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! One ray in virtual space: its equations of motion and the ways to move along it.
+
+use glam::DMat3;
+use num_complex::Complex64;
+
+use super::frame::{Frame, transport};
+use crate::propagation::dormand_prince::{self, ErrorScale, Slope};
+use crate::transformation::{ConformalMap, MapJet};
+
+/// Where a ray is, with the map there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    /// Optical path since the start over c².
+    pub tau: f64,
+    /// Virtual position.
+    pub zeta: Complex64,
+    /// P = dζ/dτ.
+    pub momentum: Complex64,
+    /// Position along z.
+    pub z: f64,
+    /// Angle about the ray by which the field has turned against the frame of [`Frame`].
+    pub theta: f64,
+    /// The map at ζ.
+    pub jet: MapJet,
+    /// dP/dτ.
+    pub force: Complex64,
+}
+
+/// A step that may be taken.
+pub(super) struct Trial {
+    pub end: Point,
+    /// Estimated error over the allowed one.
+    pub error: f64,
+    pub evaluations: u32,
+}
+
+/// A ray's constants, and how accurately to follow it.
+pub(super) struct Course<'a> {
+    map: &'a ConformalMap,
+    p_z: f64,
+    strength: f64,
+    scale: f64,
+    allowed: ErrorScale<4, 2>,
+    nudge_reach: f64,
+}
+
+/// Local error allowed in a step over the tolerance of the whole path; measured, see the tests.
+const LOCAL_SHARE: f64 = 1.0;
+
+impl<'a> Course<'a> {
+    /// `lever` is the length over which errors of direction grow into errors of position.
+    pub fn new(map: &'a ConformalMap, p_z: f64, strength: f64, tolerance: f64, lever: f64) -> Self {
+        let local = LOCAL_SHARE * tolerance.max(1e-12);
+        let (scale, direction) = (map.scale(), local / lever);
+        let allowed = ErrorScale {
+            state: [local, local, direction, direction],
+            // The field's angle is wanted in radians, not in cm.
+            quadrature: [local, 10.0 * local],
+        };
+        // The error of `nudge` grows with the fifth power of its length.
+        let nudge_reach = scale * 0.06 * (tolerance.max(1e-12) / 1e-6).powf(0.2);
+        Self { map, p_z, strength, scale, allowed, nudge_reach }
+    }
+
+    pub fn p_z(&self) -> f64 {
+        self.p_z
+    }
+
+    /// The length over which the map varies.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The start of the path, `p` the transverse wave vector.
+    pub fn start(&self, zeta: Complex64, p: Complex64, z: f64) -> Point {
+        let jet = self.map.jet(zeta);
+        let momentum = self.on_shell(jet.f1.conj() * p, &jet);
+        self.point_with(jet, 0.0, zeta, momentum, z, 0.0)
+    }
+
+    /// `momentum` with its length made to fit |P|² = c² - p_z² |f'|².
+    pub fn on_shell(&self, momentum: Complex64, jet: &MapJet) -> Complex64 {
+        let axial = self.p_z * self.p_z * jet.f1.norm_sqr();
+        let square = (self.strength * self.strength - axial).max(0.0);
+        let present = momentum.norm_sqr();
+        if present > 0.0 { momentum * (square / present).sqrt() } else { momentum }
+    }
+
+    pub fn first_stride(&self) -> f64 {
+        0.4 * self.scale
+    }
+
+    /// The longest step whose ends tell what happens in between.
+    pub fn longest_stride(&self, here: &Point) -> f64 {
+        let share = if self.is_straight() { 0.5 } else { 1.2 };
+        share * self.scale.max(here.zeta.norm() / 3.0) / self.strength
+    }
+
+    /// A step meant to end a little beyond the border, which is `time` away by extrapolation.
+    pub fn overshoot(&self, time: f64) -> f64 {
+        time + 0.3 * self.nudge_reach
+    }
+
+    pub fn step_factor(&self, error: f64) -> f64 {
+        dormand_prince::step_factor(error)
+    }
+
+    fn is_straight(&self) -> bool {
+        self.p_z == 0.0
+    }
+
+    /// One step of length `h`, of any sign.
+    pub fn step(&self, from: &Point, h: f64) -> Trial {
+        if self.is_straight() {
+            return Trial { end: self.coast(from, h), error: 0.0, evaluations: 1 };
+        }
+        let state = [from.zeta.re, from.zeta.im, from.momentum.re, from.momentum.im];
+        let first = self.slope(&from.jet, from.momentum);
+        let step = dormand_prince::step(&state, first, h, &self.allowed, |y| {
+            let momentum = Complex64::new(y[2], y[3]);
+            self.slope(&self.map.jet(Complex64::new(y[0], y[1])), momentum)
+        });
+        let [x, y, px, py] = step.state;
+        let end = self.point(
+            from.tau + h,
+            Complex64::new(x, y),
+            Complex64::new(px, py),
+            from.z + step.quadrature[0],
+            from.theta + step.quadrature[1],
+        );
+        Trial { end, error: step.error, evaluations: dormand_prince::EVALUATIONS + 1 }
+    }
+
+    /// A move by `h` with the cheapest method that is accurate enough for its length, and the number of
+    /// evaluations.
+    pub fn shift(&self, from: &Point, h: f64) -> (Point, u32) {
+        if self.is_straight() || h.abs() <= 1e-4 * self.scale {
+            (self.coast(from, h), 1)
+        } else if h.abs() <= self.nudge_reach {
+            (self.nudge(from, h), 3)
+        } else {
+            let trial = self.step(from, h);
+            (trial.end, trial.evaluations)
+        }
+    }
+
+    /// Taylor's formula of order two; exact for straight rays.
+    fn coast(&self, from: &Point, h: f64) -> Point {
+        let slope = self.slope(&from.jet, from.momentum);
+        let gradient = 2.0 * self.p_z * (from.jet.f1.conj() * from.jet.f2 * from.momentum).re;
+        self.point(
+            from.tau + h,
+            from.zeta + h * (from.momentum + 0.5 * h * from.force),
+            from.momentum + h * from.force,
+            from.z + h * (slope.quadrature[0] + 0.5 * h * gradient),
+            from.theta + h * slope.quadrature[1],
+        )
+    }
+
+    /// Nyström's method of order 4 (Hairer, Nørsett & Wanner, section II.14).
+    fn nudge(&self, from: &Point, h: f64) -> Point {
+        let first = self.slope(&from.jet, from.momentum);
+        let middle = from.momentum + 0.5 * h * from.force;
+        let zeta = from.zeta + 0.5 * h * (from.momentum + 0.25 * h * from.force);
+        let second = self.slope(&self.map.jet(zeta), middle);
+        let middle_force = Complex64::new(second.state[2], second.state[3]);
+        let zeta = from.zeta + h * (from.momentum + 0.5 * h * middle_force);
+        let third = self.slope(&self.map.jet(zeta), from.momentum + h * middle_force);
+        let last_force = Complex64::new(third.state[2], third.state[3]);
+        let simpson = |k: usize| {
+            h / 6.0 * (first.quadrature[k] + 4.0 * second.quadrature[k] + third.quadrature[k])
+        };
+        self.point(
+            from.tau + h,
+            from.zeta + h * (from.momentum + h / 6.0 * (from.force + 2.0 * middle_force)),
+            from.momentum + h / 6.0 * (from.force + 4.0 * middle_force + last_force),
+            from.z + simpson(0),
+            from.theta + simpson(1),
+        )
+    }
+
+    fn point(&self, tau: f64, zeta: Complex64, momentum: Complex64, z: f64, theta: f64) -> Point {
+        self.point_with(self.map.jet(zeta), tau, zeta, momentum, z, theta)
+    }
+
+    fn point_with(
+        &self,
+        jet: MapJet,
+        tau: f64,
+        zeta: Complex64,
+        momentum: Complex64,
+        z: f64,
+        theta: f64,
+    ) -> Point {
+        Point { tau, zeta, momentum, z, theta, jet, force: self.force(&jet) }
+    }
+
+    #[inline]
+    fn force(&self, jet: &MapJet) -> Complex64 {
+        -(self.p_z * self.p_z) * (jet.f1 * jet.f2.conj())
+    }
+
+    /// The equations of motion for (X, Y, P_X, P_Y) and the quadratures z and θ.
+    #[inline]
+    fn slope(&self, jet: &MapJet, momentum: Complex64) -> Slope<4, 2> {
+        let force = self.force(jet);
+        let square = jet.f1.norm_sqr();
+        let stretch = square.sqrt();
+        // With σ = p_z |f'|/c the sine of the ray's angle to the virtual plane,
+        // dθ/dτ = -σ/(1 + |σ|) Im(P f''/f').
+        let turn = (momentum * jet.f2 * jet.f1.conj()).im;
+        let rate = -self.p_z * turn / (stretch * (self.strength + self.p_z.abs() * stretch));
+        Slope {
+            state: [momentum.re, momentum.im, force.re, force.im],
+            quadrature: [self.p_z * square, rate],
+        }
+    }
+
+    /// The rotation of the transverse field between two points of the path.
+    pub fn transport(&self, start: &Point, end: &Point) -> DMat3 {
+        let frame = |point: &Point| Frame::new(point.momentum, self.p_z, &point.jet);
+        transport(&frame(start), &frame(end), end.theta - start.theta)
+    }
+}

@@ -1,0 +1,283 @@
+//! Where a ray meets the border: the first crossing within a step, and landing on it.
+
+use super::Boundary;
+use super::course::{Course, Point};
+use crate::geometry::Extent;
+use crate::transformation::{Truncation, root_in_bracket};
+
+/// Rates below this count as going along the border.
+const ALONG: f64 = 1e-14;
+
+/// Steps are not split at less than this share of the map's scale: the interpolation is exact there.
+const SHORTEST_SPLIT: f64 = 1e-3;
+
+/// A landing this near to the border is exact, relative to the lengths at hand.
+const LANDED: f64 = 1e-15;
+
+/// What counts as having missed another part of the border, relative to the map's scale.
+const MISSED: f64 = 1e-11;
+
+const MAX_CORRECTIONS: u32 = 12;
+
+/// A coordinate's value and its first two derivatives by τ.
+#[derive(Clone, Copy, Debug)]
+struct Motion {
+    value: f64,
+    rate: f64,
+    bend: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Coordinate {
+    X,
+    Y,
+    VirtualY,
+    Z,
+}
+
+/// The distance of a coordinate from its limit, positive inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gauge {
+    boundary: Boundary,
+    coordinate: Coordinate,
+    sign: f64,
+    limit: f64,
+}
+
+impl Gauge {
+    fn at(&self, point: &Point, p_z: f64) -> Motion {
+        let (jet, velocity) = (&point.jet, point.momentum);
+        let (value, rate, bend) = match self.coordinate {
+            Coordinate::VirtualY => (point.zeta.im, velocity.im, point.force.im),
+            Coordinate::X | Coordinate::Y => {
+                let rate = jet.f1 * velocity;
+                let bend = jet.f2 * velocity * velocity + jet.f1 * point.force;
+                if self.coordinate == Coordinate::X {
+                    (jet.f.re, rate.re, bend.re)
+                } else {
+                    (jet.f.im, rate.im, bend.im)
+                }
+            }
+            Coordinate::Z => {
+                let bend = 2.0 * p_z * (jet.f1.conj() * jet.f2 * velocity).re;
+                (point.z, p_z * jet.f1.norm_sqr(), bend)
+            }
+        };
+        let sign = self.sign;
+        Motion { value: sign * (value - self.limit), rate: sign * rate, bend: sign * bend }
+    }
+}
+
+impl Motion {
+    /// When the value next falls through zero, by extrapolation; infinity for never.
+    fn time_ahead(&self) -> f64 {
+        let Self { value, rate, bend } = *self;
+        let discriminant = rate * rate - 2.0 * value * bend;
+        if discriminant < 0.0 || discriminant.is_nan() {
+            return f64::INFINITY;
+        }
+        let root = discriminant.sqrt();
+        if rate < 0.0 {
+            2.0 * value / (root - rate)
+        } else if bend < 0.0 {
+            (rate + root) / -bend
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// The time (of any sign) to the nearest zero; to the nearest extremum where there is none.
+    fn time_to_zero(&self) -> f64 {
+        let Self { value, rate, bend } = *self;
+        let discriminant = rate * rate - 2.0 * value * bend;
+        if discriminant >= 0.0 {
+            let steep = rate + discriminant.sqrt().copysign(rate);
+            if steep == 0.0 { 0.0 } else { -2.0 * value / steep }
+        } else {
+            -rate / bend
+        }
+    }
+}
+
+/// What a step has to do with the border.
+pub(super) enum Crossing {
+    /// It stays inside.
+    None,
+    /// It may touch the border at this share of the step: go there and look.
+    Unclear { share: f64 },
+    /// It crosses, first at about this share of the step.
+    At { gauge: Gauge, share: f64 },
+}
+
+/// A finished landing.
+pub(super) struct Landing {
+    pub outcome: Option<(Point, Boundary)>,
+    pub evaluations: u32,
+}
+
+/// The distances from all parts of the border.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gauges {
+    all: [Gauge; 6],
+}
+
+impl Gauges {
+    pub fn new(cut: &Truncation, extent: Extent) -> Self {
+        let gauge = |boundary, coordinate, sign, limit| Gauge { boundary, coordinate, sign, limit };
+        Self {
+            all: [
+                gauge(Boundary::Floor, Coordinate::VirtualY, 1.0, 0.0),
+                gauge(Boundary::XMin, Coordinate::X, 1.0, cut.x_min),
+                gauge(Boundary::XMax, Coordinate::X, -1.0, cut.x_max),
+                gauge(Boundary::YMax, Coordinate::Y, -1.0, cut.y_max),
+                gauge(Boundary::ZMin, Coordinate::Z, 1.0, extent.min),
+                gauge(Boundary::ZMax, Coordinate::Z, -1.0, extent.max),
+            ],
+        }
+    }
+
+    fn finite(&self) -> impl Iterator<Item = &Gauge> {
+        self.all.iter().filter(|gauge| gauge.limit.is_finite())
+    }
+
+    /// The part of the border a ray starts on if it goes outwards from there.
+    pub fn leaving_at(&self, course: &Course, point: &Point, slack: f64) -> Option<Boundary> {
+        self.finite()
+            .map(|gauge| (gauge, gauge.at(point, course.p_z())))
+            .filter(|(_, motion)| motion.value <= slack && motion.rate < -ALONG)
+            .min_by(|a, b| a.1.rate.total_cmp(&b.1.rate))
+            .map(|(gauge, _)| gauge.boundary)
+    }
+
+    /// When the ray next meets the border, by extrapolation.
+    pub fn time_ahead(&self, course: &Course, point: &Point) -> f64 {
+        self.finite()
+            .map(|gauge| gauge.at(point, course.p_z()).time_ahead())
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The first crossing of the border in a step of length `reach` from `a` to `b`.
+    pub fn first_crossing(&self, course: &Course, a: &Point, b: &Point, reach: f64) -> Crossing {
+        let (mut first, mut earliest) = (Crossing::None, f64::INFINITY);
+        for &gauge in self.finite() {
+            let (from, to) = (gauge.at(a, course.p_z()), gauge.at(b, course.p_z()));
+            let (share, found) = if to.value < 0.0 {
+                let share = Hermite::new(from, to, reach).first_fall();
+                (share, Crossing::At { gauge, share })
+            } else if from.rate < 0.0 && to.rate > 0.0 {
+                let hermite = Hermite::new(from, to, reach);
+                let (share, least) = hermite.minimum();
+                // The interpolation is not trusted beyond this.
+                let relative = reach / course.scale();
+                let margin = 2e-3 * course.scale() * relative.powi(4);
+                if share * relative > SHORTEST_SPLIT {
+                    if least >= margin {
+                        continue;
+                    }
+                    (share, Crossing::Unclear { share })
+                } else {
+                    if least >= 0.0 {
+                        continue;
+                    }
+                    (share, Crossing::At { gauge, share })
+                }
+            } else {
+                continue;
+            };
+            if share < earliest {
+                (first, earliest) = (found, share);
+            }
+        }
+        first
+    }
+
+    /// Lands on the border: `ahead` of `here`, at the given gauge, as far as interpolation can tell. `reach`
+    /// limits each correction.
+    pub fn land(
+        &self,
+        course: &Course,
+        mut here: Point,
+        mut ahead: f64,
+        mut gauge: Gauge,
+        reach: f64,
+    ) -> Landing {
+        let mut evaluations = 0;
+        for _ in 0..MAX_CORRECTIONS {
+            if ahead != 0.0 {
+                let (point, cost) = course.shift(&here, ahead);
+                here = point;
+                evaluations += cost;
+            }
+            let motion = gauge.at(&here, course.p_z());
+            let remaining = motion.time_to_zero();
+            if remaining.abs() > reach || remaining.is_nan() {
+                return Landing { outcome: None, evaluations };
+            }
+            let exact = LANDED * (course.scale() + gauge.limit.abs());
+            if motion.value.abs() > exact && remaining != 0.0 {
+                ahead = remaining;
+                continue;
+            }
+            // Near an edge the interpolation may have taken the later of two crossings for the first.
+            let missed = self.finite().find(|other| {
+                let motion = other.at(&here, course.p_z());
+                motion.value < -MISSED * course.scale() && motion.rate < 0.0
+            });
+            let Some(&other) = missed else {
+                return Landing { outcome: Some((here, gauge.boundary)), evaluations };
+            };
+            gauge = other;
+            ahead = other.at(&here, course.p_z()).time_to_zero().max(-reach);
+        }
+        // Grazing incidence: as near as rounding allows.
+        Landing { outcome: Some((here, gauge.boundary)), evaluations }
+    }
+}
+
+/// The polynomial of degree five with given values and two derivatives at both ends of a step, over
+/// the share 0 <= s <= 1 of the step.
+struct Hermite([f64; 6]);
+
+impl Hermite {
+    fn new(from: Motion, to: Motion, reach: f64) -> Self {
+        let scaled = |m: Motion| (m.value, m.rate * reach, 0.5 * m.bend * reach * reach);
+        let ((v0, r0, b0), (v1, r1, b1)) = (scaled(from), scaled(to));
+        let (value, rate, bend) = (v1 - v0 - r0 - b0, r1 - r0 - 2.0 * b0, b1 - b0);
+        let third = 10.0 * value - 4.0 * rate + bend;
+        let fourth = -15.0 * value + 7.0 * rate - 2.0 * bend;
+        let fifth = 6.0 * value - 3.0 * rate + bend;
+        Self([v0, r0, b0, third, fourth, fifth])
+    }
+
+    /// Where it first falls through zero, being negative at the end.
+    fn first_fall(&self) -> f64 {
+        let c = &self.0;
+        let end: f64 = c.iter().sum();
+        if c[0] > 0.0 {
+            return root_in_bracket((0.0, c[0]), (1.0, end), |s| horner(c, s));
+        }
+        // It starts at zero, and that root is divided out.
+        let deflated = &c[1..];
+        if deflated[0] <= 0.0 {
+            return 0.0;
+        }
+        root_in_bracket((0.0, deflated[0]), (1.0, end - c[0]), |s| horner(deflated, s))
+    }
+
+    /// Place and value of the minimum between a falling start and a rising end.
+    fn minimum(&self) -> (f64, f64) {
+        let c = &self.0;
+        let slope = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4], 5.0 * c[5]];
+        let share =
+            root_in_bracket((0.0, slope[0]), (1.0, slope.iter().sum()), |s| horner(&slope, s));
+        (share, horner(c, share).0)
+    }
+}
+
+/// Value and slope of a polynomial, its coefficients in rising order.
+fn horner(coefficients: &[f64], s: f64) -> (f64, f64) {
+    coefficients
+        .iter()
+        .rev()
+        .fold((0.0, 0.0), |(value, slope), c| (value * s + c, slope * s + value))
+}

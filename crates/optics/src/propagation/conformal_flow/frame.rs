@@ -1,0 +1,50 @@
+//! Transport of the polarization along a ray in virtual space.
+//!
+//! In an isotropic medium the field turns as de/ds = -(e·∇ln n) t (Rytov): it is carried parallel in the
+//! optical metric n² dr², which in virtual space reads c² (dX² + dY²) + n² dz². In an orthonormal
+//! frame along X, Y, z this is a turn of angular velocity p_z |f'| z × g, g = ∇ln n = -conj(f''/f'). The ray
+//! turns likewise, so relative to a frame that is bound to the ray's direction only one angle is left.
+
+use glam::{DMat3, DVec3};
+use num_complex::Complex64;
+
+use crate::transformation::MapJet;
+
+/// A frame bound to a ray's direction in virtual space, and how that space is turned physically.
+pub(super) struct Frame {
+    /// The smallest rotation that takes the z-axis (-z for p_z < 0) into the ray; it is regular both for
+    /// rays along z and for rays across.
+    rotation: DMat3,
+    /// Rotation by arg f' about z, from virtual to physical components.
+    local: DMat3,
+    side: f64,
+}
+
+impl Frame {
+    pub fn new(momentum: Complex64, p_z: f64, jet: &MapJet) -> Self {
+        let axial = p_z * jet.f1.norm();
+        let length = (momentum.norm_sqr() + axial * axial).sqrt();
+        let (tx, ty, sine) = (momentum.re / length, momentum.im / length, axial.abs() / length);
+        let side = 1.0_f64.copysign(p_z);
+        let bend = 1.0 / (1.0 + sine);
+        let rotation = DMat3::from_cols(
+            DVec3::new(1.0 - tx * tx * bend, -tx * ty * bend, -side * tx),
+            DVec3::new(-tx * ty * bend, 1.0 - ty * ty * bend, -side * ty),
+            DVec3::new(side * tx, side * ty, sine),
+        );
+        let turn = jet.f1 / jet.f1.norm();
+        Self { rotation, local: about_z(turn.re, turn.im), side }
+    }
+}
+
+/// The rotation of physical vectors from `start` to `end`, the field having turned by `theta` about the
+/// ray against the frames.
+pub(super) fn transport(start: &Frame, end: &Frame, theta: f64) -> DMat3 {
+    let (sin, cos) = (end.side * theta).sin_cos();
+    let (before, after) = (start.local * start.rotation, end.local * end.rotation);
+    after * about_z(cos, sin) * before.transpose()
+}
+
+fn about_z(cos: f64, sin: f64) -> DMat3 {
+    DMat3::from_cols(DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0), DVec3::Z)
+}

@@ -1,0 +1,354 @@
+//! The ray inside a cut conformal cloak, followed in virtual space.
+//!
+//! The index n = c/|f'| above the bumped floor comes from a conformal map x + iy = f(ζ), ζ = X + iY. With the
+//! wave vector p, its constant part p_z, P = conj(f') (p_x + i p_y), and τ = (optical path)/c²:
+//!
+//! dζ/dτ = P,  dP/dτ = -p_z² f' conj(f''),  dz/dτ = p_z |f'|²,  |P|² + p_z² |f'|² = c².
+//!
+//! These are Hamilton's equations of H = (|P|² + p_z² |f'|² - c²)/2, that is of p² = n². For p_z = 0 the
+//! path in ζ is a straight line; else the force is small and smooth, and the method of order 8 takes a
+//! handful of steps. Lengths are in cm, wave vectors in units of the vacuum wave number.
+
+mod course;
+mod crossing;
+mod frame;
+
+use glam::{DMat3, DVec3};
+use num_complex::Complex64;
+use thiserror::Error;
+
+use self::course::{Course, Point};
+use self::crossing::{Crossing, Gauges};
+use crate::geometry::Extent;
+use crate::transformation::{ConformalMap, Truncation};
+
+/// Which of the two mirror images of the half-space device is meant.
+#[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
+pub enum Half {
+    /// y >= 0.
+    Upper,
+    /// y <= 0: the mirror image of the upper half under y -> -y.
+    Lower,
+}
+
+impl Half {
+    /// Takes a vector of this half to the upper one, and back.
+    fn mirrored(self, v: DVec3) -> DVec3 {
+        match self {
+            Self::Upper => v,
+            Self::Lower => DVec3::new(v.x, -v.y, v.z),
+        }
+    }
+}
+
+/// A part of the border of one half.
+#[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
+pub enum Boundary {
+    /// The face at the least x.
+    XMin,
+    /// The face at the largest x.
+    XMax,
+    /// The face at the largest |y|.
+    YMax,
+    /// The face at the least z.
+    ZMin,
+    /// The face at the largest z.
+    ZMax,
+    /// The mirror, Y = 0.
+    Floor,
+}
+
+/// A point of one half of the device, known in physical and in virtual space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foothold {
+    /// The half it belongs to.
+    pub half: Half,
+    /// Where it is, cm.
+    pub position: DVec3,
+    /// The virtual point ζ, in the upper half for either half, cm.
+    pub virtual_position: Complex64,
+    /// The index there.
+    pub index: f64,
+}
+
+/// How a ray arrives at the border, still inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowEnd {
+    /// The part of the border.
+    pub boundary: Boundary,
+    /// Where: on the border, to continue from after a reflection; its index is the one inside.
+    pub at: Foothold,
+    /// The wave vector p before refraction or reflection, |p| = n.
+    pub wave_vector: DVec3,
+    /// The optical path from start to end, cm.
+    pub optical_path: f64,
+    /// The rotation of the transverse electric field (and of the direction) from start to end.
+    pub transport: DMat3,
+    /// The outward unit normal of the border; at the floor it points into the metal.
+    pub normal: DVec3,
+    /// Evaluations of the map's derivatives it took.
+    pub evaluations: u32,
+}
+
+/// Why a ray could not be followed.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum FlowError {
+    /// A coordinate is not a finite number.
+    #[error("position or wave vector is not finite")]
+    NotFinite,
+    /// The start is not inside the device or on its border.
+    #[error("the start lies outside the medium")]
+    Outside,
+    /// The wave vector is not one of the medium.
+    #[error("the wave vector has length {length}, the index is {index}")]
+    WaveVector {
+        /// |p|.
+        length: f64,
+        /// n at the start.
+        index: f64,
+    },
+    /// The ray stayed inside for too many steps; it may be trapped.
+    #[error("the ray did not leave within {MAX_STEPS} steps")]
+    StepLimit,
+}
+
+/// Steps after which a ray is given up; an ordinary one takes about ten.
+const MAX_STEPS: u32 = 2000;
+
+/// How far (relative to the map's scale) a start may lie outside by rounding.
+const BORDER_SLACK: f64 = 1e-9;
+
+/// One half of a conformal cloak cut to a box, and its mirror image under y -> -y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConformalFlow {
+    map: ConformalMap,
+    cut: Truncation,
+    extent: Extent,
+    strength: f64,
+    gauges: Gauges,
+    slack: f64,
+}
+
+impl ConformalFlow {
+    /// The medium n = c/|f'| of `map` inside `cut` and between the z of `extent`; `strength` is c, 1 for
+    /// the cloak that needs no reference medium.
+    #[must_use]
+    pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, strength: f64) -> Self {
+        let slack = BORDER_SLACK * map.scale();
+        Self { map, cut, extent, strength, gauges: Gauges::new(&cut, extent), slack }
+    }
+
+    /// The map.
+    #[must_use]
+    pub fn map(&self) -> &ConformalMap {
+        &self.map
+    }
+
+    /// The rectangle it is cut to (of the upper half).
+    #[must_use]
+    pub fn cut(&self) -> &Truncation {
+        &self.cut
+    }
+
+    /// Least and largest index.
+    #[must_use]
+    pub fn index_range(&self) -> (f64, f64) {
+        let (least, largest) = self.map.index_range(&self.cut);
+        (self.strength * least, self.strength * largest)
+    }
+
+    /// The index at a point of either half; None deep inside the metal, where the map has no inverse.
+    #[must_use]
+    pub fn index(&self, position: DVec3) -> Option<f64> {
+        let zeta = self.map.invert(Complex64::new(position.x, position.y.abs()))?;
+        Some(self.strength / self.map.jet(zeta).f1.norm())
+    }
+
+    /// Whether a point lies in the medium of either half, border included.
+    #[must_use]
+    pub fn contains(&self, position: DVec3) -> bool {
+        let (x, y) = (position.x, position.y.abs());
+        x >= self.cut.x_min
+            && x <= self.cut.x_max
+            && y <= self.cut.y_max
+            && self.extent.contains(position.z)
+            && (y > self.map.peak() || y >= self.map.floor_height_at(x))
+    }
+
+    /// Finds a point of one half, inside or on the border, in virtual space.
+    ///
+    /// # Errors
+    ///
+    /// If it is not finite, or outside.
+    pub fn foothold(&self, half: Half, position: DVec3) -> Result<Foothold, FlowError> {
+        if !position.is_finite() {
+            return Err(FlowError::NotFinite);
+        }
+        let local = half.mirrored(position);
+        let z = Complex64::new(local.x, local.y);
+        let mut zeta = self.map.invert(z).ok_or(FlowError::Outside)?;
+        // On the mirror by rounding means on the mirror.
+        if zeta.im.abs() <= self.slack {
+            zeta.im = 0.0;
+        }
+        let index = self.strength / self.map.jet(zeta).f1.norm();
+        let inside = zeta.im >= 0.0
+            && z.re >= self.cut.x_min - self.slack
+            && z.re <= self.cut.x_max + self.slack
+            && z.im <= self.cut.y_max + self.slack
+            && local.z >= self.extent.min - self.slack
+            && local.z <= self.extent.max + self.slack;
+        if inside && index.is_finite() {
+            Ok(Foothold { half, position, virtual_position: zeta, index })
+        } else {
+            Err(FlowError::Outside)
+        }
+    }
+
+    /// Follows a ray from a physical point to the border; see [`Self::advance_from`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::foothold`] and [`Self::advance_from`].
+    pub fn advance(
+        &self,
+        half: Half,
+        position: DVec3,
+        wave_vector: DVec3,
+        tolerance: f64,
+    ) -> Result<FlowEnd, FlowError> {
+        self.advance_from(&self.foothold(half, position)?, wave_vector, tolerance)
+    }
+
+    /// Follows a ray from a point inside or on the border to the next point of the border.
+    ///
+    /// `wave_vector` is the one inside the medium, |p| = n. `tolerance` (cm, at least 1e-12 is used) bounds
+    /// the error of position and optical path at the end, a tenth of it per cm that of the direction,
+    /// except for rays that leave at grazing incidence. A start on the border moving inwards, or along
+    /// it, goes on; one moving outwards ends at once.
+    ///
+    /// # Errors
+    ///
+    /// If the wave vector does not belong to the medium, or the ray does not come out.
+    pub fn advance_from(
+        &self,
+        start: &Foothold,
+        wave_vector: DVec3,
+        tolerance: f64,
+    ) -> Result<FlowEnd, FlowError> {
+        if !wave_vector.is_finite() {
+            return Err(FlowError::NotFinite);
+        }
+        let (position, p) = (start.half.mirrored(start.position), start.half.mirrored(wave_vector));
+        let length = p.length();
+        if (length - start.index).abs() > 1e-6 * start.index {
+            return Err(FlowError::WaveVector { length, index: start.index });
+        }
+        let course = Course::new(&self.map, p.z, self.strength, tolerance, self.lever());
+        let begin = course.start(start.virtual_position, Complex64::new(p.x, p.y), position.z);
+        let arrival = self.follow(&course, begin)?;
+        Ok(self.end(start, &course, &begin, &arrival))
+    }
+
+    /// The distance over which an error of direction grows into one of position.
+    fn lever(&self) -> f64 {
+        0.5 * (self.cut.x_max - self.cut.x_min).max(self.cut.y_max)
+    }
+
+    fn follow(&self, course: &Course, begin: Point) -> Result<Arrival, FlowError> {
+        let mut here = begin;
+        let mut evaluations = 1;
+        if let Some(boundary) = self.gauges.leaving_at(course, &here, self.slack) {
+            return Ok(Arrival { point: here, boundary, evaluations });
+        }
+        let mut stride = course.first_stride();
+        let mut split = None;
+        for _ in 0..MAX_STEPS {
+            let reach = split.take().unwrap_or_else(|| {
+                stride
+                    .min(course.longest_stride(&here))
+                    .min(course.overshoot(self.gauges.time_ahead(course, &here)))
+            });
+            let trial = course.step(&here, reach);
+            evaluations += trial.evaluations;
+            if trial.error > 1.0 || trial.error.is_nan() {
+                stride = reach * course.step_factor(trial.error);
+                if stride < 1e-9 * self.slack {
+                    break;
+                }
+                continue;
+            }
+            stride = reach * course.step_factor(trial.error);
+            match self.gauges.first_crossing(course, &here, &trial.end, reach) {
+                Crossing::None => here = trial.end,
+                Crossing::Unclear { share } => split = Some(share * reach),
+                Crossing::At { gauge, share } => {
+                    let landing = if share < 0.5 {
+                        self.gauges.land(course, here, share * reach, gauge, reach)
+                    } else {
+                        self.gauges.land(course, trial.end, (share - 1.0) * reach, gauge, reach)
+                    };
+                    evaluations += landing.evaluations;
+                    let Some((point, boundary)) = landing.outcome else { break };
+                    return Ok(Arrival { point, boundary, evaluations });
+                }
+            }
+        }
+        Err(FlowError::StepLimit)
+    }
+
+    fn end(&self, start: &Foothold, course: &Course, begin: &Point, arrival: &Arrival) -> FlowEnd {
+        let half = start.half;
+        let Arrival { mut point, boundary, evaluations } = *arrival;
+        let mut position = DVec3::new(point.jet.f.re, point.jet.f.im, point.z);
+        let inward = Complex64::i() * point.jet.f1 / point.jet.f1.norm();
+        let normal = match boundary {
+            Boundary::XMin => DVec3::NEG_X,
+            Boundary::XMax => DVec3::X,
+            Boundary::YMax => DVec3::Y,
+            Boundary::ZMin => DVec3::NEG_Z,
+            Boundary::ZMax => DVec3::Z,
+            Boundary::Floor => DVec3::new(-inward.re, -inward.im, 0.0),
+        };
+        // What is left of the distance to the border is rounding.
+        match boundary {
+            Boundary::XMin => position.x = self.cut.x_min,
+            Boundary::XMax => position.x = self.cut.x_max,
+            Boundary::YMax => position.y = self.cut.y_max,
+            Boundary::ZMin => position.z = self.extent.min,
+            Boundary::ZMax => position.z = self.extent.max,
+            Boundary::Floor => point.zeta.im = 0.0,
+        }
+        point.momentum = course.on_shell(point.momentum, &point.jet);
+        let p = point.momentum / point.jet.f1.conj();
+        let turn = course.transport(begin, &point);
+        let transport = match half {
+            Half::Upper => turn,
+            Half::Lower => {
+                let mirror = DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0));
+                mirror * turn * mirror
+            }
+        };
+        FlowEnd {
+            boundary,
+            at: Foothold {
+                half,
+                position: half.mirrored(position),
+                virtual_position: point.zeta,
+                index: self.strength / point.jet.f1.norm(),
+            },
+            wave_vector: half.mirrored(DVec3::new(p.re, p.im, course.p_z())),
+            optical_path: self.strength * self.strength * point.tau,
+            transport,
+            normal: half.mirrored(normal),
+            evaluations,
+        }
+    }
+}
+
+/// The last point of a path and where on the border it is.
+struct Arrival {
+    point: Point,
+    boundary: Boundary,
+    evaluations: u32,
+}
