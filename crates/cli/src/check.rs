@@ -4,7 +4,7 @@ use crate::arguments::SceneArguments;
 use crate::devices::fact_lines;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::render::{estimated_seconds, Studio};
+use cloakroom::render::{Studio, estimated_seconds};
 use cloakroom::scene::Show;
 use cloakroom::threads;
 use std::fmt::Write;

@@ -2,9 +2,9 @@
 
 use crate::arguments::DevicesArguments;
 use crate::report::{self, Failure};
-use cloakroom::device::{Entry, FactValue, CATALOGUE};
+use cloakroom::device::{CATALOGUE, Entry, FactValue};
 use cloakroom::keys::Values;
-use serde_json::{json, Map, Value};
+use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
 /// Prints the catalogue.

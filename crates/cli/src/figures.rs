@@ -2,7 +2,7 @@
 
 use crate::arguments::FiguresArguments;
 use crate::render::{picture, rgb, tell_rarities};
-use crate::report::{say, Failure};
+use crate::report::{Failure, say};
 use crate::scene;
 use cloakroom::illustration::{ScalarMap, SheetPanel, sheet};
 use cloakroom::output;
@@ -43,8 +43,7 @@ fn make(
         .map_err(Failure::from_error)?;
         let scene = &loaded.scene;
         let studio = Studio::new(scene).map_err(|e| scene::located(&loaded, &e))?;
-        let wanted =
-            if scene.picture.map.is_some() { Wanted::Everything } else { Wanted::Image };
+        let wanted = if scene.picture.map.is_some() { Wanted::Everything } else { Wanted::Image };
         let what = format!("figure {}", panel.name);
         let Rendered { picture, rarities } = picture(&studio, wanted, &what, stop)?;
         tell_rarities(&rarities);

@@ -35,8 +35,6 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Trace(arguments) => trace::run(arguments, stop),
         Command::Figures(arguments) => figures::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),
-        Command::Schema => {
-            report::print_json(&cloakroom::scene_file::schema())
-        }
+        Command::Schema => report::print_json(&cloakroom::scene_file::schema()),
     }
 }

@@ -2,11 +2,11 @@
 
 use crate::arguments::RenderArguments;
 use crate::progress;
-use crate::report::{say, Failure};
+use crate::report::{Failure, say};
 use crate::scene;
 use cloakroom::illustration::scalar_map;
 use cloakroom::output::{self, Format, Picture};
-use cloakroom::render::{self, Rendered, RenderError, Studio, Supervision, Wanted};
+use cloakroom::render::{self, RenderError, Rendered, Studio, Supervision, Wanted};
 use cloakroom::scene::Scene;
 use cloakroom::trace::Rarities;
 use std::path::PathBuf;
@@ -19,11 +19,8 @@ pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure
     let loaded = scene::load(&arguments.scene)?;
     let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
     let data = formats.iter().any(|(_, format)| *format != Format::Png);
-    let wanted = if data || loaded.scene.picture.map.is_some() {
-        Wanted::Everything
-    } else {
-        Wanted::Image
-    };
+    let wanted =
+        if data || loaded.scene.picture.map.is_some() { Wanted::Everything } else { Wanted::Image };
     for path in &arguments.outputs {
         output::check_writable(path).map_err(Failure::from_error)?;
     }
@@ -42,10 +39,7 @@ pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure
 
 /// The files to write with their formats.
 fn formats(outputs: &[PathBuf]) -> Result<Vec<(&PathBuf, Format)>, Failure> {
-    outputs
-        .iter()
-        .map(|path| Ok((path, Format::of(path).map_err(Failure::from_error)?)))
-        .collect()
+    outputs.iter().map(|path| Ok((path, Format::of(path).map_err(Failure::from_error)?))).collect()
 }
 
 /// Renders with a progress bar.
@@ -69,8 +63,9 @@ pub fn picture(
 pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure> {
     match scene.picture.map {
         None => output::to_srgb(picture).map_err(Failure::from_error),
-        Some(channel) => scalar_map(picture, channel, scene.picture.color_bar)
-            .map_err(Failure::from_error),
+        Some(channel) => {
+            scalar_map(picture, channel, scene.picture.color_bar).map_err(Failure::from_error)
+        }
     }
 }
 

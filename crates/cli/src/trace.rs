@@ -4,7 +4,7 @@ use crate::arguments::TraceArguments;
 use crate::report::{self, Failure};
 use crate::scene;
 use cloakroom::render;
-use cloakroom::trace::{trace_rays, Limits, RayError, RayRequest};
+use cloakroom::trace::{Limits, RayError, RayRequest, trace_rays};
 use std::io::Read;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;

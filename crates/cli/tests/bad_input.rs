@@ -102,10 +102,16 @@ fn truncated_images() {
 
 #[test]
 fn unknown_keys_name_the_nearest() {
-    small("[[device]]\nkind = \"square-cloak\"\nrotatoin = 3\n")
-        .refuses(&["scene.toml:6:1", "rotatoin", "rotation"]);
-    small("[[device]]\nkind = \"square-cloack\"\n")
-        .refuses(&["scene.toml:5:8", "square-cloack", "square-cloak"]);
+    small("[[device]]\nkind = \"square-cloak\"\nrotatoin = 3\n").refuses(&[
+        "scene.toml:6:1",
+        "rotatoin",
+        "rotation",
+    ]);
+    small("[[device]]\nkind = \"square-cloack\"\n").refuses(&[
+        "scene.toml:5:8",
+        "square-cloack",
+        "square-cloak",
+    ]);
     small("[camara]\n").refuses(&["scene.toml:4:", "camara", "camera"]);
 }
 
@@ -117,15 +123,19 @@ fn wrong_types_and_values() {
     small("position = [-100, inf, 0]\n").refuses(&["scene.toml:4:12", "finite"]);
     small("[[device]]\nkind = \"square-cloak\"\nside = -3\n")
         .refuses(&["scene.toml:6:8", "side is -3 cm"]);
-    small("[[device]]\nkind = \"double-gaussian-cloak\"\nh = 20\n").refuses(&["scene.toml:6:5", "h"]);
+    small("[[device]]\nkind = \"double-gaussian-cloak\"\nh = 20\n")
+        .refuses(&["scene.toml:6:5", "h"]);
     small("[photograph]\nwidth = -110\n").refuses(&["scene.toml:5:9", "width is -110 cm"]);
 }
 
 #[test]
 fn impossible_resolutions() {
     for size in ["[0, 0]", "[100000, 100000]"] {
-        Desk::with_scene(&format!("[camera]\nresolution = {size}\n"))
-            .refuses(&["scene.toml:2:14", "resolution", "65536"]);
+        Desk::with_scene(&format!("[camera]\nresolution = {size}\n")).refuses(&[
+            "scene.toml:2:14",
+            "resolution",
+            "65536",
+        ]);
     }
 }
 

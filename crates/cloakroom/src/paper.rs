@@ -116,8 +116,7 @@ pub fn select(names: &[String]) -> Result<Vec<(&'static Figure, Vec<&'static Pan
         }
     }
     let wanted = |panel: &Panel, figure: &Figure| {
-        names.is_empty()
-            || names.iter().any(|name| name == panel.name || is_figure(name, figure))
+        names.is_empty() || names.iter().any(|name| name == panel.name || is_figure(name, figure))
     };
     Ok(FIGURES
         .iter()
@@ -145,7 +144,10 @@ mod tests {
         let names = |list: &[&str]| {
             let list: Vec<String> = list.iter().map(|&name| name.to_owned()).collect();
             select(&list).map(|chosen| {
-                chosen.iter().flat_map(|(_, panels)| panels.iter().map(|p| p.name)).collect::<Vec<_>>()
+                chosen
+                    .iter()
+                    .flat_map(|(_, panels)| panels.iter().map(|p| p.name))
+                    .collect::<Vec<_>>()
             })
         };
         assert_eq!(names(&["8c", "6"]), Ok(vec!["6a", "6b", "6c", "6d", "8c"]));

@@ -38,7 +38,8 @@ fn launches(count: u32) -> impl Iterator<Item = Launch<2>> {
     // Additive recurrence with the powers of a root of x^6 = x + 1: evenly spread in 5 dimensions.
     let root: f64 = 1.134_724_138_401_519_4;
     (1..=count).map(move |n| {
-        let u: [f64; 5] = std::array::from_fn(|i| (f64::from(n) * root.powi(-(i as i32) - 1)).fract());
+        let u: [f64; 5] =
+            std::array::from_fn(|i| (f64::from(n) * root.powi(-(i as i32) - 1)).fract());
         let angle = std::f64::consts::TAU * u[0];
         let origin = DVec3::new(80.0 * angle.cos(), 80.0 * angle.sin(), 60.0 * (u[1] - 0.5));
         let target = DVec3::new(30.0 * (u[2] - 0.5), 24.0 * (u[3] - 0.5), 30.0 * (u[4] - 0.5));
@@ -78,7 +79,10 @@ fn leaves_are_sound_waves_in_air() {
                 assert!((leaf.direction.length() - 1.0).abs() < 1e-12, "{what}");
                 for i in 0..2 {
                     let size = leaf.electric[i].norm_squared();
-                    assert!((size - leaf.power[i]).abs() < 1e-9, "{what}{launch:?} {size} {leaf:?}");
+                    assert!(
+                        (size - leaf.power[i]).abs() < 1e-9,
+                        "{what}{launch:?} {size} {leaf:?}"
+                    );
                     let along = leaf.electric[i].dot_real(leaf.direction).norm();
                     assert!(along < 1e-9, "{what}{launch:?} {along}");
                 }
@@ -139,7 +143,9 @@ fn facts_are_finite_and_named_with_units() {
                 FactValue::Numbers(numbers) => numbers.iter().all(|number| number.is_finite()),
             };
             assert!(finite, "{} {}", entry.kind, fact.name);
-            assert!(fact.name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_'));
+            assert!(
+                fact.name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+            );
         }
     }
 }

@@ -133,12 +133,7 @@ impl Prism {
 }
 
 impl ConformalCell {
-    fn advance(
-        &self,
-        position: DVec3,
-        wave_vector: DVec3,
-        tolerance: f64,
-    ) -> Option<Passage> {
+    fn advance(&self, position: DVec3, wave_vector: DVec3, tolerance: f64) -> Option<Passage> {
         let start = self.flow.foothold(self.half, position).ok()?;
         let end = self.flow.advance_from(&start, wave_vector, tolerance).ok()?;
         let metal = end.boundary == Boundary::Floor;

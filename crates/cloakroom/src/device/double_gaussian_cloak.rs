@@ -85,7 +85,11 @@ fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
     Ok(match request.show {
         Show::Cloak => {
             let finish = if values.flag("fresnel") { Finish::Bare } else { Finish::Antireflection };
-            cloak(&ConformalFlow::new(map, cut, extent, strength(values, &map, &cut)), finish, extent)
+            cloak(
+                &ConformalFlow::new(map, cut, extent, strength(values, &map, &cut)),
+                finish,
+                extent,
+            )
         }
         Show::Bare => bare(map, cut, extent),
         Show::Mirror => super::flat_strip(cut.x_max, extent),

@@ -41,8 +41,8 @@ impl ColorBar {
         bar + 2 * gap + labels + gap + title.len() as u32 * letters.height()
     }
 
-    /// Draws it with the corner of the bar at `(left, top)`. The bar is as high as told; labels and
-    /// points reach beyond it by up to half the height of the text.
+    /// Draws it with the corner of the bar at `(left, top)`. Its colours are as high as told; labels,
+    /// points and the frame reach beyond them by up to half the height of the text.
     pub(super) fn draw(&self, canvas: &mut RgbImage, left: u32, top: u32, height: u32, text: u32) {
         let layout = self.layout(height, text);
         let Layout { axis, letters, line, bar, gap, labels, title } = layout;
@@ -83,16 +83,16 @@ impl ColorBar {
         height: u32,
         (width, line): (u32, u32),
     ) {
-        fill(canvas, left, top, width, height, INK);
-        let inner = width.saturating_sub(2 * line);
-        let x = left + i64::from(line);
-        let first = if self.scale.is_clipped().1 { 0 } else { line };
-        let last = height - if self.scale.is_clipped().0 { 0 } else { line.min(height) };
-        for row in first..last {
-            let place = 1.0 - (f64::from(row) + 0.5) / f64::from(height);
-            fill(canvas, x, top + i64::from(row), inner, 1, self.scale.color_at(place));
-        }
         let (below, above) = self.scale.is_clipped();
+        // The frame lies around the colours, as that of the map does, and is open towards points.
+        let (over, under) = (if above { 0 } else { line }, if below { 0 } else { line });
+        fill(canvas, left, top - i64::from(over), width, height + over + under, INK);
+        let inner = width.saturating_sub(2 * line);
+        for row in 0..height {
+            let place = 1.0 - (f64::from(row) + 0.5) / f64::from(height);
+            let (x, y) = (left + i64::from(line), top + i64::from(row));
+            fill(canvas, x, y, inner, 1, self.scale.color_at(place));
+        }
         let point = width / 2;
         for row in 0..point {
             // The point gets narrower by two pixels a row.
@@ -151,12 +151,10 @@ mod tests {
     fn the_bar_shows_the_colours_from_low_to_high() {
         let bar = bar(&[0.0, 1e-15]);
         let image = drawn(&bar, 200);
-        assert_eq!(*image.get_pixel(28, 20), INK);
         let at = |y| *image.get_pixel(28, y);
-        assert_eq!(at(21), bar.scale.color_at(1.0 - 1.5 / 200.0));
-        assert_eq!(at(218), bar.scale.color_at(1.5 / 200.0));
-        assert_eq!(at(19), PAPER);
-        assert_eq!(at(220), PAPER);
+        assert_eq!([18, 19, 220, 221].map(at), [PAPER, INK, INK, PAPER]);
+        assert_eq!(at(20), bar.scale.color_at(1.0 - 0.5 / 200.0));
+        assert_eq!(at(219), bar.scale.color_at(0.5 / 200.0));
     }
 
     #[test]

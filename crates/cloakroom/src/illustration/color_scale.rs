@@ -1,6 +1,5 @@
 //! Which colour a number gets.
 
-use colorous::Gradient;
 use image::Rgb;
 
 /// The colours for a set of numbers.
@@ -11,25 +10,17 @@ use image::Rgb;
 /// numbers beyond get the colour of its end ([`is_clipped`](Self::is_clipped)).
 ///
 /// The colours are viridis, which is perceptually uniform, and reads in gray and with most
-/// deficiencies of colour vision. Where numbers lie on both sides of zero, the smaller side
-/// reaching at least 5 % of the larger, they are ColorBrewer's blue (negative) to red (positive)
-/// with a nearly white zero, over a range symmetric about zero: what is early, late or unchanged is
-/// told by the hue, and equal amounts by equal depth. Less than 5 % is taken as the trace of
-/// rounding and keeps viridis.
+/// deficiencies of colour vision.
 ///
 /// Numbers that are not finite are gray. Numbers that all agree get the middle of viridis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorScale {
     range: Option<(f64, f64)>,
-    diverging: bool,
     clipped: (bool, bool),
 }
 
-/// The colour where there is no number: a neutral gray that is in neither map.
+/// The colour where there is no number: a neutral gray that is not in the map.
 const NOTHING: Rgb<u8> = Rgb([160, 160, 160]);
-
-/// The smaller side of zero must reach this share of the larger for a diverging map.
-const TWO_SIDED: f64 = 0.05;
 
 impl ColorScale {
     /// The colours for those numbers. Numbers that differ by no more than `rounding`, relative to
@@ -38,7 +29,7 @@ impl ColorScale {
     pub fn new(numbers: impl Iterator<Item = f64>, rounding: f64) -> Self {
         let mut finite: Vec<f64> = numbers.filter(|number| number.is_finite()).collect();
         let Some(last) = finite.len().checked_sub(1) else {
-            return Self { range: None, diverging: false, clipped: (false, false) };
+            return Self { range: None, clipped: (false, false) };
         };
         let least = finite.iter().copied().fold(f64::INFINITY, f64::min);
         let greatest = finite.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -49,16 +40,14 @@ impl ColorScale {
         let low = if most > 0.0 && from - least > most { from } else { least };
         let high = if most > 0.0 && greatest - to > most { to } else { greatest };
         let size = low.abs().max(high.abs());
-        let (low, high, diverging) = if high - low <= rounding * size {
+        let (low, high) = if high - low <= rounding * size {
             let middle = low / 2.0 + high / 2.0;
-            (middle, middle, false)
-        } else if -low >= TWO_SIDED * high && high >= TWO_SIDED * -low {
-            (-size, size, true)
+            (middle, middle)
         } else {
-            (low, high, false)
+            (low, high)
         };
         let clipped = if low < high { (least < low, greatest > high) } else { (false, false) };
-        Self { range: Some((low, high)), diverging, clipped }
+        Self { range: Some((low, high)), clipped }
     }
 
     /// The least and the greatest number that have a colour of their own; equal if all numbers
@@ -66,12 +55,6 @@ impl ColorScale {
     #[must_use]
     pub fn range(&self) -> Option<(f64, f64)> {
         self.range
-    }
-
-    /// Whether the colours tell the sign: the range is symmetric about zero.
-    #[must_use]
-    pub fn is_diverging(&self) -> bool {
-        self.diverging
     }
 
     /// Whether there are numbers below and above the range.
@@ -97,14 +80,12 @@ impl ColorScale {
     /// The colour at a place in the range, 0 being its lower and 1 its upper end.
     #[must_use]
     pub fn color_at(&self, place: f64) -> Rgb<u8> {
-        let (gradient, place): (Gradient, f64) = match self.range {
+        let place = match self.range {
             None => return NOTHING,
-            Some((low, high)) if low == high => (colorous::VIRIDIS, 0.5),
-            // Red is at the lower end of that map.
-            Some(_) if self.diverging => (colorous::RED_BLUE, 1.0 - place),
-            Some(_) => (colorous::VIRIDIS, place),
+            Some((low, high)) if low == high => 0.5,
+            Some(_) => place,
         };
-        Rgb(gradient.eval_continuous(place).into_array())
+        Rgb(colorous::VIRIDIS.eval_continuous(place).into_array())
     }
 }
 
@@ -124,7 +105,6 @@ mod tests {
     fn the_range_is_that_of_the_finite_numbers() {
         let scale = scale(&[3.0, f64::NAN, 1.0, f64::INFINITY, 2.0]);
         assert_eq!(scale.range(), Some((1.0, 3.0)));
-        assert!(!scale.is_diverging());
         assert_eq!(scale.color(f64::NAN), NOTHING);
         assert_eq!(scale.color(f64::NEG_INFINITY), NOTHING);
         assert_eq!(scale.color(1.0), Rgb(colorous::VIRIDIS.eval_continuous(0.0).into_array()));
@@ -140,19 +120,6 @@ mod tests {
     }
 
     #[test]
-    fn signs_are_told_about_zero() {
-        let scale = scale(&[-1.0, 0.5, 4.0]);
-        assert_eq!((scale.range(), scale.is_diverging()), (Some((-4.0, 4.0)), true));
-        let (early, zero, late) = (scale.color(-4.0), scale.color(0.0), scale.color(4.0));
-        assert!(early.0[2] > early.0[0] && late.0[0] > late.0[2]);
-        assert!(zero.0.iter().all(|part| *part > 235));
-        // A trace on the other side is no sign.
-        assert!(!self::scale(&[-0.01, 4.0]).is_diverging());
-        assert!(!self::scale(&[-4.0, 0.01]).is_diverging());
-        assert!(!self::scale(&[0.0, 4.0]).is_diverging());
-    }
-
-    #[test]
     fn degenerate_sets_have_colours() {
         assert_eq!(scale(&[]).range(), None);
         assert_eq!(scale(&[f64::NAN]).color(1.0), NOTHING);
@@ -165,7 +132,7 @@ mod tests {
         let noise = scale(&[1.0, 1.0 + f64::EPSILON]);
         assert!(noise.range().is_some_and(|(low, high)| low == high));
         let all = scale(&[-f64::MAX, f64::MAX]);
-        assert!(all.color(0.0).0.iter().all(|part| *part > 235));
+        assert_eq!(all.color(0.0), all.color_at(0.5));
     }
 
     #[test]

@@ -53,13 +53,13 @@ const INK: Rgb<u8> = Rgb([24, 24, 24]);
 /// The background of everything.
 const PAPER: Rgb<u8> = Rgb([255, 255, 255]);
 
-/// The height in pixels of a line of text that suits a picture of that size: 16 for 640 x 480, 24 for
+/// The height in pixels of a line of text that suits a picture of that size: 16 for 640 x 480, 26 for
 /// 1024 x 768, growing in proportion.
 fn text_height(width: u32, height: u32) -> u32 {
     let side = (f64::from(width) * f64::from(height)).sqrt();
     // A strip much longer than wide is lettered for its short side.
     let side = side.min(2.0 * f64::from(width.min(height)));
-    ((side / 36.0).round() as u32).max(16)
+    ((side / 34.0).round() as u32).max(16)
 }
 
 /// The thickness in pixels of lines that go with text of that height.
@@ -99,8 +99,8 @@ mod tests {
     fn text_grows_with_the_picture() {
         assert_eq!(text_height(1, 1), 16);
         assert_eq!(text_height(640, 480), 16);
-        assert_eq!(text_height(1024, 768), 25);
-        assert_eq!(text_height(4096, 3072), 99);
+        assert_eq!(text_height(1024, 768), 26);
+        assert_eq!(text_height(4096, 3072), 104);
         assert!(text_height(65_536, 4) == 16);
     }
 

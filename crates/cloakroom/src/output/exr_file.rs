@@ -28,27 +28,45 @@ pub(super) fn write_exr(picture: &Picture, path: &Path) -> Result<(), OutputErro
     let size = Vec2(picture.width, picture.height);
     let mut attributes = LayerAttributes::default();
     for (key, value) in &picture.metadata {
+        // EXR has names of its own for some.
+        if key == "software" {
+            attributes.software_name = Some(text(value));
+            continue;
+        }
+        let key = if key == "version" { "cloakroom_version" } else { key };
         attributes.other.insert(text(key), AttributeValue::Text(text(value)));
     }
-    let layer =
-        Layer::new(size, attributes, Encoding::FAST_LOSSLESS, AnyChannels::sort(channels));
+    let layer = Layer::new(size, attributes, Encoding::FAST_LOSSLESS, AnyChannels::sort(channels));
     let image = Image {
         attributes: ImageAttributes::new(exr::prelude::IntegerBounds::from_dimensions(size)),
         layer_data: layer,
     };
     write_whole(path, |out| {
         // One thread: the bytes must not depend on how many there are.
-        image.write().non_parallel().to_buffered(out).map_err(io::Error::other)
+        let writer = image.write().non_parallel();
+        let headers = writer.infer_meta_data();
+        writer.to_buffered(&mut *out).map_err(io::Error::other)?;
+        // The encoder writes attributes in an order that changes from run to run; they are
+        // written again, sorted, over the same place.
+        let mut sorted = Vec::new();
+        for header in &headers {
+            let mut attributes: Vec<_> = header.all_named_attributes().collect();
+            attributes.sort_by_key(|(name, _)| *name);
+            for (name, value) in attributes {
+                exr::meta::attribute::write(name, &value, &mut sorted).map_err(io::Error::other)?;
+            }
+        }
+        out.seek(io::SeekFrom::Start(HEADER))?;
+        out.write_all(&sorted)
     })
 }
 
-/// The text type of EXR, which keeps one byte a character: others become question marks.
+/// Where attributes begin: behind the magic number and the version.
+const HEADER: u64 = 8;
+
+/// UTF-8 as it is: the encoder's own conversion refuses most characters.
 fn text(words: &str) -> Text {
-    Text::new_or_none(words).unwrap_or_else(|| {
-        let plain: String =
-            words.chars().map(|c| if (c as u32) < 256 { c } else { '?' }).collect();
-        Text::new_or_none(&plain).unwrap_or_default()
-    })
+    Text::from_bytes_unchecked(words.as_bytes().iter().copied().collect())
 }
 
 #[cfg(test)]
@@ -71,7 +89,10 @@ mod tests {
                 },
                 Channel { name: "time_of_flight".into(), samples: Samples::F64(vec![1e-15; 6]) },
             ],
-            metadata: vec![("scene".into(), "side = 3 # ≤ 4 µm".into())],
+            metadata: vec![
+                ("scene".into(), "side = 3 # ≤ 4 µm".into()),
+                ("version".into(), "0.1.0".into()),
+            ],
         };
         super::super::write(&picture, &path).expect("written");
         let image = read_first_flat_layer_from_file(&path).expect("an EXR");
@@ -82,5 +103,7 @@ mod tests {
         assert_eq!(channels[1].sample_data.value_by_flat_index(0).to_f32(), 1e-15);
         let scene = &image.layer_data.attributes.other[&Text::from("scene")];
         assert!(matches!(scene, AttributeValue::Text(t) if t.to_string().contains("side = 3")));
+        let version = &image.layer_data.attributes.other[&Text::from("cloakroom_version")];
+        assert!(matches!(version, AttributeValue::Text(t) if t.to_string() == "0.1.0"));
     }
 }

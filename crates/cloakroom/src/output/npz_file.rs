@@ -28,11 +28,8 @@ pub(super) fn write_npz(picture: &Picture, path: &Path) -> Result<(), OutputErro
                 }
             }
         }
-        let metadata: serde_json::Map<String, serde_json::Value> = picture
-            .metadata
-            .iter()
-            .map(|(key, text)| (key.clone(), text.clone().into()))
-            .collect();
+        let metadata: serde_json::Map<String, serde_json::Value> =
+            picture.metadata.iter().map(|(key, text)| (key.clone(), text.clone().into())).collect();
         let bytes = serde_json::to_vec(&metadata).map_err(io::Error::other)?;
         npz.add_array("metadata", &ArrayView1::from(&bytes[..])).map_err(io::Error::other)?;
         npz.finish().map_err(io::Error::other)?;

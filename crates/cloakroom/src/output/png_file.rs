@@ -119,9 +119,8 @@ mod tests {
         let path = folder.path().join("a.png");
         let picture = gray(&[0.0, 0.3, 1.0]);
         super::super::write(&picture, &path).expect("written");
-        let decoder = png::Decoder::new(io::BufReader::new(
-            std::fs::File::open(&path).expect("a file"),
-        ));
+        let decoder =
+            png::Decoder::new(io::BufReader::new(std::fs::File::open(&path).expect("a file")));
         let mut reader = decoder.read_info().expect("a PNG");
         let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
         reader.next_frame(&mut bytes).expect("pixels");

@@ -26,8 +26,9 @@ pub fn write_whole(
             });
             written.map_err(|error| OutputError::new(path, &error))
         }
-        Place::In(folder) => write_and_rename(path, &folder, write)
-            .map_err(|error| OutputError::new(path, &error)),
+        Place::In(folder) => {
+            write_and_rename(path, &folder, write).map_err(|error| OutputError::new(path, &error))
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
 use super::source::{ImageSource, LoadError};
-use super::{jpeg_markers, srgb};
+use super::{exr_limits, jpeg_markers, srgb};
 
 #[cfg(test)]
 mod tests;
@@ -48,7 +48,7 @@ pub enum Texels {
 ///
 /// # Errors
 ///
-/// As [`load`], as far as the file's header tells.
+/// As [`load()`], as far as the file's header tells.
 pub fn dimensions(source: &ImageSource) -> Result<(u32, u32), LoadError> {
     let bytes = read_bytes(source)?;
     let (mut decoder, _) = open(source, &bytes)?;
@@ -140,6 +140,9 @@ fn open<'b>(
     bytes: &'b [u8],
 ) -> Result<(impl ImageDecoder + use<'b>, ImageFormat), LoadError> {
     let format = format(source, bytes)?;
+    if format == ImageFormat::OpenExr && !guarded(source, || Ok(exr_limits::are_kept(bytes)))? {
+        return Err(LoadError::TooLarge { image: source.clone() });
+    }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(MAX_MEMORY);

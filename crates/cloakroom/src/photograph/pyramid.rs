@@ -2,11 +2,11 @@
 //!
 //! A probe of the width w (in texels of the image) is the exact average of one level's bilinear
 //! interpolant over a square of d x d texels of that level. With texels of size s = 2^level, such
-//! an average has the variance s^2 (d^2 / 12 + 1/4) - 1/12 per axis, the first level's texels
-//! counted as points; the average over a square of width w, counted the same way, (w^2 - 1) / 12 +
-//! 1/6. Equating the two gives d: 0 to 3 texels within each level's octave. A picture shrunk in
-//! this way is neither sharper nor softer than its exact area average. Towards the end of the
-//! octave the result fades into the next level's.
+//! an average has the variance s^2 (d^2 / 12 + 1/4) - 1/12 per axis, the image's own texels counted
+//! as points; the average over a square of width w, counted the same way, w^2 / 12 + 1/12. Equating
+//! the two gives d. A picture shrunk in this way is neither sharper nor softer than its exact area
+//! average. The finest level whose d is at most 4 texels is taken; before d gets there, the result
+//! fades into the next level's.
 
 use super::footprint::Footprint;
 use super::{LinearImage, Texels, decode_table, downsample};

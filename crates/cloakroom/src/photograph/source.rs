@@ -26,7 +26,7 @@ impl ImageSource {
     /// # Errors
     ///
     /// [`LoadError::UnknownBuiltIn`] for a built-in name that does not exist. Files are looked at
-    /// only by [`super::load`] and [`super::dimensions`].
+    /// only by [`super::load()`] and [`super::dimensions`].
     pub fn parse(text: &str, folder: &Path) -> Result<Self, LoadError> {
         let Some(name) = text.strip_prefix(BUILT_IN_PREFIX) else {
             return Ok(Self::File(folder.join(text)));

@@ -55,7 +55,7 @@ pub(super) fn expose<const N: usize>(
     pixel.pruned += detection.detected(&here.outcome.pruned);
     for leaf in &here.leaves {
         let power = detection.detected(&leaf.power);
-        let neighbours = [across, down].map(|neighbour| neighbouring_leaf(here, leaf, neighbour));
+        let neighbours = [across, down].map(|neighbour| Neighbour::find(here, leaf, neighbour));
         let light = match studio.screen.hit(leaf.position, leaf.direction) {
             Some(distance) => {
                 pixel.delivered += power;
@@ -92,59 +92,101 @@ struct Line {
     direction: DVec3,
 }
 
-/// The leaf of a neighbouring camera ray that has taken the same way. Where there is none (at the
-/// edge of a device), the leaf is moved as its camera ray is: as if it came straight from a camera
-/// that stands and looks where the leaf seems to come from. Both depend on the leaving ray alone,
-/// never on the path inside a device.
-fn neighbouring_leaf<const N: usize>(
-    here: &Traced<N>,
-    leaf: &Leaf<N>,
-    neighbour: &Traced<N>,
-) -> Line {
-    if let Some(twin) = neighbour.leaves.iter().find(|twin| twin.path == leaf.path) {
-        return Line { origin: twin.position, direction: twin.direction };
+/// What a leaf looks like one pixel away.
+#[derive(Clone, Copy, Debug)]
+struct Neighbour {
+    /// The leaf moved as its camera ray is: as if it came straight from a camera that stands and looks where
+    /// the leaf seems to come from.
+    moved: Line,
+    /// The leaf of the neighbouring camera ray that has taken the same way, if there is one.
+    twin: Option<Line>,
+}
+
+impl Neighbour {
+    fn find<const N: usize>(here: &Traced<N>, leaf: &Leaf<N>, neighbour: &Traced<N>) -> Self {
+        let turn = DQuat::from_rotation_arc(here.ray.direction, leaf.direction);
+        let eye = leaf.position - leaf.direction * leaf.position.distance(here.ray.origin);
+        let moved = Line {
+            origin: eye + turn * (neighbour.ray.origin - here.ray.origin),
+            direction: turn * neighbour.ray.direction,
+        };
+        let twin = neighbour
+            .leaves
+            .iter()
+            .find(|twin| twin.path == leaf.path)
+            // Light that enters by another face of a cloak may leave as if nothing had happened.
+            .or_else(|| neighbour.leaves.iter().find(|other| is_close(&moved, leaf, other)))
+            .map(|twin| Line { origin: twin.position, direction: twin.direction });
+        Self { moved, twin }
     }
-    let turn = DQuat::from_rotation_arc(here.ray.direction, leaf.direction);
-    let eye = leaf.position - leaf.direction * leaf.position.distance(here.ray.origin);
-    Line {
-        origin: eye + turn * (neighbour.ray.origin - here.ray.origin),
-        direction: turn * neighbour.ray.direction,
-    }
+}
+
+/// Whether a neighbour's leaf goes on much like this one moved by a pixel.
+fn is_close<const N: usize>(moved: &Line, leaf: &Leaf<N>, other: &Leaf<N>) -> bool {
+    let step = (moved.direction - leaf.direction).length();
+    (other.direction - moved.direction).length() <= 0.5 * step + 1e-12
+}
+
+/// The change of (u, v) on the photograph from here to one pixel away along either axis, from the
+/// leaving rays alone: never from the path inside a device.
+fn footprint(
+    place: impl Fn(&Line) -> Option<[f64; 2]>,
+    here: [f64; 2],
+    neighbours: &[Neighbour; 2],
+) -> [[f64; 2]; 2] {
+    let step = |line: &Line| match place(line) {
+        Some(there) => [there[0] - here[0], there[1] - here[1]],
+        // It meets the plane nowhere; a patch without size does no harm.
+        None => [0.0; 2],
+    };
+    let size = |step: [f64; 2]| step[0].hypot(step[1]);
+    let twins = neighbours.map(|neighbour| neighbour.twin.map(|line| step(&line)));
+    std::array::from_fn(|i| {
+        twins[i].unwrap_or_else(|| {
+            // At the edge of a device there is no twin: the other axis tells how much the picture
+            // is stretched against the moved leaf.
+            let stretch =
+                twins[1 - i].map_or(1.0, |twin| size(twin) / size(step(&neighbours[1 - i].moved)));
+            let stretch = if stretch.is_finite() { stretch } else { 1.0 };
+            step(&neighbours[i].moved).map(|change| change * stretch)
+        })
+    })
 }
 
 fn photograph_light<const N: usize>(
     studio: &Studio<'_>,
     leaf: &Leaf<N>,
     distance: f64,
-    neighbours: [Line; 2],
+    neighbours: [Neighbour; 2],
     spacing: f64,
 ) -> [f64; 3] {
     let screen = &studio.screen;
-    let place = |line: &Line, distance: f64| {
-        let point = line.origin + line.direction * distance;
-        screen.image_position(point, leaf.direction)
+    let at = |line: &Line, distance: f64| {
+        screen.image_position(line.origin + line.direction * distance, leaf.direction)
     };
-    let here = place(&Line { origin: leaf.position, direction: leaf.direction }, distance);
-    // A neighbour that runs along the plane or away from it meets it nowhere: a patch without size
-    // does no harm.
-    let steps = neighbours.map(|line| {
+    let here = at(&Line { origin: leaf.position, direction: leaf.direction }, distance);
+    let place = |line: &Line| {
         let t = (screen.x - line.origin.x) / line.direction.x;
-        let there = if t.is_finite() { place(&line, t) } else { here };
-        [(there[0] - here[0]) * spacing, (there[1] - here[1]) * spacing]
-    });
-    studio.image.sample(here, steps[0], steps[1]).map(f64::from)
+        t.is_finite().then(|| at(line, t))
+    };
+    let [dx, dy] =
+        footprint(place, here, &neighbours).map(|step| step.map(|change| change * spacing));
+    studio.image.sample(here, dx, dy).map(f64::from)
 }
 
 fn surroundings_light<const N: usize>(
     studio: &Studio<'_>,
     leaf: &Leaf<N>,
-    neighbours: [Line; 2],
+    neighbours: [Neighbour; 2],
     spacing: f64,
 ) -> [f64; 3] {
     match &studio.surroundings {
         Surroundings::Color(color) => *color,
         Surroundings::Image(image) => {
-            let steps = neighbours.map(|line| (line.direction - leaf.direction) * spacing);
+            let steps = neighbours.map(|neighbour| {
+                let line = neighbour.twin.unwrap_or(neighbour.moved);
+                (line.direction - leaf.direction) * spacing
+            });
             image.sample(leaf.direction, steps[0], steps[1]).map(f64::from)
         }
     }

@@ -113,10 +113,8 @@ fn expose_film<const N: usize>(
         .map_init(
             || Exposer::new(studio, detection, &polarizations),
             |exposer, mut band| {
-                if supervision.stop.load(Ordering::Relaxed) {
-                    return Err(RenderError::Stopped);
-                }
-                let rarities = exposer.expose_band(&mut band);
+                let rarities =
+                    exposer.expose_band(&mut band, supervision.stop).ok_or(RenderError::Stopped)?;
                 (supervision.rows_done)((band.len() / width as usize) as u64);
                 Ok(rarities)
             },
@@ -143,8 +141,7 @@ pub fn estimated_seconds(studio: &Studio<'_>) -> f64 {
     let [width, height] = camera.resolution();
     let [columns, rows] = [GRID[0].min(width), GRID[1].min(height)];
     let detection = Detection { weights: [0.5, 0.5], separate: true };
-    let polarizations =
-        |h: DVec3, v: DVec3| -> [ComplexVector; 2] { [h.into(), v.into()] };
+    let polarizations = |h: DVec3, v: DVec3| -> [ComplexVector; 2] { [h.into(), v.into()] };
     let mut exposer = Exposer::new(studio, &detection, &polarizations);
     let start = std::time::Instant::now();
     for row in 0..rows {
@@ -211,8 +208,8 @@ where
         }
     }
 
-    /// Exposes a band, 2 x 2 pixels at a time.
-    fn expose_band(&mut self, band: &mut Band<'_>) -> Rarities {
+    /// Exposes a band, 2 x 2 pixels at a time; `None` if it was stopped.
+    fn expose_band(&mut self, band: &mut Band<'_>, stop: &AtomicBool) -> Option<Rarities> {
         let camera = &self.studio.scene.camera;
         let width = camera.resolution()[0] as usize;
         let rows = band.len() / width;
@@ -223,6 +220,9 @@ where
                 let corner = [column, band.first_row + row];
                 let mut pixels = [Pixel::default(); 4];
                 for sample in 0..samples {
+                    if stop.load(Ordering::Relaxed) {
+                        return None;
+                    }
                     rarities += self.expose_block(corner, sample, &mut pixels);
                 }
                 for (i, pixel) in pixels.iter().enumerate() {
@@ -233,7 +233,7 @@ where
                 }
             }
         }
-        rarities
+        Some(rarities)
     }
 
     /// Traces one sample of each pixel of a block and adds what they see.

@@ -44,21 +44,21 @@ pub(super) struct Course<'a> {
     nudge_reach: f64,
 }
 
-/// Local error allowed in a step over the tolerance of the whole path; measured, see the tests.
-const LOCAL_SHARE: f64 = 1.0;
-
 impl<'a> Course<'a> {
     /// `lever` is the length over which errors of direction grow into errors of position.
     pub fn new(map: &'a ConformalMap, p_z: f64, strength: f64, tolerance: f64, lever: f64) -> Self {
-        let local = LOCAL_SHARE * tolerance.max(1e-12);
+        // Steep rays take long ways, on which errors have time to grow.
+        let flatness = (1.0 - (p_z / strength).powi(2)).max(0.05);
+        let local = flatness * flatness * tolerance.max(1e-12);
         let (scale, direction) = (map.scale(), local / lever);
         let allowed = ErrorScale {
             state: [local, local, direction, direction],
-            // The field's angle is wanted in radians, not in cm.
-            quadrature: [local, 10.0 * local],
+            // z is all there is to control for rays nearly across it, and estimates of a quadrature tend to
+            // be low. The field's angle is wanted in radians, not in cm.
+            quadrature: [0.2 * local, 10.0 * local],
         };
         // The error of `nudge` grows with the fifth power of its length.
-        let nudge_reach = scale * 0.06 * (tolerance.max(1e-12) / 1e-6).powf(0.2);
+        let nudge_reach = scale * 0.04 * (tolerance.max(1e-12) / 1e-6).powf(0.2);
         Self { map, p_z, strength, scale, allowed, nudge_reach }
     }
 
