@@ -4,7 +4,7 @@ use super::{Beyond, Finish};
 use glam::{DMat3, DVec3};
 use optics::geometry::Plane;
 use optics::medium::Medium;
-use optics::propagation::{Boundary, ConformalFlow, Half};
+use optics::propagation::{Boundary, ConformalFlow, Foothold, Half};
 
 /// A region filled with one medium.
 #[derive(Clone, Debug)]
@@ -44,6 +44,15 @@ pub struct Face {
     pub beyond: Beyond,
 }
 
+/// What a ray finds on entering a cell.
+#[derive(Clone, Copy, Debug)]
+pub struct Entrance {
+    /// The medium there.
+    pub medium: Medium,
+    /// The point in the virtual space of a conformal cell.
+    pub foothold: Option<Foothold>,
+}
+
 /// A ray's way through a cell to the surface where it ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Passage {
@@ -60,6 +69,8 @@ pub struct Passage {
     pub optical_path: f64,
     /// The medium at the surface.
     pub medium: Medium,
+    /// The point in the virtual space of a conformal cell, to go on from after a reflection.
+    pub foothold: Option<Foothold>,
     /// Which surface.
     pub face: u16,
     /// The unit normal of the surface, out of the cell.
@@ -71,19 +82,22 @@ pub struct Passage {
 }
 
 impl Cell {
-    /// The medium at a point of the cell or its border; `None` if a graded medium has none there: the
-    /// point has been lost in rounding at an edge.
+    /// What a ray finds that enters the cell at a point of its border; `None` if a graded medium has none
+    /// there: the point has been lost in rounding at an edge.
     #[must_use]
-    pub fn medium_at(&self, position: DVec3) -> Option<Medium> {
+    pub fn enter(&self, position: DVec3) -> Option<Entrance> {
         match self {
-            Self::Prism(prism) => Some(prism.medium),
+            Self::Prism(prism) => Some(Entrance { medium: prism.medium, foothold: None }),
             Self::Conformal(cell) => {
-                Some(Medium::dielectric(cell.flow.foothold(cell.half, position).ok()?.index))
+                let foothold = cell.flow.foothold(cell.half, position).ok()?;
+                let medium = Medium::dielectric(foothold.index);
+                Some(Entrance { medium, foothold: Some(foothold) })
             }
         }
     }
 
-    /// Follows a ray from a point of the cell or its border to the next surface.
+    /// Follows a ray from a point of the cell or its border to the next surface. `foothold` is what
+    /// [`Cell::enter`] or the last passage has said of that point.
     ///
     /// `tolerance` (cm) bounds the error of position and optical path where the medium is graded.
     ///
@@ -95,11 +109,18 @@ impl Cell {
         position: DVec3,
         wave_vector: DVec3,
         direction: DVec3,
+        foothold: Option<Foothold>,
         tolerance: f64,
     ) -> Option<Passage> {
         match self {
             Self::Prism(prism) => prism.advance(position, wave_vector, direction),
-            Self::Conformal(cell) => cell.advance(position, wave_vector, tolerance),
+            Self::Conformal(cell) => {
+                let start = match foothold {
+                    Some(foothold) => foothold,
+                    None => cell.flow.foothold(cell.half, position).ok()?,
+                };
+                cell.advance(&start, wave_vector, tolerance)
+            }
         }
     }
 }
@@ -124,6 +145,7 @@ impl Prism {
             transport: None,
             optical_path: wave_vector.dot(end - position),
             medium: self.medium,
+            foothold: None,
             face: index,
             outward: face.plane.normal,
             beyond: face.beyond,
@@ -133,9 +155,8 @@ impl Prism {
 }
 
 impl ConformalCell {
-    fn advance(&self, position: DVec3, wave_vector: DVec3, tolerance: f64) -> Option<Passage> {
-        let start = self.flow.foothold(self.half, position).ok()?;
-        let end = self.flow.advance_from(&start, wave_vector, tolerance).ok()?;
+    fn advance(&self, start: &Foothold, wave_vector: DVec3, tolerance: f64) -> Option<Passage> {
+        let end = self.flow.advance_from(start, wave_vector, tolerance).ok()?;
         let metal = end.boundary == Boundary::Floor;
         Some(Passage {
             position: end.at.position,
@@ -145,6 +166,7 @@ impl ConformalCell {
             transport: Some((end.transport, (start.index / end.at.index).sqrt())),
             optical_path: end.optical_path,
             medium: Medium::dielectric(end.at.index),
+            foothold: Some(end.at),
             face: end.boundary as u16,
             outward: end.normal,
             beyond: if metal { Beyond::Conductor } else { Beyond::Air },

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use optics::interface::{IncidentWave, OutgoingWave};
+use optics::propagation::Foothold;
 use optics::wave::ComplexVector;
 
 /// Where a branch runs.
@@ -25,6 +26,8 @@ pub(super) struct Branch<const N: usize> {
     pub optical_path: f64,
     pub met_device: bool,
     pub path: u64,
+    /// Where it is in the virtual space of a conformal cell.
+    pub foothold: Option<Foothold>,
 }
 
 impl<const N: usize> Branch<N> {

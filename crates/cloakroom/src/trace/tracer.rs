@@ -76,6 +76,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             optical_path: 0.0,
             met_device: false,
             path: 0,
+            foothold: None,
         });
         let mut events = 0;
         while let Some(branch) = self.waiting.pop() {
@@ -125,18 +126,21 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 self.go_on(to_world(&local.onward(&wave, air, event), &device.pose));
             }
             Beyond::Cell(cell) => {
-                let Some(medium) = self.cell(device, cell).medium_at(local.position) else {
+                let Some(entrance) = self.cell(device, cell).enter(local.position) else {
                     self.lose(branch.power);
                     return;
                 };
                 let inside = Place::Cell { device: device_index, cell };
-                for wave in self.split(&Medium::AIR, &medium, &local, into, hit.finish) {
+                for wave in self.split(&Medium::AIR, &entrance.medium, &local, into, hit.finish) {
                     let event = event | side_code(&wave);
                     match wave.side {
                         Side::Reflected => {
                             self.go_on(to_world(&local.onward(&wave, air, event), &device.pose));
                         }
-                        Side::Transmitted => self.go_on(local.onward(&wave, inside, event)),
+                        Side::Transmitted => self.go_on(Branch {
+                            foothold: entrance.foothold,
+                            ..local.onward(&wave, inside, event)
+                        }),
                     }
                 }
             }
@@ -152,6 +156,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             branch.position,
             branch.wave_vector,
             branch.direction,
+            branch.foothold,
             self.limits.tolerance,
         );
         let Some(passage) = passage else {
@@ -162,6 +167,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         branch.wave_vector = passage.wave_vector;
         branch.direction = passage.direction;
         branch.optical_path += passage.optical_path;
+        branch.foothold = passage.foothold;
         if let Some((rotation, factor)) = passage.transport {
             branch.electric = branch.electric.map(|field| field.transformed(&rotation) * factor);
         }
@@ -176,16 +182,22 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 self.go_on(branch.onward(&wave, here, event));
             }
             Beyond::Cell(next) => {
-                let Some(next_medium) = self.cell(device, next).medium_at(branch.position) else {
+                let Some(entrance) = self.cell(device, next).enter(branch.position) else {
                     self.lose(branch.power);
                     return;
                 };
                 let there = Place::Cell { device: device_index, cell: next };
                 let waves =
-                    self.split(&medium, &next_medium, &branch, passage.outward, passage.finish);
+                    self.split(&medium, &entrance.medium, &branch, passage.outward, passage.finish);
                 for wave in waves {
-                    let place = if wave.side == Side::Reflected { here } else { there };
-                    self.go_on(branch.onward(&wave, place, event | side_code(&wave)));
+                    let event = event | side_code(&wave);
+                    self.go_on(match wave.side {
+                        Side::Reflected => branch.onward(&wave, here, event),
+                        Side::Transmitted => Branch {
+                            foothold: entrance.foothold,
+                            ..branch.onward(&wave, there, event)
+                        },
+                    });
                 }
             }
             Beyond::Air => {

@@ -16,11 +16,12 @@ pub struct MapJet {
 }
 
 impl MapJet {
-    /// The Taylor polynomial of f at a small virtual distance `d`.
+    /// |f'|, by how much lengths grow from virtual to physical space. (`Complex64::norm` guards against
+    /// overflow, which takes as long as evaluating the map.)
     #[inline]
     #[must_use]
-    pub fn value_near(&self, d: Complex64) -> Complex64 {
-        self.f + d * (self.f1 + 0.5 * d * self.f2)
+    pub fn stretch(&self) -> f64 {
+        self.f1.norm_sqr().sqrt()
     }
 }
 
@@ -104,8 +105,8 @@ impl ConformalMap {
             let residual = z - jet.f;
             let step = residual / jet.f1;
             // What one more full step leaves: convergence is quadratic.
-            let remainder = 0.5 * step.norm_sqr() * jet.f2.norm() / jet.f1.norm();
-            if remainder <= 1e-16 * zeta.norm().max(self.scale()) {
+            let remainder = 0.5 * step.norm_sqr() * jet.f2.norm_sqr().sqrt() / jet.stretch();
+            if remainder <= 1e-16 * zeta.norm_sqr().sqrt().max(self.scale()) {
                 let root = zeta + step;
                 return (root.im > lowest).then_some(root);
             }
@@ -191,7 +192,7 @@ impl ConformalMap {
             let y = between(self.floor_height_at(x), cut.y_max, s);
             self.invert(Complex64::new(x, y))
         };
-        let index = |zeta: Complex64| self.jet(zeta).f1.norm().recip();
+        let index = |zeta: Complex64| self.jet(zeta).stretch().recip();
         let floor = |s: f64| Some(index(between(start, end, s).into()));
         let left = |s: f64| side(cut.x_min, s).map(index);
         let right = |s: f64| side(cut.x_max, s).map(index);

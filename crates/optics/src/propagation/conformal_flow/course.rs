@@ -24,6 +24,10 @@ pub(super) struct Point {
     pub jet: MapJet,
     /// dP/dτ.
     pub force: Complex64,
+    /// d(x + iy)/dτ.
+    pub velocity: Complex64,
+    /// d²(x + iy)/dτ².
+    pub bend: Complex64,
 }
 
 /// A step that may be taken.
@@ -49,16 +53,16 @@ impl<'a> Course<'a> {
     pub fn new(map: &'a ConformalMap, p_z: f64, strength: f64, tolerance: f64, lever: f64) -> Self {
         // Steep rays take long ways, on which errors have time to grow.
         let flatness = (1.0 - (p_z / strength).powi(2)).max(0.05);
-        let local = flatness * flatness * tolerance.max(1e-12);
+        let local = flatness.powi(3) * tolerance.max(1e-12);
         let (scale, direction) = (map.scale(), local / lever);
         let allowed = ErrorScale {
             state: [local, local, direction, direction],
             // z is all there is to control for rays nearly across it, and estimates of a quadrature tend to
             // be low. The field's angle is wanted in radians, not in cm.
-            quadrature: [0.2 * local, 10.0 * local],
+            quadrature: [0.6 * local, 10.0 * local],
         };
-        // The error of `nudge` grows with the fifth power of its length.
-        let nudge_reach = scale * 0.04 * (tolerance.max(1e-12) / 1e-6).powf(0.2);
+        // The error of `nudge` grows with the fifth power of its length; the fourth root is quicker.
+        let nudge_reach = scale * 0.04 * (tolerance.max(1e-12) / 1e-6).sqrt().sqrt();
         Self { map, p_z, strength, scale, allowed, nudge_reach }
     }
 
@@ -87,13 +91,12 @@ impl<'a> Course<'a> {
     }
 
     pub fn first_stride(&self) -> f64 {
-        0.4 * self.scale
+        1.0 * self.scale
     }
 
     /// The longest step whose ends tell what happens in between.
     pub fn longest_stride(&self, here: &Point) -> f64 {
-        let share = if self.is_straight() { 0.5 } else { 1.2 };
-        share * self.scale.max(here.zeta.norm() / 3.0) / self.strength
+        1.7 * self.scale.max(here.zeta.norm_sqr().sqrt() / 3.0) / self.strength
     }
 
     /// A step meant to end a little beyond the border, which is `time` away by extrapolation.
@@ -146,6 +149,10 @@ impl<'a> Course<'a> {
 
     /// Taylor's formula of order two; exact for straight rays.
     fn coast(&self, from: &Point, h: f64) -> Point {
+        if self.is_straight() {
+            let zeta = from.zeta + h * from.momentum;
+            return self.point(from.tau + h, zeta, from.momentum, from.z, from.theta);
+        }
         let slope = self.slope(&from.jet, from.momentum);
         let gradient = 2.0 * self.p_z * (from.jet.f1.conj() * from.jet.f2 * from.momentum).re;
         self.point(
@@ -192,7 +199,10 @@ impl<'a> Course<'a> {
         z: f64,
         theta: f64,
     ) -> Point {
-        Point { tau, zeta, momentum, z, theta, jet, force: self.force(&jet) }
+        let force = self.force(&jet);
+        let velocity = jet.f1 * momentum;
+        let bend = jet.f2 * momentum * momentum + jet.f1 * force;
+        Point { tau, zeta, momentum, z, theta, jet, force, velocity, bend }
     }
 
     #[inline]

@@ -46,21 +46,14 @@ pub(super) struct Gauge {
 
 impl Gauge {
     fn at(&self, point: &Point, p_z: f64) -> Motion {
-        let (jet, velocity) = (&point.jet, point.momentum);
         let (value, rate, bend) = match self.coordinate {
-            Coordinate::VirtualY => (point.zeta.im, velocity.im, point.force.im),
-            Coordinate::X | Coordinate::Y => {
-                let rate = jet.f1 * velocity;
-                let bend = jet.f2 * velocity * velocity + jet.f1 * point.force;
-                if self.coordinate == Coordinate::X {
-                    (jet.f.re, rate.re, bend.re)
-                } else {
-                    (jet.f.im, rate.im, bend.im)
-                }
-            }
+            Coordinate::X => (point.jet.f.re, point.velocity.re, point.bend.re),
+            Coordinate::Y => (point.jet.f.im, point.velocity.im, point.bend.im),
+            Coordinate::VirtualY => (point.zeta.im, point.momentum.im, point.force.im),
             Coordinate::Z => {
-                let bend = 2.0 * p_z * (jet.f1.conj() * jet.f2 * velocity).re;
-                (point.z, p_z * jet.f1.norm_sqr(), bend)
+                let f1 = point.jet.f1;
+                let bend = 2.0 * p_z * (f1.conj() * point.jet.f2 * point.momentum).re;
+                (point.z, p_z * f1.norm_sqr(), bend)
             }
         };
         let sign = self.sign;
@@ -280,4 +273,46 @@ fn horner(coefficients: &[f64], s: f64) -> (f64, f64) {
         .iter()
         .rev()
         .fold((0.0, 0.0), |(value, slope), c| (value * s + c, slope * s + value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// (s - a)(s - b)(s - c) and its derivatives at s.
+    fn cubic(s: f64, [a, b, c]: [f64; 3]) -> Motion {
+        let (p, q, r) = (s - a, s - b, s - c);
+        Motion { value: p * q * r, rate: p * q + q * r + r * p, bend: 2.0 * (p + q + r) }
+    }
+
+    #[test]
+    fn the_first_fall_is_found_and_a_root_at_the_start_passed_over() {
+        let fall =
+            |roots: [f64; 3]| Hermite::new(cubic(0.0, roots), cubic(1.0, roots), 1.0).first_fall();
+        assert!((fall([-0.5, 0.4, 2.0]) - 0.4).abs() < 1e-14);
+        assert!((fall([0.0, 0.7, 3.0]) - 0.7).abs() < 1e-14);
+        assert!((fall([0.0, 1e-6, 3.0]) - 1e-6).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_dip_is_seen_from_its_ends() {
+        let roots = [-1.0, 0.4, 0.6];
+        let (share, least) = Hermite::new(cubic(0.0, roots), cubic(1.0, roots), 1.0).minimum();
+        assert!(share > 0.4 && share < 0.6 && least < 0.0);
+        assert!(
+            (cubic(share, roots).rate).abs() < 1e-13
+                && (cubic(share, roots).value - least).abs() < 1e-14
+        );
+    }
+
+    #[test]
+    fn extrapolation_sees_the_next_fall_only() {
+        let time = |value, rate, bend| Motion { value, rate, bend }.time_ahead();
+        assert_eq!(time(2.0, -1.0, 0.0), 2.0);
+        assert_eq!(time(2.0, 1.0, 0.0), f64::INFINITY);
+        assert_eq!(time(2.0, 0.0, -1.0), 2.0);
+        assert_eq!(time(0.0, 1.0, -1.0), 2.0);
+        assert_eq!(time(2.0, -1.0, 5.0), f64::INFINITY);
+        assert_eq!(time(f64::NAN, 1.0, 1.0), f64::INFINITY);
+    }
 }

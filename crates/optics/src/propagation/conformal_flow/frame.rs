@@ -22,7 +22,7 @@ pub(super) struct Frame {
 
 impl Frame {
     pub fn new(momentum: Complex64, p_z: f64, jet: &MapJet) -> Self {
-        let axial = p_z * jet.f1.norm();
+        let axial = p_z * jet.stretch();
         let length = (momentum.norm_sqr() + axial * axial).sqrt();
         let (tx, ty, sine) = (momentum.re / length, momentum.im / length, axial.abs() / length);
         let side = 1.0_f64.copysign(p_z);
@@ -32,7 +32,7 @@ impl Frame {
             DVec3::new(-tx * ty * bend, 1.0 - ty * ty * bend, -side * ty),
             DVec3::new(side * tx, side * ty, sine),
         );
-        let turn = jet.f1 / jet.f1.norm();
+        let turn = jet.f1 / jet.stretch();
         Self { rotation, local: about_z(turn.re, turn.im), side }
     }
 }

@@ -161,7 +161,7 @@ impl ConformalFlow {
     #[must_use]
     pub fn index(&self, position: DVec3) -> Option<f64> {
         let zeta = self.map.invert(Complex64::new(position.x, position.y.abs()))?;
-        Some(self.strength / self.map.jet(zeta).f1.norm())
+        Some(self.strength / self.map.jet(zeta).stretch())
     }
 
     /// Whether a point lies in the medium of either half, border included.
@@ -191,7 +191,7 @@ impl ConformalFlow {
         if zeta.im.abs() <= self.slack {
             zeta.im = 0.0;
         }
-        let index = self.strength / self.map.jet(zeta).f1.norm();
+        let index = self.strength / self.map.jet(zeta).stretch();
         let inside = zeta.im >= 0.0
             && z.re >= self.cut.x_min - self.slack
             && z.re <= self.cut.x_max + self.slack
@@ -301,7 +301,7 @@ impl ConformalFlow {
         let half = start.half;
         let Arrival { mut point, boundary, evaluations } = *arrival;
         let mut position = DVec3::new(point.jet.f.re, point.jet.f.im, point.z);
-        let inward = Complex64::i() * point.jet.f1 / point.jet.f1.norm();
+        let inward = Complex64::i() * point.jet.f1 / point.jet.stretch();
         let normal = match boundary {
             Boundary::XMin => DVec3::NEG_X,
             Boundary::XMax => DVec3::X,
@@ -335,7 +335,7 @@ impl ConformalFlow {
                 half,
                 position: half.mirrored(position),
                 virtual_position: point.zeta,
-                index: self.strength / point.jet.f1.norm(),
+                index: self.strength / point.jet.stretch(),
             },
             wave_vector: half.mirrored(DVec3::new(p.re, p.im, course.p_z())),
             optical_path: self.strength * self.strength * point.tau,
