@@ -55,17 +55,17 @@ pub(super) fn expose<const N: usize>(
     pixel.pruned += detection.detected(&here.outcome.pruned);
     for leaf in &here.leaves {
         let power = detection.detected(&leaf.power);
-        let neighbours = [across, down].map(|neighbour| Neighbour::find(here, leaf, neighbour));
+        let beside = [across, down].map(|neighbour| Neighbour { here, leaf, neighbour });
         let light = match studio.screen.hit(leaf.position, leaf.direction) {
             Some(distance) => {
                 pixel.delivered += power;
                 let time = (leaf.optical_path + distance) / SPEED_OF_LIGHT;
                 pulses.push((time, power));
-                photograph_light(studio, leaf, distance, neighbours, spacing)
+                photograph_light(studio, leaf, distance, &beside, spacing)
             }
             None => {
                 pixel.escaped += power;
-                surroundings_light(studio, leaf, neighbours, spacing)
+                surroundings_light(studio, leaf, &beside, spacing)
             }
         };
         for i in 0..3 {
@@ -92,32 +92,36 @@ struct Line {
     direction: DVec3,
 }
 
-/// What a leaf looks like one pixel away.
+/// A leaf and a neighbouring camera ray one pixel away.
 #[derive(Clone, Copy, Debug)]
-struct Neighbour {
-    /// The leaf moved as its camera ray is: as if it came straight from a camera that stands and looks where
-    /// the leaf seems to come from.
-    moved: Line,
-    /// The leaf of the neighbouring camera ray that has taken the same way, if there is one.
-    twin: Option<Line>,
+struct Neighbour<'a, const N: usize> {
+    here: &'a Traced<N>,
+    leaf: &'a Leaf<N>,
+    neighbour: &'a Traced<N>,
 }
 
-impl Neighbour {
-    fn find<const N: usize>(here: &Traced<N>, leaf: &Leaf<N>, neighbour: &Traced<N>) -> Self {
-        let turn = DQuat::from_rotation_arc(here.ray.direction, leaf.direction);
-        let eye = leaf.position - leaf.direction * leaf.position.distance(here.ray.origin);
-        let moved = Line {
-            origin: eye + turn * (neighbour.ray.origin - here.ray.origin),
-            direction: turn * neighbour.ray.direction,
-        };
-        let twin = neighbour
-            .leaves
-            .iter()
-            .find(|twin| twin.path == leaf.path)
+impl<const N: usize> Neighbour<'_, N> {
+    /// The leaf moved as its camera ray is: as if it came straight from a camera that stands and looks where
+    /// the leaf seems to come from.
+    fn moved(&self) -> Line {
+        let (here, leaf, there) = (&self.here.ray, self.leaf, &self.neighbour.ray);
+        let turn = DQuat::from_rotation_arc(here.direction, leaf.direction);
+        let eye = leaf.position - leaf.direction * leaf.position.distance(here.origin);
+        Line {
+            origin: eye + turn * (there.origin - here.origin),
+            direction: turn * there.direction,
+        }
+    }
+
+    /// The leaf of the neighbouring camera ray that has taken the same way, if there is one.
+    fn twin(&self) -> Option<Line> {
+        let leaves = &self.neighbour.leaves;
+        let twin = leaves.iter().find(|twin| twin.path == self.leaf.path).or_else(|| {
             // Light that enters by another face of a cloak may leave as if nothing had happened.
-            .or_else(|| neighbour.leaves.iter().find(|other| is_close(&moved, leaf, other)))
-            .map(|twin| Line { origin: twin.position, direction: twin.direction });
-        Self { moved, twin }
+            let moved = self.moved();
+            leaves.iter().find(|other| is_close(&moved, self.leaf, other))
+        })?;
+        Some(Line { origin: twin.position, direction: twin.direction })
     }
 }
 
@@ -129,26 +133,26 @@ fn is_close<const N: usize>(moved: &Line, leaf: &Leaf<N>, other: &Leaf<N>) -> bo
 
 /// The change of (u, v) on the photograph from here to one pixel away along either axis, from the
 /// leaving rays alone: never from the path inside a device.
-fn footprint(
+fn footprint<const N: usize>(
     place: impl Fn(&Line) -> Option<[f64; 2]>,
     here: [f64; 2],
-    neighbours: &[Neighbour; 2],
+    beside: &[Neighbour<'_, N>; 2],
 ) -> [[f64; 2]; 2] {
-    let step = |line: &Line| match place(line) {
+    let step = |line: Line| match place(&line) {
         Some(there) => [there[0] - here[0], there[1] - here[1]],
         // It meets the plane nowhere; a patch without size does no harm.
         None => [0.0; 2],
     };
     let size = |step: [f64; 2]| step[0].hypot(step[1]);
-    let twins = neighbours.map(|neighbour| neighbour.twin.map(|line| step(&line)));
+    let twins = [0, 1].map(|i| beside[i].twin().map(step));
     std::array::from_fn(|i| {
         twins[i].unwrap_or_else(|| {
             // At the edge of a device there is no twin: the other axis tells how much the picture
             // is stretched against the moved leaf.
             let stretch =
-                twins[1 - i].map_or(1.0, |twin| size(twin) / size(step(&neighbours[1 - i].moved)));
+                twins[1 - i].map_or(1.0, |twin| size(twin) / size(step(beside[1 - i].moved())));
             let stretch = if stretch.is_finite() { stretch } else { 1.0 };
-            step(&neighbours[i].moved).map(|change| change * stretch)
+            step(beside[i].moved()).map(|change| change * stretch)
         })
     })
 }
@@ -157,7 +161,7 @@ fn photograph_light<const N: usize>(
     studio: &Studio<'_>,
     leaf: &Leaf<N>,
     distance: f64,
-    neighbours: [Neighbour; 2],
+    beside: &[Neighbour<'_, N>; 2],
     spacing: f64,
 ) -> [f64; 3] {
     let screen = &studio.screen;
@@ -169,22 +173,21 @@ fn photograph_light<const N: usize>(
         let t = (screen.x - line.origin.x) / line.direction.x;
         t.is_finite().then(|| at(line, t))
     };
-    let [dx, dy] =
-        footprint(place, here, &neighbours).map(|step| step.map(|change| change * spacing));
+    let [dx, dy] = footprint(place, here, beside).map(|step| step.map(|change| change * spacing));
     studio.image.sample(here, dx, dy).map(f64::from)
 }
 
 fn surroundings_light<const N: usize>(
     studio: &Studio<'_>,
     leaf: &Leaf<N>,
-    neighbours: [Neighbour; 2],
+    beside: &[Neighbour<'_, N>; 2],
     spacing: f64,
 ) -> [f64; 3] {
     match &studio.surroundings {
         Surroundings::Color(color) => *color,
         Surroundings::Image(image) => {
-            let steps = neighbours.map(|neighbour| {
-                let line = neighbour.twin.unwrap_or(neighbour.moved);
+            let steps = [0, 1].map(|i| {
+                let line = beside[i].twin().unwrap_or_else(|| beside[i].moved());
                 (line.direction - leaf.direction) * spacing
             });
             image.sample(leaf.direction, steps[0], steps[1]).map(f64::from)

@@ -10,22 +10,25 @@ use std::sync::LazyLock;
 use num_complex::Complex64;
 
 /// Grid points per unit length.
-const DENSITY: f64 = 4.0;
-/// Grid columns: 0 <= Re t <= 6.5 (the other half follows by symmetry).
-const COLUMNS: usize = 27;
-/// Grid rows: `LOWEST_ROW` .. `LOWEST_ROW + ROWS`, that is -0.5 <= Im t <= 6. (Further down w_F grows like
+const DENSITY: f64 = 8.0;
+/// Grid columns: 0 <= Re t <= 6.6 (the other half follows by symmetry).
+const COLUMNS: usize = 54;
+/// Grid rows: `LOWEST_ROW` .. `LOWEST_ROW + ROWS`, that is -0.6 <= Im t <= 6.1. (Further down w_F grows like
 /// a Gaussian and the patches would need more terms.)
-const ROWS: usize = 27;
-const LOWEST_ROW: i64 = -2;
-/// Taylor terms of a patch: with a spacing of 1/4 the first one left out is below 1e-16 of w_F.
-const TERMS: usize = 16;
+const ROWS: usize = 55;
+const LOWEST_ROW: i64 = -5;
+/// Taylor terms of a patch: with a spacing of 1/8 the first one left out is below 1e-15 of w_F.
+const TERMS: usize = 12;
 
-/// Taylor coefficients c_n about a grid point, in the order in which they are summed: n = 0, 8, 4, 12,
-/// 2, ..., 15, the bits of the position reversed.
+/// Taylor coefficients c_n about a grid point, in the order in which they are summed.
 struct Patch {
     re: [f64; TERMS],
     im: [f64; TERMS],
 }
+
+/// Which coefficient is where in a patch: those in the second half are multiplied by d and added to
+/// the first half; what comes of it, halved again, by d².
+const ORDER: [usize; TERMS] = [0, 4, 8, 2, 6, 10, 1, 5, 9, 3, 7, 11];
 
 static TABLE: LazyLock<Vec<Patch>> = LazyLock::new(|| {
     (0..COLUMNS * ROWS)
@@ -92,11 +95,10 @@ fn tabulated(t: Complex64) -> Complex64 {
     // Estrin's scheme: short dependency chains, and sums of the same form side by side.
     let d2 = d * d;
     let d4 = d2 * d2;
-    let pairs: ([f64; 8], [f64; 8]) = folded(&c.re, &c.im, d);
-    let fours: ([f64; 4], [f64; 4]) = folded(&pairs.0, &pairs.1, d2);
-    let eights: ([f64; 2], [f64; 2]) = folded(&fours.0, &fours.1, d4);
-    let ([re], [im]) = folded(&eights.0, &eights.1, d4 * d4);
-    Complex64::new(re, im)
+    let pairs: ([f64; 6], [f64; 6]) = folded(&c.re, &c.im, d);
+    let (re, im): ([f64; 3], [f64; 3]) = folded(&pairs.0, &pairs.1, d2);
+    let fours: [Complex64; 3] = std::array::from_fn(|k| Complex64::new(re[k], im[k]));
+    (fours[0] + d4 * fours[1]) + (d4 * d4) * fours[2]
 }
 
 /// Adds the second half of the terms, times `d`, to the first.
@@ -139,11 +141,7 @@ fn patch(t0: Complex64) -> Patch {
     for n in 0..TERMS - 2 {
         c[n + 2] = -2.0 * (t0 * c[n + 1] + c[n]) / (n + 2) as f64;
     }
-    let order = |k: usize| k.reverse_bits() >> (usize::BITS - TERMS.trailing_zeros());
-    Patch {
-        re: std::array::from_fn(|k| c[order(k)].re),
-        im: std::array::from_fn(|k| c[order(k)].im),
-    }
+    Patch { re: ORDER.map(|n| c[n].re), im: ORDER.map(|n| c[n].im) }
 }
 
 /// w_F to 1e-15 for Re t >= 0 by the trapezoidal or midpoint rule with the residue of the pole at t

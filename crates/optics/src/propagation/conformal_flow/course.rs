@@ -91,12 +91,12 @@ impl<'a> Course<'a> {
     }
 
     pub fn first_stride(&self) -> f64 {
-        1.0 * self.scale
+        0.8 * self.scale
     }
 
     /// The longest step whose ends tell what happens in between.
     pub fn longest_stride(&self, here: &Point) -> f64 {
-        1.7 * self.scale.max(here.zeta.norm_sqr().sqrt() / 3.0) / self.strength
+        self.scale.max(here.zeta.norm_sqr().sqrt() / 3.0) / self.strength
     }
 
     /// A step meant to end a little beyond the border, which is `time` away by extrapolation.
@@ -119,10 +119,18 @@ impl<'a> Course<'a> {
         }
         let state = [from.zeta.re, from.zeta.im, from.momentum.re, from.momentum.im];
         let first = self.slope(&from.jet, from.momentum);
-        let step = dormand_prince::step(&state, first, h, &self.allowed, |y| {
-            let momentum = Complex64::new(y[2], y[3]);
-            self.slope(&self.map.jet(Complex64::new(y[0], y[1])), momentum)
-        });
+        let jet = |y: &[f64; 4]| self.map.jet(Complex64::new(y[0], y[1]));
+        let step = dormand_prince::step(
+            &state,
+            first,
+            h,
+            &self.allowed,
+            |y| {
+                let force = self.force(&jet(y));
+                [y[2], y[3], force.re, force.im]
+            },
+            |y| self.slope(&jet(y), Complex64::new(y[2], y[3])),
+        );
         let [x, y, px, py] = step.state;
         let end = self.point(
             from.tau + h,
