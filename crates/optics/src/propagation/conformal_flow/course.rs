@@ -45,6 +45,7 @@ pub(super) struct Course<'a> {
     strength: f64,
     scale: f64,
     allowed: ErrorScale<4, 2>,
+    longest: f64,
     nudge_reach: f64,
 }
 
@@ -63,7 +64,9 @@ impl<'a> Course<'a> {
         };
         // The error of `nudge` grows with the fifth power of its length; the fourth root is quicker.
         let nudge_reach = scale * 0.04 * (tolerance.max(1e-12) / 1e-6).sqrt().sqrt();
-        Self { map, p_z, strength, scale, allowed, nudge_reach }
+        // Where the estimate is low by chance, the order of the method still keeps a shorter step right.
+        let longest = scale * (tolerance.max(1e-12) / 1e-6).min(1.0).sqrt().sqrt().sqrt();
+        Self { map, p_z, strength, scale, allowed, longest, nudge_reach }
     }
 
     pub fn p_z(&self) -> f64 {
@@ -96,7 +99,7 @@ impl<'a> Course<'a> {
 
     /// The longest step whose ends tell what happens in between.
     pub fn longest_stride(&self, here: &Point) -> f64 {
-        self.scale.max(here.zeta.norm_sqr().sqrt() / 3.0) / self.strength
+        self.longest.max(here.zeta.norm_sqr().sqrt() / 3.0) / self.strength
     }
 
     /// A step meant to end a little beyond the border, which is `time` away by extrapolation.

@@ -115,6 +115,10 @@ pub enum FlowError {
 /// Steps after which a ray is given up; an ordinary one takes about ten.
 const MAX_STEPS: u32 = 2000;
 
+/// What is off where the mirror is met, its bulge magnifies on the way out: such a leg is followed with
+/// this share of the tolerance.
+const MIRROR_MAGNIFIES: f64 = 0.1;
+
 /// How far (relative to the map's scale) a start may lie outside by rounding.
 const BORDER_SLACK: f64 = 1e-9;
 
@@ -244,10 +248,24 @@ impl ConformalFlow {
         if (length - start.index).abs() > 1e-6 * start.index {
             return Err(FlowError::WaveVector { length, index: start.index });
         }
-        let course = Course::new(&self.map, p.z, self.strength, tolerance, self.lever());
-        let begin = course.start(start.virtual_position, Complex64::new(p.x, p.y), position.z);
+        let course =
+            |tolerance| Course::new(&self.map, p.z, self.strength, tolerance, self.lever());
+        let mut course_to_end = course(tolerance);
+        let begin =
+            course_to_end.start(start.virtual_position, Complex64::new(p.x, p.y), position.z);
+        if self.aims_at_floor(&begin) {
+            course_to_end = course(MIRROR_MAGNIFIES * tolerance);
+        }
+        let course = course_to_end;
         let arrival = self.follow(&course, begin)?;
         Ok(self.end(start, &course, &begin, &arrival))
+    }
+
+    /// Whether a straight line in virtual space leads to the mirror.
+    fn aims_at_floor(&self, point: &Point) -> bool {
+        let (zeta, momentum) = (point.zeta, point.momentum);
+        let x = zeta.re - momentum.re / momentum.im * zeta.im;
+        momentum.im < 0.0 && x > self.cut.x_min && x < self.cut.x_max
     }
 
     /// The distance over which an error of direction grows into one of position.
