@@ -12,7 +12,7 @@ pub fn load(arguments: &SceneArguments) -> Result<Loaded, Failure> {
 
 /// An error of a scene that could be read but not built, at its place in the file.
 pub fn located(loaded: &Loaded, error: &StudioError) -> Failure {
-    Failure::from_error(loaded.locations.error_at(&error.key(), &error.to_string()))
+    Failure::from_error(loaded.locations.error_at(&error.key(), error.to_string()))
 }
 
 /// Lets the work use the given number of threads, or all cores.

@@ -104,6 +104,6 @@ mod tests {
         let scene = &image.layer_data.attributes.other[&Text::from("scene")];
         assert!(matches!(scene, AttributeValue::Text(t) if t.to_string().contains("side = 3")));
         let version = &image.layer_data.attributes.other[&Text::from("cloakroom_version")];
-        assert!(matches!(version, AttributeValue::Text(t) if t.to_string() == "0.1.0"));
+        assert!(matches!(version, AttributeValue::Text(t) if t.eq("0.1.0")));
     }
 }

@@ -68,14 +68,10 @@ pub(super) fn expose<const N: usize>(
                 surroundings_light(studio, leaf, &beside, spacing)
             }
         };
-        for i in 0..3 {
-            pixel.image[i] += power * light[i];
-        }
+        add(&mut pixel.image, power, light);
         if detection.separate {
-            for i in 0..3 {
-                pixel.horizontal[i] += leaf.power[0] * light[i];
-                pixel.vertical[i] += leaf.power[1] * light[i];
-            }
+            add(&mut pixel.horizontal, leaf.power[0], light);
+            add(&mut pixel.vertical, leaf.power[1], light);
         }
     }
     let empty = studio
@@ -83,6 +79,12 @@ pub(super) fn expose<const N: usize>(
         .hit(here.ray.origin, here.ray.direction)
         .map(|distance| distance / SPEED_OF_LIGHT);
     pixel.add_pulses(pulses, empty);
+}
+
+fn add(sum: &mut [f64; 3], power: f64, light: [f64; 3]) {
+    for (sum, light) in sum.iter_mut().zip(light) {
+        *sum += power * light;
+    }
 }
 
 /// A straight line in air: the end of a branch.

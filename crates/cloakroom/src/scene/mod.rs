@@ -92,16 +92,6 @@ pub struct PictureSettings {
     pub color_bar: bool,
 }
 
-/// What fills the hidden region of a device.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Core {
-    /// Metal.
-    #[default]
-    Metal,
-    /// Air, in which bodies may stand.
-    Open,
-}
-
 /// One device of a scene.
 #[derive(Clone, Debug)]
 pub struct DeviceSettings {
@@ -111,8 +101,6 @@ pub struct DeviceSettings {
     pub values: Values,
     /// What of it is shown.
     pub show: Show,
-    /// What fills its hidden region.
-    pub core: Core,
     /// Degrees about its own axis, counterclockwise seen from +z.
     pub rotation: f64,
     /// Where its origin lies, in cm.
@@ -195,10 +183,6 @@ impl DeviceSettings {
                 "bare" => Show::Bare,
                 "mirror" => Show::Mirror,
                 _ => Show::Cloak,
-            },
-            core: match placement.choice("core") {
-                "open" => Core::Open,
-                _ => Core::Metal,
             },
             rotation: placement.number("rotation"),
             position: DVec3::from_array(placement.vector("position")),

