@@ -33,6 +33,7 @@ fn make(
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
     let mut on_sheet = Vec::new();
+    let mut metadata: Vec<(String, String)> = Vec::new();
     for panel in panels {
         let loaded = scene_file::parse(
             panel.scene,
@@ -57,6 +58,7 @@ fn make(
         let path = arguments.out.join(format!("fig{}.png", panel.name));
         output::write_png(&image, &picture.metadata, &path).map_err(Failure::from_error)?;
         say(&format!("{}", path.display()));
+        merge(&mut metadata, &picture.metadata);
         on_sheet.push(SheetPanel {
             image,
             label: format!("({})", panel.letter()),
@@ -67,13 +69,25 @@ fn make(
     if panels.len() == figure.panels.len() {
         let title = format!("Figure {}. {}", figure.number, figure.title);
         let path = arguments.out.join(format!("fig{}.png", figure.number));
-        let metadata =
-            [("software".to_owned(), concat!("cloakroom ", env!("CARGO_PKG_VERSION")).to_owned())];
         output::write_png(&sheet(&title, &on_sheet), &metadata, &path)
             .map_err(Failure::from_error)?;
         say(&format!("{}", path.display()));
     }
     Ok(())
+}
+
+/// Adds a panel's metadata to that of its sheet: what differs from panel to panel, one after the other.
+fn merge(sheet: &mut Vec<(String, String)>, panel: &[(String, String)]) {
+    for (key, text) in panel {
+        match sheet.iter_mut().find(|(known, _)| known == key) {
+            Some((_, all)) if all != text => {
+                all.push('\n');
+                all.push_str(text);
+            }
+            Some(_) => {}
+            None => sheet.push((key.clone(), text.clone())),
+        }
+    }
 }
 
 /// What the command line changes in every panel's scene.

@@ -109,3 +109,42 @@ fn every_ray_leaves_as_from_the_flat_strip() {
         assert!(inside > 2000 && mirrored > 500, "{inside} {mirrored}");
     }
 }
+
+/// Renders a scene at a modest size with all channels.
+fn picture(devices: &str) -> cloakroom::output::Picture {
+    use cloakroom::render::{Studio, Supervision, Wanted, render};
+    let text = format!("[camera]\nresolution = [320, 240]\nsamples = 1\n{devices}");
+    let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
+    let studio = Studio::new(&loaded.scene).unwrap();
+    let stop = std::sync::atomic::AtomicBool::new(false);
+    let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
+    render(&studio, Wanted::Everything, &supervision).unwrap().picture
+}
+
+#[test]
+fn light_is_on_time_to_yoctoseconds() {
+    let cloaked = picture("[[device]]\nkind = \"square-cloak\"\n");
+    let times = &cloaked.channel("time_of_flight_difference").unwrap().samples;
+    let largest = (0..times.len()).map(|i| times.get(i).abs()).fold(0.0, f64::max);
+    // 20 ys = 2e-14 ns; NaN would not pass, for every pixel must see the photograph.
+    assert!((0..times.len()).all(|i| times.get(i).abs() < 2e-14), "{largest:e} ns");
+    let spread = &cloaked.channel("time_of_flight_spread").unwrap().samples;
+    assert!((0..spread.len()).all(|i| spread.get(i) < 2e-14));
+    let delivered = &cloaked.channel("delivered").unwrap().samples;
+    assert!((0..delivered.len()).all(|i| (delivered.get(i) - 1.0).abs() < 1e-6));
+}
+
+#[test]
+fn rounded_values_bend_by_less_than_a_degree() {
+    // physics.md, section 3: up to 0.8 degrees at rotation 0, with up to 0.14 cm of optical path.
+    let bench = cloak("rounded = true");
+    let mut tracer = Tracer::new(&bench, LIMITS);
+    let mut largest: f64 = 0.0;
+    for step in 1..400 {
+        let y = -9.9 + f64::from(step) * 0.0495;
+        let launch = launch(DVec3::new(-100.0, 0.0, 0.0), DVec3::new(90.0, y, 3.0).normalize());
+        let (leaf, _) = main_leaf(tracer.trace(&launch).0);
+        largest = largest.max(leaf.direction.angle_between(launch.direction).to_degrees());
+    }
+    assert!(largest > 0.05 && largest < 0.85, "{largest} degrees");
+}
