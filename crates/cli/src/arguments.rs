@@ -21,6 +21,8 @@ pub enum Command {
     Check(SceneArguments),
     /// Trace given rays through a scene; JSON in, JSON out.
     Trace(TraceArguments),
+    /// Solve interfaces between media, or of a medium and metal; JSON in, JSON out.
+    Interface(InterfaceArguments),
     /// Make the figures of Halimeh & Wegener, Opt. Express 21, 9457 (2013).
     Figures(FiguresArguments),
     /// List the devices with their keys and computed facts.
@@ -68,6 +70,13 @@ pub struct TraceArguments {
     /// Number of threads; all cores if absent.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
+}
+
+/// Arguments of `interface`.
+#[derive(Args, Debug)]
+pub struct InterfaceArguments {
+    /// The interfaces: a JSON file, or - for standard input.
+    pub interfaces: PathBuf,
 }
 
 /// Arguments of `figures`.

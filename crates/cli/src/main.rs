@@ -7,6 +7,8 @@ mod arguments;
 mod check;
 mod devices;
 mod figures;
+mod input;
+mod interface;
 mod interruption;
 mod progress;
 mod render;
@@ -33,6 +35,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Render(arguments) => render::run(arguments, stop),
         Command::Check(arguments) => check::run(arguments),
         Command::Trace(arguments) => trace::run(arguments, stop),
+        Command::Interface(arguments) => interface::run(arguments),
         Command::Figures(arguments) => figures::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),
         Command::Schema => report::print_json(&cloakroom::scene_file::schema()),

@@ -220,3 +220,27 @@ fn ctrl_c_leaves_nothing() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
+
+#[test]
+fn interfaces_are_solved() {
+    let glass = r#"{"incident": {"permittivity": 1, "permeability": 1},
+        "transmitted": {"permittivity": 2.25, "permeability": 1},
+        "normal": [1, 0, 0], "tangential": [0, 0, 0]}"#;
+    let solve =
+        |text: String| json(&stdout(cloakroom().args(["interface", "-"]).write_stdin(text)));
+    let one = solve(glass.to_owned());
+    for mode in 0..2 {
+        assert!((one["total_reflected"][mode].as_f64().unwrap() - 0.04).abs() < 1e-14);
+        assert!((one["total_transmitted"][mode].as_f64().unwrap() - 0.96).abs() < 1e-14);
+    }
+    assert_eq!(one["power"].as_array().unwrap().len(), 4);
+    let metal = glass.replace(r#"{"permittivity": 2.25, "permeability": 1}"#, r#""metal""#);
+    let both = solve(format!("[{glass}, {metal}]"));
+    assert_eq!(both[0], one);
+    assert!((both[1]["total_reflected"][0].as_f64().unwrap() - 1.0).abs() < 1e-14);
+    let mut command = cloakroom();
+    command.args(["interface", "-"]).write_stdin(glass.replace("2.25", "\"two\""));
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("transmitted.permittivity"));
+}

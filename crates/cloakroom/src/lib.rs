@@ -12,6 +12,7 @@
 
 pub mod device;
 pub mod illustration;
+pub mod interface_exchange;
 pub mod keys;
 mod memory;
 pub mod output;

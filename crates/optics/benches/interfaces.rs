@@ -3,49 +3,101 @@
 //! `cargo bench -p cloakroom-optics`
 
 use divan::{Bencher, black_box};
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use optics::interface::{IncidentWave, reflect_at_conductor, split};
-use optics::medium::Medium;
+use optics::medium::{Heading, Medium};
 use optics::transformation::StripToRhombus;
 
 fn main() {
     divan::main();
 }
 
-fn segment() -> Medium {
-    let map = StripToRhombus::new(9.97, 0.577);
-    Medium::impedance_matched(map.tensor(DVec2::ONE)).expect("a sound medium")
+fn map() -> StripToRhombus {
+    StripToRhombus::new(9.97, 0.577)
 }
 
+fn segment() -> Medium {
+    Medium::impedance_matched(map().tensor(DVec2::ONE)).expect("a sound medium")
+}
+
+/// A segment of design (i), with the optic axis in the given quadrant.
+fn birefringent(quadrant: DVec2) -> Medium {
+    let (values, angle) = map().principal_values();
+    let turn = DMat3::from_rotation_z(angle.to_radians() * quadrant.x * quadrant.y);
+    Medium::uniaxial_magnetic(values.z, values.y, values.x, turn * DVec3::X)
+        .expect("a sound medium")
+}
+
+/// A wave towards +x, in birefringent media the ordinary one.
 fn wave(medium: &Medium) -> IncidentWave<2> {
-    let direction = DVec3::new(0.8, 0.36, 0.48);
-    let wave_vector = medium.wave_surface().wave_vector_along(direction);
-    let across = wave_vector.normalize().any_orthonormal_pair();
+    let tangential = DVec3::new(0.0, 0.36, 0.28);
+    let [a, b] = medium.modes(tangential, DVec3::X, Heading::Forward);
+    let second = if (a.wave_vector.re - b.wave_vector.re).length() < 1e-9 { b } else { a };
     IncidentWave {
-        wave_vector,
-        direction,
-        electric: [across.0.into(), across.1.into()],
-        power: [1.0; 2],
+        wave_vector: a.wave_vector.re,
+        attenuation: DVec3::ZERO,
+        direction: a.ray.expect("a wave that propagates"),
+        electric: [a.electric, second.electric * 0.5],
+        power: [1.0, 0.25],
     }
+}
+
+fn bench_split(bencher: Bencher, from: &Medium, to: &Medium) {
+    let wave = wave(from);
+    bencher.bench(|| split(black_box(from), black_box(to), black_box(&wave), DVec3::X));
+}
+
+fn bench_conductor(bencher: Bencher, medium: &Medium) {
+    let wave = wave(medium);
+    bencher.bench(|| reflect_at_conductor(black_box(medium), black_box(&wave), DVec3::X));
 }
 
 #[divan::bench]
 fn air_to_glass(bencher: Bencher) {
-    let (air, glass) = (Medium::AIR, Medium::dielectric(1.5));
-    let wave = wave(&air);
-    bencher.bench(|| split(black_box(&air), black_box(&glass), black_box(&wave), DVec3::X));
+    bench_split(bencher, &Medium::AIR, &Medium::dielectric(1.5));
 }
 
 #[divan::bench]
 fn air_to_impedance_matched(bencher: Bencher) {
-    let (air, segment) = (Medium::AIR, segment());
-    let wave = wave(&air);
-    bencher.bench(|| split(black_box(&air), black_box(&segment), black_box(&wave), DVec3::X));
+    bench_split(bencher, &Medium::AIR, &segment());
 }
 
 #[divan::bench]
-fn conductor(bencher: Bencher) {
-    let air = Medium::AIR;
-    let wave = wave(&air);
-    bencher.bench(|| reflect_at_conductor(black_box(&air), black_box(&wave), DVec3::X));
+fn air_to_uniaxial(bencher: Bencher) {
+    bench_split(bencher, &Medium::AIR, &birefringent(DVec2::ONE));
+}
+
+#[divan::bench]
+fn uniaxial_to_air(bencher: Bencher) {
+    bench_split(bencher, &birefringent(DVec2::ONE), &Medium::AIR);
+}
+
+#[divan::bench]
+fn uniaxial_to_uniaxial(bencher: Bencher) {
+    bench_split(bencher, &birefringent(DVec2::ONE), &birefringent(DVec2::new(-1.0, 1.0)));
+}
+
+/// The ordinary wave beyond is evanescent: the same in complex numbers.
+#[divan::bench]
+fn air_to_uniaxial_evanescent(bencher: Bencher) {
+    let rare = Medium::uniaxial_magnetic(0.5, 0.3, 3.0, DVec3::new(0.8, 0.6, 0.0))
+        .expect("a sound medium");
+    bench_split(bencher, &Medium::AIR, &rare);
+}
+
+#[divan::bench]
+fn uniaxial_to_general(bencher: Bencher) {
+    let topaz = Medium::new(DMat3::from_diagonal(DVec3::new(2.609, 2.613, 2.641)), 1.0)
+        .expect("a sound medium");
+    bench_split(bencher, &birefringent(DVec2::ONE), &topaz);
+}
+
+#[divan::bench]
+fn conductor_in_air(bencher: Bencher) {
+    bench_conductor(bencher, &Medium::AIR);
+}
+
+#[divan::bench]
+fn conductor_in_uniaxial(bencher: Bencher) {
+    bench_conductor(bencher, &birefringent(DVec2::ONE));
 }

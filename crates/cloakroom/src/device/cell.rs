@@ -8,6 +8,7 @@ use optics::propagation::{Boundary, ConformalFlow, Foothold, Half};
 
 /// A region filled with one medium.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a device has few cells, and they are met often")]
 pub enum Cell {
     /// A convex prism of a homogeneous medium, in which rays are straight.
     Prism(Prism),

@@ -20,6 +20,7 @@ pub(super) struct Branch<const N: usize> {
     pub place: Place,
     pub position: DVec3,
     pub wave_vector: DVec3,
+    pub attenuation: DVec3,
     pub direction: DVec3,
     pub electric: [ComplexVector; N],
     pub power: [f64; N],
@@ -35,6 +36,7 @@ impl<const N: usize> Branch<N> {
     pub fn incident(&self) -> IncidentWave<N> {
         IncidentWave {
             wave_vector: self.wave_vector,
+            attenuation: self.attenuation,
             direction: self.direction,
             electric: self.electric,
             power: self.power,
@@ -46,6 +48,7 @@ impl<const N: usize> Branch<N> {
         Self {
             place,
             wave_vector: wave.wave_vector,
+            attenuation: wave.attenuation,
             direction: wave.direction,
             electric: wave.electric,
             power: wave.power,

@@ -70,6 +70,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             place: Place::Air { left: None },
             position: launch.origin,
             wave_vector: launch.direction,
+            attenuation: DVec3::ZERO,
             direction: launch.direction,
             electric: launch.electric,
             power: launch.electric.map(ComplexVector::norm_squared),
@@ -122,8 +123,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let local = to_local(&branch, &device.pose);
         match hit.beyond {
             Beyond::Conductor => {
-                let wave = reflect_at_conductor(&Medium::AIR, &local.incident(), into);
-                self.go_on(to_world(&local.onward(&wave, air, event), &device.pose));
+                for wave in reflect_at_conductor(&Medium::AIR, &local.incident(), into) {
+                    self.go_on(to_world(&local.onward(&wave, air, event), &device.pose));
+                }
             }
             Beyond::Cell(cell) => {
                 let Some(entrance) = self.cell(device, cell).enter(local.position) else {
@@ -178,8 +180,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let medium = passage.medium;
         match passage.beyond {
             Beyond::Conductor => {
-                let wave = reflect_at_conductor(&medium, &branch.incident(), passage.outward);
-                self.go_on(branch.onward(&wave, here, event));
+                for wave in reflect_at_conductor(&medium, &branch.incident(), passage.outward) {
+                    self.go_on(branch.onward(&wave, here, event | side_code(&wave)));
+                }
             }
             Beyond::Cell(next) => {
                 let Some(entrance) = self.cell(device, next).enter(branch.position) else {
@@ -259,16 +262,18 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
 /// Tells the branches at one surface apart in the fingerprint of the path.
 fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
-    match wave.side {
+    let side = match wave.side {
         Side::Reflected => 1,
         Side::Transmitted => 2,
-    }
+    };
+    side | (wave.mode as u64) << 56
 }
 
 fn to_local<const N: usize>(branch: &Branch<N>, pose: &Pose) -> Branch<N> {
     Branch {
         position: pose.to_local(branch.position),
         wave_vector: pose.vector_to_local(branch.wave_vector),
+        attenuation: pose.vector_to_local(branch.attenuation),
         direction: pose.vector_to_local(branch.direction),
         electric: branch.electric.map(|field| pose.field_to_local(field)),
         ..*branch
@@ -279,6 +284,7 @@ fn to_world<const N: usize>(branch: &Branch<N>, pose: &Pose) -> Branch<N> {
     Branch {
         position: pose.to_world(branch.position),
         wave_vector: pose.vector_to_world(branch.wave_vector),
+        attenuation: pose.vector_to_world(branch.attenuation),
         direction: pose.vector_to_world(branch.direction),
         electric: branch.electric.map(|field| pose.field_to_world(field)),
         ..*branch

@@ -1,56 +1,9 @@
 //! Tangential fields: the 2 x 2 admittance that ties H to E in the plane of an interface.
 
 use crate::medium::Medium;
-use crate::wave::ComplexVector;
+use crate::wave::{ComplexVector, Frame, Number};
 use glam::DVec3;
 use num_complex::Complex64;
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
-/// The numbers an admittance is made of: real for propagating waves, complex for evanescent ones.
-pub(super) trait Number:
-    Copy
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-    + From<f64>
-{
-    fn times(self, amplitude: Complex64) -> Complex64;
-}
-
-impl Number for f64 {
-    fn times(self, amplitude: Complex64) -> Complex64 {
-        amplitude * self
-    }
-}
-
-impl Number for Complex64 {
-    fn times(self, amplitude: Complex64) -> Complex64 {
-        amplitude * self
-    }
-}
-
-/// A right-handed frame on an interface: two tangents and the normal.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    pub first: DVec3,
-    pub second: DVec3,
-    pub normal: DVec3,
-}
-
-impl Frame {
-    /// The frame with the given unit normal whose first tangent lies along `tangential`, or
-    /// anywhere in the plane if that vanishes.
-    pub fn new(normal: DVec3, tangential: DVec3) -> Self {
-        let length = tangential.length();
-        let first =
-            if length > 1e-9 { tangential / length } else { normal.any_orthonormal_vector() };
-        // Once more across the normal: the tangential part may be short and its direction rough.
-        let first = (first - normal * normal.dot(first)).normalize();
-        Self { first, second: normal.cross(first), normal }
-    }
-}
 
 /// Waves of one wave vector p = tangential + q normal in one medium: how the normal electric field
 /// and the tangential magnetic field follow from the tangential electric field.

@@ -1,36 +1,17 @@
 //! The interface of two media in which both polarizations share one wave vector.
 
-use super::admittance::{Frame, Number, TangentialWave};
+use super::admittance::TangentialWave;
 use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
-use crate::medium::{Medium, NormalComponent};
-use crate::wave::{ComplexVector, turn_transverse};
+use crate::medium::{Medium, ModeKind, NormalComponent, WaveSurface};
+use crate::wave::{ComplexVector, Frame, Number};
 use glam::DVec3;
 use num_complex::Complex64;
 
-/// Splits a wave at the interface between two media.
-///
-/// `normal` is the unit normal that points from the medium of incidence, `incident_medium`, into
-/// `transmitted_medium`. The list holds the reflected wave first, then the transmitted one unless
-/// it is evanescent.
-///
-/// # Example
-///
-/// Glass reflects 4 % of light that falls on it straight.
-///
-/// ```
-/// use glam::DVec3;
-/// use optics::interface::{split, IncidentWave};
-/// use optics::medium::Medium;
-///
-/// let wave = IncidentWave { wave_vector: DVec3::X, direction: DVec3::X, electric: [DVec3::Y.into()], power: [1.0] };
-/// let waves = split(&Medium::AIR, &Medium::dielectric(1.5), &wave, DVec3::X);
-/// assert!((waves[0].power[0] - 0.04).abs() < 1e-15);
-/// assert!((waves[1].power[0] - 0.96).abs() < 1e-15);
-/// ```
-#[must_use]
-pub fn split<const N: usize>(
-    incident_medium: &Medium,
-    transmitted_medium: &Medium,
+/// Splits a wave at the interface of two lossless media in which both polarizations share one wave
+/// vector, given with their wave surfaces.
+pub(super) fn split_single_wave<const N: usize>(
+    (incident_medium, incident_surface): (&Medium, &WaveSurface),
+    (transmitted_medium, transmitted_surface): (&Medium, &WaveSurface),
     wave: &IncidentWave<N>,
     normal: DVec3,
 ) -> OutgoingWaves<N> {
@@ -39,13 +20,12 @@ pub fn split<const N: usize>(
     let along = tangential.dot(frame.first);
     // The incident wave is taken anew from its tangential part: near grazing incidence, where the
     // normal part is a small difference, all waves of the matching must agree on it.
-    let (forward, backward) =
-        incident_medium.wave_surface().normal_component(tangential, normal).real_pair();
+    let (forward, backward) = incident_surface.normal_component(tangential, normal).real_pair();
     let incident = TangentialWave::new(incident_medium, &frame, along, forward);
     let reflected = TangentialWave::new(incident_medium, &frame, along, backward);
     let matching = Matching { wave, frame: &frame, incident };
     let backward_wave = frame.first * along + normal * backward;
-    match transmitted_medium.wave_surface().normal_component(tangential, normal) {
+    match transmitted_surface.normal_component(tangential, normal) {
         NormalComponent::Propagating { forward: q, .. } => {
             let transmitted = TangentialWave::new(transmitted_medium, &frame, along, q);
             let [back, on] = matching.tangential_fields(reflected, transmitted);
@@ -62,12 +42,12 @@ pub fn split<const N: usize>(
             waves.push(OutgoingWave {
                 side: Side::Reflected,
                 ..matching
-                    .outgoing(incident_medium, backward_wave, &reflected, &back, |i| share(i, 0))
+                    .outgoing(incident_surface, backward_wave, &reflected, &back, |i| share(i, 0))
             });
             waves.push(OutgoingWave {
                 side: Side::Transmitted,
                 ..matching
-                    .outgoing(transmitted_medium, onward_wave, &transmitted, &on, |i| share(i, 1))
+                    .outgoing(transmitted_surface, onward_wave, &transmitted, &on, |i| share(i, 1))
             });
             waves
         }
@@ -76,40 +56,10 @@ pub fn split<const N: usize>(
             let transmitted = TangentialWave::new(transmitted_medium, &frame, along, q);
             let [back, _] = matching.tangential_fields(reflected.into(), transmitted);
             let wave =
-                matching.outgoing(incident_medium, backward_wave, &reflected, &back, |_| 1.0);
+                matching.outgoing(incident_surface, backward_wave, &reflected, &back, |_| 1.0);
             std::iter::once(wave).collect()
         }
     }
-}
-
-/// A wave through an interface between isotropic media whose reflection is suppressed by a perfect
-/// antireflection coating: refracted, all of its power transmitted, each polarization on its own.
-/// Beyond the critical angle it is totally reflected as at the bare interface.
-#[must_use]
-pub fn transmit_antireflection<const N: usize>(
-    incident_medium: &Medium,
-    transmitted_medium: &Medium,
-    wave: &IncidentWave<N>,
-    normal: DVec3,
-) -> OutgoingWaves<N> {
-    let tangential = wave.wave_vector - normal * wave.wave_vector.dot(normal);
-    let NormalComponent::Propagating { forward, .. } =
-        transmitted_medium.wave_surface().normal_component(tangential, normal)
-    else {
-        return split(incident_medium, transmitted_medium, wave, normal);
-    };
-    let wave_vector = tangential + normal * forward;
-    let direction = transmitted_medium.wave_surface().ray_direction(wave_vector);
-    let mut waves = OutgoingWaves::new();
-    let mut electric = wave.electric;
-    for (field, power) in electric.iter_mut().zip(wave.power) {
-        let turned = turn_transverse(*field, wave.direction, direction);
-        let carried = transmitted_medium.poynting(wave_vector, turned).length();
-        *field = if carried > 0.0 { turned * (power / carried).sqrt() } else { turned };
-    }
-    let power = wave.power;
-    waves.push(OutgoingWave { side: Side::Transmitted, wave_vector, direction, electric, power });
-    waves
 }
 
 /// Tangential electric fields (E·first, E·second) for each launched polarization.
@@ -156,13 +106,13 @@ impl<const N: usize> Matching<'_, N> {
     /// A propagating outgoing wave from its tangential fields and its share of the power.
     fn outgoing(
         &self,
-        medium: &Medium,
+        surface: &WaveSurface,
         wave_vector: DVec3,
         tangential: &TangentialWave<f64>,
         fields: &TangentialFields<N>,
         share: impl Fn(usize) -> f64,
     ) -> OutgoingWave<N> {
-        let direction = medium.wave_surface().ray_direction(wave_vector);
+        let direction = surface.ray_direction(wave_vector);
         let cosine = direction.dot(self.frame.normal).abs();
         let mut power = [0.0; N];
         let mut electric = [ComplexVector::ZERO; N];
@@ -175,7 +125,15 @@ impl<const N: usize> Matching<'_, N> {
                     tangential.lifted(self.frame, fields[i]) * (power[i] / carried).sqrt();
             }
         }
-        OutgoingWave { side: Side::Reflected, wave_vector, direction, electric, power }
+        OutgoingWave {
+            side: Side::Reflected,
+            mode: ModeKind::Shared,
+            wave_vector,
+            attenuation: DVec3::ZERO,
+            direction,
+            electric,
+            power,
+        }
     }
 }
 

@@ -2,41 +2,45 @@
 //!
 //! A [`Medium`] is homogeneous. A graded medium is a local homogeneous one at every point; how
 //! light runs through it is the business of [`crate::propagation`].
+//!
+//! Any symmetric tensors make a medium, of either sign and indefinite ones too; complex ones
+//! absorb. What a medium is called (isotropic, impedance matched, uniaxial) is found when it is
+//! made, and decides which closed form gives its [modes](Mode).
 
+mod class;
+mod error;
+mod modes;
+mod principal_axes;
+mod quadratic;
+mod tensor;
 mod wave_surface;
 
+pub use error::MediumError;
+pub(crate) use modes::{BothWays, LocalMode, LocalModes, Tangential, mutual_flux};
+pub use modes::{Heading, Mode, ModeKind};
+pub use tensor::Tensor;
 pub use wave_surface::{NormalComponent, WaveSurface};
 
 use crate::wave::{ComplexVector, poynting};
+use class::{Class, Uniaxial};
 use glam::{DMat3, DVec3};
 
-/// Why a medium cannot be.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum MediumError {
-    /// A number is NaN, infinite, or zero where it must not be.
-    #[error("{quantity} is {value}; it must be finite and not zero")]
-    Degenerate {
-        /// What the number is.
-        quantity: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// The tensor is not symmetric; such media are not reciprocal and are not supported.
-    #[error("the {quantity} tensor is not symmetric")]
-    NotSymmetric {
-        /// Which tensor.
-        quantity: &'static str,
-    },
-}
-
-/// A homogeneous, lossless medium in which both polarizations share one wave vector: isotropic, or
-/// impedance matched (ε = µ).
+/// A homogeneous medium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
     permittivity: DMat3,
     permeability: DMat3,
     inverse_permeability: DMat3,
-    surface: WaveSurface,
+    absorption: Option<Absorption>,
+    class: Class,
+}
+
+/// The imaginary parts of an absorbing medium's tensors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Absorption {
+    permittivity: DMat3,
+    permeability: DMat3,
+    inverse_permeability: DMat3,
 }
 
 impl Medium {
@@ -45,8 +49,118 @@ impl Medium {
         permittivity: DMat3::IDENTITY,
         permeability: DMat3::IDENTITY,
         inverse_permeability: DMat3::IDENTITY,
-        surface: WaveSurface::AIR,
+        absorption: None,
+        class: Class::Isotropic(WaveSurface::AIR),
     };
+
+    /// A medium of any relative permittivity and permeability tensors.
+    ///
+    /// # Errors
+    ///
+    /// If a tensor is not symmetric, not finite or singular, or would amplify light.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use glam::{DMat3, DVec3};
+    /// use num_complex::Complex64;
+    /// use optics::medium::Medium;
+    ///
+    /// let topaz = DMat3::from_diagonal(DVec3::new(2.609, 2.613, 2.641));
+    /// let medium = Medium::new(topaz, 1.0)?;
+    /// assert!(medium.wave_surface().is_none());
+    /// let gold = Medium::new(Complex64::new(-5.8, 2.1), 1.0)?;
+    /// assert!(gold.absorbs());
+    /// # Ok::<(), optics::medium::MediumError>(())
+    /// ```
+    pub fn new(
+        permittivity: impl Into<Tensor>,
+        permeability: impl Into<Tensor>,
+    ) -> Result<Self, MediumError> {
+        let permittivity = permittivity.into().checked("permittivity")?;
+        let permeability = permeability.into().checked("permeability")?;
+        let class = Class::of(&permittivity, &permeability);
+        Ok(Self::of_class(&permittivity, &permeability, class))
+    }
+
+    fn of_class(permittivity: &Tensor, permeability: &Tensor, class: Class) -> Self {
+        let inverse = permeability.inverse();
+        let lossless = permittivity.im == DMat3::ZERO && permeability.im == DMat3::ZERO;
+        let absorption = (!lossless).then_some(Absorption {
+            permittivity: permittivity.im,
+            permeability: permeability.im,
+            inverse_permeability: inverse.im,
+        });
+        Self {
+            permittivity: permittivity.re,
+            permeability: permeability.re,
+            inverse_permeability: inverse.re,
+            absorption,
+            class,
+        }
+    }
+
+    /// A medium of scalar permittivity whose permeability is µ_o across and µ_e along `axis` (of
+    /// any length).
+    ///
+    /// # Errors
+    ///
+    /// If a number is not finite or is zero, or the axis has no direction.
+    pub fn uniaxial_magnetic(
+        permittivity: f64,
+        ordinary: f64,
+        extraordinary: f64,
+        axis: DVec3,
+    ) -> Result<Self, MediumError> {
+        Self::uniaxial(permittivity, ordinary, extraordinary, axis, false)
+    }
+
+    /// A medium of scalar permeability whose permittivity is ε_o across and ε_e along `axis` (of
+    /// any length): with µ = 1, a uniaxial crystal.
+    ///
+    /// # Errors
+    ///
+    /// If a number is not finite or is zero, or the axis has no direction.
+    pub fn uniaxial_electric(
+        permeability: f64,
+        ordinary: f64,
+        extraordinary: f64,
+        axis: DVec3,
+    ) -> Result<Self, MediumError> {
+        Self::uniaxial(permeability, ordinary, extraordinary, axis, true)
+    }
+
+    fn uniaxial(
+        scalar: f64,
+        ordinary: f64,
+        extraordinary: f64,
+        axis: DVec3,
+        electric: bool,
+    ) -> Result<Self, MediumError> {
+        let names = if electric {
+            ["permeability", "ordinary permittivity", "extraordinary permittivity"]
+        } else {
+            ["permittivity", "ordinary permeability", "extraordinary permeability"]
+        };
+        for (quantity, value) in names.into_iter().zip([scalar, ordinary, extraordinary]) {
+            not_degenerate(quantity, value)?;
+        }
+        let axis = axis.try_normalize().ok_or(MediumError::NoAxis)?;
+        if ordinary == extraordinary {
+            return if electric {
+                Self::isotropic(ordinary, scalar)
+            } else {
+                Self::isotropic(scalar, ordinary)
+            };
+        }
+        let tensor = Tensor::uniaxial(ordinary.into(), extraordinary.into(), axis);
+        let class = Class::Uniaxial(Uniaxial { scalar, ordinary, extraordinary, axis, electric });
+        Ok(if electric {
+            Self::of_class(&tensor, &scalar.into(), class)
+        } else {
+            Self::of_class(&scalar.into(), &tensor, class)
+        })
+    }
 
     /// An isotropic medium of relative permittivity ε and permeability µ; both negative for a
     /// negative index.
@@ -55,11 +169,8 @@ impl Medium {
     ///
     /// If a number is not finite or is zero.
     pub fn isotropic(permittivity: f64, permeability: f64) -> Result<Self, MediumError> {
-        for (quantity, value) in [("permittivity", permittivity), ("permeability", permeability)] {
-            if !value.is_finite() || value == 0.0 {
-                return Err(MediumError::Degenerate { quantity, value });
-            }
-        }
+        not_degenerate("permittivity", permittivity)?;
+        not_degenerate("permeability", permeability)?;
         Ok(Self::isotropic_unchecked(permittivity, permeability))
     }
 
@@ -76,7 +187,8 @@ impl Medium {
             permittivity: DMat3::from_diagonal(DVec3::splat(permittivity)),
             permeability: DMat3::from_diagonal(DVec3::splat(permeability)),
             inverse_permeability: DMat3::from_diagonal(DVec3::splat(1.0 / permeability)),
-            surface: WaveSurface::isotropic(permittivity, permeability),
+            absorption: None,
+            class: Class::Isotropic(WaveSurface::isotropic(permittivity, permeability)),
         }
     }
 
@@ -86,46 +198,75 @@ impl Medium {
     ///
     /// If the tensor is not symmetric, not finite, or singular.
     pub fn impedance_matched(tensor: DMat3) -> Result<Self, MediumError> {
-        let determinant = tensor.determinant();
-        if !determinant.is_finite() || determinant == 0.0 {
-            return Err(MediumError::Degenerate {
-                quantity: "the determinant of the tensor",
-                value: determinant,
-            });
-        }
-        if !tensor.transpose().abs_diff_eq(tensor, 1e-12 * tensor.x_axis.length()) {
-            return Err(MediumError::NotSymmetric { quantity: "permittivity" });
-        }
-        Ok(Self {
-            permittivity: tensor,
-            permeability: tensor,
-            inverse_permeability: tensor.inverse(),
-            surface: WaveSurface::impedance_matched(tensor),
-        })
+        Self::new(tensor, tensor)
     }
 
-    /// The relative permittivity tensor ε.
+    /// The relative permittivity tensor ε, its real part if the medium absorbs.
     #[must_use]
     pub fn permittivity(&self) -> &DMat3 {
         &self.permittivity
     }
 
-    /// The relative permeability tensor µ.
+    /// The relative permeability tensor µ, its real part if the medium absorbs.
     #[must_use]
     pub fn permeability(&self) -> &DMat3 {
         &self.permeability
     }
 
-    /// Which wave vectors the medium carries.
+    /// The permittivity and permeability tensors with their imaginary parts.
     #[must_use]
-    pub fn wave_surface(&self) -> &WaveSurface {
-        &self.surface
+    pub fn tensors(&self) -> (Tensor, Tensor) {
+        let (e, m) = self
+            .absorption
+            .map_or((DMat3::ZERO, DMat3::ZERO), |a| (a.permittivity, a.permeability));
+        (Tensor { re: self.permittivity, im: e }, Tensor { re: self.permeability, im: m })
+    }
+
+    /// The same medium, its waves found by the general eigenproblem instead of a closed form: slower,
+    /// and a check on the closed forms.
+    #[must_use]
+    pub fn without_closed_form(self) -> Self {
+        Self { class: Class::General, ..self }
+    }
+
+    /// Whether the medium takes power from light.
+    #[must_use]
+    pub fn absorbs(&self) -> bool {
+        self.absorption.is_some()
+    }
+
+    /// Which wave vectors the medium carries, if it is lossless and both polarizations share them:
+    /// isotropic, or ε a multiple of µ.
+    #[must_use]
+    pub fn wave_surface(&self) -> Option<&WaveSurface> {
+        match &self.class {
+            Class::Isotropic(surface) | Class::Matched(surface) => Some(surface),
+            _ => None,
+        }
     }
 
     /// The magnetic field H = µ⁻¹ (p × E) of a wave with wave vector `p` and electric field `electric`.
     #[must_use]
     pub fn magnetic_field(&self, wave_vector: DVec3, electric: ComplexVector) -> ComplexVector {
-        electric.crossed_by(wave_vector).transformed(&self.inverse_permeability)
+        self.magnetic_of_curl(electric.crossed_by(wave_vector))
+    }
+
+    /// The magnetic field of a wave with a complex wave vector.
+    #[must_use]
+    pub fn decaying_magnetic_field(
+        &self,
+        wave_vector: ComplexVector,
+        electric: ComplexVector,
+    ) -> ComplexVector {
+        self.magnetic_of_curl(wave_vector.cross(electric))
+    }
+
+    fn magnetic_of_curl(&self, curl: ComplexVector) -> ComplexVector {
+        let lossless = curl.transformed(&self.inverse_permeability);
+        self.absorption.map_or(lossless, |absorption| {
+            let lossy = curl.transformed(&absorption.inverse_permeability);
+            lossless + ComplexVector::new(-lossy.im, lossy.re)
+        })
     }
 
     /// The Poynting vector Re(E × H*) of a wave with wave vector `p` and electric field `electric`.
@@ -134,8 +275,15 @@ impl Medium {
         poynting(electric, self.magnetic_field(wave_vector, electric))
     }
 
-    /// µ⁻¹ applied to a real vector.
+    /// µ⁻¹ applied to a real vector, in a lossless medium.
     pub(crate) fn magnetic_row(&self, row: DVec3) -> DVec3 {
         self.inverse_permeability * row
     }
+}
+
+fn not_degenerate(quantity: &'static str, value: f64) -> Result<(), MediumError> {
+    if !value.is_finite() || value == 0.0 {
+        return Err(MediumError::Degenerate { quantity, value });
+    }
+    Ok(())
 }

@@ -1,11 +1,13 @@
 //! The wave vectors a medium carries where both polarizations share them.
 
+use super::quadratic::{Quadratic, Roots};
 use glam::{DMat3, DVec3};
 
 /// The wave surface p·Ap = c of an isotropic or impedance-matched medium.
 ///
 /// The form is scaled such that the Poynting vector lies along Ap: A = 1/µ and c = ε for an
-/// isotropic medium, A = M and c = det M for ε = µ = M. The signs of negative-index media follow.
+/// isotropic medium, A = M and c = z det M for µ = M, ε = z M (both times -1 for an indefinite M).
+/// The signs of negative-index media follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WaveSurface {
     form: DMat3,
@@ -50,8 +52,8 @@ impl WaveSurface {
         Self { form, constant: permittivity }
     }
 
-    pub(super) fn impedance_matched(tensor: DMat3) -> Self {
-        Self { form: tensor, constant: tensor.determinant() }
+    pub(super) fn new(form: DMat3, constant: f64) -> Self {
+        Self { form, constant }
     }
 
     /// The unit vector of the Poynting vector of a wave with wave vector `p`.
@@ -80,18 +82,24 @@ impl WaveSurface {
     /// At exact grazing, where the two coincide, they are set apart by about 1e-15, which gives the limit.
     #[must_use]
     pub fn normal_component(&self, tangential: DVec3, normal: DVec3) -> NormalComponent {
-        // a q² + 2 b q + c' = 0, and S·n is proportional to a q + b = ±root.
-        let form_normal = self.form * normal;
-        let a = normal.dot(form_normal);
-        let b = tangential.dot(form_normal);
-        let c = tangential.dot(self.form * tangential) - self.constant;
-        let discriminant = b * b - a * c;
-        let root = discriminant.abs().max(1e-30).sqrt();
-        if discriminant >= 0.0 {
-            NormalComponent::Propagating { forward: (root - b) / a, backward: (-root - b) / a }
-        } else {
-            NormalComponent::Evanescent { re: -b / a, im: root / a.abs() }
+        match self.roots(tangential, normal) {
+            Roots::Real { plus: forward, minus: backward, .. } => {
+                NormalComponent::Propagating { forward, backward }
+            }
+            Roots::Complex { re, im, .. } => NormalComponent::Evanescent { re, im },
         }
+    }
+
+    /// The same with the square root of the discriminant. S·n is proportional to a q + b, hence
+    /// positive for the root of the positive sign.
+    pub(super) fn roots(&self, tangential: DVec3, normal: DVec3) -> Roots {
+        let form_normal = self.form * normal;
+        let quadratic = Quadratic {
+            a: normal.dot(form_normal),
+            b: tangential.dot(form_normal),
+            c: tangential.dot(self.form * tangential) - self.constant,
+        };
+        quadratic.roots()
     }
 }
 
@@ -118,7 +126,7 @@ mod tests {
             DVec3::new(0.4, 1.5, -0.3),
             DVec3::new(0.0, -0.3, 0.9),
         );
-        let surface = WaveSurface::impedance_matched(m);
+        let surface = WaveSurface::new(m, m.determinant());
         let direction = DVec3::new(0.6, -0.48, 0.64);
         let p = surface.wave_vector_along(direction);
         assert!(surface.residual(p).abs() < 1e-14);

@@ -13,9 +13,15 @@
 //! - The optical path length of a straight piece dr is p·dr.
 
 mod complex_vector;
+mod frame;
+mod linear_system;
+mod number;
 mod plane_wave;
 mod polarization;
 
 pub use complex_vector::ComplexVector;
+pub(crate) use frame::Frame;
+pub(crate) use linear_system::solve;
+pub(crate) use number::{Number, cross, dot};
 pub use plane_wave::{PlaneWave, poynting};
 pub use polarization::{transverse_basis, turn_transverse};

@@ -1,0 +1,118 @@
+//! Interfaces in, modes and powers out, as JSON: the form of `cloakroom interface`.
+
+mod read;
+#[cfg(test)]
+mod tests;
+
+pub use read::{InterfaceError, InterfaceRequest};
+
+use optics::interface::Scattering;
+use optics::medium::Mode;
+use optics::wave::ComplexVector;
+use serde::Serialize;
+
+/// A complex vector as three pairs [re, im].
+type Components = [[f64; 2]; 3];
+
+/// What the two incident modes become at an interface.
+///
+/// Modes carry a normal flux of 1 and are orthogonal in flux. Degenerate pairs: s, then p; uniaxial
+/// media: ordinary, then extraordinary; others: the smaller |p| first.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct InterfaceReport {
+    /// The two modes that run towards the interface.
+    pub incident: [ModeReport; 2],
+    /// The two modes that run back.
+    pub reflected: [ModeReport; 2],
+    /// The two modes beyond; none in metal.
+    pub transmitted: Vec<ModeReport>,
+    /// Rows are the outgoing modes (reflected 1, 2, transmitted 1, 2; the first two at metal), columns
+    /// the incident ones: each the share of the incident normal flux. `null` for evanescent
+    /// incident modes, 0 for evanescent outgoing ones.
+    pub power: Vec<[Option<f64>; 2]>,
+    /// The sum of the reflected shares, for each incident mode.
+    pub total_reflected: [Option<f64>; 2],
+    /// The sum of the transmitted shares, for each incident mode.
+    pub total_transmitted: [Option<f64>; 2],
+}
+
+/// One mode.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModeReport {
+    /// Wave vector p = k/k0, each component as [re, im].
+    pub wave_vector: Components,
+    /// Poynting vector Re(E × H*); `null` if the mode is evanescent.
+    pub poynting: Option<[f64; 3]>,
+    /// Electric field, each component as [re, im].
+    pub electric_field: Components,
+    /// Magnetic field times the vacuum impedance, each component as [re, im].
+    pub magnetic_field: Components,
+    /// Whether the mode carries power across the interface.
+    pub propagating: bool,
+}
+
+impl From<&Mode> for ModeReport {
+    fn from(mode: &Mode) -> Self {
+        let components = |v: ComplexVector| v.components().map(|c| [c.re, c.im]);
+        Self {
+            wave_vector: components(mode.wave_vector),
+            poynting: mode.is_propagating().then(|| mode.poynting().to_array()),
+            electric_field: components(mode.electric),
+            magnetic_field: components(mode.magnetic),
+            propagating: mode.is_propagating(),
+        }
+    }
+}
+
+impl InterfaceRequest {
+    /// Solves the interface.
+    #[must_use]
+    pub fn solve(&self) -> InterfaceReport {
+        let scattering = Scattering::new(
+            &self.incident,
+            self.transmitted.as_ref(),
+            self.tangential,
+            self.normal,
+        );
+        let rows = if self.transmitted.is_some() { 4 } else { 2 };
+        let share = |row: usize| scattering.power.map(|column| column.map(|shares| shares[row]));
+        let sum = |first: usize| {
+            scattering.power.map(|column| column.map(|shares| shares[first] + shares[first + 1]))
+        };
+        let report = |modes: &[Mode; 2]| [(&modes[0]).into(), (&modes[1]).into()];
+        let transmitted = scattering.transmitted.iter().flatten();
+        InterfaceReport {
+            incident: report(&scattering.incident),
+            reflected: report(&scattering.reflected),
+            transmitted: transmitted.map(ModeReport::from).collect(),
+            power: (0..rows).map(share).collect(),
+            total_reflected: sum(0),
+            total_transmitted: sum(2),
+        }
+    }
+}
+
+/// Solves the interfaces of a JSON text, one object or an array of them, and answers in the same
+/// form.
+///
+/// # Errors
+///
+/// If the text is no JSON or asks for something that cannot be; the message names the place.
+pub fn solve_interfaces(text: &str) -> Result<serde_json::Value, InterfaceError> {
+    let value: serde_json::Value =
+        serde_json::from_str(text).map_err(|error| InterfaceError::whole(error.to_string()))?;
+    let answer = match &value {
+        serde_json::Value::Array(items) => {
+            let reports = items
+                .iter()
+                .enumerate()
+                .map(|(index, item)| {
+                    InterfaceRequest::read(item, &format!("[{index}]")).map(|r| r.solve())
+                })
+                .collect::<Result<Vec<_>, _>>()?;
+            serde_json::to_value(reports)
+        }
+        item => serde_json::to_value(InterfaceRequest::read(item, "")?.solve()),
+    };
+    answer.map_err(|error| InterfaceError::whole(error.to_string()))
+}

@@ -1,0 +1,48 @@
+//! Interfaces with a perfect antireflection coating.
+
+use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side, split};
+use crate::medium::{Medium, ModeKind, NormalComponent};
+use crate::wave::turn_transverse;
+use glam::DVec3;
+
+/// A wave through an interface between isotropic media whose reflection is suppressed by a perfect
+/// antireflection coating: refracted, all of its power transmitted, each polarization on its own.
+/// Beyond the critical angle, and into media in which the polarizations part, it behaves as at the
+/// bare interface.
+#[must_use]
+pub fn transmit_antireflection<const N: usize>(
+    incident_medium: &Medium,
+    transmitted_medium: &Medium,
+    wave: &IncidentWave<N>,
+    normal: DVec3,
+) -> OutgoingWaves<N> {
+    let tangential = wave.wave_vector - normal * wave.wave_vector.dot(normal);
+    let split = || split(incident_medium, transmitted_medium, wave, normal);
+    let Some(surface) = transmitted_medium.wave_surface() else {
+        return split();
+    };
+    let NormalComponent::Propagating { forward, .. } = surface.normal_component(tangential, normal)
+    else {
+        return split();
+    };
+    let wave_vector = tangential + normal * forward;
+    let direction = surface.ray_direction(wave_vector);
+    let mut waves = OutgoingWaves::new();
+    let mut electric = wave.electric;
+    for (field, power) in electric.iter_mut().zip(wave.power) {
+        let turned = turn_transverse(*field, wave.direction, direction);
+        let carried = transmitted_medium.poynting(wave_vector, turned).length();
+        *field = if carried > 0.0 { turned * (power / carried).sqrt() } else { turned };
+    }
+    let power = wave.power;
+    waves.push(OutgoingWave {
+        side: Side::Transmitted,
+        mode: ModeKind::Shared,
+        wave_vector,
+        attenuation: DVec3::ZERO,
+        direction,
+        electric,
+        power,
+    });
+    waves
+}

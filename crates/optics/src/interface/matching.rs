@@ -1,0 +1,266 @@
+//! The interface of any two media: two modes out on either side, four tangential fields to match.
+
+use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
+use crate::medium::{BothWays, LocalMode, LocalModes, Medium, ModeKind, Tangential, mutual_flux};
+use crate::wave::{ComplexVector, Frame, Number, solve};
+use arrayvec::ArrayVec;
+use glam::DVec3;
+use num_complex::Complex64;
+
+/// Normal components closer than this are those of one wave, that both modes are.
+const ONE_WAVE: f64 = 1e-12;
+
+/// Incident waves closer than this to both modes are taken apart into them.
+const BOTH_MODES: f64 = 1e-7;
+
+/// Splits a wave at the interface of any two media, or at a conductor.
+pub(super) fn split_into_modes<const N: usize>(
+    incident_medium: &Medium,
+    transmitted_medium: Option<&Medium>,
+    wave: &IncidentWave<N>,
+    normal: DVec3,
+) -> OutgoingWaves<N> {
+    let normal_component = wave.wave_vector.dot(normal);
+    let across = wave.wave_vector - normal * normal_component;
+    let frame = Frame::new(normal, across);
+    let tangential = if wave.attenuation == DVec3::ZERO {
+        Tangential::Real(across.dot(frame.first))
+    } else {
+        let decay = [wave.attenuation.dot(frame.first), wave.attenuation.dot(frame.second)];
+        Tangential::Complex([
+            Complex64::new(across.dot(frame.first), decay[0]),
+            Complex64::new(0.0, decay[1]),
+        ])
+    };
+    let BothWays { forward, backward } =
+        incident_medium.both_ways(&frame, tangential, Some(normal_component));
+    let onward = transmitted_medium.map(|medium| medium.onward(&frame, tangential));
+    let mut scattered =
+        Scattered { wave, frame: &frame, tangential, sums: [0.0; N], waves: ArrayVec::new() };
+    let absorbs = |medium: Option<&Medium>| medium.is_some_and(Medium::absorbs);
+    let absorbing = [incident_medium.absorbs(), absorbs(transmitted_medium)];
+    match (&forward, &backward, &onward) {
+        (LocalModes::Real(f), LocalModes::Real(b), None) => {
+            scattered.scatter(f, b, None, normal_component, absorbing);
+        }
+        (LocalModes::Real(f), LocalModes::Real(b), Some(LocalModes::Real(o))) => {
+            scattered.scatter(f, b, Some(o), normal_component, absorbing);
+        }
+        _ => {
+            let (f, b, o) = (forward.complex(), backward.complex(), onward.map(|o| o.complex()));
+            scattered.scatter(&f, &b, o.as_ref(), normal_component, absorbing);
+        }
+    }
+    scattered.finished()
+}
+
+/// The outgoing amplitudes, reflected 1, 2, transmitted 1, 2, of `R` incident modes. At a conductor,
+/// where nothing is transmitted, the tangential electric field vanishes.
+pub(super) fn amplitudes<T: Number, const R: usize>(
+    incident: [&LocalMode<T>; R],
+    reflected: &[LocalMode<T>; 2],
+    transmitted: Option<&[LocalMode<T>; 2]>,
+) -> [[T; R]; 4] {
+    let [r1, r2] = reflected;
+    let Some([t1, t2]) = transmitted else {
+        return conductor_amplitudes(incident, reflected);
+    };
+    let matrix = [
+        [r1.electric[0], r2.electric[0], -t1.electric[0], -t2.electric[0]],
+        [r1.electric[1], r2.electric[1], -t1.electric[1], -t2.electric[1]],
+        [r1.magnetic[0], r2.magnetic[0], -t1.magnetic[0], -t2.magnetic[0]],
+        [r1.magnetic[1], r2.magnetic[1], -t1.magnetic[1], -t2.magnetic[1]],
+    ];
+    let right = [
+        incident.map(|mode| -mode.electric[0]),
+        incident.map(|mode| -mode.electric[1]),
+        incident.map(|mode| -mode.magnetic[0]),
+        incident.map(|mode| -mode.magnetic[1]),
+    ];
+    solve(matrix, right)
+}
+
+fn conductor_amplitudes<T: Number, const R: usize>(
+    incident: [&LocalMode<T>; R],
+    [r1, r2]: &[LocalMode<T>; 2],
+) -> [[T; R]; 4] {
+    let ([a, c, _], [b, d, _]) = (r1.electric, r2.electric);
+    let determinant = a * d - b * c;
+    let scale = if determinant.magnitude_squared() < 1e-60 { T::from(1e-30) } else { determinant };
+    let inverse = T::from(1.0) / scale;
+    let right = [incident.map(|mode| mode.electric[0]), incident.map(|mode| mode.electric[1])];
+    let zero = [T::from(0.0); R];
+    [
+        std::array::from_fn(|i| inverse * (b * right[1][i] - d * right[0][i])),
+        std::array::from_fn(|i| inverse * (c * right[0][i] - a * right[1][i])),
+        zero,
+        zero,
+    ]
+}
+
+/// A wave being scattered.
+struct Scattered<'a, const N: usize> {
+    wave: &'a IncidentWave<N>,
+    frame: &'a Frame,
+    tangential: Tangential,
+    /// The outgoing flux of each launched polarization so far.
+    sums: [f64; N],
+    /// The outgoing waves; until finished, `power` is in units of the outgoing flux.
+    waves: OutgoingWaves<N>,
+}
+
+impl<const N: usize> Scattered<'_, N> {
+    /// Matches the fields for the incident mode or, where the modes are nearly one, for both.
+    fn scatter<T: Number>(
+        &mut self,
+        forward: &[LocalMode<T>; 2],
+        backward: &[LocalMode<T>; 2],
+        onward: Option<&[LocalMode<T>; 2]>,
+        normal_component: f64,
+        absorbing: [bool; 2],
+    ) {
+        let [a, b] = forward;
+        let distance = |mode: &LocalMode<T>| {
+            if mode.propagating { (mode.q.real() - normal_component).abs() } else { f64::MAX }
+        };
+        let near = BOTH_MODES * (1.0 + normal_component.abs());
+        let (to_a, to_b) = (distance(a), distance(b));
+        if to_a.max(to_b) < near {
+            let amplitudes = amplitudes([a, b], backward, onward);
+            let parts = self.parts(a, b);
+            let outgoing = amplitudes.map(|[with_a, with_b]| {
+                parts.map(|[in_a, in_b]| with_a.times(in_a) + with_b.times(in_b))
+            });
+            self.collect(backward, onward, &outgoing, absorbing);
+        } else {
+            let mode = if to_a <= to_b { a } else { b };
+            let amplitudes = amplitudes([mode], backward, onward);
+            let field = mode.electric_in_world(self.frame);
+            let conjugate = field.conj();
+            let scale = 1.0 / field.norm_squared();
+            let parts = self.wave.electric.map(|electric| conjugate.dot(electric) * scale);
+            let outgoing = amplitudes.map(|[with]| parts.map(|part| with.times(part)));
+            self.collect(backward, onward, &outgoing, absorbing);
+        }
+    }
+
+    /// The amplitudes of two modes in the launched fields, by least squares.
+    fn parts<T: Number>(&self, a: &LocalMode<T>, b: &LocalMode<T>) -> [[Complex64; 2]; N] {
+        let [a, b] = [a, b].map(|mode| mode.electric_in_world(self.frame));
+        let (aa, bb, ab) = (a.norm_squared(), b.norm_squared(), a.conj().dot(b));
+        let inverse = 1.0 / (aa * bb - ab.norm_sqr());
+        self.wave.electric.map(|electric| {
+            let (on_a, on_b) = (a.conj().dot(electric), b.conj().dot(electric));
+            [(on_a * bb - ab * on_b) * inverse, (on_b * aa - ab.conj() * on_a) * inverse]
+        })
+    }
+
+    fn collect<T: Number>(
+        &mut self,
+        backward: &[LocalMode<T>; 2],
+        onward: Option<&[LocalMode<T>; 2]>,
+        outgoing: &[[Complex64; N]; 4],
+        [absorbing, absorbing_beyond]: [bool; 2],
+    ) {
+        let [r1, r2, t1, t2] = outgoing;
+        self.one_side(Side::Reflected, backward, [r1, r2], absorbing);
+        if let Some(onward) = onward {
+            self.one_side(Side::Transmitted, onward, [t1, t2], absorbing_beyond);
+        }
+    }
+
+    fn one_side<T: Number>(
+        &mut self,
+        side: Side,
+        modes: &[LocalMode<T>; 2],
+        amplitudes: [&[Complex64; N]; 2],
+        absorbing: bool,
+    ) {
+        let [a, b] = modes;
+        let mut flux: [[f64; N]; 2] = amplitudes.map(|amplitude| amplitude.map(|c| c.norm_sqr()));
+        if absorbing && a.propagating && b.propagating {
+            // The modes' fluxes have cross terms; each takes its part of them.
+            let mutual: Complex64 = mutual_flux(a, b).into();
+            let orientation = if side == Side::Reflected { -1.0 } else { 1.0 };
+            for i in 0..N {
+                let interference = (amplitudes[0][i] * amplitudes[1][i].conj() * mutual).re;
+                let sum = flux[0][i] + flux[1][i];
+                if sum > 0.0 {
+                    let scale = (1.0 + 2.0 * orientation * interference / sum).max(0.0);
+                    flux[0][i] *= scale;
+                    flux[1][i] *= scale;
+                }
+            }
+        }
+        let apart: Complex64 = a.q.into() - b.q.into();
+        let one_wave = a.propagating
+            && b.propagating
+            && apart.norm_sqr() <= (ONE_WAVE * ONE_WAVE) * (1.0 + a.q.magnitude_squared());
+        if one_wave {
+            let [ea, eb] = [a, b].map(|mode| mode.electric_in_world(self.frame));
+            let electric =
+                std::array::from_fn(|i| ea.scaled(amplitudes[0][i]) + eb.scaled(amplitudes[1][i]));
+            let flux = std::array::from_fn(|i| flux[0][i] + flux[1][i]);
+            // The same ray, but in absorbing media, where p's and s's part a little: their mean.
+            let ray = (a.ray_in_world(self.frame) + b.ray_in_world(self.frame)) * 0.5;
+            self.push(side, ModeKind::Shared, (a.q.into(), ray), electric, flux);
+            return;
+        }
+        for ((mode, amplitude), flux) in modes.iter().zip(amplitudes).zip(flux) {
+            if mode.propagating {
+                let field = mode.electric_in_world(self.frame);
+                let ray = mode.ray_in_world(self.frame);
+                let electric = amplitude.map(|c| field.scaled(c));
+                self.push(side, mode.kind, (mode.q.into(), ray), electric, flux);
+            }
+        }
+    }
+
+    fn push(
+        &mut self,
+        side: Side,
+        mode: ModeKind,
+        (q, ray): (Complex64, DVec3),
+        electric: [ComplexVector; N],
+        flux: [f64; N],
+    ) {
+        if flux.iter().all(|&flux| flux == 0.0) {
+            return;
+        }
+        let length = ray.length();
+        // A unit of normal flux is a Poynting vector of this length; the fields of a ray are scaled to
+        // its power instead.
+        let narrowing = length.sqrt().recip();
+        for (sum, flux) in self.sums.iter_mut().zip(flux) {
+            *sum += flux;
+        }
+        let [first, second] = self.tangential.components();
+        self.waves.push(OutgoingWave {
+            side,
+            mode,
+            wave_vector: self.frame.vector([first.re, second.re, q.re]),
+            attenuation: self.frame.vector([first.im, second.im, q.im]),
+            direction: ray / length,
+            electric: electric.map(|field| field * narrowing),
+            power: flux,
+        });
+    }
+
+    /// Turns shares of the outgoing flux into powers.
+    fn finished(mut self) -> OutgoingWaves<N> {
+        // Over the sum, not over the incident flux: the same in a lossless medium, but for rounding
+        // near grazing incidence, which would show in the account of the power.
+        let shares: [f64; N] = std::array::from_fn(|i| {
+            let sum = self.sums[i];
+            if sum > 0.0 { self.wave.power[i] / sum } else { 0.0 }
+        });
+        let roots = shares.map(f64::sqrt);
+        for wave in &mut self.waves {
+            for i in 0..N {
+                wave.power[i] *= shares[i];
+                wave.electric[i] = wave.electric[i] * roots[i];
+            }
+        }
+        self.waves
+    }
+}

@@ -1,0 +1,83 @@
+//! The whole scattering matrix of an interface between modes.
+
+use super::matching::amplitudes;
+use crate::medium::{BothWays, LocalMode, Medium, Mode, Tangential, mutual_flux};
+use crate::wave::Frame;
+use glam::DVec3;
+use num_complex::Complex64;
+
+/// What an interface makes of either incident mode: the modes on both sides and the amplitudes and
+/// powers between them. Slower than [`super::split`], and complete: evanescent modes are in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scattering {
+    /// The two modes that run towards the interface.
+    pub incident: [Mode; 2],
+    /// The two modes that run back.
+    pub reflected: [Mode; 2],
+    /// The two modes beyond the interface; none in a conductor.
+    pub transmitted: Option<[Mode; 2]>,
+    /// Amplitudes: rows are the outgoing modes (reflected 1, 2, transmitted 1, 2), columns the
+    /// incident ones. Zero for transmission into a conductor.
+    pub amplitudes: [[Complex64; 2]; 4],
+    /// Shares of the incident normal flux, by the same rows and columns; 0 for evanescent outgoing
+    /// modes, `None` for evanescent incident ones. The shares of a column add up to 1 if the medium of
+    /// incidence is lossless. Where the fluxes of the two modes in an absorbing medium have cross
+    /// terms, each mode takes its part of them.
+    pub power: [Option<[f64; 4]>; 2],
+}
+
+impl Scattering {
+    /// The interface from `incident_medium` to `transmitted_medium`, a perfect conductor if `None`,
+    /// for waves with the tangential wave vector `tangential`; the unit vector `normal` points from
+    /// the first into the second.
+    #[must_use]
+    pub fn new(
+        incident_medium: &Medium,
+        transmitted_medium: Option<&Medium>,
+        tangential: DVec3,
+        normal: DVec3,
+    ) -> Self {
+        let across = tangential - normal * tangential.dot(normal);
+        let frame = Frame::new(normal, across);
+        let along = Tangential::Real(across.dot(frame.first));
+        let BothWays { forward, backward } = incident_medium.both_ways(&frame, along, None);
+        let (forward, backward) = (forward.complex(), backward.complex());
+        let onward = transmitted_medium.map(|medium| medium.onward(&frame, along).complex());
+        let [a, b] = &forward;
+        let amplitudes = amplitudes([a, b], &backward, onward.as_ref());
+        let lossless = !incident_medium.absorbs();
+        let power = std::array::from_fn(|column| {
+            if !forward[column].propagating {
+                return None;
+            }
+            let [r1, r2, t1, t2] = amplitudes.map(|row| row[column]);
+            let [r1, r2] = fluxes(&backward, [r1, r2]);
+            let [t1, t2] = onward.map_or([0.0; 2], |modes| fluxes(&modes, [t1, t2]));
+            let flux = [r1, r2, t1, t2];
+            // Over the sum where it must be 1: the same but for rounding near grazing incidence.
+            let sum: f64 = flux.iter().sum();
+            Some(if lossless && sum > 0.0 { flux.map(|flux| flux / sum) } else { flux })
+        });
+        let in_world = |modes: [LocalMode<Complex64>; 2]| modes.map(|m| m.in_world(&frame, along));
+        Self {
+            incident: in_world(forward),
+            reflected: in_world(backward),
+            transmitted: onward.map(in_world),
+            amplitudes,
+            power,
+        }
+    }
+}
+
+/// The outgoing normal flux of each of two modes, with its part of what both carry together.
+fn fluxes(modes: &[LocalMode<Complex64>; 2], amplitudes: [Complex64; 2]) -> [f64; 2] {
+    let [a, b] = modes;
+    let own = [0, 1].map(|i| if modes[i].propagating { amplitudes[i].norm_sqr() } else { 0.0 });
+    let sum = own[0] + own[1];
+    if !(a.propagating && b.propagating && sum > 0.0) {
+        return own;
+    }
+    let orientation = a.flux().signum();
+    let mutual = (amplitudes[0] * amplitudes[1].conj() * mutual_flux(a, b)).re;
+    own.map(|own| own * (1.0 + 2.0 * orientation * mutual / sum).max(0.0))
+}

@@ -1,0 +1,40 @@
+//! Why a medium cannot be.
+
+/// Why a medium cannot be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MediumError {
+    /// A number is NaN, infinite, or zero where it must not be.
+    #[error("{quantity} is {value}; it must be finite and not zero")]
+    Degenerate {
+        /// What the number is.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The tensor is not symmetric; such media are not reciprocal and are not supported.
+    #[error("the {quantity} tensor is not symmetric")]
+    NotSymmetric {
+        /// Which tensor.
+        quantity: &'static str,
+    },
+    /// The tensor cannot be inverted, or nearly not.
+    #[error("the {quantity} tensor is singular: it must be finite and have an inverse")]
+    Singular {
+        /// Which tensor.
+        quantity: &'static str,
+    },
+    /// The imaginary part of the tensor would amplify light.
+    #[error(
+        "the imaginary part of the {quantity} has the negative principal value {value}; media with \
+         gain are not supported"
+    )]
+    Gain {
+        /// Which tensor.
+        quantity: &'static str,
+        /// The smallest principal value of its imaginary part.
+        value: f64,
+    },
+    /// The optic axis has no direction.
+    #[error("the optic axis must be a finite vector that is not zero")]
+    NoAxis,
+}

@@ -1,0 +1,325 @@
+//! Modes of any medium: Berreman's eigenproblem for the tangential fields.
+
+use super::absorbing::forwardness;
+use super::double_root::{eigenvector_across, is_eigenvector};
+use super::local::mutual_flux;
+use super::refinement::Maxwell;
+use super::{BothWays, LocalMode, LocalModes, ModeKind};
+use crate::medium::{Medium, Tensor};
+use crate::wave::{Frame, Number, dot};
+use arrayvec::ArrayVec;
+use faer::Mat;
+use faer::linalg::solvers::Eigen;
+use num_complex::Complex64;
+use std::ops::Mul;
+
+/// q ψ = matrix ψ with ψ = (E·first, E·second, H·first, H·second).
+pub(super) struct Berreman<T> {
+    maxwell: Maxwell<T>,
+    matrix: [[T; 4]; 4],
+    /// The normal components of E and H, as rows acting on ψ.
+    lift: [[T; 4]; 2],
+}
+
+/// An eigenvalue with its eigenvector.
+type Eigenpair = (Complex64, [Complex64; 4]);
+
+impl<T: Number> Berreman<T> {
+    fn new(permittivity: [[T; 3]; 3], permeability: [[T; 3]; 3], [k1, k2]: [T; 2]) -> Self {
+        let maxwell = Maxwell { permittivity, permeability, tangential: [k1, k2] };
+        let zero = T::from(0.0);
+        let (e, m) = (permittivity, permeability);
+        // The normal components of p × E = µH and p × H = -εE hold no q.
+        let (e_scale, h_scale) = (bounded(e), bounded(m));
+        let normal_e = [-e[2][0], -e[2][1], k2, -k1].map(|c| c * e_scale);
+        let normal_h = [-k2, k1, -m[2][0], -m[2][1]].map(|c| c * h_scale);
+        let columns: [[T; 4]; 4] = std::array::from_fn(|j| {
+            let unit = |i: usize| if i == j { T::from(1.0) } else { zero };
+            let electric = [unit(0), unit(1), normal_e[j]];
+            let magnetic = [unit(2), unit(3), normal_h[j]];
+            [
+                k1 * electric[2] + dot(m[1], magnetic),
+                k2 * electric[2] - dot(m[0], magnetic),
+                k1 * magnetic[2] - dot(e[1], electric),
+                k2 * magnetic[2] + dot(e[0], electric),
+            ]
+        });
+        let matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
+        Self { maxwell, matrix, lift: [normal_e, normal_h] }
+    }
+
+    /// The mode of an eigenpair, made better where the eigenvalues differ much in size.
+    fn mode<U: Number + Mul<T, Output = U>>(&self, q: U, field: [U; 4]) -> LocalMode<U>
+    where
+        Maxwell<U>: From<Maxwell<T>>,
+    {
+        let [normal_e, normal_h] = self
+            .lift
+            .map(|row| row.into_iter().zip(field).fold(U::default(), |sum, (a, b)| sum + b * a));
+        let mode = LocalMode {
+            kind: ModeKind::First,
+            propagating: true,
+            q,
+            electric: [field[0], field[1], normal_e],
+            magnetic: [field[2], field[3], normal_h],
+        };
+        Maxwell::from(self.maxwell).refined(mode)
+    }
+}
+
+/// The reciprocal of the normal-normal entry, which an indefinite tensor may have zero.
+fn bounded<T: Number>(tensor: [[T; 3]; 3]) -> T {
+    let size = tensor.iter().flatten().map(|c| c.magnitude_squared()).fold(0.0, f64::max);
+    let entry = tensor[2][2];
+    if entry.magnitude_squared() > 1e-28 * size {
+        T::from(1.0) / entry
+    } else {
+        T::from(1e14 / size.sqrt())
+    }
+}
+
+impl Medium {
+    /// The modes of a lossless medium without a closed form.
+    pub(super) fn general_modes(&self, frame: &Frame, along: f64, known: Option<f64>) -> BothWays {
+        let tensors = [&self.permittivity, &self.permeability].map(|t| frame.tensor(t));
+        Berreman::new(tensors[0], tensors[1], [along, 0.0]).lossless_modes(known)
+    }
+}
+
+impl Berreman<Complex64> {
+    pub fn complex(
+        frame: &Frame,
+        permittivity: &Tensor,
+        permeability: &Tensor,
+        k: [Complex64; 2],
+    ) -> Self {
+        let in_frame = |tensor: &Tensor| {
+            let (re, im) = (frame.tensor(&tensor.re), frame.tensor(&tensor.im));
+            std::array::from_fn(|i| std::array::from_fn(|j| Complex64::new(re[i][j], im[i][j])))
+        };
+        Self::new(in_frame(permittivity), in_frame(permeability), k)
+    }
+
+    /// The pairs (forward, backward), of any size.
+    pub fn complex_modes(&self) -> [[LocalMode<Complex64>; 2]; 2] {
+        let matrix = Mat::from_fn(4, 4, |i, j| self.matrix[i][j]);
+        let pairs =
+            matrix.eigen().map_or_else(|_| FALLBACK, |eigen| pairs_of(&eigen, &self.matrix));
+        let mut pairs = pairs;
+        let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
+        separate_double_roots(&self.matrix, &mut pairs, size);
+        let mut modes = pairs.map(|(q, field)| self.mode(q, field));
+        modes.sort_by(|a, b| forwardness(b).total_cmp(&forwardness(a)));
+        let [a, b, c, d] = modes;
+        [ordered([a, b]), ordered([d, c])]
+    }
+}
+
+impl Berreman<f64> {
+    fn eigenpairs(&self) -> [Eigenpair; 4] {
+        let matrix = Mat::from_fn(4, 4, |i, j| self.matrix[i][j]);
+        matrix.eigen().map_or(FALLBACK, |eigen| {
+            let matrix = self.matrix.map(|row| row.map(Complex64::from));
+            pairs_of(&eigen, &matrix)
+        })
+    }
+
+    fn lossless_modes(&self, known: Option<f64>) -> BothWays {
+        let mut pairs = self.eigenpairs();
+        let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
+        let mut sorted = Sorted::default();
+        // Evanescent ones come as conjugates; the real ones in order show which are double.
+        pairs.sort_by(|(a, _), (b, _)| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
+        let mut decaying: ArrayVec<Eigenpair, 4> = ArrayVec::new();
+        let mut real: ArrayVec<(f64, [f64; 4]), 4> = ArrayVec::new();
+        for (q, field) in pairs {
+            // A double real root may come out as a pair of conjugates a rounding error apart, and at
+            // grazing incidence half the digits apart.
+            let grazing = known.is_some_and(|known| (q - known).norm() < 1e-6 * size);
+            if q.im.abs() > if grazing { 1e-6 } else { DOUBLE } * size {
+                decaying.push((q, field));
+            } else if q.im == 0.0 {
+                real.push((q.re, real_part(field)));
+            } else if q.im > 0.0 {
+                // Both parts of the vector: the conjugate root has the same.
+                let turned = parts_across(field);
+                real.push((q.re, turned.map(|c| c.re)));
+                real.push((q.re, turned.map(|c| c.im)));
+            }
+        }
+        real.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for i in 1..real.len() {
+            let (q, first) = real[i - 1];
+            if real[i].0 - q < DOUBLE * size
+                && let Some(second) = eigenvector_across(&self.matrix, q, Some(first))
+            {
+                real[i].1 = second;
+            }
+        }
+        let matrix = self.matrix.map(|row| row.map(Complex64::from));
+        separate_double_roots(&matrix, &mut decaying, size);
+        sorted.real.extend(real.into_iter().map(|(q, field)| self.mode(q, field)));
+        sorted.evanescent.extend(decaying.into_iter().map(|(q, field)| self.mode(q, field)));
+        sorted.into_modes(size)
+    }
+}
+
+fn pairs_of(eigen: &Eigen<f64>, matrix: &[[Complex64; 4]; 4]) -> [Eigenpair; 4] {
+    let (values, vectors) = (eigen.S().column_vector(), eigen.U());
+    std::array::from_fn(|j| {
+        let field: [Complex64; 4] = std::array::from_fn(|i| vectors[(i, j)]);
+        // Of a double root the eigensolver may return a vector of zeros or a wrong one.
+        let sound = is_eigenvector(matrix, values[j], &field);
+        let found = if sound { None } else { eigenvector_across(matrix, values[j], None) };
+        (values[j], found.unwrap_or(field))
+    })
+}
+
+/// Roots closer than this, relative to the largest, are one.
+const DOUBLE: f64 = 1e-13;
+
+/// Gives double roots two vectors that differ.
+fn separate_double_roots(matrix: &[[Complex64; 4]; 4], pairs: &mut [Eigenpair], size: f64) {
+    for i in 0..pairs.len() {
+        for j in i + 1..pairs.len() {
+            let (q, first) = pairs[i];
+            if (pairs[j].0 - q).norm() < 1e-12 * size
+                && let Some(second) = eigenvector_across(matrix, q, Some(first))
+            {
+                pairs[j] = (q, second);
+            }
+        }
+    }
+}
+
+/// The vector with the phase that makes real and imaginary parts orthogonal.
+fn parts_across(field: [Complex64; 4]) -> [Complex64; 4] {
+    let square = field.iter().map(|c| c * c).sum::<Complex64>();
+    let phase = if square.norm() > 0.0 { (square / square.norm()).sqrt() } else { Complex64::ONE };
+    field.map(|c| c / phase)
+}
+
+/// Should the eigensolver ever give up: no waves but decaying ones without fields that matter.
+const FALLBACK: [Eigenpair; 4] = {
+    const ZERO: Complex64 = Complex64::ZERO;
+    const ONE: Complex64 = Complex64::ONE;
+    let up = Complex64::new(0.0, 1.0);
+    let down = Complex64::new(0.0, -1.0);
+    [
+        (up, [ONE, ZERO, ZERO, Complex64::I]),
+        (up, [ZERO, ONE, Complex64::I, ZERO]),
+        (down, [ONE, ZERO, ZERO, down]),
+        (down, [ZERO, ONE, down, ZERO]),
+    ]
+};
+
+/// The eigenvector of a real eigenvalue, which may carry a common phase.
+fn real_part(field: [Complex64; 4]) -> [f64; 4] {
+    let largest = field
+        .iter()
+        .copied()
+        .fold(Complex64::ONE * 0.0, |a, b| if b.norm_sqr() > a.norm_sqr() { b } else { a });
+    let turn = largest.conj() / largest.norm();
+    field.map(|c| (c * turn).re)
+}
+
+/// The eigenvectors of a lossless medium, by whether they propagate.
+#[derive(Default)]
+struct Sorted {
+    real: ArrayVec<LocalMode<f64>, 4>,
+    evanescent: ArrayVec<LocalMode<Complex64>, 4>,
+}
+
+impl Sorted {
+    fn into_modes(mut self, size: f64) -> BothWays {
+        for mode in &mut self.real {
+            *mode = mode.scaled(mode.norm_squared().sqrt().recip());
+        }
+        // Vectors of a double root are any basis of their plane: take the one orthogonal in flux.
+        self.real.sort_by(|a, b| a.q.total_cmp(&b.q));
+        for i in 1..self.real.len() {
+            if self.real[i].q - self.real[i - 1].q < DOUBLE * size {
+                let pair = diagonal_in_flux(self.real[i - 1], self.real[i]);
+                [self.real[i - 1], self.real[i]] = pair;
+            }
+        }
+        // Half of the propagating ones head each way; the rank, where rounding at grazing incidence
+        // hides the sign.
+        self.real.sort_by(|a, b| b.flux().total_cmp(&a.flux()));
+        self.evanescent.sort_by(|a, b| b.q.im.total_cmp(&a.q.im));
+        let (r, e) = (self.real.len() / 2, self.evanescent.len() / 2);
+        let forward = gathered(&self.real[..r], &self.evanescent[..e], size);
+        let backward = gathered(&self.real[r..], &self.evanescent[e..], size);
+        BothWays { forward, backward }
+    }
+}
+
+/// Two modes of one heading, normalized, orthogonal in flux and in order.
+fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>], size: f64) -> LocalModes {
+    let normalized = |mode: &LocalMode<f64>| {
+        let flux = mode.flux().abs().max(1e-15);
+        mode.scaled(flux.sqrt().recip())
+    };
+    let decaying = |mode: &LocalMode<Complex64>| {
+        let mode = LocalMode { propagating: false, ..*mode };
+        mode.scaled(mode.norm_squared().sqrt().recip())
+    };
+    match (real, evanescent) {
+        ([a, b], _) => {
+            let (a, b) = (normalized(a), normalized(b));
+            // Computed vectors of close roots are orthogonal only as far as the roots are apart.
+            let b = if (a.q - b.q).abs() < 1e-3 * size {
+                normalized(&added(b, &a, -mutual_flux(&a, &b) / a.flux()))
+            } else {
+                b
+            };
+            LocalModes::Real(ordered([a, b]))
+        }
+        ([a], [b, ..]) => LocalModes::Complex(ordered([normalized(a).complex(), decaying(b)])),
+        (_, [a, b, ..]) => LocalModes::Complex(ordered([decaying(a), decaying(b)])),
+        _ => {
+            let [a, b] = [FALLBACK[0], FALLBACK[1]].map(|(q, field)| LocalMode {
+                kind: ModeKind::First,
+                propagating: false,
+                q,
+                electric: [field[0], field[1], Complex64::ZERO],
+                magnetic: [field[2], field[3], Complex64::ZERO],
+            });
+            LocalModes::Complex(ordered([a, b]))
+        }
+    }
+}
+
+/// The basis of the plane of two modes with one q that is orthogonal in flux.
+fn diagonal_in_flux(a: LocalMode<f64>, b: LocalMode<f64>) -> [LocalMode<f64>; 2] {
+    let inner = |a: &LocalMode<f64>, b: &LocalMode<f64>| {
+        dot(a.electric, b.electric) + dot(a.magnetic, b.magnetic)
+    };
+    let b = added(b, &a, -inner(&a, &b) / inner(&a, &a));
+    let b = b.scaled(inner(&b, &b).max(1e-300).sqrt().recip());
+    let (aa, bb, ab) = (a.flux(), b.flux(), mutual_flux(&a, &b));
+    let (sine, cosine) = (0.5 * (2.0 * ab).atan2(aa - bb)).sin_cos();
+    [added(a.scaled(cosine), &b, sine), added(b.scaled(cosine), &a, -sine)]
+}
+
+/// a + factor b.
+fn added(mut a: LocalMode<f64>, b: &LocalMode<f64>, factor: f64) -> LocalMode<f64> {
+    for i in 0..3 {
+        a.electric[i] += factor * b.electric[i];
+        a.magnetic[i] += factor * b.magnetic[i];
+    }
+    a
+}
+
+/// Modes that propagate first, then the smaller |p|; the tangential part is common to both.
+fn ordered<T: Number>(modes: [LocalMode<T>; 2]) -> [LocalMode<T>; 2] {
+    let [a, b] = modes;
+    let size = |mode: &LocalMode<T>| {
+        let q: Complex64 = mode.q.into();
+        q.re * q.re - q.im * q.im
+    };
+    let swap = (b.propagating && !a.propagating)
+        || (a.propagating == b.propagating && size(&b) < size(&a));
+    let (a, b) = if swap { (b, a) } else { (a, b) };
+    [LocalMode { kind: ModeKind::First, ..a }, LocalMode { kind: ModeKind::Second, ..b }]
+}

@@ -1,0 +1,125 @@
+//! Modes in the frame of an interface, as the matching of fields wants them.
+
+use super::{Mode, ModeKind};
+use crate::wave::{ComplexVector, Frame, Number, cross};
+use glam::DVec3;
+use num_complex::Complex64;
+
+/// The tangential part of a wave vector in the frame of an interface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Tangential {
+    /// Along the first tangent.
+    Real(f64),
+    /// Of a wave that decays along the surface, too.
+    Complex([Complex64; 2]),
+}
+
+impl Tangential {
+    /// The components along both tangents.
+    pub fn components(self) -> [Complex64; 2] {
+        match self {
+            Self::Real(along) => [along.into(), Complex64::ZERO],
+            Self::Complex(components) => components,
+        }
+    }
+}
+
+/// A mode in the frame of an interface, see [`Mode`]. With real numbers it carries power.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LocalMode<T> {
+    pub kind: ModeKind,
+    pub propagating: bool,
+    /// Normal component of the wave vector.
+    pub q: T,
+    pub electric: [T; 3],
+    pub magnetic: [T; 3],
+}
+
+/// Two modes with one heading.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum LocalModes {
+    /// Both propagate in a lossless medium.
+    Real([LocalMode<f64>; 2]),
+    /// Any others.
+    Complex([LocalMode<Complex64>; 2]),
+}
+
+/// The four modes of a medium.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BothWays {
+    pub forward: LocalModes,
+    pub backward: LocalModes,
+}
+
+/// Twice the mean of E × H* and its conjugate, along the normal: the flux of one field, or how far
+/// from orthogonal two are.
+pub(crate) fn mutual_flux<T: Number>(a: &LocalMode<T>, b: &LocalMode<T>) -> T {
+    let [ea, ha] = [a.electric, a.magnetic];
+    let [eb, hb] = [b.electric, b.magnetic].map(|field| field.map(T::conjugate));
+    (ea[0] * hb[1] - ea[1] * hb[0] + eb[0] * ha[1] - eb[1] * ha[0]).scaled(0.5)
+}
+
+impl<T: Number> LocalMode<T> {
+    /// The normal component of Re(E × H*).
+    pub fn flux(&self) -> f64 {
+        mutual_flux(self, self).real()
+    }
+
+    /// Re(E × H*) in the frame.
+    pub fn poynting(&self) -> [f64; 3] {
+        cross(self.electric, self.magnetic.map(T::conjugate)).map(T::real)
+    }
+
+    /// |E|² + |H|².
+    pub fn norm_squared(&self) -> f64 {
+        let sum = |field: [T; 3]| field.into_iter().map(T::magnitude_squared).sum::<f64>();
+        sum(self.electric) + sum(self.magnetic)
+    }
+
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.electric = self.electric.map(|component| component.scaled(factor));
+        self.magnetic = self.magnetic.map(|component| component.scaled(factor));
+        self
+    }
+
+    pub fn complex(&self) -> LocalMode<Complex64> {
+        LocalMode {
+            kind: self.kind,
+            propagating: self.propagating,
+            q: self.q.into(),
+            electric: self.electric.map(Into::into),
+            magnetic: self.magnetic.map(Into::into),
+        }
+    }
+
+    pub fn in_world(&self, frame: &Frame, tangential: Tangential) -> Mode {
+        let [first, second] = tangential.components();
+        let ray = frame.vector(self.poynting());
+        Mode {
+            kind: self.kind,
+            wave_vector: frame.complex_vector([first, second, self.q.into()]),
+            electric: frame.complex_vector(self.electric),
+            magnetic: frame.complex_vector(self.magnetic),
+            ray: if self.propagating { ray.try_normalize() } else { None },
+        }
+    }
+
+    /// The electric field as a vector.
+    pub fn electric_in_world(&self, frame: &Frame) -> ComplexVector {
+        frame.complex_vector(self.electric)
+    }
+
+    /// The Poynting vector as a vector.
+    pub fn ray_in_world(&self, frame: &Frame) -> DVec3 {
+        frame.vector(self.poynting())
+    }
+}
+
+impl LocalModes {
+    pub fn complex(&self) -> [LocalMode<Complex64>; 2] {
+        match self {
+            Self::Real(modes) => [modes[0].complex(), modes[1].complex()],
+            Self::Complex(modes) => *modes,
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! The plane-wave modes of a medium for a given tangential wave vector.
+//!
+//! Every medium has four; two carry their power, or decay, along +n and two along -n. They are told
+//! apart by the normal Poynting flux and by decay, never by the sign of the wave vector, which is
+//! misleading in hyperbolic and negative-index media.
+
+mod absorbing;
+mod double_root;
+mod general;
+mod local;
+mod refinement;
+mod single_wave;
+mod uniaxial;
+
+pub(crate) use local::{BothWays, LocalMode, LocalModes, Tangential, mutual_flux};
+
+use super::Medium;
+use super::class::Class;
+use crate::wave::{ComplexVector, Frame, poynting};
+use glam::DVec3;
+
+/// Which way along a surface's normal a mode carries its power, or decays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Heading {
+    /// Along the normal.
+    Forward,
+    /// Against the normal.
+    Backward,
+}
+
+/// Which of the waves of a medium a mode is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ModeKind {
+    /// Both polarizations at once, where they share one wave vector.
+    Shared,
+    /// Where both share one wave vector: E lies in the surface, perpendicular to the ray.
+    S,
+    /// The partner of [`Self::S`], with H so instead.
+    P,
+    /// The ordinary wave of a uniaxial medium.
+    Ordinary,
+    /// The extraordinary wave of a uniaxial medium.
+    Extraordinary,
+    /// Of two modes without a name the one with the smaller |p|.
+    First,
+    /// Of two modes without a name the one with the larger |p|.
+    Second,
+}
+
+/// A plane-wave mode.
+///
+/// Modes that carry power have a normal flux |Re(E × H*)·n| of 1, and the two of one heading are
+/// orthogonal in flux where the medium is lossless or they share one wave vector. Evanescent ones
+/// have |E|² + |H|² = 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// Which one it is.
+    pub kind: ModeKind,
+    /// Wave vector.
+    pub wave_vector: ComplexVector,
+    /// Electric field.
+    pub electric: ComplexVector,
+    /// Magnetic field.
+    pub magnetic: ComplexVector,
+    /// The unit vector of the Poynting vector, unless the mode is evanescent.
+    pub ray: Option<DVec3>,
+}
+
+impl Mode {
+    /// Whether the mode carries power across the surface.
+    #[must_use]
+    pub fn is_propagating(&self) -> bool {
+        self.ray.is_some()
+    }
+
+    /// The Poynting vector Re(E × H*).
+    #[must_use]
+    pub fn poynting(&self) -> DVec3 {
+        poynting(self.electric, self.magnetic)
+    }
+}
+
+impl Medium {
+    /// The two modes with the given tangential wave vector (perpendicular to the unit vector
+    /// `normal`) that carry power, or decay, one way along the normal.
+    ///
+    /// Where both polarizations share one wave vector: s, then p; in other uniaxial media the
+    /// ordinary mode, then the extraordinary one; elsewhere the one with the smaller |p| first.
+    ///
+    /// # Example
+    ///
+    /// Calcite cut across its axis: light that arrives straight sees one index.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use optics::medium::{Heading, Medium, ModeKind};
+    ///
+    /// let calcite = Medium::uniaxial_electric(1.0, 2.75, 2.21, DVec3::X)?;
+    /// let [slow, fast] = calcite.modes(DVec3::new(0.0, 0.5, 0.0), DVec3::X, Heading::Forward);
+    /// assert_eq!((slow.kind, fast.kind), (ModeKind::Ordinary, ModeKind::Extraordinary));
+    /// assert!((slow.wave_vector.re.length() - 2.75f64.sqrt()).abs() < 1e-15);
+    /// let [s, p] = calcite.modes(DVec3::ZERO, DVec3::X, Heading::Forward);
+    /// assert_eq!((s.kind, p.kind), (ModeKind::S, ModeKind::P));
+    /// # Ok::<(), optics::medium::MediumError>(())
+    /// ```
+    #[must_use]
+    pub fn modes(&self, tangential: DVec3, normal: DVec3, heading: Heading) -> [Mode; 2] {
+        let tangential = tangential - normal * tangential.dot(normal);
+        let frame = Frame::new(normal, tangential);
+        let along = Tangential::Real(tangential.dot(frame.first));
+        let BothWays { forward, backward } = self.both_ways(&frame, along, None);
+        let modes = match heading {
+            Heading::Forward => forward,
+            Heading::Backward => backward,
+        };
+        modes.complex().map(|mode| mode.in_world(&frame, along))
+    }
+
+    /// All four modes. `known` is the normal component of a wave that is known to propagate: where
+    /// by rounding at grazing incidence it seems evanescent it is given the limit's real one.
+    pub(crate) fn both_ways(
+        &self,
+        frame: &Frame,
+        tangential: Tangential,
+        known: Option<f64>,
+    ) -> BothWays {
+        match (&self.class, tangential) {
+            (Class::Isotropic(surface) | Class::Matched(surface), Tangential::Real(along)) => {
+                let waves = self.single_wave_modes(surface, frame, along, known.is_some());
+                BothWays { forward: waves.modes(true), backward: waves.modes(false) }
+            }
+            (Class::Uniaxial(medium), Tangential::Real(along)) => {
+                let waves = medium.waves(frame, along, known);
+                BothWays { forward: waves.modes(true), backward: waves.modes(false) }
+            }
+            (Class::General, Tangential::Real(along)) if !self.absorbs() => {
+                self.general_modes(frame, along, known)
+            }
+            _ => self.absorbing_modes(frame, tangential.components()),
+        }
+    }
+
+    /// The modes that head forward.
+    pub(crate) fn onward(&self, frame: &Frame, tangential: Tangential) -> LocalModes {
+        match (&self.class, tangential) {
+            (Class::Isotropic(surface) | Class::Matched(surface), Tangential::Real(along)) => {
+                self.single_wave_modes(surface, frame, along, false).modes(true)
+            }
+            (Class::Uniaxial(medium), Tangential::Real(along)) => {
+                medium.waves(frame, along, None).modes(true)
+            }
+            _ => self.both_ways(frame, tangential, None).forward,
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! Modes of uniaxial media.
+//!
+//! Worked out for the magnetic case, scalar ε and µ = µ_o (1 - a aᵀ) + µ_e a aᵀ. Ordinary wave:
+//! p·p = ε µ_o, H along p × a. Extraordinary wave: p·µp = ε µ_o µ_e, E along p × a. The electric
+//! case is its dual: ε and µ, E and H exchanged, one of the fields reversed.
+
+use super::{LocalMode, LocalModes, ModeKind};
+use crate::medium::class::Uniaxial;
+use crate::medium::quadratic::{Quadratic, Roots};
+use crate::wave::{Frame, Number, cross, dot};
+use num_complex::Complex64;
+
+/// A uniaxial medium before an interface: the axis in its frame and the normal components q of both
+/// waves.
+pub(super) struct UniaxialWaves<'a> {
+    medium: &'a Uniaxial<f64>,
+    along: f64,
+    axis: [f64; 3],
+    ordinary: Roots,
+    extraordinary: Roots,
+}
+
+/// sin² of the angle of p to the axis below which both waves are one.
+const ONE_WAVE: f64 = 1e-28;
+
+impl<T: Number> Uniaxial<T> {
+    /// The equations for q of the ordinary and the extraordinary wave.
+    pub(super) fn equations(&self, [k1, k2]: [T; 2], axis: [f64; 3]) -> [Quadratic<T>; 2] {
+        let Self { scalar, ordinary, extraordinary, .. } = *self;
+        let squared = k1 * k1 + k2 * k2;
+        let excess = extraordinary - ordinary;
+        let on_axis = k1.scaled(axis[0]) + k2.scaled(axis[1]);
+        let index = scalar * ordinary;
+        [
+            Quadratic { a: T::from(1.0), b: T::from(0.0), c: squared - index },
+            Quadratic {
+                a: ordinary + excess.scaled(axis[2] * axis[2]),
+                b: excess.scaled(axis[2]) * on_axis,
+                c: ordinary * squared + excess * on_axis * on_axis - index * extraordinary,
+            },
+        ]
+    }
+
+    /// The ordinary wave with H along `u`.
+    pub(super) fn ordinary_mode(&self, p: [T; 3], u: [T; 3]) -> LocalMode<T> {
+        let scale = T::from(-1.0) / self.scalar;
+        let electric = cross(p, u).map(|component| component * scale);
+        self.dual(ModeKind::Ordinary, p[2], electric, u)
+    }
+
+    /// The extraordinary wave with E along `u`: H = µ⁻¹ (p × u) = (µp × u)/(µ_o µ_e).
+    pub(super) fn extraordinary_mode(&self, axis: [f64; 3], p: [T; 3], u: [T; 3]) -> LocalMode<T> {
+        let scale = T::from(1.0) / (self.ordinary * self.extraordinary);
+        let a = axis.map(T::from);
+        let excess = (self.extraordinary - self.ordinary) * dot(p, a);
+        let induction: [T; 3] = std::array::from_fn(|i| self.ordinary * p[i] + excess * a[i]);
+        let magnetic = cross(induction, u).map(|component| component * scale);
+        self.dual(ModeKind::Extraordinary, p[2], u, magnetic)
+    }
+
+    /// The wave of the medium itself from that of the magnetic case.
+    fn dual(&self, kind: ModeKind, q: T, electric: [T; 3], magnetic: [T; 3]) -> LocalMode<T> {
+        let (electric, magnetic) = if self.electric {
+            (magnetic.map(|component| -component), electric)
+        } else {
+            (electric, magnetic)
+        };
+        LocalMode { kind, propagating: true, q, electric, magnetic }
+    }
+
+    /// Orders and names a pair of waves along the optic axis, where both are one: s, p.
+    pub(super) fn named_along_axis(
+        &self,
+        ordinary: LocalMode<T>,
+        extraordinary: LocalMode<T>,
+    ) -> [LocalMode<T>; 2] {
+        // The wave with E across the plane of incidence: H is there for the other one.
+        let (s, p) =
+            if self.electric { (ordinary, extraordinary) } else { (extraordinary, ordinary) };
+        [LocalMode { kind: ModeKind::S, ..s }, LocalMode { kind: ModeKind::P, ..p }]
+    }
+}
+
+/// The direction of one field of both waves, p × a, and its square relative to |p|².
+pub(super) fn across_axis<T: Number>(p: [T; 3], axis: [f64; 3]) -> ([T; 3], f64) {
+    let u = cross(p, axis.map(T::from));
+    let square = |v: [T; 3]| v.into_iter().map(T::magnitude_squared).sum::<f64>();
+    (u, square(u) / square(p))
+}
+
+/// Any vector across the plane of incidence.
+pub(super) fn out_of_plane<T: Number>() -> [T; 3] {
+    [T::from(0.0), T::from(1.0), T::from(0.0)]
+}
+
+impl Uniaxial<f64> {
+    pub(super) fn waves(&self, frame: &Frame, along: f64, known: Option<f64>) -> UniaxialWaves<'_> {
+        let axis = frame.components(self.axis);
+        let [ordinary, extraordinary] =
+            self.equations([along, 0.0], axis).map(|equation| equation.roots());
+        let mut waves = UniaxialWaves { medium: self, along, axis, ordinary, extraordinary };
+        if let Some(q) = known {
+            waves.keep_real(q);
+        }
+        waves
+    }
+}
+
+impl UniaxialWaves<'_> {
+    /// Makes the roots of the wave with normal component `q` real.
+    fn keep_real(&mut self, q: f64) {
+        let distance = |roots: Roots| match roots {
+            Roots::Real { plus, minus, .. } => (plus - q).abs().min((minus - q).abs()),
+            Roots::Complex { re, im, .. } => (re - q).hypot(im),
+        };
+        if distance(self.ordinary) <= distance(self.extraordinary) {
+            self.ordinary = self.ordinary.propagating();
+        } else {
+            self.extraordinary = self.extraordinary.propagating();
+        }
+    }
+
+    /// The modes of one heading.
+    pub fn modes(&self, forward: bool) -> LocalModes {
+        match (self.ordinary, self.extraordinary) {
+            (
+                Roots::Real { plus: o_plus, minus: o_minus, root: o_root },
+                Roots::Real { plus: e_plus, minus: e_minus, root: e_root },
+            ) => {
+                let [o_sign, e_sign] = self.signs(forward);
+                let q = [pick(o_sign, o_plus, o_minus), pick(e_sign, e_plus, e_minus)];
+                LocalModes::Real(self.propagating(q, o_root, e_sign * e_root))
+            }
+            _ => LocalModes::Complex(self.evanescent(forward)),
+        }
+    }
+
+    /// The sign of the root of each wave's equation that carries power the given way:
+    /// S = p u²/ε and S = µp u²/(µ_o µ_e).
+    fn signs(&self, forward: bool) -> [f64; 2] {
+        let Uniaxial { scalar, ordinary, extraordinary, .. } = *self.medium;
+        let heading = if forward { 1.0 } else { -1.0 };
+        [heading * scalar.signum(), heading * (ordinary * extraordinary).signum()]
+    }
+
+    fn propagating(&self, [qo, qe]: [f64; 2], o_root: f64, e_root: f64) -> [LocalMode<f64>; 2] {
+        let Self { medium, along, axis, .. } = *self;
+        let Uniaxial { scalar, ordinary, extraordinary, .. } = *medium;
+        let po = [along, 0.0, qo];
+        let (mut u, angle) = across_axis(po, axis);
+        let (qe, ue) = if angle < 1e-3 {
+            if angle < ONE_WAVE {
+                u = out_of_plane();
+            }
+            self.near_axis(qo, qe, e_root, u, angle)
+        } else {
+            (qe, across_axis([along, 0.0, qe], axis).0)
+        };
+        // Normal fluxes from the roots themselves, which keeps them exact down to grazing.
+        let flux = (o_root * dot(u, u) / scalar).abs();
+        let o = medium.ordinary_mode(po, u).scaled(flux.sqrt().recip());
+        let flux = (e_root * dot(ue, ue) / (ordinary * extraordinary)).abs();
+        let e = medium.extraordinary_mode(axis, [along, 0.0, qe], ue).scaled(flux.sqrt().recip());
+        if angle < ONE_WAVE && qo == qe { medium.named_along_axis(o, e) } else { [o, e] }
+    }
+
+    /// The extraordinary wave close to the axis, q and p × a, from the ordinary one: the two
+    /// directions p × a must agree better than each is known. With q_e = q_o + d and G = µp_o·n,
+    /// a d² + 2 G d = (µ_e - µ_o) (p_o × a)² and µp_e·n = a d + G.
+    fn near_axis(&self, qo: f64, qe: f64, e_root: f64, u: [f64; 3], angle: f64) -> (f64, [f64; 3]) {
+        let Self { medium, along, axis, .. } = *self;
+        let excess = medium.extraordinary - medium.ordinary;
+        let g = medium.ordinary * qo + excess * (along * axis[0] + qo * axis[2]) * axis[2];
+        if g * e_root <= 0.0 {
+            // The extraordinary wave of the other heading, near grazing.
+            let (ue, own_angle) = across_axis([along, 0.0, qe], axis);
+            return (qe, if own_angle < ONE_WAVE { out_of_plane() } else { ue });
+        }
+        if angle < ONE_WAVE {
+            return (qo, u);
+        }
+        let d = excess * dot(u, u) / (g + e_root);
+        (qo + d, [u[0] - d * axis[1], u[1] + d * axis[0], u[2]])
+    }
+
+    fn evanescent(&self, forward: bool) -> [LocalMode<Complex64>; 2] {
+        let Self { medium, along, axis, .. } = *self;
+        let medium = Uniaxial::<Complex64>::from(*medium);
+        let q = |roots: Roots, sign: f64| match roots {
+            Roots::Real { plus, minus, .. } => (Complex64::from(pick(sign, plus, minus)), true),
+            Roots::Complex { re, im, .. } => {
+                (Complex64::new(re, if forward { im } else { -im }), false)
+            }
+        };
+        let [o_sign, e_sign] = self.signs(forward);
+        let (qo, o_runs) = q(self.ordinary, o_sign);
+        let (qe, e_runs) = q(self.extraordinary, e_sign);
+        let po = [along.into(), Complex64::ZERO, qo];
+        let pe = [along.into(), Complex64::ZERO, qe];
+        let (mut uo, angle) = across_axis(po, axis);
+        let (mut ue, e_angle) = across_axis(pe, axis);
+        if angle < ONE_WAVE {
+            uo = out_of_plane();
+        }
+        if e_angle < ONE_WAVE {
+            ue = out_of_plane();
+        }
+        let normalized = |mode: LocalMode<Complex64>, runs: bool| {
+            let size = if runs { mode.flux().abs() } else { mode.norm_squared() };
+            LocalMode { propagating: runs, ..mode.scaled(size.sqrt().recip()) }
+        };
+        let o = normalized(medium.ordinary_mode(po, uo), o_runs);
+        let e = normalized(medium.extraordinary_mode(axis, pe, ue), e_runs);
+        let shared = angle < ONE_WAVE && e_angle < ONE_WAVE;
+        if shared { medium.named_along_axis(o, e) } else { [o, e] }
+    }
+}
+
+fn pick(sign: f64, plus: f64, minus: f64) -> f64 {
+    if sign > 0.0 { plus } else { minus }
+}

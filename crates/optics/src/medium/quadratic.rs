@@ -1,0 +1,86 @@
+//! The normal components of wave vectors as the roots of a quadratic equation.
+
+use crate::wave::Number;
+use num_complex::Complex64;
+
+/// a q² + 2 b q + c = 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quadratic<T> {
+    pub a: T,
+    pub b: T,
+    pub c: T,
+}
+
+/// The roots of a real quadratic equation; `root` is the square root of the magnitude of b² - ac.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Roots {
+    /// (root - b)/a and (-root - b)/a.
+    Real { plus: f64, minus: f64, root: f64 },
+    /// re ± i im, im > 0.
+    Complex { re: f64, im: f64, root: f64 },
+}
+
+impl<T: Number> Quadratic<T> {
+    /// The equation with its leading coefficient kept off zero, where one root would be infinite:
+    /// the asymptotic cone of a hyperbolic medium.
+    fn bounded(self) -> Self {
+        let size = (self.b.magnitude_squared() + self.c.magnitude_squared()).sqrt();
+        let least = 1e-14 * size;
+        if self.a.magnitude_squared() >= least * least {
+            return self;
+        }
+        let a = if self.a.real() < 0.0 { -least } else { least };
+        Self { a: T::from(a), ..self }
+    }
+}
+
+impl Quadratic<f64> {
+    /// The roots; where they coincide they are set apart by about 1e-15, which gives the limit.
+    pub fn roots(self) -> Roots {
+        let Self { a, b, c } = self.bounded();
+        let product = a * c;
+        let discriminant = b * b - product;
+        let root = discriminant.abs().max(1e-30).sqrt();
+        if discriminant < 0.0 {
+            return Roots::Complex { re: -b / a, im: root / a.abs(), root };
+        }
+        // Where b² hides ac, one of the roots comes from their product.
+        let (plus, minus) = if product.abs() >= 0.1 * b * b || discriminant <= 1e-30 {
+            ((root - b) / a, (-root - b) / a)
+        } else if b > 0.0 {
+            (c / (-root - b), (-root - b) / a)
+        } else {
+            ((root - b) / a, c / (root - b))
+        };
+        Roots::Real { plus, minus, root }
+    }
+}
+
+impl Quadratic<Complex64> {
+    /// Both roots.
+    pub fn complex_roots(self) -> [Complex64; 2] {
+        let Self { a, b, c } = self.bounded();
+        let mut root = (b * b - a * c).sqrt();
+        if root.norm_sqr() < 1e-30 {
+            root = Complex64::from(1e-15);
+        }
+        let towards = (b.conj() * root).re;
+        let larger = if towards > 0.0 { -b - root } else { root - b };
+        let first = larger / a;
+        // From the product of the roots, unless both are of one size and that buys nothing.
+        let second =
+            if (a * c).norm() >= 0.1 * b.norm_sqr() { (-b * 2.0 - larger) / a } else { c / larger };
+        [first, second]
+    }
+}
+
+impl Roots {
+    /// The roots of waves that are known to propagate, which by rounding at grazing incidence may
+    /// seem evanescent: they then coincide, but for a hair.
+    pub fn propagating(self) -> Self {
+        match self {
+            Self::Real { .. } => self,
+            Self::Complex { re, im, root } => Self::Real { plus: re + im, minus: re - im, root },
+        }
+    }
+}

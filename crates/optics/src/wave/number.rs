@@ -1,0 +1,89 @@
+//! The numbers that plane waves are made of.
+
+use num_complex::Complex64;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// Real numbers for waves that propagate, complex ones for those that decay: the same formulas, at
+/// the price each deserves.
+pub(crate) trait Number:
+    Copy
+    + Default
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + From<f64>
+    + Into<Complex64>
+{
+    /// The product with a complex number.
+    fn times(self, amplitude: Complex64) -> Complex64;
+
+    /// The squared magnitude.
+    fn magnitude_squared(self) -> f64;
+
+    /// The complex conjugate.
+    fn conjugate(self) -> Self;
+
+    /// The product with a real number.
+    fn scaled(self, factor: f64) -> Self;
+
+    /// The real part.
+    fn real(self) -> f64;
+}
+
+impl Number for f64 {
+    fn times(self, amplitude: Complex64) -> Complex64 {
+        amplitude * self
+    }
+
+    fn magnitude_squared(self) -> f64 {
+        self * self
+    }
+
+    fn conjugate(self) -> Self {
+        self
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        self * factor
+    }
+
+    fn real(self) -> f64 {
+        self
+    }
+}
+
+impl Number for Complex64 {
+    fn times(self, amplitude: Complex64) -> Complex64 {
+        amplitude * self
+    }
+
+    fn magnitude_squared(self) -> f64 {
+        self.norm_sqr()
+    }
+
+    fn conjugate(self) -> Self {
+        self.conj()
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        self * factor
+    }
+
+    fn real(self) -> f64 {
+        self.re
+    }
+}
+
+/// The cross product of two triples.
+pub(crate) fn cross<T: Number>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The bilinear product of two triples.
+pub(crate) fn dot<T: Number>(a: [T; 3], b: [T; 3]) -> T {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

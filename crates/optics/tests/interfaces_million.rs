@@ -1,0 +1,170 @@
+//! A million interfaces of random media: energy, Maxwell's equations, continuity, no NaN.
+//!
+//! Every ordered pair of eleven kinds of media, and metal, at random normals and tangential wave
+//! vectors up to |p_t| = 3: total reflection and evanescent waves from either side are in it.
+#![expect(
+    clippy::expect_used,
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::print_stdout,
+    reason = "a test may"
+)]
+
+mod random_media;
+
+use glam::DVec3;
+use optics::interface::Scattering;
+use optics::medium::Medium;
+use optics::wave::{ComplexVector, poynting};
+use random_media::{KINDS, Random, jump, maxwell_residual, medium};
+
+#[derive(Default)]
+struct Worst {
+    maxwell: f64,
+    jump: f64,
+    share: f64,
+    energies: Vec<f64>,
+}
+
+/// A NaN is worse than anything.
+fn raise(worst: &mut f64, value: f64) {
+    *worst = if value.is_nan() { f64::INFINITY } else { worst.max(value) };
+}
+
+/// The outgoing normal flux of the fields themselves for an incident mode of flux 1.
+fn outgoing_flux(s: &Scattering, column: usize, normal: DVec3) -> f64 {
+    let flux = |modes: &[optics::medium::Mode; 2], first: usize| {
+        let [a, b] = [0, 1].map(|i| s.amplitudes[first + i][column]);
+        let field = |x: ComplexVector, y: ComplexVector| x.scaled(a) + y.scaled(b);
+        poynting(
+            field(modes[0].electric, modes[1].electric),
+            field(modes[0].magnetic, modes[1].magnetic),
+        )
+        .dot(normal)
+    };
+    s.transmitted.as_ref().map_or(0.0, |modes| flux(modes, 2)) - flux(&s.reflected, 0)
+}
+
+fn examine(worst: &mut Worst, from: &Medium, to: Option<&Medium>, s: &Scattering, normal: DVec3) {
+    for mode in s.incident.iter().chain(&s.reflected) {
+        raise(&mut worst.maxwell, maxwell_residual(from, mode));
+    }
+    for (to, modes) in to.iter().zip(&s.transmitted) {
+        for mode in modes {
+            raise(&mut worst.maxwell, maxwell_residual(to, mode));
+        }
+    }
+    for (column, power) in s.power.iter().enumerate() {
+        let Some(power) = power else { continue };
+        raise(&mut worst.jump, jump(s, column, normal));
+        assert!(power.iter().all(|p| p.is_finite() && *p >= 0.0), "{power:?}");
+        if !from.absorbs() {
+            raise(&mut worst.share, (power.iter().sum::<f64>() - 1.0).abs());
+            worst.energies.push((outgoing_flux(s, column, normal) - 1.0).abs());
+        }
+    }
+}
+
+#[test]
+fn energy_maxwell_and_continuity() {
+    let count = if cfg!(debug_assertions) { 200_000 } else { 1_000_000 };
+    let mut random = Random(1);
+    let mut worst = Worst::default();
+    for _ in 0..count {
+        let from = medium(random.below(KINDS.len()), &mut random);
+        let beyond = random.below(KINDS.len() + 1);
+        let to = (beyond < KINDS.len()).then(|| medium(beyond, &mut random));
+        let normal = random.direction();
+        let tangential = random.direction() * random.between(0.0, 3.0);
+        let s = Scattering::new(&from, to.as_ref(), tangential, normal);
+        examine(&mut worst, &from, to.as_ref(), &s, normal);
+    }
+    // Relative to the terms of the equations and to the largest field.
+    assert!(worst.maxwell < 1e-11, "Maxwell {:e}", worst.maxwell);
+    assert!(worst.jump < 1e-14, "jump {:e}", worst.jump);
+    // The account of the power is exact.
+    assert!(worst.share < 4e-15, "share {:e}", worst.share);
+    // The fields' own flux, before it is shared out, is a check on the modes: near grazing, where
+    // the normal flux is a small part of a large field (as everywhere near the asymptotic cone of a
+    // hyperbolic medium), it is known less well.
+    let energies = &mut worst.energies;
+    energies.sort_by(f64::total_cmp);
+    let at = |quantile: f64| energies[((energies.len() - 1) as f64 * quantile) as usize];
+    println!(
+        "Maxwell {:.1e}, jump {:.1e}, share {:.1e}, energy: median {:.1e}, 99.9 % {:.1e}, max {:.1e}",
+        worst.maxwell,
+        worst.jump,
+        worst.share,
+        at(0.5),
+        at(0.999),
+        at(1.0)
+    );
+    assert!(at(0.5) < 1e-15 && at(0.999) < 1e-12 && at(1.0) < 1e-8, "energy {:e}", at(1.0));
+}
+
+/// Both ways to the modes of a medium: its closed form and the eigenproblem.
+#[test]
+fn closed_forms_agree_with_the_eigenproblem() {
+    let mut random = Random(2);
+    let mut worst: f64 = 0.0;
+    for _ in 0..40_000 {
+        let pick = |random: &mut Random| {
+            let kind = [0, 1, 2, 3, 4, 8, 10][random.below(7)];
+            medium(kind, random)
+        };
+        let (from, to) = (pick(&mut random), pick(&mut random));
+        let normal = random.direction();
+        let tangential = random.direction() * random.between(0.0, 3.0);
+        let closed = Scattering::new(&from, Some(&to), tangential, normal);
+        let general = Scattering::new(
+            &from.without_closed_form(),
+            Some(&to.without_closed_form()),
+            tangential,
+            normal,
+        );
+        // The powers between modes, whatever their order; those of degenerate pairs, whose basis is
+        // free, in sum.
+        let named = |a: &optics::medium::Mode, b: &optics::medium::Mode| {
+            (a.wave_vector - b.wave_vector).norm_squared().sqrt() < 1e-5
+        };
+        let degenerate = |m: &[optics::medium::Mode; 2]| named(&m[0], &m[1]);
+        if degenerate(&closed.incident) {
+            let sum = |s: &Scattering, row: usize| {
+                s.power.iter().flatten().map(|p| p[row] + p[row + 1]).sum::<f64>()
+            };
+            for row in [0, 2] {
+                let difference = (sum(&closed, row) - sum(&general, row)).abs();
+                if closed.power.iter().all(Option::is_some) && !to.absorbs() && !from.absorbs() {
+                    raise(&mut worst, difference);
+                }
+            }
+            continue;
+        }
+        for (i, a) in closed.incident.iter().enumerate() {
+            let Some(j) = general.incident.iter().position(|b| named(a, b)) else {
+                panic!("no mode {a:?} among {:?}", general.incident);
+            };
+            assert_eq!(closed.power[i].is_some(), general.power[j].is_some(), "{from:?}");
+            let (Some(p), Some(q)) = (closed.power[i], general.power[j]) else { continue };
+            let sides = [
+                (0, Some((&closed.reflected, &general.reflected))),
+                (2, closed.transmitted.as_ref().zip(general.transmitted.as_ref())),
+            ];
+            for (row, modes) in sides {
+                let Some((ours, theirs)) = modes else { continue };
+                let swapped = usize::from(!named(&ours[0], &theirs[0]));
+                if degenerate(ours) {
+                    raise(&mut worst, (p[row] + p[row + 1] - q[row] - q[row + 1]).abs());
+                } else {
+                    for k in 0..2 {
+                        raise(&mut worst, (p[row + k] - q[row + (k ^ swapped)]).abs());
+                    }
+                }
+            }
+        }
+    }
+    println!("closed forms against eigenproblem: {worst:.1e}");
+    // Worst next to grazing, where either way loses digits.
+    assert!(worst < 1e-9, "{worst:e}");
+}
