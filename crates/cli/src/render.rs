@@ -73,7 +73,7 @@ pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure
 pub fn tell_rarities(rarities: &Rarities) {
     if rarities.endless > 0 {
         say(&format!(
-            "note: {} ray trees met a million surfaces and were cut; their rest is in `pruned`",
+            "note: {} branches of endless ray trees were cut after 100000 surfaces; their power is in `pruned`",
             rarities.endless
         ));
     }

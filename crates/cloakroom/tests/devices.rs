@@ -3,30 +3,48 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use cloakroom::device::{CATALOGUE, FactValue};
-use cloakroom::keys::Values;
+use cloakroom::keys::{KeyKind, Values};
 use cloakroom::scene_file;
-use cloakroom::trace::{Bench, Launch, Limits, Rarities, Tracer};
+use cloakroom::trace::{Bench, Launch, Limits, Tracer};
 use glam::DVec3;
 use optics::wave::transverse_basis;
 use std::path::Path;
 
-/// Every device in every view, endless and short, at a few rotations and places, with a description.
+/// Every device in every view, endless and short, at a few rotations and places, in each of the words
+/// that its keys take, with a description.
 fn benches() -> Vec<(String, Bench)> {
     let mut benches = Vec::new();
     for entry in CATALOGUE {
-        for show in ["cloak", "bare", "mirror"] {
-            for (rotation, length) in [(0.0, None), (13.0, Some(18.0)), (90.0, None)] {
-                let mut text = format!(
-                    "[[device]]\nkind = \"{}\"\nshow = \"{show}\"\nrotation = {rotation:?}\n\
-                     position = [1.5, -2.0, 0.5]\n",
-                    entry.kind
-                );
-                if let Some(length) = length {
-                    text += &format!("length = {length:?}\n");
+        let mut variants = vec![String::new()];
+        for key in entry.keys {
+            match key.kind {
+                KeyKind::Choice { options } => variants
+                    .extend(options[1..].iter().map(|word| format!("{} = \"{word}\"\n", key.name))),
+                KeyKind::Flag { default } => {
+                    variants.push(format!("{} = {}\n", key.name, !default));
                 }
-                let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-                let bench = cloakroom::render::bench(&loaded.scene).unwrap();
-                benches.push((text, bench));
+                _ => {}
+            }
+        }
+        for variant in variants {
+            for show in ["cloak", "bare", "mirror"] {
+                for (rotation, length) in [(0.0, None), (13.0, Some(18.0)), (90.0, None)] {
+                    let mut text = format!(
+                        "[[device]]\nkind = \"{}\"\nshow = \"{show}\"\nrotation = {rotation:?}\n\
+                         position = [1.5, -2.0, 0.5]\n{variant}",
+                        entry.kind
+                    );
+                    if let Some(length) = length {
+                        text += &format!("length = {length:?}\n");
+                    }
+                    let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
+                    let bench = cloakroom::render::bench(&loaded.scene).unwrap();
+                    benches.push((text, bench));
+                    if show != "cloak" {
+                        // Metal and mirrors know nothing of the cloak's material.
+                        break;
+                    }
+                }
             }
         }
     }
@@ -52,16 +70,19 @@ fn launches(count: u32) -> impl Iterator<Item = Launch<2>> {
 #[test]
 fn power_is_accounted_for() {
     for (what, bench) in benches() {
-        for min_power in [1e-4, 1e-9] {
+        for min_power in [1e-4, 1e-8] {
             let mut tracer = Tracer::new(&bench, Limits { min_power, tolerance: 1e-6 });
-            for launch in launches(2000) {
+            for launch in launches(1000) {
                 let (leaves, outcome) = tracer.trace(&launch);
                 for i in 0..2 {
                     let sum: f64 = leaves.iter().map(|leaf| leaf.power[i]).sum();
                     let total = sum + outcome.absorbed[i] + outcome.pruned[i];
                     assert!((total - 1.0).abs() < 1e-12, "{what}{launch:?}: {total}");
                 }
-                assert_eq!(outcome.rarities, Rarities::default(), "{what}{launch:?}");
+                // Light may be trapped for good in a short birefringent prism; none may be lost.
+                assert_eq!(outcome.rarities.lost, 0, "{what}{launch:?}");
+                let trapped = outcome.rarities.endless > 0;
+                assert!(!trapped || (what.contains("uniaxial") && what.contains("length")));
             }
         }
     }
@@ -71,7 +92,7 @@ fn power_is_accounted_for() {
 fn leaves_are_sound_waves_in_air() {
     for (what, bench) in benches() {
         let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-9, tolerance: 1e-6 });
-        for launch in launches(2000) {
+        for launch in launches(1000) {
             let (leaves, _) = tracer.trace(&launch);
             assert!(!leaves.is_empty());
             for leaf in leaves {
@@ -97,11 +118,11 @@ fn the_way_back_leads_home() {
     for (what, bench) in benches() {
         let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-3, tolerance: 1e-9 });
         let (mut off, mut all) = (0, 0);
-        for launch in launches(500) {
+        for launch in launches(300) {
             let (leaves, _) = tracer.trace(&launch);
             let power = |leaf: &cloakroom::trace::Leaf<2>| leaf.power[0] + leaf.power[1];
-            let leaf = leaves.iter().max_by(|a, b| power(a).total_cmp(&power(b))).unwrap();
-            let there = power(leaf);
+            let leaf = *leaves.iter().max_by(|a, b| power(a).total_cmp(&power(b))).unwrap();
+            let there = power(&leaf);
             let path = leaf.optical_path;
             if !leaf.met_device {
                 continue;
@@ -109,9 +130,10 @@ fn the_way_back_leads_home() {
             let back = Launch {
                 origin: leaf.position + leaf.direction * 10.0,
                 direction: -leaf.direction,
-                electric: launch.electric.map(|_| {
-                    let (h, _) = transverse_basis(-leaf.direction, DVec3::Z, DVec3::X);
-                    h.into()
+                electric: leaf.electric.map(|_| {
+                    // Time reversed; both the same, for one of the two may be nearly dark.
+                    let field = leaf.electric[usize::from(leaf.power[1] > leaf.power[0])];
+                    field.conj() * field.norm_squared().powf(-0.5)
                 }),
             };
             let (leaves, _) = tracer.trace(&back);

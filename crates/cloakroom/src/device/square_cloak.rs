@@ -23,8 +23,11 @@ pub(super) static ENTRY: Entry = Entry {
     keys: &[
         Key {
             name: "material",
-            doc: "What the segments are made of; impedance-matched is design (iii).",
-            kind: KeyKind::Choice { options: &["impedance-matched"] },
+            doc: "What the segments are made of: eps = mu, design (iii), or a scalar eps and a uniaxial \
+                  mu, positive (i) or negative (ii), which cloak horizontal polarization only.",
+            kind: KeyKind::Choice {
+                options: &["impedance-matched", "positive-uniaxial", "negative-uniaxial"],
+            },
         },
         Key {
             name: "side",
@@ -63,7 +66,7 @@ fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
     let map = map(values);
     let extent = Extent::centred(request.length);
     match request.show {
-        Show::Cloak => cloak(&map, values.flag("rounded"), extent),
+        Show::Cloak => cloak(&map, &Recipe::new(values, &map), extent),
         Show::Bare => Ok(bare(&map, extent)),
         Show::Mirror => {
             let half = map.half_diagonal();
@@ -98,14 +101,14 @@ fn bare(map: &StripToRhombus, extent: Extent) -> Structure {
     Structure { cells: Vec::new(), skin, hull: Hull::new(outline, extent) }
 }
 
-fn cloak(map: &StripToRhombus, rounded: bool, extent: Extent) -> Result<Structure, KeyError> {
+fn cloak(map: &StripToRhombus, recipe: &Recipe, extent: Extent) -> Result<Structure, KeyError> {
     let (d, b) = (map.half_diagonal(), map.half_height());
     let square = corners(d, d);
     let rhombus = corners(d, b);
     let mut cells = Vec::new();
     let mut skin = Vec::new();
     for (index, quadrant) in (0u16..).zip(QUADRANTS) {
-        let medium = medium(map, rounded, quadrant)?;
+        let medium = recipe.medium(quadrant)?;
         let inner = DVec2::new(quadrant.x / d, quadrant.y / b).extend(0.0);
         let diagonal = quadrant.extend(0.0) * 0.5f64.sqrt();
         // The neighbour across x = 0.
@@ -152,42 +155,91 @@ fn cloak(map: &StripToRhombus, rounded: bool, extent: Extent) -> Result<Structur
     Ok(Structure { cells, skin, hull })
 }
 
-/// The medium of one segment.
-fn medium(map: &StripToRhombus, rounded: bool, quadrant: DVec2) -> Result<Medium, KeyError> {
-    let tensor = if rounded { rounded_tensor(quadrant) } else { map.tensor(quadrant) };
-    Medium::impedance_matched(tensor)
-        .map_err(|error| KeyError { key: Some("kappa"), message: error.to_string() })
+/// What the segments are made of.
+struct Recipe {
+    material: Material,
+    /// The tensor in the quadrant x, y > 0, unless it is given by its principal values.
+    exact: Option<StripToRhombus>,
+    /// Principal values along u, v and z.
+    principal: DVec3,
+    /// From x to u in the quadrant x, y > 0, degrees.
+    angle: f64,
 }
 
-/// The tensor printed in the paper: 3.27 along u, 0.31 along v, 2.366 along z.
-fn rounded_tensor(quadrant: DVec2) -> DMat3 {
-    let angle = -33.54f64.to_radians() * quadrant.x * quadrant.y;
-    let turn = DMat3::from_rotation_z(angle);
-    let tensor = turn * DMat3::from_diagonal(DVec3::new(3.27, 0.31, 2.366)) * turn.transpose();
-    // Symmetric to the last bit.
-    (tensor + tensor.transpose()) * 0.5
+enum Material {
+    ImpedanceMatched,
+    PositiveUniaxial,
+    NegativeUniaxial,
+}
+
+impl Recipe {
+    fn new(values: &Values, map: &StripToRhombus) -> Self {
+        let material = match values.choice("material") {
+            "positive-uniaxial" => Material::PositiveUniaxial,
+            "negative-uniaxial" => Material::NegativeUniaxial,
+            _ => Material::ImpedanceMatched,
+        };
+        if values.flag("rounded") {
+            // As printed in the paper.
+            let principal = DVec3::new(3.27, 0.31, 2.366);
+            return Self { material, exact: None, principal, angle: -33.54 };
+        }
+        let (principal, angle) = map.principal_values();
+        Self { material, exact: Some(*map), principal, angle }
+    }
+
+    /// The medium of one segment.
+    fn medium(&self, quadrant: DVec2) -> Result<Medium, KeyError> {
+        // u and v change sense from quadrant to quadrant.
+        let turn = DMat3::from_rotation_z(self.angle.to_radians() * quadrant.x * quadrant.y);
+        let (u, v) = (turn.x_axis, turn.y_axis);
+        let DVec3 { x: along_u, y: along_v, z: along_z } = self.principal;
+        match self.material {
+            Material::ImpedanceMatched => {
+                Medium::impedance_matched(self.exact.map_or_else(
+                    || {
+                        let m = turn * DMat3::from_diagonal(self.principal) * turn.transpose();
+                        // Symmetric to the last bit.
+                        (m + m.transpose()) * 0.5
+                    },
+                    |map| map.tensor(quadrant),
+                ))
+            }
+            Material::PositiveUniaxial => Medium::uniaxial_magnetic(along_z, along_v, along_u, u),
+            Material::NegativeUniaxial => Medium::uniaxial_magnetic(along_z, along_u, along_v, v),
+        }
+        .map_err(|error| KeyError::at("kappa", error.to_string()))
+    }
+
+    /// Principal values of permittivity and permeability along u, v and z.
+    fn principal_values(&self) -> [DVec3; 2] {
+        let DVec3 { x: along_u, y: along_v, z: along_z } = self.principal;
+        let scalar = DVec3::splat(along_z);
+        match self.material {
+            Material::ImpedanceMatched => [self.principal; 2],
+            Material::PositiveUniaxial => [scalar, DVec3::new(along_u, along_v, along_v)],
+            Material::NegativeUniaxial => [scalar, DVec3::new(along_u, along_v, along_u)],
+        }
+    }
 }
 
 fn facts(values: &Values) -> Vec<Fact> {
     let map = map(values);
     let (d, b) = (map.half_diagonal(), map.half_height());
-    let (principal, angle) = if values.flag("rounded") {
-        (DVec3::new(3.27, 0.31, 2.366), -33.54)
-    } else {
-        map.principal_values()
-    };
+    let recipe = Recipe::new(values, &map);
+    let [permittivity, permeability] = recipe.principal_values();
     vec![
         Fact::number("cloaked_area_cm2", 2.0 * d * b),
         Fact::number("rhombus_side_cm", d.hypot(b)),
         Fact::number("mirror_width_cm", 2.0 * d),
         Fact {
             name: "permittivity_principal_values",
-            value: FactValue::Numbers(principal.to_array().to_vec()),
+            value: FactValue::Numbers(permittivity.to_array().to_vec()),
         },
         Fact {
             name: "permeability_principal_values",
-            value: FactValue::Numbers(principal.to_array().to_vec()),
+            value: FactValue::Numbers(permeability.to_array().to_vec()),
         },
-        Fact::number("axis_u_angle_deg", angle),
+        Fact::number("axis_u_angle_deg", recipe.angle),
     ]
 }

@@ -30,7 +30,7 @@ pub struct Limits {
 }
 
 /// No sensible tree meets this many surfaces; the rest counts as pruned.
-const MOST_EVENTS: u32 = 1_000_000;
+const MOST_EVENTS: u32 = 100_000;
 
 /// What rounding leaves of a wave that is not there.
 const NO_POWER: f64 = 1e-24;
