@@ -1,6 +1,7 @@
 //! `cloakroom figures`: the pictures of the paper.
 
 use crate::arguments::FiguresArguments;
+use crate::interruption;
 use crate::render::{picture, rgb, tell_rarities};
 use crate::report::{Failure, say};
 use crate::scene;
@@ -19,6 +20,7 @@ pub fn run(arguments: &FiguresArguments, stop: &AtomicBool) -> Result<(), Failur
     std::fs::create_dir_all(&arguments.out).map_err(|error| {
         Failure::Failed(format!("cannot make the folder {}: {error}", arguments.out.display()))
     })?;
+    let _busy = interruption::busy();
     for (figure, panels) in chosen {
         make(figure, &panels, arguments, stop)?;
     }

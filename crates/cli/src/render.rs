@@ -1,6 +1,7 @@
 //! `cloakroom render`: a scene to pictures and data.
 
 use crate::arguments::RenderArguments;
+use crate::interruption;
 use crate::progress;
 use crate::report::{Failure, say};
 use crate::scene;
@@ -24,6 +25,7 @@ pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure
     for path in &arguments.outputs {
         output::check_writable(path).map_err(Failure::from_error)?;
     }
+    let _busy = interruption::busy();
     let Rendered { picture, rarities } = picture(&studio, wanted, "rendering", stop)?;
     tell_rarities(&rarities);
     for (path, format) in formats {

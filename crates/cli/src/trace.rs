@@ -2,6 +2,7 @@
 
 use crate::arguments::TraceArguments;
 use crate::input;
+use crate::interruption;
 use crate::report::{self, Failure};
 use crate::scene;
 use cloakroom::render;
@@ -27,11 +28,13 @@ pub fn run(arguments: &TraceArguments, stop: &AtomicBool) -> Result<(), Failure>
     };
     let (text, name) = input::read(&arguments.rays)?;
     let rays = parse_rays(&text, &name)?;
+    let busy = interruption::busy();
     let limits = Limits { min_power, tolerance: settings.tolerance };
     let reports = trace_rays(&bench, limits, &rays, stop).map_err(|error| match error {
         RayError::Stopped => Failure::Interrupted,
         RayError::Ray { .. } => Failure::Failed(format!("{name}: {error}")),
     })?;
+    drop(busy);
     let text = serde_json::to_string(&reports).map_err(Failure::from_error)?;
     report::print(&format!("{text}\n"))
 }
@@ -41,7 +44,8 @@ fn parse_rays(text: &str, name: &str) -> Result<Vec<RayRequest>, Failure> {
     serde_json::from_str(text).map_err(|error| {
         Failure::Failed(format!(
             "{name}: {error}; expected an array of \
-             {{\"origin\": [x,y,z], \"direction\": [x,y,z], \"polarization\": ...}}"
+             {{\"origin\": [x,y,z], \"direction\": [x,y,z], \"polarization\": P}}, P being \
+             \"horizontal\", \"vertical\" or {{\"electric_field\": [[re,im],[re,im],[re,im]]}}"
         ))
     })
 }

@@ -40,7 +40,8 @@ pub(super) static ENTRY: Entry = Entry {
             kind: KeyKind::Number {
                 default: Some(0.577_350_269_189_625_8),
                 unit: "",
-                limits: Limits::Between(0.0, 1.0),
+                // Beyond, the tensors are too lopsided for double precision.
+                limits: Limits::Within(0.001, 0.999),
             },
         },
         Key {

@@ -49,7 +49,7 @@ impl OutputError {
             io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only".to_owned(),
             io::ErrorKind::QuotaExceeded => "the disk quota is used up".to_owned(),
             io::ErrorKind::FileTooLarge => "the file would be larger than is allowed".to_owned(),
-            _ => error.to_string(),
+            _ => innermost(error).to_string(),
         };
         Self::Write { path: path.to_owned(), reason }
     }

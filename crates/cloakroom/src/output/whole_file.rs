@@ -74,6 +74,9 @@ enum Place {
 
 fn place(path: &Path) -> Result<Place, OutputError> {
     let refuse = |reason: &str| Err(OutputError::with_reason(path, reason));
+    if path.as_os_str().to_string_lossy().ends_with(std::path::is_separator) {
+        return refuse("a name that ends like this is that of a folder");
+    }
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => return refuse("it is a folder"),
         Ok(found) if !found.is_file() => return Ok(Place::Direct),

@@ -105,7 +105,7 @@ fn expose_film<const N: usize>(
     polarizations: impl Fn(DVec3, DVec3) -> [ComplexVector; N] + Sync,
 ) -> Result<Rendered, RenderError> {
     let [width, height] = studio.scene.camera.resolution();
-    refuse_too_large(width, height, wanted)?;
+    check_memory(studio, wanted)?;
     let mut film = Film::new(width as usize, height as usize, Channel::of(wanted));
     let rarities = film
         .bands(BAND_ROWS)
@@ -168,7 +168,12 @@ fn metadata(studio: &Studio<'_>) -> Vec<(String, String)> {
 }
 
 /// Refuses a picture that would not fit into the memory that is free now.
-fn refuse_too_large(width: u32, height: u32, wanted: Wanted) -> Result<(), RenderError> {
+///
+/// # Errors
+///
+/// [`RenderError::TooLarge`].
+pub fn check_memory(studio: &Studio<'_>, wanted: Wanted) -> Result<(), RenderError> {
+    let [width, height] = studio.scene.camera.resolution();
     let bytes: u64 = Channel::of(wanted).iter().map(|c| if c.is_time() { 8 } else { 4 }).sum();
     // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
     let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2);

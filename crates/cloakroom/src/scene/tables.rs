@@ -110,7 +110,7 @@ pub static SURROUNDINGS_KEYS: &[Key] = &[
     Key {
         name: "color",
         doc: "Linear red, green and blue seen by rays that hit nothing.",
-        kind: vector([0.0, 0.0, 0.0], "", Limits::NonNegative),
+        kind: vector([0.0, 0.0, 0.0], "", Limits::Within(0.0, 1e30)),
     },
     Key {
         name: "image",

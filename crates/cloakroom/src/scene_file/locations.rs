@@ -38,13 +38,16 @@ impl Locations {
     /// An error that points at a part of the scene: `camera.up`, `device.1` (its header) or
     /// `device.1.side` (its value); at the nearest part around it where that one is not written.
     pub fn error_at(&self, path: &str, message: impl Into<String>) -> SceneFileError {
-        let mut path = path;
+        let mut around = path;
         loop {
-            if let Some(origin) = self.places.get(path) {
-                return self.error(origin, message);
+            match self.places.get(around) {
+                // An override that has made the table around is not to blame for what it does not say.
+                Some(Origin::Override(_)) if around != path && !around.starts_with("device") => {}
+                Some(origin) => return self.error(origin, message),
+                None => {}
             }
-            match path.rsplit_once('.') {
-                Some((around, _)) => path = around,
+            match around.rsplit_once('.') {
+                Some((outer, _)) => around = outer,
                 None => return SceneFileError::whole(&self.name, message),
             }
         }

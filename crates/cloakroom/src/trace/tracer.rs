@@ -5,7 +5,9 @@ use super::{Bench, Leaf, Outcome, Placed, Screen};
 use crate::device::{Beyond, Cell, Finish};
 use glam::DVec3;
 use optics::geometry::Pose;
-use optics::interface::{OutgoingWave, Side, reflect_at_conductor, split, transmit_antireflection};
+use optics::interface::{
+    OutgoingWave, OutgoingWaves, Side, reflect_at_conductor, split, transmit_antireflection,
+};
 use optics::medium::Medium;
 use optics::wave::ComplexVector;
 
@@ -34,6 +36,9 @@ const MOST_EVENTS: u32 = 100_000;
 
 /// What rounding leaves of a wave that is not there.
 const NO_POWER: f64 = 1e-24;
+
+/// The share of the power that rounding may take at an interface.
+const LEAK: f64 = 1e-10;
 
 /// Traces rays. It keeps its memory from ray to ray: make one a thread.
 #[derive(Debug)]
@@ -221,17 +226,33 @@ impl<'a, const N: usize> Tracer<'a, N> {
     }
 
     fn split(
-        &self,
+        &mut self,
         from: &Medium,
         to: &Medium,
         branch: &Branch<N>,
         normal: DVec3,
         finish: Finish,
-    ) -> optics::interface::OutgoingWaves<N> {
-        match finish {
+    ) -> OutgoingWaves<N> {
+        let waves = match finish {
             Finish::Bare => split(from, to, &branch.incident(), normal),
             Finish::Antireflection => transmit_antireflection(from, to, &branch.incident(), normal),
+        };
+        self.check_account(branch, &waves);
+        waves
+    }
+
+    /// Counts power as lost that an interface could not hand on: the account must not leak, even
+    /// where numbers fail.
+    fn check_account(&mut self, branch: &Branch<N>, waves: &[OutgoingWave<N>]) {
+        let mut lost = false;
+        for (i, power) in branch.power.iter().enumerate() {
+            let rest = power - waves.iter().map(|wave| wave.power[i]).sum::<f64>();
+            if rest.abs() > LEAK * power {
+                self.outcome.pruned[i] += rest;
+                lost = true;
+            }
         }
+        self.outcome.rarities.lost += u64::from(lost);
     }
 
     /// Keeps a branch to be followed, or prunes it.
