@@ -1,4 +1,4 @@
-//! Designs (i) and (ii): what physics.md derives for them.
+//! Designs (i) and (ii): what must come out of their interfaces, and the reversal of paths.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use cloakroom::scene_file;
@@ -73,7 +73,7 @@ fn powers_add_up_at_any_threshold() {
 
 #[test]
 fn trapped_vertical_light_leaves_design_ii_after_a_few_bounces() {
-    // physics.md, section 3: in the centre plane 88.6 % leaves in one path, at -2.14 or 92.14 degrees.
+    // Derived by hand from the interfaces: in the centre plane 88.6 % leaves in one path, at -2.14 or 92.14 degrees.
     let bench = bench("negative");
     let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-6, tolerance: 1e-6 });
     for y in [2.0, 4.0, 6.0, 8.0] {
@@ -88,7 +88,7 @@ fn trapped_vertical_light_leaves_design_ii_after_a_few_bounces() {
 
 #[test]
 fn paths_reversed_carry_the_same_power() {
-    // physics.md, section 7: the amplitude of a path is that of the reversed one.
+    // For symmetric tensors the amplitude of a path is that of the reversed one.
     for material in ["positive", "negative"] {
         let bench = bench(material);
         let limits = Limits { min_power: 1e-7, tolerance: 1e-8 };

@@ -280,7 +280,8 @@ fn first_reflection(bench: &Bench, direction: DVec3) -> [f64; 2] {
 
 #[test]
 fn the_front_face_reflects_little() {
-    // physics.md, section 4: up to 0.06 % near the middle, 0.12 % a polarization up to rotation 20.
+    // Fresnel's formulas with the index at the cut: up to 0.06 % near the middle, 0.12 % a polarization
+    // up to a rotation of 20 degrees.
     for rotation in [0, 5, 10, 20] {
         let bench = bench(&format!("rotation = {rotation}"));
         let (mut largest, mut middle): (f64, f64) = (0.0, 0.0);

@@ -136,7 +136,7 @@ fn light_is_on_time_to_yoctoseconds() {
 
 #[test]
 fn rounded_values_bend_by_less_than_a_degree() {
-    // physics.md, section 3: up to 0.8 degrees at rotation 0, with up to 0.14 cm of optical path.
+    // Known from an independent calculation: up to 0.8 degrees at rotation 0, with up to 0.14 cm of optical path.
     let bench = cloak("rounded = true");
     let mut tracer = Tracer::new(&bench, LIMITS);
     let mut largest: f64 = 0.0;

@@ -1,6 +1,7 @@
 //! The camera: which ray belongs to which point of the picture.
 
 use glam::DVec3;
+use optics::wave::transverse_basis;
 
 use super::Polarizer;
 use crate::keys::{KeyError, Values, number_text};
@@ -13,10 +14,6 @@ const MOST: u32 = 65_536;
 
 /// The sine of the angle between `up` and the line of sight below which they count as parallel.
 const PARALLEL: f64 = 1e-9;
-
-/// The sine of the angle to the camera's right-hand axis below which a direction counts as along
-/// it.
-const ALONG_RIGHT: f64 = 1e-12;
 
 /// How rays leave the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,19 +58,6 @@ pub struct CameraRay {
     pub origin: DVec3,
     /// Where it goes, a unit vector.
     pub direction: DVec3,
-}
-
-/// How a camera ray changes from pixel to pixel: derivatives by the pixel coordinates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RayDifferentials {
-    /// Change of the origin per pixel to the right, in cm.
-    pub origin_dx: DVec3,
-    /// Change of the origin per pixel down, in cm.
-    pub origin_dy: DVec3,
-    /// Change of the direction per pixel to the right, in radians.
-    pub direction_dx: DVec3,
-    /// Change of the direction per pixel down, in radians.
-    pub direction_dy: DVec3,
 }
 
 /// A camera that can take a picture: every way into it validates.
@@ -293,48 +277,11 @@ impl Camera {
         }
     }
 
-    /// How the ray through a point of the picture changes with that point.
-    pub fn differentials(&self, px: f64, py: f64) -> RayDifferentials {
-        let (dx, dy) = (self.pixel * self.right, -self.pixel * self.up);
-        match self.settings.projection {
-            Projection::Perspective { .. } => {
-                let unnormalized = self.forward + self.offset(px, py);
-                let length = unnormalized.length();
-                let direction = unnormalized / length;
-                // Of a change of the unnormalized vector only the part across it turns it.
-                let turn = |d: DVec3| (d - direction * direction.dot(d)) / length;
-                RayDifferentials {
-                    origin_dx: DVec3::ZERO,
-                    origin_dy: DVec3::ZERO,
-                    direction_dx: turn(dx),
-                    direction_dy: turn(dy),
-                }
-            }
-            Projection::Orthographic { .. } => RayDifferentials {
-                origin_dx: dx,
-                origin_dy: dy,
-                direction_dx: DVec3::ZERO,
-                direction_dy: DVec3::ZERO,
-            },
-        }
-    }
-
-    /// The horizontal and the vertical electric field of a ray, e_h and e_v: unit vectors across
-    /// it (physics.md, section 1, with z replaced by the camera's right-hand axis).
-    ///
-    /// e_v = right x d / |right x d| and e_h = d x e_v. For a ray along the right-hand axis e_h is
-    /// the line of sight, as it is x for a ray along z there.
+    /// The horizontal and the vertical electric field of a ray, unit vectors across it: those of
+    /// [`transverse_basis`] with the camera's right-hand axis. For a ray along that axis the horizontal one is
+    /// the line of sight, as it is x for a ray along z in the paper's scene.
     pub fn polarization_basis(&self, direction: DVec3) -> (DVec3, DVec3) {
-        let direction = direction.normalize();
-        let across = self.right.cross(direction);
-        let sine = across.length();
-        if sine > ALONG_RIGHT {
-            let vertical = across / sine;
-            (direction.cross(vertical), vertical)
-        } else {
-            let horizontal = self.forward.reject_from_normalized(direction).normalize();
-            (horizontal, horizontal.cross(direction))
-        }
+        transverse_basis(direction.normalize(), self.right, self.forward)
     }
 
     /// The smallest width, in cm, of a photograph centred on (`plane_x`, 0, 0) in the plane of

@@ -11,7 +11,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-pub use camera::{Camera, CameraRay, CameraSettings, Projection, RayDifferentials};
+pub use camera::{Camera, CameraRay, CameraSettings, Projection};
 pub use polarizer::Polarizer;
 pub use tables::{
     CAMERA_KEYS, DEFAULT_PHOTOGRAPH, LIGHT_KEYS, PHOTOGRAPH_KEYS, PICTURE_KEYS, PLACEMENT_KEYS,

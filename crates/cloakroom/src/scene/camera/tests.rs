@@ -76,29 +76,6 @@ fn an_orthographic_view_is_as_wide_as_it_says() {
 }
 
 #[test]
-fn differentials_are_the_derivatives_of_the_rays() {
-    let h = 1e-4;
-    for camera in cameras() {
-        for (px, py) in [(0.5, 0.5), (50.5, 32.0), (90.2, 3.7)] {
-            let exact = camera.differentials(px, py);
-            let slope = |a: CameraRay, b: CameraRay| {
-                ((b.origin - a.origin) / (2.0 * h), (b.direction - a.direction) / (2.0 * h))
-            };
-            let dx = slope(camera.ray(px - h, py), camera.ray(px + h, py));
-            let dy = slope(camera.ray(px, py - h), camera.ray(px, py + h));
-            for (difference, bound) in [
-                (dx.0 - exact.origin_dx, 1e-8),
-                (dy.0 - exact.origin_dy, 1e-8),
-                (dx.1 - exact.direction_dx, 1e-10),
-                (dy.1 - exact.direction_dy, 1e-10),
-            ] {
-                assert!(difference.length() < bound, "{difference}");
-            }
-        }
-    }
-}
-
-#[test]
 fn polarization_follows_the_convention() {
     let camera = Camera::default();
     assert_eq!(camera.polarization_basis(DVec3::X), (DVec3::Z, DVec3::Y));
