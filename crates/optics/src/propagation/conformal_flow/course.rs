@@ -4,7 +4,7 @@ use glam::DMat3;
 use num_complex::Complex64;
 
 use super::frame::{Frame, transport};
-use crate::propagation::dormand_prince::{self, ErrorScale, Slope};
+use crate::propagation::nystrom::{self, ErrorScale, Motion, Stage};
 use crate::transformation::{ConformalMap, MapJet};
 
 /// Where a ray is, with the map there.
@@ -44,7 +44,7 @@ pub(super) struct Course<'a> {
     p_z: f64,
     strength: f64,
     scale: f64,
-    allowed: ErrorScale<4, 2>,
+    allowed: ErrorScale<2>,
     longest: f64,
     nudge_reach: f64,
 }
@@ -55,17 +55,20 @@ impl<'a> Course<'a> {
         // Steep rays take long ways, on which errors have time to grow.
         let flatness = (1.0 - (p_z / strength).powi(2)).max(0.05);
         let local = flatness.powi(3) * tolerance.max(1e-12);
-        let (scale, direction) = (map.scale(), local / lever);
+        let scale = map.scale();
+        // What is estimated is the error of the embedded formula, and that is at least so much larger.
+        let estimated = 100.0 * local;
         let allowed = ErrorScale {
-            state: [local, local, direction, direction],
+            position: estimated,
+            velocity: estimated / lever,
             // z is all there is to control for rays nearly across it, and estimates of a quadrature tend to
             // be low. The field's angle is wanted in radians, not in cm.
-            quadrature: [0.6 * local, 10.0 * local],
+            quadrature: [0.6 * estimated, 10.0 * estimated],
         };
         // The error of `nudge` grows with the fifth power of its length; the fourth root is quicker.
         let nudge_reach = scale * 0.04 * (tolerance.max(1e-12) / 1e-6).sqrt().sqrt();
         // Where the estimate is low by chance, the order of the method still keeps a shorter step right.
-        let longest = scale * (tolerance.max(1e-12) / 1e-6).min(1.0).sqrt().sqrt().sqrt();
+        let longest = 1.5 * scale * (tolerance.max(1e-12) / 1e-6).min(1.0).sqrt().sqrt().sqrt();
         Self { map, p_z, strength, scale, allowed, longest, nudge_reach }
     }
 
@@ -108,7 +111,7 @@ impl<'a> Course<'a> {
     }
 
     pub fn step_factor(&self, error: f64) -> f64 {
-        dormand_prince::step_factor(error)
+        nystrom::step_factor(error)
     }
 
     fn is_straight(&self) -> bool {
@@ -120,29 +123,28 @@ impl<'a> Course<'a> {
         if self.is_straight() {
             return Trial { end: self.coast(from, h), error: 0.0, evaluations: 1 };
         }
-        let state = [from.zeta.re, from.zeta.im, from.momentum.re, from.momentum.im];
-        let first = self.slope(&from.jet, from.momentum);
-        let jet = |y: &[f64; 4]| self.map.jet(Complex64::new(y[0], y[1]));
-        let step = dormand_prince::step(
-            &state,
-            first,
+        let step = nystrom::step(
+            Motion { position: from.zeta, velocity: from.momentum },
+            Stage { force: from.force, jet: from.jet },
             h,
             &self.allowed,
-            |y| {
-                let force = self.force(&jet(y));
-                [y[2], y[3], force.re, force.im]
+            |zeta| {
+                let jet = self.map.jet(zeta);
+                Stage { force: self.force(&jet), jet }
             },
-            |y| self.slope(&jet(y), Complex64::new(y[2], y[3])),
+            |jet, momentum| self.rates(jet, momentum),
         );
-        let [x, y, px, py] = step.state;
-        let end = self.point(
+        let [z, theta] = step.quadrature;
+        let Motion { position, velocity } = step.end;
+        let end = self.point_with(
+            step.stage.jet,
             from.tau + h,
-            Complex64::new(x, y),
-            Complex64::new(px, py),
-            from.z + step.quadrature[0],
-            from.theta + step.quadrature[1],
+            position,
+            velocity,
+            from.z + z,
+            from.theta + theta,
         );
-        Trial { end, error: step.error, evaluations: dormand_prince::EVALUATIONS + 1 }
+        Trial { end, error: step.error, evaluations: nystrom::EVALUATIONS }
     }
 
     /// A move by `h` with the cheapest method that is accurate enough for its length, and the number of
@@ -164,30 +166,29 @@ impl<'a> Course<'a> {
             let zeta = from.zeta + h * from.momentum;
             return self.point(from.tau + h, zeta, from.momentum, from.z, from.theta);
         }
-        let slope = self.slope(&from.jet, from.momentum);
+        let [z_rate, theta_rate] = self.rates(&from.jet, from.momentum);
         let gradient = 2.0 * self.p_z * (from.jet.f1.conj() * from.jet.f2 * from.momentum).re;
         self.point(
             from.tau + h,
             from.zeta + h * (from.momentum + 0.5 * h * from.force),
             from.momentum + h * from.force,
-            from.z + h * (slope.quadrature[0] + 0.5 * h * gradient),
-            from.theta + h * slope.quadrature[1],
+            from.z + h * (z_rate + 0.5 * h * gradient),
+            from.theta + h * theta_rate,
         )
     }
 
     /// Nyström's method of order 4 (Hairer, Nørsett & Wanner, section II.14).
     fn nudge(&self, from: &Point, h: f64) -> Point {
-        let first = self.slope(&from.jet, from.momentum);
-        let middle = from.momentum + 0.5 * h * from.force;
+        let first = self.rates(&from.jet, from.momentum);
         let zeta = from.zeta + 0.5 * h * (from.momentum + 0.25 * h * from.force);
-        let second = self.slope(&self.map.jet(zeta), middle);
-        let middle_force = Complex64::new(second.state[2], second.state[3]);
+        let jet = self.map.jet(zeta);
+        let middle_force = self.force(&jet);
+        let second = self.rates(&jet, from.momentum + 0.5 * h * from.force);
         let zeta = from.zeta + h * (from.momentum + 0.5 * h * middle_force);
-        let third = self.slope(&self.map.jet(zeta), from.momentum + h * middle_force);
-        let last_force = Complex64::new(third.state[2], third.state[3]);
-        let simpson = |k: usize| {
-            h / 6.0 * (first.quadrature[k] + 4.0 * second.quadrature[k] + third.quadrature[k])
-        };
+        let jet = self.map.jet(zeta);
+        let last_force = self.force(&jet);
+        let third = self.rates(&jet, from.momentum + h * middle_force);
+        let simpson = |k: usize| h / 6.0 * (first[k] + 4.0 * second[k] + third[k]);
         self.point(
             from.tau + h,
             from.zeta + h * (from.momentum + h / 6.0 * (from.force + 2.0 * middle_force)),
@@ -221,20 +222,16 @@ impl<'a> Course<'a> {
         -(self.p_z * self.p_z) * (jet.f1 * jet.f2.conj())
     }
 
-    /// The equations of motion for (X, Y, P_X, P_Y) and the quadratures z and θ.
+    /// dz/dτ and dθ/dτ.
     #[inline]
-    fn slope(&self, jet: &MapJet, momentum: Complex64) -> Slope<4, 2> {
-        let force = self.force(jet);
+    fn rates(&self, jet: &MapJet, momentum: Complex64) -> [f64; 2] {
         let square = jet.f1.norm_sqr();
         let stretch = square.sqrt();
         // With σ = p_z |f'|/c the sine of the ray's angle to the virtual plane,
         // dθ/dτ = -σ/(1 + |σ|) Im(P f''/f').
         let turn = (momentum * jet.f2 * jet.f1.conj()).im;
         let rate = -self.p_z * turn / (stretch * (self.strength + self.p_z.abs() * stretch));
-        Slope {
-            state: [momentum.re, momentum.im, force.re, force.im],
-            quadrature: [self.p_z * square, rate],
-        }
+        [self.p_z * square, rate]
     }
 
     /// The rotation of the transverse field between two points of the path.
