@@ -2,7 +2,6 @@
 
 use crate::medium::Medium;
 use crate::wave::{ComplexVector, Frame, Number};
-use glam::DVec3;
 use num_complex::Complex64;
 
 /// Waves of one wave vector p = tangential + q normal in one medium: how the normal electric field
@@ -15,32 +14,70 @@ pub(super) struct TangentialWave<T> {
     pub admittance: [[T; 2]; 2],
 }
 
-impl<T: Number> TangentialWave<T> {
-    /// The waves with tangential wave vector `along` times the first tangent and normal component `q`.
-    pub fn new(medium: &Medium, frame: &Frame, along: f64, q: T) -> Self {
+/// A medium seen in the frame of an interface, and the tangential part of the wave vectors there,
+/// `along` times the first tangent.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FramedMedium {
+    along: f64,
+    /// The entries of ε at (first, first), (first, second), (first, normal), (second, normal) and
+    /// (normal, normal).
+    permittivity: [f64; 5],
+    /// The entries of µ⁻¹ at (first, first), (first, second), (first, normal), (second, second) and
+    /// (second, normal).
+    inverse_permeability: [f64; 5],
+}
+
+impl FramedMedium {
+    pub fn new(medium: &Medium, frame: &Frame, along: f64) -> Self {
         let Frame { first, second, normal } = *frame;
+        if let Some((permittivity, permeability)) = medium.scalars() {
+            let inverse = 1.0 / permeability;
+            return Self {
+                along,
+                permittivity: [permittivity, 0.0, 0.0, 0.0, permittivity],
+                inverse_permeability: [inverse, 0.0, 0.0, inverse, 0.0],
+            };
+        }
+        let (of_first, of_normal) =
+            (*medium.permittivity() * first, *medium.permittivity() * normal);
+        let (mu_first, mu_second) = (medium.magnetic_row(first), medium.magnetic_row(second));
+        Self {
+            along,
+            permittivity: [
+                of_first.dot(first),
+                of_first.dot(second),
+                of_first.dot(normal),
+                of_normal.dot(second),
+                of_normal.dot(normal),
+            ],
+            inverse_permeability: [
+                mu_first.dot(first),
+                mu_first.dot(second),
+                mu_first.dot(normal),
+                mu_second.dot(second),
+                mu_second.dot(normal),
+            ],
+        }
+    }
+
+    /// The waves whose wave vector has the normal component `q`.
+    pub fn wave<T: Number>(&self, q: T) -> TangentialWave<T> {
+        let along = self.along;
+        let [e_ff, e_fs, e_fn, e_sn, e_nn] = self.permittivity;
         // p·εE = 0 gives the normal part of E from its tangential part.
-        let eps_first = *medium.permittivity() * first;
-        let eps_normal = *medium.permittivity() * normal;
         let displacement =
-            |v: DVec3| -> T { T::from(along * eps_first.dot(v)) + q * T::from(eps_normal.dot(v)) };
-        let scale = displacement(normal);
-        let lift = [-displacement(first) / scale, -displacement(second) / scale];
+            |by_first: f64, by_normal: f64| T::from(along * by_first) + q.scaled(by_normal);
+        let scale = displacement(e_fn, e_nn);
+        let lift = [-displacement(e_ff, e_fn) / scale, -displacement(e_fs, e_sn) / scale];
         // H = µ⁻¹ (p × E), with p × first = q second, p × second = along normal - q first,
         // p × normal = -along second.
-        let zero = T::from(0.0);
-        let curl = |e: [T; 3]| -> [T; 3] {
-            [-(q * e[1]), q * e[0] - T::from(along) * e[2], T::from(along) * e[1]]
+        let [m_ff, m_fs, m_fn, m_ss, m_sn] = self.inverse_permeability;
+        let by_first = q - lift[0].scaled(along);
+        let by_second = -lift[1].scaled(along);
+        let row = |by_e: f64, by_q: f64, rest: f64| {
+            [by_first.scaled(by_e), by_second.scaled(by_e) - q.scaled(by_q) + T::from(along * rest)]
         };
-        let mu = |row: DVec3, c: [T; 3]| -> T {
-            let v = medium.magnetic_row(row);
-            T::from(v.dot(first)) * c[0]
-                + T::from(v.dot(second)) * c[1]
-                + T::from(v.dot(normal)) * c[2]
-        };
-        let a = curl([T::from(1.0), zero, lift[0]]);
-        let b = curl([zero, T::from(1.0), lift[1]]);
-        Self { lift, admittance: [[mu(first, a), mu(first, b)], [mu(second, a), mu(second, b)]] }
+        TangentialWave { lift, admittance: [row(m_fs, m_ff, m_fn), row(m_ss, m_fs, m_sn)] }
     }
 }
 

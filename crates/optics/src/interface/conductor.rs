@@ -1,6 +1,6 @@
 //! Reflection at a perfect conductor.
 
-use super::admittance::TangentialWave;
+use super::admittance::FramedMedium;
 use super::matching::split_into_modes;
 use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
 use crate::medium::{Medium, ModeKind, WaveSurface};
@@ -35,7 +35,7 @@ fn single_wave<const N: usize>(
     let frame = Frame::new(normal, tangential);
     let along = tangential.dot(frame.first);
     let (_, q) = surface.normal_component(tangential, normal).real_pair();
-    let reflected = TangentialWave::new(medium, &frame, along, q);
+    let reflected = FramedMedium::new(medium, &frame, along).wave(q);
     let wave_vector = tangential + normal * q;
     let direction = surface.ray_direction(wave_vector);
     // |S·n| is the same before and after; the beam's width need not be.

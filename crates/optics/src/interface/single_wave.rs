@@ -1,6 +1,6 @@
 //! The interface of two media in which both polarizations share one wave vector.
 
-use super::admittance::TangentialWave;
+use super::admittance::{FramedMedium, TangentialWave};
 use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
 use crate::medium::{Medium, ModeKind, NormalComponent, WaveSurface};
 use crate::wave::{ComplexVector, Frame, Number};
@@ -21,42 +21,56 @@ pub(super) fn split_single_wave<const N: usize>(
     // The incident wave is taken anew from its tangential part: near grazing incidence, where the
     // normal part is a small difference, all waves of the matching must agree on it.
     let (forward, backward) = incident_surface.normal_component(tangential, normal).real_pair();
-    let incident = TangentialWave::new(incident_medium, &frame, along, forward);
-    let reflected = TangentialWave::new(incident_medium, &frame, along, backward);
+    let here = FramedMedium::new(incident_medium, &frame, along);
+    let (incident, reflected) = (here.wave(forward), here.wave(backward));
+    let there = FramedMedium::new(transmitted_medium, &frame, along);
     let matching = Matching { wave, frame: &frame, incident };
     let backward_wave = frame.first * along + normal * backward;
     match transmitted_surface.normal_component(tangential, normal) {
         NormalComponent::Propagating { forward: q, .. } => {
-            let transmitted = TangentialWave::new(transmitted_medium, &frame, along, q);
+            let transmitted = there.wave(q);
             let [back, on] = matching.tangential_fields(reflected, transmitted);
             let onward_wave = frame.first * along + normal * q;
             let mut waves = OutgoingWaves::new();
-            let flux = |i: usize| [reflected.flux(back[i]).abs(), transmitted.flux(on[i]).abs()];
-            let share = |i: usize, side: usize| {
-                // Over the sum, not over the incident flux: the same, but for rounding near
-                // grazing incidence, which would show in the account of the power.
-                let flux = flux(i);
-                let sum = flux[0] + flux[1];
-                if sum > 0.0 { flux[side] / sum } else { 0.0 }
-            };
+            let back_flux = back.map(|fields| reflected.flux(fields).abs());
+            let on_flux = on.map(|fields| transmitted.flux(fields).abs());
+            // Shares of the sum, not of the incident flux: the same, but for rounding near grazing
+            // incidence, which would show in the account of the power.
+            let total = |i: usize| back_flux[i] + on_flux[i];
             waves.push(OutgoingWave {
                 side: Side::Reflected,
-                ..matching
-                    .outgoing(incident_surface, backward_wave, &reflected, &back, |i| share(i, 0))
+                ..matching.outgoing(
+                    incident_surface,
+                    backward_wave,
+                    |field| reflected.lifted(&frame, field),
+                    &back,
+                    |i| (back_flux[i], total(i)),
+                )
             });
             waves.push(OutgoingWave {
                 side: Side::Transmitted,
-                ..matching
-                    .outgoing(transmitted_surface, onward_wave, &transmitted, &on, |i| share(i, 1))
+                ..matching.outgoing(
+                    transmitted_surface,
+                    onward_wave,
+                    |field| transmitted.lifted(&frame, field),
+                    &on,
+                    |i| (on_flux[i], total(i)),
+                )
             });
             waves
         }
         NormalComponent::Evanescent { re, im } => {
             let q = Complex64::new(re, im);
-            let transmitted = TangentialWave::new(transmitted_medium, &frame, along, q);
+            let transmitted = there.wave(q);
             let [back, _] = matching.tangential_fields(reflected.into(), transmitted);
-            let wave =
-                matching.outgoing(incident_surface, backward_wave, &reflected, &back, |_| 1.0);
+            let flux = back.map(|fields| reflected.flux(fields).abs());
+            let wave = matching.outgoing(
+                incident_surface,
+                backward_wave,
+                |field| reflected.lifted(&frame, field),
+                &back,
+                |i| (flux[i], flux[i]),
+            );
             std::iter::once(wave).collect()
         }
     }
@@ -103,26 +117,26 @@ impl<const N: usize> Matching<'_, N> {
         [field.dot_real(self.frame.first), field.dot_real(self.frame.second)]
     }
 
-    /// A propagating outgoing wave from its tangential fields and its share of the power.
+    /// A propagating outgoing wave from its tangential fields, which `lifted` completes, and from its
+    /// normal flux and that of all outgoing waves.
     fn outgoing(
         &self,
         surface: &WaveSurface,
         wave_vector: DVec3,
-        tangential: &TangentialWave<f64>,
+        lifted: impl Fn([Complex64; 2]) -> ComplexVector,
         fields: &TangentialFields<N>,
-        share: impl Fn(usize) -> f64,
+        fluxes: impl Fn(usize) -> (f64, f64),
     ) -> OutgoingWave<N> {
         let direction = surface.ray_direction(wave_vector);
         let cosine = direction.dot(self.frame.normal).abs();
         let mut power = [0.0; N];
         let mut electric = [ComplexVector::ZERO; N];
         for i in 0..N {
-            power[i] = self.wave.power[i] * share(i);
-            // |Re(E × H*)| of the matched fields is the normal flux over the cosine.
-            let carried = tangential.flux(fields[i]).abs() / cosine;
-            if carried > 0.0 {
-                electric[i] =
-                    tangential.lifted(self.frame, fields[i]) * (power[i] / carried).sqrt();
+            let (flux, total) = fluxes(i);
+            if flux > 0.0 {
+                power[i] = self.wave.power[i] * (flux / total);
+                // |Re(E × H*)| of the matched fields is the normal flux over the cosine.
+                electric[i] = lifted(fields[i]) * (power[i] * cosine / flux).sqrt();
             }
         }
         OutgoingWave {

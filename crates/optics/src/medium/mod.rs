@@ -275,6 +275,12 @@ impl Medium {
         poynting(electric, self.magnetic_field(wave_vector, electric))
     }
 
+    /// ε and µ, if the medium is lossless and known to be isotropic.
+    pub(crate) fn scalars(&self) -> Option<(f64, f64)> {
+        matches!(self.class, Class::Isotropic(_))
+            .then_some((self.permittivity.x_axis.x, self.permeability.x_axis.x))
+    }
+
     /// µ⁻¹ applied to a real vector, in a lossless medium.
     pub(crate) fn magnetic_row(&self, row: DVec3) -> DVec3 {
         self.inverse_permeability * row
