@@ -79,8 +79,8 @@ pub type OutgoingWaves<const N: usize> = ArrayVec<OutgoingWave<N>, 4>;
 /// Splits a wave at the interface between two media.
 ///
 /// `normal` is the unit normal that points from the medium of incidence, `incident_medium`, into
-/// `transmitted_medium`. Reflected waves come first; evanescent waves, which carry no power, are
-/// left out. The powers add up to that of the incident wave. (Exactly so for lossless incident
+/// `transmitted_medium`. Reflected waves come first; waves that carry no power (evanescent ones, and the
+/// reflections of matched media) are left out. The powers add up to that of the incident wave. (Exactly so for lossless incident
 /// media. In absorbing ones the interference of incident and reflected light carries power, too; it
 /// is shared out in proportion.)
 ///

@@ -7,6 +7,9 @@ use crate::wave::{ComplexVector, Frame, Number};
 use glam::DVec3;
 use num_complex::Complex64;
 
+/// The share of the power that rounding leaves in a wave that is not there: matched media reflect nothing.
+const ROUNDING: f64 = 1e-28;
+
 /// Splits a wave at the interface of two lossless media in which both polarizations share one wave
 /// vector, given with their wave surfaces.
 pub(super) fn split_single_wave<const N: usize>(
@@ -37,16 +40,15 @@ pub(super) fn split_single_wave<const N: usize>(
             // Shares of the sum, not of the incident flux: the same, but for rounding near grazing
             // incidence, which would show in the account of the power.
             let total = |i: usize| back_flux[i] + on_flux[i];
-            waves.push(OutgoingWave {
-                side: Side::Reflected,
-                ..matching.outgoing(
+            if (0..N).any(|i| back_flux[i] > ROUNDING * total(i)) {
+                waves.push(matching.outgoing(
                     incident_surface,
                     backward_wave,
                     |field| reflected.lifted(&frame, field),
                     &back,
                     |i| (back_flux[i], total(i)),
-                )
-            });
+                ));
+            }
             waves.push(OutgoingWave {
                 side: Side::Transmitted,
                 ..matching.outgoing(
