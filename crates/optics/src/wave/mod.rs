@@ -12,8 +12,8 @@
 //!   the time average is left out: only ratios of powers are ever used.
 //! - The optical path length of a straight piece dr is p·dr.
 //! - Horizontal and vertical polarization are the unit vectors of [`transverse_basis`]. A polarizer
-//!   at angle ψ passes cos ψ e_H + sin ψ e_V: ψ counts from horizontal, counterclockwise to whom
-//!   looks along the camera ray, against the light that arrives.
+//!   at angle ψ passes cos ψ e_H + sin ψ e_V: ψ counts from horizontal, counterclockwise to one
+//!   who looks along the camera ray, against the light that arrives.
 //! - Stokes parameters are those of light that arrives, as its observer sees them: S1 > 0 is
 //!   horizontal, S2 > 0 is at +45°, S3 > 0 is right-handed: the field at one place turns clockwise
 //!   to the observer, who faces the light, E_V = -i E_H (Born & Wolf, Principles of Optics, 1.4).
