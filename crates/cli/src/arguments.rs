@@ -1,6 +1,8 @@
 //! The command line.
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use cloakroom::scene::OPTIONAL_CHANNELS;
 use std::path::PathBuf;
 
 /// Photorealistic, physically exact pictures of invisibility cloaks.
@@ -21,6 +23,8 @@ pub enum Command {
     Check(SceneArguments),
     /// Trace given rays through a scene; JSON in, JSON out.
     Trace(TraceArguments),
+    /// List the pulses in which a short flash of the photograph arrives at one pixel.
+    Pulses(PulsesArguments),
     /// Solve interfaces between media, or of a medium and metal; JSON in, JSON out.
     Interface(InterfaceArguments),
     /// Make the figures of Halimeh & Wegener, Opt. Express 21, 9457 (2013).
@@ -50,6 +54,9 @@ pub struct RenderArguments {
     /// A file to write; its ending decides: .png, .exr or .npz. May be given several times.
     #[arg(short, long = "output", value_name = "FILE", required = true)]
     pub outputs: Vec<PathBuf>,
+    /// More channels for .exr and .npz files, as in stokes,first_face_reflectance (`picture.channels`).
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = PossibleValuesParser::new(OPTIONAL_CHANNELS))]
+    pub channels: Vec<String>,
     /// Number of threads; all cores if absent.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
@@ -70,6 +77,20 @@ pub struct TraceArguments {
     /// Number of threads; all cores if absent.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
+}
+
+/// Arguments of `pulses`.
+#[derive(Args, Debug)]
+pub struct PulsesArguments {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The pixel, counted from 0,0 at the top left; the ray through its middle is followed.
+    #[arg(long, value_name = "COLUMN,ROW", value_parser = pixel)]
+    pub pixel: [u32; 2],
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `interface`.
@@ -108,6 +129,15 @@ pub struct DevicesArguments {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Reads a pixel such as 512,384.
+fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let pair = text.split_once(',').map(|(x, y)| (x.trim().parse(), y.trim().parse()));
+    match pair {
+        Some((Ok(column), Ok(row))) => Ok([column, row]),
+        _ => Err("write COLUMN,ROW, counted from 0 at the top left, as in 512,384".to_owned()),
+    }
 }
 
 /// Reads a size such as 1024x768.

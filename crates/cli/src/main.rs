@@ -11,6 +11,7 @@ mod input;
 mod interface;
 mod interruption;
 mod progress;
+mod pulses;
 mod render;
 mod report;
 mod scene;
@@ -35,6 +36,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Render(arguments) => render::run(arguments, stop),
         Command::Check(arguments) => check::run(arguments),
         Command::Trace(arguments) => trace::run(arguments, stop),
+        Command::Pulses(arguments) => pulses::run(arguments),
         Command::Interface(arguments) => interface::run(arguments),
         Command::Figures(arguments) => figures::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),

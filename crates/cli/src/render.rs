@@ -17,9 +17,10 @@ use std::sync::atomic::AtomicBool;
 pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure> {
     let formats = formats(&arguments.outputs)?;
     scene::use_threads(arguments.threads)?;
-    let loaded = scene::load(&arguments.scene)?;
-    let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
     let data = formats.iter().any(|(_, format)| *format != Format::Png);
+    let loaded =
+        scene::load_with(&arguments.scene, channels(&arguments.channels, data)?.as_slice())?;
+    let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
     let wanted =
         if data || loaded.scene.picture.map.is_some() { Wanted::Everything } else { Wanted::Image };
     for path in &arguments.outputs {
@@ -37,6 +38,20 @@ pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure
         .map_err(Failure::from_error)?;
     }
     Ok(())
+}
+
+/// The override that asks for more channels; only files of data hold them.
+fn channels(names: &[String], data: bool) -> Result<Option<String>, Failure> {
+    match names {
+        [] => Ok(None),
+        _ if !data => Err(Failure::Usage(
+            "--channels is for .exr and .npz files; a .png shows one with \
+             --set picture.map=CHANNEL"
+                .to_owned(),
+        )),
+        // Written as the scene writes it.
+        _ => Ok(Some(format!("picture.channels={names:?}"))),
+    }
 }
 
 /// The files to write with their formats.

@@ -7,7 +7,13 @@ use cloakroom::scene_file::{self, Loaded};
 
 /// Reads a scene with its overrides.
 pub fn load(arguments: &SceneArguments) -> Result<Loaded, Failure> {
-    scene_file::load(&arguments.scene, &arguments.overrides).map_err(Failure::from_error)
+    load_with(arguments, &[])
+}
+
+/// Reads a scene with its overrides and further ones after them.
+pub fn load_with(arguments: &SceneArguments, further: &[String]) -> Result<Loaded, Failure> {
+    let overrides = [&arguments.overrides, further].concat();
+    scene_file::load(&arguments.scene, &overrides).map_err(Failure::from_error)
 }
 
 /// An error of a scene that could be read but not built, at its place in the file.

@@ -156,6 +156,60 @@ fn the_catalogue_has_the_papers_numbers() {
 }
 
 #[test]
+fn pulses_of_a_pixel_are_listed() {
+    let mut command = cloakroom();
+    command.arg("pulses").arg(paper("2c")).args(["--pixel", "300,300", "--json"]);
+    let list = json(&stdout(&mut command));
+    let pulses = list["pulses"].as_array().unwrap();
+    assert!(pulses.len() > 3);
+    let number = |value: &Value, name: &str| value[name].as_f64().unwrap();
+    let sum: f64 = pulses.iter().map(|pulse| number(pulse, "power")).sum();
+    let rest: f64 = ["escaped", "absorbed", "pruned"].map(|name| number(&list, name)).iter().sum();
+    assert!((sum + rest - 1.0).abs() < 1e-10);
+    for pulse in pulses {
+        let empty = number(&list, "empty_time_of_flight_ns");
+        let delay = number(pulse, "time_of_flight_ns") - empty;
+        assert!((number(pulse, "delay_ns") - delay).abs() < 1e-13);
+        assert_eq!(pulse["landings"][0]["position_cm"][0].as_f64(), Some(50.0));
+    }
+    // For people: the same pulses, a line each.
+    let mut command = cloakroom();
+    let text = stdout(command.arg("pulses").arg(paper("2c")).args(["--pixel", "300,300"]));
+    let text = String::from_utf8(text).unwrap();
+    assert_eq!(
+        text.lines().filter(|line| line.contains('(') && line.ends_with(')')).count(),
+        pulses.len()
+    );
+    let outside = cloakroom().arg("pulses").arg(paper("2c")).args(["--pixel", "1024,0"]).output();
+    assert_eq!(outside.unwrap().status.code(), Some(2));
+}
+
+#[test]
+fn optional_channels_are_written_when_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |name: &str, more: &[&str]| {
+        let out = folder.path().join(name);
+        let mut command = cloakroom();
+        command.arg("render").arg(paper("2c")).arg("-o").arg(&out).args(more);
+        command.args(["--set", "camera.resolution=[16, 12]", "--set", "camera.samples=1"]);
+        (command.output().unwrap().status.code(), out)
+    };
+    let size = |path: &Path| fs::metadata(path).unwrap().len();
+    let (code, plain) = render("plain.npz", &[]);
+    assert_eq!(code, Some(0));
+    let (code, more) = render("more.npz", &["--channels", "stokes,first_face_reflectance"]);
+    assert_eq!(code, Some(0));
+    // Four Stokes images of three floats a pixel and one of one, and their headers.
+    let grown = size(&more) - size(&plain);
+    assert!(grown > 16 * 12 * 52 && grown < 16 * 12 * 52 + 3000, "{grown}");
+    assert_eq!(render("a.npz", &["--set", "picture.channels=[\"stokes\"]"]).0, Some(0));
+    // A PNG holds none, but shows a scalar one as a map.
+    assert_eq!(render("a.png", &["--channels", "stokes"]).0, Some(2));
+    let map = ["--set", "picture.map=extraordinary_share"];
+    assert_eq!(render("b.png", &map).0, Some(0));
+}
+
+#[test]
 fn scenes_are_checked() {
     let text = String::from_utf8(stdout(cloakroom().arg("check").arg(paper("8c")))).unwrap();
     for part in ["1024 x 768", "double-gaussian-cloak", "index_max", "estimate"] {

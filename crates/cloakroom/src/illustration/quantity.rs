@@ -56,6 +56,8 @@ impl Quantity {
             "escaped" => ("power escaped", Dimension::Share),
             "absorbed" => ("power absorbed", Dimension::Share),
             "pruned" => ("power pruned", Dimension::Share),
+            "extraordinary_share" => ("share in the extraordinary wave", Dimension::Share),
+            "first_face_reflectance" => ("first-face reflectance", Dimension::Share),
             other => (other, Dimension::Number),
         };
         Self { title: title.replace('_', " "), dimension }

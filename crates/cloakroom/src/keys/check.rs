@@ -11,6 +11,7 @@ pub(super) enum Fitted {
     Integer(i64),
     Flag(bool),
     Choice(&'static str),
+    Choices(Vec<&'static str>),
     Vector([f64; 3]),
     IntegerPair([i64; 2]),
     Text(String),
@@ -23,6 +24,9 @@ impl From<&Fitted> for Value {
             Fitted::Integer(integer) => Value::Integer(*integer),
             Fitted::Flag(flag) => Value::Flag(*flag),
             Fitted::Choice(word) => Value::from(*word),
+            Fitted::Choices(words) => {
+                Value::List(words.iter().map(|&word| Value::from(word)).collect())
+            }
             Fitted::Vector(vector) => Value::from(*vector),
             Fitted::IntegerPair(pair) => Value::from(*pair),
             Fitted::Text(text) => Value::from(text.as_str()),
@@ -67,6 +71,7 @@ impl Key {
             KeyKind::Integer { .. } => "a whole number".to_owned(),
             KeyKind::Flag { .. } => "true or false".to_owned(),
             KeyKind::Choice { options } => words(options),
+            KeyKind::Choices { options } => format!("a list of words, each {}", words(options)),
             KeyKind::Vector { unit, .. } => format!("three numbers{}", in_brackets(unit)),
             KeyKind::IntegerPair { .. } => "two whole numbers".to_owned(),
             KeyKind::Text { .. } => "a text".to_owned(),
@@ -88,6 +93,7 @@ impl Key {
             KeyKind::Number { default, .. } => default.map(Fitted::Number),
             KeyKind::Integer { default, .. } => Some(Fitted::Integer(default)),
             KeyKind::Flag { default } => Some(Fitted::Flag(default)),
+            KeyKind::Choices { .. } => Some(Fitted::Choices(Vec::new())),
             KeyKind::Vector { default, .. } => Some(Fitted::Vector(default)),
             KeyKind::IntegerPair { default, .. } => Some(Fitted::IntegerPair(default)),
             KeyKind::Text { default } => default.map(|text| Fitted::Text(text.to_owned())),
@@ -115,6 +121,15 @@ impl Key {
                 _ => Err(self.wrong_type(value)),
             },
             KeyKind::Choice { options } => self.choose(value, options).map(Fitted::Choice),
+            KeyKind::Choices { options } => {
+                let Value::List(items) = value else { return Err(self.wrong_type(value)) };
+                let chosen = items.iter().map(|item| {
+                    choose(item, options).map_err(|hint| {
+                        format!("{} holds {item}; it must be {}{hint}", self.name, self.describe())
+                    })
+                });
+                chosen.collect::<Result<_, _>>().map(Fitted::Choices)
+            }
             KeyKind::Vector { unit, limits, .. } => {
                 let numbers = self.list(value, Value::as_number)?;
                 for (number, axis) in numbers.iter().zip(["first", "second", "third"]) {
@@ -164,13 +179,7 @@ impl Key {
     }
 
     fn choose(&self, value: &Value, options: &[&'static str]) -> Result<&'static str, String> {
-        let Value::Text(word) = value else { return Err(self.wrong_type(value)) };
-        if let Some(&option) = options.iter().find(|&&option| option == word) {
-            return Ok(option);
-        }
-        let meant = nearest(word, options.iter().copied());
-        let hint = meant.map(|meant| format!("; did you mean {}?", quoted(meant, '"')));
-        Err(self.wrong_type(value) + &hint.unwrap_or_default())
+        choose(value, options).map_err(|hint| self.wrong_type(value) + &hint)
     }
 
     fn list<T, const N: usize>(
@@ -183,6 +192,15 @@ impl Key {
         let fitted = fitted.and_then(|items| <[T; N]>::try_from(items).ok());
         fitted.ok_or_else(|| self.wrong_type(value))
     }
+}
+
+/// The option that a word is; else a hint which one may have been meant.
+fn choose(value: &Value, options: &[&'static str]) -> Result<&'static str, String> {
+    let Value::Text(word) = value else { return Err(String::new()) };
+    options.iter().copied().find(|option| option == word).ok_or_else(|| {
+        let meant = nearest(word, options.iter().copied());
+        meant.map(|meant| format!("; did you mean {}?", quoted(meant, '"'))).unwrap_or_default()
+    })
 }
 
 fn limit_integer(name: &str, integer: i64, min: i64, max: i64) -> Result<(), String> {

@@ -59,6 +59,11 @@ pub enum KeyKind {
         /// The words.
         options: &'static [&'static str],
     },
+    /// Any of a few words, as a list; none of them by default.
+    Choices {
+        /// The words.
+        options: &'static [&'static str],
+    },
     /// Three finite numbers.
     Vector {
         /// Used where the key is absent.

@@ -35,6 +35,11 @@ static KEYS: &[Key] = &[
         kind: KeyKind::Choice { options: &["cloak", "bare", "mirror"] },
     },
     Key {
+        name: "channels",
+        doc: "Some of a few words.",
+        kind: KeyKind::Choices { options: &["stokes", "power"] },
+    },
+    Key {
         name: "color",
         doc: "A vector.",
         kind: KeyKind::Vector { default: [0.0; 3], unit: "", limits: Limits::NonNegative },
@@ -72,6 +77,7 @@ fn absent_keys_have_their_defaults() {
     assert_eq!(values.integer("samples"), 4);
     assert!(!values.flag("rounded"));
     assert_eq!(values.choice("show"), "cloak");
+    assert!(values.choices("channels").is_empty());
     assert_eq!(values.vector("color"), [0.0; 3]);
     assert_eq!(values.integer_pair("resolution"), [4, 3]);
     assert_eq!(values.text("image"), "builtin");
@@ -83,12 +89,13 @@ fn absent_keys_have_their_defaults() {
 #[test]
 fn given_values_come_back() {
     let mut values = Values::defaults(KEYS);
-    let given: [(&str, Value); 10] = [
+    let given: [(&str, Value); 11] = [
         ("side", 3_i64.into()),
         ("length", 2.5.into()),
         ("samples", 16.0.into()),
         ("rounded", true.into()),
         ("show", "bare".into()),
+        ("channels", ["power"].into()),
         ("color", Value::List(vec![1.0.into(), 0_i64.into(), 0.5.into()])),
         ("resolution", [640_i64, 480].into()),
         ("image", "a.png".into()),
@@ -104,6 +111,7 @@ fn given_values_come_back() {
     assert_eq!(values.integer("samples"), 16);
     assert!(values.flag("rounded"));
     assert_eq!(values.choice("show"), "bare");
+    assert_eq!(values.choices("channels"), ["power"]);
     assert_eq!(values.vector("color"), [1.0, 0.0, 0.5]);
     assert_eq!(values.integer_pair("resolution"), [640, 480]);
     assert_eq!(values.text("image"), "a.png");
@@ -137,6 +145,10 @@ fn a_refusal_names_quantity_value_unit_and_what_is_allowed() {
     assert_eq!(
         refusal("show", "bear"),
         r#"show is "bear"; it must be "cloak", "bare" or "mirror"; did you mean "bare"?"#
+    );
+    assert_eq!(
+        refusal("channels", ["power", "stoke"]),
+        r#"channels holds "stoke"; it must be a list of words, each "stokes" or "power"; did you mean "stokes"?"#
     );
     assert_eq!(
         refusal("polarizer", true),

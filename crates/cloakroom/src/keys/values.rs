@@ -146,6 +146,14 @@ impl Values {
         }
     }
 
+    /// Those of the key's words that are listed.
+    pub fn choices(&self, name: &str) -> &[&'static str] {
+        match &self.slot(name).1.value {
+            Some(Fitted::Choices(words)) => words,
+            _ => mistaken(name, "list of choices"),
+        }
+    }
+
     /// One of the key's words, or a number in its unit.
     pub fn choice_or_number(&self, name: &str) -> ChoiceOrNumber {
         match (self.slot(name).0.kind, &self.slot(name).1.value) {

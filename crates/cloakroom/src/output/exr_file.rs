@@ -8,7 +8,8 @@ use exr::prelude::{
 use std::io;
 use std::path::Path;
 
-/// Writes every channel as 32-bit floats under its name, and the metadata as text attributes.
+/// Writes every channel as 32-bit floats under its name, colors as `.R`, `.G` and `.B` of it, and the
+/// metadata as text attributes.
 ///
 /// # Errors
 ///
@@ -17,12 +18,24 @@ pub(super) fn write_exr(picture: &Picture, path: &Path) -> Result<(), OutputErro
     let channels = picture
         .channels
         .iter()
-        .map(|channel| {
-            let values = match &channel.samples {
-                Samples::F32(values) => values.clone(),
-                Samples::F64(values) => values.iter().map(|value| *value as f32).collect(),
+        .flat_map(|channel| {
+            let name = &channel.name;
+            let planes = match &channel.samples {
+                Samples::F32(values) => vec![(name.clone(), values.clone())],
+                Samples::F64(values) => {
+                    vec![(name.clone(), values.iter().map(|value| *value as f32).collect())]
+                }
+                Samples::Rgb(values) => ["R", "G", "B"]
+                    .iter()
+                    .enumerate()
+                    .map(|(i, color)| {
+                        (format!("{name}.{color}"), values.iter().map(|rgb| rgb[i]).collect())
+                    })
+                    .collect(),
             };
-            AnyChannel::new(text(&channel.name), FlatSamples::F32(values))
+            planes
+                .into_iter()
+                .map(|(name, plane)| AnyChannel::new(text(&name), FlatSamples::F32(plane)))
         })
         .collect();
     let size = Vec2(picture.width, picture.height);
@@ -88,6 +101,10 @@ mod tests {
                     samples: Samples::F32(vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0]),
                 },
                 Channel { name: "time_of_flight".into(), samples: Samples::F64(vec![1e-15; 6]) },
+                Channel {
+                    name: "stokes.S1".into(),
+                    samples: Samples::Rgb(vec![[0.25, -0.5, 4.0]; 6]),
+                },
             ],
             metadata: vec![
                 ("scene".into(), "side = 3 # ≤ 4 µm".into()),
@@ -98,9 +115,10 @@ mod tests {
         let image = read_first_flat_layer_from_file(&path).expect("an EXR");
         let channels = &image.layer_data.channel_data.list;
         let names: Vec<String> = channels.iter().map(|c| c.name.to_string()).collect();
-        assert_eq!(names, ["R", "time_of_flight"]);
+        assert_eq!(names, ["R", "stokes.S1.B", "stokes.S1.G", "stokes.S1.R", "time_of_flight"]);
         assert_eq!(channels[0].sample_data.value_by_flat_index(4).to_f32(), 4.0);
-        assert_eq!(channels[1].sample_data.value_by_flat_index(0).to_f32(), 1e-15);
+        assert_eq!(channels[2].sample_data.value_by_flat_index(5).to_f32(), -0.5);
+        assert_eq!(channels[4].sample_data.value_by_flat_index(0).to_f32(), 1e-15);
         let scene = &image.layer_data.attributes.other[&Text::from("scene")];
         assert!(matches!(scene, AttributeValue::Text(t) if t.to_string().contains("side = 3")));
         let version = &image.layer_data.attributes.other[&Text::from("cloakroom_version")];

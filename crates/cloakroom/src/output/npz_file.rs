@@ -1,7 +1,7 @@
-//! NPZ: every channel as one numpy array (height, width).
+//! NPZ: every channel as one numpy array, (height, width) or (height, width, 3).
 
 use super::{OutputError, Picture, Samples, write_whole};
-use ndarray::{ArrayView1, ArrayView2};
+use ndarray::{ArrayView1, ArrayView2, ArrayView3};
 use ndarray_npy::NpzWriter;
 use std::io;
 use std::path::Path;
@@ -20,6 +20,12 @@ pub(super) fn write_npz(picture: &Picture, path: &Path) -> Result<(), OutputErro
             match &channel.samples {
                 Samples::F32(values) => {
                     let array = ArrayView2::from_shape(shape, values).map_err(io::Error::other)?;
+                    npz.add_array(&channel.name, &array).map_err(io::Error::other)?;
+                }
+                Samples::Rgb(values) => {
+                    let shape = (picture.height, picture.width, 3);
+                    let values = values.as_flattened();
+                    let array = ArrayView3::from_shape(shape, values).map_err(io::Error::other)?;
                     npz.add_array(&channel.name, &array).map_err(io::Error::other)?;
                 }
                 Samples::F64(values) => {
@@ -41,7 +47,7 @@ pub(super) fn write_npz(picture: &Picture, path: &Path) -> Result<(), OutputErro
 mod tests {
     use super::super::Channel;
     use super::*;
-    use ndarray::{Array1, Array2};
+    use ndarray::{Array1, Array2, Array3};
     use ndarray_npy::NpzReader;
 
     #[test]
@@ -55,6 +61,10 @@ mod tests {
             channels: vec![
                 Channel { name: "horizontal.R".into(), samples: Samples::F32(vec![0.5; 6]) },
                 Channel { name: "time_of_flight".into(), samples: Samples::F64(times) },
+                Channel {
+                    name: "stokes.S1".into(),
+                    samples: Samples::Rgb(vec![[0.25, -0.5, 4.0]; 6]),
+                },
             ],
             metadata: vec![("seed".into(), "7".into())],
         };
@@ -65,6 +75,8 @@ mod tests {
         assert_eq!(red.dim(), (2, 3));
         let times: Array2<f64> = npz.by_name("time_of_flight").expect("an array");
         assert_eq!((times[(0, 0)], times[(1, 0)]), (1e-15, 4.0));
+        let stokes: Array3<f32> = npz.by_name("stokes.S1").expect("an array");
+        assert_eq!((stokes.dim(), stokes[(1, 2, 1)]), ((2, 3, 3), -0.5));
         let metadata: Array1<u8> = npz.by_name("metadata").expect("an array");
         assert_eq!(metadata.to_vec(), br#"{"seed":"7"}"#);
     }

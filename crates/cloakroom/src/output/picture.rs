@@ -18,7 +18,7 @@ pub struct Picture {
 pub struct Channel {
     /// Its name in files, as in `horizontal.R` or `time_of_flight`.
     pub name: String,
-    /// One number a pixel, row by row from the top left.
+    /// One number a pixel, or one color, row by row from the top left.
     pub samples: Samples,
 }
 
@@ -27,6 +27,8 @@ pub struct Channel {
 pub enum Samples {
     /// In single precision: colours and shares of power.
     F32(Vec<f32>),
+    /// Red, green and blue in single precision: the picture of one quantity in linear light.
+    Rgb(Vec<[f32; 3]>),
     /// In double precision: times, whose differences go down to yoctoseconds.
     F64(Vec<f64>),
 }
@@ -40,11 +42,12 @@ impl Picture {
 }
 
 impl Samples {
-    /// How many there are.
+    /// How many numbers there are: three for a color.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
             Self::F32(values) => values.len(),
+            Self::Rgb(values) => 3 * values.len(),
             Self::F64(values) => values.len(),
         }
     }
@@ -55,11 +58,12 @@ impl Samples {
         self.len() == 0
     }
 
-    /// The number at an index below [`len`](Self::len).
+    /// The number at an index below [`len`](Self::len); red, green and blue of a color follow each other.
     #[must_use]
     pub fn get(&self, index: usize) -> f64 {
         match self {
             Self::F32(values) => f64::from(values[index]),
+            Self::Rgb(values) => f64::from(values[index / 3][index % 3]),
             Self::F64(values) => values[index],
         }
     }

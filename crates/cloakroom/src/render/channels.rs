@@ -1,11 +1,13 @@
 //! The named channels of a picture.
 
+use crate::scene::PictureSettings;
+
 /// What a picture is asked to hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
     /// The image through the camera's polarizer alone: `R`, `G`, `B`.
     Image,
-    /// Every channel of [`Channel::ALL`].
+    /// Every channel of [`Channel::ALWAYS`], and those of [`Channel::OPTIONAL`] that the scene asks for.
     Everything,
 }
 
@@ -35,11 +37,19 @@ pub enum Channel {
     Absorbed,
     /// Share of the power in branches too weak to follow.
     Pruned,
+    /// Stokes parameter S0 to S3 of the light that arrives at the camera's polarizer, in color
+    /// ([`optics::wave::arriving_stokes`] says with which signs).
+    Stokes(usize),
+    /// Of the power that enters a uniaxial medium through the first surface met, the share in the
+    /// extraordinary wave; NaN where none does.
+    ExtraordinaryShare,
+    /// Share of the power reflected at the first surface met, 1 for metal; NaN where none is met.
+    FirstFaceReflectance,
 }
 
 impl Channel {
-    /// Every channel, in the order of files.
-    pub const ALL: [Self; 16] = [
+    /// The channels that every file of data holds, in its order.
+    pub const ALWAYS: [Self; 16] = [
         Self::Image(0),
         Self::Image(1),
         Self::Image(2),
@@ -58,14 +68,24 @@ impl Channel {
         Self::Pruned,
     ];
 
+    /// The channels that a scene must ask for, in the order of files.
+    pub const OPTIONAL: [Self; 6] = [
+        Self::Stokes(0),
+        Self::Stokes(1),
+        Self::Stokes(2),
+        Self::Stokes(3),
+        Self::ExtraordinaryShare,
+        Self::FirstFaceReflectance,
+    ];
+
     /// Its name in files.
     #[must_use]
     pub fn name(self) -> &'static str {
-        let colour = |names: [&'static str; 3], i: usize| names[i.min(2)];
+        let nth = |names: &[&'static str], i: usize| names[i.min(names.len() - 1)];
         match self {
-            Self::Image(i) => colour(["R", "G", "B"], i),
-            Self::Horizontal(i) => colour(["horizontal.R", "horizontal.G", "horizontal.B"], i),
-            Self::Vertical(i) => colour(["vertical.R", "vertical.G", "vertical.B"], i),
+            Self::Image(i) => nth(&["R", "G", "B"], i),
+            Self::Horizontal(i) => nth(&["horizontal.R", "horizontal.G", "horizontal.B"], i),
+            Self::Vertical(i) => nth(&["vertical.R", "vertical.G", "vertical.B"], i),
             Self::TimeOfFlight => "time_of_flight",
             Self::TimeOfFlightSpread => "time_of_flight_spread",
             Self::TimeOfFlightDifference => "time_of_flight_difference",
@@ -73,22 +93,92 @@ impl Channel {
             Self::Escaped => "escaped",
             Self::Absorbed => "absorbed",
             Self::Pruned => "pruned",
+            Self::Stokes(i) => nth(&["stokes.S0", "stokes.S1", "stokes.S2", "stokes.S3"], i),
+            Self::ExtraordinaryShare => "extraordinary_share",
+            Self::FirstFaceReflectance => "first_face_reflectance",
         }
     }
 
-    /// Whether the channel is a time: kept in double precision, for differences go down to
-    /// yoctoseconds.
+    /// What its samples are.
     #[must_use]
-    pub fn is_time(self) -> bool {
-        matches!(self, Self::TimeOfFlight | Self::TimeOfFlightSpread | Self::TimeOfFlightDifference)
+    pub fn form(self) -> Form {
+        match self {
+            // Differences of times go down to yoctoseconds.
+            Self::TimeOfFlight | Self::TimeOfFlightSpread | Self::TimeOfFlightDifference => {
+                Form::Double
+            }
+            Self::Stokes(_) => Form::Rgb,
+            _ => Form::Single,
+        }
     }
 
     /// The channels of a picture that is to hold `wanted`.
     #[must_use]
-    pub fn of(wanted: Wanted) -> &'static [Self] {
+    pub fn of(wanted: Wanted, picture: &PictureSettings) -> Vec<Self> {
         match wanted {
-            Wanted::Image => &Self::ALL[..3],
-            Wanted::Everything => &Self::ALL,
+            Wanted::Image => Self::ALWAYS[..3].to_vec(),
+            Wanted::Everything => {
+                let asked = Self::OPTIONAL.iter().filter(|c| picture.asks_for(c.keyword()));
+                Self::ALWAYS.iter().chain(asked).copied().collect()
+            }
         }
+    }
+
+    /// The word with which a scene asks for it.
+    fn keyword(self) -> &'static str {
+        match self {
+            Self::Stokes(_) => "stokes",
+            _ => self.name(),
+        }
+    }
+}
+
+/// What the samples of a channel are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Numbers in single precision.
+    Single,
+    /// Numbers in double precision.
+    Double,
+    /// Red, green and blue in single precision.
+    Rgb,
+}
+
+impl Form {
+    /// How many bytes a pixel takes.
+    #[must_use]
+    pub fn bytes(self) -> u64 {
+        match self {
+            Self::Single => 4,
+            Self::Double => 8,
+            Self::Rgb => 12,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::OPTIONAL_CHANNELS;
+
+    #[test]
+    fn optional_channels_come_only_when_asked_for() {
+        let names = |wanted, channels: &[&'static str], map| {
+            let settings =
+                PictureSettings { channels: channels.to_vec(), map, ..PictureSettings::default() };
+            Channel::of(wanted, &settings).into_iter().map(Channel::name).collect::<Vec<_>>()
+        };
+        assert_eq!(names(Wanted::Everything, &[], None).len(), 16);
+        assert_eq!(names(Wanted::Image, OPTIONAL_CHANNELS, None), ["R", "G", "B"]);
+        let stokes = ["stokes.S0", "stokes.S1", "stokes.S2", "stokes.S3"];
+        assert_eq!(names(Wanted::Everything, &["stokes"], None)[16..], stokes);
+        let shown = names(Wanted::Everything, &[], Some("extraordinary_share"));
+        assert_eq!(shown[16..], ["extraordinary_share"]);
+        // Every word asks for something, and every channel has its word.
+        for word in OPTIONAL_CHANNELS {
+            assert!(names(Wanted::Everything, &[word], None).len() > 16, "{word}");
+        }
+        let all = names(Wanted::Everything, OPTIONAL_CHANNELS, None);
+        assert_eq!(all.len(), Channel::ALWAYS.len() + Channel::OPTIONAL.len());
     }
 }

@@ -1,13 +1,15 @@
 //! From leaves to light: what each leaf sees, through a filter as wide as its share of the pixel.
 
+use super::detection::Detection;
 use super::pixel::{Pixel, Pulses};
 use super::studio::{Studio, Surroundings};
 use crate::scene::CameraRay;
-use crate::trace::{Leaf, Outcome};
+use crate::trace::{FirstFace, Leaf, Outcome};
 use glam::{DQuat, DVec3};
+use optics::wave::arriving_stokes;
 
 /// Speed of light, cm/ns.
-const SPEED_OF_LIGHT: f64 = 29.979_245_8;
+pub(super) const SPEED_OF_LIGHT: f64 = 29.979_245_8;
 
 /// One traced camera ray.
 #[derive(Clone, Debug)]
@@ -15,28 +17,14 @@ pub(super) struct Traced<const N: usize> {
     pub ray: CameraRay,
     pub leaves: Vec<Leaf<N>>,
     pub outcome: Outcome<N>,
+    /// The first surface met, where it is asked for and there is one.
+    pub first_face: Option<FirstFace<N>>,
 }
 
 impl<const N: usize> Default for Traced<N> {
     fn default() -> Self {
         let ray = CameraRay { origin: DVec3::ZERO, direction: DVec3::X };
-        Self { ray, leaves: Vec::new(), outcome: Outcome::default() }
-    }
-}
-
-/// What each launched polarization counts for.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Detection<const N: usize> {
-    /// Weights of the launched polarizations in what the camera with its polarizer sees.
-    pub weights: [f64; N],
-    /// Whether the first two launched polarizations are horizontal and vertical, with an image of
-    /// their own each.
-    pub separate: bool,
-}
-
-impl<const N: usize> Detection<N> {
-    fn detected(&self, power: &[f64; N]) -> f64 {
-        self.weights.iter().zip(power).map(|(weight, power)| weight * power).sum()
+        Self { ray, leaves: Vec::new(), outcome: Outcome::default(), first_face: None }
     }
 }
 
@@ -59,7 +47,7 @@ pub(super) fn expose<const N: usize>(
         let light = match studio.screen.hit(leaf.position, leaf.direction) {
             Some(distance) => {
                 pixel.delivered += power;
-                let time = (leaf.optical_path + distance) / SPEED_OF_LIGHT;
+                let time = time_of_flight(leaf, distance);
                 pulses.push((time, power));
                 photograph_light(studio, leaf, distance, &beside, spacing)
             }
@@ -73,12 +61,30 @@ pub(super) fn expose<const N: usize>(
             add(&mut pixel.horizontal, leaf.power[0], light);
             add(&mut pixel.vertical, leaf.power[1], light);
         }
+        if detection.stokes {
+            let stokes = arriving_stokes(leaf.electric[0], leaf.electric[1]);
+            for (sum, stokes) in pixel.stokes.iter_mut().zip(stokes) {
+                add(sum, stokes, light);
+            }
+        }
     }
-    let empty = studio
-        .screen
-        .hit(here.ray.origin, here.ray.direction)
-        .map(|distance| distance / SPEED_OF_LIGHT);
-    pixel.add_pulses(pulses, empty);
+    if let Some(face) = &here.first_face {
+        pixel.surfaces_met += 1.0;
+        pixel.reflected += detection.detected(&face.reflected);
+        pixel.ordinary += detection.detected(&face.ordinary);
+        pixel.extraordinary += detection.detected(&face.extraordinary);
+    }
+    pixel.add_pulses(pulses, empty_time_of_flight(studio, &here.ray));
+}
+
+/// Time of flight of a leaf that ends on the photograph, `distance` (cm) on, in ns.
+pub(super) fn time_of_flight<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f64 {
+    (leaf.optical_path + distance) / SPEED_OF_LIGHT
+}
+
+/// Time of flight (ns) of a camera ray in the empty scene, if it meets the photograph.
+pub(super) fn empty_time_of_flight(studio: &Studio<'_>, ray: &CameraRay) -> Option<f64> {
+    studio.screen.hit(ray.origin, ray.direction).map(|distance| distance / SPEED_OF_LIGHT)
 }
 
 fn add(sum: &mut [f64; 3], power: f64, light: [f64; 3]) {

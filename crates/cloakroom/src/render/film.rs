@@ -1,6 +1,7 @@
 //! The film: the channels of a picture while it is being exposed, band by band.
 
 use super::Channel;
+use super::channels::Form;
 use crate::output::{Channel as FileChannel, Samples};
 
 /// The planes of a picture, row by row.
@@ -12,6 +13,7 @@ pub(super) struct Film {
 enum Plane {
     Single(Vec<f32>),
     Double(Vec<f64>),
+    Rgb(Vec<[f32; 3]>),
 }
 
 /// A band of rows of every plane, to be exposed by one thread.
@@ -23,6 +25,7 @@ pub(super) struct Band<'f> {
 enum BandPlane<'f> {
     Single(&'f mut [f32]),
     Double(&'f mut [f64]),
+    Rgb(&'f mut [[f32; 3]]),
 }
 
 impl Film {
@@ -30,10 +33,11 @@ impl Film {
         let planes = channels
             .iter()
             .map(|channel| {
-                let plane = if channel.is_time() {
-                    Plane::Double(vec![0.0; width * height])
-                } else {
-                    Plane::Single(vec![0.0; width * height])
+                let size = width * height;
+                let plane = match channel.form() {
+                    Form::Single => Plane::Single(vec![0.0; size]),
+                    Form::Double => Plane::Double(vec![0.0; size]),
+                    Form::Rgb => Plane::Rgb(vec![[0.0; 3]; size]),
                 };
                 (*channel, plane)
             })
@@ -49,6 +53,7 @@ impl Film {
             let pieces: Vec<BandPlane<'_>> = match plane {
                 Plane::Single(values) => values.chunks_mut(size).map(BandPlane::Single).collect(),
                 Plane::Double(values) => values.chunks_mut(size).map(BandPlane::Double).collect(),
+                Plane::Rgb(values) => values.chunks_mut(size).map(BandPlane::Rgb).collect(),
             };
             for (index, piece) in pieces.into_iter().enumerate() {
                 if index == bands.len() {
@@ -69,6 +74,7 @@ impl Film {
                 samples: match plane {
                     Plane::Single(values) => Samples::F32(values),
                     Plane::Double(values) => Samples::F64(values),
+                    Plane::Rgb(values) => Samples::Rgb(values),
                 },
             })
             .collect()
@@ -77,12 +83,15 @@ impl Film {
 
 impl Band<'_> {
     /// Sets the pixel at `index`, counted row by row from the start of the band, from a function
-    /// that gives the value of each channel.
-    pub fn set(&mut self, index: usize, value: impl Fn(Channel) -> f64) {
+    /// that gives the value of each channel; red 0, green 1 and blue 2 of it where it holds colors.
+    pub fn set(&mut self, index: usize, value: impl Fn(Channel, usize) -> f64) {
         for (channel, plane) in &mut self.planes {
             match plane {
-                BandPlane::Single(values) => values[index] = value(*channel) as f32,
-                BandPlane::Double(values) => values[index] = value(*channel),
+                BandPlane::Single(values) => values[index] = value(*channel, 0) as f32,
+                BandPlane::Double(values) => values[index] = value(*channel, 0),
+                BandPlane::Rgb(values) => {
+                    values[index] = std::array::from_fn(|color| value(*channel, color) as f32);
+                }
             }
         }
     }
@@ -92,6 +101,7 @@ impl Band<'_> {
         self.planes.first().map_or(0, |(_, plane)| match plane {
             BandPlane::Single(values) => values.len(),
             BandPlane::Double(values) => values.len(),
+            BandPlane::Rgb(values) => values.len(),
         })
     }
 }

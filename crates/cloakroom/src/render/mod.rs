@@ -4,21 +4,23 @@
 //! scene and the pixel alone, so the result does not depend on the number of threads.
 
 mod channels;
+mod detection;
 mod exposure;
 mod film;
 mod pixel;
+mod pulses;
 mod sampling;
 mod studio;
 
-pub use channels::{Channel, Wanted};
+pub use channels::{Channel, Form, Wanted};
+pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
 pub use studio::{Studio, StudioError, bench, limits};
 
 use crate::output::Picture;
-use crate::trace::{Launch, Rarities, Tracer};
-use exposure::{Detection, Traced, expose};
+use crate::trace::{Rarities, Tracer};
+use detection::Detection;
+use exposure::{Traced, expose};
 use film::{Band, Film};
-use glam::DVec3;
-use optics::wave::ComplexVector;
 use pixel::{Pixel, Pulses};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -77,22 +79,13 @@ pub fn render(
     wanted: Wanted,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
-    let camera = &studio.scene.camera;
-    // Horizontal and vertical of the camera, or the polarizer's own direction.
-    match (wanted, camera.polarizer().amplitudes()) {
-        (_, None) => {
-            let detection = Detection { weights: [0.5, 0.5], separate: true };
-            expose_film(studio, wanted, supervision, &detection, |h, v| [h.into(), v.into()])
+    match (wanted, studio.scene.camera.polarizer().amplitudes()) {
+        (_, None) => expose_film(studio, wanted, supervision, Detection::UNPOLARIZED),
+        (Wanted::Image, Some(amplitudes)) => {
+            expose_film(studio, wanted, supervision, Detection::image(amplitudes))
         }
-        (Wanted::Image, Some([a, b])) => {
-            let detection = Detection { weights: [1.0], separate: false };
-            expose_film(studio, wanted, supervision, &detection, |h, v| [(h * a + v * b).into()])
-        }
-        (Wanted::Everything, Some([a, b])) => {
-            let detection = Detection { weights: [0.0, 0.0, 1.0], separate: true };
-            expose_film(studio, wanted, supervision, &detection, |h, v| {
-                [h.into(), v.into(), (h * a + v * b).into()]
-            })
+        (Wanted::Everything, Some(amplitudes)) => {
+            expose_film(studio, wanted, supervision, Detection::through(amplitudes))
         }
     }
 }
@@ -101,17 +94,19 @@ fn expose_film<const N: usize>(
     studio: &Studio<'_>,
     wanted: Wanted,
     supervision: &Supervision<'_>,
-    detection: &Detection<N>,
-    polarizations: impl Fn(DVec3, DVec3) -> [ComplexVector; N] + Sync,
+    detection: Detection<N>,
 ) -> Result<Rendered, RenderError> {
     let [width, height] = studio.scene.camera.resolution();
     check_memory(studio, wanted)?;
-    let mut film = Film::new(width as usize, height as usize, Channel::of(wanted));
+    let settings = &studio.scene.picture;
+    let detection = detection.with_options(wanted, settings);
+    let channels = Channel::of(wanted, settings);
+    let mut film = Film::new(width as usize, height as usize, &channels);
     let rarities = film
         .bands(BAND_ROWS)
         .into_par_iter()
         .map_init(
-            || Exposer::new(studio, detection, &polarizations),
+            || Exposer::new(studio, &detection),
             |exposer, mut band| {
                 let rarities =
                     exposer.expose_band(&mut band, supervision.stop).ok_or(RenderError::Stopped)?;
@@ -140,9 +135,7 @@ pub fn estimated_seconds(studio: &Studio<'_>) -> f64 {
     let camera = &studio.scene.camera;
     let [width, height] = camera.resolution();
     let [columns, rows] = [GRID[0].min(width), GRID[1].min(height)];
-    let detection = Detection { weights: [0.5, 0.5], separate: true };
-    let polarizations = |h: DVec3, v: DVec3| -> [ComplexVector; 2] { [h.into(), v.into()] };
-    let mut exposer = Exposer::new(studio, &detection, &polarizations);
+    let mut exposer = Exposer::new(studio, &Detection::UNPOLARIZED);
     let start = std::time::Instant::now();
     for row in 0..rows {
         for column in 0..columns {
@@ -174,7 +167,8 @@ fn metadata(studio: &Studio<'_>) -> Vec<(String, String)> {
 /// [`RenderError::TooLarge`].
 pub fn check_memory(studio: &Studio<'_>, wanted: Wanted) -> Result<(), RenderError> {
     let [width, height] = studio.scene.camera.resolution();
-    let bytes: u64 = Channel::of(wanted).iter().map(|c| if c.is_time() { 8 } else { 4 }).sum();
+    let channels = Channel::of(wanted, &studio.scene.picture);
+    let bytes: u64 = channels.iter().map(|channel| channel.form().bytes()).sum();
     // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
     let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2);
     match crate::memory::available() {
@@ -189,24 +183,19 @@ pub fn check_memory(studio: &Studio<'_>, wanted: Wanted) -> Result<(), RenderErr
 }
 
 /// One thread's tracer and memory.
-struct Exposer<'a, F, const N: usize> {
+struct Exposer<'a, const N: usize> {
     studio: &'a Studio<'a>,
     detection: &'a Detection<N>,
-    polarizations: &'a F,
     tracer: Tracer<'a, N>,
     block: [Traced<N>; 4],
     pulses: Pulses,
 }
 
-impl<'a, F, const N: usize> Exposer<'a, F, N>
-where
-    F: Fn(DVec3, DVec3) -> [ComplexVector; N],
-{
-    fn new(studio: &'a Studio<'a>, detection: &'a Detection<N>, polarizations: &'a F) -> Self {
+impl<'a, const N: usize> Exposer<'a, N> {
+    fn new(studio: &'a Studio<'a>, detection: &'a Detection<N>) -> Self {
         Self {
             studio,
             detection,
-            polarizations,
             tracer: Tracer::new(&studio.bench, studio.limits).with_screen(studio.screen),
             block: std::array::from_fn(|_| Traced::default()),
             pulses: Vec::new(),
@@ -233,7 +222,9 @@ where
                 for (i, pixel) in pixels.iter().enumerate() {
                     let (x, y) = (column + i % 2, row + i / 2);
                     if x < width && y < rows {
-                        band.set(y * width + x, |channel| pixel.value(channel, f64::from(samples)));
+                        band.set(y * width + x, |channel, color| {
+                            pixel.value(channel, color, f64::from(samples))
+                        });
                     }
                 }
             }
@@ -257,12 +248,10 @@ where
             let x = (column + i % 2) as f64 + offset[0];
             let y = (row + i / 2) as f64 + offset[1];
             let ray = camera.ray(x, y);
-            let (horizontal, vertical) = camera.polarization_basis(ray.direction);
-            let launch = Launch {
-                origin: ray.origin,
-                direction: ray.direction,
-                electric: (self.polarizations)(horizontal, vertical),
-            };
+            let launch = self.detection.launch(camera, &ray);
+            if self.detection.first_face {
+                traced.first_face = self.tracer.first_face(&launch);
+            }
             let (leaves, outcome) = self.tracer.trace(&launch);
             traced.ray = ray;
             traced.leaves.clear();

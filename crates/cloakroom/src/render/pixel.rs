@@ -8,10 +8,16 @@ pub(super) struct Pixel {
     pub image: [f64; 3],
     pub horizontal: [f64; 3],
     pub vertical: [f64; 3],
+    pub stokes: [[f64; 3]; 4],
     pub delivered: f64,
     pub escaped: f64,
     pub absorbed: f64,
     pub pruned: f64,
+    /// How many of its rays met a surface, and what became of their power at the first one.
+    pub surfaces_met: f64,
+    pub reflected: f64,
+    pub ordinary: f64,
+    pub extraordinary: f64,
     /// Time of flight, its square spread and its difference, each weighted by power.
     time: f64,
     variance: f64,
@@ -44,13 +50,14 @@ impl Pixel {
         }
     }
 
-    /// The value of a channel, the pixel having had `samples` samples.
-    pub fn value(&self, channel: Channel, samples: f64) -> f64 {
+    /// The value of a channel, the pixel having had `samples` samples; `color` says which of red 0,
+    /// green 1 and blue 2 where the channel holds all three.
+    pub fn value(&self, channel: Channel, color: usize, samples: f64) -> f64 {
         match channel {
             Channel::Image(i) => self.image[i] / samples,
             Channel::Horizontal(i) => self.horizontal[i] / samples,
             Channel::Vertical(i) => self.vertical[i] / samples,
-            // 0/0 is the NaN that says: no leaf has reached the photograph.
+            // 0/0 is the NaN that says: no leaf has reached the photograph, no surface was met.
             Channel::TimeOfFlight => self.time / self.time_weight,
             Channel::TimeOfFlightSpread => (self.variance / self.time_weight).sqrt(),
             Channel::TimeOfFlightDifference => self.difference / self.difference_weight,
@@ -58,6 +65,11 @@ impl Pixel {
             Channel::Escaped => self.escaped / samples,
             Channel::Absorbed => self.absorbed / samples,
             Channel::Pruned => self.pruned / samples,
+            Channel::FirstFaceReflectance => self.reflected / self.surfaces_met,
+            Channel::ExtraordinaryShare => {
+                self.extraordinary / (self.ordinary + self.extraordinary)
+            }
+            Channel::Stokes(k) => self.stokes[k][color] / samples,
         }
     }
 }

@@ -14,8 +14,8 @@ use glam::DVec3;
 pub use camera::{Camera, CameraRay, CameraSettings, Projection};
 pub use polarizer::Polarizer;
 pub use tables::{
-    CAMERA_KEYS, DEFAULT_PHOTOGRAPH, LIGHT_KEYS, PHOTOGRAPH_KEYS, PICTURE_KEYS, PLACEMENT_KEYS,
-    SCALAR_CHANNELS, SURROUNDINGS_KEYS, TABLES, TRACE_KEYS,
+    CAMERA_KEYS, DEFAULT_PHOTOGRAPH, LIGHT_KEYS, OPTIONAL_CHANNELS, PHOTOGRAPH_KEYS, PICTURE_KEYS,
+    PLACEMENT_KEYS, SCALAR_CHANNELS, SURROUNDINGS_KEYS, TABLES, TRACE_KEYS,
 };
 
 use crate::device::Entry;
@@ -36,7 +36,7 @@ pub struct Scene {
     pub surroundings: SurroundingsSettings,
     /// How rays are followed.
     pub trace: TraceSettings,
-    /// What a PNG shows.
+    /// What a picture shows and holds.
     pub picture: PictureSettings,
     /// The devices, in the order of the scene file.
     pub devices: Vec<DeviceSettings>,
@@ -83,10 +83,12 @@ pub struct TraceSettings {
     pub tolerance: f64,
 }
 
-/// What a PNG shows.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a picture shows and holds.
+#[derive(Clone, Debug, PartialEq)]
 pub struct PictureSettings {
-    /// One of [`SCALAR_CHANNELS`] in false colors; `None`: what the camera sees.
+    /// Those of [`OPTIONAL_CHANNELS`] that EXR and NPZ files hold.
+    pub channels: Vec<&'static str>,
+    /// What a PNG shows: one of [`SCALAR_CHANNELS`] in false colors; `None`: what the camera sees.
     pub map: Option<&'static str>,
     /// Whether the scale of a map is drawn beside it.
     pub color_bar: bool,
@@ -167,9 +169,16 @@ impl PictureSettings {
     pub fn from_values(values: &Values) -> Self {
         let map = values.choice("map");
         PictureSettings {
+            channels: values.choices("channels").to_vec(),
             map: SCALAR_CHANNELS.iter().find(|&&channel| channel == map).copied(),
             color_bar: values.flag("color_bar"),
         }
+    }
+
+    /// Whether one of [`OPTIONAL_CHANNELS`] is asked for, to be held or to be shown.
+    #[must_use]
+    pub fn asks_for(&self, channel: &str) -> bool {
+        self.channels.contains(&channel) || self.map == Some(channel)
     }
 }
 
@@ -248,7 +257,8 @@ mod tests {
         assert_eq!((scene.trace.min_power, scene.trace.min_power_given), (1e-4, false));
         assert_eq!(scene.trace.tolerance, 1e-6);
         assert_eq!(scene.light.wavelength_nm, 550.0);
-        assert_eq!(scene.picture, PictureSettings { map: None, color_bar: true });
+        let picture = PictureSettings { channels: Vec::new(), map: None, color_bar: true };
+        assert_eq!(scene.picture, picture);
         assert!(scene.devices.is_empty());
     }
 

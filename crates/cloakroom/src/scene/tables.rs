@@ -17,7 +17,12 @@ pub const SCALAR_CHANNELS: &[&str] = &[
     "escaped",
     "absorbed",
     "pruned",
+    "extraordinary_share",
+    "first_face_reflectance",
 ];
+
+/// The channels that files hold only if a scene lists them.
+pub const OPTIONAL_CHANNELS: &[&str] = &["stokes", "extraordinary_share", "first_face_reflectance"];
 
 /// `[camera]`.
 pub static CAMERA_KEYS: &[Key] = &[
@@ -137,6 +142,12 @@ pub static TRACE_KEYS: &[Key] = &[
 
 /// `[picture]`.
 pub static PICTURE_KEYS: &[Key] = &[
+    Key {
+        name: "channels",
+        doc: "Channels that EXR and NPZ files hold beside those they always do; `stokes` stands \
+              for `stokes.S0` to `stokes.S3`.",
+        kind: KeyKind::Choices { options: OPTIONAL_CHANNELS },
+    },
     Key {
         name: "map",
         doc: "A channel that a PNG shows in false colors instead of what the camera sees.",

@@ -96,6 +96,9 @@ fn property(key: &Key) -> Value {
         KeyKind::Integer { min, max, .. } => (integer(min, max), ""),
         KeyKind::Flag { .. } => (json!({ "type": "boolean" }), ""),
         KeyKind::Choice { options } => (json!({ "enum": options }), ""),
+        KeyKind::Choices { options } => {
+            (json!({ "type": "array", "items": { "enum": options } }), "")
+        }
         KeyKind::Vector { unit, limits, .. } => (list(number(limits), 3), unit),
         KeyKind::IntegerPair { min, max, .. } => (list(integer(min, max), 2), ""),
         KeyKind::Text { .. } => (json!({ "type": "string", "minLength": 1 }), ""),

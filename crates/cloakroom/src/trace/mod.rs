@@ -7,12 +7,14 @@
 mod bench;
 mod branch;
 mod exchange;
+mod first_face;
 mod leaf;
 mod screen;
 mod tracer;
 
 pub use bench::{Bench, Placed};
 pub use exchange::{LeafReport, Polarization, RayError, RayReport, RayRequest, trace_rays};
+pub use first_face::FirstFace;
 pub use leaf::{Leaf, Outcome, Rarities};
 pub use screen::Screen;
 pub use tracer::{Launch, Limits, Tracer};

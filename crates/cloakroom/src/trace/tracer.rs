@@ -2,11 +2,12 @@
 
 use super::branch::{Branch, Place};
 use super::{Bench, Leaf, Outcome, Placed, Screen};
-use crate::device::{Beyond, Cell, Finish};
+use crate::device::{Beyond, Cell, Finish, SkinHit};
 use glam::DVec3;
 use optics::geometry::Pose;
 use optics::interface::{
-    OutgoingWave, OutgoingWaves, Side, reflect_at_conductor, split, transmit_antireflection,
+    IncidentWave, OutgoingWave, OutgoingWaves, Side, reflect_at_conductor, split,
+    transmit_antireflection,
 };
 use optics::medium::Medium;
 use optics::wave::ComplexVector;
@@ -43,7 +44,7 @@ const LEAK: f64 = 1e-10;
 /// Traces rays. It keeps its memory from ray to ray: make one a thread.
 #[derive(Debug)]
 pub struct Tracer<'a, const N: usize> {
-    bench: &'a Bench,
+    pub(super) bench: &'a Bench,
     limits: Limits,
     screen: Option<Screen>,
     waiting: Vec<Branch<N>>,
@@ -101,11 +102,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
     }
 
     fn through_air(&mut self, mut branch: Branch<N>, left: Option<(u16, u16)>) {
-        let screen = self.screen.and_then(|screen| screen.hit(branch.position, branch.direction));
-        let hit = self
-            .bench
-            .first_hit(branch.position, branch.direction, left)
-            .filter(|(_, hit)| screen.is_none_or(|distance| hit.distance < distance));
+        let hit = self.surface_ahead(branch.position, branch.direction, left);
         let Some((device_index, hit)) = hit else {
             self.leaves.push(Leaf {
                 position: branch.position,
@@ -225,6 +222,19 @@ impl<'a, const N: usize> Tracer<'a, N> {
         }
     }
 
+    /// The surface that a ray in air meets before the screen; `left` is the one it has just left.
+    pub(super) fn surface_ahead(
+        &self,
+        position: DVec3,
+        direction: DVec3,
+        left: Option<(u16, u16)>,
+    ) -> Option<(u16, SkinHit)> {
+        let screen = self.screen.and_then(|screen| screen.hit(position, direction));
+        self.bench
+            .first_hit(position, direction, left)
+            .filter(|(_, hit)| screen.is_none_or(|distance| hit.distance < distance))
+    }
+
     fn split(
         &mut self,
         from: &Medium,
@@ -233,10 +243,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         normal: DVec3,
         finish: Finish,
     ) -> OutgoingWaves<N> {
-        let waves = match finish {
-            Finish::Bare => split(from, to, &branch.incident(), normal),
-            Finish::Antireflection => transmit_antireflection(from, to, &branch.incident(), normal),
-        };
+        let waves = split_as_finished(from, to, &branch.incident(), normal, finish);
         self.check_account(branch, &waves);
         waves
     }
@@ -276,8 +283,22 @@ impl<'a, const N: usize> Tracer<'a, N> {
         }
     }
 
-    fn cell(&self, device: &'a Placed, index: u16) -> &'a Cell {
+    pub(super) fn cell(&self, device: &'a Placed, index: u16) -> &'a Cell {
         &device.structure.cells[usize::from(index)]
+    }
+}
+
+/// Splits a wave at the interface of two media that meet as `finish` says.
+pub(super) fn split_as_finished<const N: usize>(
+    from: &Medium,
+    to: &Medium,
+    wave: &IncidentWave<N>,
+    normal: DVec3,
+    finish: Finish,
+) -> OutgoingWaves<N> {
+    match finish {
+        Finish::Bare => split(from, to, wave, normal),
+        Finish::Antireflection => transmit_antireflection(from, to, wave, normal),
     }
 }
 

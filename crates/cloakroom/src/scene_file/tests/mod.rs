@@ -55,6 +55,7 @@ min_power = 1e-6
 tolerance = 1e-7
 
 [picture]
+channels = ["stokes", "first_face_reflectance"]
 map = "time_of_flight"
 color_bar = false
 

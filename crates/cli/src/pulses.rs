@@ -1,0 +1,65 @@
+//! `cloakroom pulses`: the pulses of one pixel.
+
+use crate::arguments::PulsesArguments;
+use crate::report::{self, Failure};
+use crate::scene;
+use cloakroom::render::{self, PulseList, Studio};
+use std::fmt::Write;
+
+/// Lists the pulses of a pixel.
+pub fn run(arguments: &PulsesArguments) -> Result<(), Failure> {
+    let loaded = scene::load(&arguments.scene)?;
+    let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let list = render::pulses(&studio, arguments.pixel)
+        .map_err(|error| Failure::Usage(format!("--pixel: {error}")))?;
+    if arguments.json {
+        return report::print_json(&list);
+    }
+    let mut text = String::new();
+    describe(&list, &mut text).map_err(Failure::from_error)?;
+    report::print(&text)
+}
+
+fn describe(list: &PulseList, text: &mut String) -> std::fmt::Result {
+    let [column, row] = list.pixel;
+    let time = |time: Option<f64>| time.map_or("-".to_owned(), |time| format!("{time:.9}"));
+    writeln!(text, "pixel {column},{row}")?;
+    writeln!(
+        text,
+        "{:>18} {:>14} {:>10}  from (y, z) in cm",
+        "time of flight ns", "delay ns", "power"
+    )?;
+    for pulse in &list.pulses {
+        let landings: Vec<String> = pulse
+            .landings
+            .iter()
+            .map(|landing| {
+                let [_, y, z] = landing.position_cm;
+                format!("({y:.3}, {z:.3})")
+            })
+            .collect();
+        writeln!(
+            text,
+            "{:>18.9} {:>14} {:>10.6}  {}",
+            pulse.time_of_flight_ns,
+            time(pulse.delay_ns),
+            pulse.power,
+            landings.join(" ")
+        )?;
+    }
+    for (name, share) in [
+        ("delivered", list.delivered),
+        ("escaped", list.escaped),
+        ("absorbed", list.absorbed),
+        ("pruned", list.pruned),
+    ] {
+        writeln!(text, "{name:<33} {share:>10.6}")?;
+    }
+    let mean = time(list.mean_time_of_flight_ns);
+    let spread = time(list.time_of_flight_spread_ns);
+    writeln!(
+        text,
+        "mean {mean} ns, spread {spread} ns, pulses within {:.1e} ns are one",
+        list.resolution_ns
+    )
+}

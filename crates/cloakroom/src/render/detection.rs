@@ -1,0 +1,88 @@
+//! Which polarizations are launched for a picture, and what each counts for.
+
+use super::Wanted;
+use crate::scene::{Camera, CameraRay, PictureSettings};
+use crate::trace::Launch;
+
+/// The polarizations launched with each camera ray, and what each counts for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Detection<const N: usize> {
+    /// Amplitudes of the launched polarizations along the camera's horizontal and vertical.
+    launched: [[f64; 2]; N],
+    /// Weights of the launched polarizations in what the camera with its polarizer sees.
+    weights: [f64; N],
+    /// Whether the first two launched polarizations are horizontal and vertical, with an image of
+    /// their own each.
+    pub separate: bool,
+    /// Whether the Stokes parameters are wanted: for those the first two are needed.
+    pub stokes: bool,
+    /// Whether the first surface is looked at on its own.
+    pub first_face: bool,
+}
+
+const HORIZONTAL: [f64; 2] = [1.0, 0.0];
+const VERTICAL: [f64; 2] = [0.0, 1.0];
+
+impl Detection<1> {
+    /// The image through a polarizer that passes these amplitudes along horizontal and vertical.
+    pub fn image(amplitudes: [f64; 2]) -> Self {
+        Self {
+            launched: [amplitudes],
+            weights: [1.0],
+            separate: false,
+            stokes: false,
+            first_face: false,
+        }
+    }
+}
+
+impl Detection<2> {
+    /// No polarizer.
+    pub const UNPOLARIZED: Self = Self {
+        launched: [HORIZONTAL, VERTICAL],
+        weights: [0.5, 0.5],
+        separate: true,
+        stokes: false,
+        first_face: false,
+    };
+}
+
+impl Detection<3> {
+    /// Horizontal, vertical, and what a polarizer passes that is neither of them alone.
+    pub fn through(amplitudes: [f64; 2]) -> Self {
+        Self {
+            launched: [HORIZONTAL, VERTICAL, amplitudes],
+            weights: [0.0, 0.0, 1.0],
+            separate: true,
+            stokes: false,
+            first_face: false,
+        }
+    }
+}
+
+impl<const N: usize> Detection<N> {
+    /// Adds what the optional channels of a picture ask for.
+    pub fn with_options(self, wanted: Wanted, picture: &PictureSettings) -> Self {
+        let asked = |channel| wanted == Wanted::Everything && picture.asks_for(channel);
+        Self {
+            stokes: self.separate && asked("stokes"),
+            first_face: asked("extraordinary_share") || asked("first_face_reflectance"),
+            ..self
+        }
+    }
+
+    /// The ray to launch for a camera ray.
+    pub fn launch(&self, camera: &Camera, ray: &CameraRay) -> Launch<N> {
+        let (horizontal, vertical) = camera.polarization_basis(ray.direction);
+        Launch {
+            origin: ray.origin,
+            direction: ray.direction,
+            electric: self.launched.map(|[h, v]| (horizontal * h + vertical * v).into()),
+        }
+    }
+
+    /// What the camera with its polarizer sees of these powers.
+    pub fn detected(&self, power: &[f64; N]) -> f64 {
+        self.weights.iter().zip(power).map(|(weight, power)| weight * power).sum()
+    }
+}

@@ -1,0 +1,193 @@
+//! The pulses of one pixel: what a short flash of the photograph looks like there.
+
+use super::detection::Detection;
+use super::exposure::{SPEED_OF_LIGHT, empty_time_of_flight, time_of_flight};
+use super::pixel::Pixel;
+use super::{Channel, Studio};
+use crate::trace::Tracer;
+use glam::DVec3;
+use serde::Serialize;
+
+/// What the camera ray through the middle of a pixel brings back, pulse by pulse: where a short
+/// flash of the whole photograph arrives along that ray, how late and how strong.
+///
+/// Powers are shares of the ray's, as the camera's polarizer weighs them: those of the pulses,
+/// `escaped`, `absorbed` and `pruned` add up to 1.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PulseList {
+    /// Column and row of the pixel, from 0 at the top left.
+    pub pixel: [u32; 2],
+    /// The pulses, the earliest first.
+    pub pulses: Vec<Pulse>,
+    /// Pulses closer together than this, in ns, are one: the time that light takes for
+    /// `trace.tolerance`, to which paths are known.
+    pub resolution_ns: f64,
+    /// Time of flight of the same camera ray in the empty scene, ns; `None` where that misses the
+    /// photograph.
+    pub empty_time_of_flight_ns: Option<f64>,
+    /// The mean time of flight, weighted by power, ns; `None` without pulses.
+    pub mean_time_of_flight_ns: Option<f64>,
+    /// Its standard deviation, ns; `None` without pulses.
+    pub time_of_flight_spread_ns: Option<f64>,
+    /// Share of the power that reaches the photograph: the sum over the pulses.
+    pub delivered: f64,
+    /// Share of the power that goes to the surroundings.
+    pub escaped: f64,
+    /// Share of the power absorbed by media.
+    pub absorbed: f64,
+    /// Share of the power in branches too weak to follow.
+    pub pruned: f64,
+}
+
+/// One pulse.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Pulse {
+    /// Time of flight from the photograph to the camera, ns.
+    pub time_of_flight_ns: f64,
+    /// The same less that of the empty view, ns; `None` where the empty view misses the photograph.
+    pub delay_ns: Option<f64>,
+    /// Its share of the power.
+    pub power: f64,
+    /// Where on the photograph it comes from, the strongest first.
+    pub landings: Vec<Landing>,
+}
+
+/// A point of the photograph that a pulse comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Landing {
+    /// The point, cm.
+    pub position_cm: [f64; 3],
+    /// Its share of the power.
+    pub power: f64,
+}
+
+/// Why a pixel has no list of pulses.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PulseError {
+    /// There is no such pixel.
+    #[error(
+        "there is no pixel {column},{row}; the picture has columns 0 to {} and rows 0 to {}",
+        width - 1, height - 1
+    )]
+    OutsidePicture {
+        /// The column asked for.
+        column: u32,
+        /// The row asked for.
+        row: u32,
+        /// Width of the picture in pixels.
+        width: u32,
+        /// Height of the picture in pixels.
+        height: u32,
+    },
+}
+
+/// Lists the pulses of the pixel at a column and row, counted from 0 at the top left.
+///
+/// Mean and spread are those of the channels `time_of_flight` and `time_of_flight_spread` with one
+/// sample a pixel.
+///
+/// # Errors
+///
+/// If the picture has no such pixel.
+pub fn pulses(studio: &Studio<'_>, [column, row]: [u32; 2]) -> Result<PulseList, PulseError> {
+    let camera = &studio.scene.camera;
+    let [width, height] = camera.resolution();
+    if column >= width || row >= height {
+        return Err(PulseError::OutsidePicture { column, row, width, height });
+    }
+    // The same trees as in a picture of every channel.
+    Ok(match camera.polarizer().amplitudes() {
+        None => list(studio, [column, row], &Detection::UNPOLARIZED),
+        Some(amplitudes) => list(studio, [column, row], &Detection::through(amplitudes)),
+    })
+}
+
+fn list<const N: usize>(
+    studio: &Studio<'_>,
+    pixel: [u32; 2],
+    detection: &Detection<N>,
+) -> PulseList {
+    let camera = &studio.scene.camera;
+    let [x, y] = pixel.map(|i| f64::from(i) + 0.5);
+    let ray = camera.ray(x, y);
+    let mut tracer = Tracer::new(&studio.bench, studio.limits).with_screen(studio.screen);
+    let (leaves, outcome) = tracer.trace(&detection.launch(camera, &ray));
+    let (mut arrivals, mut escaped) = (Vec::new(), 0.0);
+    for leaf in leaves {
+        let power = detection.detected(&leaf.power);
+        match studio.screen.hit(leaf.position, leaf.direction) {
+            Some(distance) if power > 0.0 => arrivals.push(Arrival {
+                time: time_of_flight(leaf, distance),
+                power,
+                position: leaf.position + leaf.direction * distance,
+            }),
+            Some(_) => {}
+            None => escaped += power,
+        }
+    }
+    let empty = empty_time_of_flight(studio, &ray);
+    let mut sums = Pixel::default();
+    sums.add_pulses(&arrivals.iter().map(|a| (a.time, a.power)).collect::<Vec<_>>(), empty);
+    let number = |channel| Some(sums.value(channel, 0, 1.0)).filter(|value| value.is_finite());
+    let tolerance = studio.limits.tolerance;
+    let resolution_ns = tolerance / SPEED_OF_LIGHT;
+    arrivals.sort_by(|a, b| a.time.total_cmp(&b.time));
+    let mut pulses: Vec<Pulse> = Vec::new();
+    let mut rest = &arrivals[..];
+    while let Some(first) = rest.first() {
+        let together = rest.iter().take_while(|a| a.time - first.time <= resolution_ns).count();
+        let (pulse, later) = rest.split_at(together);
+        pulses.push(Pulse::of(pulse, empty, tolerance));
+        rest = later;
+    }
+    PulseList {
+        pixel,
+        delivered: pulses.iter().map(|pulse| pulse.power).sum(),
+        pulses,
+        resolution_ns,
+        empty_time_of_flight_ns: empty,
+        mean_time_of_flight_ns: number(Channel::TimeOfFlight),
+        time_of_flight_spread_ns: number(Channel::TimeOfFlightSpread),
+        escaped,
+        absorbed: detection.detected(&outcome.absorbed),
+        pruned: detection.detected(&outcome.pruned),
+    }
+}
+
+/// A leaf on the photograph: time of flight (ns), power and place (cm).
+#[derive(Clone, Copy, Debug)]
+struct Arrival {
+    time: f64,
+    power: f64,
+    position: DVec3,
+}
+
+impl Pulse {
+    /// The pulse that arrivals at one time make; places closer than `tolerance` (cm) are one.
+    fn of(arrivals: &[Arrival], empty: Option<f64>, tolerance: f64) -> Self {
+        let power: f64 = arrivals.iter().map(|arrival| arrival.power).sum();
+        // Relative to the first arrival: differences of yoctoseconds survive.
+        let first = arrivals.first().map_or(0.0, |arrival| arrival.time);
+        let later: f64 = arrivals.iter().map(|a| (a.time - first) * a.power).sum::<f64>() / power;
+        let mut landings: Vec<Landing> = Vec::new();
+        for arrival in arrivals {
+            let near = |landing: &&mut Landing| {
+                DVec3::from_array(landing.position_cm).distance(arrival.position) <= tolerance
+            };
+            match landings.iter_mut().find(near) {
+                Some(landing) => landing.power += arrival.power,
+                None => landings.push(Landing {
+                    position_cm: arrival.position.to_array(),
+                    power: arrival.power,
+                }),
+            }
+        }
+        landings.sort_by(|a, b| b.power.total_cmp(&a.power));
+        Self {
+            time_of_flight_ns: first + later,
+            delay_ns: empty.map(|empty| first - empty + later),
+            power,
+            landings,
+        }
+    }
+}
