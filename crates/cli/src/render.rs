@@ -90,7 +90,7 @@ pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure
 pub fn tell_rarities(rarities: &Rarities) {
     if rarities.endless > 0 {
         say(&format!(
-            "note: {} branches of endless ray trees were cut after 100000 surfaces; their power is in `pruned`",
+            "note: {} branches of ray trees with more than 100000 surfaces were cut, the weakest first; their power is in `pruned`",
             rarities.endless
         ));
     }

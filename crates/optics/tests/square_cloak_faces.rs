@@ -101,3 +101,32 @@ fn critical_angles_of_designs_i_and_ii() {
     };
     assert!(!trapped(21.05) && trapped(21.07));
 }
+
+#[test]
+fn the_rotation_at_which_design_i_begins_to_reflect_totally() {
+    // The ordinary wave, in air, on the face that turns away from the line of sight: from 13.26 degrees on in
+    // the centre plane, sooner at an azimuth, never at rotation 0.
+    let medium = design(true, DVec2::new(-1.0, -1.0));
+    let onset = |azimuth: f64| {
+        let alpha = azimuth.to_radians();
+        let (mut below, mut above) = (0.0, 45.0);
+        for _ in 0..50 {
+            let middle = f64::midpoint(below, above);
+            // The line of sight in the frame of a cloak turned by so much.
+            let turn = DMat3::from_rotation_z(-f64::to_radians(middle));
+            let direction = turn * DVec3::new(alpha.cos(), 0.0, alpha.sin());
+            let normal = DVec3::new(1.0, 1.0, 0.0).normalize();
+            let [ordinary, _] = medium.modes(direction, normal, Heading::Forward);
+            *(if ordinary.is_propagating() { &mut below } else { &mut above }) = middle;
+        }
+        below
+    };
+    assert!((onset(0.0) - 13.26).abs() < 0.005, "{}", onset(0.0));
+    // By hand: cos α cos(45° + φ) = cos 58.26°.
+    for azimuth in [5.0, 10.0, 15.0, 20.0] {
+        let cosine = 58.26f64.to_radians().cos() / f64::to_radians(azimuth).cos();
+        let expected = cosine.acos().to_degrees() - 45.0;
+        assert!((onset(azimuth) - expected).abs() < 0.006, "{azimuth}: {}", onset(azimuth));
+        assert!(expected > 10.0 && expected < 13.26);
+    }
+}

@@ -44,7 +44,7 @@ impl<const N: usize> Default for Outcome<N> {
 /// Rare events, counted so that they do not pass unseen. Their power counts as pruned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rarities {
-    /// Branches cut because a tree met more surfaces than any sensible one.
+    /// Branches cut because a tree met more surfaces than can be followed; the weakest go first.
     pub endless: u64,
     /// Branches that could not be followed through a cell.
     pub lost: u64,

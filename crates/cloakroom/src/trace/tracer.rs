@@ -32,8 +32,13 @@ pub struct Limits {
     pub tolerance: f64,
 }
 
-/// No sensible tree meets this many surfaces; the rest counts as pruned.
-const MOST_EVENTS: u32 = 100_000;
+/// Few trees meet this many surfaces. Those that do, by light that is trapped or runs almost along the
+/// device, are followed on with a threshold ten times as high, so that the strong branches are not
+/// lost; what that cuts counts as pruned.
+const MANY_EVENTS: u32 = 100_000;
+
+/// After as many surfaces again the threshold is raised once more.
+const MORE_EVENTS: u32 = 10_000;
 
 /// What rounding leaves of a wave that is not there.
 const NO_POWER: f64 = 1e-24;
@@ -85,13 +90,17 @@ impl<'a, const N: usize> Tracer<'a, N> {
             path: 0,
             foothold: None,
         });
-        let mut events = 0;
+        let (mut events, mut threshold) = (0, self.limits.min_power.max(NO_POWER));
         while let Some(branch) = self.waiting.pop() {
-            events += 1;
-            if events > MOST_EVENTS {
+            if branch.largest_power() < threshold {
                 self.outcome.rarities.endless += 1;
                 self.prune(branch.power);
                 continue;
+            }
+            events += 1;
+            if events > MANY_EVENTS {
+                events -= MORE_EVENTS;
+                threshold *= 10.0;
             }
             match branch.place {
                 Place::Air { left } => self.through_air(branch, left),
