@@ -27,7 +27,8 @@ pub enum Command {
     Pulses(PulsesArguments),
     /// Solve interfaces between media, or of a medium and metal; JSON in, JSON out.
     Interface(InterfaceArguments),
-    /// Make the figures of Halimeh & Wegener, Opt. Express 21, 9457 (2013).
+    /// Make the figures of Halimeh & Wegener, Opt. Express 21, 9457 (2013): the setting (1), drawn as
+    /// PNG and SVG, and the pictures (2-9).
     Figures(FiguresArguments),
     /// List the devices with their keys and computed facts.
     Devices(DevicesArguments),

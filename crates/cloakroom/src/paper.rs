@@ -23,6 +23,17 @@ pub struct Panel {
     pub caption: &'static str,
     /// Its scene file.
     pub scene: &'static str,
+    /// What of the scene is shown.
+    pub shows: Shows,
+}
+
+/// What a panel shows of its scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shows {
+    /// What the camera sees, rendered.
+    Picture,
+    /// Camera, devices and photograph, drawn.
+    Setting,
 }
 
 impl Panel {
@@ -36,16 +47,28 @@ impl Panel {
 /// A panel with the scene file that is named for it.
 macro_rules! panel {
     ($name:literal, $caption:literal) => {
+        panel!($name, $caption, Shows::Picture)
+    };
+    ($name:literal, $caption:literal, $shows:expr) => {
         Panel {
             name: $name,
             caption: $caption,
             scene: include_str!(concat!("../../../scenes/paper/fig", $name, ".toml")),
+            shows: $shows,
         }
     };
 }
 
 /// The figures, in the order of the paper.
 pub static FIGURES: &[Figure] = &[
+    Figure {
+        number: 1,
+        title: "The setting, to scale",
+        panels: &[
+            panel!("1a", "square cloak, designs (i)-(iii)", Shows::Setting),
+            panel!("1b", "double-Gaussian cloak, design (iv)", Shows::Setting),
+        ],
+    },
     Figure {
         number: 2,
         title: "Positive uniaxial square cloak (i), along the transformation axis",
@@ -197,7 +220,7 @@ mod tests {
             })
         };
         assert_eq!(names(&["8c", "6"]), Ok(vec!["6a", "6b", "6c", "6d", "8c"]));
-        assert_eq!(names(&[]).map(|all| all.len()), Ok(42));
+        assert_eq!(names(&[]).map(|all| all.len()), Ok(44));
         assert!(names(&["6x"]).is_err());
     }
 }

@@ -5,12 +5,14 @@
 //! structure, and one line in [`CATALOGUE`]; nothing else in the program knows it.
 
 mod cell;
+mod cross_section;
 mod double_gaussian_cloak;
 mod skin;
 mod square_cloak;
 mod structure;
 
 pub use cell::{Cell, ConformalCell, Entrance, Face, Passage, Prism};
+pub use cross_section::{Contour, CrossSection, REACH, Region, Side};
 pub use skin::Skin;
 pub use structure::{Beyond, Finish, Hull, SkinHit, Structure};
 

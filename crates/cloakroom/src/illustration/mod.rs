@@ -3,18 +3,22 @@
 
 mod color_bar;
 mod color_scale;
+mod drawing;
 mod lettering;
 mod quantity;
 mod scalar_map;
+mod setting;
 mod sheet;
 mod shrink;
 mod ticks;
 
 pub use color_bar::ColorBar;
 pub use color_scale::ColorScale;
+pub use drawing::{Drawing, Element, Face, Ink, Shape, Stroke, Words};
 pub use lettering::{Lettering, Weight};
 pub use quantity::{Dimension, Quantity, Unit};
 pub use scalar_map::{ScalarMap, scalar_map};
+pub use setting::{Setting, View, setting};
 pub use sheet::{SheetPanel, sheet};
 
 use crate::output::RgbImage;
@@ -44,6 +48,14 @@ pub enum IllustrationError {
         width: usize,
         /// The picture's height in pixels.
         height: usize,
+    },
+    /// A drawing with so many pixels does not fit into the memory.
+    #[error("a drawing of {width} x {height} pixels does not fit into the memory; take fewer")]
+    TooLarge {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
     },
 }
 

@@ -17,6 +17,7 @@ pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
 pub use studio::{Studio, StudioError, bench, limits};
 
 use crate::output::Picture;
+use crate::scene::Scene;
 use crate::trace::{Rarities, Tracer};
 use detection::Detection;
 use exposure::{Traced, expose};
@@ -122,7 +123,7 @@ fn expose_film<const N: usize>(
         width: width as usize,
         height: height as usize,
         channels: film.into_channels(),
-        metadata: metadata(studio),
+        metadata: metadata(studio.scene),
     };
     Ok(Rendered { picture, rarities })
 }
@@ -149,12 +150,13 @@ pub fn estimated_seconds(studio: &Studio<'_>) -> f64 {
 }
 
 /// What every file carries: scene, version and seed.
-fn metadata(studio: &Studio<'_>) -> Vec<(String, String)> {
+#[must_use]
+pub fn metadata(scene: &Scene) -> Vec<(String, String)> {
     [
         ("software", concat!("cloakroom ", env!("CARGO_PKG_VERSION")).to_owned()),
-        ("scene", studio.scene.source.clone()),
+        ("scene", scene.source.clone()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("seed", studio.scene.camera.seed().to_string()),
+        ("seed", scene.camera.seed().to_string()),
     ]
     .map(|(key, value)| (key.to_owned(), value))
     .to_vec()

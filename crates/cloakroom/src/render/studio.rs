@@ -170,6 +170,12 @@ impl<'s> Studio<'s> {
         [2.0 * self.screen.half_width, 2.0 * self.screen.half_height]
     }
 
+    /// The photograph.
+    #[must_use]
+    pub fn photograph(&self) -> &Pyramid {
+        &self.image
+    }
+
     /// Rows of the picture: the steps of its progress.
     #[must_use]
     pub fn rows(&self) -> u64 {

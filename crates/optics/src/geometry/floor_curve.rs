@@ -84,6 +84,15 @@ impl FloorCurve {
         Self { map, knots, peak }
     }
 
+    /// The curve above y = 0 as that many straight pieces, from the least x on.
+    #[must_use]
+    pub fn line(&self, pieces: u32) -> Vec<DVec2> {
+        let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
+            return Vec::new();
+        };
+        self.map.floor_line(first.point.re, last.point.re, pieces)
+    }
+
     /// The first point with t >= `t_min` where the ray `origin + t direction` enters the metal; points where
     /// it leaves do not count, so a ray may start on the metal (where the metal is thinner than rounding,
     /// far out, only a positive `t_min` keeps such a ray off the other side). None if there is none.

@@ -24,6 +24,12 @@ impl Wall {
         Self { from, to, extent, normal: DVec3::new(along.y, -along.x, 0.0) }
     }
 
+    /// The line it stands on.
+    #[must_use]
+    pub fn ends(&self) -> [DVec2; 2] {
+        [self.from, self.to]
+    }
+
     /// The outward unit normal.
     #[must_use]
     pub fn normal(&self) -> DVec3 {

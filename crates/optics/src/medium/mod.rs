@@ -17,6 +17,7 @@ mod wave_surface;
 
 pub use error::MediumError;
 pub(crate) use modes::{BothWays, LocalMode, LocalModes, Tangential, mutual_flux};
+pub use principal_axes::principal_axes;
 pub use modes::{Heading, Mode, ModeKind};
 pub use tensor::Tensor;
 pub use wave_surface::{NormalComponent, WaveSurface};
@@ -241,6 +242,16 @@ impl Medium {
     pub fn wave_surface(&self) -> Option<&WaveSurface> {
         match &self.class {
             Class::Isotropic(surface) | Class::Matched(surface) => Some(surface),
+            _ => None,
+        }
+    }
+
+    /// The optic axis of a uniaxial medium, a unit vector of either sense.
+    #[must_use]
+    pub fn optic_axis(&self) -> Option<DVec3> {
+        match &self.class {
+            Class::Uniaxial(uniaxial) => Some(uniaxial.axis),
+            Class::AbsorbingUniaxial(uniaxial) => Some(uniaxial.axis),
             _ => None,
         }
     }

@@ -4,7 +4,8 @@ use glam::{DMat3, DVec3};
 
 /// Principal values of a real symmetric tensor and its axes, as columns: cyclic Jacobi rotations,
 /// which find even small values to full precision (Golub & Van Loan, Matrix Computations, 8.5).
-pub(super) fn principal_axes(tensor: &DMat3) -> (DVec3, DMat3) {
+#[must_use]
+pub fn principal_axes(tensor: &DMat3) -> (DVec3, DMat3) {
     let mut m = *tensor;
     let mut axes = DMat3::IDENTITY;
     // Convergence is quadratic; five sweeps do for any 3 x 3 matrix, the rest is a safeguard.

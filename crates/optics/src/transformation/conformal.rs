@@ -1,5 +1,6 @@
 //! Conformal maps of the half plane above a flat mirror onto the space above a bumped one.
 
+use glam::DVec2;
 use num_complex::Complex64;
 
 use super::gaussian::GaussianMap;
@@ -160,6 +161,19 @@ impl ConformalMap {
         match self {
             Self::Gaussian(map) => map.floor_height_at(x),
         }
+    }
+
+    /// The floor between two physical x as that many straight pieces.
+    #[must_use]
+    pub fn floor_line(&self, x_min: f64, x_max: f64, pieces: u32) -> Vec<DVec2> {
+        let (start, end) = (self.floor_parameter(x_min), self.floor_parameter(x_max));
+        (0..=pieces)
+            .map(|k| {
+                let share = f64::from(k) / f64::from(pieces.max(1));
+                let point = self.floor(start + (end - start) * share);
+                DVec2::new(point.re, point.im)
+            })
+            .collect()
     }
 
     /// The area between the whole floor and its mirror image under y -> -y, cm²: what a double cloak

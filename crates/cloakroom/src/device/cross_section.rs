@@ -1,0 +1,256 @@
+//! What a device looks like cut in the plane z = 0 of its own frame.
+//!
+//! A new kind of [`Cell`] or [`Skin`] says here, and nowhere else, what it looks like: its sides as
+//! lines, and for a cell whether its medium is graded. The rest follows.
+
+use super::{Beyond, Cell, ConformalCell, Prism, Skin, Structure};
+use glam::DVec2;
+use optics::medium::Medium;
+use optics::propagation::Half;
+
+/// How far cells without an end are drawn, cm from the device's origin.
+pub const REACH: f64 = 1e5;
+
+/// Straight pieces that a curve is drawn with.
+const PIECES: u32 = 256;
+
+/// A piece of the border of a cell, or of the skin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Side {
+    /// A line from point to point, cm.
+    pub line: Vec<DVec2>,
+    /// What lies on its other side.
+    pub beyond: Beyond,
+}
+
+/// A line from point to point, cm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contour {
+    /// The points; the first is not repeated at the end.
+    pub points: Vec<DVec2>,
+    /// Whether the last is joined to the first.
+    pub closed: bool,
+}
+
+/// The cross-section of one cell.
+#[derive(Clone, Debug)]
+pub struct Region<'s> {
+    /// Its border; what is inside an odd number of contours is inside.
+    pub border: Vec<Contour>,
+    /// The cell.
+    pub cell: &'s Cell,
+}
+
+/// The cross-section of a device, in its own frame.
+#[derive(Clone, Debug)]
+pub struct CrossSection<'s> {
+    /// What light in air meets.
+    pub outlines: Vec<Contour>,
+    /// The cells.
+    pub regions: Vec<Region<'s>>,
+    /// The surfaces of metal: closed contours are full of it, open ones are thin mirrors.
+    pub metal: Vec<Contour>,
+}
+
+impl Structure {
+    /// The cross-section in the plane z = 0.
+    #[must_use]
+    pub fn cross_section(&self) -> CrossSection<'_> {
+        let skin: Vec<Side> = self.skin.iter().flat_map(Skin::sides).collect();
+        let cells: Vec<Vec<Side>> = self.cells.iter().map(Cell::sides).collect();
+        let metal = cells.iter().flatten().chain(&skin);
+        let metal = metal.filter(|side| side.beyond == Beyond::Conductor);
+        CrossSection {
+            outlines: joined(skin.iter().map(|side| side.line.clone())),
+            metal: joined(metal.map(|side| side.line.clone())),
+            regions: (self.cells.iter().zip(cells))
+                .map(|(cell, sides)| Region {
+                    border: joined(sides.into_iter().map(|side| side.line)),
+                    cell,
+                })
+                .collect(),
+        }
+    }
+}
+
+impl Cell {
+    /// The border of the cell in the plane z = 0.
+    #[must_use]
+    pub fn sides(&self) -> Vec<Side> {
+        match self {
+            Self::Prism(prism) => prism.sides(),
+            Self::Conformal(cell) => cell.sides(),
+        }
+    }
+
+    /// Whether the medium varies from point to point.
+    #[must_use]
+    pub fn is_graded(&self) -> bool {
+        match self {
+            Self::Prism(_) => false,
+            Self::Conformal(_) => true,
+        }
+    }
+
+    /// The medium at a point of the plane z = 0 that lies in the cell or on its border; a graded
+    /// medium has none elsewhere.
+    #[must_use]
+    pub fn medium_at(&self, point: DVec2) -> Option<Medium> {
+        Some(self.enter(point.extend(0.0))?.medium)
+    }
+}
+
+impl Skin {
+    /// The surface in the plane z = 0: nothing for the ends of a device.
+    #[must_use]
+    pub fn sides(&self) -> Vec<Side> {
+        let metal = |line| Side { line, beyond: Beyond::Conductor };
+        match self {
+            Self::Wall { wall, beyond, .. } => {
+                vec![Side { line: wall.ends().to_vec(), beyond: *beyond }]
+            }
+            Self::Strip(wall) => vec![metal(wall.ends().to_vec())],
+            Self::Floor { curve, .. } => {
+                let upper = curve.line(PIECES);
+                let lower = upper.iter().map(|p| DVec2::new(p.x, -p.y)).rev();
+                // Joined to its beginning by the blunt ends.
+                let mut around: Vec<DVec2> = upper.iter().copied().chain(lower).collect();
+                around.extend(upper.first());
+                vec![metal(around)]
+            }
+            Self::Cap { .. } | Self::HalvesCap { .. } | Self::FloorCap { .. } => Vec::new(),
+        }
+    }
+}
+
+impl Prism {
+    fn sides(&self) -> Vec<Side> {
+        // A large square, cut by one plane after the other; with each corner, what lies beyond the
+        // side that starts there.
+        let mut corners: Vec<(DVec2, Beyond)> = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|corner| (DVec2::from(corner) * REACH, Beyond::Air))
+            .to_vec();
+        for face in &self.faces {
+            let height = |p: DVec2| face.plane.normal.truncate().dot(p) - face.plane.offset;
+            let mut kept = Vec::new();
+            for (i, &(a, beyond)) in corners.iter().enumerate() {
+                let b = corners[(i + 1) % corners.len()].0;
+                let (at_a, at_b) = (height(a), height(b));
+                let crossing = a + (b - a) * (at_a / (at_a - at_b));
+                match (at_a <= 0.0, at_b <= 0.0) {
+                    (true, true) => kept.push((a, beyond)),
+                    (true, false) => kept.extend([(a, beyond), (crossing, face.beyond)]),
+                    (false, true) => kept.push((crossing, beyond)),
+                    (false, false) => {}
+                }
+            }
+            corners = kept;
+        }
+        (0..corners.len())
+            .map(|i| {
+                let (from, beyond) = corners[i];
+                Side { line: vec![from, corners[(i + 1) % corners.len()].0], beyond }
+            })
+            // A corner that a plane just touches gives a side without length.
+            .filter(|side| !near(side.line[0], side.line[1]))
+            .collect()
+    }
+}
+
+impl ConformalCell {
+    fn sides(&self) -> Vec<Side> {
+        let cut = self.flow.cut();
+        let map = self.flow.map();
+        let mirrored = |p: DVec2| match self.half {
+            Half::Upper => p,
+            Half::Lower => DVec2::new(p.x, -p.y),
+        };
+        let side = |line: Vec<DVec2>, beyond| Side {
+            line: line.into_iter().map(mirrored).collect(),
+            beyond,
+        };
+        let floor = map.floor_line(cut.x_min, cut.x_max, PIECES);
+        let corner = |x: f64| [DVec2::new(x, map.floor_height_at(x)), DVec2::new(x, cut.y_max)];
+        let (left, right) = (corner(cut.x_min), corner(cut.x_max));
+        vec![
+            side(floor, Beyond::Conductor),
+            side(right.to_vec(), Beyond::Air),
+            side(vec![right[1], left[1]], Beyond::Air),
+            side(vec![left[1], left[0]], Beyond::Air),
+        ]
+    }
+}
+
+impl Contour {
+    /// The corners: the points without those on a straight line between their neighbours.
+    #[must_use]
+    pub fn corners(&self) -> Vec<DVec2> {
+        let n = self.points.len();
+        let straight = |i: usize| {
+            let [a, b, c] = [n - 1, 0, 1].map(|step| self.points[(i + step) % n]);
+            let turn = (b - a).perp_dot(c - b);
+            turn.abs() <= 1e-9 * (b - a).length() * (c - b).length() && (b - a).dot(c - b) > 0.0
+        };
+        let is_end = |i: usize| !self.closed && (i == 0 || i + 1 == n);
+        (0..n).filter(|i| is_end(*i) || !straight(*i)).map(|i| self.points[i]).collect()
+    }
+
+    /// Whether a point lies within a closed contour.
+    #[must_use]
+    pub fn surrounds(&self, point: DVec2) -> bool {
+        let n = self.points.len();
+        let crossed = (0..n).filter(|&i| {
+            let (a, b) = (self.points[i], self.points[(i + 1) % n]);
+            let between = (a.y > point.y) != (b.y > point.y);
+            between && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)
+        });
+        self.closed && crossed.count() % 2 == 1
+    }
+}
+
+impl Region<'_> {
+    /// Whether a point lies within.
+    #[must_use]
+    pub fn holds(&self, point: DVec2) -> bool {
+        self.border.iter().filter(|contour| contour.surrounds(point)).count() % 2 == 1
+    }
+}
+
+/// Whether two ends of lines are one point.
+fn near(a: DVec2, b: DVec2) -> bool {
+    a.distance(b) <= 1e-9 * (1.0 + a.length())
+}
+
+/// Lines joined where their ends meet, in whichever direction they run.
+fn joined(lines: impl Iterator<Item = Vec<DVec2>>) -> Vec<Contour> {
+    let mut rest: Vec<Vec<DVec2>> = lines.filter(|line| line.len() > 1).collect();
+    let mut contours = Vec::new();
+    while !rest.is_empty() {
+        let mut points = rest.remove(0);
+        // First on from its end, then from its beginning.
+        for _ in 0..2 {
+            while let Some(end) = points.last().copied()
+                && !near(end, points[0])
+                && let Some(next) = rest.iter().position(|line| {
+                    near(line[0], end) || line.last().is_some_and(|last| near(*last, end))
+                })
+            {
+                let mut line = rest.remove(next);
+                if !near(line[0], end) {
+                    line.reverse();
+                }
+                points.extend(line.into_iter().skip(1));
+            }
+            points.reverse();
+        }
+        let closed = points.len() > 2 && points.last().is_some_and(|last| near(*last, points[0]));
+        if closed {
+            points.pop();
+        }
+        contours.push(Contour { points, closed });
+    }
+    contours
+}
+
+#[cfg(test)]
+mod tests;

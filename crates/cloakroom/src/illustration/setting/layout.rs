@@ -1,0 +1,218 @@
+//! Where things are on the sheet.
+
+use super::super::drawing::{Drawing, Shape};
+use super::stage::{AXES, DISTANCES, EYE, Stage};
+use super::subject::{Subject, bounds};
+use super::view::{View, corners};
+use super::{GRAY, TEXT, THIN};
+use glam::DVec2;
+use optics::geometry::Outline;
+
+/// Devices drawn smaller than this share of the sheet's shorter side are drawn once more, magnified.
+const SMALL: f64 = 0.28;
+/// The margin of the sheet.
+const MARGIN: f64 = 14.0;
+/// The room that a colour bar takes.
+const BAR: f64 = 5.2 * TEXT;
+/// The room around a magnified device for its dimensions.
+const AROUND: f64 = 2.3 * TEXT;
+
+/// Where things are on the sheet.
+pub(super) struct Layout {
+    pub sheet: DVec2,
+    /// The whole scene.
+    pub view: View,
+    /// Devices once more, magnified.
+    pub insets: Vec<Inset>,
+    /// The colour bar, if there is one: top left corner and size.
+    pub bar: Option<[DVec2; 2]>,
+    /// The top left corner of the axes of coordinates.
+    pub axes: DVec2,
+}
+
+/// A device once more, magnified.
+pub(super) struct Inset {
+    /// Which.
+    pub subject: usize,
+    pub view: View,
+    /// The frame around it: top left corner and size.
+    frame: [DVec2; 2],
+    /// Where the key to it goes.
+    pub legend: [DVec2; 2],
+}
+
+impl Layout {
+    pub fn new(sheet: DVec2, stage: &Stage, subjects: &[Subject<'_>], bar: bool) -> Self {
+        let bar = if bar { BAR } else { 0.0 };
+        let scene = subjects.iter().filter_map(Subject::bounds).flatten();
+        let world = bounds(scene.chain(stage.bounds())).unwrap_or([DVec2::ZERO; 2]);
+        let view = |share: f64| {
+            let from = DVec2::new(MARGIN + 1.6 * EYE, DISTANCES);
+            let below = 1.5 * TEXT + MARGIN;
+            let to = DVec2::new(sheet.x - MARGIN - bar - 0.8 * TEXT, share * sheet.y - below);
+            View::fitting(world, [from, to - from])
+        };
+        let whole = view(1.0);
+        let small: Vec<(usize, [DVec2; 2])> = (subjects.iter().enumerate())
+            .filter_map(|(index, subject)| Some((index, subject.bounds()?)))
+            .filter(|(_, [low, high])| {
+                whole.scale * (*high - *low).max_element() < SMALL * sheet.min_element()
+            })
+            .collect();
+        let mut layout = Self { sheet, view: whole, insets: Vec::new(), bar: None, axes: DVec2::ZERO };
+        if let [(index, bounds)] = &small[..] {
+            layout.place_one(*index, *bounds, view, stage, subjects);
+        } else if !small.is_empty() {
+            layout.place_row(&small, view(0.56));
+        }
+        let [top, size] = layout.view.window;
+        let bar_at = DVec2::new(sheet.x - MARGIN - BAR + 0.6 * TEXT, top.y + 0.08 * size.y);
+        layout.bar = (bar > 0.0).then_some([bar_at, DVec2::new(bar, 0.84 * size.y)]);
+        layout.place_axes(stage, subjects);
+        layout
+    }
+
+    /// Whether a device is drawn once more, magnified.
+    pub fn is_magnified(&self, subject: usize) -> bool {
+        self.insets.iter().any(|inset| inset.subject == subject)
+    }
+
+    /// One small device: magnified in the corner below the camera, as large as it can be beside what
+    /// the camera sees.
+    fn place_one(
+        &mut self,
+        index: usize,
+        bounds: [DVec2; 2],
+        view: impl Fn(f64) -> View,
+        stage: &Stage,
+        subjects: &[Subject<'_>],
+    ) {
+        let sheet = self.sheet;
+        let mut best: Option<(f64, View, [DVec2; 2])> = None;
+        for share in [0.84, 0.8, 0.76, 0.72, 0.68, 0.64, 0.6, 0.56] {
+            let view = view(share);
+            let taken = obstacles(&view, stage, subjects);
+            for height in (4..=13).map(|k| 0.04 * f64::from(k) * sheet.y) {
+                let size = DVec2::splat(height);
+                let from = DVec2::new(MARGIN, sheet.y - MARGIN - height);
+                let frame = [from, size];
+                let is_free = taken.iter().all(|shape| !overlap(shape, &corners(frame)));
+                // The scene should be large, and so should the inset.
+                let merit = height * view.scale.powi(2);
+                if is_free && best.as_ref().is_none_or(|(most, ..)| merit > *most) {
+                    best = Some((merit, view, frame));
+                }
+            }
+        }
+        let Some((_, view, frame)) = best else {
+            self.place_row(&[(index, bounds)], view(0.56));
+            return;
+        };
+        self.view = view;
+        let taken = obstacles(&view, stage, subjects);
+        let lowest = taken.iter().flatten().map(|p| p.y).fold(f64::MIN, f64::max);
+        let from = DVec2::new(frame[0].x + frame[1].x + 1.6 * TEXT, lowest + 0.5 * TEXT);
+        let legend = [from, (sheet - MARGIN - from).max(DVec2::ZERO)];
+        self.insets.push(Inset { subject: index, view: within(bounds, frame), frame, legend });
+    }
+
+    /// Several small devices: magnified in a row below the scene.
+    fn place_row(&mut self, small: &[(usize, [DVec2; 2])], view: View) {
+        self.view = view;
+        let top = view.window[0].y + view.window[1].y + 2.2 * TEXT;
+        let height = (self.sheet.y - MARGIN - top).max(1.0);
+        let room = (self.sheet.x - 2.0 * MARGIN) / small.len() as f64;
+        for (k, (index, bounds)) in small.iter().enumerate() {
+            let from = DVec2::new(MARGIN + k as f64 * room, top);
+            let frame = [from, DVec2::new(height.min(room - 0.5 * TEXT), height)];
+            let legend_from = DVec2::new(from.x + frame[1].x + 1.2 * TEXT, top);
+            let legend = [
+                legend_from,
+                DVec2::new((room - frame[1].x - 2.0 * TEXT).max(0.0), height),
+            ];
+            let view = within(*bounds, frame);
+            self.insets.push(Inset { subject: *index, view, frame, legend });
+        }
+    }
+
+    /// Puts the axes of coordinates into the first corner that is free.
+    fn place_axes(&mut self, stage: &Stage, subjects: &[Subject<'_>]) {
+        let mut taken = obstacles(&self.view, stage, subjects);
+        for inset in &self.insets {
+            taken.push(corners(inset.frame));
+            taken.push(corners(inset.legend));
+        }
+        let [_, size] = self.view.window;
+        let view_top = self.view.window[0].y;
+        let (left, right) = (MARGIN, self.sheet.x - MARGIN - AXES.x);
+        let bottom = self.sheet.y - MARGIN - AXES.y;
+        let places = [
+            (left, bottom),
+            (left, view_top + size.y - AXES.y),
+            (left, view_top + 0.5 * TEXT),
+            (right, bottom),
+            (right, view_top),
+            ((left + right) / 2.0, bottom),
+        ]
+        .map(DVec2::from);
+        let is_free = |at: &DVec2| {
+            let own = corners([*at, AXES]);
+            taken.iter().all(|shape| !overlap(shape, &own))
+        };
+        self.axes = places.into_iter().find(is_free).unwrap_or(places[0]);
+    }
+}
+
+impl Inset {
+    /// Draws the frame, and what of the scene is in it.
+    pub fn draw_frame(&self, drawing: &mut Drawing, scene: &View, subject: &Subject<'_>) {
+        let Some([low, high]) = subject.bounds() else { return };
+        let from = scene.place(DVec2::new(low.x, high.y)) - 5.0;
+        let to = scene.place(DVec2::new(high.x, low.y)) + 5.0;
+        let source = corners([from, to - from]);
+        let frame = corners(self.frame);
+        drawing.add("magnified", Shape::Area(vec![source.clone()])).stroked(GRAY, 0.8 * THIN);
+        drawing.add("inset", Shape::Area(vec![frame.clone()])).stroked(GRAY, 0.8 * THIN);
+        // From the lower corners to the upper ones of the inset.
+        for (a, b) in [(source[1], frame[0]), (source[2], frame[3])] {
+            let line = drawing.add("magnification", Shape::Line(vec![a, b]));
+            line.stroked(GRAY, 0.6 * THIN).dashed(4.0, 4.0);
+        }
+    }
+}
+
+/// The view of a device in the frame of an inset, with room for its dimensions.
+fn within(bounds: [DVec2; 2], [from, size]: [DVec2; 2]) -> View {
+    let around = DVec2::splat(AROUND).min(size * 0.3);
+    View::fitting(bounds, [from + around, size - 2.0 * around])
+}
+
+/// The convex shapes on the sheet that nothing else should cover.
+fn obstacles(view: &View, stage: &Stage, subjects: &[Subject<'_>]) -> Vec<Vec<DVec2>> {
+    let mut shapes = vec![view.places(&stage.sight)];
+    let boxed = |[low, high]: [DVec2; 2], around: DVec2| {
+        let from = view.place(DVec2::new(low.x, high.y)) - around;
+        corners([from, view.place(DVec2::new(high.x, low.y)) + around - from])
+    };
+    shapes.push(boxed([stage.eye; 2], DVec2::new(2.0 * EYE, EYE + 1.2 * TEXT)));
+    let around = DVec2::new(2.0 * TEXT, 1.4 * TEXT);
+    shapes.extend(bounds(stage.photograph()).map(|photograph| boxed(photograph, around)));
+    shapes.extend(subjects.iter().filter_map(Subject::bounds).map(|b| boxed(b, DVec2::splat(6.0))));
+    shapes.retain(|shape| shape.len() > 2);
+    shapes
+}
+
+/// Whether two convex shapes of the sheet overlap.
+fn overlap(a: &[DVec2], b: &[DVec2]) -> bool {
+    // Outlines run counterclockwise with y up.
+    let outline = |shape: &[DVec2]| {
+        let mut points: Vec<DVec2> = shape.iter().map(|p| DVec2::new(p.x, -p.y)).collect();
+        let turn: f64 =
+            (0..points.len()).map(|i| points[i].perp_dot(points[(i + 1) % points.len()])).sum();
+        if turn < 0.0 {
+            points.reverse();
+        }
+        Outline::new(points)
+    };
+    outline(a).overlaps(&outline(b), 0.0)
+}

@@ -1,0 +1,126 @@
+//! The setting of a scene: camera, photograph and devices in the xy-plane, drawn to scale from the
+//! scene itself, as in Fig. 1 of Halimeh & Wegener, Opt. Express 21, 9457 (2013).
+
+mod device;
+mod dimension;
+mod index_map;
+mod layout;
+mod medium_axes;
+mod stage;
+mod subject;
+mod view;
+
+pub use view::View;
+
+use super::drawing::{Drawing, Ink, Shape, Words};
+use crate::render::{Studio, StudioError, metadata};
+use crate::scene::Scene;
+use glam::DVec2;
+use index_map::IndexScale;
+use layout::Layout;
+use stage::Stage;
+use subject::Subject;
+
+/// The drawing of a setting.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// The drawing, of the aspect of the scene's picture.
+    pub drawing: Drawing,
+    /// Where on it the points of the scene are, for whoever wants to draw more.
+    pub view: View,
+    /// Scene and version, for files.
+    pub metadata: Vec<(String, String)>,
+}
+
+/// The size of lettering. All lengths are for a sheet as large as 1024 x 768.
+const TEXT: f64 = 24.0;
+/// The width of thin lines.
+const THIN: f64 = 1.5;
+/// The width of the lines that matter.
+const THICK: f64 = 2.6;
+
+const INK: Ink = Ink::new([24, 24, 24]);
+const GRAY: Ink = Ink::new([120, 120, 120]);
+const PAPER: Ink = Ink::new([255, 255, 255]);
+const METAL: Ink = Ink::new([196, 196, 196]);
+const MEDIUM: Ink = Ink::new([222, 235, 247]);
+/// Colours that most people tell apart (Okabe & Ito, Color universal design, 2008).
+const BLUE: Ink = Ink::new([0, 114, 178]);
+const VERMILION: Ink = Ink::new([213, 94, 0]);
+const SKY: Ink = Ink::new([86, 180, 233]);
+
+/// Draws the setting of a scene: a projection on the xy-plane (x to the right, y up, z out of the
+/// page), to scale. Every device is cut in the plane z = 0 of its own frame; one that would be small is
+/// drawn once more, magnified.
+///
+/// # Errors
+///
+/// If the scene cannot be looked at, as [`Studio::new`] says.
+///
+/// # Example
+///
+/// ```
+/// use cloakroom::illustration::setting;
+/// use std::path::Path;
+///
+/// let text = "[[device]]\nkind = \"square-cloak\"";
+/// let scene = cloakroom::scene_file::parse(text, "scene", Path::new(""), &[])?.scene;
+/// let setting = setting(&scene)?;
+/// let svg = setting.drawing.to_svg([1024, 768], "A square cloak", &setting.metadata);
+/// assert!(svg.contains("aria-label=\"14.1 cm\""));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn setting(scene: &Scene) -> Result<Setting, StudioError> {
+    let studio = Studio::new(scene)?;
+    let subjects = Subject::all(studio.bench());
+    let stage = Stage::new(scene, &studio);
+    let scale = IndexScale::of(&subjects);
+    let layout = Layout::new(sheet(scene.camera.resolution()), &stage, &subjects, scale.is_some());
+    let mut drawing = Drawing::new(layout.sheet);
+    stage.draw_behind(&mut drawing, &layout.view);
+    for (index, subject) in subjects.iter().enumerate() {
+        let plain = !layout.is_magnified(index);
+        device::draw(&mut drawing, &layout.view, subject, scale.as_ref(), plain);
+    }
+    stage.draw_before(&mut drawing, &layout.view);
+    stage.draw_distances(&mut drawing, &layout.view, &subjects);
+    stage::draw_axes(&mut drawing, layout.axes);
+    for inset in &layout.insets {
+        let subject = &subjects[inset.subject];
+        inset.draw_frame(&mut drawing, &layout.view, subject);
+        device::draw(&mut drawing, &inset.view, subject, scale.as_ref(), true);
+        device::draw_legend(&mut drawing, inset.legend, subject);
+    }
+    if let (Some(scale), Some(place)) = (&scale, layout.bar) {
+        scale.draw_bar(&mut drawing, place);
+    }
+    Ok(Setting { drawing, view: layout.view, metadata: metadata(scene) })
+}
+
+/// The sheet for a picture of that many pixels: of its aspect, and as large as one of 1024 x 768.
+fn sheet(resolution: [u32; 2]) -> DVec2 {
+    let pixels = DVec2::from(resolution.map(f64::from));
+    pixels * (1024.0 * 768.0 / (pixels.x * pixels.y)).sqrt()
+}
+
+/// Writes a label that can be read on any ground.
+fn write(drawing: &mut Drawing, class: &'static str, words: Words, ink: Ink) {
+    let ground = drawing.add("halo", Shape::Words(words.clone()));
+    ground.filled(PAPER.faint(0.85)).stroked(PAPER.faint(0.85), 6.0);
+    drawing.add(class, Shape::Words(words)).filled(ink);
+}
+
+/// A length in cm with two decimals at most.
+fn centimetres(length: f64) -> String {
+    format!("{} cm", rounded(length))
+}
+
+/// A number with two decimals at most.
+fn rounded(number: f64) -> String {
+    let digits = format!("{number:.2}");
+    let short = digits.trim_end_matches('0').trim_end_matches('.');
+    if short == "-0" { "0".to_owned() } else { short.replace('-', "\u{2212}") }
+}
+
+#[cfg(test)]
+mod tests;
