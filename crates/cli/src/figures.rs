@@ -112,11 +112,7 @@ fn file(panel: &Panel, ending: &str, arguments: &FiguresArguments) -> PathBuf {
 }
 
 /// Writes a PNG and says so.
-fn write_png(
-    image: &RgbImage,
-    metadata: &[(String, String)],
-    path: &Path,
-) -> Result<(), Failure> {
+fn write_png(image: &RgbImage, metadata: &[(String, String)], path: &Path) -> Result<(), Failure> {
     output::write_png(image, metadata, path).map_err(Failure::from_error)?;
     say(&format!("{}", path.display()));
     Ok(())

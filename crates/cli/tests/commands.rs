@@ -245,6 +245,36 @@ fn figures_come_as_panels_and_sheets() {
 }
 
 #[test]
+fn the_setting_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let red = folder.path().join("red.png");
+    image::RgbImage::from_pixel(8, 6, image::Rgb([255, 0, 0])).save(&red).unwrap();
+    let figures = |out: &str, more: &[&str]| {
+        let out = folder.path().join(out);
+        let mut command = cloakroom();
+        command.args(["figures", "--only", "1", "--size", "200x150", "--out"]).arg(&out);
+        command.args(more).assert().success();
+        out
+    };
+    let plain = figures("plain", &[]);
+    for (panel, label) in [("fig1a", "11.51 cm"), ("fig1b", "57.14 cm")] {
+        let image = image::open(plain.join(format!("{panel}.png"))).unwrap();
+        assert_eq!((image.width(), image.height()), (200, 150));
+        let svg = fs::read_to_string(plain.join(format!("{panel}.svg"))).unwrap();
+        assert!(svg.contains(&format!("aria-label=\"{label}\"")) && svg.contains("[[device]]"));
+    }
+    assert!(plain.join("fig1.png").is_file());
+    // The photograph in the drawing is the one that is looked at.
+    let other = figures("other", &["--photo", red.to_str().unwrap()]);
+    let reds = |folder: &Path| {
+        let image = image::open(folder.join("fig1b.png")).unwrap().into_rgb8();
+        image.pixels().filter(|pixel| pixel.0 == [255, 0, 0]).count()
+    };
+    assert_eq!(reds(&plain), 0);
+    assert!(reds(&other) > 100);
+}
+
+#[test]
 fn a_map_has_a_colour_bar() {
     let folder = tempfile::tempdir().unwrap();
     let map = pixels(folder.path(), "8d", &[]);

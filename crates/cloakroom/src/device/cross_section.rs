@@ -127,9 +127,10 @@ impl Prism {
     fn sides(&self) -> Vec<Side> {
         // A large square, cut by one plane after the other; with each corner, what lies beyond the
         // side that starts there.
-        let mut corners: Vec<(DVec2, Beyond)> = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-            .map(|corner| (DVec2::from(corner) * REACH, Beyond::Air))
-            .to_vec();
+        let mut corners: Vec<(DVec2, Beyond)> =
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+                .map(|corner| (DVec2::from(corner) * REACH, Beyond::Air))
+                .to_vec();
         for face in &self.faces {
             let height = |p: DVec2| face.plane.normal.truncate().dot(p) - face.plane.offset;
             let mut kept = Vec::new();

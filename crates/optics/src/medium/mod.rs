@@ -17,8 +17,8 @@ mod wave_surface;
 
 pub use error::MediumError;
 pub(crate) use modes::{BothWays, LocalMode, LocalModes, Tangential, mutual_flux};
-pub use principal_axes::principal_axes;
 pub use modes::{Heading, Mode, ModeKind};
+pub use principal_axes::principal_axes;
 pub use tensor::Tensor;
 pub use wave_surface::{NormalComponent, WaveSurface};
 

@@ -139,7 +139,8 @@ fn letters(words: &Words) -> String {
     let mut x = -words.anchor * words.width();
     for (face, text) in &words.runs {
         let place = |p: DVec2| {
-            let on_line = DVec2::new(x + p.x * words.size, (face.half_capital() - p.y) * words.size);
+            let on_line =
+                DVec2::new(x + p.x * words.size, (face.half_capital() - p.y) * words.size);
             point(words.at + turn.rotate(on_line))
         };
         for piece in face.outline(text) {

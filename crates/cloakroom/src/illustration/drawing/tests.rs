@@ -14,10 +14,12 @@ fn shapes_become_pixels() {
     drawing
         .add("half", Shape::Circle { centre: DVec2::new(50.0, 50.0), radius: 10.0 })
         .filled(Ink::new([0, 0, 255]).faint(0.5))
-        .within(vec![vec![(0.0, 0.0), (50.0, 0.0), (50.0, 100.0), (0.0, 100.0)]
-            .into_iter()
-            .map(DVec2::from)
-            .collect()]);
+        .within(vec![
+            vec![(0.0, 0.0), (50.0, 0.0), (50.0, 100.0), (0.0, 100.0)]
+                .into_iter()
+                .map(DVec2::from)
+                .collect(),
+        ]);
     let image = drawing.to_image([200, 200]).expect("an image");
     let at = |x, y| image.get_pixel(x, y).0;
     assert_eq!(at(40, 40), [255, 0, 0]);
@@ -34,11 +36,8 @@ fn images_lie_where_they_are_placed() {
     image.put_pixel(1, 0, Rgb([200, 0, 0]));
     let mut drawing = Drawing::new(DVec2::new(40.0, 40.0));
     // Turned a quarter counterclockwise: the right side is up.
-    let place = DAffine2::from_cols(
-        DVec2::new(0.0, -20.0),
-        DVec2::new(20.0, 0.0),
-        DVec2::new(10.0, 30.0),
-    );
+    let place =
+        DAffine2::from_cols(DVec2::new(0.0, -20.0), DVec2::new(20.0, 0.0), DVec2::new(10.0, 30.0));
     drawing.add("image", Shape::Image { image, place });
     let pixels = drawing.to_image([40, 40]).expect("an image");
     let red = |x, y| pixels.get_pixel(x, y).0[0];

@@ -5,7 +5,7 @@ use super::index_map::{IndexScale, mean_index, on_sheet};
 use super::medium_axes::{MediumAxes, draw_cross, draw_key};
 use super::subject::{Subject, bounds};
 use super::view::View;
-use super::{INK, MEDIUM, METAL, TEXT, THICK, THIN, centimetres, dimension, rounded, write};
+use super::{INK, MEDIUM, METAL, PAPER, TEXT, THICK, THIN, centimetres, dimension, rounded, write};
 use crate::device::{Contour, REACH, Region};
 use glam::DVec2;
 
@@ -16,13 +16,13 @@ const SHIFT: f64 = 15.0;
 /// Contours of more corners than this are curves: their sides are not measured.
 const MOST_CORNERS: usize = 8;
 
-/// Draws a device, with its dimensions if they are wanted.
+/// Draws a device; in detail, with the axes of its media and its dimensions.
 pub(super) fn draw(
     drawing: &mut Drawing,
     view: &View,
     subject: &Subject<'_>,
     scale: Option<&IndexScale>,
-    dimensions: bool,
+    in_detail: bool,
 ) {
     let section = &subject.section;
     let place = |contour: &Contour| on_sheet(view, &subject.pose, &contour.points);
@@ -50,10 +50,10 @@ pub(super) fn draw(
             line.stroked(INK, 1.4 * THICK).within(vec![view.frame()]);
         }
     }
-    for region in section.regions.iter().filter(|region| !region.cell.is_graded()) {
-        draw_medium(drawing, view, subject, region);
-    }
-    if dimensions {
+    if in_detail {
+        for region in section.regions.iter().filter(|region| !region.cell.is_graded()) {
+            draw_medium(drawing, view, subject, region);
+        }
         draw_dimensions(drawing, view, subject);
     }
 }
@@ -74,7 +74,7 @@ fn draw_medium(drawing: &mut Drawing, view: &View, subject: &Subject<'_>, region
         .collect();
     let room = |direction: DVec2| {
         let free = [direction, -direction].map(|d| free_way(&border, at, d));
-        0.75 * free[0].min(free[1])
+        0.8 * free[0].min(free[1])
     };
     if let Some(axes) = MediumAxes::of(&medium) {
         draw_cross(drawing, &axes, at, |direction| room(direction).min(AXIS), turned);
@@ -83,17 +83,13 @@ fn draw_medium(drawing: &mut Drawing, view: &View, subject: &Subject<'_>, region
         let value = (Face::Regular, format!(" = {}", rounded(mean_index(&medium))));
         let words = Words::of_runs(vec![name, value], at, TEXT);
         if words.width() < 2.0 * room(DVec2::X) && TEXT < 2.0 * room(DVec2::Y) {
-            write(drawing, "index", words, INK);
+            write(drawing, "index", words, MEDIUM);
         }
     }
 }
 
 /// The key to a device that is drawn magnified: its title, and the axes and tensors of its media.
-pub(super) fn draw_legend(
-    drawing: &mut Drawing,
-    [from, size]: [DVec2; 2],
-    subject: &Subject<'_>,
-) {
+pub(super) fn draw_legend(drawing: &mut Drawing, [from, size]: [DVec2; 2], subject: &Subject<'_>) {
     if size.x < 12.0 * TEXT || size.y < 3.0 * TEXT {
         return;
     }
@@ -207,7 +203,8 @@ fn measure(
         return;
     }
     let sides = points.len() - usize::from(!contour.closed);
-    let turn: f64 = (0..points.len()).map(|i| points[i].perp_dot(points[(i + 1) % points.len()])).sum();
+    let turn: f64 =
+        (0..points.len()).map(|i| points[i].perp_dot(points[(i + 1) % points.len()])).sum();
     // Away from the inside; below a line.
     let outward = |i: usize| {
         let along = points[(i + 1) % points.len()] - points[i];
@@ -216,7 +213,8 @@ fn measure(
         if contour.closed { normal * turn.signum() } else { below }
     };
     // Outside rather below and on the side with more room, inside rather opposite.
-    let side = if low.x - view.window[0].x > view.window[0].x + view.window[1].x - high.x { -0.6 } else { 0.6 };
+    let [left, right] = [low.x - view.window[0].x, view.window[0].x + view.window[1].x - high.x];
+    let side = if left > right + 2.0 * TEXT { -0.6 } else { 0.6 };
     let liked = |i: usize| outward(i).dot(DVec2::new(side, 0.8) * way);
     let mut order: Vec<usize> = (0..sides).collect();
     order.sort_by(|&i, &j| liked(j).total_cmp(&liked(i)));
@@ -224,7 +222,9 @@ fn measure(
         let length = corners[i].distance(corners[(i + 1) % corners.len()]);
         let ends = [points[i], points[(i + 1) % points.len()]];
         if ends[0].distance(ends[1]) > 1.5 * TEXT && is_new(length) {
-            dimension::draw(drawing, ends, way * SHIFT * outward(i), &centimetres(length));
+            let shift = way * SHIFT * outward(i);
+            let ground = if way < 0.0 { METAL } else { PAPER };
+            dimension::draw(drawing, ends, shift, &centimetres(length), ground);
         }
     }
 }
@@ -249,7 +249,7 @@ fn measure_curve(
             dimension::double_arrow(drawing, "dimension", ends, INK, THIN);
             let beside = ends[1] + DVec2::new(10.0, -0.4 * TEXT);
             let words = Words::new(centimetres(size.y), beside, TEXT).anchored(0.0);
-            write(drawing, "dimension-label", words, INK);
+            write(drawing, "dimension-label", words, PAPER);
         }
         return;
     }
@@ -258,11 +258,11 @@ fn measure_curve(
         let label = if round { format!("Ø {}", centimetres(size.x)) } else { centimetres(size.x) };
         let ends = [at(low.x, low.y), at(high.x, low.y)];
         let down = (at(middle.x, low.y) - at(middle.x, high.y)).normalize_or(DVec2::Y);
-        dimension::draw(drawing, ends, SHIFT * down, &label);
+        dimension::draw(drawing, ends, SHIFT * down, &label, PAPER);
     }
     if !round && is_new(size.y) {
         let ends = [at(high.x, low.y), at(high.x, high.y)];
         let right = (at(high.x, middle.y) - at(low.x, middle.y)).normalize_or(DVec2::X);
-        dimension::draw(drawing, ends, SHIFT * right, &centimetres(size.y));
+        dimension::draw(drawing, ends, SHIFT * right, &centimetres(size.y), PAPER);
     }
 }

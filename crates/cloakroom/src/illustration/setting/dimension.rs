@@ -8,8 +8,14 @@ use glam::DVec2;
 const HEAD: f64 = 11.0;
 
 /// Draws a dimension line beside the line from `a` to `b` (both on the sheet), shifted by `shift`, with
-/// its label beyond it.
-pub(super) fn draw(drawing: &mut Drawing, [a, b]: [DVec2; 2], shift: DVec2, label: &str) {
+/// its label beyond it on a ground of that colour.
+pub(super) fn draw(
+    drawing: &mut Drawing,
+    [a, b]: [DVec2; 2],
+    shift: DVec2,
+    label: &str,
+    ground: Ink,
+) {
     let outward = shift.normalize_or(DVec2::Y);
     for end in [a, b] {
         let line = vec![end + 3.0 * outward, end + shift + 6.0 * outward];
@@ -17,7 +23,7 @@ pub(super) fn draw(drawing: &mut Drawing, [a, b]: [DVec2; 2], shift: DVec2, labe
     }
     double_arrow(drawing, "dimension", [a + shift, b + shift], INK, THIN);
     let words = Words::new(label, (a + b) / 2.0 + shift + 0.66 * TEXT * outward, TEXT);
-    write(drawing, "dimension-label", words.turned(upright(b - a)), INK);
+    write(drawing, "dimension-label", words.turned(upright(b - a)), ground);
 }
 
 /// The angle in degrees of text along a line of the sheet that nobody has to read upside down.

@@ -37,8 +37,9 @@ impl IndexScale {
                 let share = DVec2::new(f64::from(k % STEPS), f64::from(k / STEPS)) + 0.5;
                 low + (high - low) * share / f64::from(STEPS)
             });
-            for medium in
-                border.chain(lattice.filter(|p| region.holds(*p))).filter_map(|p| region.cell.medium_at(p))
+            for medium in border
+                .chain(lattice.filter(|p| region.holds(*p)))
+                .filter_map(|p| region.cell.medium_at(p))
             {
                 isotropic &= medium.wave_surface().is_some() && medium.optic_axis().is_none();
                 numbers.push(mean_index(&medium));
@@ -52,7 +53,13 @@ impl IndexScale {
     }
 
     /// Draws a graded region: its index in colours, within its border.
-    pub fn draw_region(&self, drawing: &mut Drawing, view: &View, region: &Region<'_>, pose: &Pose) {
+    pub fn draw_region(
+        &self,
+        drawing: &mut Drawing,
+        view: &View,
+        region: &Region<'_>,
+        pose: &Pose,
+    ) {
         const MOST: f64 = 480.0;
         let points = region.border.iter().flat_map(|contour| contour.points.iter().copied());
         let Some([low, high]) = bounds(points) else { return };
@@ -86,9 +93,9 @@ impl IndexScale {
             corner(low.x, low.y) - top_left,
             top_left,
         );
-        drawing
-            .add("index-map", Shape::Image { image, place })
-            .within(region.border.iter().map(|contour| on_sheet(view, pose, &contour.points)).collect());
+        drawing.add("index-map", Shape::Image { image, place }).within(
+            region.border.iter().map(|contour| on_sheet(view, pose, &contour.points)).collect(),
+        );
     }
 
     /// Draws the colour bar with its top left corner at a point, as high as told.

@@ -14,8 +14,10 @@ const SMALL: f64 = 0.28;
 const MARGIN: f64 = 14.0;
 /// The room that a colour bar takes.
 const BAR: f64 = 5.2 * TEXT;
+/// The least width of the key to a magnified device.
+const LEGEND: f64 = 14.5 * TEXT;
 /// The room around a magnified device for its dimensions.
-const AROUND: f64 = 2.3 * TEXT;
+const AROUND: f64 = 2.0 * TEXT;
 
 /// Where things are on the sheet.
 pub(super) struct Layout {
@@ -59,9 +61,10 @@ impl Layout {
                 whole.scale * (*high - *low).max_element() < SMALL * sheet.min_element()
             })
             .collect();
-        let mut layout = Self { sheet, view: whole, insets: Vec::new(), bar: None, axes: DVec2::ZERO };
+        let mut layout =
+            Self { sheet, view: whole, insets: Vec::new(), bar: None, axes: DVec2::ZERO };
         if let [(index, bounds)] = &small[..] {
-            layout.place_one(*index, *bounds, view, stage, subjects);
+            layout.place_one(*index, *bounds, world, view, stage, subjects);
         } else if !small.is_empty() {
             layout.place_row(&small, view(0.56));
         }
@@ -83,6 +86,7 @@ impl Layout {
         &mut self,
         index: usize,
         bounds: [DVec2; 2],
+        world: [DVec2; 2],
         view: impl Fn(f64) -> View,
         stage: &Stage,
         subjects: &[Subject<'_>],
@@ -90,7 +94,8 @@ impl Layout {
         let sheet = self.sheet;
         let mut best: Option<(f64, View, [DVec2; 2])> = None;
         for share in [0.84, 0.8, 0.76, 0.72, 0.68, 0.64, 0.6, 0.56] {
-            let view = view(share);
+            // To the right, away from the inset.
+            let view = view(share).moved_right(world[1].x);
             let taken = obstacles(&view, stage, subjects);
             for height in (4..=13).map(|k| 0.04 * f64::from(k) * sheet.y) {
                 let size = DVec2::splat(height);
@@ -109,11 +114,27 @@ impl Layout {
             return;
         };
         self.view = view;
-        let taken = obstacles(&view, stage, subjects);
-        let lowest = taken.iter().flatten().map(|p| p.y).fold(f64::MIN, f64::max);
-        let from = DVec2::new(frame[0].x + frame[1].x + 1.6 * TEXT, lowest + 0.5 * TEXT);
-        let legend = [from, (sheet - MARGIN - from).max(DVec2::ZERO)];
+        let legend = self.free_below(frame, &obstacles(&view, stage, subjects));
         self.insets.push(Inset { subject: index, view: within(bounds, frame), frame, legend });
+    }
+
+    /// The largest free room to the right of an inset, down to the lower edge of the sheet.
+    fn free_below(&self, [from, size]: [DVec2; 2], taken: &[Vec<DVec2>]) -> [DVec2; 2] {
+        let left = from.x + size.x + TEXT;
+        let lower = self.sheet.y - MARGIN;
+        let ends = taken.iter().flatten().map(|p| p.x).chain([self.sheet.x - MARGIN]);
+        let rooms = ends.filter(|right| *right >= left + LEGEND).flat_map(|right| {
+            (0..40).map(move |k| {
+                let top = lower * f64::from(k) / 40.0;
+                [DVec2::new(left, top), DVec2::new(right - left, lower - top)]
+            })
+        });
+        let is_free =
+            |room: &[DVec2; 2]| taken.iter().all(|shape| !overlap(shape, &corners(*room)));
+        rooms
+            .filter(is_free)
+            .max_by(|a, b| (a[1].x * a[1].y).total_cmp(&(b[1].x * b[1].y)))
+            .unwrap_or([DVec2::new(left, lower), DVec2::ZERO])
     }
 
     /// Several small devices: magnified in a row below the scene.
@@ -126,10 +147,8 @@ impl Layout {
             let from = DVec2::new(MARGIN + k as f64 * room, top);
             let frame = [from, DVec2::new(height.min(room - 0.5 * TEXT), height)];
             let legend_from = DVec2::new(from.x + frame[1].x + 1.2 * TEXT, top);
-            let legend = [
-                legend_from,
-                DVec2::new((room - frame[1].x - 2.0 * TEXT).max(0.0), height),
-            ];
+            let legend =
+                [legend_from, DVec2::new((room - frame[1].x - 2.0 * TEXT).max(0.0), height)];
             let view = within(*bounds, frame);
             self.insets.push(Inset { subject: *index, view, frame, legend });
         }

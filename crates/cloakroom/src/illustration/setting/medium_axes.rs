@@ -102,8 +102,8 @@ fn is_anisotropic(tensor: &DMat3) -> bool {
     !tensor.abs_diff_eq(scalar, 1e-9 * size(tensor))
 }
 
-/// Draws axes about a point of the sheet; `reach` is how far the longest may go, `turned` takes their
-/// directions to the sheet.
+/// Draws axes about a point of the sheet; `reach` says how far one may go in a direction, `turned` takes
+/// directions of the device's frame to the sheet.
 pub(super) fn draw_cross(
     drawing: &mut Drawing,
     axes: &MediumAxes,
@@ -111,11 +111,12 @@ pub(super) fn draw_cross(
     reach: impl Fn(DVec2) -> f64,
     turned: impl Fn(DVec2) -> DVec2,
 ) {
-    let mut longest = f64::INFINITY;
-    for axis in axes.drawn() {
+    let drawn = axes.drawn();
+    let Some(first) = drawn.first() else { return };
+    let longest = reach(turned(first.direction));
+    for axis in drawn {
         let direction = turned(axis.direction);
-        longest = reach(direction).min(longest);
-        let half = direction * longest * axis.length;
+        let half = direction * reach(direction).min(longest * axis.length);
         let head = (0.4 * half.length()).min(HEAD);
         // Too small to be told from a blot.
         if head > 3.0 {

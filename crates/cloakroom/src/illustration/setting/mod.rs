@@ -103,11 +103,11 @@ fn sheet(resolution: [u32; 2]) -> DVec2 {
     pixels * (1024.0 * 768.0 / (pixels.x * pixels.y)).sqrt()
 }
 
-/// Writes a label that can be read on any ground.
-fn write(drawing: &mut Drawing, class: &'static str, words: Words, ink: Ink) {
-    let ground = drawing.add("halo", Shape::Words(words.clone()));
-    ground.filled(PAPER.faint(0.85)).stroked(PAPER.faint(0.85), 6.0);
-    drawing.add(class, Shape::Words(words)).filled(ink);
+/// Writes a label that can be read whatever lies behind it: its letters have a rim of the colour of
+/// the ground.
+fn write(drawing: &mut Drawing, class: &'static str, words: Words, ground: Ink) {
+    drawing.add("rim", Shape::Words(words.clone())).stroked(ground.faint(0.85), 6.0);
+    drawing.add(class, Shape::Words(words)).filled(INK);
 }
 
 /// A length in cm with two decimals at most.

@@ -11,7 +11,7 @@ use crate::scene::{Camera, CameraRay, Scene};
 use glam::{DAffine2, DVec2};
 
 /// How the photograph's width is drawn: it is seen a little from the side and from above.
-const SLANT: DVec2 = DVec2::new(0.13, -0.05);
+const SLANT: DVec2 = DVec2::new(0.16, -0.06);
 /// The radius of the eye that stands for the camera, units of the sheet.
 pub(super) const EYE: f64 = 36.0;
 /// The room that the row of distances needs above the view.
@@ -53,9 +53,8 @@ impl Stage {
     /// The corners of the photograph as it is drawn: top left, top right, bottom right, bottom left.
     pub fn photograph(&self) -> [DVec2; 4] {
         let half = self.size / 2.0;
-        [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)].map(|(side, up)| {
-            DVec2::new(self.x, up * half.y) + side * half.x * SLANT
-        })
+        [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)]
+            .map(|(side, up)| DVec2::new(self.x, up * half.y) + side * half.x * SLANT)
     }
 
     /// Least and greatest x and y of all that is drawn of it.
@@ -80,7 +79,7 @@ impl Stage {
         let frame = self.photograph().map(|p| view.place(p)).to_vec();
         drawing.add("photograph-frame", Shape::Area(vec![frame])).stroked(INK, THIN);
         let line = [-0.5, 0.5].map(|y| view.place(DVec2::new(self.x, y * self.size.y)));
-        drawing.add("photograph", Shape::Line(line.to_vec())).stroked(INK, THICK);
+        drawing.add("photograph", Shape::Line(line.to_vec())).stroked(INK, THIN);
     }
 
     /// Draws what stands before everything: the camera, and what the things are called.
@@ -89,20 +88,18 @@ impl Stage {
         match self.forward {
             Some(forward) => draw_eye(drawing, eye, DVec2::new(forward.x, -forward.y)),
             None => {
-                drawing.add("camera", Shape::Circle { centre: eye, radius: 0.5 * EYE }).filled(PAPER);
+                drawing
+                    .add("camera", Shape::Circle { centre: eye, radius: 0.5 * EYE })
+                    .filled(PAPER);
                 drawing.add("pupil", Shape::Circle { centre: eye, radius: 0.3 * EYE }).filled(BLUE);
             }
         }
-        let sheet = drawing.size;
-        let name = move |text: &str, at: DVec2| {
-            let words = Words::new(text, at, TEXT);
-            let half = words.width() / 2.0 + 6.0;
-            Words { at: DVec2::new(at.x.min(sheet.x - half).max(half), at.y), ..words }
-        };
+        let name = |text: &str, at: DVec2| within(view, Words::new(text, at, TEXT));
         let back = self.forward.map_or(DVec2::ZERO, |f| 0.5 * EYE * DVec2::new(-f.x, f.y));
         let words = name("camera", eye + back + DVec2::Y * (0.62 * EYE + 0.6 * TEXT));
         drawing.add("camera-label", Shape::Words(words)).filled(INK);
-        let lowest = self.photograph().into_iter().map(|p| view.place(p).y).fold(f64::MIN, f64::max);
+        let lowest =
+            self.photograph().into_iter().map(|p| view.place(p).y).fold(f64::MIN, f64::max);
         let foot = view.place(DVec2::new(self.x, 0.0)).x;
         let words = name("photograph", DVec2::new(foot, lowest + 0.9 * TEXT));
         drawing.add("photograph-label", Shape::Words(words)).filled(INK);
@@ -141,9 +138,19 @@ impl Stage {
             let fits = words.width() < ends[0].distance(ends[1]);
             raised = if fits { 0.0 } else { raised + 1.0 };
             let at = words.at - DVec2::Y * (0.75 + raised) * TEXT;
-            drawing.add("distance-label", Shape::Words(Words { at, ..words })).filled(INK);
+            let words = within(view, Words { at, ..words });
+            drawing.add("distance-label", Shape::Words(words)).filled(INK);
         }
     }
+}
+
+/// A label moved sideways so that it does not reach beyond the view and the margin beside it.
+fn within(view: &View, words: Words) -> Words {
+    let half = words.width() / 2.0;
+    let [from, size] = view.window;
+    let right = from.x + size.x + 0.8 * TEXT - half;
+    let x = words.at.x.min(right).max(half + 6.0);
+    Words { at: DVec2::new(x, words.at.y), ..words }
 }
 
 /// The field of view in the xy-plane: what its projection covers, up to a plane of constant x.
@@ -151,7 +158,16 @@ fn sight(camera: &Camera, forward: DVec2, x: f64) -> Vec<DVec2> {
     let [width, height] = camera.resolution().map(f64::from);
     let eye = camera.position().truncate();
     let far = 1.5 * (x - eye.x).abs().max(1.0);
-    let border = [(0.5, 0.0), (0.5, 1.0), (0.0, 0.5), (1.0, 0.5), (0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)];
+    let border = [
+        (0.5, 0.0),
+        (0.5, 1.0),
+        (0.0, 0.5),
+        (1.0, 0.5),
+        (0.0, 0.0),
+        (0.0, 1.0),
+        (1.0, 0.0),
+        (1.0, 1.0),
+    ];
     let line = |ray: CameraRay| {
         let (from, along) = (ray.origin.truncate(), ray.direction.truncate());
         let ahead = along.dot(forward);
@@ -194,10 +210,10 @@ fn thumbnail(photograph: &Pyramid) -> Option<RgbImage> {
             plane.push(value);
         }
     }
-    let channels = ["R", "G", "B"].into_iter().zip(planes).map(|(name, plane)| Channel {
-        name: name.to_owned(),
-        samples: Samples::F32(plane),
-    });
+    let channels = ["R", "G", "B"]
+        .into_iter()
+        .zip(planes)
+        .map(|(name, plane)| Channel { name: name.to_owned(), samples: Samples::F32(plane) });
     to_srgb(&Picture { width, height, channels: channels.collect(), metadata: Vec::new() }).ok()
 }
 
