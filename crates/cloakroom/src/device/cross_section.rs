@@ -3,7 +3,7 @@
 //! A new kind of [`Cell`] or [`Skin`] says here, and nowhere else, what it looks like: its sides as
 //! lines, and for a cell whether its medium is graded. The rest follows.
 
-use super::{Beyond, Cell, ConformalCell, Prism, Skin, Structure};
+use super::{Beyond, Cell, ConformalCell, Face, Prism, Skin, Structure};
 use glam::DVec2;
 use optics::medium::Medium;
 use optics::propagation::Half;
@@ -125,35 +125,45 @@ impl Skin {
 
 impl Prism {
     fn sides(&self) -> Vec<Side> {
-        // A large square, cut by one plane after the other; with each corner, what lies beyond the
-        // side that starts there.
-        let mut corners: Vec<(DVec2, Beyond)> =
+        // A large square, cut by one plane after the other; with each corner, the face whose side
+        // starts there.
+        let mut corners: Vec<(DVec2, Option<&Face>)> =
             [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-                .map(|corner| (DVec2::from(corner) * REACH, Beyond::Air))
+                .map(|corner| (DVec2::from(corner) * REACH, None))
                 .to_vec();
         for face in &self.faces {
             let height = |p: DVec2| face.plane.normal.truncate().dot(p) - face.plane.offset;
             let mut kept = Vec::new();
-            for (i, &(a, beyond)) in corners.iter().enumerate() {
+            for (i, &(a, on)) in corners.iter().enumerate() {
                 let b = corners[(i + 1) % corners.len()].0;
                 let (at_a, at_b) = (height(a), height(b));
                 let crossing = a + (b - a) * (at_a / (at_a - at_b));
                 match (at_a <= 0.0, at_b <= 0.0) {
-                    (true, true) => kept.push((a, beyond)),
-                    (true, false) => kept.extend([(a, beyond), (crossing, face.beyond)]),
-                    (false, true) => kept.push((crossing, beyond)),
+                    (true, true) => kept.push((a, on)),
+                    (true, false) => kept.extend([(a, on), (crossing, Some(face))]),
+                    (false, true) => kept.push((crossing, on)),
                     (false, false) => {}
                 }
             }
             corners = kept;
         }
-        (0..corners.len())
-            .map(|i| {
-                let (from, beyond) = corners[i];
-                Side { line: vec![from, corners[(i + 1) % corners.len()].0], beyond }
+        // A corner that a plane just touches has made a side without length.
+        let n = corners.len();
+        let long = (0..n).filter(|&i| !near(corners[i].0, corners[(i + 1) % n].0));
+        let corners: Vec<_> = long.map(|i| corners[i]).collect();
+        let n = corners.len();
+        // Cutting something so large has rounded much: the corners once more, from their two faces.
+        let exact = |i: usize| {
+            let (rough, on) = corners[i % n];
+            let (Some(a), Some(b)) = (corners[(i + n - 1) % n].1, on) else { return rough };
+            let (p, q) = (a.plane.normal.truncate(), b.plane.normal.truncate());
+            (b.plane.offset * p.perp() - a.plane.offset * q.perp()) / p.perp_dot(q)
+        };
+        (0..n)
+            .map(|i| Side {
+                line: vec![exact(i), exact(i + 1)],
+                beyond: corners[i].1.map_or(Beyond::Air, |face| face.beyond),
             })
-            // A corner that a plane just touches gives a side without length.
-            .filter(|side| !near(side.line[0], side.line[1]))
             .collect()
     }
 }

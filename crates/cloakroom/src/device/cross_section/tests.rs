@@ -27,8 +27,7 @@ fn the_square_cloak_has_four_triangles_around_a_rhombus() {
         assert!((area(rhombus) - 114.78).abs() < 5e-3);
         assert_eq!(section.regions.len(), 4);
         let cells: f64 = section.regions.iter().map(|region| area(&region.border[0])).sum();
-        // Corners are as exact as numbers of the size of REACH.
-        assert!((cells + area(rhombus) - area(square)).abs() < 50.0 * REACH * f64::EPSILON);
+        assert!((cells + area(rhombus) - area(square)).abs() < 1e-9);
         for region in &section.regions {
             assert_eq!(region.border[0].corners().len(), 3);
             assert!(!region.cell.is_graded() && region.cell.medium_at(DVec2::ZERO).is_some());

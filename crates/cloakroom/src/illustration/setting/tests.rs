@@ -79,7 +79,11 @@ fn the_square_cloak_has_the_numbers_of_the_paper() {
     let rhombus = setting.drawing.of_class("metal").next().expect("metal");
     assert!(has(rhombus, place(d, 0.0)) && has(rhombus, place(0.0, b)));
     let photograph = setting.drawing.of_class("photograph").next().expect("a photograph");
-    for (end, y) in line(photograph).iter().zip([-41.25, 41.25]) {
+    // 110 cm wide, and as high as its image has it.
+    let image = crate::photograph::dimensions(&scene(SQUARE).photograph.image);
+    let (width, height) = image.expect("an image");
+    let half = 55.0 * f64::from(height) / f64::from(width);
+    for (end, y) in line(photograph).iter().zip([-half, half]) {
         assert!(end.distance(place(50.0, y)) < 1e-6, "{end}");
     }
 }
@@ -179,7 +183,7 @@ fn the_field_of_view_is_the_cameras() {
         assert!(has(&shape, view.place(DVec2::from(corner))), "{corner:?}");
     }
     // Along z nothing of it lies in the plane.
-    let (_, shape) = field("[camera]\nposition = [0, 0, 90]\ntarget = [0, 0, 0]");
+    let (_, shape) = field("[camera]\nposition = [-60, 0, 90]\ntarget = [-60, 0, 0]");
     assert_eq!(shape, None);
 }
 
@@ -207,7 +211,7 @@ fn variants() -> Vec<String> {
             "",
             "[camera]\nprojection = \"orthographic\"\nwidth = 60",
             "[camera]\nposition = [-80, 60, 30]\ntarget = [0, 0, 0]",
-            "[camera]\nposition = [0, 0, 90]\ntarget = [0, 0, 0]",
+            "[camera]\nposition = [-60, 0, 90]\ntarget = [-60, 0, 0]",
             "[camera]\nposition = [150, 10, 0]\ntarget = [50, 0, 0]",
             "[camera]\nposition = [-100000, 0, 0]\nfield_of_view = 0.03",
             "[camera]\nresolution = [1600, 400]",
