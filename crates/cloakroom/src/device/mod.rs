@@ -10,7 +10,7 @@ mod skin;
 mod square_cloak;
 mod structure;
 
-pub use cell::{Cell, ConformalCell, Entrance, Face, Passage, Prism};
+pub use cell::{Cell, ConformalCell, Entrance, Face, InnerRay, Passage, Prism, RadialCell};
 pub use skin::Skin;
 pub use structure::{Beyond, Finish, Hull, SkinHit, Structure};
 

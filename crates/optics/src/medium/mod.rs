@@ -201,6 +201,21 @@ impl Medium {
         Self::new(tensor, tensor)
     }
 
+    /// The impedance-matched medium ε = µ = `tensor` of a coordinate map, for tensors known to be
+    /// symmetric and positive definite: the local medium of a transformation.
+    #[must_use]
+    pub fn transformed(tensor: DMat3) -> Self {
+        let determinant = tensor.determinant();
+        debug_assert!(determinant.is_finite() && determinant > 0.0, "tensor {tensor}");
+        Self {
+            permittivity: tensor,
+            permeability: tensor,
+            inverse_permeability: tensor.inverse(),
+            absorption: None,
+            class: Class::Matched(WaveSurface::new(tensor, determinant)),
+        }
+    }
+
     /// The relative permittivity tensor ε, its real part if the medium absorbs.
     #[must_use]
     pub fn permittivity(&self) -> &DMat3 {
