@@ -4,9 +4,15 @@
 //! ([`Structure`]). Each kind is one file here that turns the keys of its table in a scene into a
 //! structure, and one line in [`CATALOGUE`]; nothing else in the program knows it.
 
+mod bending_sphere;
 mod cell;
+mod cylinder_cloak;
 mod double_gaussian_cloak;
+mod invisible_sphere;
+mod lenses;
+mod round;
 mod skin;
+mod sphere_cloak;
 mod square_cloak;
 mod structure;
 
@@ -24,7 +30,7 @@ pub enum Show {
     Cloak,
     /// The metal alone, without its cloak.
     Bare,
-    /// What it should look like: the flat mirror it imitates.
+    /// What it should look like: the flat mirror it imitates, or nothing.
     Mirror,
 }
 
@@ -83,7 +89,17 @@ impl Fact {
 }
 
 /// Every kind of device the program knows.
-pub static CATALOGUE: &[&Entry] = &[&square_cloak::ENTRY, &double_gaussian_cloak::ENTRY];
+pub static CATALOGUE: &[&Entry] = &[
+    &square_cloak::ENTRY,
+    &double_gaussian_cloak::ENTRY,
+    &cylinder_cloak::ENTRY,
+    &sphere_cloak::ENTRY,
+    &invisible_sphere::ENTRY,
+    &bending_sphere::ENTRY,
+    &lenses::EATON,
+    &lenses::LUNEBURG,
+    &lenses::FISHEYE,
+];
 
 /// The entry of a kind, if there is one.
 #[must_use]
