@@ -11,11 +11,11 @@ fn check_untouched(kind: &str, origin: DVec3, direction: DVec3) {
     let along = (leaf.position - origin).dot(launch.direction);
     let beside = leaf.position - origin - launch.direction * along;
     assert!(
-        leaf.met_device && leaf.direction.distance(launch.direction) < 1e-11,
+        leaf.met_device && leaf.direction.distance(launch.direction) < 1e-10,
         "{kind} {leaf:?}"
     );
-    assert!(beside.length() < 1e-10, "{kind} {beside}");
-    assert!((leaf.optical_path - along).abs() < 1e-10, "{kind} {leaf:?}");
+    assert!(beside.length() < 1e-9, "{kind} {beside}");
+    assert!((leaf.optical_path - along).abs() < 1e-9, "{kind} {leaf:?}");
     for (field, before) in leaf.electric.iter().zip(launch.electric) {
         assert!((*field - before).norm_squared() < 1e-20, "{kind} {field:?} {before:?}");
     }
@@ -26,7 +26,11 @@ fn every_ray_comes_out_as_it_went_in() {
     let mut numbers = Numbers(1);
     for kind in ["'cylinder-cloak'", "'sphere-cloak'", "'sphere-cloak'\ninner = 9.5"] {
         for _ in 0..300 {
-            let (ray, _) = numbers.launch();
+            let mut ray = numbers.launch().0;
+            while bench(kind).holder(ray.origin).is_some() {
+                // Along the cylinder.
+                ray = numbers.launch().0;
+            }
             check_untouched(kind, ray.origin, ray.direction);
         }
         // At the axis and centre, just beside it, and grazing.
@@ -62,6 +66,11 @@ fn short_cylinders_have_ends() {
     let cloak = bench("'cylinder-cloak'\nlength = 6");
     let core = leaf(&cloak, &down(2.0));
     assert_eq!((core.position.z, core.direction), (3.0, DVec3::Z));
+    // Reflected inwards above the end it does not meet the side from within.
+    let slanted = launch(DVec3::new(13.0, 2.0, 13.0), DVec3::new(-1.0, 0.0, -1.0));
+    assert!(
+        leaf(&cloak, &slanted).direction.distance(DVec3::new(-1.0, 0.0, 1.0).normalize()) < 1e-15
+    );
     // From side to side it is as good as an endless one.
     let through = leaf(&cloak, &launch(DVec3::new(-50.0, 3.0, 1.0), DVec3::X));
     assert!(through.direction.distance(DVec3::X) < 1e-12);

@@ -34,7 +34,9 @@ impl Cylinder {
         let along = o.dot(d) / speed;
         let beside = d.perp_dot(o) / speed;
         let half_chord = self.radius * self.radius - beside * beside;
-        if !(along < 0.0 && half_chord >= 0.0) {
+        // From within the radius a ray comes that passes an end: only by rounding may it start there.
+        let outside = o.length_squared() >= self.radius * self.radius * (1.0 - 1e-12);
+        if !(along < 0.0 && half_chord >= 0.0 && outside) {
             return None;
         }
         let t = (-along - half_chord.sqrt()).max(0.0) / speed;
@@ -127,6 +129,8 @@ mod tests {
         let (o, d, _) = aimed(DVec3::new(-2.0, 0.0, 3.1));
         assert_eq!(cylinder.hit_side(o, d), None);
         assert_eq!(cylinder.hit_side(from, DVec3::Z), None);
+        let from_end = DVec3::new(-1.0, 0.0, 3.0);
+        assert_eq!(cylinder.hit_side(from_end, DVec3::new(0.6, 0.0, 0.8)), None);
         let above = DVec3::new(1.0, 0.5, 9.0);
         let [bottom, top] = cylinder.ends().expect("it has ends");
         assert_eq!(top.hit(above, DVec3::NEG_Z), Some(6.0));

@@ -201,16 +201,16 @@ impl Medium {
         Self::new(tensor, tensor)
     }
 
-    /// The impedance-matched medium ε = µ = `tensor` of a coordinate map, for tensors known to be
-    /// symmetric and positive definite: the local medium of a transformation.
+    /// The impedance-matched medium ε = µ = `tensor` of a coordinate map, given with its inverse and
+    /// its determinant, for tensors known to be symmetric and positive definite: the local medium of
+    /// a transformation. Near a singular point only its maker knows the latter two.
     #[must_use]
-    pub fn transformed(tensor: DMat3) -> Self {
-        let determinant = tensor.determinant();
-        debug_assert!(determinant.is_finite() && determinant > 0.0, "tensor {tensor}");
+    pub fn transformed(tensor: DMat3, inverse: DMat3, determinant: f64) -> Self {
+        debug_assert!(determinant.is_finite() && determinant > 0.0, "determinant {determinant}");
         Self {
             permittivity: tensor,
             permeability: tensor,
-            inverse_permeability: tensor.inverse(),
+            inverse_permeability: inverse,
             absorption: None,
             class: Class::Matched(WaveSurface::new(tensor, determinant)),
         }

@@ -145,6 +145,16 @@ impl RadialMap {
             Symmetry::Centre => self.tensor_of(point, k * s * s, k, k),
         }
     }
+
+    /// The inverse of the tensor at a physical point.
+    #[must_use]
+    pub fn inverse_tensor(&self, point: DVec3) -> DMat3 {
+        let (k, s) = (self.stretch(), self.shrinkage(point));
+        match self.symmetry {
+            Symmetry::Axis => self.tensor_of(point, 1.0 / s, s, 1.0 / (k * k * s)),
+            Symmetry::Centre => self.tensor_of(point, 1.0 / (k * s * s), 1.0 / k, 1.0 / k),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -200,6 +210,8 @@ mod tests {
                 assert!(m.abs_diff_eq(map.tensor(point), 1e-12 * m.x_axis.length()));
                 assert!((j.determinant() / map.determinant(point) - 1.0).abs() < 1e-13);
                 assert!((j * map.inverse_jacobian(point)).abs_diff_eq(DMat3::IDENTITY, 1e-13));
+                assert!((m * map.inverse_tensor(point)).abs_diff_eq(DMat3::IDENTITY, 1e-12));
+                assert!((m.determinant() * map.determinant(point) - 1.0).abs() < 1e-12);
             }
         }
     }

@@ -24,7 +24,10 @@ impl TransformedShell {
     /// The local medium.
     #[must_use]
     pub fn medium(&self, position: DVec3) -> Medium {
-        Medium::transformed(self.map.tensor(position))
+        let map = &self.map;
+        // det (J Jᵀ/det J) = 1/det J.
+        let determinant = map.determinant(position).recip();
+        Medium::transformed(map.tensor(position), map.inverse_tensor(position), determinant)
     }
 
     /// Follows a ray from a point of the border to where it comes out. It never comes to the hole.
