@@ -146,6 +146,28 @@ fn extrapolated(y: &State, h: f64, slope: &impl Fn(&State) -> State) -> (State, 
     (table[RULES - 1], error)
 }
 
+/// Where a function that is positive at 0 and negative at `h` vanishes: regula falsi after Illinois.
+fn border_between(h: f64, function: impl Fn(f64) -> f64) -> f64 {
+    let (mut a, mut b) = ((0.0, function(0.0)), (h, function(h)));
+    for _ in 0..60 {
+        if (b.0 - a.0).abs() < 1e-15 * h || b.1 == 0.0 {
+            break;
+        }
+        let x = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
+        let there = function(x);
+        if there * b.1 < 0.0 {
+            a = b;
+        } else {
+            a.1 *= 0.5;
+        }
+        b = (x, there);
+        if there.abs() < 1e-15 {
+            break;
+        }
+    }
+    b.0
+}
+
 /// Follows a ray of the dispersion relation H = 0 until `inside`, positive within the medium, changes its sign.
 pub fn follow(
     position: DVec3,
@@ -166,18 +188,14 @@ pub fn follow(
     for _ in 0..100_000 {
         let (next, error) = extrapolated(&y, h, &slope);
         // Not where the medium has no sense: the step may have gone through the hole.
-        if error.is_nan() || error > 1e-13 {
+        if error.is_nan() || error > 3e-13 {
             h *= 0.5;
             continue;
         }
         if inside(split(&next).0) < 0.0 {
-            let (mut low, mut high) = (0.0, h);
-            for _ in 0..80 {
-                let middle = 0.5 * (low + high);
-                let there = extrapolated(&y, middle, &slope).0;
-                if inside(split(&there).0) < 0.0 { high = middle } else { low = middle }
-            }
-            let last = extrapolated(&y, high, &slope).0;
+            let end =
+                border_between(h, |share| inside(split(&extrapolated(&y, share, &slope).0).0));
+            let last = extrapolated(&y, end, &slope).0;
             let (position, wave_vector) = split(&last);
             let velocity = DVec3::from_slice(&slope(&last)[..3]);
             return End { position, wave_vector, velocity, optical_path: last[6] };
