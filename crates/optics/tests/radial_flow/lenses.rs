@@ -10,6 +10,9 @@ use std::f64::consts::PI;
 
 const RADIUS: f64 = 3.0;
 
+/// n and dn/dr at a radius.
+type Profile = fn(f64) -> (f64, f64);
+
 /// A point of the surface and a direction into the ball, of an impact parameter of at least `least`.
 fn entry(numbers: &mut Numbers, least: f64) -> (DVec3, DVec3) {
     loop {
@@ -99,7 +102,7 @@ fn luneburg_and_fisheye_against_the_ray_equation() {
 
 #[test]
 fn fields_turn_as_rytov_says() {
-    let lenses: [(CentralLens, fn(f64) -> (f64, f64)); 4] = [
+    let lenses: [(CentralLens, Profile); 4] = [
         (CentralLens::eaton(RADIUS, PI), |r| eaton(PI, r)),
         (CentralLens::eaton(RADIUS, 2.0 * PI), |r| eaton(2.0 * PI, r)),
         (CentralLens::luneburg(RADIUS), luneburg),

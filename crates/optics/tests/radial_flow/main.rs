@@ -10,16 +10,16 @@ use glam::DVec3;
 pub struct Numbers(pub u64);
 
 impl Numbers {
-    /// The next one.
-    pub fn next(&mut self) -> f64 {
+    /// One of them.
+    pub fn number(&mut self) -> f64 {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// The next one, from `low` to `high`.
+    /// One from `low` to `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
+        low + (high - low) * self.number()
     }
 
     /// A direction, evenly on the sphere.
