@@ -38,7 +38,7 @@ fn prism(glass: bool) -> Bench {
     } else {
         Vec::new()
     };
-    let hull = Hull::new(Outline::new(corners.to_vec()), Extent::ENDLESS);
+    let hull = Hull::prism(Outline::new(corners.to_vec()), Extent::ENDLESS);
     let structure = Structure { cells, skin, hull };
     Bench::new(vec![Placed { pose: Pose::new(DVec3::ZERO, 0.0), structure }])
 }

@@ -3,8 +3,8 @@
 use super::{Beyond, Finish};
 use glam::{DMat3, DVec3};
 use optics::geometry::Plane;
-use optics::medium::Medium;
-use optics::propagation::{Boundary, ConformalFlow, Foothold, Half};
+use optics::medium::{Medium, ModeKind};
+use optics::propagation::{Border, Boundary, ConformalFlow, Foothold, Half, RadialFlow};
 
 /// A region filled with one medium.
 #[derive(Clone, Debug)]
@@ -14,6 +14,17 @@ pub enum Cell {
     Prism(Prism),
     /// One half of a cut conformal map, of graded index.
     Conformal(ConformalCell),
+    /// A ball or a round cylinder of a radially symmetric medium, whole or hollow.
+    Radial(RadialCell),
+}
+
+/// A radially symmetric medium about the origin or the z axis.
+#[derive(Clone, Copy, Debug)]
+pub struct RadialCell {
+    /// How rays run in it.
+    pub flow: RadialFlow,
+    /// What lies beyond its inner border, if it has one.
+    pub inner: Beyond,
 }
 
 /// One half of a cut conformal map above its mirror.
@@ -54,6 +65,21 @@ pub struct Entrance {
     pub foothold: Option<Foothold>,
 }
 
+/// A ray in a cell, at a point of it or of its border.
+#[derive(Clone, Copy, Debug)]
+pub struct InnerRay {
+    /// Where it is.
+    pub position: DVec3,
+    /// Its wave vector.
+    pub wave_vector: DVec3,
+    /// Its unit vector, that of the Poynting vector.
+    pub direction: DVec3,
+    /// Which of the medium's waves it is.
+    pub mode: ModeKind,
+    /// What [`Cell::enter`] or the last passage has said of the point.
+    pub foothold: Option<Foothold>,
+}
+
 /// A ray's way through a cell to the surface where it ends.
 #[derive(Clone, Copy, Debug)]
 pub struct Passage {
@@ -63,9 +89,9 @@ pub struct Passage {
     pub wave_vector: DVec3,
     /// The unit vector of the ray there.
     pub direction: DVec3,
-    /// The rotation that has taken the electric field along, and the factor of its length that
-    /// keeps the power; `None` in homogeneous media, where the field stays as it is.
-    pub transport: Option<(DMat3, f64)>,
+    /// What has taken the electric field along, |Re(E × H*)| being kept; `None` in homogeneous
+    /// media, where the field stays as it is.
+    pub transport: Option<DMat3>,
     /// Optical path length, cm.
     pub optical_path: f64,
     /// The medium at the surface.
@@ -94,34 +120,39 @@ impl Cell {
                 let medium = Medium::dielectric(foothold.index);
                 Some(Entrance { medium, foothold: Some(foothold) })
             }
+            Self::Radial(cell) => {
+                Some(Entrance { medium: cell.flow.medium(position)?, foothold: None })
+            }
         }
     }
 
-    /// Follows a ray from a point of the cell or its border to the next surface. `foothold` is what
-    /// [`Cell::enter`] or the last passage has said of that point.
+    /// Where the waves of the medium start as one and then part: their electric fields, of unit power.
+    #[must_use]
+    pub fn parted(&self, position: DVec3, wave_vector: DVec3) -> Option<[(ModeKind, DVec3); 2]> {
+        match self {
+            Self::Prism(_) | Self::Conformal(_) => None,
+            Self::Radial(cell) => cell.flow.parted(position, wave_vector),
+        }
+    }
+
+    /// Follows a ray from a point of the cell or its border to the next surface.
     ///
-    /// `tolerance` (cm) bounds the error of position and optical path where the medium is graded.
+    /// `tolerance` (cm) bounds the error of position and optical path where the way is integrated.
     ///
     /// `None` if the ray cannot be followed: it is lost in rounding at an edge, or an integration
     /// failed.
     #[must_use]
-    pub fn advance(
-        &self,
-        position: DVec3,
-        wave_vector: DVec3,
-        direction: DVec3,
-        foothold: Option<Foothold>,
-        tolerance: f64,
-    ) -> Option<Passage> {
+    pub fn advance(&self, ray: &InnerRay, tolerance: f64) -> Option<Passage> {
         match self {
-            Self::Prism(prism) => prism.advance(position, wave_vector, direction),
+            Self::Prism(prism) => prism.advance(ray.position, ray.wave_vector, ray.direction),
             Self::Conformal(cell) => {
-                let start = match foothold {
+                let start = match ray.foothold {
                     Some(foothold) => foothold,
-                    None => cell.flow.foothold(cell.half, position).ok()?,
+                    None => cell.flow.foothold(cell.half, ray.position).ok()?,
                 };
-                cell.advance(&start, wave_vector, tolerance)
+                cell.advance(&start, ray.wave_vector, tolerance)
             }
+            Self::Radial(cell) => cell.advance(ray),
         }
     }
 }
@@ -164,7 +195,7 @@ impl ConformalCell {
             wave_vector: end.wave_vector,
             direction: end.wave_vector.normalize(),
             // |Re(E × H*)| = n |E|² is what stays.
-            transport: Some((end.transport, (start.index / end.at.index).sqrt())),
+            transport: Some(end.transport * (start.index / end.at.index).sqrt()),
             optical_path: end.optical_path,
             medium: Medium::dielectric(end.at.index),
             foothold: Some(end.at),
@@ -172,6 +203,26 @@ impl ConformalCell {
             outward: end.normal,
             beyond: if metal { Beyond::Conductor } else { Beyond::Air },
             finish: if metal { Finish::Bare } else { self.finish },
+        })
+    }
+}
+
+impl RadialCell {
+    fn advance(&self, ray: &InnerRay) -> Option<Passage> {
+        let end = self.flow.advance(ray.position, ray.wave_vector, ray.mode);
+        let sound = end.position.is_finite() && end.wave_vector.is_finite();
+        sound.then_some(Passage {
+            position: end.position,
+            wave_vector: end.wave_vector,
+            direction: end.direction,
+            transport: Some(end.transport),
+            optical_path: end.optical_path,
+            medium: self.flow.medium(end.position)?,
+            foothold: None,
+            face: end.border as u16,
+            outward: end.outward,
+            beyond: if end.border == Border::Inner { self.inner } else { Beyond::Air },
+            finish: Finish::Bare,
         })
     }
 }

@@ -3,10 +3,11 @@
 //! A new kind of [`Cell`] or [`Skin`] says here, and nowhere else, what it looks like: its sides as
 //! lines, and for a cell whether its medium is graded. The rest follows.
 
-use super::{Beyond, Cell, ConformalCell, Face, Prism, Skin, Structure};
+use super::{Beyond, Cell, ConformalCell, Face, Prism, RadialCell, Skin, Structure};
 use glam::DVec2;
 use optics::medium::Medium;
 use optics::propagation::Half;
+use std::f64::consts::TAU;
 
 /// How far cells without an end are drawn, cm from the device's origin.
 pub const REACH: f64 = 1e5;
@@ -80,6 +81,7 @@ impl Cell {
         match self {
             Self::Prism(prism) => prism.sides(),
             Self::Conformal(cell) => cell.sides(),
+            Self::Radial(cell) => cell.sides(),
         }
     }
 
@@ -88,7 +90,7 @@ impl Cell {
     pub fn is_graded(&self) -> bool {
         match self {
             Self::Prism(_) => false,
-            Self::Conformal(_) => true,
+            Self::Conformal(_) | Self::Radial(_) => true,
         }
     }
 
@@ -118,7 +120,12 @@ impl Skin {
                 around.extend(upper.first());
                 vec![metal(around)]
             }
-            Self::Cap { .. } | Self::HalvesCap { .. } | Self::FloorCap { .. } => Vec::new(),
+            Self::Sphere { sphere, beyond } => vec![circle(sphere.radius, *beyond)],
+            Self::Side { cylinder, beyond } => vec![circle(cylinder.radius, *beyond)],
+            Self::Cap { .. }
+            | Self::Disc { .. }
+            | Self::HalvesCap { .. }
+            | Self::FloorCap { .. } => Vec::new(),
         }
     }
 }
@@ -190,6 +197,21 @@ impl ConformalCell {
             side(vec![left[1], left[0]], Beyond::Air),
         ]
     }
+}
+
+impl RadialCell {
+    fn sides(&self) -> Vec<Side> {
+        let (hole, border) = self.flow.radii();
+        let hole = hole.map(|radius| circle(radius, self.inner));
+        hole.into_iter().chain([circle(border, Beyond::Air)]).collect()
+    }
+}
+
+/// A circle about the origin, back to its first point.
+fn circle(radius: f64, beyond: Beyond) -> Side {
+    let point =
+        |i: u32| radius * DVec2::from_angle(f64::from(i % PIECES) * TAU / f64::from(PIECES));
+    Side { line: (0..=PIECES).map(point).collect(), beyond }
 }
 
 impl Contour {

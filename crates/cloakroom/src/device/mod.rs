@@ -4,14 +4,20 @@
 //! ([`Structure`]). Each kind is one file here that turns the keys of its table in a scene into a
 //! structure, and one line in [`CATALOGUE`]; nothing else in the program knows it.
 
+mod bending_sphere;
 mod cell;
 mod cross_section;
+mod cylinder_cloak;
 mod double_gaussian_cloak;
+mod invisible_sphere;
+mod lenses;
+mod round;
 mod skin;
+mod sphere_cloak;
 mod square_cloak;
 mod structure;
 
-pub use cell::{Cell, ConformalCell, Entrance, Face, Passage, Prism};
+pub use cell::{Cell, ConformalCell, Entrance, Face, InnerRay, Passage, Prism, RadialCell};
 pub use cross_section::{Contour, CrossSection, REACH, Region, Side};
 pub use skin::Skin;
 pub use structure::{Beyond, Finish, Hull, SkinHit, Structure};
@@ -26,7 +32,7 @@ pub enum Show {
     Cloak,
     /// The metal alone, without its cloak.
     Bare,
-    /// What it should look like: the flat mirror it imitates.
+    /// What it should look like: the flat mirror it imitates, or nothing.
     Mirror,
 }
 
@@ -85,7 +91,17 @@ impl Fact {
 }
 
 /// Every kind of device the program knows.
-pub static CATALOGUE: &[&Entry] = &[&square_cloak::ENTRY, &double_gaussian_cloak::ENTRY];
+pub static CATALOGUE: &[&Entry] = &[
+    &square_cloak::ENTRY,
+    &double_gaussian_cloak::ENTRY,
+    &cylinder_cloak::ENTRY,
+    &sphere_cloak::ENTRY,
+    &invisible_sphere::ENTRY,
+    &bending_sphere::ENTRY,
+    &lenses::EATON,
+    &lenses::LUNEBURG,
+    &lenses::FISHEYE,
+];
 
 /// The entry of a kind, if there is one.
 #[must_use]
@@ -102,6 +118,6 @@ fn flat_strip(half_width: f64, extent: optics::geometry::Extent) -> Structure {
     Structure {
         cells: Vec::new(),
         skin: vec![Skin::Strip(Wall::new(ends[0], ends[1], extent))],
-        hull: Hull::new(Outline::new(ends.to_vec()), extent),
+        hull: Hull::prism(Outline::new(ends.to_vec()), extent),
     }
 }

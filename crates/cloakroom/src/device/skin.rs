@@ -2,7 +2,7 @@
 
 use super::{Beyond, Finish};
 use glam::DVec3;
-use optics::geometry::{Cap, Extent, FloorCurve, Wall};
+use optics::geometry::{Cap, Cylinder, CylinderPart, Disc, Extent, FloorCurve, Sphere, Wall};
 use optics::transformation::ConformalMap;
 
 /// A surface between air and a device, with what lies behind it.
@@ -38,6 +38,31 @@ pub enum Skin {
         cells: [u16; 2],
         /// How the media meet.
         finish: Finish,
+    },
+    /// A sphere about the origin, met from outside.
+    Sphere {
+        /// Its shape.
+        sphere: Sphere,
+        /// What lies behind it.
+        beyond: Beyond,
+    },
+    /// The round side of a cylinder about the z axis, met from outside.
+    Side {
+        /// Its shape.
+        cylinder: Cylinder,
+        /// What lies behind it.
+        beyond: Beyond,
+    },
+    /// A flat end of a round cylinder with a core.
+    Disc {
+        /// Its shape.
+        disc: Disc,
+        /// What lies behind it.
+        beyond: Beyond,
+        /// Radius of the core, cm; 0 without one.
+        core: f64,
+        /// What lies behind it there.
+        beyond_core: Beyond,
     },
     /// The metal between the curved floor of a conformal map and its mirror image, in air.
     Floor {
@@ -80,6 +105,19 @@ impl Skin {
                 }
                 Some((cap.hit(origin, direction)?, cap.normal))
             }
+            Self::Sphere { sphere, .. } => {
+                let distance = sphere.hit(origin, direction).filter(|_| !again)?;
+                Some((distance, sphere.outward(origin + direction * distance)))
+            }
+            Self::Side { cylinder, .. } => {
+                let distance = cylinder.hit_side(origin, direction).filter(|_| !again)?;
+                let point = origin + direction * distance;
+                Some((distance, cylinder.outward(CylinderPart::Side, point)))
+            }
+            Self::Disc { disc, .. } => {
+                let distance = disc.hit(origin, direction).filter(|_| !again)?;
+                Some((distance, disc.normal))
+            }
             Self::Floor { curve, extent } => floor_hit(curve, *extent, origin, direction, again),
             Self::FloorCap { cap, map } => {
                 if again || direction.dot(cap.normal) >= 0.0 {
@@ -98,7 +136,16 @@ impl Skin {
         match self {
             Self::HalvesCap { map, .. } if within_floor(map, position) => Beyond::Conductor,
             Self::HalvesCap { cells, .. } => Beyond::Cell(cells[usize::from(position.y < 0.0)]),
-            Self::Wall { beyond, .. } | Self::Cap { beyond, .. } => *beyond,
+            Self::Disc { core, beyond_core, .. }
+                if position.truncate().length_squared() < core * core =>
+            {
+                *beyond_core
+            }
+            Self::Wall { beyond, .. }
+            | Self::Cap { beyond, .. }
+            | Self::Sphere { beyond, .. }
+            | Self::Side { beyond, .. }
+            | Self::Disc { beyond, .. } => *beyond,
             Self::Strip(_) | Self::Floor { .. } | Self::FloorCap { .. } => Beyond::Conductor,
         }
     }
@@ -110,7 +157,12 @@ impl Skin {
             Self::Wall { finish, .. }
             | Self::Cap { finish, .. }
             | Self::HalvesCap { finish, .. } => *finish,
-            Self::Strip(_) | Self::Floor { .. } | Self::FloorCap { .. } => Finish::Bare,
+            Self::Strip(_)
+            | Self::Sphere { .. }
+            | Self::Side { .. }
+            | Self::Disc { .. }
+            | Self::Floor { .. }
+            | Self::FloorCap { .. } => Finish::Bare,
         }
     }
 }

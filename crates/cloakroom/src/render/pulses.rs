@@ -1,11 +1,12 @@
 //! The pulses of one pixel: what a short flash of the photograph looks like there.
 
 use super::detection::Detection;
-use super::exposure::{SPEED_OF_LIGHT, empty_time_of_flight, time_of_flight};
+use super::exposure::{empty_time_of_flight, time_of_flight};
 use super::pixel::Pixel;
 use super::{Channel, Studio};
 use crate::trace::Tracer;
 use glam::DVec3;
+use optics::wave::SPEED_OF_LIGHT;
 use serde::Serialize;
 
 /// What the camera ray through the middle of a pixel brings back, pulse by pulse: where a short

@@ -1,7 +1,9 @@
 //! A branch of a ray tree on its way.
 
+use crate::device::InnerRay;
 use glam::DVec3;
 use optics::interface::{IncidentWave, OutgoingWave};
+use optics::medium::ModeKind;
 use optics::propagation::Foothold;
 use optics::wave::ComplexVector;
 
@@ -27,6 +29,8 @@ pub(super) struct Branch<const N: usize> {
     pub optical_path: f64,
     pub met_device: bool,
     pub path: u64,
+    /// Which of the waves of the medium it is in.
+    pub mode: ModeKind,
     /// Where it is in the virtual space of a conformal cell.
     pub foothold: Option<Foothold>,
 }
@@ -43,6 +47,35 @@ impl<const N: usize> Branch<N> {
         }
     }
 
+    /// The ray as a cell sees it.
+    pub fn inner_ray(&self) -> InnerRay {
+        InnerRay {
+            position: self.position,
+            wave_vector: self.wave_vector,
+            direction: self.direction,
+            mode: self.mode,
+            foothold: self.foothold,
+        }
+    }
+
+    /// The part of the branch whose field lies along `field`, as a wave of its own; `across` is the
+    /// field of the other part, perpendicular to it.
+    pub fn part(&self, mode: ModeKind, field: DVec3, across: DVec3) -> Self {
+        let [along, beside] =
+            [field, across].map(|field| self.electric.map(|e| e.dot_real(field.normalize())));
+        let mut part = *self;
+        for i in 0..N {
+            let share = along[i].norm_sqr() / (along[i].norm_sqr() + beside[i].norm_sqr());
+            let share = if share.is_nan() { 0.0 } else { share };
+            part.power[i] = self.power[i] * share;
+            let unit = ComplexVector::from(field.normalize());
+            part.electric[i] = unit.scaled(along[i]);
+        }
+        part.mode = mode;
+        part.path = fingerprint(self.path, mode as u64);
+        part
+    }
+
     /// The branch that goes on from here as `wave`, at `place`.
     pub fn onward(&self, wave: &OutgoingWave<N>, place: Place, event: u64) -> Self {
         Self {
@@ -52,6 +85,7 @@ impl<const N: usize> Branch<N> {
             direction: wave.direction,
             electric: wave.electric,
             power: wave.power,
+            mode: wave.mode,
             path: fingerprint(self.path, event),
             ..*self
         }

@@ -9,7 +9,7 @@ use optics::interface::{
     IncidentWave, OutgoingWave, OutgoingWaves, Side, reflect_at_conductor, split,
     transmit_antireflection,
 };
-use optics::medium::Medium;
+use optics::medium::{Medium, ModeKind};
 use optics::wave::ComplexVector;
 
 /// A ray to launch in air, with `N` polarizations at once.
@@ -88,6 +88,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             optical_path: 0.0,
             met_device: false,
             path: 0,
+            mode: ModeKind::Shared,
             foothold: None,
         });
         let (mut events, mut threshold) = (0, self.limits.min_power.max(NO_POWER));
@@ -165,14 +166,14 @@ impl<'a, const N: usize> Tracer<'a, N> {
     fn through_cell(&mut self, mut branch: Branch<N>, device_index: u16, cell_index: u16) {
         let device = &self.bench.devices()[usize::from(device_index)];
         let cell = self.cell(device, cell_index);
-        let passage = cell.advance(
-            branch.position,
-            branch.wave_vector,
-            branch.direction,
-            branch.foothold,
-            self.limits.tolerance,
-        );
-        let Some(passage) = passage else {
+        if branch.mode == ModeKind::Shared
+            && let Some([(a, in_a), (b, in_b)]) = cell.parted(branch.position, branch.wave_vector)
+        {
+            self.go_on(branch.part(a, in_a, in_b));
+            self.go_on(branch.part(b, in_b, in_a));
+            return;
+        }
+        let Some(passage) = cell.advance(&branch.inner_ray(), self.limits.tolerance) else {
             self.lose(branch.power);
             return;
         };
@@ -181,8 +182,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
         branch.direction = passage.direction;
         branch.optical_path += passage.optical_path;
         branch.foothold = passage.foothold;
-        if let Some((rotation, factor)) = passage.transport {
-            branch.electric = branch.electric.map(|field| field.transformed(&rotation) * factor);
+        if let Some(transport) = passage.transport {
+            branch.electric = branch.electric.map(|field| field.transformed(&transport));
         }
         let event = u64::from(device_index) << 32
             | (u64::from(cell_index) + 1) << 20

@@ -202,6 +202,21 @@ impl Medium {
         Self::new(tensor, tensor)
     }
 
+    /// The impedance-matched medium ε = µ = `tensor` of a coordinate map, given with its inverse and
+    /// its determinant, for tensors known to be symmetric and positive definite: the local medium of
+    /// a transformation. Near a singular point only its maker knows the latter two.
+    #[must_use]
+    pub fn transformed(tensor: DMat3, inverse: DMat3, determinant: f64) -> Self {
+        debug_assert!(determinant.is_finite() && determinant > 0.0, "determinant {determinant}");
+        Self {
+            permittivity: tensor,
+            permeability: tensor,
+            inverse_permeability: inverse,
+            absorption: None,
+            class: Class::Matched(WaveSurface::new(tensor, determinant)),
+        }
+    }
+
     /// The relative permittivity tensor ε, its real part if the medium absorbs.
     #[must_use]
     pub fn permittivity(&self) -> &DMat3 {

@@ -2,6 +2,11 @@
 
 mod conformal_flow;
 pub mod nystrom;
+mod radial;
 pub mod reference;
 
 pub use conformal_flow::{Boundary, ConformalFlow, FlowEnd, FlowError, Foothold, Half};
+pub use radial::{
+    Border, CentralLens, OpticAxis, RadialEnd, RadialFlow, TransformedShell, TransmutedSphere,
+    UniaxialCylinder,
+};

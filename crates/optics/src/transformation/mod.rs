@@ -4,10 +4,12 @@ mod conformal;
 mod faddeeva;
 mod gaussian;
 mod monotone_root;
+mod radial;
 mod strip_to_rhombus;
 
 pub use conformal::{ConformalMap, MapJet, Truncation};
 pub use faddeeva::{FaddeevaJet, faddeeva, faddeeva_jet};
 pub use gaussian::{GaussianMap, GaussianMapError};
 pub(crate) use monotone_root::root_in_bracket;
+pub use radial::{RadialMap, Symmetry};
 pub use strip_to_rhombus::StripToRhombus;

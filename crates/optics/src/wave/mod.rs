@@ -48,3 +48,6 @@ pub(crate) use number::{Number, cross, dot};
 pub use plane_wave::{PlaneWave, poynting};
 pub use polarization::{transverse_basis, turn_transverse};
 pub use stokes::arriving_stokes;
+
+/// The speed of light in vacuum, cm/ns.
+pub const SPEED_OF_LIGHT: f64 = 29.979_245_8;

@@ -1,0 +1,87 @@
+//! What balls and round cylinders have in common.
+
+use super::{Beyond, Cell, Hull, RadialCell, Request, Show, Skin, Structure};
+use crate::keys::{KeyError, Values};
+use optics::geometry::{Cylinder, Extent, Solid, Sphere};
+use optics::propagation::RadialFlow;
+
+/// The one cell of a device of a single radial medium.
+const CELL: u16 = 0;
+
+/// How near to 0 and to the outer radius the inner one may come, relative to the outer one: beyond, the
+/// tensors are too lopsided for double precision.
+const THINNEST: f64 = 0.001;
+
+/// The keys `inner` and `outer` of a cloak.
+pub(super) fn radii(values: &Values) -> Result<(f64, f64), KeyError> {
+    let (inner, outer) = (values.number("inner"), values.number("outer"));
+    let (least, most) = (THINNEST * outer, (1.0 - THINNEST) * outer);
+    if !(least..=most).contains(&inner) {
+        let message = format!(
+            "inner is {inner} cm; it must be from {least} to {most} cm, {THINNEST} to {} times outer",
+            1.0 - THINNEST
+        );
+        return Err(KeyError::at("inner", message));
+    }
+    Ok((inner, outer))
+}
+
+/// Refuses what a ball cannot have.
+pub(super) fn no_length(request: Request) -> Result<(), KeyError> {
+    match request.length {
+        None => Ok(()),
+        Some(_) => Err(KeyError::at("length", "length is given; a ball has none but its diameter")),
+    }
+}
+
+/// Refuses the views that a lens, which hides nothing, cannot have.
+pub(super) fn no_metal(request: Request) -> Result<(), KeyError> {
+    let (word, why) = match request.show {
+        Show::Cloak => return Ok(()),
+        Show::Bare => ("bare", "hides no metal"),
+        Show::Mirror => ("mirror", "imitates no mirror"),
+    };
+    let message =
+        format!("show is \"{word}\"; this device {why}, it can be shown as \"cloak\" only");
+    Err(KeyError::at("show", message))
+}
+
+/// A ball filled with a medium, solid or around a metal core that no light comes to.
+pub(super) fn ball(radius: f64, flow: RadialFlow) -> Structure {
+    let sphere = Sphere { radius };
+    Structure {
+        cells: vec![Cell::Radial(RadialCell { flow, inner: Beyond::Conductor })],
+        skin: vec![Skin::Sphere { sphere, beyond: Beyond::Cell(CELL) }],
+        hull: Hull::new(Solid::ball(radius)),
+    }
+}
+
+/// A metal ball.
+pub(super) fn metal_ball(radius: f64) -> Structure {
+    let sphere = Sphere { radius };
+    Structure {
+        cells: Vec::new(),
+        skin: vec![Skin::Sphere { sphere, beyond: Beyond::Conductor }],
+        hull: Hull::new(Solid::ball(radius)),
+    }
+}
+
+/// A round cylinder filled with a medium around a metal core.
+pub(super) fn tube(core: f64, radius: f64, extent: Extent, flow: RadialFlow) -> Structure {
+    let cell = Cell::Radial(RadialCell { flow, inner: Beyond::Conductor });
+    upright(vec![cell], core, radius, extent, Beyond::Cell(CELL))
+}
+
+/// A round metal cylinder.
+pub(super) fn metal_cylinder(radius: f64, extent: Extent) -> Structure {
+    upright(Vec::new(), 0.0, radius, extent, Beyond::Conductor)
+}
+
+fn upright(cells: Vec<Cell>, core: f64, radius: f64, extent: Extent, beyond: Beyond) -> Structure {
+    let cylinder = Cylinder { radius, extent };
+    let mut skin = vec![Skin::Side { cylinder, beyond }];
+    for disc in cylinder.ends().into_iter().flatten() {
+        skin.push(Skin::Disc { disc, beyond, core, beyond_core: Beyond::Conductor });
+    }
+    Structure { cells, skin, hull: Hull::new(Solid::cylinder(radius, extent)) }
+}

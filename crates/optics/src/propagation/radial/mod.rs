@@ -1,0 +1,147 @@
+//! Rays through radially symmetric media, in closed form.
+//!
+//! Straight lines in virtual space, exact transfers from border to border, or elementary integrals; no
+//! path is stepped along, so that the singular points (the centre, the border of the hole) need no care.
+//! A ray that is aimed exactly at the axis or centre gets the limit of its neighbours, or that of the
+//! neighbours on one side where they part.
+
+mod core_integrals;
+mod lens;
+mod transformed_shell;
+mod transmuted_sphere;
+mod uniaxial_cylinder;
+mod uniaxial_wave;
+
+pub use lens::CentralLens;
+pub use transformed_shell::TransformedShell;
+pub use transmuted_sphere::TransmutedSphere;
+pub use uniaxial_cylinder::{OpticAxis, UniaxialCylinder};
+
+use crate::geometry::CylinderPart;
+use crate::medium::{Medium, ModeKind};
+use glam::{DMat3, DVec3};
+
+/// A radially symmetric medium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RadialFlow {
+    /// A ball of graded index.
+    Lens(CentralLens),
+    /// A ball of graded uniaxial dielectric.
+    Transmuted(TransmutedSphere),
+    /// An impedance-matched shell.
+    Transformed(TransformedShell),
+    /// A cylindrical shell of graded uniaxial dielectric.
+    Uniaxial(UniaxialCylinder),
+}
+
+/// A part of the border of a radial medium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Border {
+    /// The outer radius.
+    Outer,
+    /// The radius of the hole.
+    Inner,
+    /// The end at the least z.
+    Bottom,
+    /// The end at the largest z.
+    Top,
+}
+
+/// How a ray arrives at the border of a radial medium, still inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RadialEnd {
+    /// The part of the border.
+    pub border: Border,
+    /// Where, on the border, cm.
+    pub position: DVec3,
+    /// The wave vector before refraction or reflection.
+    pub wave_vector: DVec3,
+    /// The unit vector of the ray there.
+    pub direction: DVec3,
+    /// The optical path from start to end, cm.
+    pub optical_path: f64,
+    /// What takes the electric field of the wave from start to end, |Re(E × H*)| being kept.
+    pub transport: DMat3,
+    /// The unit normal of the border, out of the medium.
+    pub outward: DVec3,
+}
+
+impl RadialFlow {
+    /// The local medium at a point of the medium or its border.
+    #[must_use]
+    pub fn medium(&self, position: DVec3) -> Option<Medium> {
+        match self {
+            Self::Lens(lens) => Some(lens.medium(position)),
+            Self::Transmuted(sphere) => sphere.medium(position),
+            Self::Transformed(shell) => Some(shell.medium(position)),
+            Self::Uniaxial(cylinder) => cylinder.medium(position),
+        }
+    }
+
+    /// The radii of its hole, if it has one, and of its border, cm.
+    #[must_use]
+    pub fn radii(&self) -> (Option<f64>, f64) {
+        match self {
+            Self::Lens(lens) => (None, lens.radius()),
+            Self::Transmuted(sphere) => (None, sphere.radius()),
+            Self::Transformed(shell) => (Some(shell.map().inner()), shell.map().outer()),
+            Self::Uniaxial(cylinder) => (Some(cylinder.map().inner()), cylinder.map().outer()),
+        }
+    }
+
+    /// Follows a ray from a point of the border, where it has the given wave vector and is the given
+    /// wave of the medium, to the next point of the border. A ray that moves outwards ends at once.
+    #[must_use]
+    pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
+        match self {
+            Self::Lens(lens) => lens.advance(position, wave_vector),
+            Self::Transmuted(sphere) => sphere.advance(position, wave_vector, mode),
+            Self::Transformed(shell) => shell.advance(position, wave_vector),
+            Self::Uniaxial(cylinder) => cylinder.advance(position, wave_vector, mode),
+        }
+    }
+
+    /// Where both waves of the medium start as one, along the optic axis, and then part: their
+    /// electric fields, of unit power.
+    #[must_use]
+    pub fn parted(&self, position: DVec3, wave_vector: DVec3) -> Option<[(ModeKind, DVec3); 2]> {
+        match self {
+            Self::Uniaxial(cylinder) => Some(cylinder.parted(position, wave_vector)),
+            // In the transmuted sphere they run to the far side together.
+            Self::Lens(_) | Self::Transmuted(_) | Self::Transformed(_) => None,
+        }
+    }
+}
+
+impl From<CylinderPart> for Border {
+    fn from(part: CylinderPart) -> Self {
+        match part {
+            CylinderPart::Side => Self::Outer,
+            CylinderPart::Bottom => Self::Bottom,
+            CylinderPart::Top => Self::Top,
+        }
+    }
+}
+
+/// The unit normal of the plane in which a ray runs about the centre, the ray turning towards the
+/// centre about it. A ray through the centre runs in the plane across z, or any if it is along z.
+fn plane_normal(position: DVec3, direction: DVec3) -> DVec3 {
+    let across = |v: DVec3| (v - direction * v.dot(direction)).try_normalize();
+    position
+        .cross(direction)
+        .try_normalize()
+        // Once more across the ray: near the centre the cross product is rounding.
+        .and_then(across)
+        .or_else(|| across(DVec3::Z))
+        .unwrap_or(DVec3::X)
+}
+
+/// The rotation that keeps `normal` and takes the unit vector `from`, across it, to `to`.
+fn turn_in_plane(normal: DVec3, from: DVec3, to: DVec3) -> DMat3 {
+    let column = |component: usize| {
+        to * from[component]
+            + normal.cross(to) * normal.cross(from)[component]
+            + normal * normal[component]
+    };
+    DMat3::from_cols(column(0), column(1), column(2))
+}

@@ -1,0 +1,100 @@
+//! Impedance-matched cylindrical and spherical cloaks.
+
+use super::{Border, RadialEnd};
+use crate::geometry::{Cylinder, Extent, Sphere};
+use crate::medium::Medium;
+use crate::transformation::{RadialMap, Symmetry};
+use glam::{DMat3, DVec3};
+
+/// The shell ε = µ = J Jᵀ/det J of a radial map. In virtual space, X and P = Jᵀ p, rays are straight
+/// lines, and fields are those of empty space: E = J⁻ᵀ E', H = J⁻ᵀ H'.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransformedShell {
+    map: RadialMap,
+    extent: Extent,
+}
+
+impl TransformedShell {
+    /// The shell of a map, a cylindrical one within `extent` along z.
+    #[must_use]
+    pub fn new(map: RadialMap, extent: Extent) -> Self {
+        Self { map, extent }
+    }
+
+    /// The map that has made it.
+    #[must_use]
+    pub fn map(&self) -> &RadialMap {
+        &self.map
+    }
+
+    /// The local medium.
+    #[must_use]
+    pub fn medium(&self, position: DVec3) -> Medium {
+        let map = &self.map;
+        // det (J Jᵀ/det J) = 1/det J.
+        let determinant = map.determinant(position).recip();
+        Medium::transformed(map.tensor(position), map.inverse_tensor(position), determinant)
+    }
+
+    /// Follows a ray from a point of the border to where it comes out. It never comes to the hole.
+    #[must_use]
+    pub fn advance(&self, position: DVec3, wave_vector: DVec3) -> RadialEnd {
+        let map = &self.map;
+        let momentum = map.jacobian(position) * wave_vector;
+        let line = VirtualLine::new(map, self.extent, position, momentum);
+        let inverse = map.inverse_jacobian(line.position);
+        // S = J S'/det J, and |S| is to stay.
+        let power = |at: DVec3| (map.jacobian(at) * momentum).length() / map.determinant(at);
+        let factor = (power(position) / power(line.position)).sqrt();
+        let transport: DMat3 = inverse * map.jacobian(position) * factor;
+        RadialEnd {
+            border: line.border,
+            position: line.position,
+            wave_vector: inverse * momentum,
+            direction: (map.jacobian(line.position) * momentum).normalize(),
+            optical_path: line.time * momentum.length_squared(),
+            transport,
+            outward: line.outward,
+        }
+    }
+}
+
+/// A straight line in virtual space from a point of the shell to its outer border or ends.
+pub(super) struct VirtualLine {
+    /// The time it takes at the given velocity.
+    pub time: f64,
+    /// The part of the border where it ends.
+    pub border: Border,
+    /// The physical end point.
+    pub position: DVec3,
+    /// The outward normal there.
+    pub outward: DVec3,
+}
+
+impl VirtualLine {
+    /// From a physical point with a virtual velocity.
+    pub fn new(map: &RadialMap, extent: Extent, position: DVec3, velocity: DVec3) -> Self {
+        let start = map.to_virtual(position);
+        let radius = map.outer();
+        match map.symmetry() {
+            Symmetry::Centre => {
+                let sphere = Sphere { radius };
+                let time = sphere.time_to_leave(start, velocity);
+                let outward = sphere.outward(start + velocity * time);
+                Self { time, border: Border::Outer, position: outward * radius, outward }
+            }
+            Symmetry::Axis => {
+                let cylinder = Cylinder { radius, extent };
+                let (time, part) = cylinder.time_to_leave(start, velocity);
+                let end = start + velocity * time;
+                let outward = cylinder.outward(part, end);
+                let position = match Border::from(part) {
+                    Border::Outer | Border::Inner => outward * radius + DVec3::Z * end.z,
+                    Border::Bottom => map.to_physical(end).with_z(extent.min),
+                    Border::Top => map.to_physical(end).with_z(extent.max),
+                };
+                Self { time, border: part.into(), position, outward }
+            }
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! The regularized invisible sphere.
+
+use super::{Border, RadialEnd, plane_normal};
+use crate::medium::{Medium, ModeKind};
+use glam::{DMat3, DVec3};
+use std::f64::consts::PI;
+
+/// The invisible sphere with its singular centre transmuted (Tyc & Leonhardt, New J. Phys. 10, 115038
+/// (2008)) into a uniaxial dielectric whose optic axis is the radius.
+///
+/// The ordinary index is π + 1 throughout; the extraordinary one is n_e = sin β/x at
+/// x = r/radius = (2π - 2β + sin β)/(π + 1), from 1 at the surface (β = π/2) to (π + 1)/3 at the centre.
+/// The radius is stretched such that the extraordinary ray sweeps the angles that a ray sweeps in
+/// the invisible sphere, with the same optical path: it leaves on its chord, late by 2π radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransmutedSphere {
+    radius: f64,
+}
+
+impl TransmutedSphere {
+    /// The ordinary index.
+    pub const ORDINARY_INDEX: f64 = PI + 1.0;
+
+    /// The extraordinary index at the centre.
+    pub const CENTRAL_EXTRAORDINARY_INDEX: f64 = (PI + 1.0) / 3.0;
+
+    /// The sphere of a radius, cm.
+    #[must_use]
+    pub fn new(radius: f64) -> Self {
+        debug_assert!(radius > 0.0);
+        Self { radius }
+    }
+
+    /// Its radius, cm.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The local medium at the surface, where alone it meets another.
+    #[must_use]
+    pub fn medium(&self, position: DVec3) -> Option<Medium> {
+        let ordinary = Self::ORDINARY_INDEX * Self::ORDINARY_INDEX;
+        Medium::uniaxial_electric(1.0, ordinary, 1.0, position).ok()
+    }
+
+    /// Follows a ray of either wave from a point of the surface to where it comes out.
+    #[must_use]
+    pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
+        let from = position.normalize();
+        let normal = plane_normal(from, wave_vector.normalize());
+        let around = normal.cross(from);
+        let radial = wave_vector.dot(from).min(0.0).abs();
+        let tangential = wave_vector.dot(around);
+        let extraordinary = mode == ModeKind::Extraordinary;
+        // Cosine and sine of the angle between the radius and the chord that sweeps the same angle.
+        let index = Self::ORDINARY_INDEX;
+        let (cosine, sine, path) = if extraordinary {
+            let cosine = radial / index;
+            (cosine, tangential, 2.0 * cosine + 2.0 * PI)
+        } else {
+            (radial / index, tangential / index, 2.0 * radial)
+        };
+        let to = from * (sine * sine - cosine * cosine) + around * (2.0 * sine * cosine);
+        let outward = to.normalize();
+        let onward = normal.cross(outward);
+        let wave_vector = outward * radial + onward * tangential;
+        // Along εp, the extraordinary index at the surface being 1.
+        let ray = if extraordinary {
+            outward * radial + onward * (index * index * tangential)
+        } else {
+            wave_vector
+        };
+        // The electric field across the plane stays; of the field in it, the radial part keeps its sign
+        // and the other changes it with the radial part of the wave vector.
+        let column = |i: usize| outward * from[i] - onward * around[i] + normal * normal[i];
+        RadialEnd {
+            border: Border::Outer,
+            position: outward * self.radius,
+            wave_vector,
+            direction: ray.normalize(),
+            optical_path: path * self.radius,
+            transport: DMat3::from_cols(column(0), column(1), column(2)),
+            outward,
+        }
+    }
+}

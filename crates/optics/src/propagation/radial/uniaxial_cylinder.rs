@@ -1,0 +1,316 @@
+//! Cylindrical cloaks of graded uniaxial dielectric.
+
+use super::core_integrals::{CoreIntegrals, RadialQuadratic};
+use super::transformed_shell::VirtualLine;
+use super::uniaxial_wave::{UniaxialPoint, transport};
+use super::{Border, RadialEnd};
+use crate::geometry::{Cylinder, CylinderPart, Extent};
+use crate::medium::{Medium, ModeKind};
+use crate::transformation::{RadialMap, Symmetry, root_in_bracket};
+use glam::{DVec2, DVec3};
+
+/// Where the optic axis of a cylindrical cloak points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OpticAxis {
+    /// Along the radius.
+    Radial,
+    /// Around the cylinder.
+    Azimuthal,
+}
+
+/// A cylindrical shell of non-magnetic uniaxial dielectric (after Cai et al., Nature Photon. 1, 224
+/// (2007)) between the radii a and b, with k = b/(b - a) and s = (r - a)/r: ε_θ = k², ε_r = k² s², and
+/// ε_z = k² for the radial optic axis, ε_z = k² s² for the azimuthal one.
+///
+/// It has the in-plane refraction of the impedance-matched cloak for light with its magnetic field
+/// along z, not its impedance. With L the angular momentum about z and p_z, both kept, the
+/// waves run so (r' = k (r - a)):
+///
+/// - azimuthal axis, extraordinary: straight lines in virtual space with P² + p_z²/k² = 1;
+/// - radial axis, extraordinary: P_r'² = 1 - L²/r'² - p_z² (1/k + a/r')²;
+/// - azimuthal axis, ordinary: isotropic of index k s;
+/// - radial axis, ordinary: straight, of index k; it comes to the core.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UniaxialCylinder {
+    map: RadialMap,
+    axis: OpticAxis,
+    extent: Extent,
+}
+
+/// The medium at the core, where it is singular, is taken for that with this s: the one wave that comes
+/// there, the ordinary wave of the radial axis, does not feel it.
+const LEAST_S: f64 = 1e-6;
+
+/// Rays this close to the axis, relative to the outer radius, are aimed at it.
+const CENTRAL: f64 = 1e-12;
+
+impl UniaxialCylinder {
+    /// The shell between the radii `inner` and `outer`, cm, within `extent` along z.
+    #[must_use]
+    pub fn new(inner: f64, outer: f64, axis: OpticAxis, extent: Extent) -> Self {
+        Self { map: RadialMap::new(inner, outer, Symmetry::Axis), axis, extent }
+    }
+
+    fn point(&self, position: DVec3) -> UniaxialPoint {
+        let large = self.map.stretch() * self.map.stretch();
+        let s = self.map.shrinkage(position).max(LEAST_S);
+        let small = large * s * s;
+        let radial = self.map.radial(position);
+        match self.axis {
+            OpticAxis::Radial => {
+                UniaxialPoint { ordinary: large, extraordinary: small, axis: radial }
+            }
+            OpticAxis::Azimuthal => UniaxialPoint {
+                ordinary: small,
+                extraordinary: large,
+                axis: DVec3::Z.cross(radial),
+            },
+        }
+    }
+
+    /// The map that has made it.
+    #[must_use]
+    pub fn map(&self) -> &RadialMap {
+        &self.map
+    }
+
+    /// The local medium.
+    #[must_use]
+    pub fn medium(&self, position: DVec3) -> Option<Medium> {
+        let UniaxialPoint { ordinary, extraordinary, axis } = self.point(position);
+        Medium::uniaxial_electric(1.0, ordinary, extraordinary, axis).ok()
+    }
+
+    /// The electric fields of both waves, of unit power.
+    #[must_use]
+    pub fn parted(&self, position: DVec3, wave_vector: DVec3) -> [(ModeKind, DVec3); 2] {
+        let point = self.point(position);
+        [ModeKind::Ordinary, ModeKind::Extraordinary]
+            .map(|mode| (mode, point.field(wave_vector, mode)))
+    }
+
+    /// Follows a ray of either wave from a point of the border to the next point of it.
+    #[must_use]
+    pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
+        let leg = match (self.axis, mode == ModeKind::Extraordinary) {
+            (OpticAxis::Radial, false) => self.straight(position, wave_vector),
+            (OpticAxis::Azimuthal, true) => self.virtually_straight(position, wave_vector),
+            (OpticAxis::Radial, true) => {
+                let momentum = position.truncate().perp_dot(wave_vector.truncate());
+                let least = momentum.hypot(wave_vector.z * self.map.inner());
+                if least < CENTRAL * self.map.outer() {
+                    // At the axis: as its neighbours in the plane, which run as in the other cloak.
+                    self.virtually_straight(position, wave_vector)
+                } else {
+                    self.turning(position, wave_vector)
+                }
+            }
+            (OpticAxis::Azimuthal, false) => self.turning(position, wave_vector),
+        };
+        let (here, there) = (self.point(position), self.point(leg.position));
+        let direction = if mode == ModeKind::Extraordinary {
+            there.extraordinary_ray(leg.wave_vector)
+        } else {
+            leg.wave_vector
+        };
+        let fields = (here.field(wave_vector, mode), there.field(leg.wave_vector, mode));
+        RadialEnd {
+            border: leg.border,
+            position: leg.position,
+            wave_vector: leg.wave_vector,
+            direction: direction.normalize(),
+            optical_path: leg.optical_path,
+            transport: transport(fields.0, fields.1),
+            outward: leg.outward,
+        }
+    }
+
+    /// The ordinary wave of the radial axis.
+    fn straight(&self, position: DVec3, wave_vector: DVec3) -> Leg {
+        let direction = wave_vector.normalize();
+        let shell = |radius: f64| Cylinder { radius, extent: self.extent };
+        let (distance, part) = shell(self.map.outer()).time_to_leave(position, direction);
+        let core = shell(self.map.inner());
+        let leg = |distance: f64, border: Border, outward: DVec3, end: DVec3| Leg {
+            border,
+            position: end,
+            outward,
+            wave_vector,
+            optical_path: distance * wave_vector.length(),
+        };
+        let end = |distance: f64| position + direction * distance;
+        match core.hit_side(position, direction).filter(|to_core| *to_core < distance) {
+            Some(to_core) => {
+                let radial = core.outward(CylinderPart::Side, end(to_core));
+                let on_core = radial * self.map.inner() + DVec3::Z * end(to_core).z;
+                leg(to_core, Border::Inner, -radial, on_core)
+            }
+            None => {
+                let outward = shell(self.map.outer()).outward(part, end(distance));
+                let on_border = self.on_border(part.into(), end(distance));
+                leg(distance, part.into(), outward, on_border)
+            }
+        }
+    }
+
+    /// The extraordinary wave of the azimuthal axis.
+    fn virtually_straight(&self, position: DVec3, wave_vector: DVec3) -> Leg {
+        let map = &self.map;
+        let momentum = map.jacobian(position) * wave_vector;
+        let velocity = momentum.with_z(momentum.z / (map.stretch() * map.stretch()));
+        let line = VirtualLine::new(map, self.extent, position, velocity);
+        Leg {
+            border: line.border,
+            position: line.position,
+            outward: line.outward,
+            wave_vector: map.inverse_jacobian(line.position) * momentum,
+            optical_path: line.time * momentum.dot(velocity),
+        }
+    }
+
+    /// Waves that turn back before the core.
+    fn turning(&self, position: DVec3, wave_vector: DVec3) -> Leg {
+        let radial = self.map.radial(position);
+        let momentum = position.truncate().perp_dot(wave_vector.truncate());
+        let course = Course::new(self, momentum, wave_vector.z);
+        let radius = self.map.radius(position);
+        let start = course.quadratic.parameter(course.rho(radius));
+        let start = if wave_vector.dot(radial) < 0.0 { -start } else { start };
+        let begin = course.place(start);
+        let last = course.quadratic.parameter(course.rho(self.map.outer()));
+        let mut border = Border::Outer;
+        let mut eta = last.max(start);
+        let mut end = course.place(eta);
+        let whole = Cylinder { radius: self.map.outer(), extent: self.extent };
+        let (share, part) = whole.time_to_end(position.z, end.z - begin.z);
+        if share < 1.0 {
+            border = part.into();
+            let goal = begin.z + share * (end.z - begin.z);
+            let off = |eta: f64| (course.place(eta).z - goal, course.z_slope(eta));
+            eta = root_in_bracket((start, begin.z - goal), (eta, end.z - goal), off);
+            end = course.place(eta);
+        }
+        let (rho, root) = course.quadratic.radius(eta);
+        let radius = if border == Border::Outer { self.map.outer() } else { course.radius(rho) };
+        let turned = DVec2::from_angle(end.angle - begin.angle).rotate(radial.truncate());
+        let outward_radial = turned.normalize().extend(0.0);
+        let z = position.z + end.z - begin.z;
+        let place = self.on_border(border, outward_radial * radius + DVec3::Z * z);
+        let p_r = root / rho * course.radial_scale;
+        let around = DVec3::Z.cross(outward_radial) * (momentum / radius);
+        Leg {
+            border,
+            position: place,
+            outward: match border {
+                Border::Bottom => DVec3::NEG_Z,
+                Border::Top => DVec3::Z,
+                Border::Outer | Border::Inner => outward_radial,
+            },
+            wave_vector: outward_radial * p_r + around + DVec3::Z * wave_vector.z,
+            optical_path: end.optical_path - begin.optical_path,
+        }
+    }
+
+    /// A point put on the border to the last bit.
+    fn on_border(&self, border: Border, point: DVec3) -> DVec3 {
+        match border {
+            Border::Bottom => point.with_z(self.extent.min),
+            Border::Top => point.with_z(self.extent.max),
+            Border::Outer => {
+                let radial = self.map.radial(point) * self.map.outer();
+                radial.with_z(point.z)
+            }
+            Border::Inner => point,
+        }
+    }
+}
+
+/// The way from border to border.
+struct Leg {
+    border: Border,
+    position: DVec3,
+    outward: DVec3,
+    wave_vector: DVec3,
+    optical_path: f64,
+}
+
+/// What a ray that turns has done since its turning point.
+struct Place {
+    angle: f64,
+    z: f64,
+    optical_path: f64,
+}
+
+/// The course of a ray that turns: in τ with dr/dτ = ∂H/∂p_r, ρ dρ/dτ = √Q.
+struct Course {
+    quadratic: RadialQuadratic,
+    /// ρ = scale (r - origin).
+    scale: f64,
+    origin: f64,
+    /// p_r = radial_scale √Q/ρ.
+    radial_scale: f64,
+    momentum: f64,
+    /// Weights of the integrals for z and for the optical path: first, zeroth, inverse.
+    z: [f64; 3],
+    path: [f64; 3],
+}
+
+impl Course {
+    fn new(cylinder: &UniaxialCylinder, momentum: f64, p_z: f64) -> Self {
+        let (a, k) = (cylinder.map.inner(), cylinder.map.stretch());
+        let (k2, l2, pz2) = (k * k, momentum * momentum, p_z * p_z);
+        match cylinder.axis {
+            // Extraordinary: ρ = r', r'² P_r'² = r'² - L² - p_z² (r'/k + a)².
+            OpticAxis::Radial => {
+                let rest = 1.0 - pz2 / k2;
+                let pull = l2 + pz2 * a * a;
+                let discriminant = 4.0 * (l2 * rest + pz2 * a * a);
+                Self {
+                    quadratic: RadialQuadratic::new(rest, -2.0 * pz2 * a / k, -pull, discriminant),
+                    scale: k,
+                    origin: a,
+                    radial_scale: k,
+                    momentum,
+                    z: [p_z / k2, 2.0 * p_z * a / k, p_z * a * a],
+                    path: [1.0, 0.0, 0.0],
+                }
+            }
+            // Ordinary: ρ = r, r² p_r² = k² (r - a)² - L² - p_z² r².
+            OpticAxis::Azimuthal => {
+                let ka2 = k2 * a * a;
+                let discriminant = 4.0 * (l2 * (k2 - pz2) + pz2 * ka2);
+                let quadratic =
+                    RadialQuadratic::new(k2 - pz2, -2.0 * k2 * a, ka2 - l2, discriminant);
+                Self {
+                    quadratic,
+                    scale: 1.0,
+                    origin: 0.0,
+                    radial_scale: 1.0,
+                    momentum,
+                    z: [p_z, 0.0, 0.0],
+                    path: [k2, -2.0 * k2 * a, ka2],
+                }
+            }
+        }
+    }
+
+    fn rho(&self, radius: f64) -> f64 {
+        self.scale * (radius - self.origin)
+    }
+
+    fn radius(&self, rho: f64) -> f64 {
+        self.origin + rho / self.scale
+    }
+
+    fn place(&self, eta: f64) -> Place {
+        let CoreIntegrals { first, zeroth, inverse } = self.quadratic.integrals(eta);
+        let sum = |[f, z, i]: [f64; 3]| f * first + z * zeroth + i * inverse;
+        Place { angle: self.momentum * inverse, z: sum(self.z), optical_path: sum(self.path) }
+    }
+
+    /// dz/dη.
+    fn z_slope(&self, eta: f64) -> f64 {
+        let rho = self.quadratic.radius(eta).0;
+        (self.z[0] * rho + self.z[1] + self.z[2] / rho) / self.quadratic.a.sqrt()
+    }
+}
