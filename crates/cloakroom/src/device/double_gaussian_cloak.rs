@@ -129,7 +129,7 @@ fn cloak(flow: &ConformalFlow, finish: Finish, extent: Extent) -> Structure {
     let cells = [Half::Upper, Half::Lower]
         .map(|half| Cell::Conformal(ConformalCell { flow: *flow, half, finish }))
         .to_vec();
-    Structure { cells, skin, hull: Hull::new(outline, extent) }
+    Structure { cells, skin, hull: Hull::prism(outline, extent) }
 }
 
 fn bare(map: ConformalMap, cut: Truncation, extent: Extent) -> Structure {
@@ -140,7 +140,7 @@ fn bare(map: ConformalMap, cut: Truncation, extent: Extent) -> Structure {
         let around = Outline::rectangle(x, map.peak());
         skin.extend(Cap::both(&around, ends).map(|cap| Skin::FloorCap { cap, map }));
     }
-    let hull = Hull::new(Outline::rectangle(x, map.peak()), extent).with_floor(map);
+    let hull = Hull::prism(Outline::rectangle(x, map.peak()), extent).with_floor(map);
     Structure { cells: Vec::new(), skin, hull }
 }
 

@@ -100,6 +100,6 @@ fn flat_strip(half_width: f64, extent: optics::geometry::Extent) -> Structure {
     Structure {
         cells: Vec::new(),
         skin: vec![Skin::Strip(Wall::new(ends[0], ends[1], extent))],
-        hull: Hull::new(Outline::new(ends.to_vec()), extent),
+        hull: Hull::prism(Outline::new(ends.to_vec()), extent),
     }
 }

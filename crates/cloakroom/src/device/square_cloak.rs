@@ -99,7 +99,7 @@ fn bare(map: &StripToRhombus, extent: Extent) -> Structure {
             finish: Finish::Bare,
         }));
     }
-    Structure { cells: Vec::new(), skin, hull: Hull::new(outline, extent) }
+    Structure { cells: Vec::new(), skin, hull: Hull::prism(outline, extent) }
 }
 
 fn cloak(map: &StripToRhombus, recipe: &Recipe, extent: Extent) -> Result<Structure, KeyError> {
@@ -152,7 +152,7 @@ fn cloak(map: &StripToRhombus, recipe: &Recipe, extent: Extent) -> Result<Struct
             finish: Finish::Bare,
         }));
     }
-    let hull = Hull::new(Outline::new(square.to_vec()), extent);
+    let hull = Hull::prism(Outline::new(square.to_vec()), extent);
     Ok(Structure { cells, skin, hull })
 }
 

@@ -2,8 +2,8 @@
 
 use super::skin::within_floor;
 use super::{Cell, Skin};
-use glam::{DVec2, DVec3};
-use optics::geometry::{Extent, Outline};
+use glam::DVec3;
+use optics::geometry::{Extent, Outline, Solid};
 use optics::transformation::ConformalMap;
 
 /// What lies on the other side of a surface.
@@ -40,51 +40,83 @@ pub struct Structure {
 /// The space a device takes up: nothing else may be there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
-    /// Its cross-section, convex.
-    pub outline: Outline,
-    /// Its extent along z.
-    pub extent: Extent,
-    radius: f64,
+    solid: Solid,
+    reach: Reach,
     floor: Option<ConformalMap>,
 }
 
+/// What holds a hull, about the origin or the z axis of the device's frame: rays that miss it miss
+/// the device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Reach {
+    Nothing,
+    Cylinder(f64),
+    Ball(f64),
+}
+
+/// Rays that graze a hull by rounding still count as near it.
+const GRAZING: f64 = 1.0 + 1e-12;
+
 impl Hull {
-    /// The hull of a device that extends along z.
+    /// The hull of a device that fills a body.
     #[must_use]
-    pub fn new(outline: Outline, extent: Extent) -> Self {
-        let radius = outline.radius() * (1.0 + 1e-12);
-        Self { outline, extent, radius, floor: None }
+    pub fn new(solid: Solid) -> Self {
+        let reach = match &solid {
+            Solid::Nothing => Reach::Nothing,
+            Solid::Prism { outline, .. } => Reach::Cylinder(outline.radius() * GRAZING),
+            Solid::Cylinder { centre, radius, .. } => {
+                Reach::Cylinder((centre.length() + radius) * GRAZING)
+            }
+            Solid::Ball { centre, radius } => Reach::Ball((centre.length() + radius) * GRAZING),
+        };
+        Self { solid, reach, floor: None }
+    }
+
+    /// The hull of a device with a polygonal cross-section that extends along z.
+    #[must_use]
+    pub fn prism(outline: Outline, extent: Extent) -> Self {
+        Self::new(Solid::Prism { outline, extent })
     }
 
     /// The hull of the metal between the floor of a map and its mirror image: it holds only that part
-    /// of its outline.
+    /// of its body.
     #[must_use]
     pub fn with_floor(self, map: ConformalMap) -> Self {
         Self { floor: Some(map), ..self }
     }
 
+    /// The body that it fills.
+    #[must_use]
+    pub fn solid(&self) -> &Solid {
+        &self.solid
+    }
+
     /// Whether a ray (in the device's frame) comes near enough that it may meet the device.
     #[must_use]
     pub fn may_be_met(&self, origin: DVec3, direction: DVec3) -> bool {
-        let (o, d) = (origin.truncate(), direction.truncate());
-        let beside = d.perp_dot(o);
-        let along = o.dot(d);
-        let reach = self.radius * self.radius;
-        // The closest approach to the axis, if it lies ahead; else the origin itself.
-        beside * beside <= reach * d.length_squared()
-            && (along <= 0.0 || o.length_squared() <= reach)
+        // The closest approach to the axis or the centre, if it lies ahead; else the origin itself.
+        match self.reach {
+            Reach::Nothing => false,
+            Reach::Cylinder(radius) => {
+                let (o, d) = (origin.truncate(), direction.truncate());
+                let beside = d.perp_dot(o);
+                let reach = radius * radius;
+                beside * beside <= reach * d.length_squared()
+                    && (o.dot(d) <= 0.0 || o.length_squared() <= reach)
+            }
+            Reach::Ball(radius) => {
+                let beside = direction.cross(origin);
+                let reach = radius * radius;
+                beside.length_squared() <= reach * direction.length_squared()
+                    && (origin.dot(direction) <= 0.0 || origin.length_squared() <= reach)
+            }
+        }
     }
 
     /// Whether a point (in the device's frame) lies inside, border excluded.
     #[must_use]
     pub fn holds(&self, point: DVec3) -> bool {
-        let p: DVec2 = point.truncate();
-        let inside = !self.outline.corners().is_empty()
-            && self.outline.sides().all(|(a, b)| (b - a).perp_dot(p - a) > 0.0);
-        inside
-            && self.extent.min < point.z
-            && point.z < self.extent.max
-            && self.floor.is_none_or(|map| within_floor(&map, point))
+        self.solid.holds(point) && self.floor.is_none_or(|map| within_floor(&map, point))
     }
 }
 
@@ -92,11 +124,7 @@ impl Structure {
     /// A structure without anything: a cloak whose "mirror" view is empty space.
     #[must_use]
     pub fn empty() -> Self {
-        Self {
-            cells: Vec::new(),
-            skin: Vec::new(),
-            hull: Hull::new(Outline::new(Vec::new()), Extent::ENDLESS),
-        }
+        Self { cells: Vec::new(), skin: Vec::new(), hull: Hull::new(Solid::Nothing) }
     }
 
     /// The nearest surface that a ray in air meets, `last` being the one it has just left.

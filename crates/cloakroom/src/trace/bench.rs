@@ -2,7 +2,7 @@
 
 use crate::device::{SkinHit, Structure};
 use glam::DVec3;
-use optics::geometry::{Extent, Outline, Pose};
+use optics::geometry::{Pose, Solid};
 
 /// A device at its place.
 #[derive(Clone, Debug)]
@@ -20,13 +20,10 @@ impl Placed {
         self.structure.hull.holds(self.pose.to_local(point))
     }
 
-    /// The device's cross-section in the world's xy-plane, and its extent along z.
+    /// The space that the device takes up in the world.
     #[must_use]
-    pub fn footprint(&self) -> (Outline, Extent) {
-        let hull = &self.structure.hull;
-        let corners = hull.outline.corners().iter().map(|c| self.pose.point_to_world(*c)).collect();
-        let z = self.pose.origin().z;
-        (Outline::new(corners), Extent { min: hull.extent.min + z, max: hull.extent.max + z })
+    pub fn solid(&self) -> Solid {
+        self.structure.hull.solid().placed(&self.pose)
     }
 }
 
@@ -37,7 +34,7 @@ pub struct Bench {
 }
 
 /// How deep two devices may press into each other before they count as overlapping, cm.
-const TOUCHING: f64 = 1e-9;
+pub(super) const TOUCHING: f64 = 1e-9;
 
 impl Bench {
     /// The bench with the given devices, which must not overlap: see [`Bench::overlap`].
@@ -55,16 +52,9 @@ impl Bench {
     /// The first two devices that overlap, if any do.
     #[must_use]
     pub fn overlap(&self) -> Option<(usize, usize)> {
-        let footprints: Vec<_> = self.devices.iter().map(Placed::footprint).collect();
-        for (j, (outline, extent)) in footprints.iter().enumerate() {
-            for (i, (other, other_extent)) in footprints[..j].iter().enumerate() {
-                let empty = outline.corners().is_empty() || other.corners().is_empty();
-                if !empty && extent.overlaps(*other_extent) && outline.overlaps(other, TOUCHING) {
-                    return Some((i, j));
-                }
-            }
-        }
-        None
+        let solids: Vec<_> = self.devices.iter().map(Placed::solid).collect();
+        let pairs = (0..solids.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+        pairs.into_iter().find(|&(i, j)| solids[i].overlaps(&solids[j], TOUCHING))
     }
 
     /// The device that holds a point, if any does.

@@ -1,8 +1,9 @@
 //! The opaque rectangle in space on which the photograph is.
 
 use super::Bench;
+use super::bench::TOUCHING;
 use glam::{DVec2, DVec3};
-use optics::geometry::{Extent, Outline};
+use optics::geometry::{Extent, Outline, Solid};
 
 /// A rectangle in a plane of constant x, centred on the x axis, where rays end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,14 +35,9 @@ impl Screen {
     /// The first device that the rectangle cuts.
     #[must_use]
     pub fn cut_by(&self, bench: &Bench) -> Option<usize> {
-        let line = Outline::new(vec![
-            DVec2::new(self.x, -self.half_height),
-            DVec2::new(self.x, self.half_height),
-        ]);
+        let ends = [-self.half_height, self.half_height].map(|y| DVec2::new(self.x, y));
         let extent = Extent { min: -self.half_width, max: self.half_width };
-        bench.devices().iter().position(|device| {
-            let (outline, reach) = device.footprint();
-            !outline.corners().is_empty() && reach.overlaps(extent) && outline.overlaps(&line, 1e-9)
-        })
+        let sheet = Solid::Prism { outline: Outline::new(ends.to_vec()), extent };
+        bench.devices().iter().position(|device| device.solid().overlaps(&sheet, TOUCHING))
     }
 }

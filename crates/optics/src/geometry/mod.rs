@@ -1,20 +1,28 @@
 //! Surfaces, and where a ray meets them.
 //!
 //! Devices that extend along z are made of upright [`Wall`]s over a line in the xy-plane and of
-//! flat [`Cap`]s at their ends. Inside a convex cell a ray leaves through the first [`Plane`] ahead.
+//! flat [`Cap`]s at their ends, round ones of a [`Cylinder`] and of [`Disc`]s; a [`Sphere`] is whole.
+//! Inside a convex cell a ray leaves through the first [`Plane`] ahead. A [`Solid`] is the space that
+//! something takes up.
 
 mod cap;
+mod cylinder;
 mod floor_curve;
 mod outline;
 mod plane;
 mod pose;
+mod solid;
+mod sphere;
 mod wall;
 
 pub use cap::Cap;
+pub use cylinder::{Cylinder, CylinderPart, Disc};
 pub use floor_curve::FloorCurve;
 pub use outline::Outline;
 pub use plane::Plane;
 pub use pose::Pose;
+pub use solid::Solid;
+pub use sphere::Sphere;
 pub use wall::Wall;
 
 /// From where to where something extends along z, cm; endless ends are infinite.
@@ -46,6 +54,12 @@ impl Extent {
     #[must_use]
     pub fn contains(self, z: f64) -> bool {
         self.min <= z && z <= self.max
+    }
+
+    /// How far a coordinate lies outside, 0 within.
+    #[must_use]
+    pub fn distance(self, z: f64) -> f64 {
+        (self.min - z).max(z - self.max).max(0.0)
     }
 
     /// Whether two extents share more than a point.

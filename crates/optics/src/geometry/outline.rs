@@ -40,6 +40,20 @@ impl Outline {
         self.sides().all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
     }
 
+    /// How far a point lies outside, 0 within; infinite for no outline at all.
+    #[must_use]
+    pub fn distance(&self, point: DVec2) -> f64 {
+        if self.corners.len() > 2 && self.contains(point) {
+            return 0.0;
+        }
+        let to_side = |(a, b): (DVec2, DVec2)| {
+            let side = b - a;
+            let share = (point - a).dot(side) / side.length_squared();
+            point.distance(a + side * share.clamp(0.0, 1.0))
+        };
+        self.sides().map(to_side).fold(f64::INFINITY, f64::min)
+    }
+
     /// The largest distance of a corner from the origin.
     #[must_use]
     pub fn radius(&self) -> f64 {
