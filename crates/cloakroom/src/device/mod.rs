@@ -6,6 +6,7 @@
 
 mod cell;
 mod double_gaussian_cloak;
+mod mirror_detour;
 mod skin;
 mod square_cloak;
 mod structure;
@@ -83,12 +84,22 @@ impl Fact {
 }
 
 /// Every kind of device the program knows.
-pub static CATALOGUE: &[&Entry] = &[&square_cloak::ENTRY, &double_gaussian_cloak::ENTRY];
+pub static CATALOGUE: &[&Entry] =
+    &[&square_cloak::ENTRY, &double_gaussian_cloak::ENTRY, &mirror_detour::ENTRY];
 
 /// The entry of a kind, if there is one.
 #[must_use]
 pub fn entry(kind: &str) -> Option<&'static Entry> {
     CATALOGUE.iter().copied().find(|entry| entry.kind == kind)
+}
+
+/// Refuses to show a device otherwise than as it is; `reason` says what it is: "a body is no cloak".
+fn refuse_other_views(request: Request, reason: &str) -> Result<(), KeyError> {
+    if request.show == Show::Cloak {
+        return Ok(());
+    }
+    let message = format!("{reason}; it can be shown as it is, with show = \"cloak\", only");
+    Err(KeyError::at("show", message))
 }
 
 /// A two-sided flat metal strip on the x axis, |x| <= `half_width` (cm): what a cloak that opens a

@@ -6,10 +6,7 @@ use super::studio::{Studio, Surroundings};
 use crate::scene::CameraRay;
 use crate::trace::{FirstFace, Leaf, Outcome};
 use glam::{DQuat, DVec3};
-use optics::wave::arriving_stokes;
-
-/// Speed of light, cm/ns.
-pub(super) const SPEED_OF_LIGHT: f64 = 29.979_245_8;
+use optics::wave::{SPEED_OF_LIGHT, arriving_stokes};
 
 /// One traced camera ray.
 #[derive(Clone, Debug)]

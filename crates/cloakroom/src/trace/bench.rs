@@ -22,8 +22,8 @@ impl Placed {
 
     /// The space that the device takes up in the world.
     #[must_use]
-    pub fn solid(&self) -> Solid {
-        self.structure.hull.solid().placed(&self.pose)
+    pub fn solids(&self) -> Vec<Solid> {
+        self.structure.hull.solids().iter().map(|solid| solid.placed(&self.pose)).collect()
     }
 }
 
@@ -52,9 +52,11 @@ impl Bench {
     /// The first two devices that overlap, if any do.
     #[must_use]
     pub fn overlap(&self) -> Option<(usize, usize)> {
-        let solids: Vec<_> = self.devices.iter().map(Placed::solid).collect();
+        let solids: Vec<_> = self.devices.iter().map(Placed::solids).collect();
         let pairs = (0..solids.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
-        pairs.into_iter().find(|&(i, j)| solids[i].overlaps(&solids[j], TOUCHING))
+        pairs.into_iter().find(|&(i, j)| {
+            solids[i].iter().any(|one| solids[j].iter().any(|two| one.overlaps(two, TOUCHING)))
+        })
     }
 
     /// The device that holds a point, if any does.

@@ -33,6 +33,9 @@
 //! factor is left out, so that the empty view is the same through every polarizer.) Paths that leave
 //! a device at different places differ by many wavelengths: their powers add up, not their fields.
 
+/// Speed of light in vacuum, cm/ns.
+pub const SPEED_OF_LIGHT: f64 = 29.979_245_8;
+
 mod complex_vector;
 mod frame;
 mod linear_system;
