@@ -11,6 +11,21 @@ use glam::DVec3;
 use optics::wave::transverse_basis;
 use std::path::Path;
 
+/// What a kind needs that has no whole device by default: its tables.
+const TABLES: &[(&str, &str)] = &[(
+    "prisms",
+    "[[device.prism]]
+corners = [[-8, -6], [4, -6], [4, 0], [-2, 1], [-2, 7], [-8, 6]]
+permittivity = 2.25
+[[device.prism]]
+corners = [[4, -4], [4, -2], [9, 0]]
+permittivity = [[2.5, 0.1, 0], [0.1, 2.0, 0], [0, 0, [1.8, 4e-7]]]
+permeability = [1.2, 1e-7]
+[[device.prism]]
+corners = [[-2, 1], [1, 0.5], [1, 5], [-2, 5]]
+metal = true",
+)];
+
 /// Every device in every view, endless and short, at a few rotations and places, in each of the words
 /// that its keys take, with a description.
 fn benches() -> Vec<(String, Bench)> {
@@ -38,11 +53,15 @@ fn benches() -> Vec<(String, Bench)> {
                     if let Some(length) = length {
                         text += &format!("length = {length:?}\n");
                     }
+                    let tables = TABLES.iter().filter(|(kind, _)| *kind == entry.kind);
+                    text.extend(tables.map(|(_, tables)| *tables));
                     let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
                     let bench = match cloakroom::render::bench(&loaded.scene) {
                         Ok(bench) => bench,
                         // What is no cloak has no other views.
-                        Err(StudioError::Device { key: Some("show"), .. }) if show != "cloak" => {
+                        Err(StudioError::Device { error, .. })
+                            if error.key == Some("show") && show != "cloak" =>
+                        {
                             break;
                         }
                         Err(error) => panic!("{text}{error}"),

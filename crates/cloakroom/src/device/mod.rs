@@ -7,6 +7,7 @@
 mod cell;
 mod double_gaussian_cloak;
 mod mirror_detour;
+mod prisms;
 mod skin;
 mod square_cloak;
 mod structure;
@@ -16,6 +17,7 @@ pub use skin::Skin;
 pub use structure::{Beyond, Finish, Hull, SkinHit, Structure};
 
 use crate::keys::{Key, KeyError, Values};
+use optics::medium::Medium;
 
 /// What of a device is looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,12 +87,23 @@ impl Fact {
 
 /// Every kind of device the program knows.
 pub static CATALOGUE: &[&Entry] =
-    &[&square_cloak::ENTRY, &double_gaussian_cloak::ENTRY, &mirror_detour::ENTRY];
+    &[&square_cloak::ENTRY, &double_gaussian_cloak::ENTRY, &mirror_detour::ENTRY, &prisms::ENTRY];
 
 /// The entry of a kind, if there is one.
 #[must_use]
 pub fn entry(kind: &str) -> Option<&'static Entry> {
     CATALOGUE.iter().copied().find(|entry| entry.kind == kind)
+}
+
+/// The medium of the keys `permittivity` and `permeability`.
+fn medium(values: &Values) -> Result<Medium, KeyError> {
+    let [permittivity, permeability] =
+        ["permittivity", "permeability"].map(|key| values.tensor(key));
+    Medium::new(permittivity, permeability).map_err(|error| {
+        let key =
+            if error.quantity() == Some("permeability") { "permeability" } else { "permittivity" };
+        KeyError::at(key, error.to_string())
+    })
 }
 
 /// Refuses to show a device otherwise than as it is; `reason` says what it is: "a body is no cloak".

@@ -114,9 +114,8 @@ fn cloak(map: &StripToRhombus, recipe: &Recipe, extent: Extent) -> Result<Struct
         let diagonal = quadrant.extend(0.0) * 0.5f64.sqrt();
         // The neighbour across x = 0.
         let neighbour = Beyond::Cell(index ^ 1);
-        let face = |normal: DVec3, offset: f64, beyond: Beyond| Face {
-            plane: Plane { normal, offset },
-            beyond,
+        let face = |normal: DVec3, offset: f64, beyond: Beyond| {
+            Face::new(Plane { normal, offset }, beyond)
         };
         let mut faces = vec![
             face(diagonal, d * 0.5f64.sqrt(), Beyond::Air),

@@ -13,6 +13,8 @@ pub enum Beyond {
     Air,
     /// The device's cell of that number.
     Cell(u16),
+    /// The device's cell of that number, of the same medium: the surface is a cut, and no interface.
+    Seam(u16),
     /// A perfect conductor.
     Conductor,
 }

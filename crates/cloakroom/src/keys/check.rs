@@ -2,7 +2,8 @@
 
 use super::nearest::nearest;
 use super::value::{Value, number_text, quoted};
-use super::{Key, KeyKind, Limits};
+use super::{Key, KeyKind, Limits, Values, tensor};
+use optics::medium::Tensor;
 
 /// A value that fits its key.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +16,9 @@ pub(super) enum Fitted {
     Vector([f64; 3]),
     IntegerPair([i64; 2]),
     Text(String),
+    Tensor(Tensor),
+    Polygon(Vec<[f64; 2]>),
+    Tables(Vec<Values>),
 }
 
 impl From<&Fitted> for Value {
@@ -30,6 +34,13 @@ impl From<&Fitted> for Value {
             Fitted::Vector(vector) => Value::from(*vector),
             Fitted::IntegerPair(pair) => Value::from(*pair),
             Fitted::Text(text) => Value::from(text.as_str()),
+            Fitted::Tensor(tensor) => tensor::to_value(tensor),
+            Fitted::Polygon(corners) => {
+                Value::List(corners.iter().map(|corner| Value::from(*corner)).collect())
+            }
+            Fitted::Tables(tables) => {
+                Value::List(tables.iter().map(|table| Value::Table(table.given())).collect())
+            }
         }
     }
 }
@@ -80,6 +91,14 @@ impl Key {
                 let options = options.collect::<Vec<_>>().join(", ");
                 format!("{options} or a number{}", in_brackets(unit))
             }
+            KeyKind::Tensor => "a number, [re, im], or 3 x 3 of either".to_owned(),
+            KeyKind::Polygon { unit } => {
+                format!("three or more corners [x, y]{}", in_brackets(unit))
+            }
+            KeyKind::Tables { keys } => {
+                let names: Vec<_> = keys.iter().map(|key| key.name).collect();
+                format!("a list of tables with the keys {}", names.join(", "))
+            }
         }
     }
 
@@ -97,6 +116,9 @@ impl Key {
             KeyKind::Vector { default, .. } => Some(Fitted::Vector(default)),
             KeyKind::IntegerPair { default, .. } => Some(Fitted::IntegerPair(default)),
             KeyKind::Text { default } => default.map(|text| Fitted::Text(text.to_owned())),
+            KeyKind::Tensor => Some(Fitted::Tensor(1.0.into())),
+            KeyKind::Polygon { .. } => None,
+            KeyKind::Tables { .. } => Some(Fitted::Tables(Vec::new())),
             KeyKind::Choice { options } | KeyKind::ChoiceOrNumber { options, .. } => {
                 options.first().map(|option| Fitted::Choice(option))
             }
@@ -158,7 +180,52 @@ impl Key {
                 }
                 None => self.choose(value, options).map(Fitted::Choice),
             },
+            KeyKind::Tensor => {
+                let tensor = tensor::from_value(value).ok_or_else(|| self.wrong_type(value))?;
+                for number in tensor::parts(&tensor) {
+                    let name = format!("an entry of {}", self.name);
+                    self.limit(&name, number, "", Limits::Finite)?;
+                }
+                Ok(Fitted::Tensor(tensor))
+            }
+            KeyKind::Polygon { unit } => self.polygon(value, unit).map(Fitted::Polygon),
+            KeyKind::Tables { keys } => self.tables(value, keys).map(Fitted::Tables),
         }
+    }
+
+    fn polygon(&self, value: &Value, unit: &str) -> Result<Vec<[f64; 2]>, String> {
+        /// Beyond, areas lose all digits.
+        const FARTHEST: f64 = 1e6;
+        let Value::List(items) = value else { return Err(self.wrong_type(value)) };
+        if items.len() < 3 {
+            return Err(self.wrong_type(value));
+        }
+        let corner = |item: &Value| -> Result<[f64; 2], String> {
+            let corner: [f64; 2] = self
+                .list(item, Value::as_number)
+                .map_err(|_| format!("a corner of {} is {item}; it must be [x, y]", self.name))?;
+            for number in corner {
+                let name = format!("a coordinate of {}", self.name);
+                self.limit(&name, number, unit, Limits::Within(-FARTHEST, FARTHEST))?;
+            }
+            Ok(corner)
+        };
+        items.iter().map(corner).collect()
+    }
+
+    fn tables(&self, value: &Value, keys: &'static [Key]) -> Result<Vec<Values>, String> {
+        let Value::List(items) = value else { return Err(self.wrong_type(value)) };
+        let table = |(number, item): (usize, &Value)| {
+            let Value::Table(entries) = item else { return Err(self.wrong_type(value)) };
+            let mut values = Values::defaults(keys);
+            for (name, value) in entries {
+                values
+                    .set(name, value.clone())
+                    .map_err(|error| format!("{} {number}: {}", self.name, error.message))?;
+            }
+            Ok(values)
+        };
+        items.iter().enumerate().map(table).collect()
     }
 
     fn wrong_type(&self, value: &Value) -> String {

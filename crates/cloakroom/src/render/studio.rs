@@ -1,6 +1,7 @@
 //! The studio: a scene made ready to be looked at, images read and devices built.
 
 use crate::device::Request;
+use crate::keys::KeyError;
 use crate::photograph::{self, Edges, Equirectangular, LoadError, Pyramid};
 use crate::scene::{Projection, Scene, SurroundingsSettings};
 use crate::trace::{Bench, Limits, Placed, Screen};
@@ -14,14 +15,12 @@ const BUILTIN_WIDTH: f64 = 110.0;
 #[derive(Debug, thiserror::Error)]
 pub enum StudioError {
     /// A device cannot be built.
-    #[error("{message}")]
+    #[error("{error}")]
     Device {
         /// Which device, counted from 0.
         device: usize,
-        /// The key at fault, if one is.
-        key: Option<&'static str>,
-        /// What is wrong and what would be right.
-        message: String,
+        /// What is wrong, where, and what would be right.
+        error: KeyError,
     },
     /// Two devices are in each other's way.
     #[error(
@@ -72,10 +71,12 @@ impl StudioError {
     #[must_use]
     pub fn key(&self) -> String {
         match self {
-            Self::Device { device, key: Some(key), .. } => format!("device.{device}.{key}"),
-            Self::Device { device, key: None, .. } | Self::PhotographInside { device, .. } => {
-                format!("device.{device}")
+            Self::Device { device, error } => {
+                let path = error.path();
+                let dot = if path.is_empty() { "" } else { "." };
+                format!("device.{device}{dot}{path}")
             }
+            Self::PhotographInside { device, .. } => format!("device.{device}"),
             Self::Overlap { second, .. } => format!("device.{second}"),
             Self::CameraInside { .. } => "camera.position".to_owned(),
             Self::NoCoveringWidth { .. } => "photograph.x".to_owned(),
@@ -95,12 +96,11 @@ pub fn bench(scene: &Scene) -> Result<Bench, StudioError> {
     let mut placed = Vec::new();
     for (index, device) in scene.devices.iter().enumerate() {
         let request = Request { show: device.show, length: device.length };
-        let structure = (device.entry.build)(&device.values, request).map_err(|error| {
-            StudioError::Device { device: index, key: error.key, message: error.message }
-        })?;
+        let structure = (device.entry.build)(&device.values, request)
+            .map_err(|error| StudioError::Device { device: index, error })?;
         placed.push(Placed { pose: Pose::new(device.position, device.rotation), structure });
     }
-    let bench = Bench::new(placed);
+    let bench = Bench::new(placed).with_wavelength(scene.light.wavelength_nm);
     match bench.overlap() {
         Some((first, second)) => Err(StudioError::Overlap { first, second }),
         None => Ok(bench),

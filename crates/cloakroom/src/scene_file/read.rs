@@ -6,7 +6,7 @@ use super::error::SceneFileError;
 use super::locations::Locations;
 use super::tree::{Entry, Item, Node, Origin, Table};
 use crate::device::{self, CATALOGUE};
-use crate::keys::{Key, KeyError, Values, hint, quoted, unknown};
+use crate::keys::{Key, KeyError, KeyKind, Values, hint, quoted, unknown};
 use crate::scene::{
     Camera, CameraSettings, DeviceSettings, Light, PLACEMENT_KEYS, PhotographSettings,
     PictureSettings, Scene, SurroundingsSettings, TABLES, TraceSettings,
@@ -150,6 +150,10 @@ fn fill(
             let message = unknown("key", &entry.key, place, &known);
             return Err(locations.error(&entry.key_origin, message));
         };
+        if let KeyKind::Tables { keys } = key.kind {
+            list.set_tables(key.name, tables(entry, key, keys, locations)?);
+            continue;
+        }
         let set = match entry.node.item.to_value() {
             Ok(value) => list.set(key.name, value).map_err(|error| error.message),
             Err(what) => Err(format!("{} is {what}; it must be {}", key.name, key.describe())),
@@ -157,6 +161,29 @@ fn fill(
         set.map_err(|message| locations.error(&entry.node.origin, message))?;
     }
     Ok(())
+}
+
+/// The tables of a list such as [[device.prism]].
+fn tables(
+    entry: &Entry,
+    key: &Key,
+    keys: &'static [Key],
+    locations: &Locations,
+) -> Result<Vec<Values>, SceneFileError> {
+    let wrong = |node: &Node| {
+        let what = node.item.describe();
+        let message = format!("{} is {what}; it must be {}", key.name, key.describe());
+        locations.error(&node.origin, message)
+    };
+    let Item::List(items) = &entry.node.item else { return Err(wrong(&entry.node)) };
+    let read = |item: &Node| {
+        let Item::Table(table) = &item.item else { return Err(wrong(item)) };
+        let mut values = [Values::defaults(keys)];
+        fill(&mut values, table, &[], &format!(" in a {}", key.name), locations)?;
+        let [values] = values;
+        Ok(values)
+    };
+    items.iter().map(read).collect()
 }
 
 /// Names of files are relative to the scene file, those in overrides to the current folder.

@@ -105,6 +105,21 @@ fn property(key: &Key) -> Value {
         KeyKind::ChoiceOrNumber { options, unit } => {
             (json!({ "anyOf": [{ "enum": options }, { "type": "number" }] }), unit)
         }
+        KeyKind::Tensor => (tensor(), ""),
+        KeyKind::Polygon { unit } => {
+            let corner = list(number(Limits::Finite), 2);
+            (json!({ "type": "array", "items": corner, "minItems": 3 }), unit)
+        }
+        KeyKind::Tables { keys } => {
+            let mut table = closed_table(properties(keys));
+            let required: Vec<_> = keys
+                .iter()
+                .filter(|key| matches!(key.kind, KeyKind::Polygon { .. }))
+                .map(|key| key.name)
+                .collect();
+            table.insert("required".to_owned(), json!(required));
+            (json!({ "type": "array", "items": table }), "")
+        }
     };
     let unit = if unit.is_empty() { String::new() } else { format!(" Unit: {unit}.") };
     property["description"] = format!("{}{unit}", key.doc).into();
@@ -112,6 +127,14 @@ fn property(key: &Key) -> Value {
         property["default"] = Value::from(default);
     }
     property
+}
+
+/// A number, [re, im], or 3 x 3 of either.
+fn tensor() -> Value {
+    let pair = list(number(Limits::Finite), 2);
+    let entry = json!({ "anyOf": [number(Limits::Finite), pair] });
+    let rows = list(list(entry, 3), 3);
+    json!({ "anyOf": [number(Limits::Finite), pair, rows] })
 }
 
 fn number(limits: Limits) -> Value {

@@ -28,9 +28,16 @@ impl Placed {
 }
 
 /// All devices of a scene.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Bench {
     devices: Vec<Placed>,
+    vacuum_wave_number: f64,
+}
+
+impl Default for Bench {
+    fn default() -> Self {
+        Self::new(Vec::new())
+    }
 }
 
 /// How deep two devices may press into each other before they count as overlapping, cm.
@@ -40,7 +47,22 @@ impl Bench {
     /// The bench with the given devices, which must not overlap: see [`Bench::overlap`].
     #[must_use]
     pub fn new(devices: Vec<Placed>) -> Self {
-        Self { devices }
+        Self { devices, vacuum_wave_number: 0.0 }.with_wavelength(550.0)
+    }
+
+    /// The same bench in light of another wavelength (in vacuum, nm) than 550 nm. Only absorption depends
+    /// on it: media are given for it.
+    #[must_use]
+    pub fn with_wavelength(self, wavelength_nm: f64) -> Self {
+        const CM_PER_NM: f64 = 1e-7;
+        let vacuum_wave_number = std::f64::consts::TAU / (wavelength_nm * CM_PER_NM);
+        Self { vacuum_wave_number, ..self }
+    }
+
+    /// k0, the wave number in vacuum, 1/cm.
+    #[must_use]
+    pub fn vacuum_wave_number(&self) -> f64 {
+        self.vacuum_wave_number
     }
 
     /// The devices, in the order of the scene.

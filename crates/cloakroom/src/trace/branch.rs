@@ -57,6 +57,24 @@ impl<const N: usize> Branch<N> {
         }
     }
 
+    /// The branch in air, where all that decays across a beam is its profile: behind an absorbing wedge the
+    /// wave of the match decays along the surface, by some 1e-5 of its wave vector; a ray is a plane
+    /// wave along its direction, transverse, and of its power.
+    pub fn in_air(self) -> Self {
+        if self.attenuation == DVec3::ZERO {
+            return self;
+        }
+        let mut electric = self.electric;
+        for (field, power) in electric.iter_mut().zip(self.power) {
+            let along = field.dot_real(self.direction);
+            let across =
+                *field - ComplexVector::new(self.direction * along.re, self.direction * along.im);
+            let size = across.norm_squared();
+            *field = if size > 0.0 { across * (power / size).sqrt() } else { across };
+        }
+        Self { wave_vector: self.direction, attenuation: DVec3::ZERO, electric, ..self }
+    }
+
     /// The power of its strongest polarization.
     pub fn largest_power(&self) -> f64 {
         self.power.iter().copied().fold(0.0, f64::max)

@@ -138,7 +138,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     self.go_on(to_world(&local.onward(&wave, air, event), &device.pose));
                 }
             }
-            Beyond::Cell(cell) => {
+            Beyond::Cell(cell) | Beyond::Seam(cell) => {
                 let Some(entrance) = self.cell(device, cell).enter(local.position) else {
                     self.lose(branch.power);
                     return;
@@ -176,7 +176,15 @@ impl<'a, const N: usize> Tracer<'a, N> {
             self.lose(branch.power);
             return;
         };
+        let way = passage.position - branch.position;
         branch.position = passage.position;
+        if passage.medium.absorbs() {
+            self.absorb(&mut branch, way);
+            if branch.largest_power() < self.limits.min_power.max(NO_POWER) {
+                self.prune(branch.power);
+                return;
+            }
+        }
         branch.wave_vector = passage.wave_vector;
         branch.direction = passage.direction;
         branch.optical_path += passage.optical_path;
@@ -195,6 +203,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     self.go_on(branch.onward(&wave, here, event | side_code(&wave)));
                 }
             }
+            Beyond::Seam(next) => self
+                .waiting
+                .push(Branch { place: Place::Cell { device: device_index, cell: next }, ..branch }),
             Beyond::Cell(next) => {
                 let Some(entrance) = self.cell(device, next).enter(branch.position) else {
                     self.lose(branch.power);
@@ -223,7 +234,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
                         Side::Reflected => self.go_on(branch.onward(&wave, here, event)),
                         Side::Transmitted => {
                             let air = Place::Air { left: None };
-                            self.go_on(to_world(&branch.onward(&wave, air, event), &device.pose));
+                            let onward = branch.onward(&wave, air, event).in_air();
+                            self.go_on(to_world(&onward, &device.pose));
                         }
                     }
                 }
@@ -255,6 +267,19 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let waves = split_as_finished(from, to, &branch.incident(), normal, finish);
         self.check_account(branch, &waves);
         waves
+    }
+
+    /// Takes from a branch what an absorbing medium keeps of it on a straight way.
+    fn absorb(&mut self, branch: &mut Branch<N>, way: DVec3) {
+        // Power never grows along a ray: rounding must not have it so.
+        let depth = (self.bench.vacuum_wave_number() * branch.attenuation.dot(way)).max(0.0);
+        let (amplitude, kept) = ((-depth).exp(), (-2.0 * depth).exp());
+        for (i, power) in branch.power.iter_mut().enumerate() {
+            let left = *power * kept;
+            self.outcome.absorbed[i] += *power - left;
+            *power = left;
+            branch.electric[i] = branch.electric[i] * amplitude;
+        }
     }
 
     /// Counts power as lost that an interface could not hand on: the account must not leak, even
