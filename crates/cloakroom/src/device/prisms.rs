@@ -7,7 +7,7 @@ use super::{Beyond, Cell, Entry, Face, Fact, Finish, Hull, Prism, Request, Show,
 use crate::keys::{Key, KeyError, KeyKind, Values};
 use glam::DVec2;
 use optics::geometry::{
-    Cap, ConvexPart, Extent, Outline, Plane, Polygon, PolygonError, SAME_POINT, Wall,
+    Cap, ConvexPart, Extent, Outline, Plane, Polygon, PolygonError, SAME_POINT, Solid, Wall,
 };
 use optics::medium::Medium;
 
@@ -124,8 +124,9 @@ fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
             cells.push(Cell::Prism(Prism { medium, faces }));
         }
     }
-    let outlines = pieces.into_iter().map(|piece| piece.outline).collect();
-    Ok(Structure { cells, skin, hull: Hull::of_parts(outlines, extent) })
+    let solids =
+        pieces.into_iter().map(|piece| Solid::Prism { outline: piece.outline, extent }).collect();
+    Ok(Structure { cells, skin, hull: Hull::of_parts(solids) })
 }
 
 /// The prisms of the scene, each sound in itself.
