@@ -39,7 +39,7 @@ fn as_json(entry: &Entry) -> Value {
 fn keys_as_json(keys: &[Key]) -> Value {
     let key = |key: &Key| {
         let mut object = json!({ "name": key.name, "doc": key.doc, "allowed": key.describe(), "default": key.default_value().map(Value::from) });
-        if let KeyKind::Tables { keys } = key.kind {
+        if let KeyKind::Table { keys } | KeyKind::Tables { keys } = key.kind {
             object["keys"] = keys_as_json(keys);
         }
         object
@@ -52,7 +52,7 @@ fn describe_keys(keys: &[Key], prefix: &str, text: &mut String) -> std::fmt::Res
     for key in keys {
         let name = format!("{prefix}{}", key.name);
         writeln!(text, "  {name:<12} {} ({})", key.doc, key.describe())?;
-        if let KeyKind::Tables { keys } = key.kind {
+        if let KeyKind::Table { keys } | KeyKind::Tables { keys } = key.kind {
             describe_keys(keys, &format!("{name}."), text)?;
         }
     }

@@ -4,6 +4,8 @@
 //! ([`Structure`]). Each kind is one file here that turns the keys of its table in a scene into a
 //! structure, and one line in [`CATALOGUE`]; nothing else in the program knows it.
 
+mod body;
+mod body_shape;
 mod cell;
 mod double_gaussian_cloak;
 mod mirror_detour;
@@ -12,6 +14,7 @@ mod skin;
 mod square_cloak;
 mod structure;
 
+pub use body_shape::{Body, BodyShape, Filling};
 pub use cell::{Cell, ConformalCell, Entrance, Face, Passage, Prism};
 pub use skin::Skin;
 pub use structure::{Beyond, Finish, Hull, SkinHit, Structure};
@@ -86,8 +89,13 @@ impl Fact {
 }
 
 /// Every kind of device the program knows.
-pub static CATALOGUE: &[&Entry] =
-    &[&square_cloak::ENTRY, &double_gaussian_cloak::ENTRY, &mirror_detour::ENTRY, &prisms::ENTRY];
+pub static CATALOGUE: &[&Entry] = &[
+    &square_cloak::ENTRY,
+    &double_gaussian_cloak::ENTRY,
+    &mirror_detour::ENTRY,
+    &prisms::ENTRY,
+    &body::ENTRY,
+];
 
 /// The entry of a kind, if there is one.
 #[must_use]

@@ -1,7 +1,7 @@
 //! What every device is made of: cells filled with media, and the skin that light in air meets.
 
 use super::skin::within_floor;
-use super::{Cell, Skin};
+use super::{Body, Cell, Skin};
 use glam::DVec3;
 use optics::geometry::{Extent, Outline, Solid};
 use optics::transformation::ConformalMap;
@@ -39,12 +39,13 @@ pub struct Structure {
     pub hull: Hull,
 }
 
-/// The space a device takes up: nothing else may be there.
+/// The space a device takes up: nothing else may be there, unless both are bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
     solids: Vec<Solid>,
     reach: Reach,
     floor: Option<ConformalMap>,
+    body: Option<Box<Body>>,
 }
 
 /// What holds a hull, about the origin or the z axis of the device's frame: rays that miss it miss
@@ -94,7 +95,7 @@ impl Hull {
     #[must_use]
     pub fn of_parts(solids: Vec<Solid>) -> Self {
         let reach = solids.iter().map(Reach::of).fold(Reach::Nothing, Reach::joined);
-        Self { solids, reach, floor: None }
+        Self { solids, reach, floor: None, body: None }
     }
 
     /// The hull of a device with a polygonal cross-section that extends along z.
@@ -110,7 +111,19 @@ impl Hull {
         Self { floor: Some(map), ..self }
     }
 
-    /// The bodies that it fills.
+    /// The hull of a body, which may overlap other bodies.
+    #[must_use]
+    pub fn of_body(self, body: Body) -> Self {
+        Self { body: Some(Box::new(body)), ..self }
+    }
+
+    /// The body whose hull it is, if it is one's.
+    #[must_use]
+    pub fn body(&self) -> Option<&Body> {
+        self.body.as_deref()
+    }
+
+    /// The solids that it fills.
     #[must_use]
     pub fn solids(&self) -> &[Solid] {
         &self.solids

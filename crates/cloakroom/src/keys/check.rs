@@ -18,6 +18,7 @@ pub(super) enum Fitted {
     Text(String),
     Tensor(Tensor),
     Polygon(Vec<[f64; 2]>),
+    Table(Values),
     Tables(Vec<Values>),
 }
 
@@ -38,6 +39,7 @@ impl From<&Fitted> for Value {
             Fitted::Polygon(corners) => {
                 Value::List(corners.iter().map(|corner| Value::from(*corner)).collect())
             }
+            Fitted::Table(table) => Value::Table(table.given()),
             Fitted::Tables(tables) => {
                 Value::List(tables.iter().map(|table| Value::Table(table.given())).collect())
             }
@@ -95,10 +97,8 @@ impl Key {
             KeyKind::Polygon { unit } => {
                 format!("three or more corners [x, y]{}", in_brackets(unit))
             }
-            KeyKind::Tables { keys } => {
-                let names: Vec<_> = keys.iter().map(|key| key.name).collect();
-                format!("a list of tables with the keys {}", names.join(", "))
-            }
+            KeyKind::Table { keys } => format!("a table with {}", key_names(keys)),
+            KeyKind::Tables { keys } => format!("a list of tables with {}", key_names(keys)),
         }
     }
 
@@ -117,7 +117,7 @@ impl Key {
             KeyKind::IntegerPair { default, .. } => Some(Fitted::IntegerPair(default)),
             KeyKind::Text { default } => default.map(|text| Fitted::Text(text.to_owned())),
             KeyKind::Tensor => Some(Fitted::Tensor(1.0.into())),
-            KeyKind::Polygon { .. } => None,
+            KeyKind::Polygon { .. } | KeyKind::Table { .. } => None,
             KeyKind::Tables { .. } => Some(Fitted::Tables(Vec::new())),
             KeyKind::Choice { options } | KeyKind::ChoiceOrNumber { options, .. } => {
                 options.first().map(|option| Fitted::Choice(option))
@@ -189,6 +189,7 @@ impl Key {
                 Ok(Fitted::Tensor(tensor))
             }
             KeyKind::Polygon { unit } => self.polygon(value, unit).map(Fitted::Polygon),
+            KeyKind::Table { keys } => self.table(value, keys).map(Fitted::Table),
             KeyKind::Tables { keys } => self.tables(value, keys).map(Fitted::Tables),
         }
     }
@@ -215,17 +216,18 @@ impl Key {
 
     fn tables(&self, value: &Value, keys: &'static [Key]) -> Result<Vec<Values>, String> {
         let Value::List(items) = value else { return Err(self.wrong_type(value)) };
-        let table = |(number, item): (usize, &Value)| {
-            let Value::Table(entries) = item else { return Err(self.wrong_type(value)) };
-            let mut values = Values::defaults(keys);
-            for (name, value) in entries {
-                values
-                    .set(name, value.clone())
-                    .map_err(|error| format!("{} {number}: {}", self.name, error.message))?;
-            }
-            Ok(values)
-        };
-        items.iter().enumerate().map(table).collect()
+        items.iter().map(|item| self.table(item, keys)).collect()
+    }
+
+    fn table(&self, value: &Value, keys: &'static [Key]) -> Result<Values, String> {
+        let Value::Table(entries) = value else { return Err(self.wrong_type(value)) };
+        let mut values = Values::defaults(keys);
+        for (name, value) in entries {
+            values
+                .set(name, value.clone())
+                .map_err(|error| format!("in {}: {}", self.name, error.message))?;
+        }
+        Ok(values)
     }
 
     fn wrong_type(&self, value: &Value) -> String {
@@ -289,6 +291,12 @@ fn words(options: &[&str]) -> String {
         [only] => only.clone(),
         [first @ .., last] => format!("{} or {last}", first.join(", ")),
     }
+}
+
+/// "the key a", "the keys a, b".
+fn key_names(keys: &[Key]) -> String {
+    let names: Vec<_> = keys.iter().map(|key| key.name).collect();
+    format!("the key{} {}", if names.len() == 1 { "" } else { "s" }, names.join(", "))
 }
 
 fn in_brackets(unit: &str) -> String {

@@ -102,6 +102,11 @@ pub enum KeyKind {
         /// The unit of the coordinates.
         unit: &'static str,
     },
+    /// A table with keys of its own; absence itself means something.
+    Table {
+        /// Its keys.
+        keys: &'static [Key],
+    },
     /// A list of tables, each with keys of its own; none by default.
     Tables {
         /// The keys of each table.

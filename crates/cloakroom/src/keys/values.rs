@@ -119,6 +119,13 @@ impl Values {
         }
     }
 
+    /// Gives a key of the kind [`KeyKind::Table`] its table, held against its keys before.
+    pub(crate) fn set_table(&mut self, name: &str, table: Values) {
+        if let Some(index) = self.keys.iter().position(|key| key.name == name) {
+            self.slots[index] = Slot { value: Some(Fitted::Table(table)), given: true };
+        }
+    }
+
     /// The keys that were given, with their values.
     pub(super) fn given(&self) -> Vec<(String, Value)> {
         let given = self.keys.iter().zip(&self.slots).filter(|(_, slot)| slot.given);
@@ -253,6 +260,15 @@ impl Values {
             (KeyKind::Polygon { .. }, Some(Fitted::Polygon(corners))) => Some(corners),
             (KeyKind::Polygon { .. }, None) => None,
             _ => mistaken(name, "polygon"),
+        }
+    }
+
+    /// A table; `None` where it is absent.
+    pub fn table(&self, name: &str) -> Option<&Values> {
+        match (self.slot(name).0.kind, &self.slot(name).1.value) {
+            (KeyKind::Table { .. }, Some(Fitted::Table(table))) => Some(table),
+            (KeyKind::Table { .. }, None) => None,
+            _ => mistaken(name, "table"),
         }
     }
 

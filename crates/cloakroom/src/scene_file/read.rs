@@ -154,6 +154,10 @@ fn fill(
             list.set_tables(key.name, tables(entry, key, keys, locations)?);
             continue;
         }
+        if let (KeyKind::Table { keys }, Item::Table(_)) = (key.kind, &entry.node.item) {
+            list.set_table(key.name, inner_table(&entry.node, key, keys, locations)?);
+            continue;
+        }
         let set = match entry.node.item.to_value() {
             Ok(value) => list.set(key.name, value).map_err(|error| error.message),
             Err(what) => Err(format!("{} is {what}; it must be {}", key.name, key.describe())),
@@ -170,20 +174,30 @@ fn tables(
     keys: &'static [Key],
     locations: &Locations,
 ) -> Result<Vec<Values>, SceneFileError> {
-    let wrong = |node: &Node| {
-        let what = node.item.describe();
-        let message = format!("{} is {what}; it must be {}", key.name, key.describe());
-        locations.error(&node.origin, message)
+    let Item::List(items) = &entry.node.item else {
+        return Err(unfit(&entry.node, key, locations));
     };
-    let Item::List(items) = &entry.node.item else { return Err(wrong(&entry.node)) };
-    let read = |item: &Node| {
-        let Item::Table(table) = &item.item else { return Err(wrong(item)) };
-        let mut values = [Values::defaults(keys)];
-        fill(&mut values, table, &[], &format!(" in a {}", key.name), locations)?;
-        let [values] = values;
-        Ok(values)
-    };
-    items.iter().map(read).collect()
+    items.iter().map(|item| inner_table(item, key, keys, locations)).collect()
+}
+
+/// A table within a device's.
+fn inner_table(
+    node: &Node,
+    key: &Key,
+    keys: &'static [Key],
+    locations: &Locations,
+) -> Result<Values, SceneFileError> {
+    let Item::Table(table) = &node.item else { return Err(unfit(node, key, locations)) };
+    let mut values = [Values::defaults(keys)];
+    fill(&mut values, table, &[], &format!(" in a {}", key.name), locations)?;
+    let [values] = values;
+    Ok(values)
+}
+
+fn unfit(node: &Node, key: &Key, locations: &Locations) -> SceneFileError {
+    let what = node.item.describe();
+    let message = format!("{} is {what}; it must be {}", key.name, key.describe());
+    locations.error(&node.origin, message)
 }
 
 /// Names of files are relative to the scene file, those in overrides to the current folder.

@@ -86,6 +86,15 @@ fn closed_table(properties: Map<String, Value>) -> Map<String, Value> {
     table
 }
 
+/// A table within a device's; polygons have no default.
+fn inner_table(keys: &[Key]) -> Map<String, Value> {
+    let mut table = closed_table(properties(keys));
+    let required = keys.iter().filter(|key| matches!(key.kind, KeyKind::Polygon { .. }));
+    let required: Vec<_> = required.map(|key| key.name).collect();
+    table.insert("required".to_owned(), json!(required));
+    table
+}
+
 fn properties(keys: &[Key]) -> Map<String, Value> {
     keys.iter().map(|key| (key.name.to_owned(), property(key))).collect()
 }
@@ -110,16 +119,8 @@ fn property(key: &Key) -> Value {
             let corner = list(number(Limits::Finite), 2);
             (json!({ "type": "array", "items": corner, "minItems": 3 }), unit)
         }
-        KeyKind::Tables { keys } => {
-            let mut table = closed_table(properties(keys));
-            let required: Vec<_> = keys
-                .iter()
-                .filter(|key| matches!(key.kind, KeyKind::Polygon { .. }))
-                .map(|key| key.name)
-                .collect();
-            table.insert("required".to_owned(), json!(required));
-            (json!({ "type": "array", "items": table }), "")
-        }
+        KeyKind::Table { keys } => (inner_table(keys).into(), ""),
+        KeyKind::Tables { keys } => (json!({ "type": "array", "items": inner_table(keys) }), ""),
     };
     let unit = if unit.is_empty() { String::new() } else { format!(" Unit: {unit}.") };
     property["description"] = format!("{}{unit}", key.doc).into();

@@ -1,5 +1,6 @@
 //! The optical bench: all devices of a scene at their places.
 
+use super::bodies::Bodies;
 use crate::device::{SkinHit, Structure};
 use glam::DVec3;
 use optics::geometry::{Pose, Solid};
@@ -31,6 +32,7 @@ impl Placed {
 #[derive(Clone, Debug)]
 pub struct Bench {
     devices: Vec<Placed>,
+    bodies: Bodies,
     vacuum_wave_number: f64,
 }
 
@@ -47,7 +49,8 @@ impl Bench {
     /// The bench with the given devices, which must not overlap: see [`Bench::overlap`].
     #[must_use]
     pub fn new(devices: Vec<Placed>) -> Self {
-        Self { devices, vacuum_wave_number: 0.0 }.with_wavelength(550.0)
+        let bodies = Bodies::of(&devices);
+        Self { devices, bodies, vacuum_wave_number: 0.0 }.with_wavelength(550.0)
     }
 
     /// The same bench in light of another wavelength (in vacuum, nm) than 550 nm. Only absorption depends
@@ -71,12 +74,22 @@ impl Bench {
         &self.devices
     }
 
-    /// The first two devices that overlap, if any do.
+    /// The bodies among the devices.
+    pub(super) fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
+    /// The first two devices that overlap, if any do. Bodies may, unless their priorities are equal.
     #[must_use]
     pub fn overlap(&self) -> Option<(usize, usize)> {
         let solids: Vec<_> = self.devices.iter().map(Placed::solids).collect();
         let pairs = (0..solids.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
-        pairs.into_iter().find(|&(i, j)| {
+        let priority = |i: usize| self.devices[i].structure.hull.body().map(|body| body.priority);
+        let may_overlap = |i: usize, j: usize| match (priority(i), priority(j)) {
+            (Some(one), Some(other)) => one != other,
+            _ => false,
+        };
+        pairs.into_iter().filter(|&(i, j)| !may_overlap(i, j)).find(|&(i, j)| {
             solids[i].iter().any(|one| solids[j].iter().any(|two| one.overlaps(two, TOUCHING)))
         })
     }

@@ -1,5 +1,7 @@
 //! A branch of a ray tree on its way.
 
+use super::Leaf;
+use super::bodies::Around;
 use glam::DVec3;
 use optics::interface::{IncidentWave, OutgoingWave};
 use optics::propagation::Foothold;
@@ -25,6 +27,10 @@ pub(super) struct Branch<const N: usize> {
     pub electric: [ComplexVector; N],
     pub power: [f64; N],
     pub optical_path: f64,
+    /// Speed of light times the time of flight, cm.
+    pub group_path: f64,
+    /// The bodies around it.
+    pub around: Around,
     pub met_device: bool,
     pub path: u64,
     /// Where it is in the virtual space of a conformal cell.
@@ -73,6 +79,21 @@ impl<const N: usize> Branch<N> {
             *field = if size > 0.0 { across * (power / size).sqrt() } else { across };
         }
         Self { wave_vector: self.direction, attenuation: DVec3::ZERO, electric, ..self }
+    }
+
+    /// The branch as a leaf, away through air or on an opaque body.
+    pub fn leaf(&self, body: Option<u16>) -> Leaf<N> {
+        Leaf {
+            position: self.position,
+            met_device: self.met_device,
+            direction: self.direction,
+            power: self.power,
+            electric: self.electric,
+            optical_path: self.optical_path,
+            group_path: self.group_path,
+            body,
+            path: self.path,
+        }
     }
 
     /// The power of its strongest polarization.

@@ -38,7 +38,7 @@ impl<const N: usize> Tracer<'_, N> {
                     continue;
                 }
                 Beyond::Conductor => face.reflected = power,
-                Beyond::Cell(cell) => {
+                Beyond::Cell(cell) | Beyond::Seam(cell) => {
                     let device = &self.bench.devices()[usize::from(device_index)];
                     let pose = &device.pose;
                     let entrance = self.cell(device, cell).enter(pose.to_local(position))?;

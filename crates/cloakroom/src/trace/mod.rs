@@ -5,6 +5,7 @@
 //! absorbed and what is pruned add up to what was launched.
 
 mod bench;
+mod bodies;
 mod branch;
 mod exchange;
 mod first_face;
@@ -13,6 +14,7 @@ mod screen;
 mod tracer;
 
 pub use bench::{Bench, Placed};
+pub use bodies::MOST_BODIES;
 pub use exchange::{LeafReport, Polarization, RayError, RayReport, RayRequest, trace_rays};
 pub use first_face::FirstFace;
 pub use leaf::{Leaf, Outcome, Rarities};

@@ -1,5 +1,6 @@
 //! The walk along the ray tree.
 
+use super::bodies::{Around, Bodies, Crossing, Inside};
 use super::branch::{Branch, Place};
 use super::{Bench, Leaf, Outcome, Placed, Screen};
 use crate::device::{Beyond, Cell, Finish, SkinHit};
@@ -46,6 +47,9 @@ const NO_POWER: f64 = 1e-24;
 /// The share of the power that rounding may take at an interface.
 const LEAK: f64 = 1e-10;
 
+/// Tells events at bodies from those at devices in the fingerprint of a path.
+const BODY_EVENT: u64 = 1 << 55;
+
 /// Traces rays. It keeps its memory from ray to ray: make one a thread.
 #[derive(Debug)]
 pub struct Tracer<'a, const N: usize> {
@@ -86,6 +90,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
             electric: launch.electric,
             power: launch.electric.map(ComplexVector::norm_squared),
             optical_path: 0.0,
+            group_path: 0.0,
+            around: Around::default(),
             met_device: false,
             path: 0,
             foothold: None,
@@ -111,21 +117,34 @@ impl<'a, const N: usize> Tracer<'a, N> {
     }
 
     fn through_air(&mut self, mut branch: Branch<N>, left: Option<(u16, u16)>) {
+        let crossing =
+            self.bench.bodies().crossing(branch.around, branch.position, branch.direction);
+        if !branch.around.nothing() {
+            match crossing {
+                Some(crossing) => self.cross(branch, &crossing),
+                // It runs along an endless body for ever.
+                None => self.lose(branch.power),
+            }
+            return;
+        }
         let hit = self.surface_ahead(branch.position, branch.direction, left);
+        if let Some(crossing) = crossing
+            && hit.is_none_or(|(_, hit)| crossing.distance < hit.distance)
+            && self
+                .screen
+                .and_then(|screen| screen.hit(branch.position, branch.direction))
+                .is_none_or(|screen| crossing.distance < screen)
+        {
+            self.cross(branch, &crossing);
+            return;
+        }
         let Some((device_index, hit)) = hit else {
-            self.leaves.push(Leaf {
-                position: branch.position,
-                met_device: branch.met_device,
-                direction: branch.direction,
-                power: branch.power,
-                electric: branch.electric,
-                optical_path: branch.optical_path,
-                path: branch.path,
-            });
+            self.leaves.push(branch.leaf(None));
             return;
         };
         branch.position += branch.direction * hit.distance;
         branch.optical_path += hit.distance;
+        branch.group_path += hit.distance;
         branch.met_device = true;
         let device = &self.bench.devices()[usize::from(device_index)];
         let into = -hit.outward;
@@ -162,6 +181,52 @@ impl<'a, const N: usize> Tracer<'a, N> {
         }
     }
 
+    /// Follows a branch in air or in a body to where it crosses the surface of a body, and beyond.
+    fn cross(&mut self, mut branch: Branch<N>, crossing: &Crossing) {
+        let bodies = self.bench.bodies();
+        let way = branch.direction * crossing.distance;
+        let (medium, group_index) = match bodies.inside(branch.around) {
+            Inside::Medium(medium, group_index) => (medium, group_index),
+            Inside::Air | Inside::Opaque(_) => (&Medium::AIR, None),
+        };
+        branch.position += way;
+        branch.met_device = true;
+        let optical_path = branch.wave_vector.dot(way);
+        branch.optical_path += optical_path;
+        branch.group_path += match group_index {
+            Some(index) => index * crossing.distance,
+            None => optical_path.abs().max(crossing.distance),
+        };
+        if medium.absorbs() && !self.absorb(&mut branch, way) {
+            return;
+        }
+        let around = Bodies::beyond(branch.around, crossing);
+        let (here, beyond) = (bodies.inside(branch.around), bodies.inside(around));
+        let air = Place::Air { left: None };
+        if here == beyond {
+            // A surface of bodies that give way here to another, or between equal media: nothing is there.
+            self.waiting.push(Branch { place: air, around, ..branch });
+            return;
+        }
+        let (beyond, to_air) = match beyond {
+            Inside::Opaque(body) => {
+                self.leaves.push(branch.leaf(Some(body)));
+                return;
+            }
+            Inside::Medium(medium, _) => (medium, false),
+            Inside::Air => (&Medium::AIR, true),
+        };
+        let event = BODY_EVENT | (crossing.body as u64) << 32;
+        for wave in self.split(medium, beyond, &branch, crossing.onward, Finish::Bare) {
+            let onward = branch.onward(&wave, air, event | side_code(&wave));
+            self.go_on(match wave.side {
+                Side::Reflected => onward,
+                Side::Transmitted if to_air => Branch { around, ..onward.in_air() },
+                Side::Transmitted => Branch { around, ..onward },
+            });
+        }
+    }
+
     fn through_cell(&mut self, mut branch: Branch<N>, device_index: u16, cell_index: u16) {
         let device = &self.bench.devices()[usize::from(device_index)];
         let cell = self.cell(device, cell_index);
@@ -178,16 +243,17 @@ impl<'a, const N: usize> Tracer<'a, N> {
         };
         let way = passage.position - branch.position;
         branch.position = passage.position;
-        if passage.medium.absorbs() {
-            self.absorb(&mut branch, way);
-            if branch.largest_power() < self.limits.min_power.max(NO_POWER) {
-                self.prune(branch.power);
-                return;
-            }
+        if passage.medium.absorbs() && !self.absorb(&mut branch, way) {
+            return;
         }
         branch.wave_vector = passage.wave_vector;
         branch.direction = passage.direction;
         branch.optical_path += passage.optical_path;
+        branch.group_path += if passage.optical_path < 0.0 {
+            way.length().max(-passage.optical_path)
+        } else {
+            passage.optical_path
+        };
         branch.foothold = passage.foothold;
         if let Some((rotation, factor)) = passage.transport {
             branch.electric = branch.electric.map(|field| field.transformed(&rotation) * factor);
@@ -269,8 +335,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
         waves
     }
 
-    /// Takes from a branch what an absorbing medium keeps of it on a straight way.
-    fn absorb(&mut self, branch: &mut Branch<N>, way: DVec3) {
+    /// Takes from a branch what an absorbing medium keeps of it on a straight way; whether what is left
+    /// is to be followed, for else it is pruned.
+    fn absorb(&mut self, branch: &mut Branch<N>, way: DVec3) -> bool {
         // Power never grows along a ray: rounding must not have it so.
         let depth = (self.bench.vacuum_wave_number() * branch.attenuation.dot(way)).max(0.0);
         let (amplitude, kept) = ((-depth).exp(), (-2.0 * depth).exp());
@@ -280,6 +347,11 @@ impl<'a, const N: usize> Tracer<'a, N> {
             *power = left;
             branch.electric[i] = branch.electric[i] * amplitude;
         }
+        let followed = branch.largest_power() >= self.limits.min_power.max(NO_POWER);
+        if !followed {
+            self.prune(branch.power);
+        }
+        followed
     }
 
     /// Counts power as lost that an interface could not hand on: the account must not leak, even
