@@ -11,10 +11,11 @@ use glam::DVec3;
 use optics::wave::transverse_basis;
 use std::path::Path;
 
-/// What a kind needs that has no whole device by default: its tables.
-const TABLES: &[(&str, &str)] = &[(
-    "prisms",
-    "[[device.prism]]
+/// What a kind needs to be something: its tables or media.
+const MORE: &[(&str, &str)] = &[
+    (
+        "prisms",
+        "[[device.prism]]
 corners = [[-8, -6], [4, -6], [4, 0], [-2, 1], [-2, 7], [-8, 6]]
 permittivity = 2.25
 [[device.prism]]
@@ -24,7 +25,9 @@ permeability = [1.2, 1e-7]
 [[device.prism]]
 corners = [[-2, 1], [1, 0.5], [1, 5], [-2, 5]]
 metal = true",
-)];
+    ),
+    ("body", "permittivity = [[2.5, 0.1, 0], [0.1, 2.0, 0], [0, 0, 1.8]]\npermeability = 1.2\n"),
+];
 
 /// Every device in every view, endless and short, at a few rotations and places, in each of the words
 /// that its keys take, with a description.
@@ -53,7 +56,7 @@ fn benches() -> Vec<(String, Bench)> {
                     if let Some(length) = length {
                         text += &format!("length = {length:?}\n");
                     }
-                    let tables = TABLES.iter().filter(|(kind, _)| *kind == entry.kind);
+                    let tables = MORE.iter().filter(|(kind, _)| *kind == entry.kind);
                     text.extend(tables.map(|(_, tables)| *tables));
                     let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
                     let bench = match cloakroom::render::bench(&loaded.scene) {
@@ -63,6 +66,12 @@ fn benches() -> Vec<(String, Bench)> {
                             if error.key == Some("show") && show != "cloak" =>
                         {
                             break;
+                        }
+                        // A box or a ball has no length of its own.
+                        Err(StudioError::Device { error, .. })
+                            if error.key == Some("length") && length.is_some() =>
+                        {
+                            continue;
                         }
                         Err(error) => panic!("{text}{error}"),
                     };

@@ -39,6 +39,8 @@ pub enum Show {
 pub struct Request {
     /// What of it is looked at.
     pub show: Show,
+    /// Whether the hidden region is to be air instead of metal.
+    pub open_core: bool,
     /// Its whole length along z, cm; endless if absent.
     pub length: Option<f64>,
 }

@@ -46,6 +46,7 @@ pub struct Hull {
     reach: Reach,
     floor: Option<ConformalMap>,
     body: Option<Box<Body>>,
+    open_core: bool,
 }
 
 /// What holds a hull, about the origin or the z axis of the device's frame: rays that miss it miss
@@ -95,7 +96,7 @@ impl Hull {
     #[must_use]
     pub fn of_parts(solids: Vec<Solid>) -> Self {
         let reach = solids.iter().map(Reach::of).fold(Reach::Nothing, Reach::joined);
-        Self { solids, reach, floor: None, body: None }
+        Self { solids, reach, floor: None, body: None, open_core: false }
     }
 
     /// The hull of a device with a polygonal cross-section that extends along z.
@@ -115,6 +116,18 @@ impl Hull {
     #[must_use]
     pub fn of_body(self, body: Body) -> Self {
         Self { body: Some(Box::new(body)), ..self }
+    }
+
+    /// The hull of a cloak whose hidden region is air, and free.
+    #[must_use]
+    pub fn with_open_core(self) -> Self {
+        Self { open_core: true, ..self }
+    }
+
+    /// Whether it leaves a hidden region free.
+    #[must_use]
+    pub fn has_open_core(&self) -> bool {
+        self.open_core
     }
 
     /// The body whose hull it is, if it is one's.

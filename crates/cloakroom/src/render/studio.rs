@@ -116,8 +116,17 @@ impl StudioError {
 pub fn bench(scene: &Scene) -> Result<Bench, StudioError> {
     let mut placed = Vec::new();
     for (index, device) in scene.devices.iter().enumerate() {
-        let request = Request { show: device.show, length: device.length };
+        let request =
+            Request { show: device.show, open_core: device.open_core, length: device.length };
         let structure = (device.entry.build)(&device.values, request)
+            .and_then(|structure| {
+                if device.open_core && !structure.hull.has_open_core() {
+                    let kind = device.entry.kind;
+                    let message = format!("{kind} with these keys has no core that could be open");
+                    return Err(KeyError::at("core", message));
+                }
+                Ok(structure)
+            })
             .map_err(|error| StudioError::Device { device: index, error })?;
         placed.push(Placed { pose: Pose::new(device.position, device.rotation), structure });
     }
