@@ -27,10 +27,8 @@ fn prism(glass: bool) -> Bench {
     let faces = sides
         .map(|(from, to)| {
             let normal = -(to - from).perp().normalize().extend(0.0);
-            Face {
-                plane: Plane { normal, offset: normal.dot(from.extend(0.0)) },
-                beyond: Beyond::Air,
-            }
+            let plane = Plane { normal, offset: normal.dot(from.extend(0.0)) };
+            Face::new(plane, Beyond::Air)
         })
         .to_vec();
     let cells = if glass {
@@ -38,7 +36,7 @@ fn prism(glass: bool) -> Bench {
     } else {
         Vec::new()
     };
-    let hull = Hull::new(Outline::new(corners.to_vec()), Extent::ENDLESS);
+    let hull = Hull::prism(Outline::new(corners.to_vec()), Extent::ENDLESS);
     let structure = Structure { cells, skin, hull };
     Bench::new(vec![Placed { pose: Pose::new(DVec3::ZERO, 0.0), structure }])
 }
