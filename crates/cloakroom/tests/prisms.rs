@@ -179,8 +179,8 @@ fn absorbing_slabs_keep_what_beer_and_lambert_say() {
             // E along z (the first launched) sees q/µ, E in the plane q/ε; air sees cos.
             let admittance = [q / m, q / e];
             let kept = (-2.0 * wave_number * q.im * thickness).exp();
-            for i in 0..2 {
-                let r = ((cos - admittance[i]) / (cos + admittance[i])).norm_sqr();
+            for (i, admittance) in admittance.into_iter().enumerate() {
+                let r = ((cos - admittance) / (cos + admittance)).norm_sqr();
                 // Reflected from the first face; through; once back and forth inside.
                 let expected = [r, (1.0 - r).powi(2) * kept, (1.0 - r).powi(2) * kept.powi(2) * r];
                 for power in expected {

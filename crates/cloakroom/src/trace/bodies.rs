@@ -11,7 +11,7 @@ use optics::medium::{Medium, Tensor};
 pub const MOST_BODIES: usize = 64;
 
 /// Surfaces that a ray crosses within this distance are one surface, cm.
-const ONE_SURFACE: f64 = 1e-9;
+pub(super) const ONE_SURFACE: f64 = 1e-9;
 
 /// The bodies around a point, one bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

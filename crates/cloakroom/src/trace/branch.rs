@@ -31,6 +31,8 @@ pub(super) struct Branch<const N: usize> {
     pub group_path: f64,
     /// The bodies around it.
     pub around: Around,
+    /// How many surfaces of bodies in a row it has crossed without getting anywhere.
+    pub standstills: u8,
     pub met_device: bool,
     pub path: u64,
     /// Where it is in the virtual space of a conformal cell.

@@ -7,6 +7,7 @@
 mod bench;
 mod bodies;
 mod branch;
+mod crossing;
 mod exchange;
 mod first_face;
 mod leaf;

@@ -1,6 +1,6 @@
 //! The walk along the ray tree.
 
-use super::bodies::{Around, Bodies, Crossing, Inside};
+use super::bodies::Around;
 use super::branch::{Branch, Place};
 use super::{Bench, Leaf, Outcome, Placed, Screen};
 use crate::device::{Beyond, Cell, Finish, SkinHit};
@@ -47,18 +47,15 @@ const NO_POWER: f64 = 1e-24;
 /// The share of the power that rounding may take at an interface.
 const LEAK: f64 = 1e-10;
 
-/// Tells events at bodies from those at devices in the fingerprint of a path.
-const BODY_EVENT: u64 = 1 << 55;
-
 /// Traces rays. It keeps its memory from ray to ray: make one a thread.
 #[derive(Debug)]
 pub struct Tracer<'a, const N: usize> {
     pub(super) bench: &'a Bench,
     limits: Limits,
-    screen: Option<Screen>,
-    waiting: Vec<Branch<N>>,
-    leaves: Vec<Leaf<N>>,
-    outcome: Outcome<N>,
+    pub(super) screen: Option<Screen>,
+    pub(super) waiting: Vec<Branch<N>>,
+    pub(super) leaves: Vec<Leaf<N>>,
+    pub(super) outcome: Outcome<N>,
 }
 
 impl<'a, const N: usize> Tracer<'a, N> {
@@ -92,6 +89,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             optical_path: 0.0,
             group_path: 0.0,
             around: Around::default(),
+            standstills: 0,
             met_device: false,
             path: 0,
             foothold: None,
@@ -117,10 +115,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
     }
 
     fn through_air(&mut self, mut branch: Branch<N>, left: Option<(u16, u16)>) {
-        let crossing =
-            self.bench.bodies().crossing(branch.around, branch.position, branch.direction);
         if !branch.around.nothing() {
-            match crossing {
+            let bodies = self.bench.bodies();
+            match bodies.crossing(branch.around, branch.position, branch.direction) {
                 Some(crossing) => self.cross(branch, &crossing),
                 // It runs along an endless body for ever.
                 None => self.lose(branch.power),
@@ -128,13 +125,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
             return;
         }
         let hit = self.surface_ahead(branch.position, branch.direction, left);
-        if let Some(crossing) = crossing
-            && hit.is_none_or(|(_, hit)| crossing.distance < hit.distance)
-            && self
-                .screen
-                .and_then(|screen| screen.hit(branch.position, branch.direction))
-                .is_none_or(|screen| crossing.distance < screen)
-        {
+        let distance = hit.map(|(_, hit)| hit.distance);
+        if let Some(crossing) = self.body_ahead(branch.position, branch.direction, distance) {
             self.cross(branch, &crossing);
             return;
         }
@@ -178,52 +170,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
             }
             // A thin sheet of air: nothing there.
             Beyond::Air => self.waiting.push(Branch { place: air, ..branch }),
-        }
-    }
-
-    /// Follows a branch in air or in a body to where it crosses the surface of a body, and beyond.
-    fn cross(&mut self, mut branch: Branch<N>, crossing: &Crossing) {
-        let bodies = self.bench.bodies();
-        let way = branch.direction * crossing.distance;
-        let (medium, group_index) = match bodies.inside(branch.around) {
-            Inside::Medium(medium, group_index) => (medium, group_index),
-            Inside::Air | Inside::Opaque(_) => (&Medium::AIR, None),
-        };
-        branch.position += way;
-        branch.met_device = true;
-        let optical_path = branch.wave_vector.dot(way);
-        branch.optical_path += optical_path;
-        branch.group_path += match group_index {
-            Some(index) => index * crossing.distance,
-            None => optical_path.abs().max(crossing.distance),
-        };
-        if medium.absorbs() && !self.absorb(&mut branch, way) {
-            return;
-        }
-        let around = Bodies::beyond(branch.around, crossing);
-        let (here, beyond) = (bodies.inside(branch.around), bodies.inside(around));
-        let air = Place::Air { left: None };
-        if here == beyond {
-            // A surface of bodies that give way here to another, or between equal media: nothing is there.
-            self.waiting.push(Branch { place: air, around, ..branch });
-            return;
-        }
-        let (beyond, to_air) = match beyond {
-            Inside::Opaque(body) => {
-                self.leaves.push(branch.leaf(Some(body)));
-                return;
-            }
-            Inside::Medium(medium, _) => (medium, false),
-            Inside::Air => (&Medium::AIR, true),
-        };
-        let event = BODY_EVENT | (crossing.body as u64) << 32;
-        for wave in self.split(medium, beyond, &branch, crossing.onward, Finish::Bare) {
-            let onward = branch.onward(&wave, air, event | side_code(&wave));
-            self.go_on(match wave.side {
-                Side::Reflected => onward,
-                Side::Transmitted if to_air => Branch { around, ..onward.in_air() },
-                Side::Transmitted => Branch { around, ..onward },
-            });
         }
     }
 
@@ -322,7 +268,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             .filter(|(_, hit)| screen.is_none_or(|distance| hit.distance < distance))
     }
 
-    fn split(
+    pub(super) fn split(
         &mut self,
         from: &Medium,
         to: &Medium,
@@ -337,7 +283,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
     /// Takes from a branch what an absorbing medium keeps of it on a straight way; whether what is left
     /// is to be followed, for else it is pruned.
-    fn absorb(&mut self, branch: &mut Branch<N>, way: DVec3) -> bool {
+    pub(super) fn absorb(&mut self, branch: &mut Branch<N>, way: DVec3) -> bool {
         // Power never grows along a ray: rounding must not have it so.
         let depth = (self.bench.vacuum_wave_number() * branch.attenuation.dot(way)).max(0.0);
         let (amplitude, kept) = ((-depth).exp(), (-2.0 * depth).exp());
@@ -369,7 +315,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
     }
 
     /// Keeps a branch to be followed, or prunes it.
-    fn go_on(&mut self, branch: Branch<N>) {
+    pub(super) fn go_on(&mut self, branch: Branch<N>) {
         if branch.largest_power() >= self.limits.min_power.max(NO_POWER) {
             self.waiting.push(branch);
         } else {
@@ -383,7 +329,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         self.prune(power);
     }
 
-    fn prune(&mut self, power: [f64; N]) {
+    pub(super) fn prune(&mut self, power: [f64; N]) {
         for (sum, power) in self.outcome.pruned.iter_mut().zip(power) {
             *sum += power;
         }
@@ -409,7 +355,7 @@ pub(super) fn split_as_finished<const N: usize>(
 }
 
 /// Tells the branches at one surface apart in the fingerprint of the path.
-fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
+pub(super) fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
     let side = match wave.side {
         Side::Reflected => 1,
         Side::Transmitted => 2,
