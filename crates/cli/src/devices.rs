@@ -3,7 +3,7 @@
 use crate::arguments::DevicesArguments;
 use crate::report::{self, Failure};
 use cloakroom::device::{CATALOGUE, Entry, FactValue};
-use cloakroom::keys::Values;
+use cloakroom::keys::{Key, KeyKind, Values};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -25,14 +25,7 @@ fn as_json(entry: &Entry) -> Value {
     object.insert("kind".into(), json!(entry.kind));
     object.insert("title".into(), json!(entry.title));
     object.insert("summary".into(), json!(entry.summary));
-    let keys: Vec<Value> = entry
-        .keys
-        .iter()
-        .map(|key| {
-            json!({ "name": key.name, "doc": key.doc, "allowed": key.describe(), "default": key.default_value().map(Value::from) })
-        })
-        .collect();
-    object.insert("keys".into(), json!(keys));
+    object.insert("keys".into(), keys_as_json(entry.keys));
     for fact in (entry.facts)(&Values::defaults(entry.keys)) {
         let value = match fact.value {
             FactValue::Number(number) => json!(number),
@@ -43,11 +36,32 @@ fn as_json(entry: &Entry) -> Value {
     Value::Object(object)
 }
 
+fn keys_as_json(keys: &[Key]) -> Value {
+    let key = |key: &Key| {
+        let mut object = json!({ "name": key.name, "doc": key.doc, "allowed": key.describe(), "default": key.default_value().map(Value::from) });
+        if let KeyKind::Table { keys } | KeyKind::Tables { keys } = key.kind {
+            object["keys"] = keys_as_json(keys);
+        }
+        object
+    };
+    keys.iter().map(key).collect()
+}
+
+/// A line for each key; those of a list of tables follow it, as `prism.corners`.
+fn describe_keys(keys: &[Key], prefix: &str, text: &mut String) -> std::fmt::Result {
+    for key in keys {
+        let name = format!("{prefix}{}", key.name);
+        writeln!(text, "  {name:<12} {} ({})", key.doc, key.describe())?;
+        if let KeyKind::Table { keys } | KeyKind::Tables { keys } = key.kind {
+            describe_keys(keys, &format!("{name}."), text)?;
+        }
+    }
+    Ok(())
+}
+
 fn describe(entry: &Entry, text: &mut String) -> std::fmt::Result {
     writeln!(text, "{}\n  {}\n", entry.kind, entry.summary)?;
-    for key in entry.keys {
-        writeln!(text, "  {:<12} {} ({})", key.name, key.doc, key.describe())?;
-    }
+    describe_keys(entry.keys, "", text)?;
     writeln!(text)?;
     for line in fact_lines(entry, &Values::defaults(entry.keys)) {
         writeln!(text, "  {line}")?;

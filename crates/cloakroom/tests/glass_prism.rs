@@ -27,10 +27,8 @@ fn prism(glass: bool) -> Bench {
     let faces = sides
         .map(|(from, to)| {
             let normal = -(to - from).perp().normalize().extend(0.0);
-            Face {
-                plane: Plane { normal, offset: normal.dot(from.extend(0.0)) },
-                beyond: Beyond::Air,
-            }
+            let plane = Plane { normal, offset: normal.dot(from.extend(0.0)) };
+            Face::new(plane, Beyond::Air)
         })
         .to_vec();
     let cells = if glass {

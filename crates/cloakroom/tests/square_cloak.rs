@@ -148,3 +148,46 @@ fn rounded_values_bend_by_less_than_a_degree() {
     }
     assert!(largest > 0.05 && largest < 0.85, "{largest} degrees");
 }
+
+/// With an open core: along x light never gets into it, so what stands there is hidden; turned, light gets in.
+#[test]
+fn an_open_core_hides_what_stands_in_it() {
+    for (rotation, hidden) in [(0.0, true), (15.0, false)] {
+        let bench = bench(&format!(
+            "[[device]]\nkind = \"square-cloak\"\ncore = \"open\"\nrotation = {rotation}\n\
+             [[device]]\nkind = \"body\"\nshape = \"sphere\"\nradius = 4\nsurface = {{}}\n"
+        ));
+        let mut tracer = Tracer::new(&bench, LIMITS);
+        let mut seen = 0.0;
+        for step in -100..100 {
+            let y = 9.0 * (f64::from(step) + 0.5) / 100.0;
+            let (leaves, outcome) = tracer.trace(&launch(DVec3::new(-40.0, y, 1.0), DVec3::X));
+            let power = |ended: bool| -> f64 {
+                let there = leaves.iter().filter(|leaf| leaf.body.is_some() == ended);
+                there.map(|leaf| leaf.power[0]).sum()
+            };
+            seen += power(true);
+            let total = power(true) + power(false) + outcome.pruned[0];
+            assert!((total - 1.0).abs() < 1e-12, "{total}");
+            if hidden {
+                let (main, rest) = main_leaf(leaves);
+                assert!(rest < 1e-12 && (main.direction - DVec3::X).length() < 1e-12);
+                assert!((main.position.y - y).abs() < 1e-11);
+            }
+        }
+        assert!((seen == 0.0) == hidden, "{rotation} {seen}");
+    }
+}
+
+#[test]
+fn what_has_no_core_cannot_open_it() {
+    for text in [
+        "[[device]]\nkind = \"double-gaussian-cloak\"\ncore = \"open\"\n",
+        "[[device]]\nkind = \"square-cloak\"\nshow = \"bare\"\ncore = \"open\"\n",
+    ] {
+        let loaded = scene_file::parse(text, "test", Path::new(""), &[]).unwrap();
+        let error = cloakroom::render::bench(&loaded.scene).unwrap_err();
+        assert_eq!(error.key(), "device.0.core");
+        assert!(error.to_string().contains("no core"), "{error}");
+    }
+}

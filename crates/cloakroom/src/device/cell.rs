@@ -54,6 +54,17 @@ pub struct Face {
     pub plane: Plane,
     /// What lies beyond it.
     pub beyond: Beyond,
+    /// Where the face ends, if the next one goes on in its plane: the coordinate (cm) along z × normal.
+    /// Infinite for the last face in its plane.
+    pub until: f64,
+}
+
+impl Face {
+    /// A whole plane face.
+    #[must_use]
+    pub fn new(plane: Plane, beyond: Beyond) -> Self {
+        Self { plane, beyond, until: f64::INFINITY }
+    }
 }
 
 /// What a ray finds on entering a cell.
@@ -167,9 +178,13 @@ impl Prism {
                 nearest = Some((index, face, distance));
             }
         }
-        let (index, face, distance) = nearest?;
+        let (mut index, mut face, distance) = nearest?;
         // On the plane to the last bit: what is off along the normal would show in the optical path.
         let end = face.plane.project(position + direction * distance);
+        while face.until < DVec3::Z.cross(face.plane.normal).dot(end) {
+            index += 1;
+            face = self.faces.get(usize::from(index))?;
+        }
         Some(Passage {
             position: end,
             wave_vector,

@@ -5,24 +5,30 @@
 //! structure, and one line in [`CATALOGUE`]; nothing else in the program knows it.
 
 mod bending_sphere;
+mod body;
+mod body_shape;
 mod cell;
 mod cross_section;
 mod cylinder_cloak;
 mod double_gaussian_cloak;
 mod invisible_sphere;
 mod lenses;
+mod mirror_detour;
+mod prisms;
 mod round;
 mod skin;
 mod sphere_cloak;
 mod square_cloak;
 mod structure;
 
+pub use body_shape::{Body, BodyShape, Filling};
 pub use cell::{Cell, ConformalCell, Entrance, Face, InnerRay, Passage, Prism, RadialCell};
 pub use cross_section::{Contour, CrossSection, REACH, Region, Side};
 pub use skin::Skin;
 pub use structure::{Beyond, Finish, Hull, SkinHit, Structure};
 
 use crate::keys::{Key, KeyError, Values};
+use optics::medium::Medium;
 
 /// What of a device is looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,6 +47,8 @@ pub enum Show {
 pub struct Request {
     /// What of it is looked at.
     pub show: Show,
+    /// Whether the hidden region is to be air instead of metal.
+    pub open_core: bool,
     /// Its whole length along z, cm; endless if absent.
     pub length: Option<f64>,
 }
@@ -101,12 +109,35 @@ pub static CATALOGUE: &[&Entry] = &[
     &lenses::EATON,
     &lenses::LUNEBURG,
     &lenses::FISHEYE,
+    &mirror_detour::ENTRY,
+    &prisms::ENTRY,
+    &body::ENTRY,
 ];
 
 /// The entry of a kind, if there is one.
 #[must_use]
 pub fn entry(kind: &str) -> Option<&'static Entry> {
     CATALOGUE.iter().copied().find(|entry| entry.kind == kind)
+}
+
+/// The medium of the keys `permittivity` and `permeability`.
+fn medium(values: &Values) -> Result<Medium, KeyError> {
+    let [permittivity, permeability] =
+        ["permittivity", "permeability"].map(|key| values.tensor(key));
+    Medium::new(permittivity, permeability).map_err(|error| {
+        let key =
+            if error.quantity() == Some("permeability") { "permeability" } else { "permittivity" };
+        KeyError::at(key, error.to_string())
+    })
+}
+
+/// Refuses to show a device otherwise than as it is; `reason` says what it is: "a body is no cloak".
+fn refuse_other_views(request: Request, reason: &str) -> Result<(), KeyError> {
+    if request.show == Show::Cloak {
+        return Ok(());
+    }
+    let message = format!("{reason}; it can be shown as it is, with show = \"cloak\", only");
+    Err(KeyError::at("show", message))
 }
 
 /// A two-sided flat metal strip on the x axis, |x| <= `half_width` (cm): what a cloak that opens a

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use glam::{DMat3, DVec2, DVec3};
-use optics::geometry::{Cap, Extent, Outline, Plane, Wall};
+use optics::geometry::{Cap, Extent, Outline, Plane, Solid, Wall};
 use optics::medium::Medium;
 use optics::transformation::StripToRhombus;
 
@@ -67,7 +67,7 @@ fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
     let map = map(values);
     let extent = Extent::centred(request.length);
     match request.show {
-        Show::Cloak => cloak(&map, &Recipe::new(values, &map), extent),
+        Show::Cloak => cloak(&map, &Recipe::new(values, &map), extent, request.open_core),
         Show::Bare => Ok(bare(&map, extent)),
         Show::Mirror => {
             let half = map.half_diagonal();
@@ -102,25 +102,31 @@ fn bare(map: &StripToRhombus, extent: Extent) -> Structure {
     Structure { cells: Vec::new(), skin, hull: Hull::prism(outline, extent) }
 }
 
-fn cloak(map: &StripToRhombus, recipe: &Recipe, extent: Extent) -> Result<Structure, KeyError> {
+fn cloak(
+    map: &StripToRhombus,
+    recipe: &Recipe,
+    extent: Extent,
+    open_core: bool,
+) -> Result<Structure, KeyError> {
     let (d, b) = (map.half_diagonal(), map.half_height());
     let square = corners(d, d);
     let rhombus = corners(d, b);
     let mut cells = Vec::new();
     let mut skin = Vec::new();
+    let mut segments = Vec::new();
+    let core = if open_core { Beyond::Air } else { Beyond::Conductor };
     for (index, quadrant) in (0u16..).zip(QUADRANTS) {
         let medium = recipe.medium(quadrant)?;
         let inner = DVec2::new(quadrant.x / d, quadrant.y / b).extend(0.0);
         let diagonal = quadrant.extend(0.0) * 0.5f64.sqrt();
         // The neighbour across x = 0.
         let neighbour = Beyond::Cell(index ^ 1);
-        let face = |normal: DVec3, offset: f64, beyond: Beyond| Face {
-            plane: Plane { normal, offset },
-            beyond,
+        let face = |normal: DVec3, offset: f64, beyond: Beyond| {
+            Face::new(Plane { normal, offset }, beyond)
         };
         let mut faces = vec![
             face(diagonal, d * 0.5f64.sqrt(), Beyond::Air),
-            face(-inner.normalize(), -inner.length_recip(), Beyond::Conductor),
+            face(-inner.normalize(), -inner.length_recip(), core),
             face(DVec3::new(-quadrant.x, 0.0, 0.0), 0.0, neighbour),
         ];
         let (from, to) = (usize::from(index), (usize::from(index) + 1) % 4);
@@ -129,20 +135,33 @@ fn cloak(map: &StripToRhombus, recipe: &Recipe, extent: Extent) -> Result<Struct
             beyond: Beyond::Cell(index),
             finish: Finish::Bare,
         });
+        if open_core {
+            // Met from within the core.
+            skin.push(Skin::Wall {
+                wall: Wall::new(rhombus[to], rhombus[from], extent),
+                beyond: Beyond::Cell(index),
+                finish: Finish::Bare,
+            });
+        }
+        let tip = if quadrant.y > 0.0 { square[1] } else { square[3] };
+        let side = if quadrant.x > 0.0 { square[0] } else { square[2] };
+        let blunt = if quadrant.y > 0.0 { rhombus[1] } else { rhombus[3] };
+        let mut triangle = vec![side, tip, blunt];
+        if (tip - side).perp_dot(blunt - side) < 0.0 {
+            triangle.reverse();
+        }
+        let outline = Outline::new(triangle);
         if let Some(ends) = extent.ends() {
-            let tip = if quadrant.y > 0.0 { square[1] } else { square[3] };
-            let side = if quadrant.x > 0.0 { square[0] } else { square[2] };
-            let blunt = if quadrant.y > 0.0 { rhombus[1] } else { rhombus[3] };
-            let mut triangle = vec![side, tip, blunt];
-            if (tip - side).perp_dot(blunt - side) < 0.0 {
-                triangle.reverse();
-            }
-            for cap in Cap::both(&Outline::new(triangle), ends) {
+            for cap in Cap::both(&outline, ends) {
                 faces.push(face(cap.normal, cap.z * cap.normal.z, Beyond::Air));
                 skin.push(Skin::Cap { cap, beyond: Beyond::Cell(index), finish: Finish::Bare });
             }
         }
+        segments.push(Solid::Prism { outline, extent });
         cells.push(Cell::Prism(Prism { medium, faces }));
+    }
+    if open_core {
+        return Ok(Structure { cells, skin, hull: Hull::of_parts(segments).with_open_core() });
     }
     if let Some(ends) = extent.ends() {
         let hole = Outline::new(rhombus.to_vec());

@@ -1,7 +1,7 @@
 //! What every device is made of: cells filled with media, and the skin that light in air meets.
 
 use super::skin::within_floor;
-use super::{Cell, Skin};
+use super::{Body, Cell, Skin};
 use glam::DVec3;
 use optics::geometry::{Extent, Outline, Solid};
 use optics::transformation::ConformalMap;
@@ -13,6 +13,8 @@ pub enum Beyond {
     Air,
     /// The device's cell of that number.
     Cell(u16),
+    /// The device's cell of that number, of the same medium: the surface is a cut, and no interface.
+    Seam(u16),
     /// A perfect conductor.
     Conductor,
 }
@@ -37,12 +39,14 @@ pub struct Structure {
     pub hull: Hull,
 }
 
-/// The space a device takes up: nothing else may be there.
+/// The space a device takes up: nothing else may be there, unless both are bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
-    solid: Solid,
+    solids: Vec<Solid>,
     reach: Reach,
     floor: Option<ConformalMap>,
+    body: Option<Box<Body>>,
+    open_core: bool,
 }
 
 /// What holds a hull, about the origin or the z axis of the device's frame: rays that miss it miss
@@ -54,6 +58,30 @@ enum Reach {
     Ball(f64),
 }
 
+impl Reach {
+    fn of(solid: &Solid) -> Self {
+        match solid {
+            Solid::Nothing => Self::Nothing,
+            Solid::Prism { outline, .. } => Self::Cylinder(outline.radius() * GRAZING),
+            Solid::Cylinder { centre, radius, .. } => {
+                Self::Cylinder((centre.length() + radius) * GRAZING)
+            }
+            Solid::Ball { centre, radius } => Self::Ball((centre.length() + radius) * GRAZING),
+        }
+    }
+
+    /// What holds both.
+    fn joined(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Nothing, reach) | (reach, Self::Nothing) => reach,
+            (Self::Ball(a), Self::Ball(b)) => Self::Ball(a.max(b)),
+            (Self::Ball(a) | Self::Cylinder(a), Self::Ball(b) | Self::Cylinder(b)) => {
+                Self::Cylinder(a.max(b))
+            }
+        }
+    }
+}
+
 /// Rays that graze a hull by rounding still count as near it.
 const GRAZING: f64 = 1.0 + 1e-12;
 
@@ -61,15 +89,14 @@ impl Hull {
     /// The hull of a device that fills a body.
     #[must_use]
     pub fn new(solid: Solid) -> Self {
-        let reach = match &solid {
-            Solid::Nothing => Reach::Nothing,
-            Solid::Prism { outline, .. } => Reach::Cylinder(outline.radius() * GRAZING),
-            Solid::Cylinder { centre, radius, .. } => {
-                Reach::Cylinder((centre.length() + radius) * GRAZING)
-            }
-            Solid::Ball { centre, radius } => Reach::Ball((centre.length() + radius) * GRAZING),
-        };
-        Self { solid, reach, floor: None }
+        Self::of_parts(vec![solid])
+    }
+
+    /// The hull of a device of several parts, which leaves the space between them free.
+    #[must_use]
+    pub fn of_parts(solids: Vec<Solid>) -> Self {
+        let reach = solids.iter().map(Reach::of).fold(Reach::Nothing, Reach::joined);
+        Self { solids, reach, floor: None, body: None, open_core: false }
     }
 
     /// The hull of a device with a polygonal cross-section that extends along z.
@@ -85,10 +112,34 @@ impl Hull {
         Self { floor: Some(map), ..self }
     }
 
-    /// The body that it fills.
+    /// The hull of a body, which may overlap other bodies.
     #[must_use]
-    pub fn solid(&self) -> &Solid {
-        &self.solid
+    pub fn of_body(self, body: Body) -> Self {
+        Self { body: Some(Box::new(body)), ..self }
+    }
+
+    /// The hull of a cloak whose hidden region is air, and free.
+    #[must_use]
+    pub fn with_open_core(self) -> Self {
+        Self { open_core: true, ..self }
+    }
+
+    /// Whether it leaves a hidden region free.
+    #[must_use]
+    pub fn has_open_core(&self) -> bool {
+        self.open_core
+    }
+
+    /// The body whose hull it is, if it is one's.
+    #[must_use]
+    pub fn body(&self) -> Option<&Body> {
+        self.body.as_deref()
+    }
+
+    /// The solids that it fills.
+    #[must_use]
+    pub fn solids(&self) -> &[Solid] {
+        &self.solids
     }
 
     /// Whether a ray (in the device's frame) comes near enough that it may meet the device.
@@ -116,7 +167,8 @@ impl Hull {
     /// Whether a point (in the device's frame) lies inside, border excluded.
     #[must_use]
     pub fn holds(&self, point: DVec3) -> bool {
-        self.solid.holds(point) && self.floor.is_none_or(|map| within_floor(&map, point))
+        let inside = self.solids.iter().any(|solid| solid.holds(point));
+        inside && self.floor.is_none_or(|map| within_floor(&map, point))
     }
 }
 
@@ -124,7 +176,7 @@ impl Structure {
     /// A structure without anything: a cloak whose "mirror" view is empty space.
     #[must_use]
     pub fn empty() -> Self {
-        Self { cells: Vec::new(), skin: Vec::new(), hull: Hull::new(Solid::Nothing) }
+        Self { cells: Vec::new(), skin: Vec::new(), hull: Hull::of_parts(Vec::new()) }
     }
 
     /// The nearest surface that a ray in air meets, `last` being the one it has just left.

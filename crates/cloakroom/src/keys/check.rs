@@ -2,7 +2,8 @@
 
 use super::nearest::nearest;
 use super::value::{Value, number_text, quoted};
-use super::{Key, KeyKind, Limits};
+use super::{Key, KeyKind, Limits, Values, tensor};
+use optics::medium::Tensor;
 
 /// A value that fits its key.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +16,10 @@ pub(super) enum Fitted {
     Vector([f64; 3]),
     IntegerPair([i64; 2]),
     Text(String),
+    Tensor(Tensor),
+    Polygon(Vec<[f64; 2]>),
+    Table(Values),
+    Tables(Vec<Values>),
 }
 
 impl From<&Fitted> for Value {
@@ -30,6 +35,14 @@ impl From<&Fitted> for Value {
             Fitted::Vector(vector) => Value::from(*vector),
             Fitted::IntegerPair(pair) => Value::from(*pair),
             Fitted::Text(text) => Value::from(text.as_str()),
+            Fitted::Tensor(tensor) => tensor::to_value(tensor),
+            Fitted::Polygon(corners) => {
+                Value::List(corners.iter().map(|corner| Value::from(*corner)).collect())
+            }
+            Fitted::Table(table) => Value::Table(table.given()),
+            Fitted::Tables(tables) => {
+                Value::List(tables.iter().map(|table| Value::Table(table.given())).collect())
+            }
         }
     }
 }
@@ -80,6 +93,12 @@ impl Key {
                 let options = options.collect::<Vec<_>>().join(", ");
                 format!("{options} or a number{}", in_brackets(unit))
             }
+            KeyKind::Tensor => "a number, [re, im], or 3 x 3 of either".to_owned(),
+            KeyKind::Polygon { unit } => {
+                format!("three or more corners [x, y]{}", in_brackets(unit))
+            }
+            KeyKind::Table { keys } => format!("a table with {}", key_names(keys)),
+            KeyKind::Tables { keys } => format!("a list of tables with {}", key_names(keys)),
         }
     }
 
@@ -97,6 +116,9 @@ impl Key {
             KeyKind::Vector { default, .. } => Some(Fitted::Vector(default)),
             KeyKind::IntegerPair { default, .. } => Some(Fitted::IntegerPair(default)),
             KeyKind::Text { default } => default.map(|text| Fitted::Text(text.to_owned())),
+            KeyKind::Tensor => Some(Fitted::Tensor(1.0.into())),
+            KeyKind::Polygon { .. } | KeyKind::Table { .. } => None,
+            KeyKind::Tables { .. } => Some(Fitted::Tables(Vec::new())),
             KeyKind::Choice { options } | KeyKind::ChoiceOrNumber { options, .. } => {
                 options.first().map(|option| Fitted::Choice(option))
             }
@@ -158,7 +180,54 @@ impl Key {
                 }
                 None => self.choose(value, options).map(Fitted::Choice),
             },
+            KeyKind::Tensor => {
+                let tensor = tensor::from_value(value).ok_or_else(|| self.wrong_type(value))?;
+                for number in tensor::parts(&tensor) {
+                    let name = format!("an entry of {}", self.name);
+                    self.limit(&name, number, "", Limits::Finite)?;
+                }
+                Ok(Fitted::Tensor(tensor))
+            }
+            KeyKind::Polygon { unit } => self.polygon(value, unit).map(Fitted::Polygon),
+            KeyKind::Table { keys } => self.table(value, keys).map(Fitted::Table),
+            KeyKind::Tables { keys } => self.tables(value, keys).map(Fitted::Tables),
         }
+    }
+
+    fn polygon(&self, value: &Value, unit: &str) -> Result<Vec<[f64; 2]>, String> {
+        /// Beyond, areas lose all digits.
+        const FARTHEST: f64 = 1e6;
+        let Value::List(items) = value else { return Err(self.wrong_type(value)) };
+        if items.len() < 3 {
+            return Err(self.wrong_type(value));
+        }
+        let corner = |item: &Value| -> Result<[f64; 2], String> {
+            let corner: [f64; 2] = self
+                .list(item, Value::as_number)
+                .map_err(|_| format!("a corner of {} is {item}; it must be [x, y]", self.name))?;
+            for number in corner {
+                let name = format!("a coordinate of {}", self.name);
+                self.limit(&name, number, unit, Limits::Within(-FARTHEST, FARTHEST))?;
+            }
+            Ok(corner)
+        };
+        items.iter().map(corner).collect()
+    }
+
+    fn tables(&self, value: &Value, keys: &'static [Key]) -> Result<Vec<Values>, String> {
+        let Value::List(items) = value else { return Err(self.wrong_type(value)) };
+        items.iter().map(|item| self.table(item, keys)).collect()
+    }
+
+    fn table(&self, value: &Value, keys: &'static [Key]) -> Result<Values, String> {
+        let Value::Table(entries) = value else { return Err(self.wrong_type(value)) };
+        let mut values = Values::defaults(keys);
+        for (name, value) in entries {
+            values
+                .set(name, value.clone())
+                .map_err(|error| format!("in {}: {}", self.name, error.message))?;
+        }
+        Ok(values)
     }
 
     fn wrong_type(&self, value: &Value) -> String {
@@ -222,6 +291,12 @@ fn words(options: &[&str]) -> String {
         [only] => only.clone(),
         [first @ .., last] => format!("{} or {last}", first.join(", ")),
     }
+}
+
+/// "the key a", "the keys a, b".
+fn key_names(keys: &[Key]) -> String {
+    let names: Vec<_> = keys.iter().map(|key| key.name).collect();
+    format!("the key{} {}", if names.len() == 1 { "" } else { "s" }, names.join(", "))
 }
 
 fn in_brackets(unit: &str) -> String {

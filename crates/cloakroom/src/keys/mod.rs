@@ -6,6 +6,7 @@
 
 mod check;
 mod nearest;
+mod tensor;
 #[cfg(test)]
 mod tests;
 mod value;
@@ -93,6 +94,23 @@ pub enum KeyKind {
         options: &'static [&'static str],
         /// The unit of the number.
         unit: &'static str,
+    },
+    /// A relative permittivity or permeability: a number, [re, im], or 3 x 3 of either; 1 by default.
+    Tensor,
+    /// The corners of a polygon, [x, y] each, three at least; absence itself means something.
+    Polygon {
+        /// The unit of the coordinates.
+        unit: &'static str,
+    },
+    /// A table with keys of its own; absence itself means something.
+    Table {
+        /// Its keys.
+        keys: &'static [Key],
+    },
+    /// A list of tables, each with keys of its own; none by default.
+    Tables {
+        /// The keys of each table.
+        keys: &'static [Key],
     },
 }
 

@@ -18,6 +18,8 @@ pub enum Value {
     Text(String),
     /// Several values, such as the components of a vector.
     List(Vec<Value>),
+    /// A table: names and their values.
+    Table(Vec<(String, Value)>),
 }
 
 impl Value {
@@ -50,6 +52,9 @@ impl From<Value> for serde_json::Value {
             Value::Flag(flag) => flag.into(),
             Value::Text(text) => text.into(),
             Value::List(items) => items.into_iter().map(Self::from).collect(),
+            Value::Table(entries) => {
+                entries.into_iter().map(|(name, value)| (name, Self::from(value))).collect()
+            }
         }
     }
 }
@@ -70,6 +75,7 @@ impl fmt::Display for Value {
                 }
                 f.write_str(if items.len() > MOST_ITEMS { ", ...]" } else { "]" })
             }
+            Value::Table(_) => f.write_str("a table"),
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::check::Fitted;
 use super::nearest::unknown;
 use super::{Key, KeyKind, Value};
+use optics::medium::Tensor;
 
 /// Why a table cannot be had: which key is impossible, and how.
 ///
@@ -13,6 +14,9 @@ use super::{Key, KeyKind, Value};
 pub struct KeyError {
     /// The key at fault; `None` if no single one is.
     pub key: Option<&'static str>,
+    /// The list of tables and the number of the table in it (counted from 0) that has the key; `None` if
+    /// it is a key of the device itself.
+    pub entry: Option<(&'static str, usize)>,
     /// What is wrong: quantity, value, unit, and what is allowed.
     pub message: String,
 }
@@ -20,12 +24,26 @@ pub struct KeyError {
 impl KeyError {
     /// An error of one key.
     pub fn at(key: &'static str, message: impl Into<String>) -> Self {
-        KeyError { key: Some(key), message: message.into() }
+        KeyError { key: Some(key), entry: None, message: message.into() }
     }
 
     /// An error of no single key.
     pub fn general(message: impl Into<String>) -> Self {
-        KeyError { key: None, message: message.into() }
+        KeyError { key: None, entry: None, message: message.into() }
+    }
+
+    /// The same error in a table of a list: of the list `list` the table of that number, counted from 0.
+    #[must_use]
+    pub fn within(self, list: &'static str, number: usize) -> Self {
+        KeyError { entry: Some((list, number)), ..self }
+    }
+
+    /// Where the error is, below the table it is of: `side`, `prism.2.corners`; empty if it is nowhere in
+    /// particular.
+    #[must_use]
+    pub fn path(&self) -> String {
+        let entry = self.entry.map(|(list, number)| format!("{list}.{number}"));
+        entry.as_deref().into_iter().chain(self.key).collect::<Vec<_>>().join(".")
     }
 }
 
@@ -52,10 +70,17 @@ pub struct Values {
     slots: Vec<Slot>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Slot {
     value: Option<Fitted>,
     given: bool,
+}
+
+/// Values of the same list of keys are equal if they say the same.
+impl PartialEq for Values {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.keys, other.keys) && self.slots == other.slots
+    }
 }
 
 impl Values {
@@ -85,6 +110,27 @@ impl Values {
         let fitted = key.check(&value.into()).map_err(|message| KeyError::at(key.name, message))?;
         self.slots[index] = Slot { value: Some(fitted), given: true };
         Ok(())
+    }
+
+    /// Gives a key of the kind [`KeyKind::Tables`] its tables, held against their keys before.
+    pub(crate) fn set_tables(&mut self, name: &str, tables: Vec<Values>) {
+        if let Some(index) = self.keys.iter().position(|key| key.name == name) {
+            self.slots[index] = Slot { value: Some(Fitted::Tables(tables)), given: true };
+        }
+    }
+
+    /// Gives a key of the kind [`KeyKind::Table`] its table, held against its keys before.
+    pub(crate) fn set_table(&mut self, name: &str, table: Values) {
+        if let Some(index) = self.keys.iter().position(|key| key.name == name) {
+            self.slots[index] = Slot { value: Some(Fitted::Table(table)), given: true };
+        }
+    }
+
+    /// The keys that were given, with their values.
+    pub(super) fn given(&self) -> Vec<(String, Value)> {
+        let given = self.keys.iter().zip(&self.slots).filter(|(_, slot)| slot.given);
+        let value = |slot: &Slot| slot.value.as_ref().map(Value::from);
+        given.filter_map(|(key, slot)| Some((key.name.to_owned(), value(slot)?))).collect()
     }
 
     /// Whether the key was given a value, rather than left at its default.
@@ -197,6 +243,40 @@ impl Values {
             (KeyKind::Text { .. }, Some(Fitted::Text(text))) => Some(text),
             (KeyKind::Text { .. }, None) => None,
             _ => mistaken(name, "text"),
+        }
+    }
+
+    /// A permittivity or permeability.
+    pub fn tensor(&self, name: &str) -> Tensor {
+        match self.slot(name).1.value {
+            Some(Fitted::Tensor(tensor)) => tensor,
+            _ => mistaken(name, "tensor"),
+        }
+    }
+
+    /// The corners of a polygon, in the key's unit; `None` where it is absent.
+    pub fn polygon(&self, name: &str) -> Option<&[[f64; 2]]> {
+        match (self.slot(name).0.kind, &self.slot(name).1.value) {
+            (KeyKind::Polygon { .. }, Some(Fitted::Polygon(corners))) => Some(corners),
+            (KeyKind::Polygon { .. }, None) => None,
+            _ => mistaken(name, "polygon"),
+        }
+    }
+
+    /// A table; `None` where it is absent.
+    pub fn table(&self, name: &str) -> Option<&Values> {
+        match (self.slot(name).0.kind, &self.slot(name).1.value) {
+            (KeyKind::Table { .. }, Some(Fitted::Table(table))) => Some(table),
+            (KeyKind::Table { .. }, None) => None,
+            _ => mistaken(name, "table"),
+        }
+    }
+
+    /// A list of tables.
+    pub fn tables(&self, name: &str) -> &[Values] {
+        match &self.slot(name).1.value {
+            Some(Fitted::Tables(tables)) => tables,
+            _ => mistaken(name, "list of tables"),
         }
     }
 

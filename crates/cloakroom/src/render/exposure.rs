@@ -41,14 +41,19 @@ pub(super) fn expose<const N: usize>(
     for leaf in &here.leaves {
         let power = detection.detected(&leaf.power);
         let beside = [across, down].map(|neighbour| Neighbour { here, leaf, neighbour });
-        let light = match studio.screen.hit(leaf.position, leaf.direction) {
-            Some(distance) => {
+        let screen = studio.screen.hit(leaf.position, leaf.direction);
+        let light = match (leaf.body, screen) {
+            (Some(body), _) => {
+                pixel.absorbed += power;
+                studio.body_light(body)
+            }
+            (None, Some(distance)) => {
                 pixel.delivered += power;
                 let time = time_of_flight(leaf, distance);
                 pulses.push((time, power));
                 photograph_light(studio, leaf, distance, &beside, spacing)
             }
-            None => {
+            (None, None) => {
                 pixel.escaped += power;
                 surroundings_light(studio, leaf, &beside, spacing)
             }
@@ -76,7 +81,7 @@ pub(super) fn expose<const N: usize>(
 
 /// Time of flight of a leaf that ends on the photograph, `distance` (cm) on, in ns.
 pub(super) fn time_of_flight<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f64 {
-    (leaf.optical_path + distance) / SPEED_OF_LIGHT
+    (leaf.group_path + distance) / SPEED_OF_LIGHT
 }
 
 /// Time of flight (ns) of a camera ray in the empty scene, if it meets the photograph.

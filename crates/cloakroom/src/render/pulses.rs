@@ -34,7 +34,7 @@ pub struct PulseList {
     pub delivered: f64,
     /// Share of the power that goes to the surroundings.
     pub escaped: f64,
-    /// Share of the power absorbed by media.
+    /// Share of the power absorbed, by media or on opaque bodies.
     pub absorbed: f64,
     /// Share of the power in branches too weak to follow.
     pub pruned: f64,
@@ -114,8 +114,13 @@ fn list<const N: usize>(
     let mut tracer = Tracer::new(&studio.bench, studio.limits).with_screen(studio.screen);
     let (leaves, outcome) = tracer.trace(&detection.launch(camera, &ray));
     let (mut arrivals, mut escaped) = (Vec::new(), 0.0);
+    let mut ended = 0.0;
     for leaf in leaves {
         let power = detection.detected(&leaf.power);
+        if leaf.body.is_some() {
+            ended += power;
+            continue;
+        }
         match studio.screen.hit(leaf.position, leaf.direction) {
             Some(distance) if power > 0.0 => arrivals.push(Arrival {
                 time: time_of_flight(leaf, distance),
@@ -150,7 +155,7 @@ fn list<const N: usize>(
         mean_time_of_flight_ns: number(Channel::TimeOfFlight),
         time_of_flight_spread_ns: number(Channel::TimeOfFlightSpread),
         escaped,
-        absorbed: detection.detected(&outcome.absorbed),
+        absorbed: detection.detected(&outcome.absorbed) + ended,
         pruned: detection.detected(&outcome.pruned),
     }
 }

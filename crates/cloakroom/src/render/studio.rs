@@ -1,9 +1,10 @@
 //! The studio: a scene made ready to be looked at, images read and devices built.
 
-use crate::device::Request;
+use crate::device::{Filling, Request};
+use crate::keys::KeyError;
 use crate::photograph::{self, Edges, Equirectangular, LoadError, Pyramid};
 use crate::scene::{Projection, Scene, SurroundingsSettings};
-use crate::trace::{Bench, Limits, Placed, Screen};
+use crate::trace::{Bench, Limits, MOST_BODIES, Placed, Screen};
 use glam::DVec3;
 use optics::geometry::Pose;
 
@@ -14,14 +15,12 @@ const BUILTIN_WIDTH: f64 = 110.0;
 #[derive(Debug, thiserror::Error)]
 pub enum StudioError {
     /// A device cannot be built.
-    #[error("{message}")]
+    #[error("{error}")]
     Device {
         /// Which device, counted from 0.
         device: usize,
-        /// The key at fault, if one is.
-        key: Option<&'static str>,
-        /// What is wrong and what would be right.
-        message: String,
+        /// What is wrong, where, and what would be right.
+        error: KeyError,
     },
     /// Two devices are in each other's way.
     #[error(
@@ -32,6 +31,25 @@ pub enum StudioError {
         first: usize,
         /// The other.
         second: usize,
+    },
+    /// Two bodies are in the same place with the same right.
+    #[error(
+        "device {second} overlaps device {first}, and both bodies have the same priority; give the one \
+         that is to be there the larger one (devices are counted from 0)"
+    )]
+    EqualPriority {
+        /// One of them, counted from 0.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
+    /// There are too many bodies.
+    #[error("there are {count} bodies; a scene may have {MOST_BODIES}")]
+    TooManyBodies {
+        /// How many there are.
+        count: usize,
+        /// The first that is too many, counted from 0 among all devices.
+        device: usize,
     },
     /// The camera is inside a device.
     #[error("the camera stands inside device {device} (counted from 0); it must stand in air")]
@@ -72,11 +90,15 @@ impl StudioError {
     #[must_use]
     pub fn key(&self) -> String {
         match self {
-            Self::Device { device, key: Some(key), .. } => format!("device.{device}.{key}"),
-            Self::Device { device, key: None, .. } | Self::PhotographInside { device, .. } => {
-                format!("device.{device}")
+            Self::Device { device, error } => {
+                let path = error.path();
+                let dot = if path.is_empty() { "" } else { "." };
+                format!("device.{device}{dot}{path}")
             }
+            Self::PhotographInside { device, .. } => format!("device.{device}"),
             Self::Overlap { second, .. } => format!("device.{second}"),
+            Self::EqualPriority { second, .. } => format!("device.{second}.priority"),
+            Self::TooManyBodies { device, .. } => format!("device.{device}"),
             Self::CameraInside { .. } => "camera.position".to_owned(),
             Self::NoCoveringWidth { .. } => "photograph.x".to_owned(),
             Self::Photograph(_) => "photograph.image".to_owned(),
@@ -94,14 +116,30 @@ impl StudioError {
 pub fn bench(scene: &Scene) -> Result<Bench, StudioError> {
     let mut placed = Vec::new();
     for (index, device) in scene.devices.iter().enumerate() {
-        let request = Request { show: device.show, length: device.length };
-        let structure = (device.entry.build)(&device.values, request).map_err(|error| {
-            StudioError::Device { device: index, key: error.key, message: error.message }
-        })?;
+        let request =
+            Request { show: device.show, open_core: device.open_core, length: device.length };
+        let structure = (device.entry.build)(&device.values, request)
+            .and_then(|structure| {
+                if device.open_core && !structure.hull.has_open_core() {
+                    let kind = device.entry.kind;
+                    let message = format!("{kind} with these keys has no core that could be open");
+                    return Err(KeyError::at("core", message));
+                }
+                Ok(structure)
+            })
+            .map_err(|error| StudioError::Device { device: index, error })?;
         placed.push(Placed { pose: Pose::new(device.position, device.rotation), structure });
     }
-    let bench = Bench::new(placed);
+    let bench = Bench::new(placed).with_wavelength(scene.light.wavelength_nm);
+    let is_body = |index: usize| bench.devices()[index].structure.hull.body().is_some();
+    let bodies: Vec<usize> = (0..bench.devices().len()).filter(|i| is_body(*i)).collect();
+    if let Some(&device) = bodies.get(MOST_BODIES) {
+        return Err(StudioError::TooManyBodies { count: bodies.len(), device });
+    }
     match bench.overlap() {
+        Some((first, second)) if is_body(first) && is_body(second) => {
+            Err(StudioError::EqualPriority { first, second })
+        }
         Some((first, second)) => Err(StudioError::Overlap { first, second }),
         None => Ok(bench),
     }
@@ -162,6 +200,15 @@ impl<'s> Studio<'s> {
             image: Pyramid::new(image, Edges::Clamp),
             surroundings,
         })
+    }
+
+    /// What an opaque body sends out.
+    pub(super) fn body_light(&self, device: u16) -> [f64; 3] {
+        let hull = &self.bench.devices()[usize::from(device)].structure.hull;
+        match hull.body().map(|body| &body.filling) {
+            Some(Filling::Opaque { color }) => *color,
+            _ => [0.0; 3],
+        }
     }
 
     /// Width and height of the photograph, cm.

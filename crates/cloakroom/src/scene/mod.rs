@@ -103,6 +103,8 @@ pub struct DeviceSettings {
     pub values: Values,
     /// What of it is shown.
     pub show: Show,
+    /// Whether its hidden region is air instead of metal.
+    pub open_core: bool,
     /// Degrees about its own axis, counterclockwise seen from +z.
     pub rotation: f64,
     /// Where its origin lies, in cm.
@@ -193,6 +195,7 @@ impl DeviceSettings {
                 "mirror" => Show::Mirror,
                 _ => Show::Cloak,
             },
+            open_core: placement.choice("core") == "open",
             rotation: placement.number("rotation"),
             position: DVec3::from_array(placement.vector("position")),
             length: placement.optional_number("length"),

@@ -169,8 +169,8 @@ pub static PLACEMENT_KEYS: &[Key] = &[
     },
     Key {
         name: "core",
-        doc: "What fills the hidden region.",
-        kind: KeyKind::Choice { options: &["metal"] },
+        doc: "What fills the hidden region: metal, or air in which bodies may stand.",
+        kind: KeyKind::Choice { options: &["metal", "open"] },
     },
     Key {
         name: "rotation",

@@ -55,10 +55,9 @@ impl Locations {
 
     /// An error of a table such as `device.1`, at the key the error names.
     pub fn key_error(&self, table: &str, error: &KeyError) -> SceneFileError {
-        match error.key {
-            Some(key) => self.error_at(&format!("{table}.{key}"), &error.message),
-            None => self.error_at(table, &error.message),
-        }
+        let path = error.path();
+        let path = if path.is_empty() { table.to_owned() } else { format!("{table}.{path}") };
+        self.error_at(&path, &error.message)
     }
 
     pub(super) fn error(&self, origin: &Origin, message: impl Into<String>) -> SceneFileError {

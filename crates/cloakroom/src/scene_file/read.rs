@@ -6,7 +6,7 @@ use super::error::SceneFileError;
 use super::locations::Locations;
 use super::tree::{Entry, Item, Node, Origin, Table};
 use crate::device::{self, CATALOGUE};
-use crate::keys::{Key, KeyError, Values, hint, quoted, unknown};
+use crate::keys::{Key, KeyError, KeyKind, Values, hint, quoted, unknown};
 use crate::scene::{
     Camera, CameraSettings, DeviceSettings, Light, PLACEMENT_KEYS, PhotographSettings,
     PictureSettings, Scene, SurroundingsSettings, TABLES, TraceSettings,
@@ -150,6 +150,14 @@ fn fill(
             let message = unknown("key", &entry.key, place, &known);
             return Err(locations.error(&entry.key_origin, message));
         };
+        if let KeyKind::Tables { keys } = key.kind {
+            list.set_tables(key.name, tables(entry, key, keys, locations)?);
+            continue;
+        }
+        if let (KeyKind::Table { keys }, Item::Table(_)) = (key.kind, &entry.node.item) {
+            list.set_table(key.name, inner_table(&entry.node, key, keys, locations)?);
+            continue;
+        }
         let set = match entry.node.item.to_value() {
             Ok(value) => list.set(key.name, value).map_err(|error| error.message),
             Err(what) => Err(format!("{} is {what}; it must be {}", key.name, key.describe())),
@@ -157,6 +165,39 @@ fn fill(
         set.map_err(|message| locations.error(&entry.node.origin, message))?;
     }
     Ok(())
+}
+
+/// The tables of a list such as [[device.prism]].
+fn tables(
+    entry: &Entry,
+    key: &Key,
+    keys: &'static [Key],
+    locations: &Locations,
+) -> Result<Vec<Values>, SceneFileError> {
+    let Item::List(items) = &entry.node.item else {
+        return Err(unfit(&entry.node, key, locations));
+    };
+    items.iter().map(|item| inner_table(item, key, keys, locations)).collect()
+}
+
+/// A table within a device's.
+fn inner_table(
+    node: &Node,
+    key: &Key,
+    keys: &'static [Key],
+    locations: &Locations,
+) -> Result<Values, SceneFileError> {
+    let Item::Table(table) = &node.item else { return Err(unfit(node, key, locations)) };
+    let mut values = [Values::defaults(keys)];
+    fill(&mut values, table, &[], &format!(" in a {}", key.name), locations)?;
+    let [values] = values;
+    Ok(values)
+}
+
+fn unfit(node: &Node, key: &Key, locations: &Locations) -> SceneFileError {
+    let what = node.item.describe();
+    let message = format!("{} is {what}; it must be {}", key.name, key.describe());
+    locations.error(&node.origin, message)
 }
 
 /// Names of files are relative to the scene file, those in overrides to the current folder.

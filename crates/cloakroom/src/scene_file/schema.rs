@@ -86,6 +86,15 @@ fn closed_table(properties: Map<String, Value>) -> Map<String, Value> {
     table
 }
 
+/// A table within a device's; polygons have no default.
+fn inner_table(keys: &[Key]) -> Map<String, Value> {
+    let mut table = closed_table(properties(keys));
+    let required = keys.iter().filter(|key| matches!(key.kind, KeyKind::Polygon { .. }));
+    let required: Vec<_> = required.map(|key| key.name).collect();
+    table.insert("required".to_owned(), json!(required));
+    table
+}
+
 fn properties(keys: &[Key]) -> Map<String, Value> {
     keys.iter().map(|key| (key.name.to_owned(), property(key))).collect()
 }
@@ -105,6 +114,13 @@ fn property(key: &Key) -> Value {
         KeyKind::ChoiceOrNumber { options, unit } => {
             (json!({ "anyOf": [{ "enum": options }, { "type": "number" }] }), unit)
         }
+        KeyKind::Tensor => (tensor(), ""),
+        KeyKind::Polygon { unit } => {
+            let corner = list(number(Limits::Finite), 2);
+            (json!({ "type": "array", "items": corner, "minItems": 3 }), unit)
+        }
+        KeyKind::Table { keys } => (inner_table(keys).into(), ""),
+        KeyKind::Tables { keys } => (json!({ "type": "array", "items": inner_table(keys) }), ""),
     };
     let unit = if unit.is_empty() { String::new() } else { format!(" Unit: {unit}.") };
     property["description"] = format!("{}{unit}", key.doc).into();
@@ -112,6 +128,14 @@ fn property(key: &Key) -> Value {
         property["default"] = Value::from(default);
     }
     property
+}
+
+/// A number, [re, im], or 3 x 3 of either.
+fn tensor() -> Value {
+    let pair = list(number(Limits::Finite), 2);
+    let entry = json!({ "anyOf": [number(Limits::Finite), pair] });
+    let rows = list(list(entry, 3), 3);
+    json!({ "anyOf": [number(Limits::Finite), pair, rows] })
 }
 
 fn number(limits: Limits) -> Value {

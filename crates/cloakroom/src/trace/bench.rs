@@ -1,5 +1,6 @@
 //! The optical bench: all devices of a scene at their places.
 
+use super::bodies::Bodies;
 use crate::device::{SkinHit, Structure};
 use glam::DVec3;
 use optics::geometry::{Pose, Solid};
@@ -22,15 +23,23 @@ impl Placed {
 
     /// The space that the device takes up in the world.
     #[must_use]
-    pub fn solid(&self) -> Solid {
-        self.structure.hull.solid().placed(&self.pose)
+    pub fn solids(&self) -> Vec<Solid> {
+        self.structure.hull.solids().iter().map(|solid| solid.placed(&self.pose)).collect()
     }
 }
 
 /// All devices of a scene.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Bench {
     devices: Vec<Placed>,
+    bodies: Bodies,
+    vacuum_wave_number: f64,
+}
+
+impl Default for Bench {
+    fn default() -> Self {
+        Self::new(Vec::new())
+    }
 }
 
 /// How deep two devices may press into each other before they count as overlapping, cm.
@@ -40,7 +49,23 @@ impl Bench {
     /// The bench with the given devices, which must not overlap: see [`Bench::overlap`].
     #[must_use]
     pub fn new(devices: Vec<Placed>) -> Self {
-        Self { devices }
+        let bodies = Bodies::of(&devices);
+        Self { devices, bodies, vacuum_wave_number: 0.0 }.with_wavelength(550.0)
+    }
+
+    /// The same bench in light of another wavelength (in vacuum, nm) than 550 nm. Only absorption depends
+    /// on it: media are given for it.
+    #[must_use]
+    pub fn with_wavelength(self, wavelength_nm: f64) -> Self {
+        const CM_PER_NM: f64 = 1e-7;
+        let vacuum_wave_number = std::f64::consts::TAU / (wavelength_nm * CM_PER_NM);
+        Self { vacuum_wave_number, ..self }
+    }
+
+    /// k0, the wave number in vacuum, 1/cm.
+    #[must_use]
+    pub fn vacuum_wave_number(&self) -> f64 {
+        self.vacuum_wave_number
     }
 
     /// The devices, in the order of the scene.
@@ -49,12 +74,24 @@ impl Bench {
         &self.devices
     }
 
-    /// The first two devices that overlap, if any do.
+    /// The bodies among the devices.
+    pub(super) fn bodies(&self) -> &Bodies {
+        &self.bodies
+    }
+
+    /// The first two devices that overlap, if any do. Bodies may, unless their priorities are equal.
     #[must_use]
     pub fn overlap(&self) -> Option<(usize, usize)> {
-        let solids: Vec<_> = self.devices.iter().map(Placed::solid).collect();
+        let solids: Vec<_> = self.devices.iter().map(Placed::solids).collect();
         let pairs = (0..solids.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
-        pairs.into_iter().find(|&(i, j)| solids[i].overlaps(&solids[j], TOUCHING))
+        let priority = |i: usize| self.devices[i].structure.hull.body().map(|body| body.priority);
+        let may_overlap = |i: usize, j: usize| match (priority(i), priority(j)) {
+            (Some(one), Some(other)) => one != other,
+            _ => false,
+        };
+        pairs.into_iter().filter(|&(i, j)| !may_overlap(i, j)).find(|&(i, j)| {
+            solids[i].iter().any(|one| solids[j].iter().any(|two| one.overlaps(two, TOUCHING)))
+        })
     }
 
     /// The device that holds a point, if any does.

@@ -1,5 +1,7 @@
 //! A branch of a ray tree on its way.
 
+use super::Leaf;
+use super::bodies::Around;
 use crate::device::InnerRay;
 use glam::DVec3;
 use optics::interface::{IncidentWave, OutgoingWave};
@@ -27,6 +29,12 @@ pub(super) struct Branch<const N: usize> {
     pub electric: [ComplexVector; N],
     pub power: [f64; N],
     pub optical_path: f64,
+    /// Speed of light times the time of flight, cm.
+    pub group_path: f64,
+    /// The bodies around it.
+    pub around: Around,
+    /// How many surfaces of bodies in a row it has crossed without getting anywhere.
+    pub standstills: u8,
     pub met_device: bool,
     pub path: u64,
     /// Which of the waves of the medium it is in.
@@ -88,6 +96,39 @@ impl<const N: usize> Branch<N> {
             mode: wave.mode,
             path: fingerprint(self.path, event),
             ..*self
+        }
+    }
+
+    /// The branch in air, where all that decays across a beam is its profile: behind an absorbing wedge the
+    /// wave of the match decays along the surface, by some 1e-5 of its wave vector; a ray is a plane
+    /// wave along its direction, transverse, and of its power.
+    pub fn in_air(self) -> Self {
+        if self.attenuation == DVec3::ZERO {
+            return self;
+        }
+        let mut electric = self.electric;
+        for (field, power) in electric.iter_mut().zip(self.power) {
+            let along = field.dot_real(self.direction);
+            let across =
+                *field - ComplexVector::new(self.direction * along.re, self.direction * along.im);
+            let size = across.norm_squared();
+            *field = if size > 0.0 { across * (power / size).sqrt() } else { across };
+        }
+        Self { wave_vector: self.direction, attenuation: DVec3::ZERO, electric, ..self }
+    }
+
+    /// The branch as a leaf, away through air or on an opaque body.
+    pub fn leaf(&self, body: Option<u16>) -> Leaf<N> {
+        Leaf {
+            position: self.position,
+            met_device: self.met_device,
+            direction: self.direction,
+            power: self.power,
+            electric: self.electric,
+            optical_path: self.optical_path,
+            group_path: self.group_path,
+            body,
+            path: self.path,
         }
     }
 

@@ -41,7 +41,7 @@ pub enum Polarization {
 pub struct RayReport {
     /// The leaves, strongest first.
     pub leaves: Vec<LeafReport>,
-    /// Share of the power absorbed.
+    /// Share of the power absorbed, by media or on opaque bodies.
     pub absorbed: f64,
     /// Share of the power in branches too weak to follow.
     pub pruned: f64,
@@ -168,9 +168,14 @@ pub fn trace_rays(
                     return Err(RayError::Stopped);
                 }
                 let (leaves, outcome) = tracer.trace(launch);
-                let mut leaves: Vec<LeafReport> = leaves.iter().map(LeafReport::from).collect();
+                let (away, ended): (Vec<&Leaf<1>>, Vec<&Leaf<1>>) =
+                    leaves.iter().partition(|leaf| leaf.body.is_none());
+                let mut leaves: Vec<LeafReport> = away.into_iter().map(LeafReport::from).collect();
                 leaves.sort_by(|a, b| b.power.total_cmp(&a.power));
-                Ok(RayReport { leaves, absorbed: outcome.absorbed[0], pruned: outcome.pruned[0] })
+                // What ends on opaque bodies is absorbed there.
+                let ended: f64 = ended.iter().map(|leaf| leaf.power[0]).sum();
+                let absorbed = outcome.absorbed[0] + ended;
+                Ok(RayReport { leaves, absorbed, pruned: outcome.pruned[0] })
             },
         )
         .collect()

@@ -1,10 +1,11 @@
 //! The first surface that a ray meets, looked at on its own.
 
+use super::bodies::{Around, Bodies, Inside};
 use super::tracer::split_as_finished;
 use super::{Launch, Tracer};
 use crate::device::Beyond;
 use glam::DVec3;
-use optics::interface::{IncidentWave, Side};
+use optics::interface::{IncidentWave, OutgoingWave, Side, split};
 use optics::medium::{Medium, ModeKind};
 use optics::wave::ComplexVector;
 
@@ -19,6 +20,23 @@ pub struct FirstFace<const N: usize> {
     pub extraordinary: [f64; N],
 }
 
+impl<const N: usize> FirstFace<N> {
+    /// Adds the waves that leave the surface.
+    fn add(&mut self, waves: &[OutgoingWave<N>]) {
+        for wave in waves {
+            let sum = match (wave.side, wave.mode) {
+                (Side::Reflected, _) => &mut self.reflected,
+                (_, ModeKind::Ordinary) => &mut self.ordinary,
+                (_, ModeKind::Extraordinary) => &mut self.extraordinary,
+                _ => continue,
+            };
+            for (sum, power) in sum.iter_mut().zip(wave.power) {
+                *sum += power;
+            }
+        }
+    }
+}
+
 impl<const N: usize> Tracer<'_, N> {
     /// What becomes of a ray at the first surface that it meets, without following it any further;
     /// `None` if it meets none before the screen. The ray must start in air.
@@ -26,11 +44,28 @@ impl<const N: usize> Tracer<'_, N> {
     pub fn first_face(&self, launch: &Launch<N>) -> Option<FirstFace<N>> {
         let (mut position, mut left) = (launch.origin, None);
         loop {
-            let (device_index, hit) = self.surface_ahead(position, launch.direction, left)?;
-            position += launch.direction * hit.distance;
+            let hit = self.surface_ahead(position, launch.direction, left);
             let power = launch.electric.map(ComplexVector::norm_squared);
             let mut face =
                 FirstFace { reflected: [0.0; N], ordinary: [0.0; N], extraordinary: [0.0; N] };
+            let distance = hit.map(|(_, hit)| hit.distance);
+            if let Some(crossing) = self.body_ahead(position, launch.direction, distance) {
+                let bodies = self.bench.bodies();
+                let beyond = bodies.inside(Bodies::beyond(Around::default(), &crossing));
+                if let Inside::Medium(medium, _) = beyond {
+                    let wave = IncidentWave {
+                        wave_vector: launch.direction,
+                        attenuation: DVec3::ZERO,
+                        direction: launch.direction,
+                        electric: launch.electric,
+                        power,
+                    };
+                    face.add(&split(&Medium::AIR, medium, &wave, crossing.onward));
+                }
+                return Some(face);
+            }
+            let (device_index, hit) = hit?;
+            position += launch.direction * hit.distance;
             match hit.beyond {
                 // A thin sheet of air: nothing there.
                 Beyond::Air => {
@@ -38,7 +73,7 @@ impl<const N: usize> Tracer<'_, N> {
                     continue;
                 }
                 Beyond::Conductor => face.reflected = power,
-                Beyond::Cell(cell) => {
+                Beyond::Cell(cell) | Beyond::Seam(cell) => {
                     let device = &self.bench.devices()[usize::from(device_index)];
                     let pose = &device.pose;
                     let entrance = self.cell(device, cell).enter(pose.to_local(position))?;
@@ -52,17 +87,7 @@ impl<const N: usize> Tracer<'_, N> {
                     };
                     let into = -hit.outward;
                     let (from, to) = (&Medium::AIR, &entrance.medium);
-                    for wave in split_as_finished(from, to, &wave, into, hit.finish) {
-                        let sum = match (wave.side, wave.mode) {
-                            (Side::Reflected, _) => &mut face.reflected,
-                            (_, ModeKind::Ordinary) => &mut face.ordinary,
-                            (_, ModeKind::Extraordinary) => &mut face.extraordinary,
-                            _ => continue,
-                        };
-                        for (sum, power) in sum.iter_mut().zip(wave.power) {
-                            *sum += power;
-                        }
-                    }
+                    face.add(&split_as_finished(from, to, &wave, into, hit.finish));
                 }
             }
             return Some(face);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use optics::wave::ComplexVector;
 
-/// A branch that has left every device and runs on through air.
+/// A branch that has left every device and runs on through air, or has ended on an opaque body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leaf<const N: usize> {
     /// The last point at which it left a device; the ray's origin if it met none.
@@ -19,6 +19,12 @@ pub struct Leaf<const N: usize> {
     pub electric: [ComplexVector; N],
     /// Optical path length from the ray's origin to `position`, cm.
     pub optical_path: f64,
+    /// The speed of light times the time of flight from the ray's origin to `position`, cm: the optical
+    /// path length, but in media of negative index and those with a group index of their own.
+    pub group_path: f64,
+    /// The opaque body on which it ends, by its number among the devices; `position` is the place. `None`
+    /// for a leaf that runs on through air.
+    pub body: Option<u16>,
     /// A fingerprint of the surfaces it met and the branches it took: leaves of neighbouring rays with
     /// the same one have taken the same way.
     pub path: u64,

@@ -5,7 +5,9 @@
 //! absorbed and what is pruned add up to what was launched.
 
 mod bench;
+mod bodies;
 mod branch;
+mod crossing;
 mod exchange;
 mod first_face;
 mod leaf;
@@ -13,6 +15,7 @@ mod screen;
 mod tracer;
 
 pub use bench::{Bench, Placed};
+pub use bodies::MOST_BODIES;
 pub use exchange::{LeafReport, Polarization, RayError, RayReport, RayRequest, trace_rays};
 pub use first_face::FirstFace;
 pub use leaf::{Leaf, Outcome, Rarities};

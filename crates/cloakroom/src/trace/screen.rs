@@ -38,6 +38,9 @@ impl Screen {
         let ends = [-self.half_height, self.half_height].map(|y| DVec2::new(self.x, y));
         let extent = Extent { min: -self.half_width, max: self.half_width };
         let sheet = Solid::Prism { outline: Outline::new(ends.to_vec()), extent };
-        bench.devices().iter().position(|device| device.solid().overlaps(&sheet, TOUCHING))
+        bench
+            .devices()
+            .iter()
+            .position(|device| device.solids().iter().any(|solid| solid.overlaps(&sheet, TOUCHING)))
     }
 }

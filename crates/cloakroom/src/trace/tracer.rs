@@ -1,5 +1,6 @@
 //! The walk along the ray tree.
 
+use super::bodies::Around;
 use super::branch::{Branch, Place};
 use super::{Bench, Leaf, Outcome, Placed, Screen};
 use crate::device::{Beyond, Cell, Finish, SkinHit};
@@ -51,10 +52,10 @@ const LEAK: f64 = 1e-10;
 pub struct Tracer<'a, const N: usize> {
     pub(super) bench: &'a Bench,
     limits: Limits,
-    screen: Option<Screen>,
-    waiting: Vec<Branch<N>>,
-    leaves: Vec<Leaf<N>>,
-    outcome: Outcome<N>,
+    pub(super) screen: Option<Screen>,
+    pub(super) waiting: Vec<Branch<N>>,
+    pub(super) leaves: Vec<Leaf<N>>,
+    pub(super) outcome: Outcome<N>,
 }
 
 impl<'a, const N: usize> Tracer<'a, N> {
@@ -86,6 +87,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
             electric: launch.electric,
             power: launch.electric.map(ComplexVector::norm_squared),
             optical_path: 0.0,
+            group_path: 0.0,
+            around: Around::default(),
+            standstills: 0,
             met_device: false,
             path: 0,
             mode: ModeKind::Shared,
@@ -112,21 +116,28 @@ impl<'a, const N: usize> Tracer<'a, N> {
     }
 
     fn through_air(&mut self, mut branch: Branch<N>, left: Option<(u16, u16)>) {
+        if !branch.around.nothing() {
+            let bodies = self.bench.bodies();
+            match bodies.crossing(branch.around, branch.position, branch.direction) {
+                Some(crossing) => self.cross(branch, &crossing),
+                // It runs along an endless body for ever.
+                None => self.lose(branch.power),
+            }
+            return;
+        }
         let hit = self.surface_ahead(branch.position, branch.direction, left);
+        let distance = hit.map(|(_, hit)| hit.distance);
+        if let Some(crossing) = self.body_ahead(branch.position, branch.direction, distance) {
+            self.cross(branch, &crossing);
+            return;
+        }
         let Some((device_index, hit)) = hit else {
-            self.leaves.push(Leaf {
-                position: branch.position,
-                met_device: branch.met_device,
-                direction: branch.direction,
-                power: branch.power,
-                electric: branch.electric,
-                optical_path: branch.optical_path,
-                path: branch.path,
-            });
+            self.leaves.push(branch.leaf(None));
             return;
         };
         branch.position += branch.direction * hit.distance;
         branch.optical_path += hit.distance;
+        branch.group_path += hit.distance;
         branch.met_device = true;
         let device = &self.bench.devices()[usize::from(device_index)];
         let into = -hit.outward;
@@ -139,7 +150,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     self.go_on(to_world(&local.onward(&wave, air, event), &device.pose));
                 }
             }
-            Beyond::Cell(cell) => {
+            Beyond::Cell(cell) | Beyond::Seam(cell) => {
                 let Some(entrance) = self.cell(device, cell).enter(local.position) else {
                     self.lose(branch.power);
                     return;
@@ -177,10 +188,19 @@ impl<'a, const N: usize> Tracer<'a, N> {
             self.lose(branch.power);
             return;
         };
+        let way = passage.position - branch.position;
         branch.position = passage.position;
+        if passage.medium.absorbs() && !self.absorb(&mut branch, way) {
+            return;
+        }
         branch.wave_vector = passage.wave_vector;
         branch.direction = passage.direction;
         branch.optical_path += passage.optical_path;
+        branch.group_path += if passage.optical_path < 0.0 {
+            way.length().max(-passage.optical_path)
+        } else {
+            passage.optical_path
+        };
         branch.foothold = passage.foothold;
         if let Some(transport) = passage.transport {
             branch.electric = branch.electric.map(|field| field.transformed(&transport));
@@ -196,6 +216,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     self.go_on(branch.onward(&wave, here, event | side_code(&wave)));
                 }
             }
+            Beyond::Seam(next) => self
+                .waiting
+                .push(Branch { place: Place::Cell { device: device_index, cell: next }, ..branch }),
             Beyond::Cell(next) => {
                 let Some(entrance) = self.cell(device, next).enter(branch.position) else {
                     self.lose(branch.power);
@@ -224,7 +247,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
                         Side::Reflected => self.go_on(branch.onward(&wave, here, event)),
                         Side::Transmitted => {
                             let air = Place::Air { left: None };
-                            self.go_on(to_world(&branch.onward(&wave, air, event), &device.pose));
+                            let onward = branch.onward(&wave, air, event).in_air();
+                            self.go_on(to_world(&onward, &device.pose));
                         }
                     }
                 }
@@ -245,7 +269,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             .filter(|(_, hit)| screen.is_none_or(|distance| hit.distance < distance))
     }
 
-    fn split(
+    pub(super) fn split(
         &mut self,
         from: &Medium,
         to: &Medium,
@@ -256,6 +280,25 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let waves = split_as_finished(from, to, &branch.incident(), normal, finish);
         self.check_account(branch, &waves);
         waves
+    }
+
+    /// Takes from a branch what an absorbing medium keeps of it on a straight way; whether what is left
+    /// is to be followed, for else it is pruned.
+    pub(super) fn absorb(&mut self, branch: &mut Branch<N>, way: DVec3) -> bool {
+        // Power never grows along a ray: rounding must not have it so.
+        let depth = (self.bench.vacuum_wave_number() * branch.attenuation.dot(way)).max(0.0);
+        let (amplitude, kept) = ((-depth).exp(), (-2.0 * depth).exp());
+        for (i, power) in branch.power.iter_mut().enumerate() {
+            let left = *power * kept;
+            self.outcome.absorbed[i] += *power - left;
+            *power = left;
+            branch.electric[i] = branch.electric[i] * amplitude;
+        }
+        let followed = branch.largest_power() >= self.limits.min_power.max(NO_POWER);
+        if !followed {
+            self.prune(branch.power);
+        }
+        followed
     }
 
     /// Counts power as lost that an interface could not hand on: the account must not leak, even
@@ -273,7 +316,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
     }
 
     /// Keeps a branch to be followed, or prunes it.
-    fn go_on(&mut self, branch: Branch<N>) {
+    pub(super) fn go_on(&mut self, branch: Branch<N>) {
         if branch.largest_power() >= self.limits.min_power.max(NO_POWER) {
             self.waiting.push(branch);
         } else {
@@ -287,7 +330,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         self.prune(power);
     }
 
-    fn prune(&mut self, power: [f64; N]) {
+    pub(super) fn prune(&mut self, power: [f64; N]) {
         for (sum, power) in self.outcome.pruned.iter_mut().zip(power) {
             *sum += power;
         }
@@ -313,7 +356,7 @@ pub(super) fn split_as_finished<const N: usize>(
 }
 
 /// Tells the branches at one surface apart in the fingerprint of the path.
-fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
+pub(super) fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
     let side = match wave.side {
         Side::Reflected => 1,
         Side::Transmitted => 2,

@@ -40,7 +40,7 @@ fn points_inside_are_inside_and_devices_do_not_overlap() {
 #[test]
 fn what_makes_no_sense_is_refused() {
     let refused = |device: &str| match try_bench(device) {
-        Err(StudioError::Device { key: Some(key), message, .. }) => (key, message),
+        Err(StudioError::Device { error, .. }) => (error.key.unwrap_or_default(), error.message),
         other => panic!("{device}: {other:?}"),
     };
     for kind in &ROUND[2..] {

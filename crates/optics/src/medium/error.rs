@@ -38,3 +38,17 @@ pub enum MediumError {
     #[error("the optic axis must be a finite vector that is not zero")]
     NoAxis,
 }
+
+impl MediumError {
+    /// What is wrong: the name of a tensor or of a number.
+    #[must_use]
+    pub fn quantity(&self) -> Option<&'static str> {
+        match self {
+            Self::Degenerate { quantity, .. }
+            | Self::NotSymmetric { quantity }
+            | Self::Singular { quantity }
+            | Self::Gain { quantity, .. } => Some(quantity),
+            Self::NoAxis => None,
+        }
+    }
+}

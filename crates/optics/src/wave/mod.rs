@@ -33,6 +33,9 @@
 //! factor is left out, so that the empty view is the same through every polarizer.) Paths that leave
 //! a device at different places differ by many wavelengths: their powers add up, not their fields.
 
+/// Speed of light in vacuum, cm/ns.
+pub const SPEED_OF_LIGHT: f64 = 29.979_245_8;
+
 mod complex_vector;
 mod frame;
 mod linear_system;
@@ -48,6 +51,3 @@ pub(crate) use number::{Number, cross, dot};
 pub use plane_wave::{PlaneWave, poynting};
 pub use polarization::{transverse_basis, turn_transverse};
 pub use stokes::arriving_stokes;
-
-/// The speed of light in vacuum, cm/ns.
-pub const SPEED_OF_LIGHT: f64 = 29.979_245_8;

@@ -5,7 +5,7 @@ use crate::keys::Values;
 fn built(kind: &str, show: Show, length: Option<f64>) -> Structure {
     let entry = entry(kind).expect("a device");
     let values = Values::defaults(entry.keys);
-    (entry.build)(&values, Request { show, length }).expect("a structure")
+    (entry.build)(&values, Request { show, length, open_core: false }).expect("a structure")
 }
 
 fn area(contour: &Contour) -> f64 {

@@ -1,0 +1,85 @@
+//! Rays that cross the surfaces of bodies.
+
+use super::bodies::{Around, Bodies, Crossing, Inside, ONE_SURFACE};
+use super::branch::{Branch, Place};
+use super::tracer::{Tracer, side_code};
+use crate::device::Finish;
+use glam::DVec3;
+use optics::interface::Side;
+use optics::medium::Medium;
+
+/// Light that crosses more surfaces than this in a row within rounding of one point has spiralled into an
+/// edge of a negative-index body, and never comes out.
+const MOST_STANDSTILLS: u8 = 16;
+
+/// Tells events at bodies from those at devices in the fingerprint of a path.
+const BODY_EVENT: u64 = 1 << 55;
+
+impl<const N: usize> Tracer<'_, N> {
+    /// The surface of a body that a ray in air meets before the screen and before the surface of another device
+    /// at the distance `hit`.
+    pub(super) fn body_ahead(
+        &self,
+        position: DVec3,
+        direction: DVec3,
+        hit: Option<f64>,
+    ) -> Option<Crossing> {
+        let crossing = self.bench.bodies().crossing(Around::default(), position, direction)?;
+        let screen = self.screen.and_then(|screen| screen.hit(position, direction));
+        let first = [hit, screen].into_iter().flatten().all(|other| crossing.distance < other);
+        first.then_some(crossing)
+    }
+
+    /// Follows a branch in air or in a body to where it crosses the surface of a body, and beyond.
+    pub(super) fn cross(&mut self, mut branch: Branch<N>, crossing: &Crossing) {
+        branch.standstills =
+            if crossing.distance < ONE_SURFACE { branch.standstills + 1 } else { 0 };
+        if branch.standstills > MOST_STANDSTILLS {
+            self.outcome.rarities.endless += 1;
+            self.prune(branch.power);
+            return;
+        }
+        let bodies = self.bench.bodies();
+        let way = branch.direction * crossing.distance;
+        let (medium, group_index) = match bodies.inside(branch.around) {
+            Inside::Medium(medium, group_index) => (medium, group_index),
+            Inside::Air | Inside::Opaque(_) => (&Medium::AIR, None),
+        };
+        branch.position += way;
+        branch.met_device = true;
+        let optical_path = branch.wave_vector.dot(way);
+        branch.optical_path += optical_path;
+        branch.group_path += match group_index {
+            Some(index) => index * crossing.distance,
+            None => optical_path.abs().max(crossing.distance),
+        };
+        if medium.absorbs() && !self.absorb(&mut branch, way) {
+            return;
+        }
+        let around = Bodies::beyond(branch.around, crossing);
+        let (here, beyond) = (bodies.inside(branch.around), bodies.inside(around));
+        let air = Place::Air { left: None };
+        if here == beyond {
+            // A surface of bodies that give way here to another, or between equal media: nothing is there.
+            self.waiting.push(Branch { place: air, around, ..branch });
+            return;
+        }
+        let (beyond, to_air) = match beyond {
+            Inside::Opaque(body) => {
+                self.leaves.push(branch.leaf(Some(body)));
+                return;
+            }
+            Inside::Medium(medium, _) => (medium, false),
+            Inside::Air => (&Medium::AIR, true),
+        };
+        let event = BODY_EVENT | (crossing.body as u64) << 32;
+        for wave in self.split(medium, beyond, &branch, crossing.onward, Finish::Bare) {
+            let onward = branch.onward(&wave, air, event | side_code(&wave));
+            self.go_on(match wave.side {
+                Side::Reflected => onward,
+                Side::Transmitted if to_air => Branch { around, ..onward.in_air() },
+                Side::Transmitted => Branch { around, ..onward },
+            });
+        }
+    }
+}
