@@ -3,11 +3,11 @@
 //! A new kind of [`Cell`] or [`Skin`] says here, and nowhere else, what it looks like: its sides as
 //! lines, and for a cell whether its medium is graded. The rest follows.
 
-use super::{Beyond, Cell, ConformalCell, Face, Prism, RadialCell, Skin, Structure};
+use super::{Beyond, Cell, ConformalCell, Face, Prism, Skin, Structure};
 use glam::DVec2;
+use optics::geometry::{Cylinder, Sphere};
 use optics::medium::Medium;
 use optics::propagation::Half;
-use std::f64::consts::TAU;
 
 /// How far cells without an end are drawn, cm from the device's origin.
 pub const REACH: f64 = 1e5;
@@ -81,7 +81,14 @@ impl Cell {
         match self {
             Self::Prism(prism) => prism.sides(),
             Self::Conformal(cell) => cell.sides(),
-            Self::Radial(cell) => cell.sides(),
+            Self::Radial(cell) => {
+                let [inner, outer] = cell.flow.radii();
+                let mut sides = vec![Side { line: circle(outer), beyond: Beyond::Air }];
+                if inner > 0.0 {
+                    sides.push(Side { line: circle(inner), beyond: cell.inner });
+                }
+                sides
+            }
         }
     }
 
@@ -120,14 +127,22 @@ impl Skin {
                 around.extend(upper.first());
                 vec![metal(around)]
             }
-            Self::Sphere { sphere, beyond } => vec![circle(sphere.radius, *beyond)],
-            Self::Side { cylinder, beyond } => vec![circle(cylinder.radius, *beyond)],
+            Self::Sphere { sphere: Sphere { radius }, beyond }
+            | Self::Side { cylinder: Cylinder { radius, .. }, beyond } => {
+                vec![Side { line: circle(*radius), beyond: *beyond }]
+            }
             Self::Cap { .. }
             | Self::Disc { .. }
             | Self::HalvesCap { .. }
             | Self::FloorCap { .. } => Vec::new(),
         }
     }
+}
+
+/// A circle about the origin, joined to its beginning.
+fn circle(radius: f64) -> Vec<DVec2> {
+    let step = std::f64::consts::TAU / f64::from(PIECES);
+    (0..=PIECES).map(|i| DVec2::from_angle(step * f64::from(i % PIECES)) * radius).collect()
 }
 
 impl Prism {
@@ -197,21 +212,6 @@ impl ConformalCell {
             side(vec![left[1], left[0]], Beyond::Air),
         ]
     }
-}
-
-impl RadialCell {
-    fn sides(&self) -> Vec<Side> {
-        let (hole, border) = self.flow.radii();
-        let hole = hole.map(|radius| circle(radius, self.inner));
-        hole.into_iter().chain([circle(border, Beyond::Air)]).collect()
-    }
-}
-
-/// A circle about the origin, back to its first point.
-fn circle(radius: f64, beyond: Beyond) -> Side {
-    let point =
-        |i: u32| radius * DVec2::from_angle(f64::from(i % PIECES) * TAU / f64::from(PIECES));
-    Side { line: (0..=PIECES).map(point).collect(), beyond }
 }
 
 impl Contour {

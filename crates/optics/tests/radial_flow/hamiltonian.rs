@@ -148,7 +148,9 @@ fn extrapolated(y: &State, h: f64, slope: &impl Fn(&State) -> State) -> (State, 
 
 /// Where a function that is positive at 0 and negative at `h` vanishes: regula falsi after Illinois.
 fn border_between(h: f64, function: impl Fn(f64) -> f64) -> f64 {
-    let (mut a, mut b) = ((0.0, function(0.0)), (h, function(h)));
+    let mut b = (h, function(h));
+    // A ray may start on the border, where rounding decides the sign.
+    let mut a = (0.0, function(0.0).max(-b.1));
     for _ in 0..60 {
         if (b.0 - a.0).abs() < 1e-15 * h || b.1 == 0.0 {
             break;

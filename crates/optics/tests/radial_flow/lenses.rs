@@ -180,6 +180,9 @@ fn extraordinary_index(r: f64) -> (f64, f64) {
 fn the_transmuted_sphere_against_hamiltons_equations() {
     assert!((extraordinary_index(1e-6 * RADIUS).0 - (PI + 1.0) / 3.0).abs() < 1e-5);
     let sphere = TransmutedSphere::new(RADIUS);
+    for r in [1e-3, 0.4, 1.7, 2.9].map(|x| x * RADIUS / 3.0) {
+        assert!((sphere.extraordinary_index(r) / extraordinary_index(r).0 - 1.0).abs() < 1e-11);
+    }
     let mut numbers = Numbers(3);
     for _ in 0..300 {
         let (position, d) = entry(&mut numbers, 0.05);

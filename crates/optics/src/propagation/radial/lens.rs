@@ -74,7 +74,8 @@ impl CentralLens {
         if (r - self.radius).abs() < 1e-9 * self.radius {
             Medium::AIR
         } else {
-            Medium::dielectric(self.index(r.min(self.radius)))
+            // Eaton's family has a pole at the centre.
+            Medium::dielectric(self.index(r.clamp(NEAREST * self.radius, self.radius)))
         }
     }
 
@@ -110,6 +111,9 @@ impl CentralLens {
         }
     }
 }
+
+/// Closer to the centre than this share of the radius the local medium is that of here.
+const NEAREST: f64 = 1e-6;
 
 /// The index of Eaton's family at x = r/R, `turn` being 1/m. With v = e^w, n = e^(w/m) and
 /// w/m + ln cosh w + ln x = 0.

@@ -67,6 +67,17 @@ pub struct RadialEnd {
 }
 
 impl RadialFlow {
+    /// The radius of the hole, 0 without one, and the outer radius, cm.
+    #[must_use]
+    pub fn radii(&self) -> [f64; 2] {
+        match self {
+            Self::Lens(lens) => [0.0, lens.radius()],
+            Self::Transmuted(sphere) => [0.0, sphere.radius()],
+            Self::Transformed(shell) => [shell.map().inner(), shell.map().outer()],
+            Self::Uniaxial(cylinder) => [cylinder.map().inner(), cylinder.map().outer()],
+        }
+    }
+
     /// The local medium at a point of the medium or its border.
     #[must_use]
     pub fn medium(&self, position: DVec3) -> Option<Medium> {
@@ -75,17 +86,6 @@ impl RadialFlow {
             Self::Transmuted(sphere) => sphere.medium(position),
             Self::Transformed(shell) => Some(shell.medium(position)),
             Self::Uniaxial(cylinder) => cylinder.medium(position),
-        }
-    }
-
-    /// The radii of its hole, if it has one, and of its border, cm.
-    #[must_use]
-    pub fn radii(&self) -> (Option<f64>, f64) {
-        match self {
-            Self::Lens(lens) => (None, lens.radius()),
-            Self::Transmuted(sphere) => (None, sphere.radius()),
-            Self::Transformed(shell) => (Some(shell.map().inner()), shell.map().outer()),
-            Self::Uniaxial(cylinder) => (Some(cylinder.map().inner()), cylinder.map().outer()),
         }
     }
 

@@ -21,7 +21,7 @@ impl TransformedShell {
         Self { map, extent }
     }
 
-    /// The map that has made it.
+    /// The map.
     #[must_use]
     pub fn map(&self) -> &RadialMap {
         &self.map

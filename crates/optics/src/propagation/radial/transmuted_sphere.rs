@@ -17,6 +17,9 @@ pub struct TransmutedSphere {
     radius: f64,
 }
 
+/// Closer to the centre than this share of the radius the local medium is that of here.
+const NEAREST: f64 = 1e-6;
+
 impl TransmutedSphere {
     /// The ordinary index.
     pub const ORDINARY_INDEX: f64 = PI + 1.0;
@@ -37,11 +40,34 @@ impl TransmutedSphere {
         self.radius
     }
 
-    /// The local medium at the surface, where alone it meets another.
+    /// The local medium.
     #[must_use]
     pub fn medium(&self, position: DVec3) -> Option<Medium> {
         let ordinary = Self::ORDINARY_INDEX * Self::ORDINARY_INDEX;
-        Medium::uniaxial_electric(1.0, ordinary, 1.0, position).ok()
+        let extraordinary = self.extraordinary_index(position.length()).powi(2);
+        let axis = if position == DVec3::ZERO { DVec3::X } else { position };
+        Medium::uniaxial_electric(1.0, ordinary, extraordinary, axis).ok()
+    }
+
+    /// The extraordinary index at a distance `r` (cm) from the centre, up to the radius.
+    #[must_use]
+    pub fn extraordinary_index(&self, r: f64) -> f64 {
+        let x = r / self.radius;
+        if (x - 1.0).abs() < 1e-9 {
+            // On the surface to the last bit.
+            return 1.0;
+        }
+        // With γ = π - β, x (π + 1) = 2γ + sin γ, which is concave in γ: Newton's method comes from below.
+        let goal = Self::ORDINARY_INDEX * x.clamp(NEAREST, 1.0);
+        let mut gamma = goal / 3.0;
+        for _ in 0..30 {
+            let step = (goal - 2.0 * gamma - gamma.sin()) / (2.0 + gamma.cos());
+            gamma += step;
+            if step.abs() <= 1e-15 {
+                break;
+            }
+        }
+        Self::ORDINARY_INDEX * gamma.sin() / goal
     }
 
     /// Follows a ray of either wave from a point of the surface to where it comes out.

@@ -51,6 +51,12 @@ impl UniaxialCylinder {
         Self { map: RadialMap::new(inner, outer, Symmetry::Axis), axis, extent }
     }
 
+    /// The map that gives its refraction in the plane.
+    #[must_use]
+    pub fn map(&self) -> &RadialMap {
+        &self.map
+    }
+
     fn point(&self, position: DVec3) -> UniaxialPoint {
         let large = self.map.stretch() * self.map.stretch();
         let s = self.map.shrinkage(position).max(LEAST_S);
@@ -66,12 +72,6 @@ impl UniaxialCylinder {
                 axis: DVec3::Z.cross(radial),
             },
         }
-    }
-
-    /// The map that has made it.
-    #[must_use]
-    pub fn map(&self) -> &RadialMap {
-        &self.map
     }
 
     /// The local medium.
