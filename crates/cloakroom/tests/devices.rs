@@ -12,6 +12,7 @@ use optics::wave::transverse_basis;
 use std::path::Path;
 
 /// What a kind needs to be something: its tables or media, of indices so low that boxes cannot trap light.
+
 const MORE: &[(&str, &str)] = &[
     (
         "prisms",
@@ -118,7 +119,10 @@ fn power_is_accounted_for() {
                 // Light may be trapped for good in a short birefringent prism; none may be lost.
                 assert_eq!(outcome.rarities.lost, 0, "{what}{launch:?}");
                 let trapped = outcome.rarities.endless > 0;
-                assert!(!trapped || (what.contains("uniaxial") && what.contains("length")));
+                assert!(
+                    !trapped || (what.contains("uniaxial") && what.contains("length")),
+                    "{what}{launch:?}"
+                );
             }
         }
     }
