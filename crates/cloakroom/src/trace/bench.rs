@@ -25,6 +25,27 @@ impl Placed {
     pub fn solid(&self) -> Solid {
         self.structure.hull.solid().placed(&self.pose)
     }
+
+    /// The sheet of its thin mirror in the world, if it has one.
+    fn thin_mirror(&self) -> Option<Solid> {
+        self.structure.hull.thin_mirror().map(|mirror| mirror.placed(&self.pose))
+    }
+}
+
+/// Whether two thin sheets lie on each other.
+fn coincide(a: &Solid, b: &Solid) -> bool {
+    let (Solid::Prism { outline, extent }, Solid::Prism { outline: other, extent: beyond }) = (a, b)
+    else {
+        return false;
+    };
+    let ([a0, a1], [b0, b1]) = (outline.corners(), other.corners()) else { return false };
+    let along = (*a1 - *a0).normalize();
+    let [off_0, off_1] = [b0, b1].map(|b| along.perp_dot(*b - *a0).abs());
+    let [at_0, at_1] = [b0, b1].map(|b| along.dot(*b - *a0));
+    extent.overlaps(*beyond)
+        && off_0.max(off_1) < TOUCHING
+        && at_0.min(at_1) < a0.distance(*a1) - TOUCHING
+        && at_0.max(at_1) > TOUCHING
 }
 
 /// All devices of a scene.
@@ -52,9 +73,17 @@ impl Bench {
     /// The first two devices that overlap, if any do.
     #[must_use]
     pub fn overlap(&self) -> Option<(usize, usize)> {
-        let solids: Vec<_> = self.devices.iter().map(Placed::solid).collect();
-        let pairs = (0..solids.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
-        pairs.into_iter().find(|&(i, j)| solids[i].overlaps(&solids[j], TOUCHING))
+        let bodies: Vec<_> =
+            self.devices.iter().map(|device| (device.solid(), device.thin_mirror())).collect();
+        let met = |i: usize, j: usize| {
+            let ((solid, mirror), (other, other_mirror)) = (&bodies[i], &bodies[j]);
+            let meet = |a: &Solid, b: &Solid| a.overlaps(b, TOUCHING) || coincide(a, b);
+            [Some(solid), mirror.as_ref()].into_iter().flatten().any(|a| {
+                [Some(other), other_mirror.as_ref()].into_iter().flatten().any(|b| meet(a, b))
+            })
+        };
+        let pairs = (0..bodies.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
+        pairs.into_iter().find(|&(i, j)| met(i, j))
     }
 
     /// The device that holds a point, if any does.
