@@ -204,7 +204,12 @@ impl Prism {
 impl ConformalCell {
     fn advance(&self, start: &Foothold, wave_vector: DVec3, tolerance: f64) -> Option<Passage> {
         let end = self.flow.advance_from(start, wave_vector, tolerance).ok()?;
-        let metal = end.boundary == Boundary::Floor;
+        let metal = match end.boundary {
+            Boundary::Floor => true,
+            // Below the floor's level, in the troughs of a grating, the ends are metal.
+            Boundary::XMin | Boundary::XMax => self.half.mirrored(end.at.position).y < 0.0,
+            Boundary::YMax | Boundary::ZMin | Boundary::ZMax => false,
+        };
         Some(Passage {
             position: end.at.position,
             wave_vector: end.wave_vector,

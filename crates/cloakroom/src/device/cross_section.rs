@@ -120,11 +120,9 @@ impl Skin {
             }
             Self::Strip(wall) => vec![metal(wall.ends().to_vec())],
             Self::Floor { curve, .. } => {
-                let upper = curve.line(PIECES);
-                let lower = upper.iter().map(|p| DVec2::new(p.x, -p.y)).rev();
-                // Joined to its beginning by the blunt ends.
-                let mut around: Vec<DVec2> = upper.iter().copied().chain(lower).collect();
-                around.extend(upper.first());
+                // Back to its beginning.
+                let mut around = curve.outline(PIECES);
+                around.extend(around.first().copied());
                 vec![metal(around)]
             }
             Self::Sphere { sphere: Sphere { radius }, beyond }
@@ -133,7 +131,7 @@ impl Skin {
             }
             Self::Cap { .. }
             | Self::Disc { .. }
-            | Self::HalvesCap { .. }
+            | Self::ConformalCap { .. }
             | Self::FloorCap { .. } => Vec::new(),
         }
     }
@@ -203,14 +201,20 @@ impl ConformalCell {
             beyond,
         };
         let floor = map.floor_line(cut.x_min, cut.x_max, PIECES);
-        let corner = |x: f64| [DVec2::new(x, map.floor_height_at(x)), DVec2::new(x, cut.y_max)];
-        let (left, right) = (corner(cut.x_min), corner(cut.x_max));
-        vec![
-            side(floor, Beyond::Conductor),
-            side(right.to_vec(), Beyond::Air),
-            side(vec![right[1], left[1]], Beyond::Air),
-            side(vec![left[1], left[0]], Beyond::Air),
-        ]
+        let upright = |x: f64| {
+            // Below the floor's level, in the troughs of a grating, the ends are metal.
+            let (low, high) = (map.floor_height_at(x), cut.y_max);
+            let level = low.max(0.0);
+            let piece = |a: f64, b: f64| vec![DVec2::new(x, a), DVec2::new(x, b)];
+            let buried = (low < level).then(|| side(piece(low, level), Beyond::Conductor));
+            buried.into_iter().chain([side(piece(level, high), Beyond::Air)])
+        };
+        let top = [cut.x_max, cut.x_min].map(|x| DVec2::new(x, cut.y_max)).to_vec();
+        [side(floor, Beyond::Conductor), side(top, Beyond::Air)]
+            .into_iter()
+            .chain(upright(cut.x_min))
+            .chain(upright(cut.x_max))
+            .collect()
     }
 }
 

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use glam::DVec2;
-use optics::geometry::{Cap, Extent, FloorCurve, Outline, Wall};
+use optics::geometry::{Cap, Extent, FloorCurve, MetalBack, Outline, Wall};
 use optics::propagation::{ConformalFlow, Half};
 use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
@@ -60,7 +60,7 @@ const UPPER: u16 = 0;
 const LOWER: u16 = 1;
 
 /// The map and the cut of the upper half.
-fn parts(values: &Values) -> Result<(ConformalMap, Truncation), KeyError> {
+fn parts(values: &Values) -> Result<(GaussianMap, Truncation), KeyError> {
     let (w, h) = (values.number("w"), values.number("h"));
     let map = GaussianMap::new(w, h).map_err(|error| KeyError::at("h", error.to_string()))?;
     let height = values.number("height");
@@ -71,7 +71,7 @@ fn parts(values: &Values) -> Result<(ConformalMap, Truncation), KeyError> {
         );
         return Err(KeyError::at("height", message));
     }
-    Ok((map.into(), Truncation::centred(values.number("width"), height / 2.0)))
+    Ok((map, Truncation::centred(values.number("width"), height / 2.0)))
 }
 
 /// The factor c of the index n = c/|f'|.
@@ -81,15 +81,13 @@ fn strength(values: &Values, map: &ConformalMap, cut: &Truncation) -> f64 {
 
 fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
     let (map, cut) = parts(values)?;
+    let map = ConformalMap::from(map);
     let extent = Extent::centred(request.length);
     Ok(match request.show {
         Show::Cloak => {
             let finish = if values.flag("fresnel") { Finish::Bare } else { Finish::Antireflection };
-            cloak(
-                &ConformalFlow::new(map, cut, extent, strength(values, &map, &cut)),
-                finish,
-                extent,
-            )
+            let strength = strength(values, &map, &cut);
+            cloak(&ConformalFlow::new(map, cut, extent, strength), finish, extent)
         }
         Show::Bare => bare(map, cut, extent),
         Show::Mirror => super::flat_strip(cut.x_max, extent),
@@ -119,40 +117,44 @@ fn cloak(flow: &ConformalFlow, finish: Finish, extent: Extent) -> Structure {
         wall([-x, -y], [x, -y], lower),
     ];
     if let Some(ends) = extent.ends() {
-        skin.extend(Cap::both(&outline, ends).map(|cap| Skin::HalvesCap {
+        skin.extend(Cap::both(&outline, ends).map(|cap| Skin::ConformalCap {
             cap,
-            map: *flow.map(),
-            cells: [UPPER, LOWER],
+            map: flow.map().clone(),
+            upper: UPPER,
+            lower: Some(LOWER),
             finish,
         }));
     }
     let cells = [Half::Upper, Half::Lower]
-        .map(|half| Cell::Conformal(ConformalCell { flow: *flow, half, finish }))
+        .map(|half| Cell::Conformal(ConformalCell { flow: flow.clone(), half, finish }))
         .to_vec();
     Structure { cells, skin, hull: Hull::prism(outline, extent) }
 }
 
 fn bare(map: ConformalMap, cut: Truncation, extent: Extent) -> Structure {
     let x = cut.x_max;
-    let curve = FloorCurve::new(map, cut.x_min, x);
-    let mut skin = vec![Skin::Floor { curve, extent }];
+    let around = Outline::rectangle(x, map.peak());
+    let curve = FloorCurve::new(map, MetalBack::MirrorImage, cut.x_min, x);
+    let mut skin = vec![Skin::Floor { curve: curve.clone(), extent }];
     if let Some(ends) = extent.ends() {
-        let around = Outline::rectangle(x, map.peak());
-        skin.extend(Cap::both(&around, ends).map(|cap| Skin::FloorCap { cap, map }));
+        skin.extend(
+            Cap::both(&around, ends).map(|cap| Skin::FloorCap { cap, curve: curve.clone() }),
+        );
     }
-    let hull = Hull::prism(Outline::rectangle(x, map.peak()), extent).with_floor(map);
+    let hull = Hull::prism(around, extent).of_metal(curve);
     Structure { cells: Vec::new(), skin, hull }
 }
 
 fn facts(values: &Values) -> Vec<Fact> {
-    let Ok((map, cut)) = parts(values) else { return Vec::new() };
+    let Ok((gaussian, cut)) = parts(values) else { return Vec::new() };
+    let map = ConformalMap::from(gaussian);
     let c = strength(values, &map, &cut);
     let (least, largest) = map.index_range(&cut);
     vec![
         Fact::number("index_min", c * least),
         Fact::number("index_max", c * largest),
-        Fact::number("cloaked_area_cm2", map.cloaked_area()),
-        Fact::number("cloaked_area_within_cut_cm2", map.cloaked_area_within(&cut)),
+        Fact::number("cloaked_area_cm2", 2.0 * gaussian.area()),
+        Fact::number("cloaked_area_within_cut_cm2", 2.0 * map.area_within(&cut)),
         Fact::number("mirror_width_cm", 2.0 * cut.x_max),
     ]
 }

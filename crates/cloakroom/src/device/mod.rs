@@ -7,14 +7,18 @@
 mod bending_sphere;
 mod body;
 mod body_shape;
+mod carpet;
 mod cell;
 mod cross_section;
 mod cylinder_cloak;
 mod double_gaussian_cloak;
+mod gaussian_carpet;
+mod grating_carpet;
 mod invisible_sphere;
 mod lenses;
 mod mirror_detour;
 mod prisms;
+mod quasi_conformal_carpet;
 mod round;
 mod skin;
 mod sphere_cloak;
@@ -112,6 +116,9 @@ pub static CATALOGUE: &[&Entry] = &[
     &mirror_detour::ENTRY,
     &prisms::ENTRY,
     &body::ENTRY,
+    &gaussian_carpet::ENTRY,
+    &grating_carpet::ENTRY,
+    &quasi_conformal_carpet::ENTRY,
 ];
 
 /// The entry of a kind, if there is one.
@@ -144,11 +151,11 @@ fn refuse_other_views(request: Request, reason: &str) -> Result<(), KeyError> {
 /// strip should look like.
 fn flat_strip(half_width: f64, extent: optics::geometry::Extent) -> Structure {
     use glam::DVec2;
-    use optics::geometry::{Outline, Wall};
+    use optics::geometry::{Outline, Solid, Wall};
     let ends = [DVec2::new(half_width, 0.0), DVec2::new(-half_width, 0.0)];
     Structure {
         cells: Vec::new(),
         skin: vec![Skin::Strip(Wall::new(ends[0], ends[1], extent))],
-        hull: Hull::prism(Outline::new(ends.to_vec()), extent),
+        hull: Hull::new(Solid::Nothing).with_thin_mirror(Outline::new(ends.to_vec()), extent),
     }
 }

@@ -28,14 +28,16 @@ pub enum Skin {
         /// How the media meet.
         finish: Finish,
     },
-    /// A flat end of a conformal cloak: its two halves, and the metal between them.
-    HalvesCap {
+    /// A flat end of a conformal device: one half or two, and the metal below the floor.
+    ConformalCap {
         /// Its shape.
         cap: Cap,
         /// The map whose floor bounds the metal.
         map: ConformalMap,
-        /// The cells of the upper and the lower half.
-        cells: [u16; 2],
+        /// The cell of the upper half.
+        upper: u16,
+        /// The cell of its mirror image under y -> -y, if there is one.
+        lower: Option<u16>,
         /// How the media meet.
         finish: Finish,
     },
@@ -64,19 +66,19 @@ pub enum Skin {
         /// What lies behind it there.
         beyond_core: Beyond,
     },
-    /// The metal between the curved floor of a conformal map and its mirror image, in air.
+    /// The metal below the curved floor of a conformal map, in air.
     Floor {
         /// Its cross-section.
         curve: FloorCurve,
         /// Its extent along z.
         extent: Extent,
     },
-    /// A flat end of the metal between a floor and its mirror image.
+    /// A flat end of the metal below a floor.
     FloorCap {
         /// A shape around it.
         cap: Cap,
-        /// The map whose floor bounds the metal.
-        map: ConformalMap,
+        /// The metal's cross-section.
+        curve: FloorCurve,
     },
 }
 
@@ -99,7 +101,7 @@ impl Skin {
                 let facing = -direction.dot(wall.normal()).signum();
                 Some((wall.hit(origin, direction)?, wall.normal() * facing))
             }
-            Self::Cap { cap, .. } | Self::HalvesCap { cap, .. } => {
+            Self::Cap { cap, .. } | Self::ConformalCap { cap, .. } => {
                 if again || direction.dot(cap.normal) >= 0.0 {
                     return None;
                 }
@@ -119,13 +121,13 @@ impl Skin {
                 Some((distance, disc.normal))
             }
             Self::Floor { curve, extent } => floor_hit(curve, *extent, origin, direction, again),
-            Self::FloorCap { cap, map } => {
+            Self::FloorCap { cap, curve } => {
                 if again || direction.dot(cap.normal) >= 0.0 {
                     return None;
                 }
                 let distance = cap.hit(origin, direction)?;
                 let point = origin + direction * distance;
-                within_floor(map, point).then_some((distance, cap.normal))
+                curve.contains(point.truncate()).then_some((distance, cap.normal))
             }
         }
     }
@@ -134,8 +136,14 @@ impl Skin {
     #[must_use]
     pub fn beyond(&self, position: DVec3) -> Beyond {
         match self {
-            Self::HalvesCap { map, .. } if within_floor(map, position) => Beyond::Conductor,
-            Self::HalvesCap { cells, .. } => Beyond::Cell(cells[usize::from(position.y < 0.0)]),
+            Self::ConformalCap { map, upper, lower, .. } => {
+                let (cell, y) = match lower {
+                    Some(lower) if position.y < 0.0 => (*lower, -position.y),
+                    _ => (*upper, position.y),
+                };
+                let metal = y < map.peak() && y < map.floor_height_at(position.x);
+                if metal { Beyond::Conductor } else { Beyond::Cell(cell) }
+            }
             Self::Disc { core, beyond_core, .. }
                 if position.truncate().length_squared() < core * core =>
             {
@@ -156,7 +164,7 @@ impl Skin {
         match self {
             Self::Wall { finish, .. }
             | Self::Cap { finish, .. }
-            | Self::HalvesCap { finish, .. } => *finish,
+            | Self::ConformalCap { finish, .. } => *finish,
             Self::Strip(_)
             | Self::Sphere { .. }
             | Self::Side { .. }
@@ -167,15 +175,10 @@ impl Skin {
     }
 }
 
-/// Whether a point lies between the floor of a map and its mirror image.
-pub(super) fn within_floor(map: &ConformalMap, point: DVec3) -> bool {
-    point.y.abs() < map.peak() && point.y.abs() < map.floor_height_at(point.x)
-}
-
 /// A surface that a ray has just left is not met again closer than this, cm.
 const AGAIN: f64 = 1e-7;
 
-/// Where a ray meets the metal lens between a floor and its mirror image, within an extent along z.
+/// Where a ray meets the metal below a floor, within an extent along z.
 fn floor_hit(
     curve: &FloorCurve,
     extent: Extent,
@@ -189,7 +192,7 @@ fn floor_hit(
         if extent.contains(origin.z + hit.t * direction.z) {
             return Some((hit.t, hit.normal.extend(0.0)));
         }
-        // Past an end: the lens may be met once more, for it is not convex.
+        // Past an end: the metal may be met once more, for it is not convex.
         least = hit.t + AGAIN;
     }
 }

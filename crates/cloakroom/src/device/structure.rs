@@ -1,10 +1,8 @@
 //! What every device is made of: cells filled with media, and the skin that light in air meets.
 
-use super::skin::within_floor;
 use super::{Body, Cell, Skin};
 use glam::DVec3;
-use optics::geometry::{Extent, Outline, Solid};
-use optics::transformation::ConformalMap;
+use optics::geometry::{Extent, FloorCurve, Outline, Solid};
 
 /// What lies on the other side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +42,8 @@ pub struct Structure {
 pub struct Hull {
     solids: Vec<Solid>,
     reach: Reach,
-    floor: Option<ConformalMap>,
+    thin_mirror: Option<Solid>,
+    metal: Option<FloorCurve>,
     body: Option<Box<Body>>,
     open_core: bool,
 }
@@ -96,7 +95,7 @@ impl Hull {
     #[must_use]
     pub fn of_parts(solids: Vec<Solid>) -> Self {
         let reach = solids.iter().map(Reach::of).fold(Reach::Nothing, Reach::joined);
-        Self { solids, reach, floor: None, body: None, open_core: false }
+        Self { solids, reach, thin_mirror: None, metal: None, body: None, open_core: false }
     }
 
     /// The hull of a device with a polygonal cross-section that extends along z.
@@ -105,11 +104,28 @@ impl Hull {
         Self::new(Solid::Prism { outline, extent })
     }
 
-    /// The hull of the metal between the floor of a map and its mirror image: it holds only that part
-    /// of its body.
+    /// The hull with a thin mirror as well, such as a floor, on a line of two corners: it holds nothing, and
+    /// the photograph may stand across it.
     #[must_use]
-    pub fn with_floor(self, map: ConformalMap) -> Self {
-        Self { floor: Some(map), ..self }
+    pub fn with_thin_mirror(self, line: Outline, extent: Extent) -> Self {
+        let radius = line.radius() * GRAZING;
+        let reach = match self.reach {
+            Reach::Nothing => Reach::Cylinder(radius),
+            Reach::Cylinder(own) | Reach::Ball(own) => Reach::Cylinder(own.max(radius)),
+        };
+        Self { thin_mirror: Some(Solid::Prism { outline: line, extent }), reach, ..self }
+    }
+
+    /// The hull of bare metal below a floor: it holds only that part of its outline.
+    #[must_use]
+    pub fn of_metal(self, curve: FloorCurve) -> Self {
+        Self { metal: Some(curve), ..self }
+    }
+
+    /// The sheet of its thin mirror, if it has one.
+    #[must_use]
+    pub fn thin_mirror(&self) -> Option<&Solid> {
+        self.thin_mirror.as_ref()
     }
 
     /// The hull of a body, which may overlap other bodies.
@@ -168,7 +184,7 @@ impl Hull {
     #[must_use]
     pub fn holds(&self, point: DVec3) -> bool {
         let inside = self.solids.iter().any(|solid| solid.holds(point));
-        inside && self.floor.is_none_or(|map| within_floor(&map, point))
+        inside && self.metal.as_ref().is_none_or(|metal| metal.contains(point.truncate()))
     }
 }
 

@@ -26,6 +26,28 @@ impl Placed {
     pub fn solids(&self) -> Vec<Solid> {
         self.structure.hull.solids().iter().map(|solid| solid.placed(&self.pose)).collect()
     }
+
+    /// The sheet of its thin mirror in the world, if it has one.
+    fn thin_mirror(&self) -> Option<Solid> {
+        self.structure.hull.thin_mirror().map(|mirror| mirror.placed(&self.pose))
+    }
+}
+
+/// Whether two thin sheets lie on each other.
+fn coincide(a: &Solid, b: &Solid) -> bool {
+    let (Solid::Prism { outline, extent }, Solid::Prism { outline: other, extent: beyond }) =
+        (a, b)
+    else {
+        return false;
+    };
+    let ([a0, a1], [b0, b1]) = (outline.corners(), other.corners()) else { return false };
+    let along = (*a1 - *a0).normalize();
+    let [off_0, off_1] = [b0, b1].map(|b| along.perp_dot(*b - *a0).abs());
+    let [at_0, at_1] = [b0, b1].map(|b| along.dot(*b - *a0));
+    extent.overlaps(*beyond)
+        && off_0.max(off_1) < TOUCHING
+        && at_0.min(at_1) < a0.distance(*a1) - TOUCHING
+        && at_0.max(at_1) > TOUCHING
 }
 
 /// All devices of a scene.
@@ -82,16 +104,20 @@ impl Bench {
     /// The first two devices that overlap, if any do. Bodies may, unless their priorities are equal.
     #[must_use]
     pub fn overlap(&self) -> Option<(usize, usize)> {
-        let solids: Vec<_> = self.devices.iter().map(Placed::solids).collect();
+        let solids: Vec<Vec<Solid>> = (self.devices.iter())
+            .map(|device| device.solids().into_iter().chain(device.thin_mirror()).collect())
+            .collect();
         let pairs = (0..solids.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
         let priority = |i: usize| self.devices[i].structure.hull.body().map(|body| body.priority);
         let may_overlap = |i: usize, j: usize| match (priority(i), priority(j)) {
             (Some(one), Some(other)) => one != other,
             _ => false,
         };
-        pairs.into_iter().filter(|&(i, j)| !may_overlap(i, j)).find(|&(i, j)| {
-            solids[i].iter().any(|one| solids[j].iter().any(|two| one.overlaps(two, TOUCHING)))
-        })
+        let meet = |a: &Solid, b: &Solid| a.overlaps(b, TOUCHING) || coincide(a, b);
+        pairs
+            .into_iter()
+            .filter(|&(i, j)| !may_overlap(i, j))
+            .find(|&(i, j)| solids[i].iter().any(|a| solids[j].iter().any(|b| meet(a, b))))
     }
 
     /// The device that holds a point, if any does.

@@ -1,27 +1,37 @@
-//! The bare metal of a conformal cloak: the curve x + iy = f(X) and its mirror image.
+//! The bare metal of a conformal cloak: the curve x + iy = f(X), and what closes it from below.
 
 use glam::DVec2;
 use num_complex::Complex64;
 
 use crate::transformation::{ConformalMap, root_in_bracket};
 
-/// The outline of the metal of a double conformal cloak, cut at two virtual X: the floor f(X), its mirror
-/// image under y -> -y, and the blunt ends between the two. Lengths in cm.
+/// The outline of the metal below the floor f(X) of a conformal map, cut at two x: the floor, the back,
+/// and the blunt ends between the two. Lengths in cm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorCurve {
     map: ConformalMap,
+    back: MetalBack,
     /// Between neighbours the slope of the curve is monotone: the ends and the inflection points.
     knots: Vec<Knot>,
-    /// Half the height of the metal's bounding box.
-    peak: f64,
+    /// The lowest and the highest y of the metal's bounding box.
+    box_y: [f64; 2],
+}
+
+/// What closes the metal below a floor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MetalBack {
+    /// The mirror image of the floor under y -> -y: a double cloak's.
+    MirrorImage,
+    /// A plane of this y, nowhere above the floor: a carpet's.
+    Flat(f64),
 }
 
 /// A part of the metal's outline.
 #[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
 pub enum MetalSide {
-    /// The curve above y = 0.
+    /// The floor.
     Upper,
-    /// Its mirror image.
+    /// The back.
     Lower,
     /// The cut at one of the ends.
     End,
@@ -32,18 +42,16 @@ pub enum MetalSide {
 pub struct FloorHit {
     /// Distance along the ray, in units of its direction's length.
     pub t: f64,
-    /// The virtual X.
-    pub x_virtual: f64,
     /// Unit normal out of the metal.
     pub normal: DVec2,
     /// Which part of the metal.
     pub side: MetalSide,
 }
 
-/// A point of the curve and its derivative by X.
+/// A point of the curve and its derivative by the parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Knot {
-    x_virtual: f64,
+    parameter: f64,
     point: Complex64,
     tangent: Complex64,
 }
@@ -51,46 +59,57 @@ struct Knot {
 impl FloorCurve {
     /// The metal between physical `x_min` and `x_max`.
     #[must_use]
-    pub fn new(map: ConformalMap, x_min: f64, x_max: f64) -> Self {
-        const SAMPLES: u32 = 400;
-        let (start, end) = (map.floor_parameter(x_min), map.floor_parameter(x_max));
-        let bend = |x: f64| {
-            let jet = map.jet(x.into());
-            (jet.f1.conj() * jet.f2).im
-        };
-        let sample = |k: u32| start + (end - start) * f64::from(k) / f64::from(SAMPLES);
-        let inflections =
-            (0..SAMPLES).map(|k| (sample(k), sample(k + 1))).filter_map(|(mut a, mut b)| {
-                let rising = bend(b) > 0.0;
-                if rising == (bend(a) > 0.0) {
-                    return None;
-                }
-                while b - a > 4.0 * f64::EPSILON * (a.abs() + b.abs()) {
-                    let middle = 0.5 * (a + b);
-                    if rising == (bend(middle) > 0.0) {
-                        b = middle;
-                    } else {
-                        a = middle;
-                    }
-                }
-                Some(0.5 * (a + b))
-            });
-        let knots = std::iter::once(start)
-            .chain(inflections)
+    pub fn new(map: ConformalMap, back: MetalBack, x_min: f64, x_max: f64) -> Self {
+        let (start, end) = (map.profile_parameter(x_min), map.profile_parameter(x_max));
+        let knots: Vec<Knot> = std::iter::once(start)
+            .chain(map.profile_inflections(start, end))
             .chain(std::iter::once(end))
-            .map(|x| knot(&map, x))
+            .map(|parameter| knot(&map, parameter))
             .collect();
         let peak = map.peak();
-        Self { map, knots, peak }
+        let bottom = match back {
+            MetalBack::MirrorImage => -peak,
+            MetalBack::Flat(y) => y,
+        };
+        Self { map, back, knots, box_y: [bottom, peak] }
     }
 
-    /// The curve above y = 0 as that many straight pieces, from the least x on.
+    /// Whether a point lies inside the metal.
     #[must_use]
-    pub fn line(&self, pieces: u32) -> Vec<DVec2> {
+    pub fn contains(&self, point: DVec2) -> bool {
+        let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
+            return false;
+        };
+        let height = || self.map.profile(self.map.profile_parameter(point.x)).f.im;
+        point.x > first.point.re
+            && point.x < last.point.re
+            && point.y > self.box_y[0]
+            && point.y < self.box_y[1]
+            && match self.back {
+                MetalBack::MirrorImage => point.y.abs() < height(),
+                MetalBack::Flat(_) => point.y < height(),
+            }
+    }
+
+    /// The outline of the metal from the left end of its floor on, the floor and its mirror image in that
+    /// many straight pieces each.
+    #[must_use]
+    pub fn outline(&self, pieces: u32) -> Vec<DVec2> {
         let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
             return Vec::new();
         };
-        self.map.floor_line(first.point.re, last.point.re, pieces)
+        let point = |k: u32| {
+            let share = f64::from(k) / f64::from(pieces.max(1));
+            let parameter = first.parameter + (last.parameter - first.parameter) * share;
+            let point = self.map.profile(parameter).f;
+            DVec2::new(point.re, point.im)
+        };
+        let floor: Vec<DVec2> = (0..=pieces).map(point).collect();
+        let back: Vec<DVec2> = match self.back {
+            MetalBack::MirrorImage => floor.iter().map(|p| DVec2::new(p.x, -p.y)).rev().collect(),
+            MetalBack::Flat(y) => [last, first].map(|end| DVec2::new(end.point.re, y)).to_vec(),
+        };
+        floor.into_iter().chain(back).collect()
     }
 
     /// The first point with t >= `t_min` where the ray `origin + t direction` enters the metal; points where
@@ -104,9 +123,12 @@ impl FloorCurve {
         }
         let mirrored = |v: DVec2| DVec2::new(v.x, -v.y);
         let upper = self.first_on_curve(origin, direction, t_min, MetalSide::Upper);
-        let lower = self
-            .first_on_curve(mirrored(origin), mirrored(direction), t_min, MetalSide::Lower)
-            .map(|hit| FloorHit { normal: mirrored(hit.normal), ..hit });
+        let lower = match self.back {
+            MetalBack::MirrorImage => self
+                .first_on_curve(mirrored(origin), mirrored(direction), t_min, MetalSide::Lower)
+                .map(|hit| FloorHit { normal: mirrored(hit.normal), ..hit }),
+            MetalBack::Flat(y) => self.first_on_plane(y, origin, direction, t_min),
+        };
         [upper, lower, self.first_on_ends(origin, direction, t_min)]
             .into_iter()
             .flatten()
@@ -118,17 +140,16 @@ impl FloorCurve {
         let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
             return false;
         };
-        let (low, high) = (
-            DVec2::new(first.point.re, -self.peak) - origin,
-            DVec2::new(last.point.re, self.peak) - origin,
-        );
+        let [bottom, top] = self.box_y;
+        let (low, high) =
+            (DVec2::new(first.point.re, bottom) - origin, DVec2::new(last.point.re, top) - origin);
         let sides = [low, high, DVec2::new(low.x, high.y), DVec2::new(high.x, low.y)]
             .map(|v| v.perp_dot(direction));
-        let slack = 1e-12 * self.peak * direction.length();
+        let slack = 1e-12 * top.max(-bottom) * direction.length();
         sides.iter().any(|s| *s >= -slack) && sides.iter().any(|s| *s <= slack)
     }
 
-    /// The first hit of the curve above y = 0.
+    /// The first hit of the curve from above.
     ///
     /// On the ray, F(X) = cross(f(X) - origin, direction) vanishes. Its slope vanishes where the curve is
     /// parallel to the ray: at most once between two knots. So F is monotone on known intervals, and
@@ -150,7 +171,7 @@ impl FloorCurve {
             if at_a * at_b > 0.0 {
                 return;
             }
-            let root = root_in_bracket((a.x_virtual, at_a), (b.x_virtual, at_b), |x| {
+            let root = root_in_bracket((a.parameter, at_a), (b.parameter, at_b), |x| {
                 let here = knot(&self.map, x);
                 (height(&here), cross(here.tangent))
             });
@@ -160,16 +181,16 @@ impl FloorCurve {
             let entering = (normal.conj() * along).re < 0.0;
             if entering && t >= t_min && best.is_none_or(|hit| t < hit.t) {
                 let normal = DVec2::new(normal.re, normal.im);
-                best = Some(FloorHit { t, x_virtual: root, normal, side });
+                best = Some(FloorHit { t, normal, side });
             }
         };
         for pair in self.knots.windows(2) {
             let [a, b] = pair else { continue };
             let (slope_a, slope_b) = (cross(a.tangent), cross(b.tangent));
             if slope_a * slope_b < 0.0 {
-                let ends = ((a.x_virtual, slope_a), (b.x_virtual, slope_b));
+                let ends = ((a.parameter, slope_a), (b.parameter, slope_b));
                 let turning = root_in_bracket(ends.0, ends.1, |x| {
-                    let jet = self.map.jet(x.into());
+                    let jet = self.map.profile(x);
                     (cross(jet.f1), cross(jet.f2))
                 });
                 let turning = knot(&self.map, turning);
@@ -182,6 +203,22 @@ impl FloorCurve {
         best
     }
 
+    /// A hit of the flat back from below.
+    fn first_on_plane(
+        &self,
+        y: f64,
+        origin: DVec2,
+        direction: DVec2,
+        t_min: f64,
+    ) -> Option<FloorHit> {
+        let (first, last) = (self.knots.first()?, self.knots.last()?);
+        let t = (y - origin.y) / direction.y;
+        let x = origin.x + t * direction.x;
+        let inside = x >= first.point.re && x <= last.point.re;
+        let hit = FloorHit { t, normal: DVec2::NEG_Y, side: MetalSide::Lower };
+        (direction.y > 0.0 && t >= t_min && inside).then_some(hit)
+    }
+
     /// A hit of the vertical cuts through the metal.
     fn first_on_ends(&self, origin: DVec2, direction: DVec2, t_min: f64) -> Option<FloorHit> {
         let ends = [(self.knots.first()?, -1.0), (self.knots.last()?, 1.0)];
@@ -189,18 +226,22 @@ impl FloorCurve {
             .filter(|(_, outward)| outward * direction.x < 0.0)
             .map(|(end, outward)| {
                 let t = (end.point.re - origin.x) / direction.x;
-                let inside = (origin.y + t * direction.y).abs() < end.point.im;
+                let y = origin.y + t * direction.y;
+                let bottom = match self.back {
+                    MetalBack::MirrorImage => -end.point.im,
+                    MetalBack::Flat(y) => y,
+                };
                 let normal = DVec2::new(outward, 0.0);
-                (inside, FloorHit { t, x_virtual: end.x_virtual, normal, side: MetalSide::End })
+                (y > bottom && y < end.point.im, FloorHit { t, normal, side: MetalSide::End })
             })
             .find(|(inside, hit)| *inside && hit.t >= t_min)
             .map(|(_, hit)| hit)
     }
 }
 
-fn knot(map: &ConformalMap, x_virtual: f64) -> Knot {
-    let jet = map.jet(x_virtual.into());
-    Knot { x_virtual, point: jet.f, tangent: jet.f1 }
+fn knot(map: &ConformalMap, parameter: f64) -> Knot {
+    let jet = map.profile(parameter);
+    Knot { parameter, point: jet.f, tangent: jet.f1 }
 }
 
 #[cfg(test)]
@@ -233,7 +274,7 @@ mod tests {
     #[test]
     fn is_met_from_all_sides() {
         let map = map(10.02, 4.25);
-        let curve = FloorCurve::new(map, -25.0, 25.0);
+        let curve = FloorCurve::new(map.clone(), MetalBack::MirrorImage, -25.0, 25.0);
         assert_eq!(curve.knots.len(), 4);
         let hit =
             curve.first_hit(DVec2::new(0.0, 30.0), DVec2::new(0.0, -2.0), 0.0).expect("a hit");
@@ -262,7 +303,7 @@ mod tests {
             aim in -25.0_f64..25.0, share in -1.2_f64..1.2, length in 0.1_f64..10.0,
         ) {
             let map = map(w, ratio * w);
-            let curve = FloorCurve::new(map, -25.0, 25.0);
+            let curve = FloorCurve::new(map.clone(), MetalBack::MirrorImage, -25.0, 25.0);
             let origin = DVec2::new(x, up * ratio * w);
             prop_assume!(x.abs() > 25.0 || origin.y.abs() > map.floor_height_at(x) + 0.02);
             let target = DVec2::new(aim, share * map.floor_height_at(aim));

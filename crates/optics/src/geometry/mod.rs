@@ -18,7 +18,7 @@ mod wall;
 
 pub use cap::Cap;
 pub use cylinder::{Cylinder, CylinderPart, Disc};
-pub use floor_curve::FloorCurve;
+pub use floor_curve::{FloorCurve, MetalBack};
 pub use outline::Outline;
 pub use plane::Plane;
 pub use polygon::{ConvexPart, Polygon, PolygonError, SAME_POINT};

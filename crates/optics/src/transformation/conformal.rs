@@ -4,6 +4,8 @@ use glam::DVec2;
 use num_complex::Complex64;
 
 use super::gaussian::GaussianMap;
+use super::grating::GratingMap;
+use super::quasi_conformal::QuasiConformalMap;
 
 /// Value and derivatives of a conformal map at one virtual point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,15 +51,31 @@ impl Truncation {
 ///
 /// Filled with the isotropic index n = c/|f'|, the space above the bumped floor f(X) looks like the
 /// half plane of index c above a flat mirror (Leonhardt, Science 312, 1777 (2006)).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ConformalMap {
     /// The Gaussian carpet, one half of the double-Gaussian cloak.
     Gaussian(GaussianMap),
+    /// A sinusoidal grating.
+    Grating(GratingMap),
+    /// A box with a bump whose border slides.
+    QuasiConformal(QuasiConformalMap),
 }
 
 impl From<GaussianMap> for ConformalMap {
     fn from(map: GaussianMap) -> Self {
         Self::Gaussian(map)
+    }
+}
+
+impl From<GratingMap> for ConformalMap {
+    fn from(map: GratingMap) -> Self {
+        Self::Grating(map)
+    }
+}
+
+impl From<QuasiConformalMap> for ConformalMap {
+    fn from(map: QuasiConformalMap) -> Self {
+        Self::QuasiConformal(map)
     }
 }
 
@@ -68,6 +86,8 @@ impl ConformalMap {
     pub fn jet(&self, zeta: Complex64) -> MapJet {
         match self {
             Self::Gaussian(map) => map.jet(zeta),
+            Self::Grating(map) => map.jet(zeta),
+            Self::QuasiConformal(map) => map.jet(zeta),
         }
     }
 
@@ -76,14 +96,27 @@ impl ConformalMap {
     pub fn scale(&self) -> f64 {
         match self {
             Self::Gaussian(map) => map.width(),
+            Self::Grating(map) => map.scale(),
+            Self::QuasiConformal(map) => map.scale(),
         }
     }
 
-    /// The largest height of the floor, cm.
+    /// The largest height y of the floor, cm.
     #[must_use]
     pub fn peak(&self) -> f64 {
         match self {
             Self::Gaussian(map) => map.height(),
+            Self::Grating(map) => map.height(),
+            Self::QuasiConformal(map) => map.peak(),
+        }
+    }
+
+    /// The least height y of the floor, cm.
+    #[must_use]
+    pub fn trough(&self) -> f64 {
+        match self {
+            Self::Gaussian(_) | Self::QuasiConformal(_) => 0.0,
+            Self::Grating(map) => -map.height(),
         }
     }
 
@@ -93,6 +126,8 @@ impl ConformalMap {
     pub fn invert(&self, z: Complex64) -> Option<Complex64> {
         let guess = match self {
             Self::Gaussian(map) => map.first_guess(z),
+            Self::Grating(map) => map.first_guess(z),
+            Self::QuasiConformal(map) => map.first_guess(z),
         };
         self.newton(z, guess).or_else(|| self.invert_from_above(z))
     }
@@ -141,17 +176,13 @@ impl ConformalMap {
         })
     }
 
-    /// The point x + iy of the floor at virtual X.
-    #[must_use]
-    pub fn floor(&self, x_virtual: f64) -> Complex64 {
-        self.jet(Complex64::new(x_virtual, 0.0)).f
-    }
-
     /// The virtual X of the floor point above physical `x`.
     #[must_use]
     pub fn floor_parameter(&self, x: f64) -> f64 {
         match self {
             Self::Gaussian(map) => map.floor_parameter(x),
+            Self::Grating(map) => map.floor_parameter(x),
+            Self::QuasiConformal(map) => map.floor_parameter(x),
         }
     }
 
@@ -160,6 +191,8 @@ impl ConformalMap {
     pub fn floor_height_at(&self, x: f64) -> f64 {
         match self {
             Self::Gaussian(map) => map.floor_height_at(x),
+            Self::Grating(map) => map.floor_height_at(x),
+            Self::QuasiConformal(map) => map.floor_height_at(x),
         }
     }
 
@@ -170,29 +203,69 @@ impl ConformalMap {
         (0..=pieces)
             .map(|k| {
                 let share = f64::from(k) / f64::from(pieces.max(1));
-                let point = self.floor(start + (end - start) * share);
+                let point = self.jet((start + (end - start) * share).into()).f;
                 DVec2::new(point.re, point.im)
             })
             .collect()
     }
 
-    /// The area between the whole floor and its mirror image under y -> -y, cm²: what a double cloak
-    /// hides. For the Gaussian map 2 (√π h w - h²).
-    #[must_use]
-    pub fn cloaked_area(&self) -> f64 {
+    /// The metal as a curve, with the derivatives by its real parameter. It is f(X), or what f(X) comes near
+    /// to where the map is a series.
+    pub(crate) fn profile(&self, parameter: f64) -> MapJet {
         match self {
-            Self::Gaussian(map) => 2.0 * map.area(),
+            Self::Gaussian(_) | Self::Grating(_) => self.jet(parameter.into()),
+            Self::QuasiConformal(map) => map.profile(parameter),
         }
     }
 
-    /// The part of [`Self::cloaked_area`] that lies between the ends of a cut device.
-    #[must_use]
-    pub fn cloaked_area_within(&self, cut: &Truncation) -> f64 {
+    /// The parameter of [`Self::profile`] at physical `x`.
+    pub(crate) fn profile_parameter(&self, x: f64) -> f64 {
         match self {
-            Self::Gaussian(map) => {
-                2.0 * (map.area_from_middle_to(cut.x_max) - map.area_from_middle_to(cut.x_min))
-            }
+            Self::Gaussian(_) | Self::Grating(_) => self.floor_parameter(x),
+            Self::QuasiConformal(_) => x,
         }
+    }
+
+    /// The parameters between two others at which [`Self::profile`] changes the sense of its bend, in
+    /// rising order.
+    pub(crate) fn profile_inflections(&self, start: f64, end: f64) -> Vec<f64> {
+        match self {
+            Self::Gaussian(_) => self.sampled_inflections(start, end),
+            Self::Grating(map) => map.inflections(start, end),
+            Self::QuasiConformal(map) => map.inflections(start, end),
+        }
+    }
+
+    fn sampled_inflections(&self, start: f64, end: f64) -> Vec<f64> {
+        let samples = samples_over((end - start) / self.scale());
+        let bend = |x: f64| {
+            let jet = self.profile(x);
+            (jet.f1.conj() * jet.f2).im
+        };
+        let sample = |k: u32| start + (end - start) * f64::from(k) / f64::from(samples);
+        let inflection = |(mut a, mut b): (f64, f64)| {
+            let rising = bend(b) > 0.0;
+            if rising == (bend(a) > 0.0) {
+                return None;
+            }
+            while b - a > 4.0 * f64::EPSILON * (a.abs() + b.abs()) {
+                let middle = 0.5 * (a + b);
+                if rising == (bend(middle) > 0.0) { b = middle } else { a = middle }
+            }
+            Some(0.5 * (a + b))
+        };
+        (0..samples).map(|k| (sample(k), sample(k + 1))).filter_map(inflection).collect()
+    }
+
+    /// The area between the line y = 0 and the floor within the ends of a cut device, cm².
+    #[must_use]
+    pub fn area_within(&self, cut: &Truncation) -> f64 {
+        let from_middle = |x: f64| match self {
+            Self::Gaussian(map) => map.area_from_middle_to(x),
+            Self::Grating(map) => map.area_from_middle_to(x),
+            Self::QuasiConformal(map) => map.area_from_middle_to(x),
+        };
+        from_middle(cut.x_max) - from_middle(cut.x_min)
     }
 
     /// Least and largest 1/|f'| in a cut device: the range of its index for c = 1.
@@ -207,28 +280,34 @@ impl ConformalMap {
             self.invert(Complex64::new(x, y))
         };
         let index = |zeta: Complex64| self.jet(zeta).stretch().recip();
+        let samples = samples_over((cut.x_max - cut.x_min).max(cut.y_max) / self.scale());
         let floor = |s: f64| Some(index(between(start, end, s).into()));
         let left = |s: f64| side(cut.x_min, s).map(index);
         let right = |s: f64| side(cut.x_max, s).map(index);
         let top = |s: f64| {
             self.invert(Complex64::new(between(cut.x_min, cut.x_max, s), cut.y_max)).map(index)
         };
-        [range_over(floor), range_over(left), range_over(right), range_over(top)]
+        let over = |index: &dyn Fn(f64) -> Option<f64>| range_over(samples, index);
+        [over(&floor), over(&left), over(&right), over(&top)]
             .into_iter()
             .fold((f64::INFINITY, 0.0), |a, b| (b.0.min(a.0), b.1.max(a.1)))
     }
 }
 
-/// Least and largest value of a smooth positive function over 0 <= s <= 1.
-fn range_over(function: impl Fn(f64) -> Option<f64>) -> (f64, f64) {
-    const SAMPLES: u32 = 200;
+/// How many samples of a map miss none of its features over so many of its scales.
+fn samples_over(scales: f64) -> u32 {
+    (32.0 * scales).clamp(200.0, 1e5) as u32
+}
+
+/// Least and largest value of a positive function over 0 <= s <= 1, smooth between `samples`.
+fn range_over(samples: u32, function: &dyn Fn(f64) -> Option<f64>) -> (f64, f64) {
     let extreme = |sign: f64| {
         let value = |s: f64| function(s).map_or(f64::INFINITY, |v| sign * v);
-        let best = (0..=SAMPLES)
-            .map(|k| f64::from(k) / f64::from(SAMPLES))
+        let best = (0..=samples)
+            .map(|k| f64::from(k) / f64::from(samples))
             .min_by(|a, b| value(*a).total_cmp(&value(*b)))
             .unwrap_or(0.0);
-        let spacing = f64::from(SAMPLES).recip();
+        let spacing = f64::from(samples).recip();
         let (mut a, mut b) = ((best - spacing).max(0.0), (best + spacing).min(1.0));
         // Halving the bracket by thirds narrows it below the flatness of an extremum.
         for _ in 0..50 {
@@ -268,7 +347,8 @@ mod tests {
         );
         let (_, largest) = map(10.0158, 4.2532).index_range(&PAPER);
         assert!((largest - 1.920).abs() < 5e-4, "{largest}");
-        assert!((map(10.02, 4.25).cloaked_area() - 114.83).abs() < 0.1);
+        let area = GaussianMap::new(10.02, 4.25).expect("a valid map").area();
+        assert!((2.0 * area - 114.83).abs() < 0.1);
     }
 
     #[test]
@@ -295,17 +375,10 @@ mod tests {
         let spacing = 20.0 / f64::from(count);
         let sum: f64 =
             (0..count).map(|k| map.floor_height_at(-7.0 + (f64::from(k) + 0.5) * spacing)).sum();
-        assert_relative_eq!(
-            map.cloaked_area_within(&cut),
-            2.0 * sum * spacing,
-            max_relative = 1e-7
-        );
+        assert_relative_eq!(map.area_within(&cut), sum * spacing, max_relative = 1e-7);
         let wide = Truncation::centred(400.0, 20.0);
-        assert_relative_eq!(
-            map.cloaked_area_within(&wide),
-            map.cloaked_area(),
-            max_relative = 1e-12
-        );
+        let whole = GaussianMap::new(8.0, 5.0).expect("a valid map").area();
+        assert_relative_eq!(map.area_within(&wide), whole, max_relative = 1e-12);
     }
 
     #[test]
@@ -361,7 +434,7 @@ mod tests {
         fn floor_is_where_y_is_zero(w in 0.1_f64..40.0, ratio in 0.001_f64..0.885, x in -5.0_f64..5.0) {
             let map = map(w, ratio * w);
             let parameter = map.floor_parameter(x * w);
-            let point = map.floor(parameter);
+            let point = map.jet(parameter.into()).f;
             prop_assert!((point.re - x * w).abs() < 1e-13 * w);
             prop_assert!((point.im - map.floor_height_at(x * w)).abs() < 1e-12 * w);
             prop_assert!(point.im <= map.peak());

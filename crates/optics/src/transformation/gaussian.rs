@@ -128,7 +128,8 @@ impl GaussianMap {
     }
 
     /// The area between Y = 0 and the whole floor, cm².
-    pub(super) fn area(&self) -> f64 {
+    #[must_use]
+    pub fn area(&self) -> f64 {
         self.height * (PI.sqrt() * self.width - self.height)
     }
 }

@@ -3,13 +3,17 @@
 mod conformal;
 mod faddeeva;
 mod gaussian;
+mod grating;
 mod monotone_root;
+mod quasi_conformal;
 mod radial;
 mod strip_to_rhombus;
 
 pub use conformal::{ConformalMap, MapJet, Truncation};
 pub use faddeeva::{FaddeevaJet, faddeeva, faddeeva_jet};
 pub use gaussian::{GaussianMap, GaussianMapError};
+pub use grating::{GratingMap, GratingMapError};
 pub(crate) use monotone_root::root_in_bracket;
+pub use quasi_conformal::{QuasiConformalMap, QuasiConformalMapError};
 pub use radial::{RadialMap, Symmetry};
 pub use strip_to_rhombus::StripToRhombus;

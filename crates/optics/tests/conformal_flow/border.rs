@@ -15,7 +15,7 @@ fn ends_on_the_border_and_on_shell_with_a_rotation() {
     for _ in 0..2000 {
         for (start, p, end) in legs(&flow, dice.enter(&flow, short), 1e-6) {
             let Foothold { position, index, virtual_position, .. } = end.at;
-            let n = flow.index(position).expect("a point of the medium");
+            let n = flow.index(end.at.half, position).expect("a point of the medium");
             assert!((end.wave_vector.length() - index).abs() < 2e-15 * index);
             assert!((n - index).abs() < 1e-12);
             assert!(
@@ -112,7 +112,7 @@ fn refuses_what_it_cannot_follow() {
     assert_eq!(flow.advance(Half::Lower, start, DVec3::X, 1e-6), Err(FlowError::Outside));
     assert!(matches!(go(start, 1.01 * DVec3::X), Err(FlowError::WaveVector { .. })));
     // Along z: bent away from the axis, it comes out; odd tolerances are made sensible.
-    let n = flow.index(start).expect("a point of the medium");
+    let n = flow.index(Half::Upper, start).expect("a point of the medium");
     for tolerance in [1e-6, 0.0, f64::NAN, 1e9] {
         assert!(flow.advance(Half::Upper, start, n * DVec3::Z, tolerance).is_ok());
     }

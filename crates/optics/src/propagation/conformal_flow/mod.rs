@@ -25,15 +25,16 @@ use crate::transformation::{ConformalMap, Truncation};
 /// Which of the two mirror images of the half-space device is meant.
 #[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
 pub enum Half {
-    /// y >= 0.
+    /// Above the floor; a carpet has this one alone.
     Upper,
-    /// y <= 0: the mirror image of the upper half under y -> -y.
+    /// The mirror image of the upper half under y -> -y.
     Lower,
 }
 
 impl Half {
     /// Takes a vector of this half to the upper one, and back.
-    fn mirrored(self, v: DVec3) -> DVec3 {
+    #[must_use]
+    pub fn mirrored(self, v: DVec3) -> DVec3 {
         match self {
             Self::Upper => v,
             Self::Lower => DVec3::new(v.x, -v.y, v.z),
@@ -123,7 +124,7 @@ const MIRROR_MAGNIFIES: f64 = 0.1;
 const BORDER_SLACK: f64 = 1e-9;
 
 /// One half of a conformal cloak cut to a box, and its mirror image under y -> -y.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ConformalFlow {
     map: ConformalMap,
     cut: Truncation,
@@ -161,22 +162,12 @@ impl ConformalFlow {
         (self.strength * least, self.strength * largest)
     }
 
-    /// The index at a point of either half; None deep inside the metal, where the map has no inverse.
+    /// The index at a point of one half; None deep inside the metal, where the map has no inverse.
     #[must_use]
-    pub fn index(&self, position: DVec3) -> Option<f64> {
-        let zeta = self.map.invert(Complex64::new(position.x, position.y.abs()))?;
+    pub fn index(&self, half: Half, position: DVec3) -> Option<f64> {
+        let local = half.mirrored(position);
+        let zeta = self.map.invert(Complex64::new(local.x, local.y))?;
         Some(self.strength / self.map.jet(zeta).stretch())
-    }
-
-    /// Whether a point lies in the medium of either half, border included.
-    #[must_use]
-    pub fn contains(&self, position: DVec3) -> bool {
-        let (x, y) = (position.x, position.y.abs());
-        x >= self.cut.x_min
-            && x <= self.cut.x_max
-            && y <= self.cut.y_max
-            && self.extent.contains(position.z)
-            && (y > self.map.peak() || y >= self.map.floor_height_at(x))
     }
 
     /// Finds a point of one half, inside or on the border, in virtual space.
