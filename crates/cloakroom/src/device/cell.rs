@@ -70,8 +70,6 @@ impl Face {
 /// What a ray finds on entering a cell.
 #[derive(Clone, Copy, Debug)]
 pub struct Entrance {
-    /// The medium there.
-    pub medium: Medium,
     /// The point in the virtual space of a conformal cell.
     pub foothold: Option<Foothold>,
 }
@@ -105,8 +103,6 @@ pub struct Passage {
     pub transport: Option<DMat3>,
     /// Optical path length, cm.
     pub optical_path: f64,
-    /// The medium at the surface.
-    pub medium: Medium,
     /// The point in the virtual space of a conformal cell, to go on from after a reflection.
     pub foothold: Option<Foothold>,
     /// Which surface.
@@ -120,21 +116,34 @@ pub struct Passage {
 }
 
 impl Cell {
-    /// What a ray finds that enters the cell at a point of its border; `None` if a graded medium has none
-    /// there: the point has been lost in rounding at an edge.
+    /// What a ray finds that enters the cell at a point of its border; `None` if a conformal map has no such
+    /// point: it has been lost in rounding at an edge.
     #[must_use]
     pub fn enter(&self, position: DVec3) -> Option<Entrance> {
-        match self {
-            Self::Prism(prism) => Some(Entrance { medium: prism.medium, foothold: None }),
-            Self::Conformal(cell) => {
-                let foothold = cell.flow.foothold(cell.half, position).ok()?;
-                let medium = Medium::dielectric(foothold.index);
-                Some(Entrance { medium, foothold: Some(foothold) })
-            }
-            Self::Radial(cell) => {
-                Some(Entrance { medium: cell.flow.medium(position)?, foothold: None })
-            }
-        }
+        Some(Entrance {
+            foothold: match self {
+                Self::Prism(_) | Self::Radial(_) => None,
+                Self::Conformal(cell) => Some(cell.flow.foothold(cell.half, position).ok()?),
+            },
+        })
+    }
+
+    /// The medium at a point of the cell or its border, `foothold` being what [`Cell::enter`] or the last
+    /// passage has said of it; `None` if there is none by rounding. That of a graded cell is put into
+    /// `local`: media are large, and those of homogeneous cells are not copied.
+    #[must_use]
+    pub fn medium<'m>(
+        &'m self,
+        position: DVec3,
+        foothold: Option<&Foothold>,
+        local: &'m mut Option<Medium>,
+    ) -> Option<&'m Medium> {
+        *local = match self {
+            Self::Prism(prism) => return Some(&prism.medium),
+            Self::Conformal(_) => foothold.map(|foothold| Medium::dielectric(foothold.index)),
+            Self::Radial(cell) => cell.flow.medium(position),
+        };
+        local.as_ref()
     }
 
     /// Where the waves of the medium start as one and then part: their electric fields, of unit power.
@@ -191,7 +200,6 @@ impl Prism {
             direction,
             transport: None,
             optical_path: wave_vector.dot(end - position),
-            medium: self.medium,
             foothold: None,
             face: index,
             outward: face.plane.normal,
@@ -217,7 +225,6 @@ impl ConformalCell {
             // |Re(E × H*)| = n |E|² is what stays.
             transport: Some(end.transport * (start.index / end.at.index).sqrt()),
             optical_path: end.optical_path,
-            medium: Medium::dielectric(end.at.index),
             foothold: Some(end.at),
             face: end.boundary as u16,
             outward: end.normal,
@@ -237,7 +244,6 @@ impl RadialCell {
             direction: end.direction,
             transport: Some(end.transport),
             optical_path: end.optical_path,
-            medium: self.flow.medium(end.position)?,
             foothold: None,
             face: end.border as u16,
             outward: end.outward,

@@ -105,7 +105,9 @@ impl Cell {
     /// medium has none elsewhere.
     #[must_use]
     pub fn medium_at(&self, point: DVec2) -> Option<Medium> {
-        Some(self.enter(point.extend(0.0))?.medium)
+        let point = point.extend(0.0);
+        let entrance = self.enter(point)?;
+        self.medium(point, entrance.foothold.as_ref(), &mut None).copied()
     }
 }
 

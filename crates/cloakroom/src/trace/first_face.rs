@@ -76,7 +76,10 @@ impl<const N: usize> Tracer<'_, N> {
                 Beyond::Cell(cell) | Beyond::Seam(cell) => {
                     let device = &self.bench.devices()[usize::from(device_index)];
                     let pose = &device.pose;
-                    let entrance = self.cell(device, cell).enter(pose.to_local(position))?;
+                    let (cell, entry) = (self.cell(device, cell), pose.to_local(position));
+                    let foothold = cell.enter(entry)?.foothold;
+                    let mut local = None;
+                    let beyond = cell.medium(entry, foothold.as_ref(), &mut local)?;
                     let direction = pose.vector_to_local(launch.direction);
                     let wave = IncidentWave {
                         wave_vector: direction,
@@ -86,8 +89,8 @@ impl<const N: usize> Tracer<'_, N> {
                         power,
                     };
                     let into = -hit.outward;
-                    let (from, to) = (&Medium::AIR, &entrance.medium);
-                    face.add(&split_as_finished(from, to, &wave, into, hit.finish));
+                    let waves = split_as_finished(&Medium::AIR, beyond, &wave, into, hit.finish);
+                    face.add(&waves);
                 }
             }
             return Some(face);

@@ -3,7 +3,7 @@
 use super::bodies::Around;
 use super::branch::{Branch, Place};
 use super::{Bench, Leaf, Outcome, Placed, Screen};
-use crate::device::{Beyond, Cell, Finish, SkinHit};
+use crate::device::{Beyond, Cell, Entrance, Finish, SkinHit};
 use glam::DVec3;
 use optics::geometry::Pose;
 use optics::interface::{
@@ -78,7 +78,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         self.leaves.clear();
         self.outcome = Outcome::default();
         self.waiting.clear();
-        self.waiting.push(Branch {
+        let mut next = Some(Branch {
             place: Place::Air { left: None },
             position: launch.origin,
             wave_vector: launch.direction,
@@ -96,7 +96,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             foothold: None,
         });
         let (mut events, mut threshold) = (0, self.limits.min_power.max(NO_POWER));
-        while let Some(branch) = self.waiting.pop() {
+        while let Some(mut branch) = next.take().or_else(|| self.waiting.pop()) {
             if branch.largest_power() < threshold {
                 self.outcome.rarities.endless += 1;
                 self.prune(branch.power);
@@ -108,18 +108,18 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 threshold *= 10.0;
             }
             match branch.place {
-                Place::Air { left } => self.through_air(branch, left),
-                Place::Cell { device, cell } => self.through_cell(branch, device, cell),
+                Place::Air { left } => self.through_air(&mut branch, left),
+                Place::Cell { device, cell } => self.through_cell(&mut branch, device, cell),
             }
         }
         (&self.leaves, &self.outcome)
     }
 
-    fn through_air(&mut self, mut branch: Branch<N>, left: Option<(u16, u16)>) {
+    fn through_air(&mut self, branch: &mut Branch<N>, left: Option<(u16, u16)>) {
         if !branch.around.nothing() {
             let bodies = self.bench.bodies();
             match bodies.crossing(branch.around, branch.position, branch.direction) {
-                Some(crossing) => self.cross(branch, &crossing),
+                Some(crossing) => self.cross(*branch, &crossing),
                 // It runs along an endless body for ever.
                 None => self.lose(branch.power),
             }
@@ -128,7 +128,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let hit = self.surface_ahead(branch.position, branch.direction, left);
         let distance = hit.map(|(_, hit)| hit.distance);
         if let Some(crossing) = self.body_ahead(branch.position, branch.direction, distance) {
-            self.cross(branch, &crossing);
+            self.cross(*branch, &crossing);
             return;
         }
         let Some((device_index, hit)) = hit else {
@@ -143,7 +143,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let into = -hit.outward;
         let air = Place::Air { left: Some((device_index, hit.skin)) };
         let event = u64::from(device_index) << 32 | u64::from(hit.skin) << 2;
-        let local = to_local(&branch, &device.pose);
+        let local = to_local(branch, &device.pose);
         match hit.beyond {
             Beyond::Conductor => {
                 for wave in reflect_at_conductor(&Medium::AIR, &local.incident(), into) {
@@ -151,12 +151,14 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 }
             }
             Beyond::Cell(cell) | Beyond::Seam(cell) => {
-                let Some(entrance) = self.cell(device, cell).enter(local.position) else {
+                let inside = Place::Cell { device: device_index, cell };
+                let cell = self.cell(device, cell);
+                let mut graded = None;
+                let Some((entrance, beyond)) = entered(cell, local.position, &mut graded) else {
                     self.lose(branch.power);
                     return;
                 };
-                let inside = Place::Cell { device: device_index, cell };
-                for wave in self.split(&Medium::AIR, &entrance.medium, &local, into, hit.finish) {
+                for wave in self.split(&Medium::AIR, beyond, &local, into, hit.finish) {
                     let event = event | side_code(&wave);
                     match wave.side {
                         Side::Reflected => {
@@ -170,11 +172,11 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 }
             }
             // A thin sheet of air: nothing there.
-            Beyond::Air => self.waiting.push(Branch { place: air, ..branch }),
+            Beyond::Air => self.waiting.push(Branch { place: air, ..*branch }),
         }
     }
 
-    fn through_cell(&mut self, mut branch: Branch<N>, device_index: u16, cell_index: u16) {
+    fn through_cell(&mut self, branch: &mut Branch<N>, device_index: u16, cell_index: u16) {
         let device = &self.bench.devices()[usize::from(device_index)];
         let cell = self.cell(device, cell_index);
         if branch.mode == ModeKind::Shared
@@ -190,7 +192,13 @@ impl<'a, const N: usize> Tracer<'a, N> {
         };
         let way = passage.position - branch.position;
         branch.position = passage.position;
-        if passage.medium.absorbs() && !self.absorb(&mut branch, way) {
+        let mut graded_here = None;
+        let medium = cell.medium(passage.position, passage.foothold.as_ref(), &mut graded_here);
+        let Some(medium) = medium else {
+            self.lose(branch.power);
+            return;
+        };
+        if medium.absorbs() && !self.absorb(branch, way) {
             return;
         }
         branch.wave_vector = passage.wave_vector;
@@ -209,24 +217,25 @@ impl<'a, const N: usize> Tracer<'a, N> {
             | (u64::from(cell_index) + 1) << 20
             | u64::from(passage.face) << 2;
         let here = branch.place;
-        let medium = passage.medium;
         match passage.beyond {
             Beyond::Conductor => {
-                for wave in reflect_at_conductor(&medium, &branch.incident(), passage.outward) {
+                for wave in reflect_at_conductor(medium, &branch.incident(), passage.outward) {
                     self.go_on(branch.onward(&wave, here, event | side_code(&wave)));
                 }
             }
-            Beyond::Seam(next) => self
-                .waiting
-                .push(Branch { place: Place::Cell { device: device_index, cell: next }, ..branch }),
+            Beyond::Seam(next) => self.waiting.push(Branch {
+                place: Place::Cell { device: device_index, cell: next },
+                ..*branch
+            }),
             Beyond::Cell(next) => {
-                let Some(entrance) = self.cell(device, next).enter(branch.position) else {
+                let there = Place::Cell { device: device_index, cell: next };
+                let next = self.cell(device, next);
+                let mut graded = None;
+                let Some((entrance, beyond)) = entered(next, branch.position, &mut graded) else {
                     self.lose(branch.power);
                     return;
                 };
-                let there = Place::Cell { device: device_index, cell: next };
-                let waves =
-                    self.split(&medium, &entrance.medium, &branch, passage.outward, passage.finish);
+                let waves = self.split(medium, beyond, branch, passage.outward, passage.finish);
                 for wave in waves {
                     let event = event | side_code(&wave);
                     self.go_on(match wave.side {
@@ -240,7 +249,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             }
             Beyond::Air => {
                 let waves =
-                    self.split(&medium, &Medium::AIR, &branch, passage.outward, passage.finish);
+                    self.split(medium, &Medium::AIR, branch, passage.outward, passage.finish);
                 for wave in waves {
                     let event = event | side_code(&wave);
                     match wave.side {
@@ -353,6 +362,17 @@ pub(super) fn split_as_finished<const N: usize>(
         Finish::Bare => split(from, to, wave, normal),
         Finish::Antireflection => transmit_antireflection(from, to, wave, normal),
     }
+}
+
+/// What a ray finds that enters a cell, and the medium there.
+fn entered<'m>(
+    cell: &'m Cell,
+    position: DVec3,
+    graded: &'m mut Option<Medium>,
+) -> Option<(Entrance, &'m Medium)> {
+    let entrance = cell.enter(position)?;
+    let medium = cell.medium(position, entrance.foothold.as_ref(), graded)?;
+    Some((entrance, medium))
 }
 
 /// Tells the branches at one surface apart in the fingerprint of the path.
