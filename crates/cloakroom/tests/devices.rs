@@ -106,9 +106,10 @@ fn launches(count: u32) -> impl Iterator<Item = Launch<2>> {
 #[test]
 fn power_is_accounted_for() {
     for (what, bench) in benches() {
-        for min_power in [1e-4, 1e-8] {
+        // The deeper trees of birefringent devices have thousands of branches.
+        for (min_power, rays) in [(1e-4, 1000), (1e-8, 100)] {
             let mut tracer = Tracer::new(&bench, Limits { min_power, tolerance: 1e-6 });
-            for launch in launches(1000) {
+            for launch in launches(rays) {
                 let (leaves, outcome) = tracer.trace(&launch);
                 for i in 0..2 {
                     let sum: f64 = leaves.iter().map(|leaf| leaf.power[i]).sum();
@@ -131,7 +132,7 @@ fn power_is_accounted_for() {
 fn leaves_are_sound_waves_in_air() {
     for (what, bench) in benches() {
         let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-9, tolerance: 1e-6 });
-        for launch in launches(1000) {
+        for launch in launches(100) {
             let (leaves, _) = tracer.trace(&launch);
             assert!(!leaves.is_empty(), "{what}{launch:?}");
             for leaf in leaves {

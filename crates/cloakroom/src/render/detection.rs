@@ -14,6 +14,8 @@ pub(super) struct Detection<const N: usize> {
     /// Whether the first two launched polarizations are horizontal and vertical, with an image of
     /// their own each.
     pub separate: bool,
+    /// Whether times of flight are wanted.
+    pub times: bool,
     /// Whether the Stokes parameters are wanted: for those the first two are needed.
     pub stokes: bool,
     /// Whether the first surface is looked at on its own.
@@ -30,6 +32,7 @@ impl Detection<1> {
             launched: [amplitudes],
             weights: [1.0],
             separate: false,
+            times: true,
             stokes: false,
             first_face: false,
         }
@@ -42,6 +45,7 @@ impl Detection<2> {
         launched: [HORIZONTAL, VERTICAL],
         weights: [0.5, 0.5],
         separate: true,
+        times: true,
         stokes: false,
         first_face: false,
     };
@@ -54,6 +58,7 @@ impl Detection<3> {
             launched: [HORIZONTAL, VERTICAL, amplitudes],
             weights: [0.0, 0.0, 1.0],
             separate: true,
+            times: true,
             stokes: false,
             first_face: false,
         }
@@ -61,10 +66,14 @@ impl Detection<3> {
 }
 
 impl<const N: usize> Detection<N> {
-    /// Adds what the optional channels of a picture ask for.
+    /// Adds what the optional channels of a picture ask for; where the image alone is wanted, leaves out all
+    /// but that.
     pub fn with_options(self, wanted: Wanted, picture: &PictureSettings) -> Self {
-        let asked = |channel| wanted == Wanted::Everything && picture.asks_for(channel);
+        let everything = wanted == Wanted::Everything;
+        let asked = |channel| everything && picture.asks_for(channel);
         Self {
+            separate: self.separate && everything,
+            times: everything,
             stokes: self.separate && asked("stokes"),
             first_face: asked("extraordinary_share") || asked("first_face_reflectance"),
             ..self

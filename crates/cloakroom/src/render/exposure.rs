@@ -49,8 +49,9 @@ pub(super) fn expose<const N: usize>(
             }
             (None, Some(distance)) => {
                 pixel.delivered += power;
-                let time = time_of_flight(leaf, distance);
-                pulses.push((time, power));
+                if detection.times {
+                    pulses.push((time_of_flight(leaf, distance), power));
+                }
                 photograph_light(studio, leaf, distance, &beside, spacing)
             }
             (None, None) => {
@@ -76,7 +77,9 @@ pub(super) fn expose<const N: usize>(
         pixel.ordinary += detection.detected(&face.ordinary);
         pixel.extraordinary += detection.detected(&face.extraordinary);
     }
-    pixel.add_pulses(pulses, empty_time_of_flight(studio, &here.ray));
+    if detection.times {
+        pixel.add_pulses(pulses, empty_time_of_flight(studio, &here.ray));
+    }
 }
 
 /// Time of flight of a leaf that ends on the photograph, `distance` (cm) on, in ns.
