@@ -4,6 +4,7 @@ use super::Leaf;
 use super::bodies::Around;
 use crate::device::InnerRay;
 use glam::DVec3;
+use optics::geometry::Pose;
 use optics::interface::{IncidentWave, OutgoingWave};
 use optics::medium::ModeKind;
 use optics::propagation::Foothold;
@@ -129,6 +130,30 @@ impl<const N: usize> Branch<N> {
             group_path: self.group_path,
             body,
             path: self.path,
+        }
+    }
+
+    /// The branch seen in the frame of a device.
+    pub fn to_local(self, pose: &Pose) -> Self {
+        Self {
+            position: pose.to_local(self.position),
+            wave_vector: pose.vector_to_local(self.wave_vector),
+            attenuation: pose.vector_to_local(self.attenuation),
+            direction: pose.vector_to_local(self.direction),
+            electric: self.electric.map(|field| pose.field_to_local(field)),
+            ..self
+        }
+    }
+
+    /// The branch, in the frame of a device, seen in the world.
+    pub fn to_world(self, pose: &Pose) -> Self {
+        Self {
+            position: pose.to_world(self.position),
+            wave_vector: pose.vector_to_world(self.wave_vector),
+            attenuation: pose.vector_to_world(self.attenuation),
+            direction: pose.vector_to_world(self.direction),
+            electric: self.electric.map(|field| pose.field_to_world(field)),
+            ..self
         }
     }
 

@@ -74,8 +74,11 @@ impl<const N: usize> Tracer<'_, N> {
         };
         let event = BODY_EVENT | (crossing.body as u64) << 32;
         for wave in self.split(medium, beyond, &branch, crossing.onward, Finish::Bare) {
+            if !self.follows(wave.power) {
+                continue;
+            }
             let onward = branch.onward(&wave, air, event | side_code(&wave));
-            self.go_on(match wave.side {
+            self.waiting.push(match wave.side {
                 Side::Reflected => onward,
                 Side::Transmitted if to_air => Branch { around, ..onward.in_air() },
                 Side::Transmitted => Branch { around, ..onward },

@@ -5,7 +5,6 @@ use super::branch::{Branch, Place};
 use super::{Bench, Leaf, Outcome, Placed, Screen};
 use crate::device::{Beyond, Cell, Entrance, Finish, SkinHit};
 use glam::DVec3;
-use optics::geometry::Pose;
 use optics::interface::{
     IncidentWave, OutgoingWave, OutgoingWaves, Side, reflect_at_conductor, split,
     transmit_antireflection,
@@ -143,11 +142,14 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let into = -hit.outward;
         let air = Place::Air { left: Some((device_index, hit.skin)) };
         let event = u64::from(device_index) << 32 | u64::from(hit.skin) << 2;
-        let local = to_local(branch, &device.pose);
+        let local = branch.to_local(&device.pose);
         match hit.beyond {
             Beyond::Conductor => {
                 for wave in reflect_at_conductor(&Medium::AIR, &local.incident(), into) {
-                    self.go_on(to_world(&local.onward(&wave, air, event), &device.pose));
+                    if self.follows(wave.power) {
+                        let onward = local.onward(&wave, air, event);
+                        self.waiting.push(onward.to_world(&device.pose));
+                    }
                 }
             }
             Beyond::Cell(cell) | Beyond::Seam(cell) => {
@@ -159,16 +161,17 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     return;
                 };
                 for wave in self.split(&Medium::AIR, beyond, &local, into, hit.finish) {
+                    if !self.follows(wave.power) {
+                        continue;
+                    }
                     let event = event | side_code(&wave);
-                    match wave.side {
-                        Side::Reflected => {
-                            self.go_on(to_world(&local.onward(&wave, air, event), &device.pose));
-                        }
-                        Side::Transmitted => self.go_on(Branch {
+                    self.waiting.push(match wave.side {
+                        Side::Reflected => local.onward(&wave, air, event).to_world(&device.pose),
+                        Side::Transmitted => Branch {
                             foothold: entrance.foothold,
                             ..local.onward(&wave, inside, event)
-                        }),
-                    }
+                        },
+                    });
                 }
             }
             // A thin sheet of air: nothing there.
@@ -182,8 +185,11 @@ impl<'a, const N: usize> Tracer<'a, N> {
         if branch.mode == ModeKind::Shared
             && let Some([(a, in_a), (b, in_b)]) = cell.parted(branch.position, branch.wave_vector)
         {
-            self.go_on(branch.part(a, in_a, in_b));
-            self.go_on(branch.part(b, in_b, in_a));
+            for part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
+                if self.follows(part.power) {
+                    self.waiting.push(part);
+                }
+            }
             return;
         }
         let Some(passage) = cell.advance(&branch.inner_ray(), self.limits.tolerance) else {
@@ -220,7 +226,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
         match passage.beyond {
             Beyond::Conductor => {
                 for wave in reflect_at_conductor(medium, &branch.incident(), passage.outward) {
-                    self.go_on(branch.onward(&wave, here, event | side_code(&wave)));
+                    if self.follows(wave.power) {
+                        let event = event | side_code(&wave);
+                        self.waiting.push(branch.onward(&wave, here, event));
+                    }
                 }
             }
             Beyond::Seam(next) => self.waiting.push(Branch {
@@ -237,8 +246,11 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 };
                 let waves = self.split(medium, beyond, branch, passage.outward, passage.finish);
                 for wave in waves {
+                    if !self.follows(wave.power) {
+                        continue;
+                    }
                     let event = event | side_code(&wave);
-                    self.go_on(match wave.side {
+                    self.waiting.push(match wave.side {
                         Side::Reflected => branch.onward(&wave, here, event),
                         Side::Transmitted => Branch {
                             foothold: entrance.foothold,
@@ -251,15 +263,17 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 let waves =
                     self.split(medium, &Medium::AIR, branch, passage.outward, passage.finish);
                 for wave in waves {
+                    if !self.follows(wave.power) {
+                        continue;
+                    }
                     let event = event | side_code(&wave);
-                    match wave.side {
-                        Side::Reflected => self.go_on(branch.onward(&wave, here, event)),
+                    self.waiting.push(match wave.side {
+                        Side::Reflected => branch.onward(&wave, here, event),
                         Side::Transmitted => {
                             let air = Place::Air { left: None };
-                            let onward = branch.onward(&wave, air, event).in_air();
-                            self.go_on(to_world(&onward, &device.pose));
+                            branch.onward(&wave, air, event).in_air().to_world(&device.pose)
                         }
-                    }
+                    });
                 }
             }
         }
@@ -303,11 +317,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             *power = left;
             branch.electric[i] = branch.electric[i] * amplitude;
         }
-        let followed = branch.largest_power() >= self.limits.min_power.max(NO_POWER);
-        if !followed {
-            self.prune(branch.power);
-        }
-        followed
+        self.follows(branch.power)
     }
 
     /// Counts power as lost that an interface could not hand on: the account must not leak, even
@@ -324,13 +334,14 @@ impl<'a, const N: usize> Tracer<'a, N> {
         self.outcome.rarities.lost += u64::from(lost);
     }
 
-    /// Keeps a branch to be followed, or prunes it.
-    pub(super) fn go_on(&mut self, branch: Branch<N>) {
-        if branch.largest_power() >= self.limits.min_power.max(NO_POWER) {
-            self.waiting.push(branch);
-        } else {
-            self.prune(branch.power);
+    /// Whether a branch of that power is followed; else it is pruned, and need not be made.
+    pub(super) fn follows(&mut self, power: [f64; N]) -> bool {
+        let largest = power.iter().copied().fold(0.0, f64::max);
+        let follows = largest >= self.limits.min_power.max(NO_POWER);
+        if !follows {
+            self.prune(power);
         }
+        follows
     }
 
     /// Gives up a branch that cannot be followed.
@@ -382,26 +393,4 @@ pub(super) fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
         Side::Transmitted => 2,
     };
     side | (wave.mode as u64) << 56
-}
-
-fn to_local<const N: usize>(branch: &Branch<N>, pose: &Pose) -> Branch<N> {
-    Branch {
-        position: pose.to_local(branch.position),
-        wave_vector: pose.vector_to_local(branch.wave_vector),
-        attenuation: pose.vector_to_local(branch.attenuation),
-        direction: pose.vector_to_local(branch.direction),
-        electric: branch.electric.map(|field| pose.field_to_local(field)),
-        ..*branch
-    }
-}
-
-fn to_world<const N: usize>(branch: &Branch<N>, pose: &Pose) -> Branch<N> {
-    Branch {
-        position: pose.to_world(branch.position),
-        wave_vector: pose.vector_to_world(branch.wave_vector),
-        attenuation: pose.vector_to_world(branch.attenuation),
-        direction: pose.vector_to_world(branch.direction),
-        electric: branch.electric.map(|field| pose.field_to_world(field)),
-        ..*branch
-    }
 }
