@@ -101,6 +101,24 @@ impl ConformalMap {
         }
     }
 
+    /// By how much the error of a low order exceeds that of a high one in steps of the length that a ray
+    /// takes. The quasi-conformal map is nearly singular at the feet of the bump, where the floor's curvature
+    /// jumps: measured, nothing can be counted on there.
+    pub(crate) fn smoothness(&self) -> f64 {
+        match self {
+            Self::Gaussian(_) | Self::Grating(_) => 100.0,
+            Self::QuasiConformal(_) => 1.0,
+        }
+    }
+
+    /// The longest step about a virtual point, `usual` being what suits the map where it varies most, cm.
+    pub(crate) fn longest_stride(&self, zeta: Complex64, usual: f64) -> f64 {
+        match self {
+            Self::Gaussian(_) | Self::QuasiConformal(_) => usual.max(zeta.norm_sqr().sqrt() / 3.0),
+            Self::Grating(_) => usual.max(zeta.im / 3.0),
+        }
+    }
+
     /// The largest height y of the floor, cm.
     #[must_use]
     pub fn peak(&self) -> f64 {
@@ -134,8 +152,9 @@ impl ConformalMap {
 
     /// Newton's method for f(ζ) = z, each step shortened until the residual falls.
     fn newton(&self, z: Complex64, mut zeta: Complex64) -> Option<Complex64> {
-        // Well below the floor f' has zeros, and the map branches.
-        let lowest = -0.25 * self.scale();
+        // Well below the floor f' has zeros, and the map branches; the series does so at once.
+        let depth = if matches!(self, Self::QuasiConformal(_)) { 1e-6 } else { 0.25 };
+        let lowest = -depth * self.scale();
         let mut jet = self.jet(zeta);
         for _ in 0..40 {
             let residual = z - jet.f;

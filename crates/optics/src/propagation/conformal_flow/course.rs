@@ -56,8 +56,8 @@ impl<'a> Course<'a> {
         let flatness = (1.0 - (p_z / strength).powi(2)).max(0.05);
         let local = flatness.powi(3) * tolerance.max(1e-12);
         let scale = map.scale();
-        // What is estimated is the error of the embedded formula, and that is at least so much larger.
-        let estimated = 100.0 * local;
+        // What is estimated is the error of the embedded formula, which on a smooth map is much larger.
+        let estimated = map.smoothness() * local;
         let allowed = ErrorScale {
             position: estimated,
             velocity: estimated / lever,
@@ -102,7 +102,7 @@ impl<'a> Course<'a> {
 
     /// The longest step whose ends tell what happens in between.
     pub fn longest_stride(&self, here: &Point) -> f64 {
-        self.longest.max(here.zeta.norm_sqr().sqrt() / 3.0) / self.strength
+        self.map.longest_stride(here.zeta, self.longest) / self.strength
     }
 
     /// A step meant to end a little beyond the border, which is `time` away by extrapolation.

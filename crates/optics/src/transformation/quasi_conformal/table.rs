@@ -9,7 +9,7 @@ use super::super::conformal::MapJet;
 use super::series::Series;
 
 /// Taylor terms of f' in a patch.
-const TERMS: usize = 10;
+const TERMS: usize = 11;
 
 /// The least distance from the floor in units of a band's spacing, so that the first term left out is below
 /// rounding.
