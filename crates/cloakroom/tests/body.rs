@@ -417,3 +417,32 @@ fn what_cannot_be_is_refused_at_its_place() {
         .collect();
     assert!(try_bench(&many).unwrap_err().contains("65 bodies"));
 }
+
+/// Tensors are those of the body's own frame, as in a prism.
+#[test]
+fn a_turned_anisotropic_box_is_the_turned_prism() {
+    let medium = "permittivity = [[2.5, 0.3, 0.1], [0.3, 1.8, 0], [0.1, 0, [1.4, 2e-7]]]\n";
+    let place = "rotation = 23\nposition = [1, -2, 0.5]\n";
+    let boxed = bench(&body(&format!("{place}shape = \"box\"\nsize = [6, 8, 7]\n{medium}")));
+    let prism = bench(&format!(
+        "[[device]]\nkind = \"prisms\"\nlength = 7\n{place}[[device.prism]]\n\
+         corners = [[-3, -4], [3, -4], [3, 4], [-3, 4]]\n{medium}"
+    ));
+    let limits = Limits { min_power: 1e-3, tolerance: 1e-9 };
+    let (mut one, mut other) = (Tracer::new(&boxed, limits), Tracer::new(&prism, limits));
+    let by_path = |leaves: &[Leaf<2>]| {
+        let mut leaves = leaves.to_vec();
+        leaves.sort_by(|a, b| b.power[0].total_cmp(&a.power[0]));
+        leaves
+    };
+    for launch in launches(300, 8.0) {
+        let leaves = by_path(one.trace(&launch).0);
+        let (others, outcome) = other.trace(&launch);
+        let others = by_path(others);
+        assert_eq!(outcome.rarities.lost, 0);
+        for (a, b) in leaves.iter().zip(&others).take(3) {
+            assert!((a.power[0] - b.power[0]).abs() < 1e-9, "{launch:?} {a:?} {b:?}");
+            assert!((a.optical_path - b.optical_path).abs() < 1e-7 || a.power[0] < 1e-2);
+        }
+    }
+}
