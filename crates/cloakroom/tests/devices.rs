@@ -12,7 +12,6 @@ use optics::wave::transverse_basis;
 use std::path::Path;
 
 /// What a kind needs to be something: its tables or media, of indices so low that boxes cannot trap light.
-
 const MORE: &[(&str, &str)] = &[
     (
         "prisms",
