@@ -38,9 +38,11 @@ pub(super) struct Trial {
     pub evaluations: u32,
 }
 
-/// A ray's constants, and how accurately to follow it.
-pub(super) struct Course<'a> {
+/// A ray's constants, and how accurately to follow it. `jet` is that of the map: which map it is was settled
+/// before the first step, and the compiler sees through it.
+pub(super) struct Course<'a, J> {
     map: &'a ConformalMap,
+    jet: J,
     p_z: f64,
     strength: f64,
     scale: f64,
@@ -49,9 +51,16 @@ pub(super) struct Course<'a> {
     nudge_reach: f64,
 }
 
-impl<'a> Course<'a> {
+impl<'a, J: Fn(Complex64) -> MapJet> Course<'a, J> {
     /// `lever` is the length over which errors of direction grow into errors of position.
-    pub fn new(map: &'a ConformalMap, p_z: f64, strength: f64, tolerance: f64, lever: f64) -> Self {
+    pub fn new(
+        map: &'a ConformalMap,
+        jet: J,
+        p_z: f64,
+        strength: f64,
+        tolerance: f64,
+        lever: f64,
+    ) -> Self {
         // Steep rays take long ways, on which errors have time to grow.
         let flatness = (1.0 - (p_z / strength).powi(2)).max(0.05);
         let local = flatness.powi(3) * tolerance.max(1e-12);
@@ -69,7 +78,7 @@ impl<'a> Course<'a> {
         let nudge_reach = scale * 0.04 * (tolerance.max(1e-12) / 1e-6).sqrt().sqrt();
         // Where the estimate is low by chance, the order of the method still keeps a shorter step right.
         let longest = 1.5 * scale * (tolerance.max(1e-12) / 1e-6).min(1.0).sqrt().sqrt().sqrt();
-        Self { map, p_z, strength, scale, allowed, longest, nudge_reach }
+        Self { map, jet, p_z, strength, scale, allowed, longest, nudge_reach }
     }
 
     pub fn p_z(&self) -> f64 {
@@ -83,7 +92,7 @@ impl<'a> Course<'a> {
 
     /// The start of the path, `p` the transverse wave vector.
     pub fn start(&self, zeta: Complex64, p: Complex64, z: f64) -> Point {
-        let jet = self.map.jet(zeta);
+        let jet = (self.jet)(zeta);
         let momentum = self.on_shell(jet.f1.conj() * p, &jet);
         self.point_with(jet, 0.0, zeta, momentum, z, 0.0)
     }
@@ -129,7 +138,7 @@ impl<'a> Course<'a> {
             h,
             &self.allowed,
             |zeta| {
-                let jet = self.map.jet(zeta);
+                let jet = (self.jet)(zeta);
                 Stage { force: self.force(&jet), jet }
             },
             |jet, momentum| self.rates(jet, momentum),
@@ -181,11 +190,11 @@ impl<'a> Course<'a> {
     fn nudge(&self, from: &Point, h: f64) -> Point {
         let first = self.rates(&from.jet, from.momentum);
         let zeta = from.zeta + 0.5 * h * (from.momentum + 0.25 * h * from.force);
-        let jet = self.map.jet(zeta);
+        let jet = (self.jet)(zeta);
         let middle_force = self.force(&jet);
         let second = self.rates(&jet, from.momentum + 0.5 * h * from.force);
         let zeta = from.zeta + h * (from.momentum + 0.5 * h * middle_force);
-        let jet = self.map.jet(zeta);
+        let jet = (self.jet)(zeta);
         let last_force = self.force(&jet);
         let third = self.rates(&jet, from.momentum + h * middle_force);
         let simpson = |k: usize| h / 6.0 * (first[k] + 4.0 * second[k] + third[k]);
@@ -199,7 +208,7 @@ impl<'a> Course<'a> {
     }
 
     fn point(&self, tau: f64, zeta: Complex64, momentum: Complex64, z: f64, theta: f64) -> Point {
-        self.point_with(self.map.jet(zeta), tau, zeta, momentum, z, theta)
+        self.point_with((self.jet)(zeta), tau, zeta, momentum, z, theta)
     }
 
     fn point_with(

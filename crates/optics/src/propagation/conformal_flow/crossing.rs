@@ -3,7 +3,8 @@
 use super::Boundary;
 use super::course::{Course, Point};
 use crate::geometry::Extent;
-use crate::transformation::{Truncation, root_in_bracket};
+use crate::transformation::{MapJet, Truncation, root_in_bracket};
+use num_complex::Complex64;
 
 /// Rates below this count as going along the border.
 const ALONG: f64 = 1e-14;
@@ -134,7 +135,12 @@ impl Gauges {
     }
 
     /// The part of the border a ray starts on if it goes outwards from there.
-    pub fn leaving_at(&self, course: &Course, point: &Point, slack: f64) -> Option<Boundary> {
+    pub fn leaving_at<J: Fn(Complex64) -> MapJet>(
+        &self,
+        course: &Course<'_, J>,
+        point: &Point,
+        slack: f64,
+    ) -> Option<Boundary> {
         self.finite()
             .map(|gauge| (gauge, gauge.at(point, course.p_z())))
             .filter(|(_, motion)| motion.value <= slack && motion.rate < -ALONG)
@@ -143,14 +149,24 @@ impl Gauges {
     }
 
     /// When the ray next meets the border, by extrapolation.
-    pub fn time_ahead(&self, course: &Course, point: &Point) -> f64 {
+    pub fn time_ahead<J: Fn(Complex64) -> MapJet>(
+        &self,
+        course: &Course<'_, J>,
+        point: &Point,
+    ) -> f64 {
         self.finite()
             .map(|gauge| gauge.at(point, course.p_z()).time_ahead())
             .fold(f64::INFINITY, f64::min)
     }
 
     /// The first crossing of the border in a step of length `reach` from `a` to `b`.
-    pub fn first_crossing(&self, course: &Course, a: &Point, b: &Point, reach: f64) -> Crossing {
+    pub fn first_crossing<J: Fn(Complex64) -> MapJet>(
+        &self,
+        course: &Course<'_, J>,
+        a: &Point,
+        b: &Point,
+        reach: f64,
+    ) -> Crossing {
         let (mut first, mut earliest) = (Crossing::None, f64::INFINITY);
         for &gauge in self.finite() {
             let (from, to) = (gauge.at(a, course.p_z()), gauge.at(b, course.p_z()));
@@ -186,9 +202,9 @@ impl Gauges {
 
     /// Lands on the border: `ahead` of `here`, at the given gauge, as far as interpolation can tell. `reach`
     /// limits each correction.
-    pub fn land(
+    pub fn land<J: Fn(Complex64) -> MapJet>(
         &self,
-        course: &Course,
+        course: &Course<'_, J>,
         mut here: Point,
         mut ahead: f64,
         mut gauge: Gauge,

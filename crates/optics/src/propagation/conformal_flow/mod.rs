@@ -20,7 +20,7 @@ use thiserror::Error;
 use self::course::{Course, Point};
 use self::crossing::{Crossing, Gauges};
 use crate::geometry::Extent;
-use crate::transformation::{ConformalMap, Truncation};
+use crate::transformation::{ConformalMap, MapJet, Truncation};
 
 /// Which of the two mirror images of the half-space device is meant.
 #[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
@@ -239,8 +239,31 @@ impl ConformalFlow {
         if (length - start.index).abs() > 1e-6 * start.index {
             return Err(FlowError::WaveVector { length, index: start.index });
         }
+        // Which map it is is settled once, not at every evaluation.
+        match &self.map {
+            ConformalMap::Gaussian(map) => {
+                self.advance_by(|zeta| map.jet(zeta), start, position, p, tolerance)
+            }
+            ConformalMap::Grating(map) => {
+                self.advance_by(|zeta| map.jet(zeta), start, position, p, tolerance)
+            }
+            ConformalMap::QuasiConformal(map) => {
+                self.advance_by(|zeta| map.jet(zeta), start, position, p, tolerance)
+            }
+        }
+    }
+
+    /// [`Self::advance_from`] with the jet of the map, position and wave vector being in the upper half.
+    fn advance_by(
+        &self,
+        jet: impl Fn(Complex64) -> MapJet + Copy,
+        start: &Foothold,
+        position: DVec3,
+        p: DVec3,
+        tolerance: f64,
+    ) -> Result<FlowEnd, FlowError> {
         let course =
-            |tolerance| Course::new(&self.map, p.z, self.strength, tolerance, self.lever());
+            |tolerance| Course::new(&self.map, jet, p.z, self.strength, tolerance, self.lever());
         let mut course_to_end = course(tolerance);
         let begin =
             course_to_end.start(start.virtual_position, Complex64::new(p.x, p.y), position.z);
@@ -264,7 +287,11 @@ impl ConformalFlow {
         0.5 * (self.cut.x_max - self.cut.x_min).max(self.cut.y_max)
     }
 
-    fn follow(&self, course: &Course, begin: Point) -> Result<Arrival, FlowError> {
+    fn follow<J: Fn(Complex64) -> MapJet>(
+        &self,
+        course: &Course<'_, J>,
+        begin: Point,
+    ) -> Result<Arrival, FlowError> {
         let mut here = begin;
         let mut evaluations = 1;
         if let Some(boundary) = self.gauges.leaving_at(course, &here, self.slack) {
@@ -306,7 +333,13 @@ impl ConformalFlow {
         Err(FlowError::StepLimit)
     }
 
-    fn end(&self, start: &Foothold, course: &Course, begin: &Point, arrival: &Arrival) -> FlowEnd {
+    fn end<J: Fn(Complex64) -> MapJet>(
+        &self,
+        start: &Foothold,
+        course: &Course<'_, J>,
+        begin: &Point,
+        arrival: &Arrival,
+    ) -> FlowEnd {
         let half = start.half;
         let Arrival { mut point, boundary, evaluations } = *arrival;
         let mut position = DVec3::new(point.jet.f.re, point.jet.f.im, point.z);
