@@ -15,6 +15,7 @@
 
 pub mod geometry;
 pub mod interface;
+mod lanes;
 pub mod medium;
 pub mod propagation;
 pub mod transformation;

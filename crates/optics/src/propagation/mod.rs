@@ -1,7 +1,7 @@
 //! How a ray runs through a graded medium.
 
 mod conformal_flow;
-pub mod nystrom;
+mod nystrom;
 mod radial;
 pub mod reference;
 

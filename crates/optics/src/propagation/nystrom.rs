@@ -2,140 +2,166 @@
 //!
 //! For y'' = F(y), a force that does not depend on the velocity: nine stages, the last at the end of the
 //! step, with an embedded formula of order 6 for the error (RKN8(6)9FM, IMA J. Numer. Anal. 7, 423 (1987),
-//! with the corrections of 11, 297 (1991)).
+//! with the corrections of 11, 297 (1991)). Four steps are taken at once.
 
-use num_complex::Complex64;
+use pulp::Simd;
 
-/// A place in the plane and its velocity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
+use crate::lanes::{ComplexLanes, Lanes};
+
+/// Places in the plane and their velocities.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion<S: Simd> {
     /// y.
-    pub position: Complex64,
+    pub position: ComplexLanes<S>,
     /// y'.
-    pub velocity: Complex64,
+    pub velocity: ComplexLanes<S>,
 }
 
 /// What is known of the field of force at one place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stage<J> {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stage<S: Simd, J> {
     /// F.
-    pub force: Complex64,
+    pub force: ComplexLanes<S>,
     /// What else was found there, for the quadratures.
     pub jet: J,
 }
 
-/// Largest errors allowed in one step, to weigh the estimates with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ErrorScale<const Q: usize> {
+/// One over the largest errors allowed in a step, to weigh the estimates with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ErrorWeight<S: Simd, const Q: usize> {
     /// Of the position.
-    pub position: f64,
+    pub position: Lanes<S>,
     /// Of the velocity.
-    pub velocity: f64,
-    /// Of each quadrature; infinity for those that do not count.
-    pub quadrature: [f64; Q],
+    pub velocity: Lanes<S>,
+    /// Of each quadrature; zero for those that do not count.
+    pub quadrature: [Lanes<S>; Q],
 }
 
 /// The end of a step that may be taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step<J, const Q: usize> {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step<S: Simd, J, const Q: usize> {
     /// Where the step ends, of order 8.
-    pub end: Motion,
+    pub end: Motion<S>,
     /// The field of force there.
-    pub stage: Stage<J>,
+    pub stage: Stage<S, J>,
     /// The growth of the quadratures ∫ g(y, y') over the step.
-    pub quadrature: [f64; Q],
+    pub quadrature: [Lanes<S>; Q],
     /// The estimated error over the allowed one: take the step if this is at most 1.
-    pub error: f64,
+    pub error: Lanes<S>,
 }
 
 /// Evaluations of the force in a step, in addition to the one at its start.
-pub const EVALUATIONS: u32 = 8;
+pub(crate) const EVALUATIONS: u32 = 8;
 
 /// The largest and the smallest change of the step size from one step to the next.
 const FACTOR_RANGE: (f64, f64) = (0.2, 5.0);
 
 /// By how much to stretch the step size after a step of the given relative error.
 #[must_use]
-pub fn step_factor(error: f64) -> f64 {
+pub(crate) fn step_factor(error: f64) -> f64 {
     // error^(-1/8); the safety factor keeps most of the next steps acceptable.
     let factor = 0.9 / error.sqrt().sqrt().sqrt();
     // A NaN shortens the step.
     if factor > FACTOR_RANGE.0 { factor.min(FACTOR_RANGE.1) } else { FACTOR_RANGE.0 }
 }
 
-/// A step of length `h` (negative: backwards) from `start`, where the force is known.
-///
-/// `look` finds the force at a place, `rates` the integrands g of the quadratures there.
-#[inline]
-pub fn step<J: Copy, const Q: usize>(
-    start: Motion,
-    first: Stage<J>,
-    h: f64,
-    scale: &ErrorScale<Q>,
-    look: impl Fn(Complex64) -> Stage<J>,
-    rates: impl Fn(&J, Complex64) -> [f64; Q],
-) -> Step<J, Q> {
+/// Σ c_k f_k
+#[inline(always)]
+fn sum<S: Simd, const N: usize>(
+    weights: &[f64; N],
+    terms: [ComplexLanes<S>; N],
+) -> ComplexLanes<S> {
+    let mut sum = terms[0] * weights[0];
+    for k in 1..N {
+        sum = sum + terms[k] * weights[k];
+    }
+    sum
+}
+
+/// A field of force, and what is to be integrated along the way.
+pub(crate) trait Field<S: Simd, const Q: usize> {
+    /// What is found at a place.
+    type Jet: Copy;
+
+    /// The force at a place; to be inlined.
+    fn look(&self, place: ComplexLanes<S>) -> Stage<S, Self::Jet>;
+
+    /// The integrands g of the quadratures; to be inlined.
+    fn rates(&self, jet: &Self::Jet, velocity: ComplexLanes<S>) -> [Lanes<S>; Q];
+}
+
+impl<S: Simd> Motion<S> {
+    /// The place after a share of the step, but for the force.
+    #[inline(always)]
+    fn coasted(&self, h: Lanes<S>, share: f64) -> ComplexLanes<S> {
+        self.position + self.velocity * (h * share)
+    }
+}
+
+/// Σ c_n g_n of the quadrature k.
+#[inline(always)]
+fn weighted<S: Simd, const Q: usize>(
+    weights: &[f64; 7],
+    rates: &[[Lanes<S>; Q]; 7],
+    k: usize,
+) -> Lanes<S> {
+    let mut sum = rates[0][k] * weights[0];
+    for n in 1..7 {
+        sum = sum + rates[n][k] * weights[n];
+    }
+    sum
+}
+
+/// Steps of length `h` (negative: backwards) from `start`, where the force is known.
+#[inline(always)]
+pub(crate) fn step<S: Simd, F: Field<S, Q>, const Q: usize>(
+    field: &F,
+    start: Motion<S>,
+    first: Stage<S, F::Jet>,
+    h: Lanes<S>,
+    weight: &ErrorWeight<S, Q>,
+) -> Step<S, F::Jet, Q> {
     let square = h * h;
-    let coast = |share: f64| start.position + (share * h) * start.velocity;
     let f0 = first.force;
-    let f1 = look(coast(0.05) + square * A1 * f0).force;
-    let s2 = look(coast(0.1) + square * (A2[0] * f0 + A2[1] * f1));
+    let f1 = field.look(start.coasted(h, 0.05) + f0 * (square * A1)).force;
+    let s2 = field.look(start.coasted(h, 0.1) + sum(&A2, [f0, f1]) * square);
     let f2 = s2.force;
-    let s3 = look(coast(0.3) + square * (A3[0] * f0 + A3[1] * f1 + A3[2] * f2));
+    let s3 = field.look(start.coasted(h, 0.3) + sum(&A3, [f0, f1, f2]) * square);
     let f3 = s3.force;
-    let s4 = look(coast(0.5) + square * (A4[0] * f0 + A4[1] * f1 + A4[2] * f2 + A4[3] * f3));
+    let s4 = field.look(start.coasted(h, 0.5) + sum(&A4, [f0, f1, f2, f3]) * square);
     let f4 = s4.force;
-    let s5 = look(
-        coast(0.7) + square * (A5[0] * f0 + A5[1] * f1 + A5[2] * f2 + A5[3] * f3 + A5[4] * f4),
-    );
+    let s5 = field.look(start.coasted(h, 0.7) + sum(&A5, [f0, f1, f2, f3, f4]) * square);
     let f5 = s5.force;
-    let s6 = look(
-        coast(0.9)
-            + square
-                * (A6[0] * f0 + A6[1] * f1 + A6[2] * f2 + A6[3] * f3 + A6[4] * f4 + A6[5] * f5),
-    );
+    let s6 = field.look(start.coasted(h, 0.9) + sum(&A6, [f0, f1, f2, f3, f4, f5]) * square);
     let f6 = s6.force;
-    let s7 = look(
-        coast(1.0)
-            + square
-                * (A7[0] * f0
-                    + A7[1] * f1
-                    + A7[2] * f2
-                    + A7[3] * f3
-                    + A7[4] * f4
-                    + A7[5] * f5
-                    + A7[6] * f6),
-    );
-    let f7 = s7.force;
-    let place =
-        |b: &[f64; 6]| b[0] * f0 + b[1] * f2 + b[2] * f3 + b[3] * f4 + b[4] * f5 + b[5] * f6;
-    let position = coast(1.0) + square * place(&B);
-    let last = look(position);
+    let s7 = field.look(start.coasted(h, 1.0) + sum(&A7, [f0, f1, f2, f3, f4, f5, f6]) * square);
+    let places = [f0, f2, f3, f4, f5, f6];
+    let position = start.coasted(h, 1.0) + sum(&B, places) * square;
+    let last = field.look(position);
     // The velocity formula is the quadrature that interpolates at its nodes, and so are those that give
     // the velocity there.
-    let forces = [f0, f2, f3, f4, f5, f6, f7];
-    let sum = |row: &[f64; 7]| row.iter().zip(forces).map(|(c, f)| c * f).sum::<Complex64>();
-    let velocity_after = |row: &[f64; 7]| start.velocity + h * sum(row);
-    let velocity = velocity_after(&DB);
+    let forces = [f0, f2, f3, f4, f5, f6, s7.force];
+    let velocity = start.velocity + sum(&DB, forces) * h;
     let g = [
-        rates(&first.jet, start.velocity),
-        rates(&s2.jet, velocity_after(&V2)),
-        rates(&s3.jet, velocity_after(&V3)),
-        rates(&s4.jet, velocity_after(&V4)),
-        rates(&s5.jet, velocity_after(&V5)),
-        rates(&s6.jet, velocity_after(&V6)),
-        rates(&s7.jet, velocity),
+        field.rates(&first.jet, start.velocity),
+        field.rates(&s2.jet, start.velocity + sum(&V2, forces) * h),
+        field.rates(&s3.jet, start.velocity + sum(&V3, forces) * h),
+        field.rates(&s4.jet, start.velocity + sum(&V4, forces) * h),
+        field.rates(&s5.jet, start.velocity + sum(&V5, forces) * h),
+        field.rates(&s6.jet, start.velocity + sum(&V6, forces) * h),
+        field.rates(&s7.jet, velocity),
     ];
-    let end_rates = rates(&last.jet, velocity);
-    let quadrature =
-        std::array::from_fn(|k| h * DB.iter().zip(&g).map(|(b, g)| b * g[k]).sum::<f64>());
-    let mut error = (square * place(&E)).norm_sqr() / (scale.position * scale.position)
-        + (h * (sum(&DE) - LAST * last.force)).norm_sqr() / (scale.velocity * scale.velocity);
-    for k in 0..Q {
-        let estimate = DE.iter().zip(&g).map(|(e, g)| e * g[k]).sum::<f64>() - LAST * end_rates[k];
-        error += (h * estimate / scale.quadrature[k]).powi(2);
+    let mut quadrature = field.rates(&last.jet, velocity);
+    let off = sum(&E, places) * (square * weight.position);
+    let astray = (sum(&DE, forces) - last.force * LAST) * (h * weight.velocity);
+    let mut error = off.norm_squared() + astray.norm_squared();
+    for (k, growth) in quadrature.iter_mut().enumerate() {
+        let off = (weighted(&DE, &g, k) - *growth * LAST) * (h * weight.quadrature[k]);
+        error = error + off * off;
+        *growth = weighted(&DB, &g, k) * h;
     }
-    Step { end: Motion { position, velocity }, stage: last, quadrature, error: error.sqrt() }
+    let end = Motion { position, velocity };
+    Step { end, stage: last, quadrature, error: error.sqrt() }
 }
 
 const A1: f64 = 1.0 / 800.0;
@@ -257,48 +283,87 @@ const V6: [f64; 7] = [
 
 #[cfg(test)]
 mod tests {
+    use std::array;
+
+    use num_complex::Complex64;
+    use pulp::WithSimd;
+
     use super::*;
+    use crate::lanes::{LANES, side_by_side};
 
-    const LOOSE: ErrorScale<1> = ErrorScale { position: 1.0, velocity: 1.0, quadrature: [1.0] };
+    /// Position and velocity.
+    type Place = [Complex64; 2];
 
-    /// A Kepler orbit of eccentricity 0.3; the quadrature is the time integral of the speed squared.
-    fn pull(y: Complex64) -> Stage<()> {
-        Stage { force: -y / y.norm().powi(3), jet: () }
+    /// A step of length `h` of four Kepler orbits from `start`; the quadrature is the time integral of the
+    /// speed squared.
+    struct Orbits {
+        start: [Place; LANES],
+        h: [f64; LANES],
     }
 
-    fn action_rate((): &(), velocity: Complex64) -> [f64; 1] {
-        [velocity.norm_sqr()]
+    struct Sun;
+
+    impl<S: Simd> Field<S, 1> for Sun {
+        type Jet = ();
+
+        #[inline(always)]
+        fn look(&self, y: ComplexLanes<S>) -> Stage<S, ()> {
+            let r = y.norm_squared().sqrt();
+            Stage { force: y * r.all(-1.0).divided_by(r * r * r), jet: () }
+        }
+
+        #[inline(always)]
+        fn rates(&self, (): &(), velocity: ComplexLanes<S>) -> [Lanes<S>; 1] {
+            [velocity.norm_squared()]
+        }
     }
 
-    fn start() -> Motion {
-        Motion { position: 0.7.into(), velocity: Complex64::new(0.0, (1.3_f64 / 0.7).sqrt()) }
+    impl WithSimd for Orbits {
+        type Output = ([Place; LANES], [f64; LANES], [f64; LANES]);
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let [position, velocity] =
+                [0, 1].map(|k| ComplexLanes::new(simd, self.start.map(|place| place[k])));
+            let one = Lanes::splat(simd, 1.0);
+            let weight = ErrorWeight { position: one, velocity: one, quadrature: [one] };
+            let h = Lanes::new(simd, self.h);
+            let start = Motion { position, velocity };
+            let step = step(&Sun, start, Sun.look(position), h, &weight);
+            let (position, velocity) = (step.end.position.values(), step.end.velocity.values());
+            let ends = array::from_fn(|i| [position[i], velocity[i]]);
+            (ends, step.quadrature[0].values(), step.error.values())
+        }
     }
 
-    fn distance(a: Motion, b: Motion) -> f64 {
-        (a.position - b.position).norm().hypot((a.velocity - b.velocity).norm())
+    /// Eccentricity 0.3.
+    fn start() -> Place {
+        [0.7.into(), Complex64::new(0.0, (1.3_f64 / 0.7).sqrt())]
     }
 
-    fn stepped(start: Motion, h: f64) -> Step<(), 1> {
-        step(start, pull(start.position), h, &LOOSE, pull, action_rate)
+    fn distance(a: Place, b: Place) -> f64 {
+        (a[0] - b[0]).norm().hypot((a[1] - b[1]).norm())
     }
 
-    /// One revolution in `count` steps: errors of state and of quadrature.
-    fn revolution(count: u32, direction: f64) -> (f64, f64) {
-        let h = direction * std::f64::consts::TAU / f64::from(count);
-        let (mut motion, mut action) = (start(), 0.0);
+    /// Errors of state and of quadrature after one revolution in `count` steps, in each direction.
+    fn revolution(count: u32) -> [(f64, f64); 2] {
+        let h = std::f64::consts::TAU / f64::from(count);
+        let mut places = [start(); LANES];
+        let mut action = [0.0; LANES];
         for _ in 0..count {
-            let step = stepped(motion, h);
-            motion = step.end;
-            action += step.quadrature[0];
+            let step = side_by_side(Orbits { start: places, h: [h, -h, h, -h] });
+            places = step.0;
+            action = array::from_fn(|i| action[i] + step.1[i]);
         }
         // Virial theorem: the mean of v² is 1 for the unit period orbit.
-        (distance(motion, start()), (action - direction * std::f64::consts::TAU).abs())
+        [0, 1].map(|i| {
+            (distance(places[i], start()), (action[i].abs() - std::f64::consts::TAU).abs())
+        })
     }
 
     #[test]
     fn converges_with_order_eight_forwards_and_backwards() {
-        for direction in [1.0, -1.0] {
-            let (coarse, fine) = (revolution(60, direction), revolution(120, direction));
+        for (coarse, fine) in revolution(60).into_iter().zip(revolution(120)) {
             let order = (coarse.0 / fine.0).log2();
             assert!(order > 7.6 && order < 8.8, "{order} {coarse:?} {fine:?}");
             let order = (coarse.1 / fine.1).log2();
@@ -309,14 +374,16 @@ mod tests {
 
     #[test]
     fn estimates_bound_the_error_and_scale_with_a_high_power() {
-        let single = |h: f64| {
-            let whole = stepped(start(), h);
-            let fine = (0..8).fold(start(), |motion, _| stepped(motion, h / 8.0).end);
-            (distance(fine, whole.end), whole.error)
-        };
-        let (coarse, fine) = (single(0.4), single(0.2));
-        assert!(coarse.0 < coarse.1 && fine.0 < fine.1, "{coarse:?} {fine:?}");
-        assert!((coarse.1 / fine.1).log2() > 6.5, "{coarse:?} {fine:?}");
+        let lengths = [0.4, 0.2, -0.4, -0.2];
+        let whole = side_by_side(Orbits { start: [start(); LANES], h: lengths });
+        let mut fine = [start(); LANES];
+        for _ in 0..8 {
+            fine = side_by_side(Orbits { start: fine, h: lengths.map(|h| h / 8.0) }).0;
+        }
+        for (fine, (end, error)) in fine.into_iter().zip(whole.0.into_iter().zip(whole.2)) {
+            assert!(distance(fine, end) < error, "{:?}", whole.2);
+        }
+        assert!((whole.2[0] / whole.2[1]).log2() > 6.5, "{:?}", whole.2);
     }
 
     #[test]

@@ -2,10 +2,12 @@
 
 use glam::DVec2;
 use num_complex::Complex64;
+use pulp::Simd;
 
 use super::gaussian::GaussianMap;
 use super::grating::GratingMap;
 use super::quasi_conformal::QuasiConformalMap;
+use crate::lanes::ComplexLanes;
 
 /// Value and derivatives of a conformal map at one virtual point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +28,23 @@ impl MapJet {
     pub fn stretch(&self) -> f64 {
         self.f1.norm_sqr().sqrt()
     }
+}
+
+/// Value and derivatives at four virtual points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct JetLanes<S: Simd> {
+    /// f(ζ).
+    pub f: ComplexLanes<S>,
+    /// f'(ζ).
+    pub f1: ComplexLanes<S>,
+    /// f''(ζ).
+    pub f2: ComplexLanes<S>,
+}
+
+/// A map that can be evaluated at four points at once. What is not used of the jets is not computed.
+pub(crate) trait LaneMap {
+    /// Values and derivatives at virtual points, to be inlined.
+    fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S>;
 }
 
 /// A rectangle that a half-space device is cut to: x_min <= x <= x_max, y <= y_max, above the floor.

@@ -3,11 +3,13 @@
 use std::f64::consts::{FRAC_2_SQRT_PI, PI};
 
 use num_complex::Complex64;
+use pulp::Simd;
 use thiserror::Error;
 
-use super::conformal::MapJet;
-use super::faddeeva::{faddeeva, faddeeva_jet};
+use super::conformal::{JetLanes, LaneMap, MapJet};
+use super::faddeeva::{faddeeva, faddeeva_jet, faddeeva_lanes};
 use super::monotone_root::root_between;
+use crate::lanes::ComplexLanes;
 
 /// The map f(ζ) = ζ + i h w_F(ζ/w) of the upper half plane, capital = virtual: x + iy = f(X + iY).
 ///
@@ -131,5 +133,26 @@ impl GaussianMap {
     #[must_use]
     pub fn area(&self) -> f64 {
         self.height * (PI.sqrt() * self.width - self.height)
+    }
+}
+
+impl LaneMap for GaussianMap {
+    #[inline(always)]
+    fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S> {
+        // As in `jet`, with w_F' and w_F'' multiplied by i throughout.
+        let t = zeta * self.inverse_width;
+        let w = faddeeva_lanes(t);
+        let twice = t * 2.0;
+        let i_w = w.times_i();
+        let i_w1 = -(twice * i_w);
+        let i_w1 = ComplexLanes { re: i_w1.re - i_w1.re.all(FRAC_2_SQRT_PI), im: i_w1.im };
+        let i_w2 = -(i_w * 2.0 + twice * i_w1);
+        let slope = self.height * self.inverse_width;
+        let f1 = i_w1 * slope;
+        JetLanes {
+            f: zeta + i_w * self.height,
+            f1: ComplexLanes { re: f1.re + f1.re.all(1.0), im: f1.im },
+            f2: i_w2 * (slope * self.inverse_width),
+        }
     }
 }

@@ -3,10 +3,12 @@
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
+use pulp::Simd;
 use thiserror::Error;
 
-use super::conformal::MapJet;
+use super::conformal::{JetLanes, LaneMap, MapJet};
 use super::monotone_root::root_between;
+use crate::lanes::ComplexLanes;
 
 /// The map f(ζ) = ζ + i h exp(ikζ), k = 2π/Λ, of the upper half plane, capital = virtual: x + iy = f(X + iY).
 ///
@@ -143,6 +145,24 @@ impl GratingMap {
     #[must_use]
     pub fn area_of_a_period(&self) -> f64 {
         self.height * (self.period() - 0.5 * TAU * self.height)
+    }
+}
+
+impl LaneMap for GratingMap {
+    #[inline(always)]
+    fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S> {
+        let waves = zeta.values().map(|zeta| self.wave(zeta));
+        let wave = ComplexLanes {
+            re: zeta.re.with(waves.map(|wave| wave.re)),
+            im: zeta.re.with(waves.map(|wave| wave.im)),
+        };
+        let (k, slope) = (self.wave_number, self.height * self.wave_number);
+        let f1 = -(wave * slope);
+        JetLanes {
+            f: zeta + wave.times_i() * self.height,
+            f1: ComplexLanes { re: f1.re + f1.re.all(1.0), im: f1.im },
+            f2: f1.times_i() * k,
+        }
     }
 }
 

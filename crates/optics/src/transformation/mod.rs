@@ -10,6 +10,7 @@ mod radial;
 mod strip_to_rhombus;
 
 pub use conformal::{ConformalMap, MapJet, Truncation};
+pub(crate) use conformal::{JetLanes, LaneMap};
 pub use faddeeva::{FaddeevaJet, faddeeva, faddeeva_jet};
 pub use gaussian::{GaussianMap, GaussianMapError};
 pub use grating::{GratingMap, GratingMapError};

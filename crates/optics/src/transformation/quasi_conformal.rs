@@ -7,12 +7,14 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use num_complex::Complex64;
+use pulp::Simd;
 use thiserror::Error;
 
 use self::series::Series;
 use self::table::Table;
-use super::conformal::{MapJet, Truncation};
+use super::conformal::{JetLanes, LaneMap, MapJet, Truncation};
 use super::monotone_root::root_between;
+use crate::lanes::ComplexLanes;
 
 /// The map of the box |x| <= A, y <= H above the floor y = h cos²(πx/w), |x| < w/2, else 0, from a
 /// rectangle |X| <= A, 0 <= Y <= H_c, whose borders may slide along those of the box (Li & Pendry, Phys.
@@ -245,6 +247,13 @@ impl QuasiConformalMap {
         let x = x.clamp(-0.5 * width, 0.5 * width);
         let k = 2.0 * PI / width;
         0.5 * height * (x + (k * x).sin() / k)
+    }
+}
+
+impl LaneMap for QuasiConformalMap {
+    #[inline(always)]
+    fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S> {
+        self.solved.table.jets(zeta)
     }
 }
 

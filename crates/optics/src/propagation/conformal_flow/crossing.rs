@@ -3,8 +3,7 @@
 use super::Boundary;
 use super::course::{Course, Point};
 use crate::geometry::Extent;
-use crate::transformation::{MapJet, Truncation, root_in_bracket};
-use num_complex::Complex64;
+use crate::transformation::{Truncation, root_in_bracket};
 
 /// Rates below this count as going along the border.
 const ALONG: f64 = 1e-14;
@@ -103,10 +102,23 @@ pub(super) enum Crossing {
     At { gauge: Gauge, share: f64 },
 }
 
-/// A finished landing.
+/// The last moves of a ray, onto the border.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Landing {
-    pub outcome: Option<(Point, Boundary)>,
-    pub evaluations: u32,
+    /// How far to move next.
+    pub ahead: f64,
+    gauge: Gauge,
+    /// The limit of each correction.
+    reach: f64,
+    corrections: u32,
+}
+
+/// What a landing ray finds after a move.
+pub(super) enum Look {
+    /// It is not there yet.
+    Move,
+    Landed(Boundary),
+    Missed,
 }
 
 /// The distances from all parts of the border.
@@ -135,41 +147,26 @@ impl Gauges {
     }
 
     /// The part of the border a ray starts on if it goes outwards from there.
-    pub fn leaving_at<J: Fn(Complex64) -> MapJet>(
-        &self,
-        course: &Course<'_, J>,
-        point: &Point,
-        slack: f64,
-    ) -> Option<Boundary> {
+    pub fn leaving_at(&self, course: &Course, point: &Point, slack: f64) -> Option<Boundary> {
         self.finite()
-            .map(|gauge| (gauge, gauge.at(point, course.p_z())))
+            .map(|gauge| (gauge, gauge.at(point, course.p_z)))
             .filter(|(_, motion)| motion.value <= slack && motion.rate < -ALONG)
             .min_by(|a, b| a.1.rate.total_cmp(&b.1.rate))
             .map(|(gauge, _)| gauge.boundary)
     }
 
     /// When the ray next meets the border, by extrapolation.
-    pub fn time_ahead<J: Fn(Complex64) -> MapJet>(
-        &self,
-        course: &Course<'_, J>,
-        point: &Point,
-    ) -> f64 {
+    pub fn time_ahead(&self, course: &Course, point: &Point) -> f64 {
         self.finite()
-            .map(|gauge| gauge.at(point, course.p_z()).time_ahead())
+            .map(|gauge| gauge.at(point, course.p_z).time_ahead())
             .fold(f64::INFINITY, f64::min)
     }
 
     /// The first crossing of the border in a step of length `reach` from `a` to `b`.
-    pub fn first_crossing<J: Fn(Complex64) -> MapJet>(
-        &self,
-        course: &Course<'_, J>,
-        a: &Point,
-        b: &Point,
-        reach: f64,
-    ) -> Crossing {
+    pub fn first_crossing(&self, course: &Course, a: &Point, b: &Point, reach: f64) -> Crossing {
         let (mut first, mut earliest) = (Crossing::None, f64::INFINITY);
         for &gauge in self.finite() {
-            let (from, to) = (gauge.at(a, course.p_z()), gauge.at(b, course.p_z()));
+            let (from, to) = (gauge.at(a, course.p_z), gauge.at(b, course.p_z));
             let (share, found) = if to.value < 0.0 {
                 let share = Hermite::new(from, to, reach).first_fall();
                 (share, Crossing::At { gauge, share })
@@ -177,8 +174,8 @@ impl Gauges {
                 let hermite = Hermite::new(from, to, reach);
                 let (share, least) = hermite.minimum();
                 // The interpolation is not trusted beyond this.
-                let relative = reach / course.scale();
-                let margin = 2e-3 * course.scale() * relative.powi(4);
+                let relative = reach / course.scale;
+                let margin = 2e-3 * course.scale * relative.powi(4);
                 if share * relative > SHORTEST_SPLIT {
                     if least >= margin {
                         continue;
@@ -199,47 +196,40 @@ impl Gauges {
         }
         first
     }
+}
 
-    /// Lands on the border: `ahead` of `here`, at the given gauge, as far as interpolation can tell. `reach`
-    /// limits each correction.
-    pub fn land<J: Fn(Complex64) -> MapJet>(
-        &self,
-        course: &Course<'_, J>,
-        mut here: Point,
-        mut ahead: f64,
-        mut gauge: Gauge,
-        reach: f64,
-    ) -> Landing {
-        let mut evaluations = 0;
-        for _ in 0..MAX_CORRECTIONS {
-            if ahead != 0.0 {
-                let (point, cost) = course.shift(&here, ahead);
-                here = point;
-                evaluations += cost;
-            }
-            let motion = gauge.at(&here, course.p_z());
-            let remaining = motion.time_to_zero();
-            if remaining.abs() > reach || remaining.is_nan() {
-                return Landing { outcome: None, evaluations };
-            }
-            let exact = LANDED * (course.scale() + gauge.limit.abs());
-            if motion.value.abs() > exact && remaining != 0.0 {
-                ahead = remaining;
-                continue;
-            }
-            // Near an edge the interpolation may have taken the later of two crossings for the first.
-            let missed = self.finite().find(|other| {
-                let motion = other.at(&here, course.p_z());
-                motion.value < -MISSED * course.scale() && motion.rate < 0.0
-            });
-            let Some(&other) = missed else {
-                return Landing { outcome: Some((here, gauge.boundary)), evaluations };
-            };
-            gauge = other;
-            ahead = other.at(&here, course.p_z()).time_to_zero().max(-reach);
+impl Landing {
+    /// On a border that is `ahead`, at the given gauge, as far as interpolation can tell.
+    pub fn new(ahead: f64, gauge: Gauge, reach: f64) -> Self {
+        Self { ahead, gauge, reach, corrections: 0 }
+    }
+
+    /// Looks where the ray is after a move, that is `here`.
+    pub fn look(&mut self, here: &Point, gauges: &Gauges, course: &Course) -> Look {
+        self.corrections += 1;
+        let motion = self.gauge.at(here, course.p_z);
+        let remaining = motion.time_to_zero();
+        if remaining.abs() > self.reach || remaining.is_nan() {
+            return Look::Missed;
         }
-        // Grazing incidence: as near as rounding allows.
-        Landing { outcome: Some((here, gauge.boundary)), evaluations }
+        if self.corrections >= MAX_CORRECTIONS {
+            // Grazing incidence: as near as rounding allows.
+            return Look::Landed(self.gauge.boundary);
+        }
+        let exact = LANDED * (course.scale + self.gauge.limit.abs());
+        if motion.value.abs() > exact && remaining != 0.0 {
+            self.ahead = remaining;
+            return Look::Move;
+        }
+        // Near an edge the interpolation may have taken the later of two crossings for the first.
+        let missed = gauges.finite().find(|other| {
+            let motion = other.at(here, course.p_z);
+            motion.value < -MISSED * course.scale && motion.rate < 0.0
+        });
+        let Some(&other) = missed else { return Look::Landed(self.gauge.boundary) };
+        self.gauge = other;
+        self.ahead = other.at(here, course.p_z).time_to_zero().max(-self.reach);
+        Look::Move
     }
 }
 

@@ -12,15 +12,22 @@
 mod course;
 mod crossing;
 mod frame;
+mod strides;
+mod walk;
+
+use std::array;
 
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 use thiserror::Error;
 
-use self::course::{Course, Point};
-use self::crossing::{Crossing, Gauges};
+use self::course::{Course, Demands, Point};
+use self::crossing::Gauges;
+use self::strides::strides;
+use self::walk::Walk;
 use crate::geometry::Extent;
-use crate::transformation::{ConformalMap, MapJet, Truncation};
+use crate::lanes::LANES;
+use crate::transformation::{ConformalMap, Truncation};
 
 /// Which of the two mirror images of the half-space device is meant.
 #[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
@@ -231,6 +238,47 @@ impl ConformalFlow {
         wave_vector: DVec3,
         tolerance: f64,
     ) -> Result<FlowEnd, FlowError> {
+        let [end, ..] =
+            self.advance_four([Some((*start, wave_vector)), None, None, None], tolerance);
+        end.unwrap_or(Err(FlowError::Outside))
+    }
+
+    /// As [`Self::advance_from`], up to four rays at once, which takes hardly longer than one. Each end is what
+    /// it would be alone.
+    pub fn advance_four(
+        &self,
+        starts: [Option<(Foothold, DVec3)>; LANES],
+        tolerance: f64,
+    ) -> [Option<Result<FlowEnd, FlowError>>; LANES] {
+        let mut walks = starts.map(|start| {
+            start.map(|(start, wave_vector)| self.set_out(&start, wave_vector, tolerance))
+        });
+        loop {
+            let wishes = walks.each_mut().map(|walk| walk.as_mut()?.as_mut().ok()?.wish(self));
+            let wished = wishes.each_ref().map(Option::is_some);
+            let Some(trials) = strides(&self.map, wishes) else { break };
+            for i in 0..LANES {
+                if wished[i]
+                    && let Some(Ok(walk)) = &mut walks[i]
+                {
+                    walk.take(self, &trials[i]);
+                }
+            }
+        }
+        array::from_fn(|i| {
+            let start = starts[i]?.0;
+            Some(
+                walks[i].as_ref()?.as_ref().map_err(|e| *e).and_then(|walk| self.end(&start, walk)),
+            )
+        })
+    }
+
+    fn set_out(
+        &self,
+        start: &Foothold,
+        wave_vector: DVec3,
+        tolerance: f64,
+    ) -> Result<Walk, FlowError> {
         if !wave_vector.is_finite() {
             return Err(FlowError::NotFinite);
         }
@@ -239,40 +287,19 @@ impl ConformalFlow {
         if (length - start.index).abs() > 1e-6 * start.index {
             return Err(FlowError::WaveVector { length, index: start.index });
         }
-        // Which map it is is settled once, not at every evaluation.
-        match &self.map {
-            ConformalMap::Gaussian(map) => {
-                self.advance_by(|zeta| map.jet(zeta), start, position, p, tolerance)
-            }
-            ConformalMap::Grating(map) => {
-                self.advance_by(|zeta| map.jet(zeta), start, position, p, tolerance)
-            }
-            ConformalMap::QuasiConformal(map) => {
-                self.advance_by(|zeta| map.jet(zeta), start, position, p, tolerance)
-            }
-        }
-    }
-
-    /// [`Self::advance_from`] with the jet of the map, position and wave vector being in the upper half.
-    fn advance_by(
-        &self,
-        jet: impl Fn(Complex64) -> MapJet + Copy,
-        start: &Foothold,
-        position: DVec3,
-        p: DVec3,
-        tolerance: f64,
-    ) -> Result<FlowEnd, FlowError> {
-        let course =
-            |tolerance| Course::new(&self.map, jet, p.z, self.strength, tolerance, self.lever());
-        let mut course_to_end = course(tolerance);
-        let begin =
-            course_to_end.start(start.virtual_position, Complex64::new(p.x, p.y), position.z);
+        let demands = |tolerance| Demands {
+            tolerance,
+            smoothness: self.map.smoothness(),
+            scale: self.map.scale(),
+            lever: self.lever(),
+        };
+        let mut course = Course::new(p.z, self.strength, &demands(tolerance));
+        let zeta = start.virtual_position;
+        let begin = course.start(self.map.jet(zeta), zeta, Complex64::new(p.x, p.y), position.z);
         if self.aims_at_floor(&begin) {
-            course_to_end = course(MIRROR_MAGNIFIES * tolerance);
+            course = Course::new(p.z, self.strength, &demands(MIRROR_MAGNIFIES * tolerance));
         }
-        let course = course_to_end;
-        let arrival = self.follow(&course, begin)?;
-        Ok(self.end(start, &course, &begin, &arrival))
+        Ok(Walk::new(self, course, begin))
     }
 
     /// Whether a straight line in virtual space leads to the mirror.
@@ -287,61 +314,10 @@ impl ConformalFlow {
         0.5 * (self.cut.x_max - self.cut.x_min).max(self.cut.y_max)
     }
 
-    fn follow<J: Fn(Complex64) -> MapJet>(
-        &self,
-        course: &Course<'_, J>,
-        begin: Point,
-    ) -> Result<Arrival, FlowError> {
-        let mut here = begin;
-        let mut evaluations = 1;
-        if let Some(boundary) = self.gauges.leaving_at(course, &here, self.slack) {
-            return Ok(Arrival { point: here, boundary, evaluations });
-        }
-        let mut stride = course.first_stride();
-        let mut split = None;
-        for _ in 0..MAX_STEPS {
-            let reach = split.take().unwrap_or_else(|| {
-                stride
-                    .min(course.longest_stride(&here))
-                    .min(course.overshoot(self.gauges.time_ahead(course, &here)))
-            });
-            let trial = course.step(&here, reach);
-            evaluations += trial.evaluations;
-            if trial.error > 1.0 || trial.error.is_nan() {
-                stride = reach * course.step_factor(trial.error);
-                if stride < 1e-9 * self.slack {
-                    break;
-                }
-                continue;
-            }
-            stride = reach * course.step_factor(trial.error);
-            match self.gauges.first_crossing(course, &here, &trial.end, reach) {
-                Crossing::None => here = trial.end,
-                Crossing::Unclear { share } => split = Some(share * reach),
-                Crossing::At { gauge, share } => {
-                    let landing = if share < 0.5 {
-                        self.gauges.land(course, here, share * reach, gauge, reach)
-                    } else {
-                        self.gauges.land(course, trial.end, (share - 1.0) * reach, gauge, reach)
-                    };
-                    evaluations += landing.evaluations;
-                    let Some((point, boundary)) = landing.outcome else { break };
-                    return Ok(Arrival { point, boundary, evaluations });
-                }
-            }
-        }
-        Err(FlowError::StepLimit)
-    }
-
-    fn end<J: Fn(Complex64) -> MapJet>(
-        &self,
-        start: &Foothold,
-        course: &Course<'_, J>,
-        begin: &Point,
-        arrival: &Arrival,
-    ) -> FlowEnd {
+    fn end(&self, start: &Foothold, walk: &Walk) -> Result<FlowEnd, FlowError> {
+        let (mut point, boundary) = walk.arrival()?;
+        let Walk { course, begin, evaluations, .. } = walk;
         let half = start.half;
-        let Arrival { mut point, boundary, evaluations } = *arrival;
         let mut position = DVec3::new(point.jet.f.re, point.jet.f.im, point.z);
         let inward = Complex64::i() * point.jet.f1 / point.jet.stretch();
         let normal = match boundary {
@@ -371,7 +347,7 @@ impl ConformalFlow {
                 mirror * turn * mirror
             }
         };
-        FlowEnd {
+        Ok(FlowEnd {
             boundary,
             at: Foothold {
                 half,
@@ -379,18 +355,11 @@ impl ConformalFlow {
                 virtual_position: point.zeta,
                 index: self.strength / point.jet.stretch(),
             },
-            wave_vector: half.mirrored(DVec3::new(p.re, p.im, course.p_z())),
+            wave_vector: half.mirrored(DVec3::new(p.re, p.im, course.p_z)),
             optical_path: self.strength * self.strength * point.tau,
             transport,
             normal: half.mirrored(normal),
-            evaluations,
-        }
+            evaluations: *evaluations,
+        })
     }
-}
-
-/// The last point of a path and where on the border it is.
-struct Arrival {
-    point: Point,
-    boundary: Boundary,
-    evaluations: u32,
 }

@@ -4,12 +4,25 @@
 //! patches double in size from band to band, as their distance from the floor does.
 
 use num_complex::Complex64;
+use pulp::Simd;
 
-use super::super::conformal::MapJet;
+use super::super::conformal::{JetLanes, MapJet};
 use super::series::Series;
+use crate::lanes::ComplexLanes;
 
 /// Taylor terms of f' in a patch.
 const TERMS: usize = 11;
+
+/// 1/(n + 1).
+const INVERSE: [f64; TERMS] = {
+    let mut inverse = [0.0; TERMS];
+    let mut n = 0;
+    while n < TERMS {
+        inverse[n] = 1.0 / (n as f64 + 1.0);
+        n += 1;
+    }
+    inverse
+};
 
 /// The least distance from the floor in units of a band's spacing, so that the first term left out is below
 /// rounding.
@@ -74,8 +87,62 @@ impl Table {
         MapJet { f: local.value(self.height), f1: local.f1, f2: local.f2 }
     }
 
+    /// As [`Self::jet`] at four points.
+    #[inline(always)]
+    pub fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S> {
+        let places = zeta.values().map(|zeta| self.place(zeta));
+        let like = zeta.re;
+        let every = |value: fn(&Place<'_>) -> f64| places.each_ref().map(value);
+        let d = ComplexLanes { re: like.with(every(|p| p.d.re)), im: like.with(every(|p| p.d.im)) };
+        let [a, b, c, e] = places.each_ref().map(|p| &p.patch.slopes);
+        let mut f2 = ComplexLanes { re: like.all(0.0), im: like.all(0.0) };
+        let mut slopes = [f2; TERMS];
+        for (n, slope) in slopes.iter_mut().enumerate() {
+            slope.re = like.with([a[n].re, b[n].re, c[n].re, e[n].re]);
+            slope.im = like.with([a[n].im, b[n].im, c[n].im, e[n].im]);
+        }
+        let mut f1 = slopes[TERMS - 1];
+        let mut f = f1 * INVERSE[TERMS - 1];
+        for n in (0..TERMS - 1).rev() {
+            f2 = f2 * d + f1;
+            f1 = f1 * d + slopes[n];
+            f = f * d + slopes[n] * INVERSE[n];
+        }
+        let values = places.each_ref().map(|p| p.patch.value);
+        let value = ComplexLanes {
+            re: like.with(values.map(|c| c.re)),
+            im: like.with(values.map(|c| c.im)),
+        };
+        f = f * d + value;
+        let (side, mirror) = (like.with(every(|p| p.side)), like.with(every(|p| p.mirror)));
+        let shift = like.with(every(|p| p.shift));
+        let height = places.each_ref().map(|p| self.height * (1.0 - p.mirror));
+        JetLanes {
+            f: ComplexLanes { re: side * f.re + shift, im: like.with(height) + mirror * f.im },
+            f1: ComplexLanes { re: f1.re, im: side * mirror * f1.im },
+            f2: ComplexLanes { re: side * f2.re, im: mirror * f2.im },
+        }
+    }
+
     #[inline(never)]
     fn local(&self, zeta: Complex64) -> Local<'_> {
+        let place = self.place(zeta);
+        let Place { patch, d, side, mirror, .. } = place;
+        let (mut f1, mut f2) = (patch.slopes[TERMS - 1], Complex64::ZERO);
+        for c in patch.slopes[..TERMS - 1].iter().rev() {
+            f2 = f2 * d + f1;
+            f1 = f1 * d + c;
+        }
+        Local {
+            place,
+            f1: Complex64::new(f1.re, side * mirror * f1.im),
+            f2: Complex64::new(side * f2.re, mirror * f2.im),
+        }
+    }
+
+    /// The place of any point in the table.
+    #[inline(always)]
+    fn place(&self, zeta: Complex64) -> Place<'_> {
         // f(ζ + 2A) = f(ζ) + 2A, f(-conj ζ) = -conj f(ζ), f(conj ζ + 2iH_c) = conj f(ζ) + 2iH.
         let period = 2.0 * self.half_width;
         let shift =
@@ -84,22 +151,9 @@ impl Table {
         let above = zeta.im > self.virtual_height;
         let y = if above { 2.0 * self.virtual_height - zeta.im } else { zeta.im };
         let (patch, d) = self.patch(x.abs(), y);
-        let (mut f1, mut f2) = (patch.slopes[TERMS - 1], Complex64::ZERO);
-        for c in patch.slopes[..TERMS - 1].iter().rev() {
-            f2 = f2 * d + f1;
-            f1 = f1 * d + c;
-        }
         let side = 1.0_f64.copysign(x);
         let mirror = if above { -1.0 } else { 1.0 };
-        Local {
-            patch,
-            d,
-            shift,
-            side,
-            above,
-            f1: Complex64::new(f1.re, side * mirror * f1.im),
-            f2: Complex64::new(side * f2.re, mirror * f2.im),
-        }
+        Place { patch, d, shift, side, mirror }
     }
 
     /// The patch for X from 0 to A and Y up to H_c, and where in it.
@@ -121,13 +175,21 @@ impl Table {
     }
 }
 
-/// The map about a point, but for its value.
-struct Local<'a> {
+/// Where a point is in the table.
+struct Place<'a> {
     patch: &'a Patch,
     d: Complex64,
+    /// By how much X is off its place in the table.
     shift: f64,
+    /// The sign of X there.
     side: f64,
-    above: bool,
+    /// -1 for a point above Y = H_c, of which the table holds the mirror image.
+    mirror: f64,
+}
+
+/// The map about a point, but for its value.
+struct Local<'a> {
+    place: Place<'a>,
     f1: Complex64,
     f2: Complex64,
 }
@@ -136,14 +198,14 @@ impl Local<'_> {
     /// f, `height` being H.
     #[inline]
     fn value(&self, height: f64) -> Complex64 {
-        let (mut f, mut order) = (Complex64::ZERO, TERMS as f64);
-        for c in self.patch.slopes.iter().rev() {
-            f = f * self.d + c / order;
-            order -= 1.0;
+        let Place { patch, d, shift, side, mirror } = self.place;
+        let mut f = Complex64::ZERO;
+        for (c, inverse) in patch.slopes.iter().zip(INVERSE).rev() {
+            f = f * d + c * inverse;
         }
-        f = f * self.d + self.patch.value;
-        let im = if self.above { 2.0 * height - f.im } else { f.im };
-        Complex64::new(self.side * f.re + self.shift, im)
+        f = f * d + patch.value;
+        let im = if mirror < 0.0 { 2.0 * height - f.im } else { f.im };
+        Complex64::new(side * f.re + shift, im)
     }
 }
 

@@ -1,0 +1,272 @@
+//! Four rays at once: numbers that hold one value for each, and the widest instructions that the processor
+//! has for them, chosen at run time.
+//!
+//! Products and sums are rounded one by one, never fused: results are the same to the last bit with any
+//! instructions, and whichever rays go side by side.
+
+use std::array;
+use std::ops::{Add, Mul, Neg, Sub};
+
+use num_complex::Complex64;
+use pulp::{Simd, WithSimd, bytemuck};
+
+/// How many rays go side by side.
+pub(crate) const LANES: usize = 4;
+
+/// Does `work` with the widest instructions there are. All that it calls must be inlined into it.
+#[inline]
+pub(crate) fn side_by_side<W: WithSimd>(work: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = pulp::x86::V3::try_new() {
+        return Simd::vectorize(simd, work);
+    }
+    work.with_simd(pulp::Scalar256b)
+}
+
+/// A number for each ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lanes<S: Simd> {
+    simd: S,
+    values: S::f64s,
+}
+
+impl<S: Simd> Lanes<S> {
+    #[inline(always)]
+    pub fn new(simd: S, values: [f64; LANES]) -> Self {
+        Self { simd, values: bytemuck::cast(values) }
+    }
+
+    #[inline(always)]
+    pub fn splat(simd: S, value: f64) -> Self {
+        Self { simd, values: simd.splat_f64s(value) }
+    }
+
+    /// The same number for each ray.
+    #[inline(always)]
+    pub fn all(self, value: f64) -> Self {
+        Self::splat(self.simd, value)
+    }
+
+    /// Other numbers of the same kind.
+    #[inline(always)]
+    pub fn with(self, values: [f64; LANES]) -> Self {
+        Self::new(self.simd, values)
+    }
+
+    #[inline(always)]
+    pub fn values(self) -> [f64; LANES] {
+        bytemuck::cast(self.values)
+    }
+
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        Self { values: self.simd.sqrt_f64s(self.values), ..self }
+    }
+
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        Self { values: self.simd.abs_f64s(self.values), ..self }
+    }
+
+    /// 1 with the sign of each.
+    #[inline(always)]
+    pub fn signs(self) -> Self {
+        let sign = self.simd.and_f64s(self.values, self.simd.splat_f64s(-0.0));
+        Self { values: self.simd.or_f64s(sign, self.simd.splat_f64s(1.0)), ..self }
+    }
+
+    #[inline(always)]
+    pub fn divided_by(self, other: Self) -> Self {
+        Self { values: self.simd.div_f64s(self.values, other.values), ..self }
+    }
+}
+
+impl<S: Simd> Add for Lanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { values: self.simd.add_f64s(self.values, other.values), ..self }
+    }
+}
+
+impl<S: Simd> Sub for Lanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { values: self.simd.sub_f64s(self.values, other.values), ..self }
+    }
+}
+
+impl<S: Simd> Mul for Lanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self { values: self.simd.mul_f64s(self.values, other.values), ..self }
+    }
+}
+
+impl<S: Simd> Mul<f64> for Lanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        self * self.all(factor)
+    }
+}
+
+impl<S: Simd> Neg for Lanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { values: self.simd.neg_f64s(self.values), ..self }
+    }
+}
+
+/// A complex number for each ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ComplexLanes<S: Simd> {
+    pub re: Lanes<S>,
+    pub im: Lanes<S>,
+}
+
+impl<S: Simd> ComplexLanes<S> {
+    #[inline(always)]
+    pub fn new(simd: S, [a, b, c, d]: [Complex64; LANES]) -> Self {
+        let (re, im) = ([a.re, b.re, c.re, d.re], [a.im, b.im, c.im, d.im]);
+        Self { re: Lanes::new(simd, re), im: Lanes::new(simd, im) }
+    }
+
+    #[inline(always)]
+    pub fn values(self) -> [Complex64; LANES] {
+        let ([a, b, c, d], [e, f, g, h]) = (self.re.values(), self.im.values());
+        [Complex64::new(a, e), Complex64::new(b, f), Complex64::new(c, g), Complex64::new(d, h)]
+    }
+
+    /// With `value` of the arguments for which `holds` is false.
+    #[cold]
+    #[inline(never)]
+    pub fn elsewhere(
+        self,
+        arguments: [Complex64; LANES],
+        holds: fn(Complex64) -> bool,
+        value: fn(Complex64) -> Complex64,
+    ) -> Self {
+        let here = self.values();
+        let place = |i: usize| if holds(arguments[i]) { here[i] } else { value(arguments[i]) };
+        Self::new(self.re.simd, array::from_fn(place))
+    }
+
+    #[inline(always)]
+    pub fn conj(self) -> Self {
+        Self { im: -self.im, ..self }
+    }
+
+    #[inline(always)]
+    pub fn norm_squared(self) -> Lanes<S> {
+        self.re * self.re + self.im * self.im
+    }
+
+    /// i times this.
+    #[inline(always)]
+    pub fn times_i(self) -> Self {
+        Self { re: -self.im, im: self.re }
+    }
+}
+
+impl<S: Simd> Add for ComplexLanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { re: self.re + other.re, im: self.im + other.im }
+    }
+}
+
+impl<S: Simd> Sub for ComplexLanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { re: self.re - other.re, im: self.im - other.im }
+    }
+}
+
+impl<S: Simd> Mul for ComplexLanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self {
+            re: self.re * other.re - self.im * other.im,
+            im: self.re * other.im + self.im * other.re,
+        }
+    }
+}
+
+impl<S: Simd> Neg for ComplexLanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { re: -self.re, im: -self.im }
+    }
+}
+
+impl<S: Simd> Mul<Lanes<S>> for ComplexLanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: Lanes<S>) -> Self {
+        Self { re: self.re * factor, im: self.im * factor }
+    }
+}
+
+impl<S: Simd> Mul<f64> for ComplexLanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        self * self.re.all(factor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Product([Complex64; LANES], [Complex64; LANES]);
+
+    impl WithSimd for Product {
+        type Output = ([Complex64; LANES], [f64; LANES]);
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let [a, b] = [self.0, self.1].map(|values| ComplexLanes::new(simd, values));
+            let ratio = (a.re.abs().sqrt() * 3.0).divided_by(-b.im);
+            ((a.conj() * b - a * b.re + b.times_i()).values(), ratio.values())
+        }
+    }
+
+    #[test]
+    fn lanes_are_what_they_would_be_alone_with_any_instructions() {
+        let numbers = |seed: f64| {
+            array::from_fn(|i| {
+                let x = (i as f64 + 1.3) * seed;
+                Complex64::new(x.sin() * 1e3, (x * 1.7).cos())
+            })
+        };
+        let (a, b): ([Complex64; LANES], [Complex64; LANES]) = (numbers(0.7), numbers(1.9));
+        let wide = side_by_side(Product(a, b));
+        let portable = Product(a, b).with_simd(pulp::Scalar256b);
+        assert_eq!(wide, portable);
+        for i in 0..LANES {
+            let alone = a[i].conj() * b[i] - a[i] * b[i].re + Complex64::i() * b[i];
+            assert!((wide.0[i] - alone).norm() < 1e-12);
+            assert_eq!(wide.1[i], a[i].re.abs().sqrt() * 3.0 / -b[i].im);
+        }
+    }
+}
