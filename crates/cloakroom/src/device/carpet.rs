@@ -107,12 +107,18 @@ impl Site {
             skin.extend(Cap::both(&outline, ends).map(|cap| Skin::ConformalCap {
                 cap,
                 map: map.clone(),
+                below: Beyond::Conductor,
                 upper: CELL,
                 lower: None,
                 finish,
             }));
         }
-        let cell = ConformalCell { flow: flow.clone(), half: Half::Upper, finish };
+        let cell = ConformalCell {
+            flow: flow.clone(),
+            half: Half::Upper,
+            floor: Beyond::Conductor,
+            finish,
+        };
         self.on_floor(vec![Cell::Conformal(cell)], skin, Hull::prism(outline, self.extent))
     }
 

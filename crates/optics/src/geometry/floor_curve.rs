@@ -3,6 +3,7 @@
 use glam::DVec2;
 use num_complex::Complex64;
 
+use super::Outline;
 use crate::transformation::{ConformalMap, root_in_bracket};
 
 /// The outline of the metal below the floor f(X) of a conformal map, cut at two x: the floor, the back,
@@ -26,6 +27,15 @@ pub enum MetalBack {
     Flat(f64),
 }
 
+/// A curved side of a metal with a mirror image for its back.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum CurvedSide {
+    /// The floor.
+    Floor,
+    /// Its mirror image.
+    Image,
+}
+
 /// A part of the metal's outline.
 #[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
 pub enum MetalSide {
@@ -35,6 +45,13 @@ pub enum MetalSide {
     Lower,
     /// The cut at one of the ends.
     End,
+}
+
+/// Which way a ray crosses the outline of the metal.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Sense {
+    Entering,
+    Leaving,
 }
 
 /// Where a ray meets the metal.
@@ -91,10 +108,9 @@ impl FloorCurve {
             }
     }
 
-    /// The outline of the metal from the left end of its floor on, the floor and its mirror image in that
-    /// many straight pieces each.
+    /// A curved side from left to right in that many straight pieces.
     #[must_use]
-    pub fn outline(&self, pieces: u32) -> Vec<DVec2> {
+    pub fn side_line(&self, side: CurvedSide, pieces: u32) -> Vec<DVec2> {
         let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
             return Vec::new();
         };
@@ -102,12 +118,27 @@ impl FloorCurve {
             let share = f64::from(k) / f64::from(pieces.max(1));
             let parameter = first.parameter + (last.parameter - first.parameter) * share;
             let point = self.map.profile(parameter).f;
-            DVec2::new(point.re, point.im)
+            match side {
+                CurvedSide::Floor => DVec2::new(point.re, point.im),
+                CurvedSide::Image => DVec2::new(point.re, -point.im),
+            }
         };
-        let floor: Vec<DVec2> = (0..=pieces).map(point).collect();
+        (0..=pieces).map(point).collect()
+    }
+
+    /// The outline of the metal from the left end of its floor on, the floor and its mirror image in that
+    /// many straight pieces each.
+    #[must_use]
+    pub fn outline(&self, pieces: u32) -> Vec<DVec2> {
+        let floor = self.side_line(CurvedSide::Floor, pieces);
         let back: Vec<DVec2> = match self.back {
-            MetalBack::MirrorImage => floor.iter().map(|p| DVec2::new(p.x, -p.y)).rev().collect(),
-            MetalBack::Flat(y) => [last, first].map(|end| DVec2::new(end.point.re, y)).to_vec(),
+            MetalBack::MirrorImage => {
+                self.side_line(CurvedSide::Image, pieces).into_iter().rev().collect()
+            }
+            MetalBack::Flat(y) => {
+                let ends = [self.knots.last(), self.knots.first()].into_iter().flatten();
+                ends.map(|end| DVec2::new(end.point.re, y)).collect()
+            }
         };
         floor.into_iter().chain(back).collect()
     }
@@ -121,18 +152,77 @@ impl FloorCurve {
         if !(inverse_square.is_finite() && origin.is_finite() && self.may_hit(origin, direction)) {
             return None;
         }
-        let mirrored = |v: DVec2| DVec2::new(v.x, -v.y);
-        let upper = self.first_on_curve(origin, direction, t_min, MetalSide::Upper);
+        let upper = self.first_on_curve(origin, direction, t_min, Sense::Entering);
         let lower = match self.back {
-            MetalBack::MirrorImage => self
-                .first_on_curve(mirrored(origin), mirrored(direction), t_min, MetalSide::Lower)
-                .map(|hit| FloorHit { normal: mirrored(hit.normal), ..hit }),
+            MetalBack::MirrorImage => {
+                self.first_on_image(origin, direction, t_min, Sense::Entering)
+            }
             MetalBack::Flat(y) => self.first_on_plane(y, origin, direction, t_min),
         };
         [upper, lower, self.first_on_ends(origin, direction, t_min)]
             .into_iter()
             .flatten()
             .min_by(|a, b| a.t.total_cmp(&b.t))
+    }
+
+    /// The first point with t >= `t_min` where a ray leaves the outline through its floor, or through the mirror
+    /// image of it: the outline taken for that of a hollow, open at its ends. The normal points out of it.
+    #[must_use]
+    pub fn first_way_out(
+        &self,
+        side: CurvedSide,
+        origin: DVec2,
+        direction: DVec2,
+        t_min: f64,
+    ) -> Option<FloorHit> {
+        let inverse_square = direction.length_squared().recip();
+        if !(inverse_square.is_finite() && origin.is_finite() && self.may_hit(origin, direction)) {
+            return None;
+        }
+        match side {
+            CurvedSide::Floor => self.first_on_curve(origin, direction, t_min, Sense::Leaving),
+            CurvedSide::Image => self.first_on_image(origin, direction, t_min, Sense::Leaving),
+        }
+    }
+
+    /// Whether an outline lies inside as a whole.
+    #[must_use]
+    pub fn encloses(&self, outline: &Outline) -> bool {
+        // What leaves between two corners comes back before the second.
+        outline.corners().iter().all(|corner| self.contains(*corner))
+            && outline.sides().all(|(from, to)| {
+                self.first_hit(from, to - from, 0.0).is_none_or(|hit| hit.t > 1.0)
+            })
+    }
+
+    /// How far a point inside a metal with a mirror image for its back lies from its curved sides.
+    #[must_use]
+    pub fn depth(&self, point: DVec2) -> f64 {
+        const SAMPLES: u32 = 512;
+        let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
+            return 0.0;
+        };
+        // No point of the image is nearer than its own image to a point above the line between the two.
+        let here = Complex64::new(point.x, point.y.abs());
+        let slope = |parameter: f64| {
+            let jet = self.map.profile(parameter);
+            let way = jet.f - here;
+            ((jet.f1.conj() * way).re, jet.f1.norm_sqr() + (jet.f2.conj() * way).re)
+        };
+        let sample = |k: u32| {
+            let share = f64::from(k) / f64::from(SAMPLES);
+            first.parameter + (last.parameter - first.parameter) * share
+        };
+        let distance = |parameter: f64| (self.map.profile(parameter).f - here).norm();
+        let ends = distance(first.parameter).min(distance(last.parameter));
+        (0..SAMPLES)
+            .filter_map(|k| {
+                let (a, b) = (sample(k), sample(k + 1));
+                let (at_a, at_b) = (slope(a).0, slope(b).0);
+                (at_a <= 0.0 && at_b >= 0.0)
+                    .then(|| distance(root_in_bracket((a, at_a), (b, at_b), slope)))
+            })
+            .fold(ends, f64::min)
     }
 
     /// Whether the ray's line meets the bounding box.
@@ -149,7 +239,20 @@ impl FloorCurve {
         sides.iter().any(|s| *s >= -slack) && sides.iter().any(|s| *s <= slack)
     }
 
-    /// The first hit of the curve from above.
+    /// The first crossing of the floor's mirror image.
+    fn first_on_image(
+        &self,
+        origin: DVec2,
+        direction: DVec2,
+        t_min: f64,
+        sense: Sense,
+    ) -> Option<FloorHit> {
+        let mirrored = |v: DVec2| DVec2::new(v.x, -v.y);
+        self.first_on_curve(mirrored(origin), mirrored(direction), t_min, sense)
+            .map(|hit| FloorHit { normal: mirrored(hit.normal), side: MetalSide::Lower, ..hit })
+    }
+
+    /// The first crossing of the floor.
     ///
     /// On the ray, F(X) = cross(f(X) - origin, direction) vanishes. Its slope vanishes where the curve is
     /// parallel to the ray: at most once between two knots. So F is monotone on known intervals, and
@@ -159,7 +262,7 @@ impl FloorCurve {
         origin: DVec2,
         direction: DVec2,
         t_min: f64,
-        side: MetalSide,
+        sense: Sense,
     ) -> Option<FloorHit> {
         let along = Complex64::new(direction.x, direction.y);
         let cross = |v: Complex64| (v.conj() * along).im;
@@ -178,10 +281,14 @@ impl FloorCurve {
             let here = knot(&self.map, root);
             let t = ((here.point - offset) * along.conj()).re / along.norm_sqr();
             let normal = Complex64::i() * here.tangent / here.tangent.norm();
-            let entering = (normal.conj() * along).re < 0.0;
-            if entering && t >= t_min && best.is_none_or(|hit| t < hit.t) {
+            let outward = (normal.conj() * along).re;
+            let counts = match sense {
+                Sense::Entering => outward < 0.0,
+                Sense::Leaving => outward > 0.0,
+            };
+            if counts && t >= t_min && best.is_none_or(|hit| t < hit.t) {
                 let normal = DVec2::new(normal.re, normal.im);
-                best = Some(FloorHit { t, normal, side });
+                best = Some(FloorHit { t, normal, side: MetalSide::Upper });
             }
         };
         for pair in self.knots.windows(2) {
