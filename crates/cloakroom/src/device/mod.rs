@@ -25,7 +25,7 @@ mod sphere_cloak;
 mod square_cloak;
 mod structure;
 
-pub use body_shape::{Body, BodyShape, Filling};
+pub use body_shape::{Body, BodyShape, Filling, Surface};
 pub use cell::{Cell, ConformalCell, Entrance, Face, InnerRay, Passage, Prism, RadialCell};
 pub use cross_section::{Contour, CrossSection, REACH, Region, Side};
 pub use skin::Skin;
