@@ -2,13 +2,15 @@
 //! the way back, no numbers that are none, and its bare and mirror views.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod rays;
+
 use cloakroom::device::{CATALOGUE, FactValue};
 use cloakroom::keys::{KeyKind, Values};
 use cloakroom::render::StudioError;
 use cloakroom::scene_file;
 use cloakroom::trace::{Bench, Launch, Limits, Tracer};
 use glam::DVec3;
-use optics::wave::transverse_basis;
+use rays::{launches_around, strongest, try_bench};
 use std::path::Path;
 
 /// What a kind needs to be something: its tables or media, of indices so low that boxes cannot trap light.
@@ -58,8 +60,7 @@ fn benches() -> Vec<(String, Bench)> {
                     }
                     let tables = MORE.iter().filter(|(kind, _)| *kind == entry.kind);
                     text.extend(tables.map(|(_, tables)| *tables));
-                    let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-                    let bench = match cloakroom::render::bench(&loaded.scene) {
+                    let bench = match try_bench(&text) {
                         Ok(bench) => bench,
                         // What is no cloak has no other views.
                         Err(StudioError::Device { error, .. })
@@ -89,18 +90,7 @@ fn benches() -> Vec<(String, Bench)> {
 
 /// Rays from all around, towards the device.
 fn launches(count: u32) -> impl Iterator<Item = Launch<2>> {
-    // Additive recurrence with the powers of a root of x^6 = x + 1: evenly spread in 5 dimensions.
-    let root: f64 = 1.134_724_138_401_519_4;
-    (1..=count).map(move |n| {
-        let u: [f64; 5] =
-            std::array::from_fn(|i| (f64::from(n) * root.powi(-(i as i32) - 1)).fract());
-        let angle = std::f64::consts::TAU * u[0];
-        let origin = DVec3::new(80.0 * angle.cos(), 80.0 * angle.sin(), 60.0 * (u[1] - 0.5));
-        let target = DVec3::new(30.0 * (u[2] - 0.5), 24.0 * (u[3] - 0.5), 30.0 * (u[4] - 0.5));
-        let direction = (target - origin).normalize();
-        let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
-        Launch { origin, direction, electric: [h.into(), v.into()] }
-    })
+    launches_around(count, [80.0, 60.0], DVec3::new(30.0, 24.0, 30.0))
 }
 
 #[test]
@@ -162,9 +152,8 @@ fn the_way_back_leads_home() {
             // From beyond the widest floor: on its way home a ray must not meet it after the start.
             let launch = Launch { origin: launch.origin - 400.0 * launch.direction, ..launch };
             let (leaves, _) = tracer.trace(&launch);
-            let power = |leaf: &cloakroom::trace::Leaf<2>| leaf.power[0] + leaf.power[1];
-            let leaf = *leaves.iter().max_by(|a, b| power(a).total_cmp(&power(b))).unwrap();
-            let there = power(&leaf);
+            let leaf = strongest(leaves);
+            let there = leaf.power[0] + leaf.power[1];
             let path = leaf.optical_path;
             if !leaf.met_device {
                 continue;

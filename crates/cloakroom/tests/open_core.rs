@@ -92,7 +92,7 @@ fn light_in_a_perfect_cloak_stays_there() {
             let (leaves, outcome) = trace(&full, &launch(start, direction));
             assert_eq!((leaves.len(), outcome.rarities), (1, Rarities::default()), "{kind} {n}");
             let leaf = leaves[0];
-            assert_eq!(leaf.body, Some(1));
+            assert_eq!(leaf.body, Some(1), "{kind} {at} {leaf:?}");
             assert!(leaf.direction.distance(on) < 1e-12 && leaf.power[0] > 1.0 - 1e-12, "{leaf:?}");
             compared += 1;
         }

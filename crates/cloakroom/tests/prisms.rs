@@ -2,47 +2,22 @@
 //! cut; absorbing ones keep what Beer and Lambert say; what cannot be is refused at its place.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use cloakroom::scene_file;
-use cloakroom::trace::{Bench, Launch, Leaf, Limits, Tracer};
+mod rays;
+
+use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::{DVec2, DVec3};
 use num_complex::Complex64;
 use optics::transformation::StripToRhombus;
-use optics::wave::transverse_basis;
+use rays::{bench, launch, launches_around, refusal};
 use std::fmt::Write;
-use std::path::Path;
-
-fn try_bench(text: &str) -> Result<Bench, String> {
-    let loaded =
-        scene_file::parse(text, "test", Path::new(""), &[]).map_err(|error| error.to_string())?;
-    cloakroom::render::bench(&loaded.scene)
-        .map_err(|error| loaded.locations.error_at(&error.key(), error.to_string()).to_string())
-}
-
-fn bench(text: &str) -> Bench {
-    try_bench(text).unwrap_or_else(|error| panic!("{error}"))
-}
 
 fn prisms(prisms: &str) -> String {
     format!("[[device]]\nkind = \"prisms\"\n{prisms}")
 }
 
-fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
-    let direction = direction.normalize();
-    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
-    Launch { origin, direction, electric: [h.into(), v.into()] }
-}
-
 /// Rays from all around, towards the device.
 fn launches(count: u32) -> impl Iterator<Item = Launch<2>> {
-    let root: f64 = 1.134_724_138_401_519_4;
-    (1..=count).map(move |n| {
-        let u: [f64; 5] =
-            std::array::from_fn(|i| (f64::from(n) * root.powi(-(i as i32) - 1)).fract());
-        let angle = std::f64::consts::TAU * u[0];
-        let origin = DVec3::new(60.0 * angle.cos(), 60.0 * angle.sin(), 40.0 * (u[1] - 0.5));
-        let target = DVec3::new(20.0 * (u[2] - 0.5), 20.0 * (u[3] - 0.5), 20.0 * (u[4] - 0.5));
-        launch(origin, target - origin)
-    })
+    launches_around(count, [60.0, 40.0], DVec3::splat(20.0))
 }
 
 const D: f64 = 14.1 * std::f64::consts::FRAC_1_SQRT_2;
@@ -259,7 +234,7 @@ fn what_cannot_be_is_refused_at_its_place() {
             "no prism is metal",
         ),
     ] {
-        let error = try_bench(&text).unwrap_err();
+        let error = refusal(&text);
         assert!(error.starts_with(place) && error.contains(words), "{text}\n{error}");
     }
 }

@@ -40,16 +40,8 @@ pub(super) static ENTRY: Entry = Entry {
             doc: "Radius of a sphere or cylinder.",
             kind: KeyKind::Number { default: Some(5.0), unit: "cm", limits: Limits::Positive },
         },
-        Key {
-            name: "permittivity",
-            doc: "Relative permittivity, in the device's frame; symmetric.",
-            kind: KeyKind::Tensor,
-        },
-        Key {
-            name: "permeability",
-            doc: "Relative permeability, in the device's frame; symmetric.",
-            kind: KeyKind::Tensor,
-        },
+        super::PERMITTIVITY_KEY,
+        super::PERMEABILITY_KEY,
         Key {
             name: "group_index",
             doc: "Speed of light over the speed of a pulse in it, for times of flight; where it is absent, \

@@ -6,7 +6,7 @@
 //! [`GaussianMap`], in the lower half that of its mirror image. At the cut the index steps.
 
 use super::{
-    Beyond, Cell, ConformalCell, Entry, Fact, Finish, Hull, Request, Show, Skin, Structure,
+    Beyond, Cell, ConformalCell, Entry, Fact, Finish, Hull, Request, Show, Skin, Structure, carpet,
 };
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use glam::{DVec2, DVec3};
@@ -22,16 +22,8 @@ pub(super) static ENTRY: Entry = Entry {
     summary: "Unidirectional, polarization-independent cloak of locally isotropic graded index around a \
               metal lens, from a conformal map. Design (iv) of Halimeh & Wegener 2013.",
     keys: &[
-        Key {
-            name: "w",
-            doc: "Width parameter of the map.",
-            kind: KeyKind::Number { default: Some(10.02), unit: "cm", limits: Limits::Positive },
-        },
-        Key {
-            name: "h",
-            doc: "Half the height of the metal lens; below 0.886 w.",
-            kind: KeyKind::Number { default: Some(4.25), unit: "cm", limits: Limits::Positive },
-        },
+        carpet::W_KEY,
+        carpet::h_key("Half the height of the metal lens; below 0.886 w."),
         Key {
             name: "width",
             doc: "Size of the cut along x.",
@@ -64,8 +56,8 @@ const LOWER: u16 = 1;
 
 /// The map and the cut of the upper half.
 fn parts(values: &Values) -> Result<(GaussianMap, Truncation), KeyError> {
-    let (w, h) = (values.number("w"), values.number("h"));
-    let map = GaussianMap::new(w, h).map_err(|error| KeyError::at("h", error.to_string()))?;
+    let map = carpet::gaussian_map(values)?;
+    let h = map.height();
     let height = values.number("height");
     if height <= 2.0 * h {
         let message = format!(

@@ -1,7 +1,7 @@
 //! What balls and round cylinders have in common.
 
 use super::{Beyond, Cell, Hull, RadialCell, Request, Show, Skin, Structure};
-use crate::keys::{KeyError, Values};
+use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use optics::geometry::{Cylinder, Extent, Hole, Solid, Sphere};
 use optics::propagation::RadialFlow;
 
@@ -11,6 +11,13 @@ const CELL: u16 = 0;
 /// How near to 0 and to the outer radius the inner one may come, relative to the outer one: beyond, the
 /// tensors are too lopsided for double precision.
 const THINNEST: f64 = 0.001;
+
+/// The key `radius` of a ball.
+pub(super) const RADIUS_KEY: Key = Key {
+    name: "radius",
+    doc: "Radius of the ball.",
+    kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::Positive },
+};
 
 /// The keys `inner` and `outer` of a cloak.
 pub(super) fn radii(values: &Values) -> Result<(f64, f64), KeyError> {

@@ -2,6 +2,8 @@
 //! conformal map, with Snell's law at the border and the law of reflection at the metal: nothing of it knows
 //! virtual space, the program's interfaces or its surfaces.
 
+#![allow(dead_code, reason = "each test uses a part of it")]
+
 use errorfunctions::ComplexErrorFunctions;
 use glam::DVec3;
 use num_complex::Complex64;
@@ -96,19 +98,6 @@ impl GradedHalf {
     pub fn floor_normal(&self, at: DVec3) -> DVec3 {
         let [_, f1, _] = (self.jet)(self.invert(at));
         DVec3::new(-f1.im, f1.re, 0.0).normalize()
-    }
-
-    /// Follows the strongest branch of a ray into the medium, from the point and with the normal of its border,
-    /// until it leaves; see [`Self::out`].
-    pub fn through(
-        &self,
-        at: DVec3,
-        direction: DVec3,
-        inward: DVec3,
-        optical_path: f64,
-    ) -> Option<Expected> {
-        let p = refract(direction, inward, self.squared_index(at).value)?;
-        self.out(at, p, optical_path)
     }
 
     /// Follows a ray of the medium with wave vector p until it leaves; None for rays that come too near to
