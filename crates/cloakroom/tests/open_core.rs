@@ -2,12 +2,14 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod equation_of_motion;
+mod pictures;
 mod rays;
 
 use cloakroom::render::StudioError;
 use cloakroom::trace::{Bench, Launch, Leaf, Limits, Outcome, Rarities, Tracer};
 use equation_of_motion::{GradedHalf, fresnel, gaussian, refract};
 use glam::DVec3;
+use pictures::{difference, png};
 use rays::{Numbers, bench, launch, launches_around, spread, strongest, try_bench};
 
 const LIMITS: Limits = Limits { min_power: 1e-9, tolerance: 1e-9 };
@@ -64,6 +66,19 @@ fn what_stands_in_a_perfect_cloak_is_not_seen() {
         // Exactly at the axis or the centre, too.
         let (leaves, _) = trace(&full, &launch(DVec3::new(-50.0, 0.0, 0.0), DVec3::X));
         assert!(leaves.len() == 1 && leaves[0].direction.distance(DVec3::X) < 1e-10);
+    }
+}
+
+#[test]
+fn pictures_of_full_perfect_cloaks_are_empty_views() {
+    let camera = "[camera]\nresolution = [96, 72]\nsamples = 1\n";
+    let empty = png(camera);
+    for kind in ["cylinder-cloak", "sphere-cloak"] {
+        let full = png(&format!("{camera}{}", with_ball(kind, 3.9, DVec3::ZERO)));
+        let (pixels, steps) = difference(&full, &empty);
+        assert!(pixels <= 1 && steps <= 1, "{kind} {pixels} {steps}");
+        let ball = with_ball(kind, 3.9, DVec3::ZERO).replace(&open(kind, ""), "");
+        assert!(difference(&png(&format!("{camera}{ball}")), &empty).0 > 30, "{kind}");
     }
 }
 

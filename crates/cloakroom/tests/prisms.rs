@@ -2,12 +2,14 @@
 //! cut; absorbing ones keep what Beer and Lambert say; what cannot be is refused at its place.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod pictures;
 mod rays;
 
 use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use num_complex::Complex64;
 use optics::transformation::StripToRhombus;
+use pictures::{difference, png};
 use rays::{bench, launch, launches_around, refusal};
 use std::fmt::Write;
 
@@ -22,15 +24,33 @@ fn launches(count: u32) -> impl Iterator<Item = Launch<2>> {
 
 const D: f64 = 14.1 * std::f64::consts::FRAC_1_SQRT_2;
 
-/// The square cloak of design (iii) as prisms; `cut` moves a corner along a seam between two segments, in
+/// Permittivity and permeability of the square cloak in a quadrant.
+fn media(map: &StripToRhombus, material: &str, quadrant: DVec2) -> [DMat3; 2] {
+    let (principal, angle) = map.principal_values();
+    let (sin, cos) = (angle.to_radians() * quadrant.x * quadrant.y).sin_cos();
+    let (u, v) = (DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0));
+    // The ordinary value everywhere but along the axis.
+    let uniaxial = |ordinary: f64, extraordinary: f64, axis: DVec3| {
+        let dyad = DMat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z);
+        DMat3::from_diagonal(DVec3::splat(ordinary)) + dyad * (extraordinary - ordinary)
+    };
+    let scalar = DMat3::from_diagonal(DVec3::splat(principal.z));
+    match material {
+        "positive-uniaxial" => [scalar, uniaxial(principal.y, principal.x, u)],
+        "negative-uniaxial" => [scalar, uniaxial(principal.x, principal.y, v)],
+        _ => [map.tensor(quadrant); 2],
+    }
+}
+
+/// The square cloak as prisms; `cut` moves a corner along a seam between two segments, in
 /// which the side of one then meets two of the other.
-fn square_cloak_as_prisms(cut: bool) -> String {
+fn square_cloak_as_prisms(material: &str, cut: bool) -> String {
     let map = StripToRhombus::new(D, 1.0 / 3f64.sqrt());
     let b = map.half_height();
     let mut text = prisms("");
     for (x, y) in [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)] {
-        let m = map.tensor(DVec2::new(x, y));
-        let rows: Vec<[f64; 3]> = (0..3).map(|i| m.row(i).to_array()).collect();
+        let [permittivity, permeability] =
+            media(&map, material, DVec2::new(x, y)).map(|m| [0, 1, 2].map(|i| m.row(i).to_array()));
         // Each quadrant whole, or in two parts; the segments meet at x = 0, in part only.
         let middle = y * (0.4 * D + 0.6 * b);
         let outlines: Vec<Vec<[f64; 2]>> = if cut && x > 0.0 {
@@ -45,8 +65,8 @@ fn square_cloak_as_prisms(cut: bool) -> String {
         for corners in outlines {
             writeln!(
                 text,
-                "[[device.prism]]\ncorners = {corners:?}\npermittivity = {rows:?}\n\
-                 permeability = {rows:?}"
+                "[[device.prism]]\ncorners = {corners:?}\npermittivity = {permittivity:?}\n\
+                 permeability = {permeability:?}"
             )
             .unwrap();
         }
@@ -72,7 +92,7 @@ fn the_square_cloak_as_prisms_is_the_square_cloak() {
     for rotation in [0.0, 10.0] {
         let cloak = bench(&format!("[[device]]\nkind = \"square-cloak\"\nrotation = {rotation}\n"));
         for cut in [false, true] {
-            let text = square_cloak_as_prisms(cut).replacen(
+            let text = square_cloak_as_prisms("impedance-matched", cut).replacen(
                 "\"prisms\"\n",
                 &format!("\"prisms\"\nrotation = {rotation}\n"),
                 1,
@@ -93,9 +113,37 @@ fn the_square_cloak_as_prisms_is_the_square_cloak() {
 }
 
 #[test]
+fn both_give_the_same_pictures() {
+    for material in ["impedance-matched", "positive-uniaxial", "negative-uniaxial"] {
+        for rotation in ["rotation = 0\n", "rotation = 10\n"] {
+            let camera = "[camera]\nresolution = [96, 72]\nsamples = 1\n";
+            let own = square_cloak_as_prisms(material, true).replacen(
+                "\"prisms\"\n",
+                &format!("\"prisms\"\n{rotation}"),
+                1,
+            );
+            let cloak = format!(
+                "[[device]]\nkind = \"square-cloak\"\nmaterial = \"{material}\"\n{rotation}"
+            );
+            let [cloak, own] = [cloak, own].map(|device| png(&format!("{camera}{device}")));
+            let (pixels, steps) = difference(&cloak, &own);
+            // A step of rounding, in 0.01 % of the pixels.
+            assert!(steps <= 1 && pixels <= 1, "{material} {rotation} {pixels} pixels, {steps}");
+            let empty = png(camera);
+            let seen = difference(&cloak, &empty).0;
+            assert!(rotation.contains("= 0") || seen > 300, "{material} {seen}");
+        }
+    }
+}
+
+#[test]
 fn bare_prisms_are_the_metal_alone() {
     let limits = Limits { min_power: 1e-9, tolerance: 1e-9 };
-    let own = bench(&square_cloak_as_prisms(true).replacen('\n', "\nshow = \"bare\"\n", 1));
+    let own = bench(&square_cloak_as_prisms("impedance-matched", true).replacen(
+        '\n',
+        "\nshow = \"bare\"\n",
+        1,
+    ));
     let bare = bench("[[device]]\nkind = \"square-cloak\"\nshow = \"bare\"\n");
     let (mut tracer, mut own_tracer) = (Tracer::new(&bare, limits), Tracer::new(&own, limits));
     for launch in launches(1000) {

@@ -1,13 +1,13 @@
 //! Design (iii) against its exact map: in virtual space it is a flat strip mirror in empty space.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod pictures;
 mod rays;
 
-use cloakroom::scene_file;
 use cloakroom::trace::{Bench, Launch, Leaf, Limits, Tracer};
 use glam::DVec3;
+use pictures::picture;
 use rays::{Numbers, bench, launch};
-use std::path::Path;
 
 const LIMITS: Limits = Limits { min_power: 1e-12, tolerance: 1e-8 };
 
@@ -90,20 +90,11 @@ fn every_ray_leaves_as_from_the_flat_strip() {
     }
 }
 
-/// Renders a scene at a modest size with all channels.
-fn picture(devices: &str) -> cloakroom::output::Picture {
-    use cloakroom::render::{Studio, Supervision, Wanted, render};
-    let text = format!("[camera]\nresolution = [320, 240]\nsamples = 1\n{devices}");
-    let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-    let studio = Studio::new(&loaded.scene).unwrap();
-    let stop = std::sync::atomic::AtomicBool::new(false);
-    let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-    render(&studio, Wanted::Everything, &supervision).unwrap().picture
-}
-
 #[test]
 fn light_is_on_time_to_yoctoseconds() {
-    let cloaked = picture("[[device]]\nkind = \"square-cloak\"\n");
+    let cloaked = picture(
+        "[camera]\nresolution = [320, 240]\nsamples = 1\n[[device]]\nkind = \"square-cloak\"\n",
+    );
     let times = &cloaked.channel("time_of_flight_difference").unwrap().samples;
     let largest = (0..times.len()).map(|i| times.get(i).abs()).fold(0.0, f64::max);
     // 20 ys = 2e-14 ns; NaN would not pass, for every pixel must see the photograph.

@@ -99,7 +99,7 @@ fn what_cannot_be_is_refused_at_its_place() {
         (body("show = \"bare\""), "test:3:8", "show = \"cloak\""),
         (body("surface = { colour = [1, 0, 0] }"), "test:3:13", "`color`"),
         (body("surface = { color = [1, 0, -1] }"), "test:3:21", "third component"),
-        (body("surface = 3"), "test:3:11", "a table with the key color"),
+        (body("surface = 3"), "test:3:11", "a table with the keys color, image"),
         (body("permittivity = 2\nsurface = {}"), "test:3:16", "opaque"),
         (body("group_index = 0.5"), "test:3:15", "from 1"),
     ] {

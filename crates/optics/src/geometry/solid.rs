@@ -268,7 +268,6 @@ mod tests {
         }
         check_along_x(&hollow, &Solid::ball(1.0), [low, 26.0]);
         check_along_x(&hollow, &Solid::cylinder(1.0, extent), [low, 26.0]);
-        // A high and narrow box may have its corners inside while its long side cuts the flank of none.
         assert!(hollow.holds(DVec3::Y * 4.01) && !hollow.holds(DVec3::Y * 3.99));
     }
 

@@ -18,7 +18,9 @@ impl Sphere {
         // From the closest approach itself: the difference of squares would lose digits far away.
         let beside = origin - direction * along;
         let half_chord = self.radius * self.radius - beside.length_squared();
-        if along >= 0.0 || half_chord < 0.0 {
+        // From within a ray does not come: only by rounding may it start there.
+        let outside = origin.length_squared() >= self.radius * self.radius * (1.0 - 1e-12);
+        if along >= 0.0 || half_chord < 0.0 || !outside {
             return None;
         }
         // Never negative: rounding may have put the origin a hair inside.
@@ -76,6 +78,7 @@ mod tests {
         }
         assert_eq!(sphere.hit_within(DVec3::new(2.5, 0.0, 0.0), DVec3::X), None);
         assert_eq!(sphere.hit_within(DVec3::new(-5.0, 2.1, 0.0), DVec3::X), None);
+        assert_eq!(sphere.hit(DVec3::new(-1.5, 0.0, 0.0), DVec3::X), None);
         let grazing = sphere.hit(DVec3::new(-5.0, 2.0, 0.0), DVec3::X);
         assert_eq!(grazing, Some(5.0));
     }
