@@ -158,7 +158,7 @@ fn round_bodies_show_it_where_the_map_says() {
 #[test]
 fn what_is_too_fine_is_averaged_in_linear_light() {
     let folder = folder();
-    let stripes = RgbImage::from_fn(1024, 64, |x, _| Rgb([if x % 2 == 0 { 0 } else { 255 }; 3]));
+    let stripes = RgbImage::from_fn(1024, 512, |x, _| Rgb([if x % 2 == 0 { 0 } else { 255 }; 3]));
     stripes.save(folder.path().join("stripes.png")).unwrap();
     let surface = "surface = { image = \"stripes.png\" }";
     let view = [[-90.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
