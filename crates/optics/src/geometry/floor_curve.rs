@@ -148,8 +148,7 @@ impl FloorCurve {
     /// far out, only a positive `t_min` keeps such a ray off the other side). None if there is none.
     #[must_use]
     pub fn first_hit(&self, origin: DVec2, direction: DVec2, t_min: f64) -> Option<FloorHit> {
-        let inverse_square = direction.length_squared().recip();
-        if !(inverse_square.is_finite() && origin.is_finite() && self.may_hit(origin, direction)) {
+        if !self.may_hit(origin, direction) {
             return None;
         }
         let upper = self.first_on_curve(origin, direction, t_min, Sense::Entering);
@@ -175,8 +174,7 @@ impl FloorCurve {
         direction: DVec2,
         t_min: f64,
     ) -> Option<FloorHit> {
-        let inverse_square = direction.length_squared().recip();
-        if !(inverse_square.is_finite() && origin.is_finite() && self.may_hit(origin, direction)) {
+        if !self.may_hit(origin, direction) {
             return None;
         }
         match side {
@@ -225,8 +223,12 @@ impl FloorCurve {
             .fold(ends, f64::min)
     }
 
-    /// Whether the ray's line meets the bounding box.
+    /// Whether it is a ray, and its line meets the bounding box.
     fn may_hit(&self, origin: DVec2, direction: DVec2) -> bool {
+        let inverse_square = direction.length_squared().recip();
+        if !(inverse_square.is_finite() && origin.is_finite()) {
+            return false;
+        }
         let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
             return false;
         };
