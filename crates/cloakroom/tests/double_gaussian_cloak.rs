@@ -1,76 +1,24 @@
 //! Design (iv) against a slow integration of the paper's own equation of motion in physical space, with
-//! Snell's law at the cut and the law of reflection at the metal: nothing of it knows virtual space, the
-//! program's Faddeeva function, its interfaces or its surfaces.
+//! Snell's law at the cut and the law of reflection at the metal.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use cloakroom::scene_file;
-use cloakroom::trace::{Bench, Launch, Leaf, Limits, Tracer};
-use errorfunctions::ComplexErrorFunctions;
-use glam::{DMat3, DVec3};
-use num_complex::Complex64;
-use optics::propagation::reference::{ReferenceRay, SquaredIndex, follow};
-use optics::wave::transverse_basis;
-use std::f64::consts::PI;
-use std::path::Path;
+mod equation_of_motion;
+mod rays;
 
-const W: f64 = 10.02;
-const H: f64 = 4.25;
+use cloakroom::trace::{Bench, Launch, Leaf, Limits, Tracer};
+use equation_of_motion::{Expected, GradedHalf, gaussian, refract};
+use glam::{DMat3, DVec3};
+use rays::{launch, spread, strongest};
+use std::f64::consts::PI;
+
 /// Half the cut along x and y.
 const CUT: [f64; 2] = [25.0, 28.57];
 /// Speed of light, cm/ns.
 const C: f64 = 29.979_245_8;
 
-/// f, f' and f'' of the map, from an independent Faddeeva function.
-fn jet(zeta: Complex64) -> [Complex64; 3] {
-    let i = Complex64::I;
-    let t = zeta / W;
-    let w = t.w();
-    let w1 = -2.0 * t * w + 2.0 * i / PI.sqrt();
-    let w2 = -2.0 * w - 2.0 * t * w1;
-    [zeta + i * H * w, 1.0 + i * H / W * w1, i * H / (W * W) * w2]
-}
-
-/// The virtual point of a physical one by Newton's method.
-fn invert(z: Complex64) -> Complex64 {
-    let mut zeta = z + Complex64::from(H * W / PI.sqrt()) / z;
-    zeta.im = zeta.im.max(0.0);
-    for _ in 0..50 {
-        let [f, f1, _] = jet(zeta);
-        let step = (f - z) / f1;
-        zeta -= step * (W / (W + 4.0 * step.norm()));
-        if step.norm() < 1e-14 {
-            break;
-        }
-    }
-    zeta
-}
-
-/// n² = 1/|f'|² and its gradient in the upper half.
-fn squared_index(r: DVec3) -> SquaredIndex {
-    let [_, f1, f2] = jet(invert(Complex64::new(r.x, r.y)));
-    let value = 1.0 / f1.norm_sqr();
-    // ∇ ln n in virtual space is -conj(f''/f'); one more conj(f') takes it to physical space.
-    let slope = -2.0 * value * (f2 / (f1 * f1)).conj();
-    SquaredIndex { value, gradient: DVec3::new(slope.re, slope.im, 0.0) }
-}
-
-/// How far a point of the upper half is inside.
-fn inside(r: DVec3) -> f64 {
-    let virtual_y = invert(Complex64::new(r.x, r.y)).im;
-    (CUT[0] - r.x.abs()).min(CUT[1] - r.y).min(virtual_y)
-}
-
-/// What the reference says of a ray: the leaving point, its direction, the optical path from the origin.
-struct Expected {
-    position: DVec3,
-    direction: DVec3,
-    optical_path: f64,
-    mirrored: bool,
-}
-
 /// Follows the strongest branch of a ray in the device's frame; None for rays that miss the device or
 /// come too near to grazing incidence, to a critical angle, or to an edge.
-fn reference(origin: DVec3, direction: DVec3, step: f64) -> Option<Expected> {
+fn reference(upper: &GradedHalf, origin: DVec3, direction: DVec3) -> Option<Expected> {
     // Into the rectangle: the last of the planes it must cross.
     let mut entry: Option<(f64, DVec3)> = None;
     let mut leave = f64::INFINITY;
@@ -95,91 +43,18 @@ fn reference(origin: DVec3, direction: DVec3, step: f64) -> Option<Expected> {
     if at.y < 0.1 || (CUT[0] - at.x.abs()) + (CUT[1] - at.y) < 0.1 {
         return None;
     }
-    let mut p = flip(direction);
-    p = refract(p, inward, squared_index(at).value)?;
-    let mut optical_path = distance;
-    let mut mirrored = false;
-    for _ in 0..12 {
-        let start = ReferenceRay {
-            position: at,
-            wave_vector: p,
-            electric_field: p.any_orthonormal_vector(),
-            optical_path: 0.0,
-        };
-        let run = |step: f64| follow(start, step, 200_000, squared_index, inside);
-        let [coarse, fine] = [run(step)?, run(step / 2.0)?];
-        // Richardson: the method is of order 4.
-        let better = |coarse: DVec3, fine: DVec3| fine + (fine - coarse) / 15.0;
-        at = better(coarse.position, fine.position);
-        p = better(coarse.wave_vector, fine.wave_vector);
-        optical_path += fine.optical_path + (fine.optical_path - coarse.optical_path) / 15.0;
-        let [gap_x, gap_y] = [CUT[0] - at.x.abs(), CUT[1] - at.y];
-        if gap_x.abs().min(gap_y.abs()) > 1e-6 {
-            let [_, f1, _] = jet(invert(Complex64::new(at.x, at.y)));
-            let up = DVec3::new(-f1.im, f1.re, 0.0).normalize();
-            if at.x.abs() > CUT[0] - 0.5 || p.normalize().dot(up).abs() < 5e-3 {
-                return None;
-            }
-            p -= 2.0 * p.dot(up) * up;
-            mirrored = true;
-            continue;
-        }
-        if gap_x + gap_y < 0.05 || at.y < 0.1 {
-            return None;
-        }
-        let out = if gap_x < gap_y { DVec3::X * at.x.signum() } else { DVec3::Y };
-        if p.normalize().dot(out) < 0.02 {
-            return None;
-        }
-        let across = p - out * p.dot(out);
-        let slack = 1.0 - across.length_squared();
-        if slack.abs() < 0.02 {
-            return None;
-        }
-        if slack > 0.0 {
-            let direction = across + out * slack.sqrt();
-            return Some(Expected {
-                position: flip(at),
-                direction: flip(direction),
-                optical_path,
-                mirrored,
-            });
-        }
-        p = across - out * p.dot(out);
-    }
-    None
-}
-
-/// Snell's law into a medium of squared index `square`; None near grazing.
-fn refract(p: DVec3, inward: DVec3, square: f64) -> Option<DVec3> {
-    let across = p - inward * p.dot(inward);
-    let normal = square - across.length_squared();
-    (normal > 0.02 && p.dot(inward) > 0.02).then(|| across + inward * normal.sqrt())
+    let p = refract(flip(direction), inward, upper.squared_index(at).value)?;
+    let end = upper.out(at, p, distance)?;
+    Some(Expected { position: flip(end.position), direction: flip(end.direction), ..end })
 }
 
 fn bench(extra: &str) -> Bench {
-    let text = format!("[[device]]\nkind = \"double-gaussian-cloak\"\n{extra}\n");
-    let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-    cloakroom::render::bench(&loaded.scene).unwrap()
-}
-
-fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
-    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
-    Launch { origin, direction, electric: [h.into(), v.into()] }
-}
-
-fn strongest(leaves: &[Leaf<2>]) -> Leaf<2> {
-    let power = |leaf: &Leaf<2>| leaf.power[0] + leaf.power[1];
-    *leaves.iter().max_by(|a, b| power(a).total_cmp(&power(b))).unwrap()
-}
-
-/// A pseudo-random number in [0, 1) for every n and k, evenly spread.
-fn spread(n: u32, k: i32) -> f64 {
-    (f64::from(n) * 1.134_724_138_401_519_4_f64.powi(-k - 1)).fract()
+    rays::bench(&format!("[[device]]\nkind = \"double-gaussian-cloak\"\n{extra}\n"))
 }
 
 #[test]
 fn rays_agree_with_the_equation_of_motion() {
+    let upper = GradedHalf::new(gaussian(10.02, 4.25), 1.0, CUT, 0.02);
     let mut compared = 0;
     let mut mirrored = 0;
     let mut beyond_default = 0;
@@ -204,7 +79,7 @@ fn rays_agree_with_the_equation_of_motion() {
             }
             let launch = launch(origin, (target - origin).normalize());
             let local = |v: DVec3| turn.transpose() * v;
-            let expected = reference(local(origin - position), local(launch.direction), 0.02);
+            let expected = reference(&upper, local(origin - position), local(launch.direction));
             let Some(expected) = expected else { continue };
             let off = |leaf: &Leaf<2>| {
                 [

@@ -1,6 +1,6 @@
 //! A sphere that turns every ray by one angle (Hannay & Haeusser, J. Mod. Opt. 40, 1437 (1993)).
 
-use super::round::{ball, no_length, no_metal};
+use super::round::{RADIUS_KEY, ball, no_length, no_metal};
 use super::{Entry, Fact, Request, Structure};
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use optics::propagation::{CentralLens, RadialFlow};
@@ -11,11 +11,7 @@ pub(super) static ENTRY: Entry = Entry {
     summary: "A ball of graded index that turns every ray that meets it by the same angle towards its \
               centre: 90 degrees by default. Hannay & Haeusser 1993.",
     keys: &[
-        Key {
-            name: "radius",
-            doc: "Radius of the ball.",
-            kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::Positive },
-        },
+        RADIUS_KEY,
         Key {
             name: "angle",
             doc: "By how much each ray is turned; 180 is Eaton's lens and 360 the invisible sphere.",

@@ -3,11 +3,13 @@
 //! Bodies may stand in one another: where some overlap, the one of the largest priority is there. So a rod in a
 //! glass of water is three bodies, and light goes from one into the other without any air between.
 
-use super::{Body, BodyShape, Entry, Fact, Filling, Hull, Request, Structure};
+use super::{Body, BodyShape, Entry, Fact, Filling, Hull, Request, Structure, Surface};
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
+use crate::photograph::ImageSource;
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::geometry::{Cylinder, Extent, Outline, Solid, Sphere};
+use std::path::Path;
 
 pub(super) static ENTRY: Entry = Entry {
     kind: "body",
@@ -38,16 +40,8 @@ pub(super) static ENTRY: Entry = Entry {
             doc: "Radius of a sphere or cylinder.",
             kind: KeyKind::Number { default: Some(5.0), unit: "cm", limits: Limits::Positive },
         },
-        Key {
-            name: "permittivity",
-            doc: "Relative permittivity, in the device's frame; symmetric.",
-            kind: KeyKind::Tensor,
-        },
-        Key {
-            name: "permeability",
-            doc: "Relative permeability, in the device's frame; symmetric.",
-            kind: KeyKind::Tensor,
-        },
+        super::PERMITTIVITY_KEY,
+        super::PERMEABILITY_KEY,
         Key {
             name: "group_index",
             doc: "Speed of light over the speed of a pulse in it, for times of flight; where it is absent, \
@@ -61,7 +55,9 @@ pub(super) static ENTRY: Entry = Entry {
         },
         Key {
             name: "surface",
-            doc: "What an opaque body shows: { color = [red, green, blue] }, linear.",
+            doc: "What an opaque body shows: { color = [red, green, blue] }, linear, or { image = \"file\" }: \
+                  whole and upright on each face of a box and each end of a cylinder, once around a sphere or \
+                  the side of a cylinder.",
             kind: KeyKind::Table { keys: SURFACE_KEYS },
         },
     ],
@@ -69,11 +65,19 @@ pub(super) static ENTRY: Entry = Entry {
     facts,
 };
 
-static SURFACE_KEYS: &[Key] = &[Key {
-    name: "color",
-    doc: "Linear red, green and blue that it sends out everywhere.",
-    kind: KeyKind::Vector { default: [0.5; 3], unit: "", limits: Limits::Within(0.0, 1e30) },
-}];
+static SURFACE_KEYS: &[Key] = &[
+    Key {
+        name: "color",
+        doc: "Linear red, green and blue that it sends out everywhere.",
+        kind: KeyKind::Vector { default: [0.5; 3], unit: "", limits: Limits::Within(0.0, 1e30) },
+    },
+    Key {
+        name: "image",
+        doc: "An image on it instead of a color: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to \
+              the scene file.",
+        kind: KeyKind::Image,
+    },
+];
 
 /// How far an endless slab reaches when it is asked whether it is in another device's way, cm.
 const FAR: f64 = 1e5;
@@ -82,6 +86,11 @@ fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
     super::refuse_other_views(request, "a body is no cloak")?;
     let shape = shape(values, request.length)?;
     let filling = filling(values)?;
+    if matches!(filling, Filling::Opaque(Surface::Image(_))) && shape.is_endless() {
+        let message = "an endless body has no place for an image; give a cylinder its `length`, and take a \
+                       box instead of a slab";
+        return Err(KeyError::at("surface", message));
+    }
     let solid = match shape {
         BodyShape::Ball(sphere) => Solid::ball(sphere.radius),
         BodyShape::Cylinder(cylinder) => Solid::cylinder(cylinder.radius, cylinder.extent),
@@ -136,7 +145,16 @@ fn filling(values: &Values) -> Result<Filling, KeyError> {
         let message = format!("a body with a surface of its own is opaque; it has no {key}");
         return Err(KeyError::at(key, message));
     }
-    Ok(Filling::Opaque { color: surface.vector("color") })
+    let Some(image) = surface.optional_text("image") else {
+        return Ok(Filling::Opaque(Surface::Color(surface.vector("color"))));
+    };
+    if surface.is_given("color") {
+        let message = "color and image are both given; a surface takes one of them";
+        return Err(KeyError::at("surface", message));
+    }
+    let source = ImageSource::parse(image, Path::new(""))
+        .map_err(|error| KeyError::at("surface", error.to_string()))?;
+    Ok(Filling::Opaque(Surface::Image(source)))
 }
 
 fn facts(values: &Values) -> Vec<Fact> {

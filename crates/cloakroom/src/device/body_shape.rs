@@ -1,5 +1,6 @@
 //! What a body is: its shape, what fills it, and whether it gives way to others.
 
+use crate::photograph::ImageSource;
 use glam::DVec3;
 use optics::geometry::{Cylinder, CylinderPart, Sphere};
 use optics::medium::Medium;
@@ -28,10 +29,16 @@ pub enum Filling {
         group_index: Option<f64>,
     },
     /// Nothing that light could enter: rays end on it.
-    Opaque {
-        /// Linear red, green and blue that its surface sends out.
-        color: [f64; 3],
-    },
+    Opaque(Surface),
+}
+
+/// What an opaque body shows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Surface {
+    /// Linear red, green and blue that it sends out everywhere.
+    Color([f64; 3]),
+    /// An image, laid on its shape.
+    Image(ImageSource),
 }
 
 /// A convex shape about the origin.
@@ -49,6 +56,16 @@ pub enum BodyShape {
 }
 
 impl BodyShape {
+    /// Whether it has no end somewhere.
+    #[must_use]
+    pub fn is_endless(&self) -> bool {
+        match self {
+            Self::Ball(_) => false,
+            Self::Cylinder(cylinder) => cylinder.extent.ends().is_none(),
+            Self::Box { half } => !half.is_finite(),
+        }
+    }
+
     /// Where a ray that is outside enters: the distance, from zero on, and the outward unit normal.
     #[must_use]
     pub fn entry(&self, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {

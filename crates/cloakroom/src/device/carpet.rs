@@ -10,7 +10,29 @@ use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use glam::DVec2;
 use optics::geometry::{Cap, Extent, FloorCurve, MetalBack, Outline, Wall};
 use optics::propagation::{ConformalFlow, Half};
-use optics::transformation::{ConformalMap, Truncation};
+use optics::transformation::{ConformalMap, GaussianMap, Truncation};
+
+/// The key `w` of a Gaussian map.
+pub(super) const W_KEY: Key = Key {
+    name: "w",
+    doc: "Width parameter of the map.",
+    kind: KeyKind::Number { default: Some(10.02), unit: "cm", limits: Limits::Positive },
+};
+
+/// The key `h` of a Gaussian map.
+pub(super) const fn h_key(doc: &'static str) -> Key {
+    Key {
+        name: "h",
+        doc,
+        kind: KeyKind::Number { default: Some(4.25), unit: "cm", limits: Limits::Positive },
+    }
+}
+
+/// The map of the keys `w` and `h`.
+pub(super) fn gaussian_map(values: &Values) -> Result<GaussianMap, KeyError> {
+    GaussianMap::new(values.number("w"), values.number("h"))
+        .map_err(|error| KeyError::at("h", error.to_string()))
+}
 
 /// The key `width` of a carpet.
 pub(super) const fn width_key(default: f64) -> Key {
@@ -107,12 +129,18 @@ impl Site {
             skin.extend(Cap::both(&outline, ends).map(|cap| Skin::ConformalCap {
                 cap,
                 map: map.clone(),
+                below: Beyond::Conductor,
                 upper: CELL,
                 lower: None,
                 finish,
             }));
         }
-        let cell = ConformalCell { flow: flow.clone(), half: Half::Upper, finish };
+        let cell = ConformalCell {
+            flow: flow.clone(),
+            half: Half::Upper,
+            floor: Beyond::Conductor,
+            finish,
+        };
         self.on_floor(vec![Cell::Conformal(cell)], skin, Hull::prism(outline, self.extent))
     }
 

@@ -34,7 +34,9 @@ pub struct ConformalCell {
     pub flow: ConformalFlow,
     /// Which half it is.
     pub half: Half,
-    /// How the medium meets the air at the cut.
+    /// What lies beyond its floor.
+    pub floor: Beyond,
+    /// How the medium meets the air.
     pub finish: Finish,
 }
 
@@ -212,11 +214,13 @@ impl Prism {
 impl ConformalCell {
     fn advance(&self, start: &Foothold, wave_vector: DVec3, tolerance: f64) -> Option<Passage> {
         let end = self.flow.advance_from(start, wave_vector, tolerance).ok()?;
-        let metal = match end.boundary {
-            Boundary::Floor => true,
+        let beyond = match end.boundary {
+            Boundary::Floor => self.floor,
             // Below the floor's level, in the troughs of a grating, the ends are metal.
-            Boundary::XMin | Boundary::XMax => self.half.mirrored(end.at.position).y < 0.0,
-            Boundary::YMax | Boundary::ZMin | Boundary::ZMax => false,
+            Boundary::XMin | Boundary::XMax if self.half.mirrored(end.at.position).y < 0.0 => {
+                Beyond::Conductor
+            }
+            _ => Beyond::Air,
         };
         Some(Passage {
             position: end.at.position,
@@ -228,14 +232,20 @@ impl ConformalCell {
             foothold: Some(end.at),
             face: end.boundary as u16,
             outward: end.normal,
-            beyond: if metal { Beyond::Conductor } else { Beyond::Air },
-            finish: if metal { Finish::Bare } else { self.finish },
+            beyond,
+            finish: if beyond == Beyond::Conductor { Finish::Bare } else { self.finish },
         })
     }
 }
 
+/// How far from the core, relative to its radius, rounding may put a ray that comes out of it.
+const AT_CORE: f64 = 1e-12;
+
 impl RadialCell {
     fn advance(&self, ray: &InnerRay) -> Option<Passage> {
+        if self.inner == Beyond::Air && self.turns_back(ray) {
+            return Some(self.back_into_core(ray));
+        }
         let end = self.flow.advance(ray.position, ray.wave_vector, ray.mode);
         let sound = end.position.is_finite() && end.wave_vector.is_finite();
         sound.then_some(Passage {
@@ -250,5 +260,33 @@ impl RadialCell {
             beyond: if end.border == Border::Inner { self.inner } else { Beyond::Air },
             finish: Finish::Bare,
         })
+    }
+    /// Whether a ray has come out of an open core into a wave that no ray of the core can be in but those in
+    /// a plane through the axis, or aimed at the centre, to the last digits: the medium is singular there.
+    fn turns_back(&self, ray: &InnerRay) -> bool {
+        let [core, _] = self.flow.radii();
+        let outward = self.flow.outward(ray.position);
+        self.flow.closes_core(ray.mode)
+            && ray.position.dot(outward) <= core * (1.0 + AT_CORE)
+            && ray.direction.dot(outward) > 0.0
+    }
+
+    /// The way of such a ray, which gets the limit: all its neighbours are reflected.
+    fn back_into_core(&self, ray: &InnerRay) -> Passage {
+        let outward = self.flow.outward(ray.position);
+        let turned = |v: DVec3| v - outward * (2.0 * v.dot(outward));
+        Passage {
+            position: ray.position,
+            wave_vector: turned(ray.wave_vector),
+            direction: turned(ray.direction),
+            transport: Some(DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z))),
+            optical_path: 0.0,
+            foothold: None,
+            face: Border::Inner as u16,
+            outward: -outward,
+            beyond: self.inner,
+            // It has met the border already.
+            finish: Finish::Antireflection,
+        }
     }
 }

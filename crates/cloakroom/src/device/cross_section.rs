@@ -128,8 +128,13 @@ impl Skin {
                 vec![metal(around)]
             }
             Self::Sphere { sphere: Sphere { radius }, beyond }
-            | Self::Side { cylinder: Cylinder { radius, .. }, beyond } => {
+            | Self::Side { cylinder: Cylinder { radius, .. }, beyond }
+            | Self::InnerSphere { sphere: Sphere { radius }, beyond }
+            | Self::InnerSide { cylinder: Cylinder { radius, .. }, beyond } => {
                 vec![Side { line: circle(*radius), beyond: *beyond }]
+            }
+            Self::InnerFloor { curve, side, beyond, .. } => {
+                vec![Side { line: curve.side_line(*side, PIECES), beyond: *beyond }]
             }
             Self::Cap { .. }
             | Self::Disc { .. }
@@ -212,7 +217,7 @@ impl ConformalCell {
             buried.into_iter().chain([side(piece(level, high), Beyond::Air)])
         };
         let top = [cut.x_max, cut.x_min].map(|x| DVec2::new(x, cut.y_max)).to_vec();
-        [side(floor, Beyond::Conductor), side(top, Beyond::Air)]
+        [side(floor, self.floor), side(top, Beyond::Air)]
             .into_iter()
             .chain(upright(cut.x_min))
             .chain(upright(cut.x_max))

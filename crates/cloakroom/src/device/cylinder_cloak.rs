@@ -1,7 +1,7 @@
 //! The cylindrical cloak, impedance matched (Pendry, Schurig & Smith, Science 312, 1780 (2006); Schurig et
 //! al., Science 314, 977 (2006)) or of a uniaxial dielectric (after Cai et al., Nature Photon. 1, 224 (2007)).
 
-use super::round::{metal_cylinder, radii, tube};
+use super::round::{hollow_tube, metal_cylinder, radii, tube};
 use super::{Entry, Fact, FactValue, Request, Show, Structure};
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use glam::DVec3;
@@ -63,7 +63,8 @@ fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
                     RadialFlow::Uniaxial(UniaxialCylinder::new(inner, outer, axis, extent))
                 }
             };
-            tube(inner, outer, extent, flow)
+            let shell = if request.open_core { hollow_tube } else { tube };
+            shell(inner, outer, extent, flow)
         }
         Show::Bare => metal_cylinder(inner, extent),
         Show::Mirror => Structure::empty(),

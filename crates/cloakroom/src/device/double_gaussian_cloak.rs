@@ -6,11 +6,13 @@
 //! [`GaussianMap`], in the lower half that of its mirror image. At the cut the index steps.
 
 use super::{
-    Beyond, Cell, ConformalCell, Entry, Fact, Finish, Hull, Request, Show, Skin, Structure,
+    Beyond, Cell, ConformalCell, Entry, Fact, Finish, Hull, Request, Show, Skin, Structure, carpet,
 };
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
-use glam::DVec2;
-use optics::geometry::{Cap, Extent, FloorCurve, MetalBack, Outline, Wall};
+use glam::{DVec2, DVec3};
+use optics::geometry::{
+    Cap, CurvedSide, Extent, FloorCurve, Hole, MetalBack, Outline, Pose, Solid, Wall,
+};
 use optics::propagation::{ConformalFlow, Half};
 use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
@@ -20,16 +22,8 @@ pub(super) static ENTRY: Entry = Entry {
     summary: "Unidirectional, polarization-independent cloak of locally isotropic graded index around a \
               metal lens, from a conformal map. Design (iv) of Halimeh & Wegener 2013.",
     keys: &[
-        Key {
-            name: "w",
-            doc: "Width parameter of the map.",
-            kind: KeyKind::Number { default: Some(10.02), unit: "cm", limits: Limits::Positive },
-        },
-        Key {
-            name: "h",
-            doc: "Half the height of the metal lens; below 0.886 w.",
-            kind: KeyKind::Number { default: Some(4.25), unit: "cm", limits: Limits::Positive },
-        },
+        carpet::W_KEY,
+        carpet::h_key("Half the height of the metal lens; below 0.886 w."),
         Key {
             name: "width",
             doc: "Size of the cut along x.",
@@ -42,7 +36,8 @@ pub(super) static ENTRY: Entry = Entry {
         },
         Key {
             name: "fresnel",
-            doc: "Reflect at the cut as the index step asks for; false is a perfect antireflection coating.",
+            doc: "Reflect at the cut, and at the border of an open core, as the index step asks for; false is a \
+                  perfect antireflection coating.",
             kind: KeyKind::Flag { default: true },
         },
         Key {
@@ -61,8 +56,8 @@ const LOWER: u16 = 1;
 
 /// The map and the cut of the upper half.
 fn parts(values: &Values) -> Result<(GaussianMap, Truncation), KeyError> {
-    let (w, h) = (values.number("w"), values.number("h"));
-    let map = GaussianMap::new(w, h).map_err(|error| KeyError::at("h", error.to_string()))?;
+    let map = carpet::gaussian_map(values)?;
+    let h = map.height();
     let height = values.number("height");
     if height <= 2.0 * h {
         let message = format!(
@@ -87,18 +82,23 @@ fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
         Show::Cloak => {
             let finish = if values.flag("fresnel") { Finish::Bare } else { Finish::Antireflection };
             let strength = strength(values, &map, &cut);
-            cloak(&ConformalFlow::new(map, cut, extent, strength), finish, extent)
+            cloak(
+                &ConformalFlow::new(map, cut, extent, strength),
+                finish,
+                extent,
+                request.open_core,
+            )
         }
         Show::Bare => bare(map, cut, extent),
         Show::Mirror => super::flat_strip(cut.x_max, extent),
     })
 }
 
-fn cloak(flow: &ConformalFlow, finish: Finish, extent: Extent) -> Structure {
+fn cloak(flow: &ConformalFlow, finish: Finish, extent: Extent, open_core: bool) -> Structure {
     let cut = flow.cut();
     let (x, y) = (cut.x_max, cut.y_max);
     let outline = Outline::rectangle(x, y);
-    // The metal ends bluntly at the cut.
+    // The metal, or the core, ends bluntly at the cut.
     let tip = flow.map().floor_height_at(x);
     let wall = |from: [f64; 2], to: [f64; 2], beyond: Beyond| Skin::Wall {
         wall: Wall::new(DVec2::from(from), DVec2::from(to), extent),
@@ -108,27 +108,40 @@ fn cloak(flow: &ConformalFlow, finish: Finish, extent: Extent) -> Structure {
     let (upper, lower) = (Beyond::Cell(UPPER), Beyond::Cell(LOWER));
     let mut skin = vec![
         wall([x, -y], [x, -tip], lower),
-        wall([x, -tip], [x, tip], Beyond::Conductor),
         wall([x, tip], [x, y], upper),
         wall([x, y], [-x, y], upper),
         wall([-x, y], [-x, tip], upper),
-        wall([-x, tip], [-x, -tip], Beyond::Conductor),
         wall([-x, -tip], [-x, -y], lower),
         wall([-x, -y], [x, -y], lower),
     ];
+    let floor = if open_core { Beyond::Air } else { Beyond::Conductor };
+    if !open_core {
+        skin.push(wall([x, -tip], [x, tip], floor));
+        skin.push(wall([-x, tip], [-x, -tip], floor));
+    }
     if let Some(ends) = extent.ends() {
         skin.extend(Cap::both(&outline, ends).map(|cap| Skin::ConformalCap {
             cap,
             map: flow.map().clone(),
+            below: floor,
             upper: UPPER,
             lower: Some(LOWER),
             finish,
         }));
     }
     let cells = [Half::Upper, Half::Lower]
-        .map(|half| Cell::Conformal(ConformalCell { flow: flow.clone(), half, finish }))
+        .map(|half| Cell::Conformal(ConformalCell { flow: flow.clone(), half, floor, finish }))
         .to_vec();
-    Structure { cells, skin, hull: Hull::prism(outline, extent) }
+    if !open_core {
+        return Structure { cells, skin, hull: Hull::prism(outline, extent) };
+    }
+    let curve = FloorCurve::new(flow.map().clone(), MetalBack::MirrorImage, cut.x_min, x);
+    for (side, beyond) in [(CurvedSide::Floor, upper), (CurvedSide::Image, lower)] {
+        skin.push(Skin::InnerFloor { curve: curve.clone(), side, extent, beyond, finish });
+    }
+    let hole = Hole::Lens { curve, pose: Pose::new(DVec3::ZERO, 0.0), extent };
+    let hull = Hull::new(Solid::Prism { outline, extent }.with_hole(hole)).with_open_core();
+    Structure { cells, skin, hull }
 }
 
 fn bare(map: ConformalMap, cut: Truncation, extent: Extent) -> Structure {

@@ -4,7 +4,7 @@
 //! A conformal map, [`GaussianMap`], so the index 1/|f'| is exact: the bump looks like flat floor.
 
 use super::{Entry, Fact, Request, Structure, carpet};
-use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
+use crate::keys::{KeyError, Values};
 use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
 pub(super) static ENTRY: Entry = Entry {
@@ -13,16 +13,8 @@ pub(super) static ENTRY: Entry = Entry {
     summary: "Hides a bump of a mirror floor below a locally isotropic graded index, from a conformal map: one \
               half of the double-Gaussian cloak. Schmied, Halimeh & Wegener 2010.",
     keys: &[
-        Key {
-            name: "w",
-            doc: "Width parameter of the map.",
-            kind: KeyKind::Number { default: Some(10.02), unit: "cm", limits: Limits::Positive },
-        },
-        Key {
-            name: "h",
-            doc: "Height of the metal bump; below 0.886 w.",
-            kind: KeyKind::Number { default: Some(4.25), unit: "cm", limits: Limits::Positive },
-        },
+        carpet::W_KEY,
+        carpet::h_key("Height of the metal bump; below 0.886 w."),
         carpet::width_key(50.0),
         carpet::HEIGHT_KEY,
         carpet::FLOOR_KEY,
@@ -32,9 +24,8 @@ pub(super) static ENTRY: Entry = Entry {
 };
 
 fn parts(values: &Values) -> Result<(GaussianMap, Truncation), KeyError> {
-    let (w, h) = (values.number("w"), values.number("h"));
-    let map = GaussianMap::new(w, h).map_err(|error| KeyError::at("h", error.to_string()))?;
-    Ok((map, carpet::cut(values, h)?))
+    let map = carpet::gaussian_map(values)?;
+    Ok((map, carpet::cut(values, map.height())?))
 }
 
 fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {

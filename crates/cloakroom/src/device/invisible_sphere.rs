@@ -1,9 +1,9 @@
 //! The invisible sphere: every ray leaves it on its own line, late (Miñano, Opt. Express 14, 9627 (2006);
 //! made regular by transmutation, Tyc & Leonhardt, New J. Phys. 10, 115038 (2008)).
 
-use super::round::{ball, no_length, no_metal};
+use super::round::{RADIUS_KEY, ball, no_length, no_metal};
 use super::{Entry, Fact, FactValue, Request, Structure};
-use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
+use crate::keys::{Key, KeyError, KeyKind, Values};
 use optics::propagation::{CentralLens, RadialFlow, TransmutedSphere};
 use optics::wave::SPEED_OF_LIGHT;
 use std::f64::consts::TAU;
@@ -15,11 +15,7 @@ pub(super) static ENTRY: Entry = Entry {
               late by the ball's circumference; it hides nothing but itself. Minano 2006, \
               regularized after Tyc & Leonhardt 2008.",
     keys: &[
-        Key {
-            name: "radius",
-            doc: "Radius of the ball.",
-            kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::Positive },
-        },
+        RADIUS_KEY,
         Key {
             name: "material",
             doc: "A graded index that is infinite at the centre, or its regularized form, a \

@@ -1,16 +1,12 @@
 //! The classical balls of graded index: the lenses of Eaton and Luneburg and Maxwell's fish-eye.
 
-use super::round::{ball, no_length, no_metal};
+use super::round::{RADIUS_KEY, ball, no_length, no_metal};
 use super::{Entry, Fact, Request, Structure};
-use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
+use crate::keys::{Key, KeyError, Values};
 use optics::propagation::{CentralLens, RadialFlow};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-const KEYS: &[Key] = &[Key {
-    name: "radius",
-    doc: "Radius of the ball.",
-    kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::Positive },
-}];
+const KEYS: &[Key] = &[RADIUS_KEY];
 
 pub(super) static EATON: Entry = Entry {
     kind: "eaton-lens",

@@ -25,13 +25,13 @@ mod sphere_cloak;
 mod square_cloak;
 mod structure;
 
-pub use body_shape::{Body, BodyShape, Filling};
+pub use body_shape::{Body, BodyShape, Filling, Surface};
 pub use cell::{Cell, ConformalCell, Entrance, Face, InnerRay, Passage, Prism, RadialCell};
 pub use cross_section::{Contour, CrossSection, REACH, Region, Side};
 pub use skin::Skin;
 pub use structure::{Beyond, Finish, Hull, SkinHit, Structure};
 
-use crate::keys::{Key, KeyError, Values};
+use crate::keys::{Key, KeyError, KeyKind, Values};
 use optics::medium::Medium;
 
 /// What of a device is looked at.
@@ -126,6 +126,20 @@ pub static CATALOGUE: &[&Entry] = &[
 pub fn entry(kind: &str) -> Option<&'static Entry> {
     CATALOGUE.iter().copied().find(|entry| entry.kind == kind)
 }
+
+/// The key `permittivity` of what is filled with a medium.
+const PERMITTIVITY_KEY: Key = Key {
+    name: "permittivity",
+    doc: "Relative permittivity, in the device's frame; symmetric.",
+    kind: KeyKind::Tensor,
+};
+
+/// The key `permeability` of what is filled with a medium.
+const PERMEABILITY_KEY: Key = Key {
+    name: "permeability",
+    doc: "Relative permeability, in the device's frame; symmetric.",
+    kind: KeyKind::Tensor,
+};
 
 /// The medium of the keys `permittivity` and `permeability`.
 fn medium(values: &Values) -> Result<Medium, KeyError> {

@@ -32,16 +32,8 @@ static PRISM_KEYS: &[Key] = &[
         doc: "The corners of its cross-section in the xy-plane, one after the other; it may be concave.",
         kind: KeyKind::Polygon { unit: "cm" },
     },
-    Key {
-        name: "permittivity",
-        doc: "Relative permittivity, in the device's frame; symmetric.",
-        kind: KeyKind::Tensor,
-    },
-    Key {
-        name: "permeability",
-        doc: "Relative permeability, in the device's frame; symmetric.",
-        kind: KeyKind::Tensor,
-    },
+    super::PERMITTIVITY_KEY,
+    super::PERMEABILITY_KEY,
     Key {
         name: "metal",
         doc: "Whether it is metal, a perfect conductor.",

@@ -1,8 +1,8 @@
 //! What balls and round cylinders have in common.
 
 use super::{Beyond, Cell, Hull, RadialCell, Request, Show, Skin, Structure};
-use crate::keys::{KeyError, Values};
-use optics::geometry::{Cylinder, Extent, Solid, Sphere};
+use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
+use optics::geometry::{Cylinder, Extent, Hole, Solid, Sphere};
 use optics::propagation::RadialFlow;
 
 /// The one cell of a device of a single radial medium.
@@ -11,6 +11,13 @@ const CELL: u16 = 0;
 /// How near to 0 and to the outer radius the inner one may come, relative to the outer one: beyond, the
 /// tensors are too lopsided for double precision.
 const THINNEST: f64 = 0.001;
+
+/// The key `radius` of a ball.
+pub(super) const RADIUS_KEY: Key = Key {
+    name: "radius",
+    doc: "Radius of the ball.",
+    kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::Positive },
+};
 
 /// The keys `inner` and `outer` of a cloak.
 pub(super) fn radii(values: &Values) -> Result<(f64, f64), KeyError> {
@@ -56,6 +63,21 @@ pub(super) fn ball(radius: f64, flow: RadialFlow) -> Structure {
     }
 }
 
+/// A ball filled with a medium around an open core.
+pub(super) fn hollow_ball(core: f64, radius: f64, flow: RadialFlow) -> Structure {
+    let solid = Solid::ball(radius).with_hole(Hole::Round(Solid::ball(core)));
+    let [outer, inner] = [radius, core].map(|radius| Sphere { radius });
+    let beyond = Beyond::Cell(CELL);
+    Structure {
+        cells: vec![Cell::Radial(RadialCell { flow, inner: Beyond::Air })],
+        skin: vec![
+            Skin::Sphere { sphere: outer, beyond },
+            Skin::InnerSphere { sphere: inner, beyond },
+        ],
+        hull: Hull::new(solid).with_open_core(),
+    }
+}
+
 /// A metal ball.
 pub(super) fn metal_ball(radius: f64) -> Structure {
     let sphere = Sphere { radius };
@@ -69,19 +91,35 @@ pub(super) fn metal_ball(radius: f64) -> Structure {
 /// A round cylinder filled with a medium around a metal core.
 pub(super) fn tube(core: f64, radius: f64, extent: Extent, flow: RadialFlow) -> Structure {
     let cell = Cell::Radial(RadialCell { flow, inner: Beyond::Conductor });
-    upright(vec![cell], core, radius, extent, Beyond::Cell(CELL))
+    let whole = Solid::cylinder(radius, extent);
+    let skin = upright((core, Beyond::Conductor), radius, extent, Beyond::Cell(CELL));
+    Structure { cells: vec![cell], skin, hull: Hull::new(whole) }
+}
+
+/// A round cylinder filled with a medium around an open core.
+pub(super) fn hollow_tube(core: f64, radius: f64, extent: Extent, flow: RadialFlow) -> Structure {
+    let cell = Cell::Radial(RadialCell { flow, inner: Beyond::Air });
+    let solid =
+        Solid::cylinder(radius, extent).with_hole(Hole::Round(Solid::cylinder(core, extent)));
+    let mut skin = upright((core, Beyond::Air), radius, extent, Beyond::Cell(CELL));
+    let cylinder = Cylinder { radius: core, extent };
+    skin.push(Skin::InnerSide { cylinder, beyond: Beyond::Cell(CELL) });
+    Structure { cells: vec![cell], skin, hull: Hull::new(solid).with_open_core() }
 }
 
 /// A round metal cylinder.
 pub(super) fn metal_cylinder(radius: f64, extent: Extent) -> Structure {
-    upright(Vec::new(), 0.0, radius, extent, Beyond::Conductor)
+    let skin = upright((0.0, Beyond::Conductor), radius, extent, Beyond::Conductor);
+    Structure { cells: Vec::new(), skin, hull: Hull::new(Solid::cylinder(radius, extent)) }
 }
 
-fn upright(cells: Vec<Cell>, core: f64, radius: f64, extent: Extent, beyond: Beyond) -> Structure {
+/// The side and the ends of a round cylinder, whose core has a radius and is something of its own.
+fn upright(core: (f64, Beyond), radius: f64, extent: Extent, beyond: Beyond) -> Vec<Skin> {
+    let (core, beyond_core) = core;
     let cylinder = Cylinder { radius, extent };
     let mut skin = vec![Skin::Side { cylinder, beyond }];
     for disc in cylinder.ends().into_iter().flatten() {
-        skin.push(Skin::Disc { disc, beyond, core, beyond_core: Beyond::Conductor });
+        skin.push(Skin::Disc { disc, beyond, core, beyond_core });
     }
-    Structure { cells, skin, hull: Hull::new(Solid::cylinder(radius, extent)) }
+    skin
 }

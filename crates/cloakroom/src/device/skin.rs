@@ -2,7 +2,9 @@
 
 use super::{Beyond, Finish};
 use glam::DVec3;
-use optics::geometry::{Cap, Cylinder, CylinderPart, Disc, Extent, FloorCurve, Sphere, Wall};
+use optics::geometry::{
+    Cap, CurvedSide, Cylinder, CylinderPart, Disc, Extent, FloorCurve, Sphere, Wall,
+};
 use optics::transformation::ConformalMap;
 
 /// A surface between air and a device, with what lies behind it.
@@ -28,12 +30,14 @@ pub enum Skin {
         /// How the media meet.
         finish: Finish,
     },
-    /// A flat end of a conformal device: one half or two, and the metal below the floor.
+    /// A flat end of a conformal device: one half or two, and what is below the floor.
     ConformalCap {
         /// Its shape.
         cap: Cap,
-        /// The map whose floor bounds the metal.
+        /// The map whose floor is meant.
         map: ConformalMap,
+        /// What lies behind it below the floor: metal, or air where there is nothing.
+        below: Beyond,
         /// The cell of the upper half.
         upper: u16,
         /// The cell of its mirror image under y -> -y, if there is one.
@@ -63,8 +67,35 @@ pub enum Skin {
         beyond: Beyond,
         /// Radius of the core, cm; 0 without one.
         core: f64,
-        /// What lies behind it there.
+        /// What lies behind it there: metal, or air where there is nothing.
         beyond_core: Beyond,
+    },
+    /// A spherical hole about the origin, met from within.
+    InnerSphere {
+        /// Its shape.
+        sphere: Sphere,
+        /// What lies behind it.
+        beyond: Beyond,
+    },
+    /// A round hole about the z axis, met from within.
+    InnerSide {
+        /// Its shape.
+        cylinder: Cylinder,
+        /// What lies behind it.
+        beyond: Beyond,
+    },
+    /// A hole between the floor of a conformal map and its mirror image, one of which is met from within.
+    InnerFloor {
+        /// Its cross-section.
+        curve: FloorCurve,
+        /// Which of the two.
+        side: CurvedSide,
+        /// Its extent along z.
+        extent: Extent,
+        /// What lies behind it.
+        beyond: Beyond,
+        /// How the media meet.
+        finish: Finish,
     },
     /// The metal below the curved floor of a conformal map, in air.
     Floor {
@@ -101,11 +132,21 @@ impl Skin {
                 let facing = -direction.dot(wall.normal()).signum();
                 Some((wall.hit(origin, direction)?, wall.normal() * facing))
             }
-            Self::Cap { cap, .. } | Self::ConformalCap { cap, .. } => {
+            Self::Cap { cap, .. } => {
                 if again || direction.dot(cap.normal) >= 0.0 {
                     return None;
                 }
                 Some((cap.hit(origin, direction)?, cap.normal))
+            }
+            Self::ConformalCap { cap, below, .. } => {
+                if again || direction.dot(cap.normal) >= 0.0 {
+                    return None;
+                }
+                let distance = cap.hit(origin, direction)?;
+                // There is nothing before an open core.
+                let nothing = *below == Beyond::Air
+                    && self.beyond(origin + direction * distance) == Beyond::Air;
+                (!nothing).then_some((distance, cap.normal))
             }
             Self::Sphere { sphere, .. } => {
                 let distance = sphere.hit(origin, direction).filter(|_| !again)?;
@@ -116,9 +157,27 @@ impl Skin {
                 let point = origin + direction * distance;
                 Some((distance, cylinder.outward(CylinderPart::Side, point)))
             }
-            Self::Disc { disc, .. } => {
+            Self::Disc { disc, beyond_core, .. } => {
                 let distance = disc.hit(origin, direction).filter(|_| !again)?;
-                Some((distance, disc.normal))
+                let nothing = *beyond_core == Beyond::Air
+                    && self.beyond(origin + direction * distance) == Beyond::Air;
+                (!nothing).then_some((distance, disc.normal))
+            }
+            Self::InnerSphere { sphere, .. } => {
+                let distance = sphere.hit_within(origin, direction)?;
+                Some((distance, -sphere.outward(origin + direction * distance)))
+            }
+            Self::InnerSide { cylinder, .. } => {
+                let distance = cylinder.hit_side_within(origin, direction)?;
+                let point = origin + direction * distance;
+                Some((distance, -cylinder.outward(CylinderPart::Side, point)))
+            }
+            Self::InnerFloor { curve, side, extent, .. } => {
+                let least = if again { AGAIN } else { 0.0 };
+                let (o, d) = (origin.truncate(), direction.truncate());
+                let hit = curve.first_way_out(*side, o, d, least)?;
+                let within = extent.contains(origin.z + hit.t * direction.z);
+                within.then_some((hit.t, -hit.normal.extend(0.0)))
             }
             Self::Floor { curve, extent } => floor_hit(curve, *extent, origin, direction, again),
             Self::FloorCap { cap, curve } => {
@@ -136,13 +195,13 @@ impl Skin {
     #[must_use]
     pub fn beyond(&self, position: DVec3) -> Beyond {
         match self {
-            Self::ConformalCap { map, upper, lower, .. } => {
+            Self::ConformalCap { map, below, upper, lower, .. } => {
                 let (cell, y) = match lower {
                     Some(lower) if position.y < 0.0 => (*lower, -position.y),
                     _ => (*upper, position.y),
                 };
-                let metal = y < map.peak() && y < map.floor_height_at(position.x);
-                if metal { Beyond::Conductor } else { Beyond::Cell(cell) }
+                let is_below = y < map.peak() && y < map.floor_height_at(position.x);
+                if is_below { *below } else { Beyond::Cell(cell) }
             }
             Self::Disc { core, beyond_core, .. }
                 if position.truncate().length_squared() < core * core =>
@@ -153,7 +212,10 @@ impl Skin {
             | Self::Cap { beyond, .. }
             | Self::Sphere { beyond, .. }
             | Self::Side { beyond, .. }
-            | Self::Disc { beyond, .. } => *beyond,
+            | Self::Disc { beyond, .. }
+            | Self::InnerSphere { beyond, .. }
+            | Self::InnerSide { beyond, .. }
+            | Self::InnerFloor { beyond, .. } => *beyond,
             Self::Strip(_) | Self::Floor { .. } | Self::FloorCap { .. } => Beyond::Conductor,
         }
     }
@@ -164,11 +226,14 @@ impl Skin {
         match self {
             Self::Wall { finish, .. }
             | Self::Cap { finish, .. }
-            | Self::ConformalCap { finish, .. } => *finish,
+            | Self::ConformalCap { finish, .. }
+            | Self::InnerFloor { finish, .. } => *finish,
             Self::Strip(_)
             | Self::Sphere { .. }
             | Self::Side { .. }
             | Self::Disc { .. }
+            | Self::InnerSphere { .. }
+            | Self::InnerSide { .. }
             | Self::Floor { .. }
             | Self::FloorCap { .. } => Finish::Bare,
         }

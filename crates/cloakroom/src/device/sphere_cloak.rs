@@ -1,6 +1,6 @@
 //! The spherical cloak (Pendry, Schurig & Smith, Science 312, 1780 (2006)).
 
-use super::round::{ball, metal_ball, no_length, radii};
+use super::round::{ball, hollow_ball, metal_ball, no_length, radii};
 use super::{Entry, Fact, FactValue, Request, Show, Structure};
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use glam::DVec3;
@@ -37,7 +37,8 @@ fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
         Show::Cloak => {
             let map = RadialMap::new(inner, outer, Symmetry::Centre);
             let shell = TransformedShell::new(map, Extent::ENDLESS);
-            ball(outer, RadialFlow::Transformed(shell))
+            let flow = RadialFlow::Transformed(shell);
+            if request.open_core { hollow_ball(inner, outer, flow) } else { ball(outer, flow) }
         }
         Show::Bare => metal_ball(inner),
         Show::Mirror => Structure::empty(),

@@ -66,6 +66,7 @@ impl Reach {
                 Self::Cylinder((centre.length() + radius) * GRAZING)
             }
             Solid::Ball { centre, radius } => Self::Ball((centre.length() + radius) * GRAZING),
+            Solid::Hollow { whole, .. } => Self::of(whole),
         }
     }
 

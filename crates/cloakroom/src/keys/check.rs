@@ -88,6 +88,7 @@ impl Key {
             KeyKind::Vector { unit, .. } => format!("three numbers{}", in_brackets(unit)),
             KeyKind::IntegerPair { .. } => "two whole numbers".to_owned(),
             KeyKind::Text { .. } => "a text".to_owned(),
+            KeyKind::Image => "the name of an image".to_owned(),
             KeyKind::ChoiceOrNumber { options, unit } => {
                 let options = options.iter().map(|option| quoted(option, '"'));
                 let options = options.collect::<Vec<_>>().join(", ");
@@ -117,7 +118,7 @@ impl Key {
             KeyKind::IntegerPair { default, .. } => Some(Fitted::IntegerPair(default)),
             KeyKind::Text { default } => default.map(|text| Fitted::Text(text.to_owned())),
             KeyKind::Tensor => Some(Fitted::Tensor(1.0.into())),
-            KeyKind::Polygon { .. } | KeyKind::Table { .. } => None,
+            KeyKind::Image | KeyKind::Polygon { .. } | KeyKind::Table { .. } => None,
             KeyKind::Tables { .. } => Some(Fitted::Tables(Vec::new())),
             KeyKind::Choice { options } | KeyKind::ChoiceOrNumber { options, .. } => {
                 options.first().map(|option| Fitted::Choice(option))
@@ -168,7 +169,7 @@ impl Key {
                 }
                 Ok(Fitted::IntegerPair(integers))
             }
-            KeyKind::Text { .. } => match value {
+            KeyKind::Text { .. } | KeyKind::Image => match value {
                 Value::Text(text) if text.is_empty() => Err(format!("{} is empty", self.name)),
                 Value::Text(text) => Ok(Fitted::Text(text.clone())),
                 _ => Err(self.wrong_type(value)),

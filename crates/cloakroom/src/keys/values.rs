@@ -240,8 +240,8 @@ impl Values {
     /// A text; `None` where it is absent and has no default.
     pub fn optional_text(&self, name: &str) -> Option<&str> {
         match (self.slot(name).0.kind, &self.slot(name).1.value) {
-            (KeyKind::Text { .. }, Some(Fitted::Text(text))) => Some(text),
-            (KeyKind::Text { .. }, None) => None,
+            (KeyKind::Text { .. } | KeyKind::Image, Some(Fitted::Text(text))) => Some(text),
+            (KeyKind::Text { .. } | KeyKind::Image, None) => None,
             _ => mistaken(name, "text"),
         }
     }

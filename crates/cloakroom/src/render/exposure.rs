@@ -45,7 +45,7 @@ pub(super) fn expose<const N: usize>(
         let light = match (leaf.body, screen) {
             (Some(body), _) => {
                 pixel.absorbed += power;
-                studio.body_light(body)
+                body_light(studio, body, leaf, &beside, spacing)
             }
             (None, Some(distance)) => {
                 pixel.delivered += power;
@@ -206,4 +206,23 @@ fn surroundings_light<const N: usize>(
             image.sample(leaf.direction, steps[0], steps[1]).map(f64::from)
         }
     }
+}
+
+fn body_light<const N: usize>(
+    studio: &Studio<'_>,
+    body: u16,
+    leaf: &Leaf<N>,
+    beside: &[Neighbour<'_, N>; 2],
+    spacing: f64,
+) -> [f64; 3] {
+    let Some(surface) = studio.body_surface(body) else { return [0.0; 3] };
+    surface.light(leaf.position, |normal| {
+        let steps = beside.each_ref().map(|neighbour| {
+            let line = neighbour.twin().unwrap_or_else(|| neighbour.moved());
+            let distance = normal.dot(leaf.position - line.origin) / normal.dot(line.direction);
+            (line.origin + line.direction * distance - leaf.position) * spacing
+        });
+        // A neighbour that does not come to the plane leaves a patch without size, which does no harm.
+        steps.map(|step| if step.is_finite() { step } else { DVec3::ZERO })
+    })
 }

@@ -3,6 +3,7 @@
 //! The picture is exposed in bands of rows, each by one thread; what a pixel shows depends on the
 //! scene and the pixel alone, so the result does not depend on the number of threads.
 
+mod body_surface;
 mod channels;
 mod detection;
 mod exposure;

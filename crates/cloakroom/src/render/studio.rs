@@ -1,6 +1,7 @@
 //! The studio: a scene made ready to be looked at, images read and devices built.
 
-use crate::device::{Filling, Request};
+use super::body_surface::BodySurface;
+use crate::device::Request;
 use crate::keys::KeyError;
 use crate::photograph::{self, Edges, Equirectangular, LoadError, Pyramid};
 use crate::scene::{Projection, Scene, SurroundingsSettings};
@@ -83,6 +84,14 @@ pub enum StudioError {
     /// The image of the surroundings cannot be read.
     #[error("{0}")]
     Surroundings(#[source] LoadError),
+    /// The image on a body cannot be read.
+    #[error("{error}")]
+    Surface {
+        /// Which device, counted from 0.
+        device: usize,
+        /// Why not.
+        error: LoadError,
+    },
 }
 
 impl StudioError {
@@ -103,6 +112,7 @@ impl StudioError {
             Self::NoCoveringWidth { .. } => "photograph.x".to_owned(),
             Self::Photograph(_) => "photograph.image".to_owned(),
             Self::Surroundings(_) => "surroundings.image".to_owned(),
+            Self::Surface { device, .. } => format!("device.{device}.surface.image"),
         }
     }
 }
@@ -167,6 +177,8 @@ pub struct Studio<'s> {
     pub(super) screen: Screen,
     pub(super) image: Pyramid,
     pub(super) surroundings: Surroundings,
+    /// Those of the opaque bodies, by their numbers among the devices.
+    body_surfaces: Vec<Option<BodySurface>>,
 }
 
 impl<'s> Studio<'s> {
@@ -192,6 +204,11 @@ impl<'s> Studio<'s> {
                 photograph::load(source).map_err(StudioError::Surroundings)?,
             )),
         };
+        let surface = |(device, placed): (usize, &Placed)| {
+            BodySurface::of(placed).map_err(|error| StudioError::Surface { device, error })
+        };
+        let body_surfaces =
+            bench.devices().iter().enumerate().map(surface).collect::<Result<_, _>>()?;
         Ok(Self {
             scene,
             bench,
@@ -199,16 +216,13 @@ impl<'s> Studio<'s> {
             screen,
             image: Pyramid::new(image, Edges::Clamp),
             surroundings,
+            body_surfaces,
         })
     }
 
-    /// What an opaque body sends out.
-    pub(super) fn body_light(&self, device: u16) -> [f64; 3] {
-        let hull = &self.bench.devices()[usize::from(device)].structure.hull;
-        match hull.body().map(|body| &body.filling) {
-            Some(Filling::Opaque { color }) => *color,
-            _ => [0.0; 3],
-        }
+    /// The surface of an opaque body.
+    pub(super) fn body_surface(&self, device: u16) -> Option<&BodySurface> {
+        self.body_surfaces[usize::from(device)].as_ref()
     }
 
     /// Width and height of the photograph, cm.

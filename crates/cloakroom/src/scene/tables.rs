@@ -169,7 +169,8 @@ pub static PLACEMENT_KEYS: &[Key] = &[
     },
     Key {
         name: "core",
-        doc: "What fills the hidden region: metal, or air in which bodies may stand.",
+        doc: "What fills the hidden region of a free-space cloak: metal, or air in which bodies may stand. \
+              A carpet needs its mirror.",
         kind: KeyKind::Choice { options: &["metal", "open"] },
     },
     Key {

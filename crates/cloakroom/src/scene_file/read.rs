@@ -6,7 +6,8 @@ use super::error::SceneFileError;
 use super::locations::Locations;
 use super::tree::{Entry, Item, Node, Origin, Table};
 use crate::device::{self, CATALOGUE};
-use crate::keys::{Key, KeyError, KeyKind, Values, hint, quoted, unknown};
+use crate::keys::{Key, KeyError, KeyKind, Value, Values, hint, quoted, unknown};
+use crate::photograph::ImageSource;
 use crate::scene::{
     Camera, CameraSettings, DeviceSettings, Light, PLACEMENT_KEYS, PhotographSettings,
     PictureSettings, Scene, SurroundingsSettings, TABLES, TraceSettings,
@@ -26,7 +27,7 @@ pub(super) fn read(
     let mut scene = Scene::default();
     for entry in &root.entries {
         if entry.key == DEVICES {
-            scene.devices = devices(entry, locations)?;
+            scene.devices = devices(entry, locations, base_folder)?;
             continue;
         }
         let Some(&(name, keys)) = TABLES.iter().find(|&&(name, _)| name == entry.key) else {
@@ -38,7 +39,8 @@ pub(super) fn read(
             return Err(locations.error(&entry.key_origin, message));
         };
         let mut values = [Values::defaults(keys)];
-        fill(&mut values, table, &[], &format!(" in [{name}]"), locations)?;
+        let place = format!(" in [{name}]");
+        fill(&mut values, table, &[], &place, locations, base_folder)?;
         let [values] = values;
         let folder = |key: &str| folder_of(table, key, base_folder);
         let stored = store(&mut scene, name, &values, &folder);
@@ -70,7 +72,11 @@ fn store<'a>(
     Ok(())
 }
 
-fn devices(entry: &Entry, locations: &Locations) -> Result<Vec<DeviceSettings>, SceneFileError> {
+fn devices(
+    entry: &Entry,
+    locations: &Locations,
+    base_folder: &Path,
+) -> Result<Vec<DeviceSettings>, SceneFileError> {
     let wrong = |node: &Node| {
         let message = format!(
             "device is {}; each device is a table of its own: [[device]]",
@@ -80,7 +86,7 @@ fn devices(entry: &Entry, locations: &Locations) -> Result<Vec<DeviceSettings>, 
     };
     let Item::List(items) = &entry.node.item else { return Err(wrong(&entry.node)) };
     let read = |item: &Node| match &item.item {
-        Item::Table(table) => device(table, &item.origin, locations),
+        Item::Table(table) => device(table, &item.origin, locations, base_folder),
         _ => Err(wrong(item)),
     };
     items.iter().map(read).collect()
@@ -90,10 +96,12 @@ fn device(
     table: &Table,
     header: &Origin,
     locations: &Locations,
+    base_folder: &Path,
 ) -> Result<DeviceSettings, SceneFileError> {
     let entry = kind(table, header, locations)?;
     let mut values = [Values::defaults(entry.keys), Values::defaults(PLACEMENT_KEYS)];
-    fill(&mut values, table, &[KIND], &format!(" in a {}", entry.kind), locations)?;
+    let place = format!(" in a {}", entry.kind);
+    fill(&mut values, table, &[KIND], &place, locations, base_folder)?;
     let [own, placement] = values;
     Ok(DeviceSettings::from_values(entry, own, &placement))
 }
@@ -137,6 +145,7 @@ fn fill(
     known_besides: &[&str],
     place: &str,
     locations: &Locations,
+    base_folder: &Path,
 ) -> Result<(), SceneFileError> {
     for entry in &table.entries {
         if known_besides.contains(&entry.key.as_str()) {
@@ -151,14 +160,21 @@ fn fill(
             return Err(locations.error(&entry.key_origin, message));
         };
         if let KeyKind::Tables { keys } = key.kind {
-            list.set_tables(key.name, tables(entry, key, keys, locations)?);
+            list.set_tables(key.name, tables(entry, key, keys, locations, base_folder)?);
             continue;
         }
         if let (KeyKind::Table { keys }, Item::Table(_)) = (key.kind, &entry.node.item) {
-            list.set_table(key.name, inner_table(&entry.node, key, keys, locations)?);
+            list.set_table(key.name, inner_table(&entry.node, key, keys, locations, base_folder)?);
             continue;
         }
-        let set = match entry.node.item.to_value() {
+        let value = entry.node.item.to_value();
+        let set = match value {
+            Ok(Value::Text(name)) if matches!(key.kind, KeyKind::Image) && !name.is_empty() => {
+                let source = ImageSource::parse(&name, folder_of(table, key.name, base_folder));
+                source.map_err(|error| error.to_string()).and_then(|source| {
+                    list.set(key.name, source.to_string()).map_err(|error| error.message)
+                })
+            }
             Ok(value) => list.set(key.name, value).map_err(|error| error.message),
             Err(what) => Err(format!("{} is {what}; it must be {}", key.name, key.describe())),
         };
@@ -173,11 +189,12 @@ fn tables(
     key: &Key,
     keys: &'static [Key],
     locations: &Locations,
+    base_folder: &Path,
 ) -> Result<Vec<Values>, SceneFileError> {
     let Item::List(items) = &entry.node.item else {
         return Err(unfit(&entry.node, key, locations));
     };
-    items.iter().map(|item| inner_table(item, key, keys, locations)).collect()
+    items.iter().map(|item| inner_table(item, key, keys, locations, base_folder)).collect()
 }
 
 /// A table within a device's.
@@ -186,10 +203,12 @@ fn inner_table(
     key: &Key,
     keys: &'static [Key],
     locations: &Locations,
+    base_folder: &Path,
 ) -> Result<Values, SceneFileError> {
     let Item::Table(table) = &node.item else { return Err(unfit(node, key, locations)) };
     let mut values = [Values::defaults(keys)];
-    fill(&mut values, table, &[], &format!(" in a {}", key.name), locations)?;
+    let place = format!(" in a {}", key.name);
+    fill(&mut values, table, &[], &place, locations, base_folder)?;
     let [values] = values;
     Ok(values)
 }

@@ -1,6 +1,6 @@
 //! Balls of graded index, and the invisible spheres.
 
-use super::{Numbers, bench, launch, leaf, leaves};
+use super::{Numbers, bench, launch, leaf, leaves, random_launch};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -19,7 +19,7 @@ fn the_invisible_sphere_delays_every_ray_by_its_circumference() {
     let bench = bench("'invisible-sphere'");
     let mut numbers = Numbers(2);
     for _ in 0..500 {
-        let (ray, _) = numbers.launch();
+        let (ray, _) = random_launch(&mut numbers);
         let out = leaf(&bench, &ray);
         let end = chord(ray.origin, ray.direction).1;
         assert!(out.position.distance(end) < 1e-9 * RADIUS, "{ray:?}");
@@ -39,7 +39,7 @@ fn eatons_lens_returns_rays_and_the_bender_turns_them_by_its_angle() {
     let other = bench("'bending-sphere'\nangle = 37.5");
     let mut numbers = Numbers(3);
     for _ in 0..500 {
-        let (ray, impact) = numbers.launch();
+        let (ray, impact) = random_launch(&mut numbers);
         let back = leaf(&eaton, &ray);
         assert!(back.direction.distance(-ray.direction) < 1e-9);
         // On the other side of the centre.
@@ -90,7 +90,7 @@ fn the_fisheye_images_to_the_antipode() {
     let bench = bench("'fisheye-lens'");
     let mut numbers = Numbers(5);
     for _ in 0..500 {
-        let (ray, _) = numbers.launch();
+        let (ray, _) = random_launch(&mut numbers);
         let entry = chord(ray.origin, ray.direction).0;
         let out = leaf(&bench, &ray);
         assert!(out.position.distance(-entry) < 1e-9 * RADIUS);
@@ -105,7 +105,7 @@ fn the_regularized_sphere_hides_from_its_extraordinary_wave() {
     let index = PI + 1.0;
     let mut numbers = Numbers(6);
     for _ in 0..300 {
-        let (mut ray, impact) = numbers.launch();
+        let (mut ray, impact) = random_launch(&mut numbers);
         let (entry, end) = chord(ray.origin, ray.direction);
         let normal = ray.origin.cross(ray.direction).normalize();
         // First in the plane of the ray, the extraordinary wave, then across it.

@@ -43,6 +43,18 @@ impl Cylinder {
         self.extent.contains(origin.z + t * direction.z).then_some(t)
     }
 
+    /// The distance at which a ray meets the round side from within, wherever it starts.
+    #[must_use]
+    pub fn hit_side_within(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let (o, d) = (origin.truncate(), direction.truncate());
+        let speed = d.length();
+        let beside = d.perp_dot(o) / speed;
+        let half_chord = self.radius * self.radius - beside * beside;
+        let t = (half_chord.max(0.0).sqrt() - o.dot(d) / speed) / speed;
+        let met = half_chord >= 0.0 && t >= 0.0 && self.extent.contains(origin.z + t * direction.z);
+        met.then_some(t)
+    }
+
     /// How long a point inside or on the cylinder takes to leave it with a velocity, and through
     /// which part; infinitely long if it never does.
     #[must_use]
@@ -129,6 +141,12 @@ mod tests {
         let (o, d, _) = aimed(DVec3::new(-2.0, 0.0, 3.1));
         assert_eq!(cylinder.hit_side(o, d), None);
         assert_eq!(cylinder.hit_side(from, DVec3::Z), None);
+        for from in [from, DVec3::X] {
+            assert_eq!(cylinder.hit_side_within(from, DVec3::X), Some(2.0 - from.x));
+        }
+        assert_eq!(cylinder.hit_side_within(DVec3::X * 2.5, DVec3::X), None);
+        assert_eq!(cylinder.hit_side_within(DVec3::X, DVec3::new(0.1, 0.0, 0.9)), None);
+        assert_eq!(cylinder.hit_side_within(DVec3::X, DVec3::Z), None);
         let from_end = DVec3::new(-1.0, 0.0, 3.0);
         assert_eq!(cylinder.hit_side(from_end, DVec3::new(0.6, 0.0, 0.8)), None);
         let above = DVec3::new(1.0, 0.5, 9.0);

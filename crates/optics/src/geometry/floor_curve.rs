@@ -3,6 +3,7 @@
 use glam::DVec2;
 use num_complex::Complex64;
 
+use super::Outline;
 use crate::transformation::{ConformalMap, root_in_bracket};
 
 /// The outline of the metal below the floor f(X) of a conformal map, cut at two x: the floor, the back,
@@ -26,6 +27,15 @@ pub enum MetalBack {
     Flat(f64),
 }
 
+/// A curved side of a metal with a mirror image for its back.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum CurvedSide {
+    /// The floor.
+    Floor,
+    /// Its mirror image.
+    Image,
+}
+
 /// A part of the metal's outline.
 #[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
 pub enum MetalSide {
@@ -35,6 +45,13 @@ pub enum MetalSide {
     Lower,
     /// The cut at one of the ends.
     End,
+}
+
+/// Which way a ray crosses the outline of the metal.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Sense {
+    Entering,
+    Leaving,
 }
 
 /// Where a ray meets the metal.
@@ -91,10 +108,9 @@ impl FloorCurve {
             }
     }
 
-    /// The outline of the metal from the left end of its floor on, the floor and its mirror image in that
-    /// many straight pieces each.
+    /// A curved side from left to right in that many straight pieces.
     #[must_use]
-    pub fn outline(&self, pieces: u32) -> Vec<DVec2> {
+    pub fn side_line(&self, side: CurvedSide, pieces: u32) -> Vec<DVec2> {
         let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
             return Vec::new();
         };
@@ -102,12 +118,27 @@ impl FloorCurve {
             let share = f64::from(k) / f64::from(pieces.max(1));
             let parameter = first.parameter + (last.parameter - first.parameter) * share;
             let point = self.map.profile(parameter).f;
-            DVec2::new(point.re, point.im)
+            match side {
+                CurvedSide::Floor => DVec2::new(point.re, point.im),
+                CurvedSide::Image => DVec2::new(point.re, -point.im),
+            }
         };
-        let floor: Vec<DVec2> = (0..=pieces).map(point).collect();
+        (0..=pieces).map(point).collect()
+    }
+
+    /// The outline of the metal from the left end of its floor on, the floor and its mirror image in that
+    /// many straight pieces each.
+    #[must_use]
+    pub fn outline(&self, pieces: u32) -> Vec<DVec2> {
+        let floor = self.side_line(CurvedSide::Floor, pieces);
         let back: Vec<DVec2> = match self.back {
-            MetalBack::MirrorImage => floor.iter().map(|p| DVec2::new(p.x, -p.y)).rev().collect(),
-            MetalBack::Flat(y) => [last, first].map(|end| DVec2::new(end.point.re, y)).to_vec(),
+            MetalBack::MirrorImage => {
+                self.side_line(CurvedSide::Image, pieces).into_iter().rev().collect()
+            }
+            MetalBack::Flat(y) => {
+                let ends = [self.knots.last(), self.knots.first()].into_iter().flatten();
+                ends.map(|end| DVec2::new(end.point.re, y)).collect()
+            }
         };
         floor.into_iter().chain(back).collect()
     }
@@ -117,16 +148,14 @@ impl FloorCurve {
     /// far out, only a positive `t_min` keeps such a ray off the other side). None if there is none.
     #[must_use]
     pub fn first_hit(&self, origin: DVec2, direction: DVec2, t_min: f64) -> Option<FloorHit> {
-        let inverse_square = direction.length_squared().recip();
-        if !(inverse_square.is_finite() && origin.is_finite() && self.may_hit(origin, direction)) {
+        if !self.may_hit(origin, direction) {
             return None;
         }
-        let mirrored = |v: DVec2| DVec2::new(v.x, -v.y);
-        let upper = self.first_on_curve(origin, direction, t_min, MetalSide::Upper);
+        let upper = self.first_on_curve(origin, direction, t_min, Sense::Entering);
         let lower = match self.back {
-            MetalBack::MirrorImage => self
-                .first_on_curve(mirrored(origin), mirrored(direction), t_min, MetalSide::Lower)
-                .map(|hit| FloorHit { normal: mirrored(hit.normal), ..hit }),
+            MetalBack::MirrorImage => {
+                self.first_on_image(origin, direction, t_min, Sense::Entering)
+            }
             MetalBack::Flat(y) => self.first_on_plane(y, origin, direction, t_min),
         };
         [upper, lower, self.first_on_ends(origin, direction, t_min)]
@@ -135,8 +164,71 @@ impl FloorCurve {
             .min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
-    /// Whether the ray's line meets the bounding box.
+    /// The first point with t >= `t_min` where a ray leaves the outline through its floor, or through the mirror
+    /// image of it: the outline taken for that of a hollow, open at its ends. The normal points out of it.
+    #[must_use]
+    pub fn first_way_out(
+        &self,
+        side: CurvedSide,
+        origin: DVec2,
+        direction: DVec2,
+        t_min: f64,
+    ) -> Option<FloorHit> {
+        if !self.may_hit(origin, direction) {
+            return None;
+        }
+        match side {
+            CurvedSide::Floor => self.first_on_curve(origin, direction, t_min, Sense::Leaving),
+            CurvedSide::Image => self.first_on_image(origin, direction, t_min, Sense::Leaving),
+        }
+    }
+
+    /// Whether an outline lies inside as a whole.
+    #[must_use]
+    pub fn encloses(&self, outline: &Outline) -> bool {
+        // What leaves between two corners comes back before the second.
+        outline.corners().iter().all(|corner| self.contains(*corner))
+            && outline.sides().all(|(from, to)| {
+                self.first_hit(from, to - from, 0.0).is_none_or(|hit| hit.t > 1.0)
+            })
+    }
+
+    /// How far a point inside a metal with a mirror image for its back lies from its curved sides.
+    #[must_use]
+    pub fn depth(&self, point: DVec2) -> f64 {
+        const SAMPLES: u32 = 512;
+        let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
+            return 0.0;
+        };
+        // No point of the image is nearer than its own image to a point above the line between the two.
+        let here = Complex64::new(point.x, point.y.abs());
+        let slope = |parameter: f64| {
+            let jet = self.map.profile(parameter);
+            let way = jet.f - here;
+            ((jet.f1.conj() * way).re, jet.f1.norm_sqr() + (jet.f2.conj() * way).re)
+        };
+        let sample = |k: u32| {
+            let share = f64::from(k) / f64::from(SAMPLES);
+            first.parameter + (last.parameter - first.parameter) * share
+        };
+        let distance = |parameter: f64| (self.map.profile(parameter).f - here).norm();
+        let ends = distance(first.parameter).min(distance(last.parameter));
+        (0..SAMPLES)
+            .filter_map(|k| {
+                let (a, b) = (sample(k), sample(k + 1));
+                let (at_a, at_b) = (slope(a).0, slope(b).0);
+                (at_a <= 0.0 && at_b >= 0.0)
+                    .then(|| distance(root_in_bracket((a, at_a), (b, at_b), slope)))
+            })
+            .fold(ends, f64::min)
+    }
+
+    /// Whether it is a ray, and its line meets the bounding box.
     fn may_hit(&self, origin: DVec2, direction: DVec2) -> bool {
+        let inverse_square = direction.length_squared().recip();
+        if !(inverse_square.is_finite() && origin.is_finite()) {
+            return false;
+        }
         let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
             return false;
         };
@@ -149,7 +241,20 @@ impl FloorCurve {
         sides.iter().any(|s| *s >= -slack) && sides.iter().any(|s| *s <= slack)
     }
 
-    /// The first hit of the curve from above.
+    /// The first crossing of the floor's mirror image.
+    fn first_on_image(
+        &self,
+        origin: DVec2,
+        direction: DVec2,
+        t_min: f64,
+        sense: Sense,
+    ) -> Option<FloorHit> {
+        let mirrored = |v: DVec2| DVec2::new(v.x, -v.y);
+        self.first_on_curve(mirrored(origin), mirrored(direction), t_min, sense)
+            .map(|hit| FloorHit { normal: mirrored(hit.normal), side: MetalSide::Lower, ..hit })
+    }
+
+    /// The first crossing of the floor.
     ///
     /// On the ray, F(X) = cross(f(X) - origin, direction) vanishes. Its slope vanishes where the curve is
     /// parallel to the ray: at most once between two knots. So F is monotone on known intervals, and
@@ -159,7 +264,7 @@ impl FloorCurve {
         origin: DVec2,
         direction: DVec2,
         t_min: f64,
-        side: MetalSide,
+        sense: Sense,
     ) -> Option<FloorHit> {
         let along = Complex64::new(direction.x, direction.y);
         let cross = |v: Complex64| (v.conj() * along).im;
@@ -178,10 +283,14 @@ impl FloorCurve {
             let here = knot(&self.map, root);
             let t = ((here.point - offset) * along.conj()).re / along.norm_sqr();
             let normal = Complex64::i() * here.tangent / here.tangent.norm();
-            let entering = (normal.conj() * along).re < 0.0;
-            if entering && t >= t_min && best.is_none_or(|hit| t < hit.t) {
+            let outward = (normal.conj() * along).re;
+            let counts = match sense {
+                Sense::Entering => outward < 0.0,
+                Sense::Leaving => outward > 0.0,
+            };
+            if counts && t >= t_min && best.is_none_or(|hit| t < hit.t) {
                 let normal = DVec2::new(normal.re, normal.im);
-                best = Some(FloorHit { t, normal, side });
+                best = Some(FloorHit { t, normal, side: MetalSide::Upper });
             }
         };
         for pair in self.knots.windows(2) {
@@ -245,92 +354,4 @@ fn knot(map: &ConformalMap, parameter: f64) -> Knot {
 }
 
 #[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::transformation::GaussianMap;
-
-    fn map(w: f64, h: f64) -> ConformalMap {
-        GaussianMap::new(w, h).expect("a valid map").into()
-    }
-
-    /// The first entry into the metal by walking: slow, and blind to what is thinner than a step.
-    fn by_walking(map: &ConformalMap, reach: f64, origin: DVec2, direction: DVec2) -> Option<f64> {
-        let inside = |t: f64| {
-            let p = origin + t * direction;
-            p.x.abs() <= reach && p.y.abs() < map.floor_height_at(p.x)
-        };
-        let (step, count) = (0.01 / direction.length(), 12_000);
-        let first = (1..count).map(|k| f64::from(k) * step).find(|t| inside(*t))?;
-        let (mut low, mut high) = (first - step, first);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if inside(middle) { high = middle } else { low = middle }
-        }
-        Some(high)
-    }
-
-    #[test]
-    fn is_met_from_all_sides() {
-        let map = map(10.02, 4.25);
-        let curve = FloorCurve::new(map.clone(), MetalBack::MirrorImage, -25.0, 25.0);
-        assert_eq!(curve.knots.len(), 4);
-        let hit =
-            curve.first_hit(DVec2::new(0.0, 30.0), DVec2::new(0.0, -2.0), 0.0).expect("a hit");
-        assert!((hit.t - 0.5 * (30.0 - 4.25)).abs() < 1e-13 && hit.side == MetalSide::Upper);
-        assert!((hit.normal - DVec2::Y).length() < 1e-13);
-        let hit = curve.first_hit(DVec2::new(0.0, -30.0), DVec2::Y, 0.0).expect("a hit");
-        assert!((hit.t - 25.75).abs() < 1e-13 && hit.side == MetalSide::Lower);
-        assert!((hit.normal + DVec2::Y).length() < 1e-13);
-        let hit = curve.first_hit(DVec2::new(-40.0, 0.0), DVec2::X, 0.0).expect("a hit");
-        assert!(
-            (hit.t - 15.0).abs() < 1e-13 && hit.side == MetalSide::End && hit.normal == -DVec2::X
-        );
-        assert_eq!(curve.first_hit(DVec2::new(-40.0, 4.26), DVec2::X, 0.0), None);
-        assert_eq!(curve.first_hit(DVec2::new(-40.0, 0.0), DVec2::X, 15.1), None);
-        assert_eq!(curve.first_hit(DVec2::new(-40.0, 0.0), -DVec2::X, 0.0), None);
-        assert_eq!(curve.first_hit(DVec2::ZERO, DVec2::ZERO, 0.0), None);
-        assert_eq!(curve.first_hit(DVec2::NAN, DVec2::X, 0.0), None);
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(300))]
-
-        #[test]
-        fn agrees_with_walking(
-            w in 3.0_f64..12.0, ratio in 0.05_f64..0.88, x in -40.0_f64..40.0, up in -1.5_f64..1.5,
-            aim in -25.0_f64..25.0, share in -1.2_f64..1.2, length in 0.1_f64..10.0,
-        ) {
-            let map = map(w, ratio * w);
-            let curve = FloorCurve::new(map.clone(), MetalBack::MirrorImage, -25.0, 25.0);
-            let origin = DVec2::new(x, up * ratio * w);
-            prop_assume!(x.abs() > 25.0 || origin.y.abs() > map.floor_height_at(x) + 0.02);
-            let target = DVec2::new(aim, share * map.floor_height_at(aim));
-            let direction = (target - origin).normalize() * length;
-            let hit = curve.first_hit(origin, direction, 0.0);
-            let walked = by_walking(&map, 25.0, origin, direction);
-            match (hit, walked) {
-                (Some(hit), Some(t)) => {
-                    // Walking may step over a corner; the exact hit is then earlier, and real.
-                    let earlier = hit.t < t && (t - hit.t) * length > 0.005;
-                    prop_assert!(earlier || (hit.t - t).abs() * length < 1e-9, "{hit:?} {t}");
-                }
-                (None, Some(t)) => prop_assert!(false, "missed the hit at {t}"),
-                _ => {}
-            }
-            if let Some(hit) = hit {
-                let point = origin + hit.t * direction;
-                let height = map.floor_height_at(point.x);
-                prop_assert!(hit.side == MetalSide::End || (point.y.abs() - height).abs() < 1e-10);
-                prop_assert!((hit.normal.length() - 1.0).abs() < 1e-14);
-                prop_assert!(hit.normal.dot(direction) < 0.0);
-                // A reflected ray does not hit the same place again, where the metal is thicker than rounding.
-                let reflected = direction - 2.0 * direction.dot(hit.normal) * hit.normal;
-                if let Some(next) = curve.first_hit(point, reflected, 0.0) {
-                    prop_assert!(next.t * length > 1e-9 || height < 1e-9);
-                }
-            }
-        }
-    }
-}
+mod tests;

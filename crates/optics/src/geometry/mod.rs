@@ -8,6 +8,7 @@
 mod cap;
 mod cylinder;
 mod floor_curve;
+mod hollow;
 mod outline;
 mod plane;
 mod polygon;
@@ -18,7 +19,8 @@ mod wall;
 
 pub use cap::Cap;
 pub use cylinder::{Cylinder, CylinderPart, Disc};
-pub use floor_curve::{FloorCurve, MetalBack};
+pub use floor_curve::{CurvedSide, FloorCurve, MetalBack};
+pub use hollow::Hole;
 pub use outline::Outline;
 pub use plane::Plane;
 pub use polygon::{ConvexPart, Polygon, PolygonError, SAME_POINT};

@@ -27,6 +27,16 @@ impl Pose {
         Self { origin, cos, sin }
     }
 
+    /// The place of what is at `first` in the frame that is at this pose.
+    #[must_use]
+    pub fn after(&self, first: &Self) -> Self {
+        Self {
+            origin: self.to_world(first.origin),
+            cos: self.cos * first.cos - self.sin * first.sin,
+            sin: self.sin * first.cos + self.cos * first.sin,
+        }
+    }
+
     /// The device's origin in the world.
     #[must_use]
     pub fn origin(&self) -> DVec3 {

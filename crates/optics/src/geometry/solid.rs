@@ -1,9 +1,9 @@
-//! Convex bodies, and whether they are in each other's way.
+//! Convex bodies, whole or with a hole, and whether they are in each other's way.
 
-use super::{Extent, Outline, Pose};
+use super::{Extent, Hole, Outline, Pose};
 use glam::{DVec2, DVec3};
 
-/// A convex body.
+/// A convex body, or one with a hole.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Solid {
     /// Nothing at all.
@@ -31,6 +31,13 @@ pub enum Solid {
         /// Its radius, cm.
         radius: f64,
     },
+    /// A convex body but for a hole, in which others may be.
+    Hollow {
+        /// The body with its hole filled.
+        whole: Box<Solid>,
+        /// The hole.
+        hole: Box<Hole>,
+    },
 }
 
 impl Solid {
@@ -44,6 +51,12 @@ impl Solid {
     #[must_use]
     pub fn ball(radius: f64) -> Self {
         Self::Ball { centre: DVec3::ZERO, radius }
+    }
+
+    /// The body with a hole in it.
+    #[must_use]
+    pub fn with_hole(self, hole: Hole) -> Self {
+        Self::Hollow { whole: Box::new(self), hole: Box::new(hole) }
     }
 
     /// Whether a point lies inside, border excluded.
@@ -62,6 +75,7 @@ impl Solid {
                 between(extent) && point.truncate().distance_squared(*centre) < radius * radius
             }
             Self::Ball { centre, radius } => point.distance_squared(*centre) < radius * radius,
+            Self::Hollow { whole, hole } => whole.holds(point) && !hole.holds(point),
         }
     }
 
@@ -84,6 +98,10 @@ impl Solid {
             Self::Ball { centre, radius } => {
                 Self::Ball { centre: pose.to_world(*centre), radius: *radius }
             }
+            Self::Hollow { whole, hole } => Self::Hollow {
+                whole: Box::new(whole.placed(pose)),
+                hole: Box::new(hole.placed(pose)),
+            },
         }
     }
 
@@ -91,9 +109,12 @@ impl Solid {
     /// other by rounding.
     #[must_use]
     pub fn overlaps(&self, other: &Self, slack: f64) -> bool {
-        use Solid::{Ball, Cylinder, Nothing, Prism};
+        use Solid::{Ball, Cylinder, Hollow, Nothing, Prism};
         match (self, other) {
             (Nothing, _) | (_, Nothing) => false,
+            (Hollow { whole, hole }, other) | (other, Hollow { whole, hole }) => {
+                whole.overlaps(other, slack) && !hole.encloses(other, slack)
+            }
             (Prism { outline, extent }, Prism { outline: second, extent: beyond }) => {
                 extent.overlaps(*beyond) && outline.overlaps(second, slack)
             }
@@ -124,7 +145,9 @@ impl Solid {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{FloorCurve, MetalBack};
     use super::*;
+    use crate::transformation::{ConformalMap, GaussianMap};
 
     const SLACK: f64 = 1e-9;
 
@@ -171,6 +194,98 @@ mod tests {
         assert!(!sheet.overlaps(&moved(&ball, DVec3::new(1.01, 3.0, 1.0)), SLACK));
         assert!(!sheet.overlaps(&moved(&cylinder, DVec3::new(0.5, 0.0, 3.5)), SLACK));
         assert!(!Solid::Nothing.overlaps(&ball, SLACK) && !Solid::Nothing.holds(DVec3::ZERO));
+    }
+
+    /// The body in the hole, moved along x until it presses against the border, and beyond it outside.
+    fn check_hole(hollow: &Solid, body: &Solid, [inside, outside]: [f64; 2]) {
+        for (turn, towards) in [(0.0, DVec3::X), (90.0, DVec3::Y)] {
+            let hollow = hollow.placed(&Pose::new(DVec3::ZERO, turn));
+            let body = body.placed(&Pose::new(DVec3::ZERO, turn));
+            let meets = |way: f64| {
+                let body = moved(&body, towards * way);
+                let both = [hollow.overlaps(&body, SLACK), body.overlaps(&hollow, SLACK)];
+                assert_eq!(both[0], both[1], "{way}");
+                both[0]
+            };
+            assert!(!meets(0.0) && !meets(inside - 1e-6) && meets(inside + 1e-6), "{hollow:?}");
+            assert!(meets(outside - 1e-6) && !meets(outside + 1e-6), "{hollow:?} {body:?}");
+        }
+    }
+
+    #[test]
+    fn others_may_be_in_a_hole_but_not_in_its_walls() {
+        let short = Extent::centred(Some(2.0));
+        let tube = Solid::cylinder(5.0, Extent::ENDLESS)
+            .with_hole(Hole::Round(Solid::cylinder(3.0, Extent::ENDLESS)));
+        let shell = Solid::ball(5.0).with_hole(Hole::Round(Solid::ball(3.0)));
+        let cylinder = Solid::cylinder(1.0, short);
+        let ball = Solid::ball(1.0);
+        check_hole(&tube, &box_of(1.0), [8f64.sqrt() - 1.0, 6.0]);
+        check_hole(&tube, &cylinder, [2.0, 6.0]);
+        check_hole(&tube, &ball, [2.0, 6.0]);
+        check_hole(&shell, &box_of(1.0), [7f64.sqrt() - 1.0, 6.0]);
+        check_hole(&shell, &cylinder, [8f64.sqrt() - 1.0, 6.0]);
+        check_hole(&shell, &ball, [2.0, 6.0]);
+        let small = Solid::ball(1.0).with_hole(Hole::Round(Solid::ball(0.5)));
+        check_hole(&shell, &small, [2.0, 6.0]);
+        assert!(shell.holds(DVec3::X * 3.1) && !shell.holds(DVec3::X * 2.9));
+        // A ball wider than the hole of a short tube may lie upon its end.
+        let ring = Solid::cylinder(5.0, short).with_hole(Hole::Round(Solid::cylinder(3.0, short)));
+        let wide = |z: f64| moved(&Solid::ball(3.2), DVec3::Z * z);
+        let rest = 1.0 + (3.2f64.powi(2) - 9.0).sqrt();
+        assert!(!ring.overlaps(&wide(rest + 1e-6), SLACK));
+        assert!(ring.overlaps(&wide(rest - 1e-6), SLACK));
+    }
+
+    #[test]
+    fn others_may_be_in_a_hole_with_a_curved_border() {
+        let map = ConformalMap::from(GaussianMap::new(10.0, 4.0).expect("a map"));
+        let curve = FloorCurve::new(map.clone(), MetalBack::MirrorImage, -25.0, 25.0);
+        let extent = Extent::ENDLESS;
+        let outline = Outline::rectangle(25.0, 30.0);
+        let whole = Solid::Prism { outline, extent };
+        let hollow =
+            whole.with_hole(Hole::Lens { curve, pose: Pose::new(DVec3::ZERO, 0.0), extent });
+        // The corner of a box meets the curve; so does a ball, where its distance by plain search is its radius.
+        let level = |height: f64| {
+            let (mut low, mut high) = (0.0, 25.0);
+            for _ in 0..60 {
+                let middle: f64 = 0.5 * (low + high);
+                if map.floor_height_at(middle) > height { low = middle } else { high = middle }
+            }
+            low
+        };
+        check_along_x(&hollow, &box_of(1.0), [level(1.0) - 1.0, 26.0]);
+        let distance = |x: f64| {
+            let off =
+                |k: u32| DVec2::from(map_point(&map, f64::from(k) * 1e-4)).distance(DVec2::X * x);
+            (0..250_000).map(off).fold(f64::INFINITY, f64::min)
+        };
+        let (mut low, mut high) = (0.0, 20.0);
+        for _ in 0..30 {
+            let middle: f64 = 0.5 * (low + high);
+            if distance(middle) > 1.0 { low = middle } else { high = middle }
+        }
+        check_along_x(&hollow, &Solid::ball(1.0), [low, 26.0]);
+        check_along_x(&hollow, &Solid::cylinder(1.0, extent), [low, 26.0]);
+        assert!(hollow.holds(DVec3::Y * 4.01) && !hollow.holds(DVec3::Y * 3.99));
+    }
+
+    fn map_point(map: &ConformalMap, x: f64) -> [f64; 2] {
+        [x, map.floor_height_at(x)]
+    }
+
+    fn check_along_x(hollow: &Solid, body: &Solid, [inside, outside]: [f64; 2]) {
+        for turn in [0.0, 90.0, 33.0] {
+            let pose = Pose::new(DVec3::new(3.0, -2.0, 1.0), turn);
+            let hollow = hollow.placed(&pose);
+            let meets = |way: f64| {
+                let body = moved(body, DVec3::X * way).placed(&pose);
+                hollow.overlaps(&body, SLACK)
+            };
+            assert!(!meets(0.0) && !meets(inside - 1e-5) && meets(inside + 1e-5), "{body:?}");
+            assert!(meets(outside - 1e-6) && !meets(outside + 1e-6), "{body:?}");
+        }
     }
 
     #[test]

@@ -18,11 +18,23 @@ impl Sphere {
         // From the closest approach itself: the difference of squares would lose digits far away.
         let beside = origin - direction * along;
         let half_chord = self.radius * self.radius - beside.length_squared();
-        if along >= 0.0 || half_chord < 0.0 {
+        // From within a ray does not come: only by rounding may it start there.
+        let outside = origin.length_squared() >= self.radius * self.radius * (1.0 - 1e-12);
+        if along >= 0.0 || half_chord < 0.0 || !outside {
             return None;
         }
         // Never negative: rounding may have put the origin a hair inside.
         Some((-along - half_chord.sqrt()).max(0.0))
+    }
+
+    /// The distance at which a ray (of unit direction) meets the sphere from within, wherever it starts.
+    #[must_use]
+    pub fn hit_within(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let along = origin.dot(direction);
+        let beside = origin - direction * along;
+        let half_chord = self.radius * self.radius - beside.length_squared();
+        let distance = half_chord.max(0.0).sqrt() - along;
+        (half_chord >= 0.0 && distance >= 0.0).then_some(distance)
     }
 
     /// How long a point inside or on the sphere takes to leave it with a velocity.
@@ -60,6 +72,13 @@ mod tests {
         assert_eq!(sphere.hit(DVec3::new(-5.0, 2.1, 0.0), DVec3::X), None);
         assert_eq!(sphere.hit(DVec3::new(5.0, 0.0, 0.0), DVec3::X), None);
         assert_eq!(sphere.hit(DVec3::new(2.0, 0.0, 0.0), DVec3::X), None);
+        for x in [-5.0, 0.5] {
+            let within = sphere.hit_within(DVec3::new(x, 0.0, 0.0), DVec3::X);
+            assert_eq!(within, Some(2.0 - x));
+        }
+        assert_eq!(sphere.hit_within(DVec3::new(2.5, 0.0, 0.0), DVec3::X), None);
+        assert_eq!(sphere.hit_within(DVec3::new(-5.0, 2.1, 0.0), DVec3::X), None);
+        assert_eq!(sphere.hit(DVec3::new(-1.5, 0.0, 0.0), DVec3::X), None);
         let grazing = sphere.hit(DVec3::new(-5.0, 2.0, 0.0), DVec3::X);
         assert_eq!(grazing, Some(5.0));
     }

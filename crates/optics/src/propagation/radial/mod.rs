@@ -78,6 +78,26 @@ impl RadialFlow {
         }
     }
 
+    /// The unit vector away from the axis or the centre.
+    #[must_use]
+    pub fn outward(&self, position: DVec3) -> DVec3 {
+        let outward = match self {
+            Self::Lens(_) | Self::Transmuted(_) => position.try_normalize(),
+            Self::Transformed(shell) => Some(shell.map().radial(position)),
+            Self::Uniaxial(cylinder) => Some(cylinder.map().radial(position)),
+        };
+        outward.unwrap_or(DVec3::X)
+    }
+
+    /// Whether a wave of the medium never comes to the hole: at its border the medium is singular.
+    #[must_use]
+    pub fn closes_core(&self, mode: ModeKind) -> bool {
+        match self {
+            Self::Lens(_) | Self::Transmuted(_) | Self::Transformed(_) => true,
+            Self::Uniaxial(cylinder) => !cylinder.comes_to_core(mode),
+        }
+    }
+
     /// The local medium at a point of the medium or its border.
     #[must_use]
     pub fn medium(&self, position: DVec3) -> Option<Medium> {

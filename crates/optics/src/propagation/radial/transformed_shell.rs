@@ -14,6 +14,13 @@ pub struct TransformedShell {
     extent: Extent,
 }
 
+/// How far from the hole, relative to its radius, a point is at its border.
+const AT_HOLE: f64 = 1e-9;
+
+/// There the medium, which is singular, is taken for that so far away, of which double precision can hold the
+/// tensor: waves of the hole come to it, but for those across its border they cannot get in anywhere.
+const BESIDE_HOLE: f64 = 1e-5;
+
 impl TransformedShell {
     /// The shell of a map, a cylindrical one within `extent` along z.
     #[must_use]
@@ -31,6 +38,9 @@ impl TransformedShell {
     #[must_use]
     pub fn medium(&self, position: DVec3) -> Medium {
         let map = &self.map;
+        let at_hole = map.radius(position) <= map.inner() * (1.0 + AT_HOLE);
+        let off_hole = map.radial(position) * (map.inner() * (1.0 + BESIDE_HOLE));
+        let position = if at_hole { off_hole } else { position };
         // det (J Jᵀ/det J) = 1/det J.
         let determinant = map.determinant(position).recip();
         Medium::transformed(map.tensor(position), map.inverse_tensor(position), determinant)

@@ -57,6 +57,12 @@ impl UniaxialCylinder {
         &self.map
     }
 
+    /// Whether a wave comes to the core: the ordinary one of the radial axis.
+    #[must_use]
+    pub fn comes_to_core(&self, mode: ModeKind) -> bool {
+        self.axis == OpticAxis::Radial && mode != ModeKind::Extraordinary
+    }
+
     fn point(&self, position: DVec3) -> UniaxialPoint {
         let large = self.map.stretch() * self.map.stretch();
         let s = self.map.shrinkage(position).max(LEAST_S);

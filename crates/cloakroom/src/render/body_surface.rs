@@ -1,0 +1,135 @@
+//! What opaque bodies show: a color, or an image laid on their shape.
+//!
+//! An image stands whole and upright, as seen from outside, on each face of a box and each end of a cylinder. Up
+//! is y there; on the upper and the lower face of a box it is as if they were folded up and down from the face
+//! that looks along -x, towards the usual camera. Around a ball and the side of a cylinder the image goes once:
+//! its middle column is on the side of -x, and its top row at the pole +y of a ball, at the end +z of a cylinder.
+
+use crate::device::{BodyShape, Filling, Surface};
+use crate::photograph::{self, Edges, Equirectangular, LoadError, Pyramid};
+use crate::trace::Placed;
+use glam::DVec3;
+use optics::geometry::{Cylinder, CylinderPart, Pose};
+use std::f64::consts::TAU;
+
+/// What an opaque body shows.
+#[derive(Clone, Debug)]
+pub(super) enum BodySurface {
+    Color([f64; 3]),
+    Image(Box<Picture>),
+}
+
+/// An image on a body.
+#[derive(Clone, Debug)]
+pub(super) struct Picture {
+    pose: Pose,
+    texture: Texture,
+}
+
+#[derive(Clone, Debug)]
+enum Texture {
+    /// On the faces of a box of half that size.
+    Box(DVec3, Pyramid),
+    /// On the side and the ends of a cylinder.
+    Cylinder(Cylinder, Pyramid),
+    /// Around a ball.
+    Ball(Equirectangular),
+}
+
+/// Where a point is on the image, and by how much (u, v) changes per cm along the surface; all in the body's frame.
+#[derive(Clone, Copy, Debug)]
+struct Spot {
+    normal: DVec3,
+    position: [f64; 2],
+    across: DVec3,
+    down: DVec3,
+}
+
+impl BodySurface {
+    /// The surface of a device, if it is an opaque body.
+    ///
+    /// # Errors
+    ///
+    /// If its image cannot be read.
+    pub fn of(placed: &Placed) -> Result<Option<Self>, LoadError> {
+        let Some(body) = placed.structure.hull.body() else { return Ok(None) };
+        Ok(match &body.filling {
+            Filling::Medium { .. } => None,
+            Filling::Opaque(Surface::Color(color)) => Some(Self::Color(*color)),
+            Filling::Opaque(Surface::Image(source)) => {
+                let image = photograph::load(source)?;
+                let texture = match body.shape {
+                    BodyShape::Ball(_) => Texture::Ball(Equirectangular::new(image)),
+                    BodyShape::Cylinder(cylinder) => {
+                        Texture::Cylinder(cylinder, Pyramid::new(image, Edges::WrapHorizontally))
+                    }
+                    BodyShape::Box { half } => {
+                        Texture::Box(half, Pyramid::new(image, Edges::Clamp))
+                    }
+                };
+                Some(Self::Image(Box::new(Picture { pose: placed.pose, texture })))
+            }
+        })
+    }
+
+    /// Linear light from a point of the surface. `steps` says, for the normal of the tangent plane there, how far
+    /// away (cm) rays one sample further along the axes of the camera's picture come to that plane.
+    pub fn light(&self, point: DVec3, steps: impl Fn(DVec3) -> [DVec3; 2]) -> [f64; 3] {
+        let Picture { pose, texture } = match self {
+            Self::Color(color) => return *color,
+            Self::Image(picture) => picture.as_ref(),
+        };
+        let local = pose.to_local(point);
+        let steps_from = |normal: DVec3| {
+            steps(pose.vector_to_world(normal)).map(|step| pose.vector_to_local(step))
+        };
+        let (image, spot) = match texture {
+            Texture::Ball(image) => {
+                let radius = local.length();
+                // Seen from outside, right and left are exchanged.
+                let mirrored = |v: DVec3| DVec3::new(-v.x, v.y, v.z) / radius;
+                let [dx, dy] = steps_from(local / radius).map(mirrored);
+                return image.sample(mirrored(local), dx, dy).map(f64::from);
+            }
+            Texture::Box(half, image) => (image, on_box(local, *half)),
+            Texture::Cylinder(cylinder, image) => (image, on_cylinder(local, cylinder)),
+        };
+        let change = |step: DVec3| {
+            // More than the whole image is no wider than that.
+            [spot.across.dot(step), spot.down.dot(step)].map(|part| part.clamp(-1.0, 1.0))
+        };
+        let [dx, dy] = steps_from(spot.normal).map(change);
+        image.sample(spot.position, dx, dy).map(f64::from)
+    }
+}
+
+fn on_box(point: DVec3, half: DVec3) -> Spot {
+    let off = (point / half).abs();
+    let axis = (0..3).fold(0, |best, axis| if off[axis] > off[best] { axis } else { best });
+    let normal = DVec3::AXES[axis] * point[axis].signum();
+    let up = if axis == 1 { DVec3::X * normal.y } else { DVec3::Y };
+    on_face(point, normal, up, half)
+}
+
+fn on_cylinder(point: DVec3, cylinder: &Cylinder) -> Spot {
+    let (radius, end) = (cylinder.radius, cylinder.extent.max);
+    if point.z.abs() * radius > point.truncate().length() * end {
+        let normal = DVec3::Z * point.z.signum();
+        return on_face(point, normal, DVec3::Y, DVec3::new(radius, radius, end));
+    }
+    let normal = cylinder.outward(CylinderPart::Side, point);
+    Spot {
+        normal,
+        position: [0.5 + (-normal.y).atan2(-normal.x) / TAU, 0.5 - point.z / (2.0 * end)],
+        across: DVec3::Z.cross(normal) / (TAU * radius),
+        down: DVec3::NEG_Z / (2.0 * end),
+    }
+}
+
+/// The whole image on a face of a box about the origin.
+fn on_face(point: DVec3, normal: DVec3, up: DVec3, half: DVec3) -> Spot {
+    let right = up.cross(normal);
+    let size = |axis: DVec3| 2.0 * axis.abs().dot(half);
+    let (across, down) = (right / size(right), -up / size(up));
+    Spot { normal, position: [0.5 + across.dot(point), 0.5 + down.dot(point)], across, down }
+}

@@ -1,0 +1,37 @@
+//! Pictures of scenes, for all tests.
+#![allow(dead_code, reason = "each test uses a part of it")]
+
+use cloakroom::output::{Picture, RgbImage, to_srgb};
+use cloakroom::render::{Studio, Supervision, Wanted, render};
+use cloakroom::scene_file;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// The picture of a scene whose files are in a folder, with all channels.
+pub fn picture_in(folder: &Path, scene: &str) -> Picture {
+    let loaded = scene_file::parse(scene, "test", folder, &[]).unwrap();
+    let studio = Studio::new(&loaded.scene).unwrap();
+    let stop = AtomicBool::new(false);
+    let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
+    render(&studio, Wanted::Everything, &supervision).unwrap().picture
+}
+
+/// The picture of a scene without files, with all channels.
+pub fn picture(scene: &str) -> Picture {
+    picture_in(Path::new(""), scene)
+}
+
+/// What a PNG of a scene shows.
+pub fn png(scene: &str) -> RgbImage {
+    to_srgb(&picture(scene)).unwrap()
+}
+
+/// In how many pixels two pictures differ, and by how many 8-bit steps at most.
+pub fn difference(one: &RgbImage, other: &RgbImage) -> (usize, u8) {
+    assert_eq!(one.dimensions(), other.dimensions());
+    let steps = one
+        .pixels()
+        .zip(other.pixels())
+        .map(|(a, b)| a.0.iter().zip(b.0).map(|(a, b)| a.abs_diff(b)).fold(0, u8::max));
+    steps.filter(|step| *step > 0).fold((0, 0), |(count, most), step| (count + 1, most.max(step)))
+}
