@@ -53,8 +53,8 @@ fn make(
         title: exhibit.title.to_owned(),
         words: exhibit.words().map(|(name, words)| (name, words.to_owned())).to_vec(),
         pictures: vec![
-            TablePicture::new(&image, None),
-            TablePicture::new(&map.image, Some(map.bar)),
+            TablePicture::new(&image),
+            TablePicture::of_map(&map, "no light from the photograph arrives"),
         ],
     })
 }

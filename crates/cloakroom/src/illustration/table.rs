@@ -2,6 +2,7 @@
 
 use super::color_bar::ColorBar;
 use super::lettering::{Lettering, Weight};
+use super::scalar_map::ScalarMap;
 use super::shrink::shrink;
 use super::{INK, PAPER, fill, frame, line_width};
 use crate::output::RgbImage;
@@ -25,10 +26,34 @@ pub struct TablePicture {
 }
 
 impl TablePicture {
-    /// A picture, with the colour bar to its right if it is a map. It is shrunk to 320 x 240 pixels.
+    /// A picture, shrunk to 320 x 240 pixels.
     #[must_use]
-    pub fn new(image: &RgbImage, bar: Option<ColorBar>) -> Self {
-        Self { image: shrink(image, PICTURE.0, PICTURE.1), bar }
+    pub fn new(image: &RgbImage) -> Self {
+        Self { image: shrink(image, PICTURE.0, PICTURE.1), bar: None }
+    }
+
+    /// A map with its colour bar, shrunk to 320 x 240 pixels; those words instead if no number of it
+    /// is finite.
+    #[must_use]
+    pub fn of_map(map: &ScalarMap, instead: &str) -> Self {
+        match map.range() {
+            Some(_) => Self { bar: Some(map.bar.clone()), ..Self::new(&map.image) },
+            None => Self::of_words(instead),
+        }
+    }
+
+    /// Words in the place of a picture.
+    #[must_use]
+    pub fn of_words(words: &str) -> Self {
+        let letters = Lettering::new(TEXT, Weight::Regular);
+        let mut image = RgbImage::from_pixel(PICTURE.0, PICTURE.1, PAPER);
+        let lines = letters.wrap(words, PICTURE.0 - 2 * GAP);
+        let above = (i64::from(PICTURE.1) - lines.len() as i64 * i64::from(TEXT)) / 2;
+        for (i, line) in (0..).zip(&lines) {
+            let left = i64::from(PICTURE.0 - letters.width(line)) / 2;
+            letters.draw(&mut image, left, above + i * i64::from(TEXT), INK, line);
+        }
+        Self { image, bar: None }
     }
 
     /// The height that it takes up.
@@ -186,20 +211,26 @@ fn lines(row: &TableRow) -> Vec<Line> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ColorScale, Quantity};
     use super::*;
+    use crate::output::{Channel, Picture, Samples};
     use image::Rgb;
+
+    /// A map of 160 x 120 pixels that are all of one colour but the first.
+    fn map(first: f64, others: f64) -> ScalarMap {
+        let mut numbers = vec![others; 160 * 120];
+        numbers[0] = first;
+        let channels =
+            vec![Channel { name: "delivered".to_owned(), samples: Samples::F64(numbers) }];
+        let picture = Picture { width: 160, height: 120, channels, metadata: Vec::new() };
+        ScalarMap::new(&picture, "delivered").expect("a map")
+    }
 
     fn row(title: &str, color: u8) -> TableRow {
         let image = RgbImage::from_pixel(160, 120, Rgb([0, 0, color]));
-        let bar = ColorBar {
-            scale: ColorScale::new([-1e-15, 1e-15].into_iter(), 0.0),
-            quantity: Quantity::of_channel("time_of_flight_difference"),
-        };
         TableRow {
             title: title.to_owned(),
             words: vec![("Map:", "conformal".to_owned()), ("", "a reference".to_owned())],
-            pictures: vec![TablePicture::new(&image, None), TablePicture::new(&image, Some(bar))],
+            pictures: vec![TablePicture::new(&image), TablePicture::of_map(&map(0.0, 1.0), "")],
         }
     }
 
@@ -214,8 +245,12 @@ mod tests {
         let drawn = table("All of them", &[row("sphere", 200), row("slab", 100)]);
         for color in [200, 100] {
             let count = drawn.pixels().filter(|pixel| **pixel == Rgb([0, 0, color])).count();
-            assert_eq!(count, 2 * 160 * 120);
+            assert_eq!(count, 160 * 120);
         }
+        // The maps: their pixels, and those of their bars.
+        let most = map(0.0, 1.0).bar.scale.color(1.0);
+        let count = drawn.pixels().filter(|pixel| **pixel == most).count();
+        assert!(count >= 2 * (160 * 120 - 1), "{count}");
         assert!(first(&drawn, 200).map(|at| at.1) < first(&drawn, 100).map(|at| at.1));
         assert_eq!(first(&drawn, 200).map(|at| at.0), first(&drawn, 100).map(|at| at.0));
     }
@@ -243,15 +278,23 @@ mod tests {
     #[test]
     fn large_pictures_are_shrunk() {
         let image = RgbImage::from_pixel(4096, 64, Rgb([9, 9, 9]));
-        let picture = TablePicture::new(&image, None);
+        let picture = TablePicture::new(&image);
         assert_eq!(picture.image.dimensions(), (320, 5));
+    }
+
+    #[test]
+    fn words_stand_where_there_is_no_number() {
+        let picture = TablePicture::of_map(&map(f64::NAN, f64::NAN), "no light arrives");
+        assert_eq!((picture.image.dimensions(), &picture.bar), (PICTURE, &None));
+        let inked = picture.image.pixels().filter(|pixel| **pixel == INK).count();
+        assert!(inked > 100 && inked < 3000, "{inked}");
     }
 
     #[test]
     fn odd_tables_do_no_harm() {
         assert!(table("", &[]).width() > 0);
         let bare = TableRow { title: String::new(), words: Vec::new(), pictures: Vec::new() };
-        let nothing = TablePicture::new(&RgbImage::new(0, 0), None);
+        let nothing = TablePicture::new(&RgbImage::new(0, 0));
         let ragged = TableRow { pictures: vec![nothing; 3], ..bare.clone() };
         assert!(table(&"a long title ".repeat(50), &[bare, ragged]).height() > 0);
     }

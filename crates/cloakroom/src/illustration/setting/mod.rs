@@ -1,10 +1,12 @@
 //! The setting of a scene: camera, photograph and devices in the xy-plane, drawn to scale from the
 //! scene itself, as in Fig. 1 of Halimeh & Wegener, Opt. Express 21, 9457 (2013).
 
+mod body;
 mod device;
 mod dimension;
 mod index_map;
 mod layout;
+mod legend;
 mod medium_axes;
 mod stage;
 mod subject;
@@ -44,6 +46,7 @@ const GRAY: Ink = Ink::new([120, 120, 120]);
 const PAPER: Ink = Ink::new([255, 255, 255]);
 const METAL: Ink = Ink::new([196, 196, 196]);
 const MEDIUM: Ink = Ink::new([222, 235, 247]);
+const OPAQUE: Ink = Ink::new([90, 84, 80]);
 /// Colours that most people tell apart (Okabe & Ito, Color universal design, 2008).
 const BLUE: Ink = Ink::new([0, 114, 178]);
 const VERMILION: Ink = Ink::new([213, 94, 0]);
@@ -78,18 +81,27 @@ pub fn setting(scene: &Scene) -> Result<Setting, StudioError> {
     let layout = Layout::new(sheet(scene.camera.resolution()), &stage, &subjects, scale.is_some());
     let mut drawing = Drawing::new(layout.sheet);
     stage.draw_behind(&mut drawing, &layout.view);
-    for (index, subject) in subjects.iter().enumerate() {
-        let plain = !layout.is_magnified(index);
-        device::draw(&mut drawing, &layout.view, subject, scale.as_ref(), plain);
-    }
+    let order = Subject::from_back(&subjects);
+    let draw =
+        |drawing: &mut Drawing, view: &View, chosen: &[usize], detailed: &dyn Fn(usize) -> bool| {
+            for (place, index) in chosen.iter().enumerate() {
+                let before: Vec<&Subject<'_>> =
+                    chosen[place + 1..].iter().map(|index| &subjects[*index]).collect();
+                let detail = detailed(*index).then_some(&before[..]);
+                device::draw(drawing, view, &subjects[*index], scale.as_ref(), detail);
+            }
+        };
+    draw(&mut drawing, &layout.view, &order, &|index| !layout.is_magnified(index));
     stage.draw_before(&mut drawing, &layout.view);
     stage.draw_distances(&mut drawing, &layout.view, &subjects);
     stage::draw_axes(&mut drawing, layout.axes);
     for inset in &layout.insets {
-        let subject = &subjects[inset.subject];
-        inset.draw_frame(&mut drawing, &layout.view, subject);
-        device::draw(&mut drawing, &inset.view, subject, scale.as_ref(), true);
-        device::draw_legend(&mut drawing, inset.legend, subject);
+        inset.draw_frame(&mut drawing, &layout.view);
+        let is_in = |index: &usize| inset.group.subjects.contains(index);
+        let chosen: Vec<usize> = order.iter().copied().filter(is_in).collect();
+        draw(&mut drawing, &inset.view, &chosen, &|_| true);
+        let shown: Vec<&Subject<'_>> = chosen.iter().map(|index| &subjects[*index]).collect();
+        legend::draw(&mut drawing, inset.legend, &shown);
     }
     if let (Some(scale), Some(place)) = (&scale, layout.bar) {
         scale.draw_bar(&mut drawing, place);
