@@ -197,13 +197,14 @@ fn lines(row: &TableRow) -> Vec<Line> {
         if let Some(last) = lines.last_mut() {
             last.gap = TEXT / 4;
         }
-        // All letters are of one width: spaces keep the room of the name.
-        let indent = " ".repeat(if name.is_empty() { 0 } else { name.chars().count() + 1 });
-        let room = room.saturating_sub(regular.width(&indent));
-        for (i, words) in regular.wrap(words, room).into_iter().enumerate() {
-            let name = if i == 0 && !name.is_empty() { format!("{name} ") } else { String::new() };
-            let words = if i == 0 { words } else { format!("  {words}") };
-            lines.push(Line { runs: vec![(Weight::Bold, name), (Weight::Regular, words)], gap: 0 });
+        // Further lines stand in, and all leave room for the name, which is in the first.
+        let indent = "  ";
+        let name = if name.is_empty() { String::new() } else { format!("{name} ") };
+        let taken = bold.width(&name).max(regular.width(indent));
+        for (i, words) in regular.wrap(words, room.saturating_sub(taken)).into_iter().enumerate() {
+            let first = if i == 0 { name.as_str() } else { indent };
+            let runs = vec![(Weight::Bold, first.to_owned()), (Weight::Regular, words)];
+            lines.push(Line { runs, gap: 0 });
         }
     }
     lines
@@ -273,6 +274,26 @@ mod tests {
         let short = table("", &[row("short", 1)]);
         let long = table("", &[row(&"many words ".repeat(40), 1)]);
         assert!(long.height() > short.height() && long.width() == short.width());
+    }
+
+    #[test]
+    fn words_keep_to_their_column() {
+        let words = (1..12)
+            .flat_map(|n| [("", n), ("A name:", n)])
+            .map(|(name, n)| (name, format!("{} ", "x".repeat(n)).repeat(60)));
+        let row = TableRow {
+            words: words.collect(),
+            ..row("w ww www wwww wwwww ".repeat(9).as_str(), 1)
+        };
+        let most = Lettering::new(TEXT, Weight::Regular).width("m") * LETTERS;
+        for line in lines(&row) {
+            let width: u32 = line
+                .runs
+                .iter()
+                .map(|(weight, text)| Lettering::new(TEXT, *weight).width(text))
+                .sum();
+            assert!(width <= most, "{:?}", line.runs);
+        }
     }
 
     #[test]

@@ -46,13 +46,15 @@ pub(super) fn draw_medium(
     drawing: &mut Drawing,
     view: &View,
     subject: &Subject<'_>,
-    before: &[&Subject<'_>],
+    before: &[(&Subject<'_>, bool)],
 ) {
     let Some(body) = subject.section.body else { return };
     let Some(medium) = medium(body) else { return };
     let [outline] = &subject.section.outlines[..] else { return };
     let lines: Vec<Vec<DVec2>> = std::iter::once((subject, outline))
-        .chain(before.iter().flat_map(|other| other.section.outlines.iter().map(|o| (*other, o))))
+        .chain(
+            before.iter().flat_map(|(other, _)| other.section.outlines.iter().map(|o| (*other, o))),
+        )
         .map(|(other, contour): (&Subject<'_>, &Contour)| {
             on_sheet(view, &other.pose, &contour.points)
         })
@@ -64,7 +66,7 @@ pub(super) fn draw_medium(
         let share = DVec2::new(f64::from(k % STEPS), f64::from(k / STEPS)) + 0.5;
         low + (high - low) * share / f64::from(STEPS)
     });
-    let is_free = |world: DVec2| before.iter().all(|other| !other.surrounds(world));
+    let is_free = |world: DVec2| before.iter().all(|(other, _)| !other.surrounds(world));
     let widest = std::iter::once((low + high) / 2.0)
         .chain(lattice)
         .filter(|point| outline.surrounds(*point))

@@ -19,14 +19,12 @@ const SHIFT: f64 = 15.0;
 /// Contours of more corners than this are curves: their sides are not measured.
 const MOST_CORNERS: usize = 8;
 
-/// Draws a device; in detail, with the axes of its media and its dimensions, if it is told which devices stand
-/// before it.
+/// Draws the shapes of a device.
 pub(super) fn draw(
     drawing: &mut Drawing,
     view: &View,
     subject: &Subject<'_>,
     scale: Option<&IndexScale>,
-    detail: Option<&[&Subject<'_>]>,
 ) {
     let section = &subject.section;
     if let Some(body) = section.body {
@@ -57,19 +55,24 @@ pub(super) fn draw(
             line.stroked(INK, 1.4 * THICK).within(vec![view.frame()]);
         }
     }
-    if let Some(before) = detail {
-        for region in &section.regions {
-            if region.cell.is_graded() {
-                draw_axes(drawing, view, subject, region);
-            } else {
-                draw_medium(drawing, view, subject, region);
-            }
-        }
-        body::draw_medium(drawing, view, subject, before);
-        if !subject.is_opaque() {
-            draw_dimensions(drawing, view, subject);
+}
+
+/// Draws what a device is filled with: the axes of its media, or their indices. `before` are those that stand
+/// before it.
+pub(super) fn draw_media(
+    drawing: &mut Drawing,
+    view: &View,
+    subject: &Subject<'_>,
+    before: &[(&Subject<'_>, bool)],
+) {
+    for region in &subject.section.regions {
+        if region.cell.is_graded() {
+            draw_axes(drawing, view, subject, region);
+        } else {
+            draw_medium(drawing, view, subject, region);
         }
     }
+    body::draw_medium(drawing, view, subject, before);
 }
 
 /// What a homogeneous cell is filled with: its axes, or its index.
@@ -129,10 +132,15 @@ pub(super) fn room(border: &[Vec<DVec2>], at: DVec2, direction: DVec2) -> f64 {
 /// The axes of a graded cell here and there, as large as there is room between them.
 fn draw_axes(drawing: &mut Drawing, view: &View, subject: &Subject<'_>, region: &Region<'_>) {
     let (axes, distance) = axes_of_graded(region);
-    let reach = 0.42 * distance * view.scale;
+    let half = 0.42 * distance * view.scale;
     for (point, axes) in axes {
         let at = view.place(subject.pose.point_to_world(point));
-        draw_cross(drawing, &axes, at, |_| reach, |v| turned(&subject.pose, v));
+        for axis in axes.drawn() {
+            let along = half * axis.length * turned(&subject.pose, axis.direction);
+            let line = Shape::Line(vec![at - along, at + along]);
+            drawing.add("rim", line.clone()).stroked(PAPER.faint(0.7), 2.2 * THICK);
+            drawing.add("axis", line).stroked(axis.ink, THICK);
+        }
     }
 }
 
@@ -186,9 +194,13 @@ fn free_way(contours: &[Vec<DVec2>], from: DVec2, direction: DVec2) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The dimensions of a device: the sides of polygons, height and width of what is curved.
-fn draw_dimensions(drawing: &mut Drawing, view: &View, subject: &Subject<'_>) {
+/// Draws the dimensions of a device: the sides of polygons, height and width of what is curved; none of an
+/// opaque body.
+pub(super) fn draw_dimensions(drawing: &mut Drawing, view: &View, subject: &Subject<'_>) {
     let section = &subject.section;
+    if subject.is_opaque() {
+        return;
+    }
     let mut told = Vec::new();
     for contour in &section.outlines {
         measure(drawing, view, subject, contour, &mut told, 1.0);

@@ -33,11 +33,15 @@ enum Sample {
 
 /// Draws the key to devices that are magnified together into a box of the sheet (top left corner and size),
 /// as far as there is room.
-pub(super) fn draw(drawing: &mut Drawing, [from, size]: [DVec2; 2], subjects: &[&Subject<'_>]) {
+pub(super) fn draw(
+    drawing: &mut Drawing,
+    [from, size]: [DVec2; 2],
+    subjects: &[(&Subject<'_>, bool)],
+) {
     if size.x < 8.0 * TEXT || size.y < LINE {
         return;
     }
-    let homogeneous = subjects.iter().find_map(|subject| Some((axes(subject)?, subject.pose)));
+    let homogeneous = subjects.iter().find_map(|(subject, _)| Some((axes(subject)?, subject.pose)));
     let mut lines = Vec::new();
     if let Some(((axes, medium), _)) = &homogeneous {
         lines = axes.lines(medium);
@@ -114,7 +118,7 @@ fn axes(subject: &Subject<'_>) -> Option<(MediumAxes, Medium)> {
 }
 
 /// What the colours and lines of some devices stand for, each once.
-fn entries(subjects: &[&Subject<'_>]) -> Vec<Entry> {
+fn entries(subjects: &[(&Subject<'_>, bool)]) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     let mut add = |sample: Sample, words: Vec<(Face, String)>| {
         let entry = Entry { sample, words };
@@ -123,7 +127,7 @@ fn entries(subjects: &[&Subject<'_>]) -> Vec<Entry> {
         }
     };
     let plain = |words: &str| vec![(Face::Regular, words.to_owned())];
-    for subject in subjects {
+    for (subject, _) in subjects {
         let section = &subject.section;
         if let Some(body) = section.body {
             match body::medium(body) {

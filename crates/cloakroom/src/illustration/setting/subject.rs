@@ -53,6 +53,19 @@ impl<'s> Subject<'s> {
         self.section.body.is_some_and(|body| !medium(body))
     }
 
+    /// Whether it is a body that lies within another device as they are drawn; of two of one size, whether
+    /// `or_alike`.
+    pub fn is_within(&self, other: &Self, or_alike: bool) -> bool {
+        let (Some([low, high]), Some([from, to])) = (self.bounds(), other.bounds()) else {
+            return false;
+        };
+        let alike = [low, high] == [from, to];
+        self.section.body.is_some()
+            && (or_alike || !alike)
+            && from.cmple(low).all()
+            && high.cmple(to).all()
+    }
+
     /// Whether a point of the scene's xy-plane lies within its outline.
     pub fn surrounds(&self, point: DVec2) -> bool {
         let local = self.pose.to_local(point.extend(0.0)).truncate();
