@@ -30,6 +30,8 @@ pub enum Command {
     /// Make the figures of Halimeh & Wegener, Opt. Express 21, 9457 (2013): the setting (1), drawn as
     /// PNG and SVG, and the pictures (2-9).
     Figures(FiguresArguments),
+    /// Make a picture and a map of times of flight of every device, and the table of them all.
+    Gallery(GalleryArguments),
     /// List the devices with their keys and computed facts.
     Devices(DevicesArguments),
     /// Print the JSON Schema of scene files, for editors.
@@ -110,6 +112,28 @@ pub struct FiguresArguments {
     /// The folder for the pictures.
     #[arg(long, value_name = "DIR", default_value = "figures")]
     pub out: PathBuf,
+    /// How they are made.
+    #[command(flatten)]
+    pub panels: PanelArguments,
+}
+
+/// Arguments of `gallery`.
+#[derive(Args, Debug)]
+pub struct GalleryArguments {
+    /// Only these exhibits, as in eaton-lens,prisms.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub only: Vec<String>,
+    /// The folder for the pictures.
+    #[arg(long, value_name = "DIR", default_value = "gallery")]
+    pub out: PathBuf,
+    /// How they are made.
+    #[command(flatten)]
+    pub panels: PanelArguments,
+}
+
+/// What changes in the scenes that the program carries along.
+#[derive(Args, Debug)]
+pub struct PanelArguments {
     /// Another photograph (PNG, JPEG or EXR).
     #[arg(long, value_name = "FILE")]
     pub photo: Option<PathBuf>,

@@ -2,6 +2,7 @@
 
 use crate::arguments::FiguresArguments;
 use crate::interruption;
+use crate::panels::{self, merge, write_png};
 use crate::render::{picture, rgb, tell_rarities};
 use crate::report::{Failure, say};
 use crate::scene;
@@ -9,17 +10,15 @@ use cloakroom::illustration::{self, ColorBar, ScalarMap, Setting, SheetPanel, sh
 use cloakroom::output::{self, RgbImage};
 use cloakroom::paper::{self, Figure, Panel, Shows};
 use cloakroom::render::{Rendered, Studio, Wanted};
-use cloakroom::scene_file::{self, Loaded};
-use std::path::{Path, PathBuf};
+use cloakroom::scene_file::Loaded;
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 /// Makes panels and sheets.
 pub fn run(arguments: &FiguresArguments, stop: &AtomicBool) -> Result<(), Failure> {
     let chosen = paper::select(&arguments.only).map_err(Failure::Usage)?;
-    scene::use_threads(arguments.threads)?;
-    std::fs::create_dir_all(&arguments.out).map_err(|error| {
-        Failure::Failed(format!("cannot make the folder {}: {error}", arguments.out.display()))
-    })?;
+    scene::use_threads(arguments.panels.threads)?;
+    panels::make_folder(&arguments.out)?;
     let _busy = interruption::busy();
     for (figure, panels) in chosen {
         make(figure, &panels, arguments, stop)?;
@@ -30,20 +29,15 @@ pub fn run(arguments: &FiguresArguments, stop: &AtomicBool) -> Result<(), Failur
 /// Makes the chosen panels of one figure, and its sheet if all of them are chosen.
 fn make(
     figure: &Figure,
-    panels: &[&Panel],
+    chosen: &[&Panel],
     arguments: &FiguresArguments,
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
     let mut on_sheet = Vec::new();
     let mut metadata: Vec<(String, String)> = Vec::new();
-    for panel in panels {
-        let loaded = scene_file::parse(
-            panel.scene,
-            &format!("fig{}.toml", panel.name),
-            Path::new(""),
-            &overrides(arguments),
-        )
-        .map_err(Failure::from_error)?;
+    for panel in chosen {
+        let name = format!("fig{}", panel.name);
+        let loaded = panels::load(panel.scene, &name, &arguments.panels)?;
         let shown = match panel.shows {
             Shows::Picture => rendered(panel, &loaded, arguments, stop)?,
             Shows::Setting => drawn(panel, &loaded, arguments)?,
@@ -56,7 +50,7 @@ fn make(
             bar: shown.bar,
         });
     }
-    if panels.len() == figure.panels.len() {
+    if chosen.len() == figure.panels.len() {
         let title = format!("Figure {}. {}", figure.number, figure.title);
         let path = arguments.out.join(format!("fig{}.png", figure.number));
         write_png(&sheet(&title, &on_sheet), &metadata, &path)?;
@@ -97,8 +91,8 @@ fn rendered(
 fn drawn(panel: &Panel, loaded: &Loaded, arguments: &FiguresArguments) -> Result<Shown, Failure> {
     let Setting { drawing, metadata, .. } =
         illustration::setting(&loaded.scene).map_err(|e| scene::located(loaded, &e))?;
-    let image = drawing.to_image(arguments.size).map_err(Failure::from_error)?;
-    let svg = drawing.to_svg(arguments.size, panel.caption, &metadata);
+    let image = drawing.to_image(arguments.panels.size).map_err(Failure::from_error)?;
+    let svg = drawing.to_svg(arguments.panels.size, panel.caption, &metadata);
     write_png(&image, &metadata, &file(panel, "png", arguments))?;
     let path = file(panel, "svg", arguments);
     output::write_whole(&path, |out| out.write_all(svg.as_bytes())).map_err(Failure::from_error)?;
@@ -109,40 +103,4 @@ fn drawn(panel: &Panel, loaded: &Loaded, arguments: &FiguresArguments) -> Result
 /// The file of a panel.
 fn file(panel: &Panel, ending: &str, arguments: &FiguresArguments) -> PathBuf {
     arguments.out.join(format!("fig{}.{ending}", panel.name))
-}
-
-/// Writes a PNG and says so.
-fn write_png(image: &RgbImage, metadata: &[(String, String)], path: &Path) -> Result<(), Failure> {
-    output::write_png(image, metadata, path).map_err(Failure::from_error)?;
-    say(&format!("{}", path.display()));
-    Ok(())
-}
-
-/// Adds a panel's metadata to that of its sheet: what differs from panel to panel, one after the other.
-fn merge(sheet: &mut Vec<(String, String)>, panel: &[(String, String)]) {
-    for (key, text) in panel {
-        match sheet.iter_mut().find(|(known, _)| known == key) {
-            Some((_, all)) if all != text => {
-                all.push('\n');
-                all.push_str(text);
-            }
-            Some(_) => {}
-            None => sheet.push((key.clone(), text.clone())),
-        }
-    }
-}
-
-/// What the command line changes in every panel's scene.
-fn overrides(arguments: &FiguresArguments) -> Vec<String> {
-    let [width, height] = arguments.size;
-    let mut list = vec![
-        format!("camera.resolution=[{width}, {height}]"),
-        format!("camera.samples={}", arguments.samples),
-        // Panels carry no lettering.
-        "picture.color_bar=false".to_owned(),
-    ];
-    if let Some(photo) = &arguments.photo {
-        list.push(format!("photograph.image={}", photo.display()));
-    }
-    list
 }

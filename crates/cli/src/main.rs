@@ -7,9 +7,11 @@ mod arguments;
 mod check;
 mod devices;
 mod figures;
+mod gallery;
 mod input;
 mod interface;
 mod interruption;
+mod panels;
 mod progress;
 mod pulses;
 mod render;
@@ -39,6 +41,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Pulses(arguments) => pulses::run(arguments),
         Command::Interface(arguments) => interface::run(arguments),
         Command::Figures(arguments) => figures::run(arguments, stop),
+        Command::Gallery(arguments) => gallery::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),
         Command::Schema => report::print_json(&cloakroom::scene_file::schema()),
     }

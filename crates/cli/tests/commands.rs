@@ -245,6 +245,51 @@ fn figures_come_as_panels_and_sheets() {
 }
 
 #[test]
+fn the_gallery_has_a_picture_and_a_map_of_each_exhibit() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("gallery");
+    let gallery = |only: &str| {
+        let mut command = cloakroom();
+        command.args(["gallery", "--only", only, "--size", "64x48", "--samples", "1", "--out"]);
+        command.arg(&out);
+        command
+    };
+    gallery("eaton-lens,square-cloak").assert().success().stdout("");
+    let mut names: Vec<String> = fs::read_dir(&out)
+        .unwrap()
+        .map(|file| file.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    let expected = [
+        "eaton-lens-time-of-flight.png",
+        "eaton-lens.png",
+        "square-cloak-time-of-flight.png",
+        "square-cloak.png",
+    ];
+    assert_eq!(names, expected);
+    for name in ["eaton-lens.png", "square-cloak.png"] {
+        let picture = image::open(out.join(name)).unwrap();
+        assert_eq!((picture.width(), picture.height()), (64, 48), "{name}");
+    }
+    // With a colour bar beside it.
+    assert!(image::open(out.join("eaton-lens-time-of-flight.png")).unwrap().width() > 80);
+    let output = gallery("eaton-lense").output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let message = "error: there is no exhibit `eaton-lense`; did you mean `eaton-lens`?\n";
+    assert_eq!(String::from_utf8(output.stderr).unwrap(), message);
+}
+
+#[test]
+fn the_table_of_the_gallery_is_made_with_all_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = cloakroom();
+    command.args(["gallery", "--size", "16x12", "--samples", "1", "--out"]).arg(folder.path());
+    command.assert().success();
+    let table = image::open(folder.path().join("gallery.png")).unwrap();
+    assert!(table.width() > 1000 && table.height() > 1000);
+}
+
+#[test]
 fn the_setting_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let red = folder.path().join("red.png");

@@ -1,9 +1,9 @@
 //! What a device looks like cut in the plane z = 0 of its own frame.
 //!
-//! A new kind of [`Cell`] or [`Skin`] says here, and nowhere else, what it looks like: its sides as
-//! lines, and for a cell whether its medium is graded. The rest follows.
+//! A new kind of [`Cell`], [`Skin`] or [`BodyShape`] says here, and nowhere else, what it looks like: its sides
+//! as lines, and for a cell whether its medium is graded. The rest follows.
 
-use super::{Beyond, Cell, ConformalCell, Face, Prism, Skin, Structure};
+use super::{Beyond, Body, BodyShape, Cell, ConformalCell, Face, Prism, Skin, Structure};
 use glam::DVec2;
 use optics::geometry::{Cylinder, Sphere};
 use optics::medium::Medium;
@@ -51,6 +51,8 @@ pub struct CrossSection<'s> {
     pub regions: Vec<Region<'s>>,
     /// The surfaces of metal: closed contours are full of it, open ones are thin mirrors.
     pub metal: Vec<Contour>,
+    /// The body that fills the outlines, if the device is one.
+    pub body: Option<&'s Body>,
 }
 
 impl Structure {
@@ -61,8 +63,11 @@ impl Structure {
         let cells: Vec<Vec<Side>> = self.cells.iter().map(Cell::sides).collect();
         let metal = cells.iter().flatten().chain(&skin);
         let metal = metal.filter(|side| side.beyond == Beyond::Conductor);
+        let body = self.hull.body();
+        let around = body.map(|body| body.shape.around());
         CrossSection {
-            outlines: joined(skin.iter().map(|side| side.line.clone())),
+            body,
+            outlines: joined(skin.iter().map(|side| side.line.clone()).chain(around)),
             metal: joined(metal.map(|side| side.line.clone())),
             regions: (self.cells.iter().zip(cells))
                 .map(|(cell, sides)| Region {
@@ -140,6 +145,22 @@ impl Skin {
             | Self::Disc { .. }
             | Self::ConformalCap { .. }
             | Self::FloorCap { .. } => Vec::new(),
+        }
+    }
+}
+
+impl BodyShape {
+    /// Its surface in the plane z = 0, joined to its beginning.
+    fn around(&self) -> Vec<DVec2> {
+        match self {
+            Self::Ball(Sphere { radius }) | Self::Cylinder(Cylinder { radius, .. }) => {
+                circle(*radius)
+            }
+            Self::Box { half } => {
+                let corner = half.truncate().min(DVec2::splat(REACH));
+                let signs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)];
+                signs.map(|sign| DVec2::from(sign) * corner).to_vec()
+            }
         }
     }
 }

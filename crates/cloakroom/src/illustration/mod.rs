@@ -10,6 +10,7 @@ mod scalar_map;
 mod setting;
 mod sheet;
 mod shrink;
+mod table;
 mod ticks;
 
 pub use color_bar::ColorBar;
@@ -20,6 +21,7 @@ pub use quantity::{Dimension, Quantity, Unit};
 pub use scalar_map::{ScalarMap, scalar_map};
 pub use setting::{Setting, View, setting};
 pub use sheet::{SheetPanel, sheet};
+pub use table::{TablePicture, TableRow, table};
 
 use crate::output::RgbImage;
 use image::Rgb;

@@ -1,13 +1,16 @@
 //! A device in cross-section.
 
-use super::super::drawing::{Drawing, Face, Shape, Words};
+use super::super::drawing::{Drawing, Face, Ink, Shape, Words};
+use super::body;
 use super::index_map::{IndexScale, mean_index, on_sheet};
-use super::medium_axes::{MediumAxes, draw_cross, draw_key};
+use super::medium_axes::{MediumAxes, draw_cross};
 use super::subject::{Subject, bounds};
 use super::view::View;
 use super::{INK, MEDIUM, METAL, PAPER, TEXT, THICK, THIN, centimetres, dimension, rounded, write};
 use crate::device::{Contour, REACH, Region};
 use glam::DVec2;
+use optics::geometry::Pose;
+use optics::medium::Medium;
 
 /// Longest half of an axis within a cell, units of the sheet.
 const AXIS: f64 = 46.0;
@@ -16,15 +19,17 @@ const SHIFT: f64 = 15.0;
 /// Contours of more corners than this are curves: their sides are not measured.
 const MOST_CORNERS: usize = 8;
 
-/// Draws a device; in detail, with the axes of its media and its dimensions.
+/// Draws the shapes of a device.
 pub(super) fn draw(
     drawing: &mut Drawing,
     view: &View,
     subject: &Subject<'_>,
     scale: Option<&IndexScale>,
-    in_detail: bool,
 ) {
     let section = &subject.section;
+    if let Some(body) = section.body {
+        body::draw(drawing, view, subject, body);
+    }
     let place = |contour: &Contour| on_sheet(view, &subject.pose, &contour.points);
     let places = |contours: &[Contour]| contours.iter().map(place).collect::<Vec<_>>();
     for region in &section.regions {
@@ -50,12 +55,24 @@ pub(super) fn draw(
             line.stroked(INK, 1.4 * THICK).within(vec![view.frame()]);
         }
     }
-    if in_detail {
-        for region in section.regions.iter().filter(|region| !region.cell.is_graded()) {
+}
+
+/// Draws what a device is filled with: the axes of its media, or their indices. `before` are those that stand
+/// before it.
+pub(super) fn draw_media(
+    drawing: &mut Drawing,
+    view: &View,
+    subject: &Subject<'_>,
+    before: &[(&Subject<'_>, bool)],
+) {
+    for region in &subject.section.regions {
+        if region.cell.is_graded() {
+            draw_axes(drawing, view, subject, region);
+        } else {
             draw_medium(drawing, view, subject, region);
         }
-        draw_dimensions(drawing, view, subject);
     }
+    body::draw_medium(drawing, view, subject, before);
 }
 
 /// What a homogeneous cell is filled with: its axes, or its index.
@@ -65,70 +82,86 @@ fn draw_medium(drawing: &mut Drawing, view: &View, subject: &Subject<'_>, region
         return;
     };
     let at = view.place(subject.pose.point_to_world(middle));
-    let turned = |v: DVec2| {
-        let world = subject.pose.vector_to_world(v.extend(0.0)).truncate();
-        DVec2::new(world.x, -world.y)
-    };
     let border: Vec<Vec<DVec2>> = (region.border.iter())
         .map(|contour| on_sheet(view, &subject.pose, &contour.points))
         .collect();
-    let room = |direction: DVec2| {
-        let free = [direction, -direction].map(|d| free_way(&border, at, d));
-        0.8 * free[0].min(free[1])
-    };
-    if let Some(axes) = MediumAxes::of(&medium) {
-        draw_cross(drawing, &axes, at, |direction| room(direction).min(AXIS), turned);
+    draw_filling(drawing, &subject.pose, &medium, at, &border, MEDIUM);
+}
+
+/// Draws the axes of a medium, or its index, about a point of the sheet within some contours, on a ground of
+/// that colour.
+pub(super) fn draw_filling(
+    drawing: &mut Drawing,
+    pose: &Pose,
+    medium: &Medium,
+    at: DVec2,
+    border: &[Vec<DVec2>],
+    ground: Ink,
+) {
+    if let Some(axes) = MediumAxes::of(medium) {
+        let reach = |direction| room(border, at, direction).min(AXIS);
+        draw_cross(drawing, &axes, at, reach, |v| turned(pose, v));
     } else {
-        let name = (Face::Italic, "n".to_owned());
-        let value = (Face::Regular, format!(" = {}", rounded(mean_index(&medium))));
-        let words = Words::of_runs(vec![name, value], at, TEXT);
-        if words.width() < 2.0 * room(DVec2::X) && TEXT < 2.0 * room(DVec2::Y) {
-            write(drawing, "index", words, MEDIUM);
+        let words = Words::of_runs(index_label(medium), at, TEXT);
+        if words.width() < 2.0 * room(border, at, DVec2::X)
+            && TEXT < 2.0 * room(border, at, DVec2::Y)
+        {
+            write(drawing, "index", words, ground);
         }
     }
 }
 
-/// The key to a device that is drawn magnified: its title, and the axes and tensors of its media.
-pub(super) fn draw_legend(drawing: &mut Drawing, [from, size]: [DVec2; 2], subject: &Subject<'_>) {
-    if size.x < 12.0 * TEXT || size.y < 3.0 * TEXT {
-        return;
-    }
-    let line = 1.3 * TEXT;
-    let medium = subject.section.regions.iter().find_map(|region| {
-        let medium = region.cell.medium_at(middle(region)?)?;
-        (!region.cell.is_graded()).then_some(())?;
-        Some((MediumAxes::of(&medium)?, medium))
-    });
-    let mut lines = Vec::new();
-    if let Some((axes, medium)) = &medium {
-        lines = axes.lines(medium);
-    }
-    let radius = (0.5 * (size.y - line * (lines.len() + 1) as f64)).min(62.0);
-    let mut y = from.y + 0.5 * line;
-    if let Some((axes, _)) = &medium
-        && radius > 24.0
-    {
-        let turned = |v: DVec2| {
-            let world = subject.pose.vector_to_world(v.extend(0.0)).truncate();
-            DVec2::new(world.x, -world.y)
-        };
-        let at = DVec2::new(from.x + radius + TEXT, from.y + radius + 0.5 * TEXT);
-        draw_key(drawing, axes, at, radius, turned);
-        if axes.drawn().len() == 1 {
-            let words = Words::new("optic axis", at + DVec2::new(radius + 4.5 * TEXT, 0.0), TEXT);
-            drawing.add("optic-axis", Shape::Words(words.anchored(0.0))).filled(INK);
+/// The index of a medium in words.
+pub(super) fn index_label(medium: &Medium) -> Vec<(Face, String)> {
+    let value = format!(" = {}", rounded(mean_index(medium)));
+    vec![(Face::Italic, "n".to_owned()), (Face::Regular, value)]
+}
+
+/// A vector of a device's frame in the plane, as a direction of the sheet.
+pub(super) fn turned(pose: &Pose, v: DVec2) -> DVec2 {
+    let world = pose.vector_to_world(v.extend(0.0)).truncate();
+    DVec2::new(world.x, -world.y)
+}
+
+/// How far one can go from a point of the sheet, to and fro, well within some contours.
+pub(super) fn room(border: &[Vec<DVec2>], at: DVec2, direction: DVec2) -> f64 {
+    let free = [direction, -direction].map(|d| free_way(border, at, d));
+    0.8 * free[0].min(free[1])
+}
+
+/// The axes of a graded cell here and there, as large as there is room between them.
+fn draw_axes(drawing: &mut Drawing, view: &View, subject: &Subject<'_>, region: &Region<'_>) {
+    let (axes, distance) = axes_of_graded(region);
+    let half = 0.42 * distance * view.scale;
+    for (point, axes) in axes {
+        let at = view.place(subject.pose.point_to_world(point));
+        for axis in axes.drawn() {
+            let along = half * axis.length * turned(&subject.pose, axis.direction);
+            let line = Shape::Line(vec![at - along, at + along]);
+            drawing.add("rim", line.clone()).stroked(PAPER.faint(0.7), 2.2 * THICK);
+            drawing.add("axis", line).stroked(axis.ink, THICK);
         }
-        y = at.y + radius + 1.2 * line;
     }
-    for runs in lines {
-        let words = Words::of_runs(runs, DVec2::new(from.x, y), TEXT).anchored(0.0);
-        drawing.add("tensor", Shape::Words(words)).filled(INK);
-        y += line;
-    }
+}
+
+/// The axes of the medium of a graded cell on a lattice, if it is anisotropic, and how far apart they are, cm.
+pub(super) fn axes_of_graded(region: &Region<'_>) -> (Vec<(DVec2, MediumAxes)>, f64) {
+    const STEPS: u32 = 9;
+    let points = region.border.iter().flat_map(|contour| contour.points.iter().copied());
+    let Some([low, high]) = bounds(points) else { return (Vec::new(), 0.0) };
+    let distance = (high - low).max_element() / f64::from(STEPS);
+    let lattice = (0..STEPS * STEPS).map(|k| {
+        let steps = DVec2::new(f64::from(k % STEPS), f64::from(k / STEPS));
+        (low + high) / 2.0 + (steps - 0.5 * f64::from(STEPS - 1)) * distance
+    });
+    let axes = lattice
+        .filter(|point| region.holds(*point))
+        .filter_map(|point| Some((point, MediumAxes::of(&region.cell.medium_at(point)?)?)));
+    (axes.collect(), distance)
 }
 
 /// A point well within a region: the centroid of its first contour, if it lies within.
-fn middle(region: &Region<'_>) -> Option<DVec2> {
+pub(super) fn middle(region: &Region<'_>) -> Option<DVec2> {
     let points = &region.border.first()?.points;
     let [low, high] = bounds(points.iter().copied())?;
     if (high - low).max_element() >= REACH {
@@ -161,9 +194,13 @@ fn free_way(contours: &[Vec<DVec2>], from: DVec2, direction: DVec2) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The dimensions of a device: the sides of polygons, height and width of what is curved.
-fn draw_dimensions(drawing: &mut Drawing, view: &View, subject: &Subject<'_>) {
+/// Draws the dimensions of a device: the sides of polygons, height and width of what is curved; none of an
+/// opaque body.
+pub(super) fn draw_dimensions(drawing: &mut Drawing, view: &View, subject: &Subject<'_>) {
     let section = &subject.section;
+    if subject.is_opaque() {
+        return;
+    }
     let mut told = Vec::new();
     for contour in &section.outlines {
         measure(drawing, view, subject, contour, &mut told, 1.0);

@@ -4,6 +4,7 @@ use super::super::color_scale::ColorScale;
 use super::super::drawing::{Drawing, Ink, Shape, Words};
 use super::super::quantity::{Dimension, Quantity};
 use super::super::ticks::axis;
+use super::medium_axes::MediumAxes;
 use super::subject::{Subject, bounds};
 use super::view::{View, corners};
 use super::{INK, TEXT, THIN};
@@ -41,7 +42,7 @@ impl IndexScale {
                 .chain(lattice.filter(|p| region.holds(*p)))
                 .filter_map(|p| region.cell.medium_at(p))
             {
-                isotropic &= medium.wave_surface().is_some() && medium.optic_axis().is_none();
+                isotropic &= MediumAxes::of(&medium).is_none();
                 numbers.push(mean_index(&medium));
             }
         }

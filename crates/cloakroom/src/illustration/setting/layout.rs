@@ -19,6 +19,15 @@ const LEGEND: f64 = 14.5 * TEXT;
 /// The room around a magnified device for its dimensions.
 const AROUND: f64 = 2.0 * TEXT;
 
+/// Devices that overlap as they are drawn.
+#[derive(Clone)]
+pub(super) struct Group {
+    /// Which.
+    pub subjects: Vec<usize>,
+    /// Least and greatest x and y of all of them, cm.
+    bounds: [DVec2; 2],
+}
+
 /// Where things are on the sheet.
 pub(super) struct Layout {
     pub sheet: DVec2,
@@ -32,10 +41,9 @@ pub(super) struct Layout {
     pub axes: DVec2,
 }
 
-/// A device once more, magnified.
+/// Devices that stand in or before one another once more, magnified.
 pub(super) struct Inset {
-    /// Which.
-    pub subject: usize,
+    pub group: Group,
     pub view: View,
     /// The frame around it: top left corner and size.
     frame: [DVec2; 2],
@@ -55,16 +63,16 @@ impl Layout {
             View::fitting(world, [from, to - from])
         };
         let whole = view(1.0);
-        let small: Vec<(usize, [DVec2; 2])> = (subjects.iter().enumerate())
-            .filter_map(|(index, subject)| Some((index, subject.bounds()?)))
-            .filter(|(_, [low, high])| {
+        let small: Vec<Group> = groups(subjects)
+            .into_iter()
+            .filter(|Group { bounds: [low, high], .. }| {
                 whole.scale * (*high - *low).max_element() < SMALL * sheet.min_element()
             })
             .collect();
         let mut layout =
             Self { sheet, view: whole, insets: Vec::new(), bar: None, axes: DVec2::ZERO };
-        if let [(index, bounds)] = &small[..] {
-            layout.place_one(*index, *bounds, world, view, stage, subjects);
+        if let [group] = &small[..] {
+            layout.place_one(group, world, view, stage, subjects);
         } else if !small.is_empty() {
             layout.place_row(&small, view(0.56));
         }
@@ -77,15 +85,14 @@ impl Layout {
 
     /// Whether a device is drawn once more, magnified.
     pub fn is_magnified(&self, subject: usize) -> bool {
-        self.insets.iter().any(|inset| inset.subject == subject)
+        self.insets.iter().any(|inset| inset.group.subjects.contains(&subject))
     }
 
     /// One small device: magnified in the corner below the camera, as large as it can be beside what
     /// the camera sees.
     fn place_one(
         &mut self,
-        index: usize,
-        bounds: [DVec2; 2],
+        group: &Group,
         world: [DVec2; 2],
         view: impl Fn(f64) -> View,
         stage: &Stage,
@@ -110,12 +117,13 @@ impl Layout {
             }
         }
         let Some((_, view, frame)) = best else {
-            self.place_row(&[(index, bounds)], view(0.56));
+            self.place_row(std::slice::from_ref(group), view(0.56));
             return;
         };
         self.view = view;
         let legend = self.free_below(frame, &obstacles(&view, stage, subjects));
-        self.insets.push(Inset { subject: index, view: within(bounds, frame), frame, legend });
+        let (group, view) = (group.clone(), within(group.bounds, frame));
+        self.insets.push(Inset { group, view, frame, legend });
     }
 
     /// The largest free room to the right of an inset, down to the lower edge of the sheet.
@@ -137,20 +145,29 @@ impl Layout {
             .unwrap_or([DVec2::new(left, lower), DVec2::ZERO])
     }
 
-    /// Several small devices: magnified in a row below the scene.
-    fn place_row(&mut self, small: &[(usize, [DVec2; 2])], view: View) {
+    /// Several small devices: magnified in a row below the scene, each with its key beside it, or below it
+    /// where there is no room.
+    fn place_row(&mut self, small: &[Group], view: View) {
         self.view = view;
         let top = view.window[0].y + view.window[1].y + 2.2 * TEXT;
         let height = (self.sheet.y - MARGIN - top).max(1.0);
         let room = (self.sheet.x - 2.0 * MARGIN) / small.len() as f64;
-        for (k, (index, bounds)) in small.iter().enumerate() {
+        for (k, group) in small.iter().enumerate() {
             let from = DVec2::new(MARGIN + k as f64 * room, top);
-            let frame = [from, DVec2::new(height.min(room - 0.5 * TEXT), height)];
-            let legend_from = DVec2::new(from.x + frame[1].x + 1.2 * TEXT, top);
-            let legend =
-                [legend_from, DVec2::new((room - frame[1].x - 2.0 * TEXT).max(0.0), height)];
-            let view = within(*bounds, frame);
-            self.insets.push(Inset { subject: *index, view, frame, legend });
+            let beside = room - height - 2.0 * TEXT >= LEGEND;
+            let below = if beside { 0.0 } else { (5.0 * TEXT).min(0.45 * height) };
+            let frame_height = height - below;
+            let frame = [from, DVec2::new(frame_height.min(room - 0.5 * TEXT), frame_height)];
+            let legend = if beside {
+                let legend_from = DVec2::new(from.x + frame[1].x + 1.2 * TEXT, top);
+                [legend_from, DVec2::new((room - frame[1].x - 2.0 * TEXT).max(0.0), height)]
+            } else {
+                let gap = 0.4 * TEXT;
+                let legend_from = DVec2::new(from.x, top + frame_height + gap);
+                [legend_from, DVec2::new((room - 0.5 * TEXT).max(0.0), (below - gap).max(0.0))]
+            };
+            let view = within(group.bounds, frame);
+            self.insets.push(Inset { group: group.clone(), view, frame, legend });
         }
     }
 
@@ -184,8 +201,8 @@ impl Layout {
 
 impl Inset {
     /// Draws the frame, and what of the scene is in it.
-    pub fn draw_frame(&self, drawing: &mut Drawing, scene: &View, subject: &Subject<'_>) {
-        let Some([low, high]) = subject.bounds() else { return };
+    pub fn draw_frame(&self, drawing: &mut Drawing, scene: &View) {
+        let [low, high] = self.group.bounds;
         let from = scene.place(DVec2::new(low.x, high.y)) - 5.0;
         let to = scene.place(DVec2::new(high.x, low.y)) + 5.0;
         let source = corners([from, to - from]);
@@ -197,6 +214,50 @@ impl Inset {
             let line = drawing.add("magnification", Shape::Line(vec![a, b]));
             line.stroked(GRAY, 0.6 * THIN).dashed(4.0, 4.0);
         }
+    }
+}
+
+/// The devices that have ends, those together whose boxes overlap, with the opaque bodies that lie within.
+fn groups(subjects: &[Subject<'_>]) -> Vec<Group> {
+    let boxed = |opaque: bool| {
+        let of_kind = move |(_, subject): &(usize, &Subject<'_>)| subject.is_opaque() == opaque;
+        let with_ends = |(index, subject): (usize, &Subject<'_>)| {
+            Some(Group { subjects: vec![index], bounds: subject.bounds()? })
+        };
+        subjects.iter().enumerate().filter(of_kind).filter_map(with_ends)
+    };
+    let mut groups: Vec<Group> = Vec::new();
+    for mut own in boxed(false) {
+        // What it touches may reach further, and touch more.
+        while let Some(other) = groups.iter().position(|group| group.touches(&own)) {
+            own = groups.remove(other).with(own);
+        }
+        groups.push(own);
+    }
+    for own in boxed(true) {
+        if let Some(group) = groups.iter().position(|group| group.holds(&own)) {
+            let around = groups.remove(group);
+            groups.insert(group, around.with(own));
+        }
+    }
+    groups
+}
+
+impl Group {
+    fn touches(&self, other: &Self) -> bool {
+        let ([low, high], [from, to]) = (self.bounds, other.bounds);
+        low.max(from).cmplt(high.min(to)).all()
+    }
+
+    fn holds(&self, other: &Self) -> bool {
+        let ([low, high], [from, to]) = (self.bounds, other.bounds);
+        low.cmple(from).all() && to.cmple(high).all()
+    }
+
+    fn with(mut self, other: Self) -> Self {
+        self.subjects.extend(other.subjects);
+        let ends = bounds(self.bounds.into_iter().chain(other.bounds));
+        Self { bounds: ends.unwrap_or(self.bounds), ..self }
     }
 }
 

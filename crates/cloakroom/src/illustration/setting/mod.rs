@@ -1,10 +1,12 @@
 //! The setting of a scene: camera, photograph and devices in the xy-plane, drawn to scale from the
 //! scene itself, as in Fig. 1 of Halimeh & Wegener, Opt. Express 21, 9457 (2013).
 
+mod body;
 mod device;
 mod dimension;
 mod index_map;
 mod layout;
+mod legend;
 mod medium_axes;
 mod stage;
 mod subject;
@@ -44,6 +46,7 @@ const GRAY: Ink = Ink::new([120, 120, 120]);
 const PAPER: Ink = Ink::new([255, 255, 255]);
 const METAL: Ink = Ink::new([196, 196, 196]);
 const MEDIUM: Ink = Ink::new([222, 235, 247]);
+const OPAQUE: Ink = Ink::new([122, 92, 66]).faint(0.55);
 /// Colours that most people tell apart (Okabe & Ito, Color universal design, 2008).
 const BLUE: Ink = Ink::new([0, 114, 178]);
 const VERMILION: Ink = Ink::new([213, 94, 0]);
@@ -78,23 +81,49 @@ pub fn setting(scene: &Scene) -> Result<Setting, StudioError> {
     let layout = Layout::new(sheet(scene.camera.resolution()), &stage, &subjects, scale.is_some());
     let mut drawing = Drawing::new(layout.sheet);
     stage.draw_behind(&mut drawing, &layout.view);
-    for (index, subject) in subjects.iter().enumerate() {
-        let plain = !layout.is_magnified(index);
-        device::draw(&mut drawing, &layout.view, subject, scale.as_ref(), plain);
-    }
+    let order = Subject::from_back(&subjects);
+    let whole: Vec<_> =
+        order.iter().map(|index| (&subjects[*index], !layout.is_magnified(*index))).collect();
+    draw_devices(&mut drawing, &layout.view, &whole, scale.as_ref());
     stage.draw_before(&mut drawing, &layout.view);
     stage.draw_distances(&mut drawing, &layout.view, &subjects);
     stage::draw_axes(&mut drawing, layout.axes);
     for inset in &layout.insets {
-        let subject = &subjects[inset.subject];
-        inset.draw_frame(&mut drawing, &layout.view, subject);
-        device::draw(&mut drawing, &inset.view, subject, scale.as_ref(), true);
-        device::draw_legend(&mut drawing, inset.legend, subject);
+        inset.draw_frame(&mut drawing, &layout.view);
+        let is_in = |index: &&usize| inset.group.subjects.contains(*index);
+        let shown: Vec<_> =
+            order.iter().filter(is_in).map(|index| (&subjects[*index], true)).collect();
+        draw_devices(&mut drawing, &inset.view, &shown, scale.as_ref());
+        legend::draw(&mut drawing, inset.legend, &shown);
     }
     if let (Some(scale), Some(place)) = (&scale, layout.bar) {
         scale.draw_bar(&mut drawing, place);
     }
     Ok(Setting { drawing, view: layout.view, metadata: metadata(scene) })
+}
+
+/// Draws devices from back to front, and where it says so in detail: with the axes of their media and, before
+/// everything else so that they can be read, their dimensions.
+fn draw_devices(
+    drawing: &mut Drawing,
+    view: &View,
+    devices: &[(&Subject<'_>, bool)],
+    scale: Option<&IndexScale>,
+) {
+    for (place, (subject, in_detail)) in devices.iter().enumerate() {
+        device::draw(drawing, view, subject, scale);
+        if *in_detail {
+            device::draw_media(drawing, view, subject, &devices[place + 1..]);
+        }
+    }
+    for (place, (subject, _)) in devices.iter().enumerate().filter(|(_, (_, detail))| *detail) {
+        let is_inner = |(other, (around, _)): (usize, &(&Subject<'_>, bool))| {
+            other != place && subject.is_within(around, other > place)
+        };
+        if !devices.iter().enumerate().any(is_inner) {
+            device::draw_dimensions(drawing, view, subject);
+        }
+    }
 }
 
 /// The sheet for a picture of that many pixels: of its aspect, and as large as one of 1024 x 768.

@@ -106,13 +106,14 @@ impl Stage {
     }
 
     /// Draws how far camera, axes of devices and photograph are from each other along x, in a row
-    /// above the view.
+    /// above the view. Opaque bodies are scenery, and left out.
     pub fn draw_distances(&self, drawing: &mut Drawing, view: &View, subjects: &[Subject<'_>]) {
         let row = view.window[0].y - 0.8 * TEXT;
         let top = DVec2::new(self.x, self.size.y / 2.0);
         let eye = view.place(self.eye) - DVec2::Y * 0.6 * EYE;
         let mut stations = vec![(self.eye.x, eye.y), (self.x, view.place(top).y)];
-        for subject in subjects.iter().filter(|subject| subject.bounds().is_some()) {
+        let measured = |subject: &&Subject<'_>| subject.bounds().is_some() && !subject.is_opaque();
+        for subject in subjects.iter().filter(measured) {
             let centre = view.place(subject.origin());
             drawing.add("device-axis", Shape::Circle { centre, radius: 3.2 }).filled(INK);
             stations.push((subject.origin().x, centre.y));

@@ -1,6 +1,6 @@
 //! The devices of a scene, ready to be drawn.
 
-use crate::device::{Contour, CrossSection, REACH};
+use crate::device::{Body, Contour, CrossSection, Filling, REACH};
 use crate::trace::Bench;
 use glam::DVec2;
 use optics::geometry::Pose;
@@ -31,6 +31,45 @@ impl<'s> Subject<'s> {
         let points = self.contours().flat_map(|contour| &contour.points);
         let ends = points.filter(|p| p.abs().max_element() < REACH / 2.0);
         bounds(ends.map(|p| self.pose.point_to_world(*p)))
+    }
+
+    /// The indices of the devices from back to front: of two bodies the one of the larger priority lies before
+    /// the other, as it is the one that is there, else what has the larger z.
+    pub fn from_back(subjects: &[Self]) -> Vec<usize> {
+        let depth = |subject: &Self| {
+            (subject.section.body.map_or(0, |body| body.priority), subject.pose.origin().z)
+        };
+        let mut order: Vec<usize> = (0..subjects.len()).collect();
+        order.sort_by(|&i, &j| {
+            let (a, b) = (depth(&subjects[i]), depth(&subjects[j]));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
+        order
+    }
+
+    /// Whether it is an opaque body, of which there is nothing to see but its outline.
+    pub fn is_opaque(&self) -> bool {
+        let medium = |body: &Body| matches!(body.filling, Filling::Medium { .. });
+        self.section.body.is_some_and(|body| !medium(body))
+    }
+
+    /// Whether it is a body that lies within another device as they are drawn; of two of one size, whether
+    /// `or_alike`.
+    pub fn is_within(&self, other: &Self, or_alike: bool) -> bool {
+        let (Some([low, high]), Some([from, to])) = (self.bounds(), other.bounds()) else {
+            return false;
+        };
+        let alike = [low, high] == [from, to];
+        self.section.body.is_some()
+            && (or_alike || !alike)
+            && from.cmple(low).all()
+            && high.cmple(to).all()
+    }
+
+    /// Whether a point of the scene's xy-plane lies within its outline.
+    pub fn surrounds(&self, point: DVec2) -> bool {
+        let local = self.pose.to_local(point.extend(0.0)).truncate();
+        self.section.outlines.iter().any(|outline| outline.surrounds(local))
     }
 
     /// Where its axis is in the scene.

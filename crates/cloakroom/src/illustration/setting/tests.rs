@@ -1,6 +1,9 @@
+mod contents;
+
 use super::super::drawing::{Element, Shape};
 use super::*;
 use crate::device::CATALOGUE;
+use crate::gallery::EXHIBITS;
 use crate::scene_file;
 use proptest::prelude::*;
 use std::path::Path;
@@ -220,6 +223,7 @@ fn variants() -> Vec<String> {
         .into_iter()
         .flat_map(|camera| [SQUARE, GAUSSIAN, ""].map(|device| format!("{camera}\n{device}"))),
     );
+    texts.extend(EXHIBITS.iter().map(|exhibit| exhibit.scene.to_owned()));
     texts.push(format!(
         "{SQUARE}position = [-40, 12, 0]\n{SQUARE}position = [-40, -12, 0]\n{GAUSSIAN}"
     ));

@@ -1,0 +1,60 @@
+//! `cloakroom gallery`: a picture of every device, how long light takes, and the table of them all.
+
+use crate::arguments::GalleryArguments;
+use crate::interruption;
+use crate::panels::{self, merge, write_png};
+use crate::render::{picture, rgb, tell_rarities};
+use crate::report::Failure;
+use crate::scene;
+use cloakroom::gallery::{self, EXHIBITS, Exhibit};
+use cloakroom::illustration::{ScalarMap, TablePicture, TableRow, table};
+use cloakroom::render::{Rendered, Studio, Wanted};
+use std::sync::atomic::AtomicBool;
+
+/// The channel whose map stands beside the picture.
+const MAP: &str = "time_of_flight_difference";
+
+/// Makes the chosen pictures and maps, and the table if all are chosen.
+pub fn run(arguments: &GalleryArguments, stop: &AtomicBool) -> Result<(), Failure> {
+    let chosen = gallery::select(&arguments.only).map_err(Failure::Usage)?;
+    scene::use_threads(arguments.panels.threads)?;
+    panels::make_folder(&arguments.out)?;
+    let _busy = interruption::busy();
+    let mut rows = Vec::new();
+    let mut metadata = Vec::new();
+    for exhibit in &chosen {
+        rows.push(make(exhibit, arguments, &mut metadata, stop)?);
+    }
+    if chosen.len() == EXHIBITS.len() {
+        let path = arguments.out.join("gallery.png");
+        write_png(&table(gallery::TITLE, &rows), &metadata, &path)?;
+    }
+    Ok(())
+}
+
+/// Makes picture and map of one exhibit, writes them, and gives its row of the table.
+fn make(
+    exhibit: &Exhibit,
+    arguments: &GalleryArguments,
+    metadata: &mut Vec<(String, String)>,
+    stop: &AtomicBool,
+) -> Result<TableRow, Failure> {
+    let loaded = panels::load(exhibit.scene, exhibit.name, &arguments.panels)?;
+    let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let Rendered { picture, rarities } = picture(&studio, Wanted::Everything, exhibit.name, stop)?;
+    tell_rarities(&rarities);
+    let image = rgb(&loaded.scene, &picture)?;
+    let map = ScalarMap::new(&picture, MAP).map_err(Failure::from_error)?;
+    let file = |ending: &str| arguments.out.join(format!("{}{ending}.png", exhibit.name));
+    write_png(&image, &picture.metadata, &file(""))?;
+    write_png(&map.with_color_bar(), &picture.metadata, &file("-time-of-flight"))?;
+    merge(metadata, &picture.metadata);
+    Ok(TableRow {
+        title: exhibit.title.to_owned(),
+        words: exhibit.words().map(|(name, words)| (name, words.to_owned())).to_vec(),
+        pictures: vec![
+            TablePicture::new(&image),
+            TablePicture::of_map(&map, "no light from the photograph arrives"),
+        ],
+    })
+}

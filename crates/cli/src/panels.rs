@@ -1,0 +1,55 @@
+//! Panels: scenes that the program carries along, as the command line wants them, and their files.
+
+use crate::arguments::PanelArguments;
+use crate::report::{Failure, say};
+use cloakroom::output::{self, RgbImage};
+use cloakroom::scene_file::{self, Loaded};
+use std::path::Path;
+
+/// Makes the folder for the files.
+pub fn make_folder(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| {
+        Failure::Failed(format!("cannot make the folder {}: {error}", folder.display()))
+    })
+}
+
+/// Reads the scene of a panel, with what the command line changes in it.
+pub fn load(scene: &str, name: &str, arguments: &PanelArguments) -> Result<Loaded, Failure> {
+    let [width, height] = arguments.size;
+    let mut overrides = vec![
+        format!("camera.resolution=[{width}, {height}]"),
+        format!("camera.samples={}", arguments.samples),
+        // Panels carry no lettering.
+        "picture.color_bar=false".to_owned(),
+    ];
+    if let Some(photo) = &arguments.photo {
+        overrides.push(format!("photograph.image={}", photo.display()));
+    }
+    scene_file::parse(scene, &format!("{name}.toml"), Path::new(""), &overrides)
+        .map_err(Failure::from_error)
+}
+
+/// Writes a PNG and says so.
+pub fn write_png(
+    image: &RgbImage,
+    metadata: &[(String, String)],
+    path: &Path,
+) -> Result<(), Failure> {
+    output::write_png(image, metadata, path).map_err(Failure::from_error)?;
+    say(&format!("{}", path.display()));
+    Ok(())
+}
+
+/// Adds a panel's metadata to that of its sheet: what differs from panel to panel, one after the other.
+pub fn merge(sheet: &mut Vec<(String, String)>, panel: &[(String, String)]) {
+    for (key, text) in panel {
+        match sheet.iter_mut().find(|(known, _)| known == key) {
+            Some((_, all)) if all != text => {
+                all.push('\n');
+                all.push_str(text);
+            }
+            Some(_) => {}
+            None => sheet.push((key.clone(), text.clone())),
+        }
+    }
+}
