@@ -14,11 +14,13 @@ mod admittance;
 mod coating;
 mod conductor;
 mod matching;
+mod reflectionless;
 mod scattering;
 mod single_wave;
 
 pub use coating::transmit_antireflection;
 pub use conductor::reflect_at_conductor;
+pub use reflectionless::Reflectionless;
 pub use scattering::Scattering;
 
 use crate::medium::{Medium, ModeKind};
