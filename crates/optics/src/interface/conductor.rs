@@ -16,10 +16,14 @@ pub fn reflect_at_conductor<const N: usize>(
     wave: &IncidentWave<N>,
     normal: DVec3,
 ) -> OutgoingWaves<N> {
+    let mut waves = OutgoingWaves::new();
     match MirrorImage::new(medium, normal) {
-        Some(image) => std::iter::once(image.of(wave)).collect(),
-        None => split_into_modes(medium, None, wave, normal),
+        Some(image) => waves.push(image.of(wave)),
+        None => {
+            split_into_modes(medium, None, wave, normal, 0.0, &mut waves);
+        }
     }
+    waves
 }
 
 /// The mirror image at a plane in a medium with the wave surface p·Ap = c, ε and µ being multiples of A.
