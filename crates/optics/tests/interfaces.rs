@@ -4,7 +4,9 @@
 
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
-use optics::interface::{IncidentWave, Side, reflect_at_conductor, split, transmit_antireflection};
+use optics::interface::{
+    IncidentWave, Reflectionless, Side, reflect_at_conductor, split, transmit_antireflection,
+};
 use optics::medium::Medium;
 use optics::wave::{ComplexVector, PlaneWave, transverse_basis};
 use proptest::prelude::*;
@@ -164,6 +166,65 @@ proptest! {
             let (back, _) = transmitted(&to, &from, -onward, -normal).unwrap();
             prop_assert!((there - back).abs() < 1e-11, "{there} {back}");
         }
+    }
+}
+
+/// A medium behind the map that moves points at unit height above an interface by `shift`.
+fn mapped(medium: &Medium, normal: DVec3, shift: DVec3) -> Medium {
+    let lifted = DMat3::from_cols(shift * normal.x, shift * normal.y, shift * normal.z);
+    let jacobian = DMat3::IDENTITY + lifted;
+    let image = |tensor: &DMat3| {
+        let m = jacobian * *tensor * jacobian.transpose() * (1.0 / jacobian.determinant());
+        (m + m.transpose()) * 0.5
+    };
+    Medium::new(image(medium.permittivity()), image(medium.permeability())).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(5_000))]
+
+    #[test]
+    fn a_map_that_keeps_the_interface_reflects_nothing(
+        from in medium(), normal in unit_vector(), direction in unit_vector(), jones in jones(),
+        shift in unit_vector(), size in 0.0..2.0f64,
+    ) {
+        let shift = shift * size;
+        prop_assume!((1.0 + shift.dot(normal)).abs() > 0.1);
+        let facing = direction.dot(normal);
+        prop_assume!(facing.abs() > 1e-2);
+        let wave = incident(&from, direction * facing.signum(), jones);
+        let to = mapped(&from, normal, shift);
+        let seen = Reflectionless::between(&from, &to, normal).expect("no reflection");
+        let onward = seen.transmit(&wave);
+        let waves = split(&from, &to, &wave, normal);
+        // Rounding in the tensors alone may leave some 1e-28 of the power in a reflected wave.
+        let expected = waves.iter().find(|wave| wave.side == Side::Transmitted).unwrap();
+        prop_assert!((expected.power[0] - 1.0).abs() < 1e-20);
+        prop_assert_eq!(onward.power, wave.power);
+        prop_assert!((onward.wave_vector - expected.wave_vector).length() < 1e-10);
+        prop_assert!((onward.direction - expected.direction).length() < 1e-10);
+        let difference = (onward.electric[0] - expected.electric[0]).norm_squared().sqrt();
+        prop_assert!(difference < 1e-10, "{difference}");
+    }
+}
+
+#[test]
+fn other_interfaces_are_not_taken_for_reflectionless() {
+    let normal = DVec3::X;
+    let air = Medium::AIR;
+    let matched =
+        Medium::impedance_matched(DMat3::from_diagonal(DVec3::new(0.5, 2.0, 2.0))).unwrap();
+    assert!(Reflectionless::between(&air, &matched, normal).is_some());
+    // A perfectly matched layer is one for its own normal alone.
+    assert!(Reflectionless::between(&air, &matched, DVec3::Y).is_none());
+    for other in [
+        Medium::dielectric(1.5),
+        Medium::isotropic(1.5, 1.5).unwrap(),
+        Medium::isotropic(1.0 + 1e-12, 1.0 + 1e-12).unwrap(),
+        Medium::uniaxial_magnetic(2.0, 2.0, 0.5, normal).unwrap(),
+        Medium::new(DMat3::from_diagonal(DVec3::new(0.5, 2.0, 2.0)), 1.0).unwrap(),
+    ] {
+        assert!(Reflectionless::between(&air, &other, normal).is_none(), "{other:?}");
     }
 }
 

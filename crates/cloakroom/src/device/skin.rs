@@ -117,6 +117,7 @@ impl Skin {
     /// The distance at which a ray in air meets the surface and the unit normal there, against the
     /// ray. `again` says that the ray has just left this same surface.
     #[must_use]
+    #[inline]
     pub fn hit(&self, origin: DVec3, direction: DVec3, again: bool) -> Option<(f64, DVec3)> {
         match self {
             Self::Wall { wall, .. } => {

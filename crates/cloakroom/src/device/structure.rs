@@ -202,19 +202,17 @@ impl Structure {
         if !self.hull.may_be_met(origin, direction) {
             return None;
         }
-        let mut nearest: Option<SkinHit> = None;
+        let mut nearest: Option<(u16, &Skin, f64, DVec3)> = None;
         for (index, skin) in (0u16..).zip(&self.skin) {
-            let Some((distance, outward)) = skin.hit(origin, direction, last == Some(index)) else {
-                continue;
-            };
-            if nearest.is_none_or(|hit| distance < hit.distance) {
-                let position = origin + direction * distance;
-                let beyond = skin.beyond(position);
-                nearest =
-                    Some(SkinHit { skin: index, distance, outward, beyond, finish: skin.finish() });
+            if let Some((distance, outward)) = skin.hit(origin, direction, last == Some(index))
+                && nearest.is_none_or(|(_, _, least, _)| distance < least)
+            {
+                nearest = Some((index, skin, distance, outward));
             }
         }
-        nearest
+        let (index, skin, distance, outward) = nearest?;
+        let beyond = skin.beyond(origin + direction * distance);
+        Some(SkinHit { skin: index, distance, outward, beyond, finish: skin.finish() })
     }
 }
 

@@ -17,28 +17,62 @@ pub fn to_srgb(picture: &Picture) -> Result<RgbImage, OutputError> {
             .ok_or_else(|| OutputError::MissingChannel { name: name.to_owned() })
     };
     let planes: [&Samples; 3] = [find("R")?, find("G")?, find("B")?];
-    let thresholds = thresholds();
-    let mut bytes = Vec::with_capacity(3 * picture.width * picture.height);
-    for i in 0..picture.width * picture.height {
-        bytes.extend(planes.map(|plane| code(plane.get(i), &thresholds)));
+    let codes = Codes::new();
+    let mut bytes = vec![0; 3 * picture.width * picture.height];
+    for (channel, plane) in planes.into_iter().enumerate() {
+        let pixels = bytes.iter_mut().skip(channel).step_by(3);
+        match plane {
+            Samples::F32(values) => {
+                pixels.zip(values).for_each(|(byte, light)| *byte = codes.nearest((*light).into()));
+            }
+            other => {
+                pixels.enumerate().for_each(|(i, byte)| *byte = codes.nearest(other.get(i)));
+            }
+        }
     }
     // Pictures are at most 65536 pixels a side, and the buffer has been made to measure.
     RgbImage::from_raw(picture.width as u32, picture.height as u32, bytes)
         .ok_or_else(|| OutputError::MissingChannel { name: "R".to_owned() })
 }
 
-/// The linear light from which on the next sRGB code is nearer: entry n lies between the codes n
-/// and n + 1.
-fn thresholds() -> [f64; 255] {
-    std::array::from_fn(|n| {
-        let encoded = (n as f64 + 0.5) / 255.0;
-        if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
-    })
+/// The sRGB codes of linear light.
+struct Codes {
+    /// The linear light from which on the next code is nearer: entry n lies between the codes n and n + 1.
+    thresholds: [f64; 255],
+    /// The codes at the lower ends of equal parts of the light from 0 to 1, which hold two codes at most.
+    lowest: [u8; PARTS],
 }
 
-/// The sRGB code nearest to linear light; NaN is black.
-fn code(linear: f64, thresholds: &[f64; 255]) -> u8 {
-    thresholds.partition_point(|threshold| *threshold <= linear) as u8
+/// More than codes a unit of light, even in the dark.
+const PARTS: usize = 4096;
+
+impl Codes {
+    fn new() -> Self {
+        let thresholds: [f64; 255] = std::array::from_fn(|n| {
+            let encoded = (n as f64 + 0.5) / 255.0;
+            if encoded <= 0.040_45 {
+                encoded / 12.92
+            } else {
+                ((encoded + 0.055) / 1.055).powf(2.4)
+            }
+        });
+        let lowest = std::array::from_fn(|part| {
+            let light = part as f64 / PARTS as f64;
+            thresholds.partition_point(|threshold| *threshold <= light) as u8
+        });
+        Self { thresholds, lowest }
+    }
+
+    /// The code nearest to linear light; NaN is black.
+    fn nearest(&self, linear: f64) -> u8 {
+        // Negative light and NaN become 0.
+        let part = ((linear * PARTS as f64) as i32).clamp(0, PARTS as i32 - 1);
+        let mut code = self.lowest[part as usize];
+        while self.thresholds.get(usize::from(code)).is_some_and(|threshold| *threshold <= linear) {
+            code += 1;
+        }
+        code
+    }
 }
 
 /// Writes an image as a PNG with text metadata.
@@ -101,7 +135,7 @@ mod tests {
 
     #[test]
     fn every_code_survives_the_way_there_and_back() {
-        let thresholds = thresholds();
+        let codes = Codes::new();
         for n in 0..=255u8 {
             let encoded = f64::from(n) / 255.0;
             let linear = if encoded <= 0.040_45 {
@@ -109,7 +143,21 @@ mod tests {
             } else {
                 ((encoded + 0.055) / 1.055).powf(2.4)
             };
-            assert_eq!(code(linear, &thresholds), n);
+            assert_eq!(codes.nearest(linear), n);
+        }
+    }
+
+    #[test]
+    fn codes_change_at_the_thresholds_and_nowhere_else() {
+        let codes = Codes::new();
+        for (threshold, n) in codes.thresholds.into_iter().zip(0u8..) {
+            assert_eq!(codes.nearest(threshold), n + 1);
+            assert_eq!(codes.nearest(threshold.next_down()), n);
+        }
+        for i in 0..100_000 {
+            let light = f64::from(i) / 90_000.0;
+            let counted = codes.thresholds.iter().filter(|threshold| **threshold <= light).count();
+            assert_eq!(usize::from(codes.nearest(light)), counted);
         }
     }
 

@@ -1,7 +1,5 @@
 //! Halving an image by exact area averages, whatever its size.
 
-use rayon::prelude::*;
-
 use super::Texels;
 
 /// The next coarser image: half as wide and high, rounded down, at least 1.
@@ -19,34 +17,50 @@ pub(super) fn halve(
 ) -> (usize, usize, Vec<f32>) {
     let (new_width, new_height) = ((width / 2).max(1), (height / 2).max(1));
     let mut halved = vec![0.0; new_width * new_height * 3];
-    let columns: Vec<Part> = (0..new_width).map(|i| Part::new(i, width)).collect();
-    halved
-        .par_chunks_mut(new_width * 3)
-        .enumerate()
-        // Small levels are not worth a thread.
-        .with_min_len((65536 / new_width).max(1))
-        .for_each_init(
-            || vec![0.0; width * 3],
-            |sum, (y, row)| {
-                let part = Part::new(y, height);
-                let stored = part.first * width * 3;
-                match texels {
-                    Texels::Srgb8(codes) => {
-                        let light = |code: u8| table[usize::from(code)];
-                        add_rows(sum, &codes[stored..], part.weights, light);
-                    }
-                    Texels::Linear(values) => {
-                        add_rows(sum, &values[stored..], part.weights, |value| value);
-                    }
-                }
-                if width.is_multiple_of(2) {
-                    halve_row(sum, row);
-                } else {
-                    shrink_row(sum, &columns, row);
-                }
-            },
-        );
+    match texels {
+        Texels::Srgb8(codes) => {
+            halve_into(&mut halved, [width, height], codes, |code| table[usize::from(code)]);
+        }
+        Texels::Linear(values) => {
+            halve_into(&mut halved, [width, height], values, |value| value);
+        }
+    }
     (new_width, new_height, halved)
+}
+
+fn halve_into<S: Copy>(
+    halved: &mut [f32],
+    [width, height]: [usize; 2],
+    texels: &[S],
+    light: impl Fn(S) -> f32,
+) {
+    let new_width = (width / 2).max(1);
+    let rows = halved.chunks_exact_mut(new_width * 3).enumerate();
+    if width.is_multiple_of(2) && height.is_multiple_of(2) {
+        for ((_, row), pair) in rows.zip(texels.chunks_exact(width * 6)) {
+            let (above, below) = pair.split_at(width * 3);
+            average_squares(above, below, row, &light);
+        }
+        return;
+    }
+    let columns: Vec<Part> = (0..new_width).map(|i| Part::new(i, width)).collect();
+    let mut sum = vec![0.0; width * 3];
+    for (y, row) in rows {
+        let part = Part::new(y, height);
+        add_rows(&mut sum, &texels[part.first * width * 3..], part.weights, &light);
+        shrink_row(&sum, &columns, row);
+    }
+}
+
+/// Averages of two by two texels each.
+fn average_squares<S: Copy>(above: &[S], below: &[S], row: &mut [f32], light: impl Fn(S) -> f32) {
+    let pairs = above.chunks_exact(6).zip(below.chunks_exact(6));
+    for (texel, (a, b)) in row.chunks_exact_mut(3).zip(pairs) {
+        for channel in 0..3 {
+            let [left, right] = [channel, channel + 3].map(|i| light(a[i]) + light(b[i]));
+            texel[channel] = 0.25 * (left + right);
+        }
+    }
 }
 
 /// Weighted sum of two or three rows.
@@ -65,15 +79,6 @@ fn add_rows<S: Copy>(sum: &mut [f32], rows: &[S], weights: [f32; 3], light: impl
     if third != 0.0 {
         for (total, &value) in sum.iter_mut().zip(&rows[2 * length..]) {
             *total += third * light(value);
-        }
-    }
-}
-
-/// Averages of two texels each.
-fn halve_row(texels: &[f32], halved: &mut [f32]) {
-    for (texel, pair) in halved.chunks_exact_mut(3).zip(texels.chunks_exact(6)) {
-        for channel in 0..3 {
-            texel[channel] = 0.5 * (pair[channel] + pair[channel + 3]);
         }
     }
 }

@@ -47,9 +47,11 @@ impl Footprint {
         let half_difference = 0.5 * (uu - vv);
         let root = (half_difference * half_difference + uv * uv).sqrt();
         let major_squared = 0.5 * (uu + vv) + root;
+        if major_squared < 1.0 {
+            return Self { width_squared: 1.0, major_squared, row: None };
+        }
         let determinant = ax * by - ay * bx;
-
-        let major = major_squared.max(1.0);
+        let major = major_squared;
         // The true minor axis, where it is above one texel.
         let minor =
             (determinant * determinant / major).max(major / (max_ratio * max_ratio)).max(1.0);
@@ -64,6 +66,12 @@ impl Footprint {
             Row { length: (major - round).sqrt(), direction: [x / norm, y / norm] }
         });
         Self { width_squared, major_squared, row }
+    }
+
+    /// Whether one probe in the middle stands for the patch.
+    #[inline]
+    pub(super) fn is_round(&self) -> bool {
+        self.row.is_none()
     }
 
     /// Calls `visit` with the offset from the middle, in texels, and the weight of each probe. The

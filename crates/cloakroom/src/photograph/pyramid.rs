@@ -10,6 +10,7 @@
 
 use super::footprint::Footprint;
 use super::{LinearImage, Texels, decode_table, downsample};
+use std::sync::OnceLock;
 
 /// Texels per axis that a probe can touch.
 const MAX_TAPS: usize = 6;
@@ -41,7 +42,9 @@ pub enum Edges {
 /// An image with its coarser copies, ready to be looked at through patches of any size.
 #[derive(Clone, Debug)]
 pub struct Pyramid {
-    levels: Vec<Level>,
+    image: Level,
+    /// Its coarser copies, each made when it is first looked at: most pictures never need one.
+    coarser: Vec<OnceLock<Level>>,
     edges: Edges,
     max_ratio: f32,
     table: &'static [f32; 256],
@@ -68,21 +71,35 @@ struct Plan {
 }
 
 impl Pyramid {
-    /// Computes the coarser copies of an image, by exact area averages in linear light.
+    /// An image and its coarser copies, which are exact area averages in linear light.
     pub fn new(image: LinearImage, edges: Edges) -> Self {
-        let table = decode_table();
         let LinearImage { width, height, texels } = image;
-        let size = [width as f64, height as f64];
-        let mut levels = vec![Level { width, height, texels, scale: [1.0; 2] }];
-        while let Some(last) = levels.last()
-            && (last.width > 1 || last.height > 1)
-        {
-            let (width, height, texels) =
-                downsample::halve(last.width, last.height, &last.texels, table);
-            let scale = [width as f64 / size[0], height as f64 / size[1]];
-            levels.push(Level { width, height, texels: Texels::Linear(texels), scale });
+        let count = width.max(height).ilog2() as usize;
+        Self {
+            image: Level { width, height, texels, scale: [1.0; 2] },
+            coarser: vec![OnceLock::new(); count],
+            edges,
+            max_ratio: MAX_RATIO,
+            table: decode_table(),
         }
-        Self { levels, edges, max_ratio: MAX_RATIO, table }
+    }
+
+    /// The image itself, or a coarser copy.
+    #[inline]
+    fn level(&self, level: usize) -> &Level {
+        match level.checked_sub(1) {
+            None => &self.image,
+            // One thread makes it, on its own: work shared out while others wait could wait for them.
+            Some(index) => self.coarser[index].get_or_init(|| self.halved(index)),
+        }
+    }
+
+    #[cold]
+    fn halved(&self, level: usize) -> Level {
+        let Level { width, height, texels, .. } = self.level(level);
+        let (width, height, texels) = downsample::halve(*width, *height, texels, self.table);
+        let scale = [width as f64 / self.width() as f64, height as f64 / self.height() as f64];
+        Level { width, height, texels: Texels::Linear(texels), scale }
     }
 
     /// The same pyramid with another limit for the ratio of a patch's axes (default 16); thinner
@@ -94,18 +111,18 @@ impl Pyramid {
 
     /// Width of the image in texels.
     pub fn width(&self) -> usize {
-        self.levels[0].width
+        self.image.width
     }
 
     /// Height of the image in texels.
     pub fn height(&self) -> usize {
-        self.levels[0].height
+        self.image.height
     }
 
-    /// Memory of all levels, in bytes.
+    /// Memory of the image and the coarser copies made so far, in bytes.
     pub fn memory(&self) -> usize {
-        self.levels
-            .iter()
+        std::iter::once(&self.image)
+            .chain(self.coarser.iter().filter_map(OnceLock::get))
             .map(|level| match &level.texels {
                 Texels::Srgb8(codes) => codes.len(),
                 Texels::Linear(values) => values.len() * size_of::<f32>(),
@@ -128,26 +145,41 @@ impl Pyramid {
         // Far outside there is nothing but the edge.
         let [u, v] = texels(position.map(|x| if x.is_nan() { 0.5 } else { x.clamp(-4.0, 5.0) }));
         let mut sum = [0.0; 3];
-        footprint.probes(|offset, weight| {
-            let at = [u + f64::from(offset[0]), v + f64::from(offset[1])];
-            let mut add = |level: usize, width: f32, weight: f32| {
-                let level = &self.levels[level];
-                let at = [at[0] * level.scale[0], at[1] * level.scale[1]];
-                let light = level.average(at, width, self.edges, self.table);
-                for (total, value) in sum.iter_mut().zip(light) {
-                    *total += weight * value;
-                }
-            };
-            add(plan.level, plan.width, weight * (1.0 - plan.fade));
-            if plan.fade > 0.0 {
-                add(plan.level + 1, plan.next, weight * plan.fade);
-            }
-        });
+        if footprint.is_round() {
+            self.add_probe(&mut sum, [u, v], 1.0, &plan);
+        } else {
+            footprint.probes(|offset, weight| {
+                let at = [u + f64::from(offset[0]), v + f64::from(offset[1])];
+                self.add_probe(&mut sum, at, weight, &plan);
+            });
+        }
         sum
     }
 
+    /// Adds what a probe in the middle of `at`, in texels of the image, sees.
+    #[inline]
+    fn add_probe(&self, sum: &mut [f32; 3], at: [f64; 2], weight: f32, plan: &Plan) {
+        let mut add = |level: usize, width: f32, weight: f32| {
+            let level = self.level(level);
+            let at = [at[0] * level.scale[0], at[1] * level.scale[1]];
+            let light = level.average(at, width, self.edges, self.table);
+            for (total, value) in sum.iter_mut().zip(light) {
+                *total += weight * value;
+            }
+        };
+        add(plan.level, plan.width, weight * (1.0 - plan.fade));
+        if plan.fade > 0.0 {
+            add(plan.level + 1, plan.next, weight * plan.fade);
+        }
+    }
+
     fn plan(&self, footprint: &Footprint) -> Plan {
-        let last = self.levels.len() - 1;
+        if footprint.major_squared < 1.0 {
+            // Magnified, towards a quadratic spline.
+            let width = (1.0 - footprint.major_squared.sqrt()).max(MIN_WIDTH);
+            return Plan { level: 0, width, next: MIN_WIDTH, fade: 0.0 };
+        }
+        let last = self.coarser.len();
         // d^2 / 12 + 1/4 on the level at hand.
         let mut variance = (footprint.width_squared + 2.0) * (1.0 / 12.0);
         let mut level = 0;
@@ -155,11 +187,7 @@ impl Pyramid {
             variance *= 0.25;
             level += 1;
         }
-        let mut width = (12.0 * variance.min(MAX_VARIANCE) - 3.0).max(0.0).sqrt().max(MIN_WIDTH);
-        if footprint.major_squared < 1.0 {
-            // Magnified, towards a quadratic spline.
-            width = width.max(1.0 - footprint.major_squared.sqrt());
-        }
+        let width = (12.0 * variance.min(MAX_VARIANCE) - 3.0).max(0.0).sqrt().max(MIN_WIDTH);
         let share = variance * (1.0 / MAX_VARIANCE);
         let (mut next, mut fade) = (MIN_WIDTH, 0.0);
         if share > FADE && level < last {
@@ -177,32 +205,32 @@ impl Level {
     fn average(&self, at: [f64; 2], width: f32, edges: Edges, table: &[f32; 256]) -> [f32; 3] {
         // The square touches fewer than `width + 2` texels per axis, rounded up.
         if width <= 1.0 {
-            self.average_of::<3>(at, width, edges, table)
+            self.average_of::<3, 4>(at, width, edges, table)
         } else if width <= 2.0 {
-            self.average_of::<4>(at, width, edges, table)
+            self.average_of::<4, 4>(at, width, edges, table)
         } else if width <= 3.0 {
-            self.average_of::<5>(at, width, edges, table)
+            self.average_of::<5, 8>(at, width, edges, table)
         } else {
-            self.average_of::<MAX_TAPS>(at, width, edges, table)
+            self.average_of::<MAX_TAPS, 8>(at, width, edges, table)
         }
     }
 
     #[inline]
-    fn average_of<const TAPS: usize>(
+    fn average_of<const TAPS: usize, const LANES: usize>(
         &self,
         at: [f64; 2],
         width: f32,
         edges: Edges,
         table: &[f32; 256],
     ) -> [f32; 3] {
-        let across = Taps::<TAPS>::new(at[0], width);
-        let down = Taps::<TAPS>::new(at[1], width);
+        let across = Taps::<TAPS, LANES>::new(at[0], width);
+        let down = Taps::<TAPS, LANES>::new(at[1], width);
         if let Some(left) = across.inside(self.width)
             && let Some(top) = down.inside(self.height)
         {
             let start = (top * self.width + left) * 3;
             let stride = self.width * 3;
-            let weights = (&across.weights, &down.weights);
+            let weights = (across.weights(), down.weights());
             match &self.texels {
                 Texels::Srgb8(codes) => {
                     weigh(&codes[start..], stride, weights, |code| table[usize::from(code)])
@@ -215,18 +243,18 @@ impl Level {
     }
 
     #[cold]
-    fn average_at_edge<const TAPS: usize>(
+    fn average_at_edge<const TAPS: usize, const LANES: usize>(
         &self,
-        across: &Taps<TAPS>,
-        down: &Taps<TAPS>,
+        across: &Taps<TAPS, LANES>,
+        down: &Taps<TAPS, LANES>,
         edges: Edges,
         table: &[f32; 256],
     ) -> [f32; 3] {
         let (columns, rows) = (self.width as i64, self.height as i64);
         let mut sum = [0.0; 3];
-        for (y, &row_weight) in (down.first..).zip(&down.weights) {
+        for (y, row_weight) in (down.first..).zip(down.weights()) {
             let y = y.clamp(0, rows - 1) as usize;
-            for (x, &weight) in (across.first..).zip(&across.weights) {
+            for (x, weight) in (across.first..).zip(across.weights()) {
                 let x = match edges {
                     Edges::Clamp => x.clamp(0, columns - 1),
                     Edges::WrapHorizontally => x.rem_euclid(columns),
@@ -245,13 +273,14 @@ impl Level {
     }
 }
 
-/// Neighbouring texels along one axis and their weights in an average of the linear interpolant.
-struct Taps<const TAPS: usize> {
+/// Neighbouring texels along one axis and their weights in an average of the linear interpolant; in `LANES`
+/// numbers, as many as the processor takes at once.
+struct Taps<const TAPS: usize, const LANES: usize> {
     first: i64,
-    weights: [f32; TAPS],
+    lanes: [f32; LANES],
 }
 
-impl<const TAPS: usize> Taps<TAPS> {
+impl<const TAPS: usize, const LANES: usize> Taps<TAPS, LANES> {
     /// The average over `width` texels around `position`, both in texels from the edge.
     #[inline]
     fn new(position: f64, width: f32) -> Self {
@@ -261,11 +290,16 @@ impl<const TAPS: usize> Taps<TAPS> {
         let first = floor(middle - f64::from(half));
         let offset = (first as f64 - middle) as f32;
         let scale = 1.0 / width;
-        let weights = std::array::from_fn(|tap| {
+        let lanes = std::array::from_fn(|tap| {
             let distance = offset + tap as f32;
             (tent_integral(distance + half) - tent_integral(distance - half)) * scale
         });
-        Self { first, weights }
+        Self { first, lanes }
+    }
+
+    #[inline]
+    fn weights(&self) -> [f32; TAPS] {
+        std::array::from_fn(|tap| self.lanes[tap])
     }
 
     /// The first texel's index if all lie within `length` texels.
@@ -296,11 +330,11 @@ fn tent_integral(x: f32) -> f32 {
 fn weigh<S: Copy, const TAPS: usize>(
     texels: &[S],
     stride: usize,
-    (across, down): (&[f32; TAPS], &[f32; TAPS]),
+    (across, down): ([f32; TAPS], [f32; TAPS]),
     light: impl Fn(S) -> f32,
 ) -> [f32; 3] {
     let mut columns = [[0.0; 3]; TAPS];
-    for (row, &weight) in down.iter().enumerate() {
+    for (row, weight) in down.into_iter().enumerate() {
         let start = row * stride;
         let row = &texels[start..start + TAPS * 3];
         for (total, &value) in columns.as_flattened_mut().iter_mut().zip(row) {
@@ -308,7 +342,7 @@ fn weigh<S: Copy, const TAPS: usize>(
         }
     }
     let mut sum = [0.0; 3];
-    for (texel, &weight) in columns.iter().zip(across) {
+    for (texel, weight) in columns.iter().zip(across) {
         for (total, value) in sum.iter_mut().zip(texel) {
             *total += weight * value;
         }

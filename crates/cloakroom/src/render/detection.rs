@@ -80,6 +80,11 @@ impl<const N: usize> Detection<N> {
         }
     }
 
+    /// Whether nothing but the image is wanted.
+    pub fn image_alone(&self) -> bool {
+        !(self.separate || self.times || self.stokes || self.first_face)
+    }
+
     /// The ray to launch for a camera ray.
     pub fn launch(&self, camera: &Camera, ray: &CameraRay) -> Launch<N> {
         let (horizontal, vertical) = camera.polarization_basis(ray.direction);

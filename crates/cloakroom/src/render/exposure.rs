@@ -82,6 +82,35 @@ pub(super) fn expose<const N: usize>(
     }
 }
 
+/// Adds to the pixels of a 2 x 2 block what they see past every device, where all its rays end on the
+/// photograph; whether they do. The same as [`expose`] with those rays as leaves, but for what is worked
+/// out once for the block.
+pub(super) fn expose_unhindered<const N: usize>(
+    studio: &Studio<'_>,
+    detection: &Detection<N>,
+    rays: &[CameraRay; 4],
+    spacing: f64,
+    pixels: &mut [Pixel; 4],
+) -> bool {
+    let screen = &studio.screen;
+    let mut places = [[0.0; 2]; 4];
+    for (place, ray) in places.iter_mut().zip(rays) {
+        let Some(distance) = screen.hit(ray.origin, ray.direction) else { return false };
+        let point = ray.origin + ray.direction * distance;
+        *place = screen.image_position(point, ray.direction);
+    }
+    let power = detection.detected(&[1.0; N]);
+    for (i, pixel) in pixels.iter_mut().enumerate() {
+        let [u, v] = places[i];
+        let [dx, dy] = [places[i ^ 1], places[i ^ 2]]
+            .map(|[beside_u, beside_v]| [(beside_u - u) * spacing, (beside_v - v) * spacing]);
+        let light = studio.image.sample(places[i], dx, dy).map(f64::from);
+        pixel.delivered += power;
+        add(&mut pixel.image, power, light);
+    }
+    true
+}
+
 /// Time of flight of a leaf that ends on the photograph, `distance` (cm) on, in ns.
 pub(super) fn time_of_flight<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f64 {
     (leaf.group_path + distance) / SPEED_OF_LIGHT

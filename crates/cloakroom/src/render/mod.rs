@@ -21,7 +21,7 @@ use crate::output::Picture;
 use crate::scene::Scene;
 use crate::trace::{Rarities, Tracer};
 use detection::Detection;
-use exposure::{Traced, expose};
+use exposure::{Traced, expose, expose_unhindered};
 use film::{Band, Film};
 use pixel::{Pixel, Pulses};
 use rayon::prelude::*;
@@ -129,7 +129,7 @@ fn expose_film<const N: usize>(
     Ok(Rendered { picture, rarities })
 }
 
-/// How long rendering will take on the threads there are, in seconds: a few thousand rays, spread
+/// How long rendering the image will take on the threads there are, in seconds: a few thousand rays, spread
 /// over the picture, are traced and timed.
 #[must_use]
 pub fn estimated_seconds(studio: &Studio<'_>) -> f64 {
@@ -137,7 +137,8 @@ pub fn estimated_seconds(studio: &Studio<'_>) -> f64 {
     let camera = &studio.scene.camera;
     let [width, height] = camera.resolution();
     let [columns, rows] = [GRID[0].min(width), GRID[1].min(height)];
-    let mut exposer = Exposer::new(studio, &Detection::UNPOLARIZED);
+    let detection = Detection::UNPOLARIZED.with_options(Wanted::Image, &studio.scene.picture);
+    let mut exposer = Exposer::new(studio, &detection);
     let start = std::time::Instant::now();
     for row in 0..rows {
         for column in 0..columns {
@@ -246,23 +247,29 @@ impl<'a, const N: usize> Exposer<'a, N> {
         let samples = camera.samples();
         let block = [column as u32 / 2, row as u32 / 2];
         let offset = sampling::offset(sample, samples, block, camera.seed());
+        let rays = std::array::from_fn(|i| {
+            camera.ray((column + i % 2) as f64 + offset[0], (row + i / 2) as f64 + offset[1])
+        });
+        let spacing = 1.0 / f64::from(samples).sqrt();
         let mut rarities = Rarities::default();
-        for (i, traced) in self.block.iter_mut().enumerate() {
-            let x = (column + i % 2) as f64 + offset[0];
-            let y = (row + i / 2) as f64 + offset[1];
-            let ray = camera.ray(x, y);
-            let launch = self.detection.launch(camera, &ray);
+        if self.detection.image_alone()
+            && rays.iter().all(|ray| self.tracer.meets_nothing(ray.origin, ray.direction))
+            && expose_unhindered(self.studio, self.detection, &rays, spacing, pixels)
+        {
+            return rarities;
+        }
+        for (ray, traced) in rays.iter().zip(&mut self.block) {
+            let launch = self.detection.launch(camera, ray);
             if self.detection.first_face {
                 traced.first_face = self.tracer.first_face(&launch);
             }
             let (leaves, outcome) = self.tracer.trace(&launch);
-            traced.ray = ray;
+            traced.ray = *ray;
             traced.leaves.clear();
             traced.leaves.extend_from_slice(leaves);
             traced.outcome = *outcome;
             rarities += outcome.rarities;
         }
-        let spacing = 1.0 / f64::from(samples).sqrt();
         for (i, pixel) in pixels.iter_mut().enumerate() {
             let rays = [&self.block[i], &self.block[i ^ 1], &self.block[i ^ 2]];
             expose(self.studio, self.detection, rays, spacing, pixel, &mut self.pulses);

@@ -14,7 +14,8 @@ pub(super) fn offset(sample: u32, samples: u32, block: [u32; 2], seed: u64) -> [
     let bits = mix(seed ^ mix(u64::from(block[0]) << 32 | u64::from(block[1])));
     let shift = [unit(bits >> 32), unit(bits & 0xFFFF_FFFF)];
     let n = f64::from(sample);
-    [(n * STEPS[0] + shift[0]).fract(), (n * STEPS[1] + shift[1]).fract()]
+    // Much faster than `f64::fract` on processors without an instruction for it.
+    [0, 1].map(|i| n * STEPS[i] + shift[i]).map(|place| place - (place as i64) as f64)
 }
 
 /// The finalizer of `SplitMix64`.

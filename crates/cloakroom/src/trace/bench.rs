@@ -1,6 +1,7 @@
 //! The optical bench: all devices of a scene at their places.
 
 use super::bodies::Bodies;
+use super::interfaces::Interfaces;
 use crate::device::{SkinHit, Structure};
 use glam::DVec3;
 use optics::geometry::{Pose, Solid};
@@ -54,6 +55,8 @@ fn coincide(a: &Solid, b: &Solid) -> bool {
 #[derive(Clone, Debug)]
 pub struct Bench {
     devices: Vec<Placed>,
+    /// Those of each device.
+    interfaces: Vec<Interfaces>,
     bodies: Bodies,
     vacuum_wave_number: f64,
 }
@@ -72,7 +75,8 @@ impl Bench {
     #[must_use]
     pub fn new(devices: Vec<Placed>) -> Self {
         let bodies = Bodies::of(&devices);
-        Self { devices, bodies, vacuum_wave_number: 0.0 }.with_wavelength(550.0)
+        let interfaces = devices.iter().map(|device| Interfaces::of(&device.structure)).collect();
+        Self { devices, interfaces, bodies, vacuum_wave_number: 0.0 }.with_wavelength(550.0)
     }
 
     /// The same bench in light of another wavelength (in vacuum, nm) than 550 nm. Only absorption depends
@@ -94,6 +98,11 @@ impl Bench {
     #[must_use]
     pub fn devices(&self) -> &[Placed] {
         &self.devices
+    }
+
+    /// The interfaces of a device, by its number.
+    pub(super) fn interfaces(&self, device: u16) -> &Interfaces {
+        &self.interfaces[usize::from(device)]
     }
 
     /// The bodies among the devices.

@@ -87,6 +87,11 @@ impl Bodies {
         Self { bodies: (0u16..).zip(devices).filter_map(body).take(MOST_BODIES).collect() }
     }
 
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
     /// The nearest surface that a ray crosses, `around` being the bodies that it is in.
     pub fn crossing(&self, around: Around, origin: DVec3, direction: DVec3) -> Option<Crossing> {
         let mut nearest: Option<Crossing> = None;

@@ -1,7 +1,7 @@
 //! A branch of a ray tree on its way.
 
-use super::Leaf;
 use super::bodies::Around;
+use super::{Launch, Leaf};
 use crate::device::InnerRay;
 use glam::DVec3;
 use optics::geometry::Pose;
@@ -45,6 +45,27 @@ pub(super) struct Branch<const N: usize> {
 }
 
 impl<const N: usize> Branch<N> {
+    /// The root of the tree of a ray launched in air.
+    pub fn launched(launch: &Launch<N>) -> Self {
+        Self {
+            place: Place::Air { left: None },
+            position: launch.origin,
+            wave_vector: launch.direction,
+            attenuation: DVec3::ZERO,
+            direction: launch.direction,
+            electric: launch.electric,
+            power: launch.electric.map(ComplexVector::norm_squared),
+            optical_path: 0.0,
+            group_path: 0.0,
+            around: Around::default(),
+            standstills: 0,
+            met_device: false,
+            path: 0,
+            mode: ModeKind::Shared,
+            foothold: None,
+        }
+    }
+
     /// The wave as an interface sees it.
     pub fn incident(&self) -> IncidentWave<N> {
         IncidentWave {
@@ -85,37 +106,33 @@ impl<const N: usize> Branch<N> {
         part
     }
 
-    /// The branch that goes on from here as `wave`, at `place`.
-    pub fn onward(&self, wave: &OutgoingWave<N>, place: Place, event: u64) -> Self {
-        Self {
-            place,
-            wave_vector: wave.wave_vector,
-            attenuation: wave.attenuation,
-            direction: wave.direction,
-            electric: wave.electric,
-            power: wave.power,
-            mode: wave.mode,
-            path: fingerprint(self.path, event),
-            ..*self
-        }
+    /// Goes on from here as `wave`, the event telling how.
+    pub fn go_on_as(&mut self, wave: &OutgoingWave<N>, event: u64) {
+        self.wave_vector = wave.wave_vector;
+        self.attenuation = wave.attenuation;
+        self.direction = wave.direction;
+        self.electric = wave.electric;
+        self.power = wave.power;
+        self.mode = wave.mode;
+        self.path = fingerprint(self.path, event);
     }
 
-    /// The branch in air, where all that decays across a beam is its profile: behind an absorbing wedge the
+    /// Comes out into air, where all that decays across a beam is its profile: behind an absorbing wedge the
     /// wave of the match decays along the surface, by some 1e-5 of its wave vector; a ray is a plane
     /// wave along its direction, transverse, and of its power.
-    pub fn in_air(self) -> Self {
+    pub fn come_out(&mut self) {
         if self.attenuation == DVec3::ZERO {
-            return self;
+            return;
         }
-        let mut electric = self.electric;
-        for (field, power) in electric.iter_mut().zip(self.power) {
+        for (field, power) in self.electric.iter_mut().zip(self.power) {
             let along = field.dot_real(self.direction);
             let across =
                 *field - ComplexVector::new(self.direction * along.re, self.direction * along.im);
             let size = across.norm_squared();
             *field = if size > 0.0 { across * (power / size).sqrt() } else { across };
         }
-        Self { wave_vector: self.direction, attenuation: DVec3::ZERO, electric, ..self }
+        self.wave_vector = self.direction;
+        self.attenuation = DVec3::ZERO;
     }
 
     /// The branch as a leaf, away through air or on an opaque body.
@@ -133,28 +150,30 @@ impl<const N: usize> Branch<N> {
         }
     }
 
-    /// The branch seen in the frame of a device.
-    pub fn to_local(self, pose: &Pose) -> Self {
-        Self {
-            position: pose.to_local(self.position),
-            wave_vector: pose.vector_to_local(self.wave_vector),
-            attenuation: pose.vector_to_local(self.attenuation),
-            direction: pose.vector_to_local(self.direction),
-            electric: self.electric.map(|field| pose.field_to_local(field)),
-            ..self
-        }
+    /// Takes the branch from the world's frame into that of a device.
+    pub fn enter_frame(&mut self, pose: &Pose) {
+        self.position = pose.to_local(self.position);
+        self.wave_vector = pose.vector_to_local(self.wave_vector);
+        self.attenuation = pose.vector_to_local(self.attenuation);
+        self.direction = pose.vector_to_local(self.direction);
+        self.electric = self.electric.map(|field| pose.field_to_local(field));
     }
 
-    /// The branch, in the frame of a device, seen in the world.
-    pub fn to_world(self, pose: &Pose) -> Self {
-        Self {
-            position: pose.to_world(self.position),
-            wave_vector: pose.vector_to_world(self.wave_vector),
-            attenuation: pose.vector_to_world(self.attenuation),
-            direction: pose.vector_to_world(self.direction),
-            electric: self.electric.map(|field| pose.field_to_world(field)),
-            ..self
-        }
+    /// Takes the branch from the frame of a device into air, in the world's frame, `left` being the surface
+    /// of the device's skin that it runs away from.
+    pub fn leave_frame(&mut self, pose: &Pose, left: Option<(u16, u16)>) {
+        self.place = Place::Air { left };
+        self.position = pose.to_world(self.position);
+        self.wave_vector = pose.vector_to_world(self.wave_vector);
+        self.attenuation = pose.vector_to_world(self.attenuation);
+        self.direction = pose.vector_to_world(self.direction);
+        self.electric = self.electric.map(|field| pose.field_to_world(field));
+    }
+
+    /// Enters a cell of the device in whose frame it is.
+    pub fn enter_cell(&mut self, device: u16, cell: u16, foothold: Option<Foothold>) {
+        self.place = Place::Cell { device, cell };
+        self.foothold = foothold;
     }
 
     /// The power of its strongest polarization.

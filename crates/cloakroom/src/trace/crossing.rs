@@ -2,7 +2,7 @@
 
 use super::bodies::{Around, Bodies, Crossing, Inside, ONE_SURFACE};
 use super::branch::{Branch, Place};
-use super::tracer::{Tracer, side_code};
+use super::tracer::Tracer;
 use crate::device::Finish;
 use glam::DVec3;
 use optics::interface::Side;
@@ -24,20 +24,25 @@ impl<const N: usize> Tracer<'_, N> {
         direction: DVec3,
         hit: Option<f64>,
     ) -> Option<Crossing> {
-        let crossing = self.bench.bodies().crossing(Around::default(), position, direction)?;
+        let bodies = self.bench.bodies();
+        if bodies.is_empty() {
+            return None;
+        }
+        let crossing = bodies.crossing(Around::default(), position, direction)?;
         let screen = self.screen.and_then(|screen| screen.hit(position, direction));
         let first = [hit, screen].into_iter().flatten().all(|other| crossing.distance < other);
         first.then_some(crossing)
     }
 
-    /// Follows a branch in air or in a body to where it crosses the surface of a body, and beyond.
-    pub(super) fn cross(&mut self, mut branch: Branch<N>, crossing: &Crossing) {
+    /// Follows a branch in air or in a body to where it crosses the surface of a body; whether it goes on
+    /// from there.
+    pub(super) fn cross(&mut self, branch: &mut Branch<N>, crossing: &Crossing) -> bool {
         branch.standstills =
             if crossing.distance < ONE_SURFACE { branch.standstills + 1 } else { 0 };
         if branch.standstills > MOST_STANDSTILLS {
             self.outcome.rarities.endless += 1;
             self.prune(branch.power);
-            return;
+            return false;
         }
         let bodies = self.bench.bodies();
         let way = branch.direction * crossing.distance;
@@ -53,36 +58,34 @@ impl<const N: usize> Tracer<'_, N> {
             Some(index) => index * crossing.distance,
             None => optical_path.abs().max(crossing.distance),
         };
-        if medium.absorbs() && !self.absorb(&mut branch, way) {
-            return;
+        if medium.absorbs() && !self.absorb(branch, way) {
+            return false;
         }
         let around = Bodies::beyond(branch.around, crossing);
         let (here, beyond) = (bodies.inside(branch.around), bodies.inside(around));
-        let air = Place::Air { left: None };
+        branch.place = Place::Air { left: None };
         if here == beyond {
             // A surface of bodies that give way here to another, or between equal media: nothing is there.
-            self.waiting.push(Branch { place: air, around, ..branch });
-            return;
+            branch.around = around;
+            return true;
         }
         let (beyond, to_air) = match beyond {
             Inside::Opaque(body) => {
                 self.leaves.push(branch.leaf(Some(body)));
-                return;
+                return false;
             }
             Inside::Medium(medium, _) => (medium, false),
             Inside::Air => (&Medium::AIR, true),
         };
         let event = BODY_EVENT | (crossing.body as u64) << 32;
-        for wave in self.split(medium, beyond, &branch, crossing.onward, Finish::Bare) {
-            if !self.follows(wave.power) {
-                continue;
+        let waves = self.split(medium, beyond, branch, crossing.onward, Finish::Bare);
+        self.go_on(branch, &waves, event, |branch, side| {
+            if side == Side::Transmitted {
+                branch.around = around;
+                if to_air {
+                    branch.come_out();
+                }
             }
-            let onward = branch.onward(&wave, air, event | side_code(&wave));
-            self.waiting.push(match wave.side {
-                Side::Reflected => onward,
-                Side::Transmitted if to_air => Branch { around, ..onward.in_air() },
-                Side::Transmitted => Branch { around, ..onward },
-            });
-        }
+        })
     }
 }

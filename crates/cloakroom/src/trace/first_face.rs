@@ -1,11 +1,10 @@
 //! The first surface that a ray meets, looked at on its own.
 
 use super::bodies::{Around, Bodies, Inside};
-use super::tracer::split_as_finished;
 use super::{Launch, Tracer};
-use crate::device::Beyond;
+use crate::device::{Beyond, Finish};
 use glam::DVec3;
-use optics::interface::{IncidentWave, OutgoingWave, Side, split};
+use optics::interface::{IncidentWave, OutgoingWave, Side, split, transmit_antireflection};
 use optics::medium::{Medium, ModeKind};
 use optics::wave::ComplexVector;
 
@@ -89,7 +88,12 @@ impl<const N: usize> Tracer<'_, N> {
                         power,
                     };
                     let into = -hit.outward;
-                    let waves = split_as_finished(&Medium::AIR, beyond, &wave, into, hit.finish);
+                    let waves = match hit.finish {
+                        Finish::Bare => split(&Medium::AIR, beyond, &wave, into),
+                        Finish::Antireflection => {
+                            transmit_antireflection(&Medium::AIR, beyond, &wave, into)
+                        }
+                    };
                     face.add(&waves);
                 }
             }

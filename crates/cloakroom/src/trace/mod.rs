@@ -10,8 +10,10 @@ mod branch;
 mod crossing;
 mod exchange;
 mod first_face;
+mod interfaces;
 mod leaf;
 mod screen;
+mod surfaces;
 mod tracer;
 
 pub use bench::{Bench, Placed};

@@ -1,15 +1,9 @@
 //! The walk along the ray tree.
 
-use super::bodies::Around;
 use super::branch::{Branch, Place};
-use super::{Bench, Leaf, Outcome, Placed, Screen};
-use crate::device::{Beyond, Cell, Entrance, Finish, SkinHit};
+use super::{Bench, Leaf, Outcome, Screen};
 use glam::DVec3;
-use optics::interface::{
-    IncidentWave, OutgoingWave, OutgoingWaves, Side, reflect_at_conductor, split,
-    transmit_antireflection,
-};
-use optics::medium::{Medium, ModeKind};
+use optics::interface::OutgoingWave;
 use optics::wave::ComplexVector;
 
 /// A ray to launch in air, with `N` polarizations at once.
@@ -50,7 +44,7 @@ const LEAK: f64 = 1e-10;
 #[derive(Debug)]
 pub struct Tracer<'a, const N: usize> {
     pub(super) bench: &'a Bench,
-    limits: Limits,
+    pub(super) limits: Limits,
     pub(super) screen: Option<Screen>,
     pub(super) waiting: Vec<Branch<N>>,
     pub(super) leaves: Vec<Leaf<N>>,
@@ -77,232 +71,30 @@ impl<'a, const N: usize> Tracer<'a, N> {
         self.leaves.clear();
         self.outcome = Outcome::default();
         self.waiting.clear();
-        let mut next = Some(Branch {
-            place: Place::Air { left: None },
-            position: launch.origin,
-            wave_vector: launch.direction,
-            attenuation: DVec3::ZERO,
-            direction: launch.direction,
-            electric: launch.electric,
-            power: launch.electric.map(ComplexVector::norm_squared),
-            optical_path: 0.0,
-            group_path: 0.0,
-            around: Around::default(),
-            standstills: 0,
-            met_device: false,
-            path: 0,
-            mode: ModeKind::Shared,
-            foothold: None,
-        });
-        let (mut events, mut threshold) = (0, self.limits.min_power.max(NO_POWER));
-        while let Some(mut branch) = next.take().or_else(|| self.waiting.pop()) {
-            if branch.largest_power() < threshold {
+        let mut branch = Branch::launched(launch);
+        let (mut events, mut threshold) = (0, self.least_power());
+        loop {
+            let goes_on = if branch.largest_power() < threshold {
                 self.outcome.rarities.endless += 1;
                 self.prune(branch.power);
-                continue;
-            }
-            events += 1;
-            if events > MANY_EVENTS {
-                events -= MORE_EVENTS;
-                threshold *= 10.0;
-            }
-            match branch.place {
-                Place::Air { left } => self.through_air(&mut branch, left),
-                Place::Cell { device, cell } => self.through_cell(&mut branch, device, cell),
+                false
+            } else {
+                events += 1;
+                if events > MANY_EVENTS {
+                    events -= MORE_EVENTS;
+                    threshold *= 10.0;
+                }
+                match branch.place {
+                    Place::Air { left } => self.through_air(&mut branch, left),
+                    Place::Cell { device, cell } => self.through_cell(&mut branch, device, cell),
+                }
+            };
+            if !goes_on {
+                let Some(next) = self.waiting.pop() else { break };
+                branch = next;
             }
         }
         (&self.leaves, &self.outcome)
-    }
-
-    fn through_air(&mut self, branch: &mut Branch<N>, left: Option<(u16, u16)>) {
-        if !branch.around.nothing() {
-            let bodies = self.bench.bodies();
-            match bodies.crossing(branch.around, branch.position, branch.direction) {
-                Some(crossing) => self.cross(*branch, &crossing),
-                // It runs along an endless body for ever.
-                None => self.lose(branch.power),
-            }
-            return;
-        }
-        let hit = self.surface_ahead(branch.position, branch.direction, left);
-        let distance = hit.map(|(_, hit)| hit.distance);
-        if let Some(crossing) = self.body_ahead(branch.position, branch.direction, distance) {
-            self.cross(*branch, &crossing);
-            return;
-        }
-        let Some((device_index, hit)) = hit else {
-            self.leaves.push(branch.leaf(None));
-            return;
-        };
-        branch.position += branch.direction * hit.distance;
-        branch.optical_path += hit.distance;
-        branch.group_path += hit.distance;
-        branch.met_device = true;
-        let device = &self.bench.devices()[usize::from(device_index)];
-        let into = -hit.outward;
-        let air = Place::Air { left: Some((device_index, hit.skin)) };
-        let event = u64::from(device_index) << 32 | u64::from(hit.skin) << 2;
-        let local = branch.to_local(&device.pose);
-        match hit.beyond {
-            Beyond::Conductor => {
-                for wave in reflect_at_conductor(&Medium::AIR, &local.incident(), into) {
-                    if self.follows(wave.power) {
-                        let onward = local.onward(&wave, air, event);
-                        self.waiting.push(onward.to_world(&device.pose));
-                    }
-                }
-            }
-            Beyond::Cell(cell) | Beyond::Seam(cell) => {
-                let inside = Place::Cell { device: device_index, cell };
-                let cell = self.cell(device, cell);
-                let mut graded = None;
-                let Some((entrance, beyond)) = entered(cell, local.position, &mut graded) else {
-                    self.lose(branch.power);
-                    return;
-                };
-                for wave in self.split(&Medium::AIR, beyond, &local, into, hit.finish) {
-                    if !self.follows(wave.power) {
-                        continue;
-                    }
-                    let event = event | side_code(&wave);
-                    self.waiting.push(match wave.side {
-                        Side::Reflected => local.onward(&wave, air, event).to_world(&device.pose),
-                        Side::Transmitted => Branch {
-                            foothold: entrance.foothold,
-                            ..local.onward(&wave, inside, event)
-                        },
-                    });
-                }
-            }
-            // A thin sheet of air: nothing there.
-            Beyond::Air => self.waiting.push(Branch { place: air, ..*branch }),
-        }
-    }
-
-    fn through_cell(&mut self, branch: &mut Branch<N>, device_index: u16, cell_index: u16) {
-        let device = &self.bench.devices()[usize::from(device_index)];
-        let cell = self.cell(device, cell_index);
-        if branch.mode == ModeKind::Shared
-            && let Some([(a, in_a), (b, in_b)]) = cell.parted(branch.position, branch.wave_vector)
-        {
-            for part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
-                if self.follows(part.power) {
-                    self.waiting.push(part);
-                }
-            }
-            return;
-        }
-        let Some(passage) = cell.advance(&branch.inner_ray(), self.limits.tolerance) else {
-            self.lose(branch.power);
-            return;
-        };
-        let way = passage.position - branch.position;
-        branch.position = passage.position;
-        let mut graded_here = None;
-        let medium = cell.medium(passage.position, passage.foothold.as_ref(), &mut graded_here);
-        let Some(medium) = medium else {
-            self.lose(branch.power);
-            return;
-        };
-        if medium.absorbs() && !self.absorb(branch, way) {
-            return;
-        }
-        branch.wave_vector = passage.wave_vector;
-        branch.direction = passage.direction;
-        branch.optical_path += passage.optical_path;
-        branch.group_path += if passage.optical_path < 0.0 {
-            way.length().max(-passage.optical_path)
-        } else {
-            passage.optical_path
-        };
-        branch.foothold = passage.foothold;
-        if let Some(transport) = passage.transport {
-            branch.electric = branch.electric.map(|field| field.transformed(&transport));
-        }
-        let event = u64::from(device_index) << 32
-            | (u64::from(cell_index) + 1) << 20
-            | u64::from(passage.face) << 2;
-        let here = branch.place;
-        match passage.beyond {
-            Beyond::Conductor => {
-                for wave in reflect_at_conductor(medium, &branch.incident(), passage.outward) {
-                    if self.follows(wave.power) {
-                        let event = event | side_code(&wave);
-                        self.waiting.push(branch.onward(&wave, here, event));
-                    }
-                }
-            }
-            Beyond::Seam(next) => self.waiting.push(Branch {
-                place: Place::Cell { device: device_index, cell: next },
-                ..*branch
-            }),
-            Beyond::Cell(next) => {
-                let there = Place::Cell { device: device_index, cell: next };
-                let next = self.cell(device, next);
-                let mut graded = None;
-                let Some((entrance, beyond)) = entered(next, branch.position, &mut graded) else {
-                    self.lose(branch.power);
-                    return;
-                };
-                let waves = self.split(medium, beyond, branch, passage.outward, passage.finish);
-                for wave in waves {
-                    if !self.follows(wave.power) {
-                        continue;
-                    }
-                    let event = event | side_code(&wave);
-                    self.waiting.push(match wave.side {
-                        Side::Reflected => branch.onward(&wave, here, event),
-                        Side::Transmitted => Branch {
-                            foothold: entrance.foothold,
-                            ..branch.onward(&wave, there, event)
-                        },
-                    });
-                }
-            }
-            Beyond::Air => {
-                let waves =
-                    self.split(medium, &Medium::AIR, branch, passage.outward, passage.finish);
-                for wave in waves {
-                    if !self.follows(wave.power) {
-                        continue;
-                    }
-                    let event = event | side_code(&wave);
-                    self.waiting.push(match wave.side {
-                        Side::Reflected => branch.onward(&wave, here, event),
-                        Side::Transmitted => {
-                            let air = Place::Air { left: None };
-                            branch.onward(&wave, air, event).in_air().to_world(&device.pose)
-                        }
-                    });
-                }
-            }
-        }
-    }
-
-    /// The surface that a ray in air meets before the screen; `left` is the one it has just left.
-    pub(super) fn surface_ahead(
-        &self,
-        position: DVec3,
-        direction: DVec3,
-        left: Option<(u16, u16)>,
-    ) -> Option<(u16, SkinHit)> {
-        let screen = self.screen.and_then(|screen| screen.hit(position, direction));
-        self.bench
-            .first_hit(position, direction, left)
-            .filter(|(_, hit)| screen.is_none_or(|distance| hit.distance < distance))
-    }
-
-    pub(super) fn split(
-        &mut self,
-        from: &Medium,
-        to: &Medium,
-        branch: &Branch<N>,
-        normal: DVec3,
-        finish: Finish,
-    ) -> OutgoingWaves<N> {
-        let waves = split_as_finished(from, to, &branch.incident(), normal, finish);
-        self.check_account(branch, &waves);
-        waves
     }
 
     /// Takes from a branch what an absorbing medium keeps of it on a straight way; whether what is left
@@ -320,12 +112,18 @@ impl<'a, const N: usize> Tracer<'a, N> {
         self.follows(branch.power)
     }
 
-    /// Counts power as lost that an interface could not hand on: the account must not leak, even
-    /// where numbers fail.
-    fn check_account(&mut self, branch: &Branch<N>, waves: &[OutgoingWave<N>]) {
+    /// Counts power as pruned that an interface has left in waves too weak to follow, and as lost what it could
+    /// not hand on: the account must not leak, even where numbers fail.
+    pub(super) fn check_account(
+        &mut self,
+        branch: &Branch<N>,
+        waves: &[OutgoingWave<N>],
+        weak: [f64; N],
+    ) {
         let mut lost = false;
         for (i, power) in branch.power.iter().enumerate() {
-            let rest = power - waves.iter().map(|wave| wave.power[i]).sum::<f64>();
+            self.outcome.pruned[i] += weak[i];
+            let rest = power - waves.iter().map(|wave| wave.power[i]).sum::<f64>() - weak[i];
             if rest.abs() > LEAK * power {
                 self.outcome.pruned[i] += rest;
                 lost = true;
@@ -334,20 +132,26 @@ impl<'a, const N: usize> Tracer<'a, N> {
         self.outcome.rarities.lost += u64::from(lost);
     }
 
+    /// The least power of branches that are followed.
+    pub(super) fn least_power(&self) -> f64 {
+        self.limits.min_power.max(NO_POWER)
+    }
+
     /// Whether a branch of that power is followed; else it is pruned, and need not be made.
     pub(super) fn follows(&mut self, power: [f64; N]) -> bool {
         let largest = power.iter().copied().fold(0.0, f64::max);
-        let follows = largest >= self.limits.min_power.max(NO_POWER);
+        let follows = largest >= self.least_power();
         if !follows {
             self.prune(power);
         }
         follows
     }
 
-    /// Gives up a branch that cannot be followed.
-    fn lose(&mut self, power: [f64; N]) {
+    /// Gives up a branch that cannot be followed: it does not go on.
+    pub(super) fn lose(&mut self, power: [f64; N]) -> bool {
         self.outcome.rarities.lost += 1;
         self.prune(power);
+        false
     }
 
     pub(super) fn prune(&mut self, power: [f64; N]) {
@@ -355,42 +159,4 @@ impl<'a, const N: usize> Tracer<'a, N> {
             *sum += power;
         }
     }
-
-    pub(super) fn cell(&self, device: &'a Placed, index: u16) -> &'a Cell {
-        &device.structure.cells[usize::from(index)]
-    }
-}
-
-/// Splits a wave at the interface of two media that meet as `finish` says.
-pub(super) fn split_as_finished<const N: usize>(
-    from: &Medium,
-    to: &Medium,
-    wave: &IncidentWave<N>,
-    normal: DVec3,
-    finish: Finish,
-) -> OutgoingWaves<N> {
-    match finish {
-        Finish::Bare => split(from, to, wave, normal),
-        Finish::Antireflection => transmit_antireflection(from, to, wave, normal),
-    }
-}
-
-/// What a ray finds that enters a cell, and the medium there.
-fn entered<'m>(
-    cell: &'m Cell,
-    position: DVec3,
-    graded: &'m mut Option<Medium>,
-) -> Option<(Entrance, &'m Medium)> {
-    let entrance = cell.enter(position)?;
-    let medium = cell.medium(position, entrance.foothold.as_ref(), graded)?;
-    Some((entrance, medium))
-}
-
-/// Tells the branches at one surface apart in the fingerprint of the path.
-pub(super) fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
-    let side = match wave.side {
-        Side::Reflected => 1,
-        Side::Transmitted => 2,
-    };
-    side | (wave.mode as u64) << 56
 }

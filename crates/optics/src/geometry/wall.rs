@@ -14,6 +14,7 @@ pub struct Wall {
     to: DVec2,
     extent: Extent,
     normal: DVec3,
+    length: f64,
 }
 
 impl Wall {
@@ -21,7 +22,8 @@ impl Wall {
     #[must_use]
     pub fn new(from: DVec2, to: DVec2, extent: Extent) -> Self {
         let along = (to - from).normalize();
-        Self { from, to, extent, normal: DVec3::new(along.y, -along.x, 0.0) }
+        let length = (to - from).length();
+        Self { from, to, extent, normal: DVec3::new(along.y, -along.x, 0.0), length }
     }
 
     /// The line it stands on.
@@ -32,6 +34,7 @@ impl Wall {
 
     /// The outward unit normal.
     #[must_use]
+    #[inline]
     pub fn normal(&self) -> DVec3 {
         self.normal
     }
@@ -39,6 +42,7 @@ impl Wall {
     /// The distance at which a ray meets the wall, from zero on, ends and edges included.
     /// Rays that run along the wall do not meet it.
     #[must_use]
+    #[inline]
     pub fn hit(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
         let (o, d) = (origin.truncate(), direction.truncate());
         let side_from = d.perp_dot(self.from - o);
@@ -48,7 +52,7 @@ impl Wall {
         }
         let line = self.to - self.from;
         let crossing = d.perp_dot(line);
-        if crossing.abs() <= 1e-13 * line.length() {
+        if crossing.abs() <= 1e-13 * self.length {
             return None;
         }
         let t = (self.from - o).perp_dot(line) / crossing;

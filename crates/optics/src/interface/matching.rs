@@ -3,7 +3,6 @@
 use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
 use crate::medium::{BothWays, LocalMode, LocalModes, Medium, ModeKind, Tangential, mutual_flux};
 use crate::wave::{ComplexVector, Frame, Number, solve};
-use arrayvec::ArrayVec;
 use glam::DVec3;
 use num_complex::Complex64;
 
@@ -13,13 +12,16 @@ const ONE_WAVE: f64 = 1e-12;
 /// Incident waves closer than this to both modes are taken apart into them.
 const BOTH_MODES: f64 = 1e-7;
 
-/// Splits a wave at the interface of any two media, or at a conductor.
+/// Splits a wave at the interface of any two media, or at a conductor: adds the outgoing waves of at least
+/// `least_power` to `waves`; the power of the others.
 pub(super) fn split_into_modes<const N: usize>(
     incident_medium: &Medium,
     transmitted_medium: Option<&Medium>,
     wave: &IncidentWave<N>,
     normal: DVec3,
-) -> OutgoingWaves<N> {
+    least_power: f64,
+    waves: &mut OutgoingWaves<N>,
+) -> [f64; N] {
     let normal_component = wave.wave_vector.dot(normal);
     let across = wave.wave_vector - normal * normal_component;
     let frame = Frame::new(normal, across);
@@ -36,7 +38,7 @@ pub(super) fn split_into_modes<const N: usize>(
         incident_medium.both_ways(&frame, tangential, Some(normal_component));
     let onward = transmitted_medium.map(|medium| medium.onward(&frame, tangential));
     let mut scattered =
-        Scattered { wave, frame: &frame, tangential, sums: [0.0; N], waves: ArrayVec::new() };
+        Scattered { wave, frame: &frame, tangential, least_power, waves, weak: [0.0; N] };
     let absorbs = |medium: Option<&Medium>| medium.is_some_and(Medium::absorbs);
     let absorbing = [incident_medium.absorbs(), absorbs(transmitted_medium)];
     match (&forward, &backward, &onward) {
@@ -51,7 +53,7 @@ pub(super) fn split_into_modes<const N: usize>(
             scattered.scatter(&f, &b, o.as_ref(), normal_component, absorbing);
         }
     }
-    scattered.finished()
+    scattered.weak
 }
 
 /// The outgoing amplitudes, reflected 1, 2, transmitted 1, 2, of `R` incident modes. At a conductor,
@@ -103,10 +105,20 @@ struct Scattered<'a, const N: usize> {
     wave: &'a IncidentWave<N>,
     frame: &'a Frame,
     tangential: Tangential,
-    /// The outgoing flux of each launched polarization so far.
-    sums: [f64; N],
-    /// The outgoing waves; until finished, `power` is in units of the outgoing flux.
-    waves: OutgoingWaves<N>,
+    least_power: f64,
+    waves: &'a mut OutgoingWaves<N>,
+    /// The power of the waves that are too weak.
+    weak: [f64; N],
+}
+
+/// The normal fluxes of both modes on one side, for each launched polarization.
+type Fluxes<const N: usize> = [[f64; N]; 2];
+
+/// What turns outgoing fluxes into powers, and matched fields into those of rays.
+struct Shares<const N: usize> {
+    power: [f64; N],
+    /// Their square roots.
+    field: [f64; N],
 }
 
 impl<const N: usize> Scattered<'_, N> {
@@ -163,9 +175,20 @@ impl<const N: usize> Scattered<'_, N> {
         [absorbing, absorbing_beyond]: [bool; 2],
     ) {
         let [r1, r2, t1, t2] = outgoing;
-        self.one_side(Side::Reflected, backward, [r1, r2], absorbing);
+        let back = fluxes(Side::Reflected, backward, [r1, r2], absorbing);
+        let on = onward.map_or([[0.0; N]; 2], |onward| {
+            fluxes(Side::Transmitted, onward, [t1, t2], absorbing_beyond)
+        });
+        // Over the sum, not over the incident flux: the same in a lossless medium, but for rounding
+        // near grazing incidence, which would show in the account of the power.
+        let power: [f64; N] = std::array::from_fn(|i| {
+            let sum = back[0][i] + back[1][i] + on[0][i] + on[1][i];
+            if sum > 0.0 { self.wave.power[i] / sum } else { 0.0 }
+        });
+        let shares = Shares { power, field: power.map(f64::sqrt) };
+        self.one_side(Side::Reflected, backward, [r1, r2], &back, &shares);
         if let Some(onward) = onward {
-            self.one_side(Side::Transmitted, onward, [t1, t2], absorbing_beyond);
+            self.one_side(Side::Transmitted, onward, [t1, t2], &on, &shares);
         }
     }
 
@@ -174,46 +197,50 @@ impl<const N: usize> Scattered<'_, N> {
         side: Side,
         modes: &[LocalMode<T>; 2],
         amplitudes: [&[Complex64; N]; 2],
-        absorbing: bool,
+        fluxes: &Fluxes<N>,
+        shares: &Shares<N>,
     ) {
         let [a, b] = modes;
-        let mut flux: [[f64; N]; 2] = amplitudes.map(|amplitude| amplitude.map(|c| c.norm_sqr()));
-        if absorbing && a.propagating && b.propagating {
-            // The modes' fluxes have cross terms; each takes its part of them.
-            let mutual: Complex64 = mutual_flux(a, b).into();
-            let orientation = if side == Side::Reflected { -1.0 } else { 1.0 };
-            for i in 0..N {
-                let interference = (amplitudes[0][i] * amplitudes[1][i].conj() * mutual).re;
-                let sum = flux[0][i] + flux[1][i];
-                if sum > 0.0 {
-                    let scale = (1.0 + 2.0 * orientation * interference / sum).max(0.0);
-                    flux[0][i] *= scale;
-                    flux[1][i] *= scale;
-                }
-            }
-        }
         let apart: Complex64 = a.q.into() - b.q.into();
         let one_wave = a.propagating
             && b.propagating
             && apart.norm_sqr() <= (ONE_WAVE * ONE_WAVE) * (1.0 + a.q.magnitude_squared());
         if one_wave {
-            let [ea, eb] = [a, b].map(|mode| mode.electric_in_world(self.frame));
-            let electric =
-                std::array::from_fn(|i| ea.scaled(amplitudes[0][i]) + eb.scaled(amplitudes[1][i]));
-            let flux = std::array::from_fn(|i| flux[0][i] + flux[1][i]);
-            // The same ray, but in absorbing media, where p's and s's part a little: their mean.
-            let ray = (a.ray_in_world(self.frame) + b.ray_in_world(self.frame)) * 0.5;
-            self.push(side, ModeKind::Shared, (a.q.into(), ray), electric, flux);
+            let power: [f64; N] =
+                std::array::from_fn(|i| (fluxes[0][i] + fluxes[1][i]) * shares.power[i]);
+            if self.is_strong(power) {
+                let [ea, eb] = [a, b].map(|mode| mode.electric_in_world(self.frame));
+                let electric = std::array::from_fn(|i| {
+                    (ea.scaled(amplitudes[0][i]) + eb.scaled(amplitudes[1][i])) * shares.field[i]
+                });
+                // The same ray, but in absorbing media, where p's and s's part a little: their mean.
+                let ray = (a.ray_in_world(self.frame) + b.ray_in_world(self.frame)) * 0.5;
+                self.push(side, ModeKind::Shared, (a.q.into(), ray), electric, power);
+            }
             return;
         }
-        for ((mode, amplitude), flux) in modes.iter().zip(amplitudes).zip(flux) {
-            if mode.propagating {
-                let field = mode.electric_in_world(self.frame);
+        for ((mode, amplitude), flux) in modes.iter().zip(amplitudes).zip(fluxes) {
+            let power: [f64; N] = std::array::from_fn(|i| flux[i] * shares.power[i]);
+            if mode.propagating && self.is_strong(power) {
+                let field = T::vector(self.frame, mode.electric);
+                let electric =
+                    std::array::from_fn(|i| T::wave(field, amplitude[i] * shares.field[i]));
                 let ray = mode.ray_in_world(self.frame);
-                let electric = amplitude.map(|c| field.scaled(c));
-                self.push(side, mode.kind, (mode.q.into(), ray), electric, flux);
+                self.push(side, mode.kind, (mode.q.into(), ray), electric, power);
             }
         }
+    }
+
+    /// Whether a wave of that power goes on; else its power is counted.
+    fn is_strong(&mut self, power: [f64; N]) -> bool {
+        let largest = power.iter().copied().fold(0.0, f64::max);
+        let strong = largest > 0.0 && largest >= self.least_power;
+        if !strong {
+            for (sum, power) in self.weak.iter_mut().zip(power) {
+                *sum += power;
+            }
+        }
+        strong
     }
 
     fn push(
@@ -222,18 +249,12 @@ impl<const N: usize> Scattered<'_, N> {
         mode: ModeKind,
         (q, ray): (Complex64, DVec3),
         electric: [ComplexVector; N],
-        flux: [f64; N],
+        power: [f64; N],
     ) {
-        if flux.iter().all(|&flux| flux == 0.0) {
-            return;
-        }
         let length = ray.length();
         // A unit of normal flux is a Poynting vector of this length; the fields of a ray are scaled to
         // its power instead.
         let narrowing = length.sqrt().recip();
-        for (sum, flux) in self.sums.iter_mut().zip(flux) {
-            *sum += flux;
-        }
         let [first, second] = self.tangential.components();
         self.waves.push(OutgoingWave {
             side,
@@ -242,25 +263,39 @@ impl<const N: usize> Scattered<'_, N> {
             attenuation: self.frame.vector([first.im, second.im, q.im]),
             direction: ray / length,
             electric: electric.map(|field| field * narrowing),
-            power: flux,
+            power,
         });
     }
+}
 
-    /// Turns shares of the outgoing flux into powers.
-    fn finished(mut self) -> OutgoingWaves<N> {
-        // Over the sum, not over the incident flux: the same in a lossless medium, but for rounding
-        // near grazing incidence, which would show in the account of the power.
-        let shares: [f64; N] = std::array::from_fn(|i| {
-            let sum = self.sums[i];
-            if sum > 0.0 { self.wave.power[i] / sum } else { 0.0 }
-        });
-        let roots = shares.map(f64::sqrt);
-        for wave in &mut self.waves {
-            for i in 0..N {
-                wave.power[i] *= shares[i];
-                wave.electric[i] = wave.electric[i] * roots[i];
+/// The fluxes of modes of the given amplitudes; those that do not propagate have none.
+fn fluxes<T: Number, const N: usize>(
+    side: Side,
+    modes: &[LocalMode<T>; 2],
+    amplitudes: [&[Complex64; N]; 2],
+    absorbing: bool,
+) -> Fluxes<N> {
+    let [a, b] = modes;
+    let mut flux: Fluxes<N> = std::array::from_fn(|mode| {
+        if modes[mode].propagating {
+            amplitudes[mode].map(|amplitude| amplitude.norm_sqr())
+        } else {
+            [0.0; N]
+        }
+    });
+    if absorbing && a.propagating && b.propagating {
+        // The modes' fluxes have cross terms; each takes its part of them.
+        let mutual: Complex64 = mutual_flux(a, b).into();
+        let orientation = if side == Side::Reflected { -1.0 } else { 1.0 };
+        for i in 0..N {
+            let interference = (amplitudes[0][i] * amplitudes[1][i].conj() * mutual).re;
+            let sum = flux[0][i] + flux[1][i];
+            if sum > 0.0 {
+                let scale = (1.0 + 2.0 * orientation * interference / sum).max(0.0);
+                flux[0][i] *= scale;
+                flux[1][i] *= scale;
             }
         }
-        self.waves
     }
+    flux
 }

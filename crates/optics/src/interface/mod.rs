@@ -14,11 +14,13 @@ mod admittance;
 mod coating;
 mod conductor;
 mod matching;
+mod reflectionless;
 mod scattering;
 mod single_wave;
 
 pub use coating::transmit_antireflection;
 pub use conductor::reflect_at_conductor;
+pub use reflectionless::Reflectionless;
 pub use scattering::Scattering;
 
 use crate::medium::{Medium, ModeKind};
@@ -111,16 +113,28 @@ pub fn split<const N: usize>(
     wave: &IncidentWave<N>,
     normal: DVec3,
 ) -> OutgoingWaves<N> {
+    let mut waves = OutgoingWaves::new();
+    split_down_to(incident_medium, transmitted_medium, wave, normal, 0.0, &mut waves);
+    waves
+}
+
+/// Splits a wave as [`split`] does, and adds to `waves` those that have at least `least_power` in one of the
+/// polarizations: others need not be worked out. The power of those that are left out so.
+pub fn split_down_to<const N: usize>(
+    incident_medium: &Medium,
+    transmitted_medium: &Medium,
+    wave: &IncidentWave<N>,
+    normal: DVec3,
+    least_power: f64,
+    waves: &mut OutgoingWaves<N>,
+) -> [f64; N] {
     let surfaces = (incident_medium.wave_surface(), transmitted_medium.wave_surface());
-    match surfaces {
-        (Some(from), Some(to)) if wave.attenuation == DVec3::ZERO => {
-            single_wave::split_single_wave(
-                (incident_medium, from),
-                (transmitted_medium, to),
-                wave,
-                normal,
-            )
-        }
-        _ => matching::split_into_modes(incident_medium, Some(transmitted_medium), wave, normal),
+    if let (Some(from), Some(to)) = surfaces
+        && wave.attenuation == DVec3::ZERO
+    {
+        let media = [(incident_medium, from), (transmitted_medium, to)];
+        return single_wave::split_single_wave(media, wave, normal, least_power, waves);
     }
+    let beyond = Some(transmitted_medium);
+    matching::split_into_modes(incident_medium, beyond, wave, normal, least_power, waves)
 }

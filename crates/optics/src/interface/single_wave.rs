@@ -11,13 +11,16 @@ use num_complex::Complex64;
 const ROUNDING: f64 = 1e-28;
 
 /// Splits a wave at the interface of two lossless media in which both polarizations share one wave
-/// vector, given with their wave surfaces.
+/// vector, given with their wave surfaces: adds the outgoing waves of at least `least_power` to `waves`; the
+/// power of the others.
 pub(super) fn split_single_wave<const N: usize>(
-    (incident_medium, incident_surface): (&Medium, &WaveSurface),
-    (transmitted_medium, transmitted_surface): (&Medium, &WaveSurface),
+    media: [(&Medium, &WaveSurface); 2],
     wave: &IncidentWave<N>,
     normal: DVec3,
-) -> OutgoingWaves<N> {
+    least_power: f64,
+    waves: &mut OutgoingWaves<N>,
+) -> [f64; N] {
+    let [(incident_medium, incident_surface), (transmitted_medium, transmitted_surface)] = media;
     let tangential = wave.wave_vector - normal * wave.wave_vector.dot(normal);
     let frame = Frame::new(normal, tangential);
     let along = tangential.dot(frame.first);
@@ -34,13 +37,17 @@ pub(super) fn split_single_wave<const N: usize>(
             let transmitted = there.wave(q);
             let [back, on] = matching.tangential_fields(reflected, transmitted);
             let onward_wave = frame.first * along + normal * q;
-            let mut waves = OutgoingWaves::new();
+            let mut weak = [0.0; N];
             let back_flux = back.map(|fields| reflected.flux(fields).abs());
             let on_flux = on.map(|fields| transmitted.flux(fields).abs());
             // Shares of the sum, not of the incident flux: the same, but for rounding near grazing
             // incidence, which would show in the account of the power.
             let total = |i: usize| back_flux[i] + on_flux[i];
-            if (0..N).any(|i| back_flux[i] > ROUNDING * total(i)) {
+            let power: [f64; N] = std::array::from_fn(|i| {
+                let share = if back_flux[i] > 0.0 { back_flux[i] / total(i) } else { 0.0 };
+                if share > ROUNDING { wave.power[i] * share } else { 0.0 }
+            });
+            if power.iter().any(|power| *power > 0.0 && *power >= least_power) {
                 waves.push(matching.outgoing(
                     incident_surface,
                     backward_wave,
@@ -48,6 +55,8 @@ pub(super) fn split_single_wave<const N: usize>(
                     &back,
                     |i| (back_flux[i], total(i)),
                 ));
+            } else {
+                weak = power;
             }
             waves.push(OutgoingWave {
                 side: Side::Transmitted,
@@ -59,7 +68,7 @@ pub(super) fn split_single_wave<const N: usize>(
                     |i| (on_flux[i], total(i)),
                 )
             });
-            waves
+            weak
         }
         NormalComponent::Evanescent { re, im } => {
             let q = Complex64::new(re, im);
@@ -73,7 +82,8 @@ pub(super) fn split_single_wave<const N: usize>(
                 &back,
                 |i| (flux[i], flux[i]),
             );
-            std::iter::once(wave).collect()
+            waves.push(wave);
+            [0.0; N]
         }
     }
 }

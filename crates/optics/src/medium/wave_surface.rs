@@ -59,7 +59,12 @@ impl WaveSurface {
     /// The unit vector of the Poynting vector of a wave with wave vector `p`.
     #[must_use]
     pub fn ray_direction(&self, wave_vector: DVec3) -> DVec3 {
-        (self.form * wave_vector).normalize()
+        self.ray(wave_vector).normalize()
+    }
+
+    /// Ap, along the ray of a wave with wave vector `p`.
+    pub(crate) fn ray(&self, wave_vector: DVec3) -> DVec3 {
+        self.form * wave_vector
     }
 
     /// The wave vector along a given ray direction.

@@ -1,5 +1,7 @@
 //! The numbers that plane waves are made of.
 
+use super::{ComplexVector, Frame};
+use glam::DVec3;
 use num_complex::Complex64;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -32,6 +34,15 @@ pub(crate) trait Number:
 
     /// The real part.
     fn real(self) -> f64;
+
+    /// A vector of such numbers in the world.
+    type Vector: Copy;
+
+    /// The vector that has the given components in a frame.
+    fn vector(frame: &Frame, components: [Self; 3]) -> Self::Vector;
+
+    /// A vector times a complex number: the field of a wave.
+    fn wave(vector: Self::Vector, amplitude: Complex64) -> ComplexVector;
 }
 
 impl Number for f64 {
@@ -54,6 +65,16 @@ impl Number for f64 {
     fn real(self) -> f64 {
         self
     }
+
+    type Vector = DVec3;
+
+    fn vector(frame: &Frame, components: [Self; 3]) -> DVec3 {
+        frame.vector(components)
+    }
+
+    fn wave(vector: DVec3, amplitude: Complex64) -> ComplexVector {
+        ComplexVector::new(vector * amplitude.re, vector * amplitude.im)
+    }
 }
 
 impl Number for Complex64 {
@@ -75,6 +96,16 @@ impl Number for Complex64 {
 
     fn real(self) -> f64 {
         self.re
+    }
+
+    type Vector = ComplexVector;
+
+    fn vector(frame: &Frame, components: [Self; 3]) -> ComplexVector {
+        frame.complex_vector(components)
+    }
+
+    fn wave(vector: ComplexVector, amplitude: Complex64) -> ComplexVector {
+        vector.scaled(amplitude)
     }
 }
 

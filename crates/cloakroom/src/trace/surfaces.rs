@@ -1,0 +1,258 @@
+//! From surface to surface: how a branch runs on, and what becomes of it where media meet.
+
+use super::branch::{Branch, Place};
+use super::{Placed, Tracer};
+use crate::device::{Beyond, Cell, Entrance, Finish, SkinHit};
+use glam::DVec3;
+use optics::interface::{
+    OutgoingWave, OutgoingWaves, Side, reflect_at_conductor, split_down_to, transmit_antireflection,
+};
+use optics::medium::{Medium, ModeKind};
+
+impl<'a, const N: usize> Tracer<'a, N> {
+    /// Whether a ray in air runs on through air to the screen, or for ever.
+    #[must_use]
+    pub fn meets_nothing(&self, origin: DVec3, direction: DVec3) -> bool {
+        self.surface_ahead(origin, direction, None).is_none()
+            && self.body_ahead(origin, direction, None).is_none()
+    }
+
+    /// Follows a branch in air to the next surface; whether it goes on from there.
+    pub(super) fn through_air(&mut self, branch: &mut Branch<N>, left: Option<(u16, u16)>) -> bool {
+        if !branch.around.nothing() {
+            let bodies = self.bench.bodies();
+            return match bodies.crossing(branch.around, branch.position, branch.direction) {
+                Some(crossing) => self.cross(branch, &crossing),
+                // It runs along an endless body for ever.
+                None => self.lose(branch.power),
+            };
+        }
+        let hit = self.surface_ahead(branch.position, branch.direction, left);
+        let distance = hit.map(|(_, hit)| hit.distance);
+        if let Some(crossing) = self.body_ahead(branch.position, branch.direction, distance) {
+            return self.cross(branch, &crossing);
+        }
+        let Some((device_index, hit)) = hit else {
+            self.leaves.push(branch.leaf(None));
+            return false;
+        };
+        branch.position += branch.direction * hit.distance;
+        branch.optical_path += hit.distance;
+        branch.group_path += hit.distance;
+        branch.met_device = true;
+        let left = Some((device_index, hit.skin));
+        let (cell_index, into) = match hit.beyond {
+            // A thin sheet of air: nothing there.
+            Beyond::Air => {
+                branch.place = Place::Air { left };
+                return true;
+            }
+            Beyond::Conductor => (None, -hit.outward),
+            Beyond::Cell(cell) | Beyond::Seam(cell) => (Some(cell), -hit.outward),
+        };
+        let device = &self.bench.devices()[usize::from(device_index)];
+        branch.enter_frame(&device.pose);
+        let event = u64::from(device_index) << 32 | u64::from(hit.skin) << 2;
+        let Some(cell_index) = cell_index else {
+            let waves = reflect_at_conductor(&Medium::AIR, &branch.incident(), into);
+            return self.go_on(branch, &waves, event, |branch, _| {
+                branch.leave_frame(&device.pose, left);
+            });
+        };
+        if let Some(interface) = self.bench.interfaces(device_index).entrance(hit.skin) {
+            branch.go_on_as(&interface.transmit(&branch.incident()), event);
+            branch.enter_cell(device_index, cell_index, None);
+            return true;
+        }
+        let mut graded = None;
+        let cell = self.cell(device, cell_index);
+        let Some((entrance, beyond)) = entered(cell, branch.position, &mut graded) else {
+            return self.lose(branch.power);
+        };
+        let waves = self.split(&Medium::AIR, beyond, branch, into, hit.finish);
+        self.go_on(branch, &waves, event, |branch, side| match side {
+            Side::Reflected => branch.leave_frame(&device.pose, left),
+            Side::Transmitted => branch.enter_cell(device_index, cell_index, entrance.foothold),
+        })
+    }
+
+    /// Follows a branch through a cell to the next surface; whether it goes on from there.
+    pub(super) fn through_cell(
+        &mut self,
+        branch: &mut Branch<N>,
+        device_index: u16,
+        cell_index: u16,
+    ) -> bool {
+        let device = &self.bench.devices()[usize::from(device_index)];
+        let cell = self.cell(device, cell_index);
+        if branch.mode == ModeKind::Shared
+            && let Some([(a, in_a), (b, in_b)]) = cell.parted(branch.position, branch.wave_vector)
+        {
+            for part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
+                if self.follows(part.power) {
+                    self.waiting.push(part);
+                }
+            }
+            return false;
+        }
+        let Some(passage) = cell.advance(&branch.inner_ray(), self.limits.tolerance) else {
+            return self.lose(branch.power);
+        };
+        let way = passage.position - branch.position;
+        branch.position = passage.position;
+        let mut graded_here = None;
+        let medium = cell.medium(passage.position, passage.foothold.as_ref(), &mut graded_here);
+        let Some(medium) = medium else {
+            return self.lose(branch.power);
+        };
+        if medium.absorbs() && !self.absorb(branch, way) {
+            return false;
+        }
+        branch.wave_vector = passage.wave_vector;
+        branch.direction = passage.direction;
+        branch.optical_path += passage.optical_path;
+        branch.group_path += if passage.optical_path < 0.0 {
+            way.length().max(-passage.optical_path)
+        } else {
+            passage.optical_path
+        };
+        branch.foothold = passage.foothold;
+        if let Some(transport) = passage.transport {
+            branch.electric = branch.electric.map(|field| field.transformed(&transport));
+        }
+        let event = u64::from(device_index) << 32
+            | (u64::from(cell_index) + 1) << 20
+            | u64::from(passage.face) << 2;
+        let interface = self.bench.interfaces(device_index).exit(cell_index, passage.face);
+        match passage.beyond {
+            Beyond::Conductor => {
+                let waves = reflect_at_conductor(medium, &branch.incident(), passage.outward);
+                self.go_on(branch, &waves, event, |_, _| ())
+            }
+            Beyond::Seam(next) => {
+                branch.place = Place::Cell { device: device_index, cell: next };
+                true
+            }
+            Beyond::Cell(next) => {
+                if let Some(interface) = interface {
+                    branch.go_on_as(&interface.transmit(&branch.incident()), event);
+                    branch.enter_cell(device_index, next, None);
+                    return true;
+                }
+                let mut graded = None;
+                let beyond = entered(self.cell(device, next), branch.position, &mut graded);
+                let Some((entrance, beyond)) = beyond else {
+                    return self.lose(branch.power);
+                };
+                let waves = self.split(medium, beyond, branch, passage.outward, passage.finish);
+                self.go_on(branch, &waves, event, |branch, side| {
+                    if side == Side::Transmitted {
+                        branch.enter_cell(device_index, next, entrance.foothold);
+                    }
+                })
+            }
+            Beyond::Air => {
+                let leave = |branch: &mut Branch<N>| {
+                    branch.come_out();
+                    branch.leave_frame(&device.pose, None);
+                };
+                if let Some(interface) = interface {
+                    branch.go_on_as(&interface.transmit(&branch.incident()), event);
+                    leave(branch);
+                    return true;
+                }
+                let air = &Medium::AIR;
+                let waves = self.split(medium, air, branch, passage.outward, passage.finish);
+                self.go_on(branch, &waves, event, |branch, side| {
+                    if side == Side::Transmitted {
+                        leave(branch);
+                    }
+                })
+            }
+        }
+    }
+
+    /// Lets the waves that leave a surface go on, each put into its place: the last one as the branch itself,
+    /// the others waiting. Whether there is one.
+    pub(super) fn go_on(
+        &mut self,
+        branch: &mut Branch<N>,
+        waves: &[OutgoingWave<N>],
+        event: u64,
+        put: impl Fn(&mut Branch<N>, Side),
+    ) -> bool {
+        let mut last: Option<&OutgoingWave<N>> = None;
+        for wave in waves {
+            if !self.follows(wave.power) {
+                continue;
+            }
+            if let Some(earlier) = last.replace(wave) {
+                let mut other = *branch;
+                other.go_on_as(earlier, event | side_code(earlier));
+                put(&mut other, earlier.side);
+                self.waiting.push(other);
+            }
+        }
+        let Some(wave) = last else { return false };
+        branch.go_on_as(wave, event | side_code(wave));
+        put(branch, wave.side);
+        true
+    }
+
+    /// The surface that a ray in air meets before the screen; `left` is the one it has just left.
+    pub(super) fn surface_ahead(
+        &self,
+        position: DVec3,
+        direction: DVec3,
+        left: Option<(u16, u16)>,
+    ) -> Option<(u16, SkinHit)> {
+        let hit = self.bench.first_hit(position, direction, left)?;
+        let screen = self.screen.and_then(|screen| screen.hit(position, direction));
+        screen.is_none_or(|distance| hit.1.distance < distance).then_some(hit)
+    }
+
+    pub(super) fn split(
+        &mut self,
+        from: &Medium,
+        to: &Medium,
+        branch: &Branch<N>,
+        normal: DVec3,
+        finish: Finish,
+    ) -> OutgoingWaves<N> {
+        let mut waves = OutgoingWaves::new();
+        let wave = branch.incident();
+        let weak = match finish {
+            Finish::Bare => split_down_to(from, to, &wave, normal, self.least_power(), &mut waves),
+            Finish::Antireflection => {
+                waves = transmit_antireflection(from, to, &wave, normal);
+                [0.0; N]
+            }
+        };
+        self.check_account(branch, &waves, weak);
+        waves
+    }
+
+    pub(super) fn cell(&self, device: &'a Placed, index: u16) -> &'a Cell {
+        &device.structure.cells[usize::from(index)]
+    }
+}
+
+/// What a ray finds that enters a cell, and the medium there.
+fn entered<'m>(
+    cell: &'m Cell,
+    position: DVec3,
+    graded: &'m mut Option<Medium>,
+) -> Option<(Entrance, &'m Medium)> {
+    let entrance = cell.enter(position)?;
+    let medium = cell.medium(position, entrance.foothold.as_ref(), graded)?;
+    Some((entrance, medium))
+}
+
+/// Tells the branches at one surface apart in the fingerprint of the path.
+pub(super) fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
+    let side = match wave.side {
+        Side::Reflected => 1,
+        Side::Transmitted => 2,
+    };
+    side | (wave.mode as u64) << 56
+}
