@@ -4,7 +4,7 @@ use super::{Beyond, Finish};
 use glam::{DMat3, DVec3};
 use optics::geometry::Plane;
 use optics::medium::{Medium, ModeKind};
-use optics::propagation::{Border, Boundary, ConformalFlow, Foothold, Half, RadialFlow};
+use optics::propagation::{Border, Boundary, ConformalFlow, FlowEnd, Foothold, Half, RadialFlow};
 
 /// A region filled with one medium.
 #[derive(Clone, Debug)]
@@ -168,14 +168,33 @@ impl Cell {
         match self {
             Self::Prism(prism) => prism.advance(ray.position, ray.wave_vector, ray.direction),
             Self::Conformal(cell) => {
-                let start = match ray.foothold {
-                    Some(foothold) => foothold,
-                    None => cell.flow.foothold(cell.half, ray.position).ok()?,
-                };
-                cell.advance(&start, ray.wave_vector, tolerance)
+                let [passage, ..] = cell.advance_four(&[Some(*ray), None, None, None], tolerance);
+                passage
             }
             Self::Radial(cell) => cell.advance(ray),
         }
+    }
+
+    /// As [`Cell::advance`], up to four rays at once: see [`Cell::takes_four`]. Each gets what it would get
+    /// alone.
+    #[must_use]
+    pub fn advance_four(
+        &self,
+        rays: &[Option<InnerRay>; 4],
+        tolerance: f64,
+    ) -> [Option<Passage>; 4] {
+        match self {
+            Self::Prism(_) | Self::Radial(_) => {
+                rays.map(|ray| ray.and_then(|ray| self.advance(&ray, tolerance)))
+            }
+            Self::Conformal(cell) => cell.advance_four(rays, tolerance),
+        }
+    }
+
+    /// Whether four rays go through the cell at once hardly slower than one.
+    #[must_use]
+    pub fn takes_four(&self) -> bool {
+        matches!(self, Self::Conformal(_))
     }
 }
 
@@ -212,8 +231,20 @@ impl Prism {
 }
 
 impl ConformalCell {
-    fn advance(&self, start: &Foothold, wave_vector: DVec3, tolerance: f64) -> Option<Passage> {
-        let end = self.flow.advance_from(start, wave_vector, tolerance).ok()?;
+    fn advance_four(&self, rays: &[Option<InnerRay>; 4], tolerance: f64) -> [Option<Passage>; 4] {
+        let starts = rays.map(|ray| {
+            let ray = ray?;
+            let here = || self.flow.foothold(self.half, ray.position).ok();
+            Some((ray.foothold.or_else(here)?, ray.wave_vector))
+        });
+        let ends = self.flow.advance_four(&starts, tolerance);
+        std::array::from_fn(|i| {
+            let end = ends[i].as_ref()?.as_ref().ok()?;
+            Some(self.passage(&starts[i]?.0, end))
+        })
+    }
+
+    fn passage(&self, start: &Foothold, end: &FlowEnd) -> Passage {
         let beyond = match end.boundary {
             Boundary::Floor => self.floor,
             // Below the floor's level, in the troughs of a grating, the ends are metal.
@@ -222,7 +253,7 @@ impl ConformalCell {
             }
             _ => Beyond::Air,
         };
-        Some(Passage {
+        Passage {
             position: end.at.position,
             wave_vector: end.wave_vector,
             direction: end.wave_vector.normalize(),
@@ -234,7 +265,7 @@ impl ConformalCell {
             outward: end.normal,
             beyond,
             finish: if beyond == Beyond::Conductor { Finish::Bare } else { self.finish },
-        })
+        }
     }
 }
 
@@ -261,6 +292,7 @@ impl RadialCell {
             finish: Finish::Bare,
         })
     }
+
     /// Whether a ray has come out of an open core into a wave that no ray of the core can be in but those in
     /// a plane through the axis, or aimed at the centre, to the last digits: the medium is singular there.
     fn turns_back(&self, ray: &InnerRay) -> bool {

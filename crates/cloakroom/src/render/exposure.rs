@@ -9,20 +9,13 @@ use glam::{DQuat, DVec3};
 use optics::wave::{SPEED_OF_LIGHT, arriving_stokes};
 
 /// One traced camera ray.
-#[derive(Clone, Debug)]
-pub(super) struct Traced<const N: usize> {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Traced<'t, const N: usize> {
     pub ray: CameraRay,
-    pub leaves: Vec<Leaf<N>>,
-    pub outcome: Outcome<N>,
+    pub leaves: &'t [Leaf<N>],
+    pub outcome: &'t Outcome<N>,
     /// The first surface met, where it is asked for and there is one.
     pub first_face: Option<FirstFace<N>>,
-}
-
-impl<const N: usize> Default for Traced<N> {
-    fn default() -> Self {
-        let ray = CameraRay { origin: DVec3::ZERO, direction: DVec3::X };
-        Self { ray, leaves: Vec::new(), outcome: Outcome::default(), first_face: None }
-    }
 }
 
 /// Adds to a pixel what one camera ray sees. `across` and `down` are its neighbours one pixel away
@@ -30,7 +23,7 @@ impl<const N: usize> Default for Traced<N> {
 pub(super) fn expose<const N: usize>(
     studio: &Studio<'_>,
     detection: &Detection<N>,
-    [here, across, down]: [&Traced<N>; 3],
+    [here, across, down]: [&Traced<'_, N>; 3],
     spacing: f64,
     pixel: &mut Pixel,
     pulses: &mut Pulses,
@@ -38,7 +31,7 @@ pub(super) fn expose<const N: usize>(
     pulses.clear();
     pixel.absorbed += detection.detected(&here.outcome.absorbed);
     pixel.pruned += detection.detected(&here.outcome.pruned);
-    for leaf in &here.leaves {
+    for leaf in here.leaves {
         let power = detection.detected(&leaf.power);
         let beside = [across, down].map(|neighbour| Neighbour { here, leaf, neighbour });
         let screen = studio.screen.hit(leaf.position, leaf.direction);
@@ -137,9 +130,9 @@ struct Line {
 /// A leaf and a neighbouring camera ray one pixel away.
 #[derive(Clone, Copy, Debug)]
 struct Neighbour<'a, const N: usize> {
-    here: &'a Traced<N>,
+    here: &'a Traced<'a, N>,
     leaf: &'a Leaf<N>,
-    neighbour: &'a Traced<N>,
+    neighbour: &'a Traced<'a, N>,
 }
 
 impl<const N: usize> Neighbour<'_, N> {
@@ -157,7 +150,7 @@ impl<const N: usize> Neighbour<'_, N> {
 
     /// The leaf of the neighbouring camera ray that has taken the same way, if there is one.
     fn twin(&self) -> Option<Line> {
-        let leaves = &self.neighbour.leaves;
+        let leaves = self.neighbour.leaves;
         let twin = leaves.iter().find(|twin| twin.path == self.leaf.path).or_else(|| {
             // Light that enters by another face of a cloak may leave as if nothing had happened.
             let moved = self.moved();

@@ -19,7 +19,7 @@ pub use studio::{Studio, StudioError, bench, limits};
 
 use crate::output::Picture;
 use crate::scene::Scene;
-use crate::trace::{Rarities, Tracer};
+use crate::trace::{FourTracers, Rarities, Tracer};
 use detection::Detection;
 use exposure::{Traced, expose, expose_unhindered};
 use film::{Band, Film};
@@ -186,12 +186,11 @@ pub fn check_memory(studio: &Studio<'_>, wanted: Wanted) -> Result<(), RenderErr
     }
 }
 
-/// One thread's tracer and memory.
+/// One thread's tracers and memory.
 struct Exposer<'a, const N: usize> {
     studio: &'a Studio<'a>,
     detection: &'a Detection<N>,
-    tracer: Tracer<'a, N>,
-    block: [Traced<N>; 4],
+    tracers: FourTracers<'a, N>,
     pulses: Pulses,
 }
 
@@ -200,8 +199,9 @@ impl<'a, const N: usize> Exposer<'a, N> {
         Self {
             studio,
             detection,
-            tracer: Tracer::new(&studio.bench, studio.limits).with_screen(studio.screen),
-            block: std::array::from_fn(|_| Traced::default()),
+            tracers: FourTracers::new(
+                &Tracer::new(&studio.bench, studio.limits).with_screen(studio.screen),
+            ),
             pulses: Vec::new(),
         }
     }
@@ -252,26 +252,25 @@ impl<'a, const N: usize> Exposer<'a, N> {
         });
         let spacing = 1.0 / f64::from(samples).sqrt();
         let mut rarities = Rarities::default();
+        let any = &self.tracers.each()[0];
         if self.detection.image_alone()
-            && rays.iter().all(|ray| self.tracer.meets_nothing(ray.origin, ray.direction))
+            && rays.iter().all(|ray| any.meets_nothing(ray.origin, ray.direction))
             && expose_unhindered(self.studio, self.detection, &rays, spacing, pixels)
         {
             return rarities;
         }
-        for (ray, traced) in rays.iter().zip(&mut self.block) {
-            let launch = self.detection.launch(camera, ray);
-            if self.detection.first_face {
-                traced.first_face = self.tracer.first_face(&launch);
-            }
-            let (leaves, outcome) = self.tracer.trace(&launch);
-            traced.ray = *ray;
-            traced.leaves.clear();
-            traced.leaves.extend_from_slice(leaves);
-            traced.outcome = *outcome;
+        let launches = rays.each_ref().map(|ray| self.detection.launch(camera, ray));
+        self.tracers.trace(&launches);
+        let block: [Traced<'_, N>; 4] = std::array::from_fn(|i| {
+            let tracer = &self.tracers.each()[i];
+            let (leaves, outcome) = tracer.traced();
             rarities += outcome.rarities;
-        }
+            let first_face =
+                if self.detection.first_face { tracer.first_face(&launches[i]) } else { None };
+            Traced { ray: rays[i], leaves, outcome, first_face }
+        });
         for (i, pixel) in pixels.iter_mut().enumerate() {
-            let rays = [&self.block[i], &self.block[i ^ 1], &self.block[i ^ 2]];
+            let rays = [&block[i], &block[i ^ 1], &block[i ^ 2]];
             expose(self.studio, self.detection, rays, spacing, pixel, &mut self.pulses);
         }
         rarities

@@ -2,7 +2,7 @@
 
 use super::bodies::Bodies;
 use super::interfaces::Interfaces;
-use crate::device::{SkinHit, Structure};
+use crate::device::{Cell, SkinHit, Structure};
 use glam::DVec3;
 use optics::geometry::{Pose, Solid};
 
@@ -103,6 +103,11 @@ impl Bench {
     /// The interfaces of a device, by its number.
     pub(super) fn interfaces(&self, device: u16) -> &Interfaces {
         &self.interfaces[usize::from(device)]
+    }
+
+    /// The cell of a device.
+    pub(super) fn cell(&self, (device, cell): (u16, u16)) -> &Cell {
+        &self.devices[usize::from(device)].structure.cells[usize::from(cell)]
     }
 
     /// The bodies among the devices.

@@ -2,7 +2,7 @@
 
 use super::branch::{Branch, Place};
 use super::{Placed, Tracer};
-use crate::device::{Beyond, Cell, Entrance, Finish, SkinHit};
+use crate::device::{Beyond, Cell, Entrance, Finish, Passage, SkinHit};
 use glam::DVec3;
 use optics::interface::{
     OutgoingWave, OutgoingWaves, Side, reflect_at_conductor, split_down_to, transmit_antireflection,
@@ -76,28 +76,33 @@ impl<'a, const N: usize> Tracer<'a, N> {
         })
     }
 
-    /// Follows a branch through a cell to the next surface; whether it goes on from there.
-    pub(super) fn through_cell(
-        &mut self,
-        branch: &mut Branch<N>,
-        device_index: u16,
-        cell_index: u16,
-    ) -> bool {
-        let device = &self.bench.devices()[usize::from(device_index)];
-        let cell = self.cell(device, cell_index);
-        if branch.mode == ModeKind::Shared
-            && let Some([(a, in_a), (b, in_b)]) = cell.parted(branch.position, branch.wave_vector)
-        {
-            for part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
-                if self.follows(part.power) {
-                    self.waiting.push(part);
-                }
-            }
+    /// Whether a branch in a cell starts as several waves that then part: each goes on alone.
+    pub(super) fn parts(&mut self, branch: &Branch<N>, cell: &Cell) -> bool {
+        if branch.mode != ModeKind::Shared {
             return false;
         }
-        let Some(passage) = cell.advance(&branch.inner_ray(), self.limits.tolerance) else {
+        let parted = cell.parted(branch.position, branch.wave_vector);
+        let Some([(a, in_a), (b, in_b)]) = parted else { return false };
+        for part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
+            if self.follows(part.power) {
+                self.waiting.push(part);
+            }
+        }
+        true
+    }
+
+    /// Takes a branch to the surface to which it has passed through a cell; whether it goes on from there.
+    pub(super) fn pass(
+        &mut self,
+        branch: &mut Branch<N>,
+        (device_index, cell_index): (u16, u16),
+        passage: Option<Passage>,
+    ) -> bool {
+        let Some(passage) = passage else {
             return self.lose(branch.power);
         };
+        let device = &self.bench.devices()[usize::from(device_index)];
+        let cell = self.cell(device, cell_index);
         let way = passage.position - branch.position;
         branch.position = passage.position;
         let mut graded_here = None;

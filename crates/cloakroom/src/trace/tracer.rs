@@ -2,6 +2,7 @@
 
 use super::branch::{Branch, Place};
 use super::{Bench, Leaf, Outcome, Screen};
+use crate::device::{InnerRay, Passage};
 use glam::DVec3;
 use optics::interface::OutgoingWave;
 use optics::wave::ComplexVector;
@@ -41,7 +42,7 @@ const NO_POWER: f64 = 1e-24;
 const LEAK: f64 = 1e-10;
 
 /// Traces rays. It keeps its memory from ray to ray: make one a thread.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Tracer<'a, const N: usize> {
     pub(super) bench: &'a Bench,
     pub(super) limits: Limits,
@@ -49,6 +50,17 @@ pub struct Tracer<'a, const N: usize> {
     pub(super) waiting: Vec<Branch<N>>,
     pub(super) leaves: Vec<Leaf<N>>,
     pub(super) outcome: Outcome<N>,
+    /// Surfaces met, and the power below which branches have become endless.
+    events: u32,
+    threshold: f64,
+}
+
+/// A branch that waits to be taken through a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Suspended<const N: usize> {
+    pub branch: Branch<N>,
+    /// The device and its cell.
+    pub cell: (u16, u16),
 }
 
 impl<'a, const N: usize> Tracer<'a, N> {
@@ -56,7 +68,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
     #[must_use]
     pub fn new(bench: &'a Bench, limits: Limits) -> Self {
         let outcome = Outcome::default();
-        Self { bench, limits, screen: None, waiting: Vec::new(), leaves: Vec::new(), outcome }
+        let (waiting, leaves) = (Vec::new(), Vec::new());
+        Self { bench, limits, screen: None, waiting, leaves, outcome, events: 0, threshold: 0.0 }
     }
 
     /// Ends branches that meet a screen.
@@ -68,33 +81,82 @@ impl<'a, const N: usize> Tracer<'a, N> {
     /// Follows one ray to the end of every branch: the leaves, in the order the tree was walked,
     /// and the account of the rest of the power. The ray must start in air.
     pub fn trace(&mut self, launch: &Launch<N>) -> (&[Leaf<N>], &Outcome<N>) {
+        let mut suspended = self.begin(launch);
+        while let Some(Suspended { branch, cell }) = suspended {
+            let passage = self.bench.cell(cell).advance(&branch.inner_ray(), self.limits.tolerance);
+            suspended = self.resume(branch, cell, passage);
+        }
+        self.traced()
+    }
+
+    /// What has come of the last ray: see [`Tracer::trace`].
+    #[must_use]
+    pub fn traced(&self) -> (&[Leaf<N>], &Outcome<N>) {
+        (&self.leaves, &self.outcome)
+    }
+
+    /// Launches a ray and follows its tree to where a branch is to be taken through a cell that takes four;
+    /// None if it is at the end.
+    pub(super) fn begin(&mut self, launch: &Launch<N>) -> Option<Suspended<N>> {
         self.leaves.clear();
         self.outcome = Outcome::default();
         self.waiting.clear();
-        let mut branch = Branch::launched(launch);
-        let (mut events, mut threshold) = (0, self.least_power());
+        (self.events, self.threshold) = (0, self.least_power());
+        self.walk(Branch::launched(launch))
+    }
+
+    /// As [`Self::begin`], from where a branch has been taken through a cell.
+    pub(super) fn resume(
+        &mut self,
+        mut branch: Branch<N>,
+        cell: (u16, u16),
+        passage: Option<Passage>,
+    ) -> Option<Suspended<N>> {
+        if !self.pass(&mut branch, cell, passage) {
+            branch = self.waiting.pop()?;
+        }
+        self.walk(branch)
+    }
+
+    /// Takes rays through a cell: see [`Cell::advance_four`](crate::device::Cell::advance_four).
+    pub(super) fn advance_four(
+        &self,
+        cell: (u16, u16),
+        rays: &[Option<InnerRay>; 4],
+    ) -> [Option<Passage>; 4] {
+        self.bench.cell(cell).advance_four(rays, self.limits.tolerance)
+    }
+
+    fn walk(&mut self, mut branch: Branch<N>) -> Option<Suspended<N>> {
         loop {
-            let goes_on = if branch.largest_power() < threshold {
+            let goes_on = if branch.largest_power() < self.threshold {
                 self.outcome.rarities.endless += 1;
                 self.prune(branch.power);
                 false
             } else {
-                events += 1;
-                if events > MANY_EVENTS {
-                    events -= MORE_EVENTS;
-                    threshold *= 10.0;
+                self.events += 1;
+                if self.events > MANY_EVENTS {
+                    self.events -= MORE_EVENTS;
+                    self.threshold *= 10.0;
                 }
                 match branch.place {
                     Place::Air { left } => self.through_air(&mut branch, left),
-                    Place::Cell { device, cell } => self.through_cell(&mut branch, device, cell),
+                    Place::Cell { device, cell: index } => {
+                        let cell = self.bench.cell((device, index));
+                        if cell.takes_four() {
+                            return Some(Suspended { branch, cell: (device, index) });
+                        }
+                        !self.parts(&branch, cell) && {
+                            let passage = cell.advance(&branch.inner_ray(), self.limits.tolerance);
+                            self.pass(&mut branch, (device, index), passage)
+                        }
+                    }
                 }
             };
             if !goes_on {
-                let Some(next) = self.waiting.pop() else { break };
-                branch = next;
+                branch = self.waiting.pop()?;
             }
         }
-        (&self.leaves, &self.outcome)
     }
 
     /// Takes from a branch what an absorbing medium keeps of it on a straight way; whether what is left

@@ -239,7 +239,7 @@ impl ConformalFlow {
         tolerance: f64,
     ) -> Result<FlowEnd, FlowError> {
         let [end, ..] =
-            self.advance_four([Some((*start, wave_vector)), None, None, None], tolerance);
+            self.advance_four(&[Some((*start, wave_vector)), None, None, None], tolerance);
         end.unwrap_or(Err(FlowError::Outside))
     }
 
@@ -247,7 +247,7 @@ impl ConformalFlow {
     /// it would be alone.
     pub fn advance_four(
         &self,
-        starts: [Option<(Foothold, DVec3)>; LANES],
+        starts: &[Option<(Foothold, DVec3)>; LANES],
         tolerance: f64,
     ) -> [Option<Result<FlowEnd, FlowError>>; LANES] {
         let mut walks = starts.map(|start| {
