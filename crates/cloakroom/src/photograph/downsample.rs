@@ -56,9 +56,9 @@ fn halve_into<S: Copy>(
 fn average_squares<S: Copy>(above: &[S], below: &[S], row: &mut [f32], light: impl Fn(S) -> f32) {
     let pairs = above.chunks_exact(6).zip(below.chunks_exact(6));
     for (texel, (a, b)) in row.chunks_exact_mut(3).zip(pairs) {
-        for channel in 0..3 {
+        for (channel, average) in texel.iter_mut().enumerate() {
             let [left, right] = [channel, channel + 3].map(|i| light(a[i]) + light(b[i]));
-            texel[channel] = 0.25 * (left + right);
+            *average = 0.25 * (left + right);
         }
     }
 }

@@ -224,15 +224,17 @@ impl<'a, const N: usize> Tracer<'a, N> {
         normal: DVec3,
         finish: Finish,
     ) -> OutgoingWaves<N> {
-        let mut waves = OutgoingWaves::new();
         let wave = branch.incident();
-        let weak = match finish {
-            Finish::Bare => split_down_to(from, to, &wave, normal, self.least_power(), &mut waves),
-            Finish::Antireflection => {
-                waves = transmit_antireflection(from, to, &wave, normal);
-                [0.0; N]
+        let mut waves = OutgoingWaves::new();
+        let mut weak = [0.0; N];
+        match finish {
+            Finish::Bare => {
+                weak = split_down_to(from, to, &wave, normal, self.least_power(), &mut waves);
             }
-        };
+            Finish::Antireflection => {
+                waves.extend(transmit_antireflection(from, to, &wave, normal));
+            }
+        }
         self.check_account(branch, &waves, weak);
         waves
     }

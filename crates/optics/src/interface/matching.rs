@@ -34,14 +34,15 @@ pub(super) fn split_into_modes<const N: usize>(
             Complex64::new(0.0, decay[1]),
         ])
     };
+    // Modes are large, and stay where they are made.
     let BothWays { forward, backward } =
-        incident_medium.both_ways(&frame, tangential, Some(normal_component));
+        &incident_medium.both_ways(&frame, tangential, Some(normal_component));
     let onward = transmitted_medium.map(|medium| medium.onward(&frame, tangential));
     let mut scattered =
         Scattered { wave, frame: &frame, tangential, least_power, waves, weak: [0.0; N] };
     let absorbs = |medium: Option<&Medium>| medium.is_some_and(Medium::absorbs);
     let absorbing = [incident_medium.absorbs(), absorbs(transmitted_medium)];
-    match (&forward, &backward, &onward) {
+    match (forward, backward, &onward) {
         (LocalModes::Real(f), LocalModes::Real(b), None) => {
             scattered.scatter(f, b, None, normal_component, absorbing);
         }
