@@ -7,8 +7,12 @@ use num_complex::Complex64;
 use super::Bump;
 
 /// The highest wave number, in units of 1/w: the floor's curvature jumps at the feet of the bump, so the
-/// coefficients fall like 1/k³, and 4e-5 h is left out.
-const FINENESS: f64 = 400.0;
+/// coefficients fall like 1/k³, and what fades of them moves the floor by less than 1e-4 h.
+const FINENESS: f64 = 620.0;
+
+/// The last terms fade like exp(-a (j/J)^p): broken off sharply, they leave ripples all along the floor, with a
+/// curvature like that of the map itself, and a ray near it would have to follow each.
+const FADING: (f64, i32) = (36.0, 8);
 
 /// Collocation points for each term.
 const OVERSAMPLING: usize = 2;
@@ -74,7 +78,8 @@ impl Series {
             if residual < 1e-13 * half_width {
                 let rising = x.windows(2).all(|pair| pair[0] < pair[1]);
                 let decay = |j: usize| (-2.0 * wave_number(j) * virtual_height).exp();
-                let terms = (1..).zip(&b).map(|(j, b)| b / (1.0 - decay(j))).collect();
+                let faded = |j: usize| (-FADING.0 * (j as f64 / count as f64).powi(FADING.1)).exp();
+                let terms = (1..).zip(&b).map(|(j, b)| faded(j) * b / (1.0 - decay(j))).collect();
                 return rising.then_some(Self { half_width, virtual_height, mean, terms });
             }
             if residual.is_nan() {
