@@ -177,17 +177,29 @@ mod tests {
         GratingMap::new(period, slope * period / TAU).expect("a valid map")
     }
 
-    /// W_0(s), |s| small or the point not on the cut, by Halley's method (Corless et al., Adv. Comput. Math. 5,
+    /// W_0(s), the point not on the cut, by Halley's method (Corless et al., Adv. Comput. Math. 5,
     /// 329 (1996)).
     fn lambert_w(s: Complex64) -> Complex64 {
         let root = (2.0 * (std::f64::consts::E * s + 1.0)).sqrt();
-        let mut w = -1.0 + root - root * root / 3.0;
+        // Elsewhere the series about the branch point may lead to another branch.
+        let near = root.norm() < 1.2;
+        let mut w = if near { -1.0 + root - root * root / 3.0 } else { (1.0 + s).ln() };
         for _ in 0..60 {
             let e = w.exp();
             let excess = w * e - s;
             w -= excess / (e * (w + 1.0) - (w + 2.0) * excess / (2.0 * w + 2.0));
         }
         w
+    }
+
+    #[test]
+    fn closed_inverse_takes_the_right_branch_far_from_the_branch_point() {
+        let (grating, zeta) =
+            (map(0.1, 0.894_727_185_894_614_8), Complex64::new(-0.163_756_7, 0.001_894_1));
+        let z = grating.jet(zeta).f;
+        let k = TAU / grating.period();
+        let v = lambert_w(-0.894_727_185_894_614_8 * (Complex64::i() * k * z).exp());
+        assert!((z + Complex64::i() * v / k - zeta).norm() < 1e-13);
     }
 
     #[test]

@@ -1,12 +1,52 @@
 use approx::assert_relative_eq;
 use errorfunctions::ComplexErrorFunctions;
 use proptest::prelude::*;
+use pulp::WithSimd;
 
 use super::*;
+use crate::lanes::{LANES, side_by_side};
 use crate::transformation::GaussianMapError;
 
 fn map(w: f64, h: f64) -> ConformalMap {
     GaussianMap::new(w, h).expect("a valid map").into()
+}
+
+struct Four<'m, M>(&'m M, [Complex64; LANES]);
+
+impl<M: LaneMap> WithSimd for Four<'_, M> {
+    type Output = [MapJet; LANES];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let jets = self.0.jets(ComplexLanes::new(simd, self.1));
+        let (f, f1, f2) = (jets.f.values(), jets.f1.values(), jets.f2.values());
+        std::array::from_fn(|i| MapJet { f: f[i], f1: f1[i], f2: f2[i] })
+    }
+}
+
+#[test]
+fn four_points_at_once_are_four_alone() {
+    fn check<M: LaneMap>(lanes: &M, map: &ConformalMap) {
+        for k in 0..5000 {
+            // All over, beyond the device and below the floor a little.
+            let points: [Complex64; LANES] = std::array::from_fn(|i| {
+                let x = f64::from(k) + 0.31 * i as f64;
+                Complex64::new(60.0 * (1.7 * x).sin(), 18.0 + 18.1 * (0.9 * x).cos())
+            });
+            for (four, zeta) in side_by_side(Four(lanes, points)).into_iter().zip(points) {
+                let alone = map.jet(zeta);
+                assert!((four.f - alone.f).norm() < 1e-13, "{zeta}: {four:?} {alone:?}");
+                assert!((four.f1 - alone.f1).norm() < 1e-14, "{zeta}: {four:?} {alone:?}");
+                assert!((four.f2 - alone.f2).norm() < 1e-14, "{zeta}: {four:?} {alone:?}");
+            }
+        }
+    }
+    let gaussian = GaussianMap::new(10.02, 4.25).expect("a valid map");
+    check(&gaussian, &gaussian.into());
+    let grating = GratingMap::new(20.0, 1.5).expect("a valid map");
+    check(&grating, &grating.into());
+    let quasi_conformal = QuasiConformalMap::new(28.0, 4.25, &PAPER).expect("a valid map");
+    check(&quasi_conformal, &quasi_conformal.clone().into());
 }
 
 const PAPER: Truncation = Truncation { x_min: -25.0, x_max: 25.0, y_max: 28.57 };

@@ -8,7 +8,7 @@ use pulp::Simd;
 
 use super::super::conformal::{JetLanes, MapJet};
 use super::series::Series;
-use crate::lanes::ComplexLanes;
+use crate::lanes::{ComplexLanes, LANES};
 
 /// Taylor terms of f' in a patch.
 const TERMS: usize = 11;
@@ -90,35 +90,36 @@ impl Table {
     /// As [`Self::jet`] at four points.
     #[inline(always)]
     pub fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S> {
-        let places = zeta.values().map(|zeta| self.place(zeta));
+        let [a, b, c, d] = zeta.values();
+        let (a, b, c, d) = (self.place(a), self.place(b), self.place(c), self.place(d));
         let like = zeta.re;
-        let every = |value: fn(&Place<'_>) -> f64| places.each_ref().map(value);
-        let d = ComplexLanes { re: like.with(every(|p| p.d.re)), im: like.with(every(|p| p.d.im)) };
-        let [a, b, c, e] = places.each_ref().map(|p| &p.patch.slopes);
-        let mut f2 = ComplexLanes { re: like.all(0.0), im: like.all(0.0) };
-        let mut slopes = [f2; TERMS];
+        let complex = |[a, b, c, d]: [Complex64; LANES]| ComplexLanes {
+            re: like.with([a.re, b.re, c.re, d.re]),
+            im: like.with([a.im, b.im, c.im, d.im]),
+        };
+        let off = complex([a.d, b.d, c.d, d.d]);
+        let mut slopes = [off; TERMS];
         for (n, slope) in slopes.iter_mut().enumerate() {
-            slope.re = like.with([a[n].re, b[n].re, c[n].re, e[n].re]);
-            slope.im = like.with([a[n].im, b[n].im, c[n].im, e[n].im]);
+            let [a, b, c, d] = [&a, &b, &c, &d].map(|place| place.patch.slopes[n]);
+            slope.re = like.with([a.re, b.re, c.re, d.re]);
+            slope.im = like.with([a.im, b.im, c.im, d.im]);
         }
+        let mut f2 = ComplexLanes { re: like.all(0.0), im: like.all(0.0) };
         let mut f1 = slopes[TERMS - 1];
         let mut f = f1 * INVERSE[TERMS - 1];
         for n in (0..TERMS - 1).rev() {
-            f2 = f2 * d + f1;
-            f1 = f1 * d + slopes[n];
-            f = f * d + slopes[n] * INVERSE[n];
+            f2 = f2 * off + f1;
+            f1 = f1 * off + slopes[n];
+            f = f * off + slopes[n] * INVERSE[n];
         }
-        let values = places.each_ref().map(|p| p.patch.value);
-        let value = ComplexLanes {
-            re: like.with(values.map(|c| c.re)),
-            im: like.with(values.map(|c| c.im)),
-        };
-        f = f * d + value;
-        let (side, mirror) = (like.with(every(|p| p.side)), like.with(every(|p| p.mirror)));
-        let shift = like.with(every(|p| p.shift));
-        let height = places.each_ref().map(|p| self.height * (1.0 - p.mirror));
+        f = f * off + complex([a.patch.value, b.patch.value, c.patch.value, d.patch.value]);
+        let side = like.with([a.side, b.side, c.side, d.side]);
+        let mirror = like.with([a.mirror, b.mirror, c.mirror, d.mirror]);
+        let shift = like.with([a.shift, b.shift, c.shift, d.shift]);
+        // 2H for the mirror images, else 0.
+        let height = (like.all(1.0) - mirror) * self.height;
         JetLanes {
-            f: ComplexLanes { re: side * f.re + shift, im: like.with(height) + mirror * f.im },
+            f: ComplexLanes { re: side * f.re + shift, im: height + mirror * f.im },
             f1: ComplexLanes { re: f1.re, im: side * mirror * f1.im },
             f2: ComplexLanes { re: side * f2.re, im: mirror * f2.im },
         }
