@@ -7,11 +7,9 @@ mod rays;
 use cloakroom::device::{CATALOGUE, FactValue};
 use cloakroom::keys::{KeyKind, Values};
 use cloakroom::render::StudioError;
-use cloakroom::scene_file;
 use cloakroom::trace::{Bench, Launch, Limits, Tracer};
 use glam::DVec3;
 use rays::{launches_around, strongest, try_bench};
-use std::path::Path;
 
 /// What a kind needs to be something: its tables or media, of indices so low that boxes cannot trap light.
 const MORE: &[(&str, &str)] = &[
