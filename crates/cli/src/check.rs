@@ -4,7 +4,7 @@ use crate::arguments::SceneArguments;
 use crate::devices::fact_lines;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::render::{Studio, Wanted, check_memory, estimated_seconds};
+use cloakroom::render::{Studio, estimated_seconds};
 use cloakroom::scene::Show;
 use cloakroom::threads;
 use std::fmt::Write;
@@ -13,9 +13,6 @@ use std::fmt::Write;
 pub fn run(arguments: &SceneArguments) -> Result<(), Failure> {
     let loaded = scene::load(arguments)?;
     let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
-    check_memory(&studio, Wanted::Image).map_err(|error| {
-        Failure::from_error(loaded.locations.error_at("camera.resolution", error.to_string()))
-    })?;
     let mut text = String::new();
     describe(&studio, &loaded.scene, &mut text).map_err(Failure::from_error)?;
     report::print(&text)

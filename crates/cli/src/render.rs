@@ -10,7 +10,8 @@ use cloakroom::output::{self, Format, Picture};
 use cloakroom::render::{self, RenderError, Rendered, Studio, Supervision, Wanted};
 use cloakroom::scene::Scene;
 use cloakroom::trace::Rarities;
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 /// Renders a scene and writes every file asked for.
@@ -27,6 +28,12 @@ pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure
         output::check_writable(path).map_err(Failure::from_error)?;
     }
     let _busy = interruption::busy();
+    if let [(path, Format::Png)] = formats[..]
+        && loaded.scene.picture.map.is_none()
+        && render::strips(&studio).nth(1).is_some()
+    {
+        return in_strips(&studio, &loaded.scene, path, stop);
+    }
     let Rendered { picture, rarities } = picture(&studio, wanted, "rendering", stop)?;
     tell_rarities(&rarities);
     for (path, format) in formats {
@@ -37,6 +44,43 @@ pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure
         }
         .map_err(Failure::from_error)?;
     }
+    Ok(())
+}
+
+/// Renders a large image strip by strip into its file.
+fn in_strips(
+    studio: &Studio<'_>,
+    scene: &Scene,
+    path: &Path,
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
+    let bar = progress::bar(studio.rows(), "rendering");
+    let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
+    let (mut rarities, mut failure) = (Rarities::default(), None);
+    let images = render::strips(studio).map(|rows| {
+        let strip = render::render_rows(studio, Wanted::Image, rows, &supervision)
+            .map_err(failed)
+            .and_then(|strip| {
+                rarities += strip.rarities;
+                output::to_srgb(&strip.picture).map_err(Failure::from_error)
+            });
+        strip.map_err(|error| {
+            failure = Some(error);
+            io::Error::other("no strip")
+        })
+    });
+    let written = output::write_png_in_strips(
+        scene.camera.resolution(),
+        &render::metadata(scene),
+        path,
+        images,
+    );
+    bar.finish_and_clear();
+    if let Some(failure) = failure {
+        return Err(failure);
+    }
+    written.map_err(Failure::from_error)?;
+    tell_rarities(&rarities);
     Ok(())
 }
 
@@ -70,10 +114,14 @@ pub fn picture(
     let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
     let rendered = render::render(studio, wanted, &supervision);
     bar.finish_and_clear();
-    rendered.map_err(|error| match error {
+    rendered.map_err(failed)
+}
+
+fn failed(error: RenderError) -> Failure {
+    match error {
         RenderError::Stopped => Failure::Interrupted,
         RenderError::TooLarge { .. } => Failure::from_error(error),
-    })
+    }
 }
 
 /// What a PNG of the scene shows: the image, or the map of one channel.

@@ -91,6 +91,23 @@ fn pictures_do_not_depend_on_threads() {
 }
 
 #[test]
+fn a_large_image_in_strips_is_the_whole_image() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |names: &[&str]| {
+        let mut command = cloakroom();
+        command.arg("render").arg(paper("7d"));
+        // More pixels than a strip has.
+        command.args(["--set", "camera.resolution=[2300, 1900]", "--set", "camera.samples=1"]);
+        for name in names {
+            command.arg("-o").arg(folder.path().join(name));
+        }
+        command.assert().success();
+        image::open(folder.path().join(names[0])).unwrap().into_rgb8()
+    };
+    assert!(render(&["strips.png"]) == render(&["whole.png", "again.png"]));
+}
+
+#[test]
 fn rays_are_traced() {
     let rays = r#"[
         {"origin": [-100, 3, 1], "direction": [1, 0, 0]},

@@ -8,7 +8,7 @@ mod whole_file;
 
 pub use image::RgbImage;
 pub use picture::{Channel, Picture, Samples};
-pub use png_file::{to_srgb, write_png};
+pub use png_file::{to_srgb, write_png, write_png_in_strips};
 pub use whole_file::{WriteSeek, check_writable, write_whole};
 
 use std::io;

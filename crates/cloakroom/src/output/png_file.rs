@@ -1,7 +1,7 @@
 //! PNG: 8-bit sRGB.
 
 use super::{OutputError, Picture, RgbImage, Samples, write_whole};
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
 
 /// The image `R`, `G`, `B` of a picture as 8-bit sRGB (IEC 61966-2-1), clamped to what that can show.
@@ -85,15 +85,42 @@ pub fn write_png(
     metadata: &[(String, String)],
     path: &Path,
 ) -> Result<(), OutputError> {
-    write_whole(path, |out| encode(image, metadata, out).map_err(io::Error::from))
+    write_whole(path, |out| {
+        let mut writer = header(image.dimensions(), metadata, out)?;
+        writer.write_image_data(image.as_raw())?;
+        Ok(writer.finish()?)
+    })
 }
 
-fn encode(
-    image: &RgbImage,
+/// Writes an image that comes in strips, as wide as the whole and from top to bottom, as a PNG with text
+/// metadata: no more than a strip need be in memory.
+///
+/// # Errors
+///
+/// If the file cannot be written, a strip is an error, or they are not the whole image.
+pub fn write_png_in_strips(
+    [width, height]: [u32; 2],
     metadata: &[(String, String)],
-    out: &mut dyn super::WriteSeek,
-) -> Result<(), png::EncodingError> {
-    let mut encoder = png::Encoder::new(out, image.width(), image.height());
+    path: &Path,
+    strips: impl IntoIterator<Item = io::Result<RgbImage>>,
+) -> Result<(), OutputError> {
+    write_whole(path, |out| {
+        let mut writer = header((width, height), metadata, out)?;
+        let mut stream = writer.stream_writer()?;
+        for strip in strips {
+            stream.write_all(strip?.as_raw())?;
+        }
+        stream.finish()?;
+        Ok(writer.finish()?)
+    })
+}
+
+fn header<'o>(
+    (width, height): (u32, u32),
+    metadata: &[(String, String)],
+    out: &'o mut dyn super::WriteSeek,
+) -> Result<png::Writer<&'o mut dyn super::WriteSeek>, png::EncodingError> {
+    let mut encoder = png::Encoder::new(out, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
@@ -103,9 +130,7 @@ fn encode(
         let key = if key == "software" { "Software" } else { key };
         encoder.add_itxt_chunk(key.to_owned(), text.clone())?;
     }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(image.as_raw())?;
-    writer.finish()
+    encoder.write_header()
 }
 
 #[cfg(test)]
@@ -131,6 +156,28 @@ mod tests {
         let codes: Vec<u8> = image.expect("an image").pixels().map(|pixel| pixel.0[0]).collect();
         assert_eq!(codes[..7], [0, 255, 188, 127, 128, 0, 255]);
         assert_eq!(codes[7], 0);
+    }
+
+    #[test]
+    fn strips_are_the_whole_image() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let image = RgbImage::from_fn(37, 50, |x, y| image::Rgb([x as u8, y as u8, (x * y) as u8]));
+        let strip = |rows: std::ops::Range<u32>| {
+            Ok(image::imageops::crop_imm(&image, 0, rows.start, 37, rows.end - rows.start)
+                .to_image())
+        };
+        let path = folder.path().join("strips.png");
+        let metadata = [("seed".to_owned(), "7".to_owned())];
+        write_png_in_strips([37, 50], &metadata, &path, [0..20, 20..24, 24..50].map(strip))
+            .expect("a file");
+        let read = image::open(&path).expect("an image").into_rgb8();
+        assert_eq!(read, image);
+        // What is missing or fails leaves no file.
+        let path = folder.path().join("part.png");
+        assert!(write_png_in_strips([37, 50], &[], &path, [0..20, 20..24].map(strip)).is_err());
+        let failing = [strip(0..20), Err(io::Error::other("no more"))];
+        assert!(write_png_in_strips([37, 50], &[], &path, failing).is_err());
+        assert!(!path.exists());
     }
 
     #[test]

@@ -3,10 +3,12 @@
 use super::Channel;
 use super::channels::Form;
 use crate::output::{Channel as FileChannel, Samples};
+use std::ops::Range;
 
 /// The planes of a picture, row by row.
 pub(super) struct Film {
     width: usize,
+    first_row: usize,
     planes: Vec<(Channel, Plane)>,
 }
 
@@ -29,11 +31,12 @@ enum BandPlane<'f> {
 }
 
 impl Film {
-    pub fn new(width: usize, height: usize, channels: &[Channel]) -> Self {
+    /// For these rows of a picture.
+    pub fn new(width: usize, rows: Range<usize>, channels: &[Channel]) -> Self {
         let planes = channels
             .iter()
             .map(|channel| {
-                let size = width * height;
+                let size = width * rows.len();
                 let plane = match channel.form() {
                     Form::Single => Plane::Single(vec![0.0; size]),
                     Form::Double => Plane::Double(vec![0.0; size]),
@@ -42,7 +45,7 @@ impl Film {
                 (*channel, plane)
             })
             .collect();
-        Self { width, planes }
+        Self { width, first_row: rows.start, planes }
     }
 
     /// The film in bands of `rows` rows.
@@ -57,7 +60,10 @@ impl Film {
             };
             for (index, piece) in pieces.into_iter().enumerate() {
                 if index == bands.len() {
-                    bands.push(Band { first_row: index * rows, planes: Vec::new() });
+                    bands.push(Band {
+                        first_row: self.first_row + index * rows,
+                        planes: Vec::new(),
+                    });
                 }
                 bands[index].planes.push((*channel, piece));
             }

@@ -25,6 +25,7 @@ use exposure::{Traced, expose, expose_unhindered};
 use film::{Band, Film};
 use pixel::{Pixel, Pulses};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Rows in a band; even, so that bands hold whole blocks of 2 x 2 pixels.
@@ -81,13 +82,38 @@ pub fn render(
     wanted: Wanted,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
+    render_rows(studio, wanted, 0..studio.rows() as usize, supervision)
+}
+
+/// Pixels in a strip: enough for all threads to be busy nearly all the time.
+const STRIP_PIXELS: usize = 1 << 22;
+
+/// The rows of a picture in strips of equal height, from top to bottom: what is rendered strip by strip needs
+/// no more memory than one of them.
+pub fn strips(studio: &Studio<'_>) -> impl Iterator<Item = Range<usize>> + use<> {
+    let [width, height] = studio.scene.camera.resolution().map(|size| size as usize);
+    let rows = (STRIP_PIXELS / width / BAND_ROWS).max(1) * BAND_ROWS;
+    (0..height).step_by(rows).map(move |first| first..height.min(first + rows))
+}
+
+/// Renders some rows of a picture, one of its [`strips`]: the picture has these rows alone.
+///
+/// # Errors
+///
+/// If they would not fit into memory, or the work was stopped.
+pub fn render_rows(
+    studio: &Studio<'_>,
+    wanted: Wanted,
+    rows: Range<usize>,
+    supervision: &Supervision<'_>,
+) -> Result<Rendered, RenderError> {
     match (wanted, studio.scene.camera.polarizer().amplitudes()) {
-        (_, None) => expose_film(studio, wanted, supervision, Detection::UNPOLARIZED),
+        (_, None) => expose_film(studio, wanted, rows, supervision, Detection::UNPOLARIZED),
         (Wanted::Image, Some(amplitudes)) => {
-            expose_film(studio, wanted, supervision, Detection::image(amplitudes))
+            expose_film(studio, wanted, rows, supervision, Detection::image(amplitudes))
         }
         (Wanted::Everything, Some(amplitudes)) => {
-            expose_film(studio, wanted, supervision, Detection::through(amplitudes))
+            expose_film(studio, wanted, rows, supervision, Detection::through(amplitudes))
         }
     }
 }
@@ -95,15 +121,16 @@ pub fn render(
 fn expose_film<const N: usize>(
     studio: &Studio<'_>,
     wanted: Wanted,
+    rows: Range<usize>,
     supervision: &Supervision<'_>,
     detection: Detection<N>,
 ) -> Result<Rendered, RenderError> {
-    let [width, height] = studio.scene.camera.resolution();
-    check_memory(studio, wanted)?;
+    let (width, height) = (studio.scene.camera.resolution()[0] as usize, rows.len());
+    check_memory(studio, wanted, rows.len())?;
     let settings = &studio.scene.picture;
     let detection = detection.with_options(wanted, settings);
     let channels = Channel::of(wanted, settings);
-    let mut film = Film::new(width as usize, height as usize, &channels);
+    let mut film = Film::new(width, rows, &channels);
     let rarities = film
         .bands(BAND_ROWS)
         .into_par_iter()
@@ -112,7 +139,7 @@ fn expose_film<const N: usize>(
             |exposer, mut band| {
                 let rarities =
                     exposer.expose_band(&mut band, supervision.stop).ok_or(RenderError::Stopped)?;
-                (supervision.rows_done)((band.len() / width as usize) as u64);
+                (supervision.rows_done)((band.len() / width) as u64);
                 Ok(rarities)
             },
         )
@@ -120,12 +147,8 @@ fn expose_film<const N: usize>(
             a += b;
             Ok(a)
         })?;
-    let picture = Picture {
-        width: width as usize,
-        height: height as usize,
-        channels: film.into_channels(),
-        metadata: metadata(studio.scene),
-    };
+    let picture =
+        Picture { width, height, channels: film.into_channels(), metadata: metadata(studio.scene) };
     Ok(Rendered { picture, rarities })
 }
 
@@ -164,17 +187,13 @@ pub fn metadata(scene: &Scene) -> Vec<(String, String)> {
     .to_vec()
 }
 
-/// Refuses a picture that would not fit into the memory that is free now.
-///
-/// # Errors
-///
-/// [`RenderError::TooLarge`].
-pub fn check_memory(studio: &Studio<'_>, wanted: Wanted) -> Result<(), RenderError> {
+/// Refuses rows of a picture that would not fit into the memory that is free now.
+fn check_memory(studio: &Studio<'_>, wanted: Wanted, rows: usize) -> Result<(), RenderError> {
     let [width, height] = studio.scene.camera.resolution();
     let channels = Channel::of(wanted, &studio.scene.picture);
     let bytes: u64 = channels.iter().map(|channel| channel.form().bytes()).sum();
     // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
-    let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2);
+    let needed = u64::from(width) * rows as u64 * (bytes + bytes / 2);
     match crate::memory::available() {
         Some(available) if needed > available => Err(RenderError::TooLarge {
             width,
