@@ -2,6 +2,7 @@
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use cloakroom::material::Resolution;
 use cloakroom::scene::OPTIONAL_CHANNELS;
 use std::path::PathBuf;
 
@@ -32,6 +33,9 @@ pub enum Command {
     Figures(FiguresArguments),
     /// Make a picture and a map of times of flight of every device, and the table of them all.
     Gallery(GalleryArguments),
+    /// Write what a device is made of, for fabrication and full-wave solvers: its index and tensors on a grid,
+    /// or its segments as a table.
+    Export(ExportArguments),
     /// List the devices with their keys and computed facts.
     Devices(DevicesArguments),
     /// Print the JSON Schema of scene files, for editors.
@@ -148,12 +152,52 @@ pub struct PanelArguments {
     pub threads: Option<u16>,
 }
 
+/// Arguments of `export`.
+#[derive(Args, Debug)]
+pub struct ExportArguments {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The file to write; its ending decides: .npz, .vti (ParaView) or .csv; with --table .csv or .json.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Which device, counted from 0; the only one if absent.
+    #[arg(long, value_name = "N")]
+    pub device: Option<usize>,
+    /// The cells of the grid: how many along x, y and z, as in 200x200x1, or the side of a cubic cell in cm, as
+    /// in 0.1 [default: cubes, 64 along the longest side].
+    #[arg(long, value_name = "NxNxN|CM", value_parser = grid)]
+    pub grid: Option<Resolution>,
+    /// Along whose axes grid and tensors lie: the device's own, or the world's.
+    #[arg(long, value_name = "FRAME", default_value = "device", value_parser = PossibleValuesParser::new(["device", "world"]))]
+    pub frame: String,
+    /// Write the homogeneous segments as a table instead: corners, optic axes, principal values and axes of
+    /// the tensors, in the device's frame.
+    #[arg(long, conflicts_with_all = ["grid", "frame"])]
+    pub table: bool,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
 /// Arguments of `devices`.
 #[derive(Args, Debug)]
 pub struct DevicesArguments {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Reads a grid such as 200x200x1 or 0.1.
+fn grid(text: &str) -> Result<Resolution, String> {
+    let counts: Result<Vec<u32>, _> = text.split('x').map(|count| count.trim().parse()).collect();
+    if let Some(counts) = counts.ok().and_then(|counts| <[u32; 3]>::try_from(counts).ok()) {
+        return Ok(Resolution::Cells(counts));
+    }
+    text.parse().map(Resolution::Spacing).map_err(|_| {
+        "write how many cells along x, y and z, as in 200x200x1, or the side of a cell in cm, as in 0.1"
+            .to_owned()
+    })
 }
 
 /// Reads a pixel such as 512,384.

@@ -6,6 +6,7 @@
 mod arguments;
 mod check;
 mod devices;
+mod export;
 mod figures;
 mod gallery;
 mod input;
@@ -42,6 +43,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Interface(arguments) => interface::run(arguments),
         Command::Figures(arguments) => figures::run(arguments, stop),
         Command::Gallery(arguments) => gallery::run(arguments, stop),
+        Command::Export(arguments) => export::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),
         Command::Schema => report::print_json(&cloakroom::scene_file::schema()),
     }

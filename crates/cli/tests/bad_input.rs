@@ -230,3 +230,21 @@ fn wrong_usage_is_another_status() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     }
 }
+
+#[test]
+fn exports_that_cannot_be_made() {
+    let square = small("[[device]]\nkind = \"square-cloak\"\n");
+    let export = |grid: &'static str| ["export", "scene.toml", "-o", "out.npz", "--grid", grid];
+    square.refuses_with(&export("0x3x3"), &["at least one cell"]);
+    square.refuses_with(&export("0"), &["positive spacing"]);
+    square.refuses_with(&export("4000000000x4000000000x4000000000"), &["MB of memory"]);
+    square.refuses_with(&["export", "scene.toml", "-o", "out.png"], &[".npz, .vti or .csv"]);
+    square
+        .refuses_with(&["export", "scene.toml", "--table", "-o", "out.npz"], &[".csv or a .json"]);
+    square.refuses_with(&["export", "scene.toml", "--device", "3", "-o", "out.npz"], &["device 3"]);
+    square.refuses_with(
+        &["export", "scene.toml", "--set", "device.0.show=bare", "-o", "out.npz"],
+        &["bare metal"],
+    );
+    small("").refuses_with(&["export", "scene.toml", "-o", "out.npz"], &["no device"]);
+}

@@ -12,7 +12,6 @@ use crate::device::Region;
 use crate::output::RgbImage;
 use glam::{DAffine2, DVec2};
 use optics::geometry::Pose;
-use optics::medium::Medium;
 
 /// The width of the colours of the bar.
 const BAR: f64 = 22.0;
@@ -43,7 +42,7 @@ impl IndexScale {
                 .filter_map(|p| region.cell.medium_at(p))
             {
                 isotropic &= MediumAxes::of(&medium).is_none();
-                numbers.push(mean_index(&medium));
+                numbers.push(medium.mean_index());
             }
         }
         let title = if isotropic { "refractive index" } else { "mean refractive index" };
@@ -76,7 +75,7 @@ impl IndexScale {
             .flat_map(|row| (0..columns).map(move |column| (column, row)))
             .map(|(column, row)| {
                 let medium = region.cell.medium_at(at(column, row))?;
-                Some(mean_index(&medium)).filter(|index| index.is_finite())
+                Some(medium.mean_index()).filter(|index| index.is_finite())
             })
             .collect();
         // What lies just outside the medium shows where a pixel is cut by the border.
@@ -140,14 +139,6 @@ impl IndexScale {
 /// Points of a device's frame on the sheet.
 pub(super) fn on_sheet(view: &View, pose: &Pose, points: &[DVec2]) -> Vec<DVec2> {
     points.iter().map(|p| view.place(pose.point_to_world(*p))).collect()
-}
-
-/// The refractive index of an isotropic medium, the geometric mean over all directions and
-/// polarizations of another: (det ε det µ)^(1/6), negative where both are.
-pub(super) fn mean_index(medium: &Medium) -> f64 {
-    let (e, m) = (medium.permittivity().determinant(), medium.permeability().determinant());
-    let size = (e * m).abs().powf(1.0 / 6.0);
-    if e < 0.0 && m < 0.0 { -size } else { size }
 }
 
 /// Fills pixels without a number from their neighbours.
