@@ -33,6 +33,8 @@ pub enum Command {
     Figures(FiguresArguments),
     /// Make a picture and a map of times of flight of every device, and the table of them all.
     Gallery(GalleryArguments),
+    /// Draw a ray diagram of a scene, or its setting, as SVG or PNG.
+    Diagram(DiagramArguments),
     /// Write what a device is made of, for fabrication and full-wave solvers: its index and tensors on a grid,
     /// or its segments as a table.
     Export(ExportArguments),
@@ -152,6 +154,57 @@ pub struct PanelArguments {
     pub threads: Option<u16>,
 }
 
+/// Arguments of `diagram`.
+#[derive(Args, Debug)]
+pub struct DiagramArguments {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// A file to write, .svg or .png. May be given several times.
+    #[arg(short, long = "output", value_name = "FILE", required = true)]
+    pub outputs: Vec<PathBuf>,
+    /// How many rays.
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    pub rays: u32,
+    /// Parallel rays in that direction, degrees from x in the xy-plane: the default, along x.
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, conflicts_with_all = ["point", "camera"])]
+    pub parallel: Option<f64>,
+    /// A fan of rays from that point, cm.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point, conflicts_with = "camera")]
+    pub point: Option<[f64; 3]>,
+    /// A fan of rays from the scene's camera.
+    #[arg(long)]
+    pub camera: bool,
+    /// The width of a bundle of parallel rays, cm; that of the devices if absent.
+    #[arg(long, value_name = "CM")]
+    pub width: Option<f64>,
+    /// The plane z = const that the rays start in, cm; that of the first device if absent.
+    #[arg(long, value_name = "CM", allow_hyphen_values = true)]
+    pub z: Option<f64>,
+    /// The polarization: none (unpolarized), horizontal or vertical.
+    #[arg(long, value_name = "WORD", default_value = "none", value_parser = PossibleValuesParser::new(["none", "horizontal", "vertical"]))]
+    pub polarization: String,
+    /// Mark the points of equal optical path, as often as that (cm): the wavefronts.
+    #[arg(long, value_name = "CM")]
+    pub wavefronts: Option<f64>,
+    /// Leave out branches below this share of a ray's power.
+    #[arg(long, value_name = "P", default_value_t = 0.01)]
+    pub min_power: f64,
+    /// Show space in parallel projection instead of the cross-section, seen from that azimuth and elevation, in
+    /// degrees, as in 30,20.
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", allow_hyphen_values = true, value_parser = angles)]
+    pub space: Option<[f64; 2]>,
+    /// With --space: layers of rays one behind the other along z.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub layers: u32,
+    /// Draw the setting instead: camera, photograph and devices to scale.
+    #[arg(long)]
+    pub setting: bool,
+    /// Size in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
+    pub size: [u32; 2],
+}
+
 /// Arguments of `export`.
 #[derive(Args, Debug)]
 pub struct ExportArguments {
@@ -186,6 +239,24 @@ pub struct DevicesArguments {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Reads a point such as -30,0,0.
+fn point(text: &str) -> Result<[f64; 3], String> {
+    numbers(text).ok_or_else(|| "write X,Y,Z in cm, as in -30,0,0".to_owned())
+}
+
+/// Reads two angles such as 30,20.
+fn angles(text: &str) -> Result<[f64; 2], String> {
+    numbers(text).ok_or_else(|| "write AZIMUTH,ELEVATION in degrees, as in 30,20".to_owned())
+}
+
+/// Finite numbers between commas.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers: Result<Vec<f64>, _> =
+        text.split(',').map(|number| number.trim().parse()).collect();
+    let numbers = numbers.ok().filter(|numbers| numbers.iter().all(|n| n.is_finite()))?;
+    numbers.try_into().ok()
 }
 
 /// Reads a grid such as 200x200x1 or 0.1.

@@ -6,6 +6,8 @@
 mod arguments;
 mod check;
 mod devices;
+mod diagram;
+mod drawn;
 mod export;
 mod figures;
 mod gallery;
@@ -43,6 +45,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Interface(arguments) => interface::run(arguments),
         Command::Figures(arguments) => figures::run(arguments, stop),
         Command::Gallery(arguments) => gallery::run(arguments, stop),
+        Command::Diagram(arguments) => diagram::run(arguments, stop),
         Command::Export(arguments) => export::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),
         Command::Schema => report::print_json(&cloakroom::scene_file::schema()),

@@ -3,6 +3,7 @@
 
 mod color_bar;
 mod color_scale;
+mod diagram;
 mod drawing;
 mod lettering;
 mod quantity;
@@ -15,6 +16,7 @@ mod ticks;
 
 pub use color_bar::ColorBar;
 pub use color_scale::ColorScale;
+pub use diagram::{Diagram, DiagramError, DiagramSettings, Projected, Source, diagram};
 pub use drawing::{Drawing, Element, Face, Ink, Shape, Stroke, Words};
 pub use lettering::{Lettering, Weight};
 pub use quantity::{Dimension, Quantity, Unit};
