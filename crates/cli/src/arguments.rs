@@ -33,6 +33,8 @@ pub enum Command {
     Figures(FiguresArguments),
     /// Make a picture and a map of times of flight of every device, and the table of them all.
     Gallery(GalleryArguments),
+    /// Measure how much light comes through to a plane behind the devices, for nothing, bare metal and the cloak.
+    Flux(FluxArguments),
     /// Draw a ray diagram of a scene, or its setting, as SVG or PNG.
     Diagram(DiagramArguments),
     /// Write what a device is made of, for fabrication and full-wave solvers: its index and tensors on a grid,
@@ -154,6 +156,49 @@ pub struct PanelArguments {
     pub threads: Option<u16>,
 }
 
+/// Arguments of `flux`.
+#[derive(Args, Debug)]
+pub struct FluxArguments {
+    /// The scene; its [receiver] is the plane.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// A file to write: data as .csv or .npz, a plot over the directions as .svg or .png. May be given several
+    /// times; the totals are printed.
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub outputs: Vec<PathBuf>,
+    /// A file for a map of the receiver, .svg or .png.
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+    /// Angles of incidence in the plane across z, degrees.
+    #[arg(long, value_name = "FROM..TO:STEP", allow_hyphen_values = true, default_value = "-60..60:10", value_parser = range, conflicts_with = "sun")]
+    pub angles: [f64; 3],
+    /// Tilt the light towards z, degrees.
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        allow_hyphen_values = true,
+        default_value_t = 0.0,
+        conflicts_with = "sun"
+    )]
+    pub tilt: f64,
+    /// The sun over a day instead, from that latitude and with that declination (degrees; 23.44 at midsummer): the
+    /// receiver lies flat, z points north.
+    #[arg(long, value_name = "LATITUDE,DECLINATION", allow_hyphen_values = true, value_parser = angles)]
+    pub sun: Option<[f64; 2]>,
+    /// Rays in each of the independent samples.
+    #[arg(long, value_name = "N", default_value_t = 4096)]
+    pub rays: u32,
+    /// Independent samples, from which the errors come.
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    pub samples: u32,
+    /// Cells of the map across the receiver.
+    #[arg(long, value_name = "N", default_value_t = 60)]
+    pub cells: u32,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
 /// Arguments of `diagram`.
 #[derive(Args, Debug)]
 pub struct DiagramArguments {
@@ -249,6 +294,15 @@ fn point(text: &str) -> Result<[f64; 3], String> {
 /// Reads two angles such as 30,20.
 fn angles(text: &str) -> Result<[f64; 2], String> {
     numbers(text).ok_or_else(|| "write AZIMUTH,ELEVATION in degrees, as in 30,20".to_owned())
+}
+
+/// Reads a range such as -60..60:5.
+fn range(text: &str) -> Result<[f64; 3], String> {
+    let parts = text.split_once("..").and_then(|(from, rest)| {
+        let (to, step) = rest.split_once(':')?;
+        numbers(&format!("{from},{to},{step}"))
+    });
+    parts.ok_or_else(|| "write FROM..TO:STEP in degrees, as in -60..60:5".to_owned())
 }
 
 /// Finite numbers between commas.

@@ -10,6 +10,7 @@ mod diagram;
 mod drawn;
 mod export;
 mod figures;
+mod flux;
 mod gallery;
 mod input;
 mod interface;
@@ -45,6 +46,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Interface(arguments) => interface::run(arguments),
         Command::Figures(arguments) => figures::run(arguments, stop),
         Command::Gallery(arguments) => gallery::run(arguments, stop),
+        Command::Flux(arguments) => flux::run(arguments, stop),
         Command::Diagram(arguments) => diagram::run(arguments, stop),
         Command::Export(arguments) => export::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),

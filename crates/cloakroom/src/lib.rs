@@ -11,6 +11,7 @@
 //! are those of [`optics::wave`].
 
 pub mod device;
+pub mod flux;
 pub mod gallery;
 pub mod illustration;
 pub mod interface_exchange;

@@ -1,5 +1,6 @@
 //! Pictures (PNG, EXR, NPZ) and data on grids (NPZ, VTI, CSV) into files, each whole or not at all.
 
+mod arrays;
 mod exr_file;
 mod grid_file;
 mod npz_file;
@@ -7,6 +8,7 @@ mod picture;
 mod png_file;
 mod whole_file;
 
+pub use arrays::{Arrays, write_arrays};
 pub use grid_file::{GridArray, GridFile, GridFormat, GridValues, write_grid};
 pub use image::RgbImage;
 pub use picture::{Channel, Picture, Samples};

@@ -116,7 +116,7 @@ pub fn diagram(
     check(settings)?;
     let bench = bench(scene)?;
     let devices = Devices::new(&bench);
-    let bounds = devices.bounds().ok_or(DiagramError::NoDevice)?;
+    let bounds = view::bounds(&bench).or_else(|| devices.bounds()).ok_or(DiagramError::NoDevice)?;
     let z = settings.z.unwrap_or_else(|| bench.devices()[0].pose.origin().z);
     let scenery = Scenery::new(bounds, z, settings);
     let launches = settings.source.launches(scene, settings, &scenery);

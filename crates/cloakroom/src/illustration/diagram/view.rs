@@ -3,6 +3,8 @@
 use super::super::drawing::{Drawing, Face, Shape, Words};
 use super::super::setting::{Devices, INK, PAPER, TEXT, View, draw_axes};
 use super::{DiagramSettings, Source, rays};
+use crate::device::REACH;
+use crate::trace::Bench;
 use glam::{DVec2, DVec3};
 
 /// How space is shown.
@@ -25,6 +27,25 @@ const BAR: f64 = 5.2 * TEXT;
 const MARGIN: f64 = 14.0;
 /// The row with the key.
 const KEY: f64 = 1.8 * TEXT;
+
+/// Least and greatest x and y of what devices take up, cm, without thin mirrors such as the floors of carpets; of what
+/// is endless, as far as it is wide.
+pub(super) fn bounds(bench: &Bench) -> Option<[DVec2; 2]> {
+    /// What is shown of something without any end, cm to either side.
+    const ENDLESS: f64 = 10.0;
+    let boxes = bench.devices().iter().filter_map(|placed| {
+        let [low, high] = placed.structure.hull.bounds(&placed.pose)?.map(DVec3::truncate);
+        let size = high - low;
+        let shown = if size.min_element() < REACH { 1.5 * size.min_element() } else { ENDLESS };
+        let middle = placed.pose.origin().truncate();
+        let is_endless = size.cmpge(DVec2::splat(REACH));
+        Some([
+            DVec2::select(is_endless, middle - shown, low),
+            DVec2::select(is_endless, middle + shown, high),
+        ])
+    });
+    boxes.reduce(|[low, high], [from, to]| [low.min(from), high.max(to)])
+}
 
 /// The devices' place, and how much around them is shown.
 pub(super) struct Scenery {

@@ -13,6 +13,7 @@ mod subject;
 mod view;
 
 pub(super) use dimension::arrow_head;
+pub(super) use index_map::draw_color_bar;
 pub(super) use stage::draw_axes;
 pub use view::View;
 
