@@ -2,6 +2,7 @@
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use cloakroom::material::Resolution;
 use cloakroom::scene::OPTIONAL_CHANNELS;
 use std::path::PathBuf;
 
@@ -32,6 +33,13 @@ pub enum Command {
     Figures(FiguresArguments),
     /// Make a picture and a map of times of flight of every device, and the table of them all.
     Gallery(GalleryArguments),
+    /// Measure how much light comes through to a plane behind the devices, for nothing, bare metal and the cloak.
+    Flux(FluxArguments),
+    /// Draw a ray diagram of a scene, or its setting, as SVG or PNG.
+    Diagram(DiagramArguments),
+    /// Write what a device is made of, for fabrication and full-wave solvers: its index and tensors on a grid,
+    /// or its segments as a table.
+    Export(ExportArguments),
     /// List the devices with their keys and computed facts.
     Devices(DevicesArguments),
     /// Print the JSON Schema of scene files, for editors.
@@ -148,12 +156,173 @@ pub struct PanelArguments {
     pub threads: Option<u16>,
 }
 
+/// Arguments of `flux`.
+#[derive(Args, Debug)]
+pub struct FluxArguments {
+    /// The scene; its [receiver] is the plane.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// A file to write: data as .csv or .npz, a plot over the directions as .svg or .png. May be given several
+    /// times; the totals are printed.
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub outputs: Vec<PathBuf>,
+    /// A file for a map of the receiver, .svg or .png.
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+    /// Angles of incidence in the plane across z, degrees.
+    #[arg(long, value_name = "FROM..TO:STEP", allow_hyphen_values = true, default_value = "-60..60:10", value_parser = range, conflicts_with = "sun")]
+    pub angles: [f64; 3],
+    /// Tilt the light towards z, degrees.
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        allow_hyphen_values = true,
+        default_value_t = 0.0,
+        conflicts_with = "sun"
+    )]
+    pub tilt: f64,
+    /// The sun over a day instead, from that latitude and with that declination (degrees; 23.44 at midsummer): the
+    /// receiver lies flat, z points north.
+    #[arg(long, value_name = "LATITUDE,DECLINATION", allow_hyphen_values = true, value_parser = angles)]
+    pub sun: Option<[f64; 2]>,
+    /// Rays in each of the independent samples.
+    #[arg(long, value_name = "N", default_value_t = 4096)]
+    pub rays: u32,
+    /// Independent samples, from which the errors come.
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    pub samples: u32,
+    /// Cells of the map across the receiver.
+    #[arg(long, value_name = "N", default_value_t = 60)]
+    pub cells: u32,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
+/// Arguments of `diagram`.
+#[derive(Args, Debug)]
+pub struct DiagramArguments {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// A file to write, .svg or .png. May be given several times.
+    #[arg(short, long = "output", value_name = "FILE", required = true)]
+    pub outputs: Vec<PathBuf>,
+    /// How many rays.
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    pub rays: u32,
+    /// Parallel rays in that direction, degrees from x in the xy-plane: the default, along x.
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, conflicts_with_all = ["point", "camera"])]
+    pub parallel: Option<f64>,
+    /// A fan of rays from that point, cm.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point, conflicts_with = "camera")]
+    pub point: Option<[f64; 3]>,
+    /// A fan of rays from the scene's camera.
+    #[arg(long)]
+    pub camera: bool,
+    /// The width of a bundle of parallel rays, cm; that of the devices if absent.
+    #[arg(long, value_name = "CM")]
+    pub width: Option<f64>,
+    /// The plane z = const that the rays start in, cm; that of the first device if absent.
+    #[arg(long, value_name = "CM", allow_hyphen_values = true)]
+    pub z: Option<f64>,
+    /// The polarization: none (unpolarized), horizontal or vertical.
+    #[arg(long, value_name = "WORD", default_value = "none", value_parser = PossibleValuesParser::new(["none", "horizontal", "vertical"]))]
+    pub polarization: String,
+    /// Mark the points of equal optical path, as often as that (cm): the wavefronts.
+    #[arg(long, value_name = "CM")]
+    pub wavefronts: Option<f64>,
+    /// Leave out branches below this share of a ray's power.
+    #[arg(long, value_name = "P", default_value_t = 0.01)]
+    pub min_power: f64,
+    /// Show space in parallel projection instead of the cross-section, seen from that azimuth and elevation, in
+    /// degrees, as in 30,20.
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", allow_hyphen_values = true, value_parser = angles)]
+    pub space: Option<[f64; 2]>,
+    /// With --space: layers of rays one behind the other along z.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub layers: u32,
+    /// Draw the setting instead: camera, photograph and devices to scale.
+    #[arg(long)]
+    pub setting: bool,
+    /// Size in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
+    pub size: [u32; 2],
+}
+
+/// Arguments of `export`.
+#[derive(Args, Debug)]
+pub struct ExportArguments {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The file to write; its ending decides: .npz, .vti (ParaView) or .csv; with --table .csv or .json.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Which device, counted from 0; the only one if absent.
+    #[arg(long, value_name = "N")]
+    pub device: Option<usize>,
+    /// The cells of the grid: how many along x, y and z, as in 200x200x1, or the side of a cubic cell in cm, as
+    /// in 0.1 [default: cubes, 64 along the longest side].
+    #[arg(long, value_name = "NxNxN|CM", value_parser = grid)]
+    pub grid: Option<Resolution>,
+    /// Along whose axes grid and tensors lie: the device's own, or the world's.
+    #[arg(long, value_name = "FRAME", default_value = "device", value_parser = PossibleValuesParser::new(["device", "world"]))]
+    pub frame: String,
+    /// Write the homogeneous segments as a table instead: corners, optic axes, principal values and axes of
+    /// the tensors, in the device's frame.
+    #[arg(long, conflicts_with_all = ["grid", "frame"])]
+    pub table: bool,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
 /// Arguments of `devices`.
 #[derive(Args, Debug)]
 pub struct DevicesArguments {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Reads a point such as -30,0,0.
+fn point(text: &str) -> Result<[f64; 3], String> {
+    numbers(text).ok_or_else(|| "write X,Y,Z in cm, as in -30,0,0".to_owned())
+}
+
+/// Reads two angles such as 30,20.
+fn angles(text: &str) -> Result<[f64; 2], String> {
+    numbers(text).ok_or_else(|| "write AZIMUTH,ELEVATION in degrees, as in 30,20".to_owned())
+}
+
+/// Reads a range such as -60..60:5.
+fn range(text: &str) -> Result<[f64; 3], String> {
+    let parts = text.split_once("..").and_then(|(from, rest)| {
+        let (to, step) = rest.split_once(':')?;
+        numbers(&format!("{from},{to},{step}"))
+    });
+    parts.ok_or_else(|| "write FROM..TO:STEP in degrees, as in -60..60:5".to_owned())
+}
+
+/// Finite numbers between commas.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers: Result<Vec<f64>, _> =
+        text.split(',').map(|number| number.trim().parse()).collect();
+    let numbers = numbers.ok().filter(|numbers| numbers.iter().all(|n| n.is_finite()))?;
+    numbers.try_into().ok()
+}
+
+/// Reads a grid such as 200x200x1 or 0.1.
+fn grid(text: &str) -> Result<Resolution, String> {
+    let counts: Result<Vec<u32>, _> = text.split('x').map(|count| count.trim().parse()).collect();
+    if let Some(counts) = counts.ok().and_then(|counts| <[u32; 3]>::try_from(counts).ok()) {
+        return Ok(Resolution::Cells(counts));
+    }
+    text.parse().map(Resolution::Spacing).map_err(|_| {
+        "write how many cells along x, y and z, as in 200x200x1, or the side of a cell in cm, as in 0.1"
+            .to_owned()
+    })
 }
 
 /// Reads a pixel such as 512,384.

@@ -6,7 +6,11 @@
 mod arguments;
 mod check;
 mod devices;
+mod diagram;
+mod drawn;
+mod export;
 mod figures;
+mod flux;
 mod gallery;
 mod input;
 mod interface;
@@ -42,6 +46,9 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Interface(arguments) => interface::run(arguments),
         Command::Figures(arguments) => figures::run(arguments, stop),
         Command::Gallery(arguments) => gallery::run(arguments, stop),
+        Command::Flux(arguments) => flux::run(arguments, stop),
+        Command::Diagram(arguments) => diagram::run(arguments, stop),
+        Command::Export(arguments) => export::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),
         Command::Schema => report::print_json(&cloakroom::scene_file::schema()),
     }

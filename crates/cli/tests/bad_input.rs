@@ -232,3 +232,44 @@ fn wrong_usage_is_another_status() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     }
 }
+
+#[test]
+fn exports_that_cannot_be_made() {
+    let square = small("[[device]]\nkind = \"square-cloak\"\n");
+    let export = |grid: &'static str| ["export", "scene.toml", "-o", "out.npz", "--grid", grid];
+    square.refuses_with(&export("0x3x3"), &["at least one cell"]);
+    square.refuses_with(&export("0"), &["positive spacing"]);
+    square.refuses_with(&export("4000000000x4000000000x4000000000"), &["MB of memory"]);
+    square.refuses_with(&["export", "scene.toml", "-o", "out.png"], &[".npz, .vti or .csv"]);
+    square
+        .refuses_with(&["export", "scene.toml", "--table", "-o", "out.npz"], &[".csv or a .json"]);
+    square.refuses_with(&["export", "scene.toml", "--device", "3", "-o", "out.npz"], &["device 3"]);
+    square.refuses_with(
+        &["export", "scene.toml", "--set", "device.0.show=bare", "-o", "out.npz"],
+        &["bare metal"],
+    );
+    small("").refuses_with(&["export", "scene.toml", "-o", "out.npz"], &["no device"]);
+}
+
+#[test]
+fn diagrams_and_fluxes_that_cannot_be_made() {
+    let square = small("[[device]]\nkind = \"square-cloak\"\n");
+    square.refuses_with(&["diagram", "scene.toml", "-o", "out.npz"], &[".svg or a .png"]);
+    square.refuses_with(&["diagram", "scene.toml", "-o", "out.svg", "--rays", "0"], &["rays is 0"]);
+    square.refuses_with(
+        &["diagram", "scene.toml", "-o", "out.svg", "--point", "0,0,0"],
+        &["inside device 0"],
+    );
+    small("").refuses_with(&["diagram", "scene.toml", "-o", "out.svg"], &["no device"]);
+    square.refuses_with(
+        &["flux", "scene.toml", "-o", "out.csv", "--set", "receiver.position=[5, 0, 0]"],
+        &["device 0", "receiver"],
+    );
+    square.refuses_with(&["flux", "scene.toml", "-o", "out.exr"], &[".csv or .npz"]);
+    square.refuses_with(
+        &["flux", "scene.toml", "--set", "receiver.normal=[0, 0, 0]"],
+        &["normal is [0, 0, 0]"],
+    );
+    square.refuses_with(&["flux", "scene.toml", "--sun", "80,-23"], &["does not rise"]);
+    small("").refuses_with(&["flux", "scene.toml"], &["no device"]);
+}

@@ -11,10 +11,12 @@
 //! are those of [`optics::wave`].
 
 pub mod device;
+pub mod flux;
 pub mod gallery;
 pub mod illustration;
 pub mod interface_exchange;
 pub mod keys;
+pub mod material;
 mod memory;
 pub mod output;
 pub mod paper;

@@ -4,7 +4,9 @@ use super::{Beyond, Finish};
 use glam::{DMat3, DVec3};
 use optics::geometry::Plane;
 use optics::medium::{Medium, ModeKind};
-use optics::propagation::{Border, Boundary, ConformalFlow, FlowEnd, Foothold, Half, RadialFlow};
+use optics::propagation::{
+    Border, Boundary, ConformalFlow, FlowEnd, Foothold, Half, PathPoint, RadialFlow,
+};
 
 /// A region filled with one medium.
 #[derive(Clone, Debug)]
@@ -195,6 +197,33 @@ impl Cell {
     #[must_use]
     pub fn takes_four(&self) -> bool {
         matches!(self, Self::Conformal(_))
+    }
+}
+
+/// Straight pieces that a closed form's path is drawn with.
+const PIECES: u32 = 96;
+
+impl Cell {
+    /// Points along the way that [`Cell::advance`] takes to `end`, with the optical path from its start: for
+    /// drawings. Without those between where they cannot be had.
+    #[must_use]
+    pub fn path(&self, ray: &InnerRay, end: &Passage, tolerance: f64) -> Vec<PathPoint> {
+        let ends = || {
+            let start = PathPoint { position: ray.position, optical_path: 0.0 };
+            vec![start, PathPoint { position: end.position, optical_path: end.optical_path }]
+        };
+        match self {
+            Self::Prism(_) => ends(),
+            Self::Conformal(cell) => {
+                let foothold =
+                    ray.foothold.or_else(|| cell.flow.foothold(cell.half, ray.position).ok());
+                let path = foothold
+                    .and_then(|start| cell.flow.path(&start, ray.wave_vector, tolerance).ok());
+                path.unwrap_or_else(ends)
+            }
+            Self::Radial(cell) if cell.inner == Beyond::Air && cell.turns_back(ray) => ends(),
+            Self::Radial(cell) => cell.flow.path(ray.position, ray.wave_vector, ray.mode, PIECES),
+        }
     }
 }
 

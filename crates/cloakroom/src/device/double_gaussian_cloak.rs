@@ -140,7 +140,8 @@ fn cloak(flow: &ConformalFlow, finish: Finish, extent: Extent, open_core: bool) 
         skin.push(Skin::InnerFloor { curve: curve.clone(), side, extent, beyond, finish });
     }
     let hole = Hole::Lens { curve, pose: Pose::new(DVec3::ZERO, 0.0), extent };
-    let hull = Hull::new(Solid::Prism { outline, extent }.with_hole(hole)).with_open_core();
+    let filled = Solid::Prism { outline, extent };
+    let hull = Hull::new(filled.clone().with_hole(hole)).with_open_core(filled);
     Structure { cells, skin, hull }
 }
 

@@ -17,6 +17,7 @@ mod grating_carpet;
 mod invisible_sphere;
 mod lenses;
 mod mirror_detour;
+mod occupant;
 mod prisms;
 mod quasi_conformal_carpet;
 mod round;
@@ -28,6 +29,7 @@ mod structure;
 pub use body_shape::{Body, BodyShape, Filling, Surface};
 pub use cell::{Cell, ConformalCell, Entrance, Face, InnerRay, Passage, Prism, RadialCell};
 pub use cross_section::{Contour, CrossSection, REACH, Region, Side};
+pub use occupant::Occupant;
 pub use skin::Skin;
 pub use structure::{Beyond, Finish, Hull, SkinHit, Structure};
 

@@ -65,7 +65,8 @@ pub(super) fn ball(radius: f64, flow: RadialFlow) -> Structure {
 
 /// A ball filled with a medium around an open core.
 pub(super) fn hollow_ball(core: f64, radius: f64, flow: RadialFlow) -> Structure {
-    let solid = Solid::ball(radius).with_hole(Hole::Round(Solid::ball(core)));
+    let filled = Solid::ball(radius);
+    let solid = filled.clone().with_hole(Hole::Round(Solid::ball(core)));
     let [outer, inner] = [radius, core].map(|radius| Sphere { radius });
     let beyond = Beyond::Cell(CELL);
     Structure {
@@ -74,7 +75,7 @@ pub(super) fn hollow_ball(core: f64, radius: f64, flow: RadialFlow) -> Structure
             Skin::Sphere { sphere: outer, beyond },
             Skin::InnerSphere { sphere: inner, beyond },
         ],
-        hull: Hull::new(solid).with_open_core(),
+        hull: Hull::new(solid).with_open_core(filled),
     }
 }
 
@@ -99,12 +100,12 @@ pub(super) fn tube(core: f64, radius: f64, extent: Extent, flow: RadialFlow) -> 
 /// A round cylinder filled with a medium around an open core.
 pub(super) fn hollow_tube(core: f64, radius: f64, extent: Extent, flow: RadialFlow) -> Structure {
     let cell = Cell::Radial(RadialCell { flow, inner: Beyond::Air });
-    let solid =
-        Solid::cylinder(radius, extent).with_hole(Hole::Round(Solid::cylinder(core, extent)));
+    let filled = Solid::cylinder(radius, extent);
+    let solid = filled.clone().with_hole(Hole::Round(Solid::cylinder(core, extent)));
     let mut skin = upright((core, Beyond::Air), radius, extent, Beyond::Cell(CELL));
     let cylinder = Cylinder { radius: core, extent };
     skin.push(Skin::InnerSide { cylinder, beyond: Beyond::Cell(CELL) });
-    Structure { cells: vec![cell], skin, hull: Hull::new(solid).with_open_core() }
+    Structure { cells: vec![cell], skin, hull: Hull::new(solid).with_open_core(filled) }
 }
 
 /// A round metal cylinder.

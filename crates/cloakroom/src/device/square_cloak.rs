@@ -161,7 +161,9 @@ fn cloak(
         cells.push(Cell::Prism(Prism { medium, faces }));
     }
     if open_core {
-        return Ok(Structure { cells, skin, hull: Hull::of_parts(segments).with_open_core() });
+        let filled = Solid::Prism { outline: Outline::new(square.to_vec()), extent };
+        let hull = Hull::of_parts(segments).with_open_core(filled);
+        return Ok(Structure { cells, skin, hull });
     }
     if let Some(ends) = extent.ends() {
         let hole = Outline::new(rhombus.to_vec());

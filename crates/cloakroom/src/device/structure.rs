@@ -2,7 +2,7 @@
 
 use super::{Body, Cell, Skin};
 use glam::DVec3;
-use optics::geometry::{Extent, FloorCurve, Outline, Solid};
+use optics::geometry::{Extent, FloorCurve, Outline, Pose, Solid};
 
 /// What lies on the other side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +45,8 @@ pub struct Hull {
     thin_mirror: Option<Solid>,
     metal: Option<FloorCurve>,
     body: Option<Box<Body>>,
-    open_core: bool,
+    /// The device with its hidden region filled, where that is air.
+    filled: Option<Solid>,
 }
 
 /// What holds a hull, about the origin or the z axis of the device's frame: rays that miss it miss
@@ -96,7 +97,7 @@ impl Hull {
     #[must_use]
     pub fn of_parts(solids: Vec<Solid>) -> Self {
         let reach = solids.iter().map(Reach::of).fold(Reach::Nothing, Reach::joined);
-        Self { solids, reach, thin_mirror: None, metal: None, body: None, open_core: false }
+        Self { solids, reach, thin_mirror: None, metal: None, body: None, filled: None }
     }
 
     /// The hull of a device with a polygonal cross-section that extends along z.
@@ -135,16 +136,16 @@ impl Hull {
         Self { body: Some(Box::new(body)), ..self }
     }
 
-    /// The hull of a cloak whose hidden region is air, and free.
+    /// The hull of a cloak whose hidden region is air, and free; `filled` is the cloak together with it.
     #[must_use]
-    pub fn with_open_core(self) -> Self {
-        Self { open_core: true, ..self }
+    pub fn with_open_core(self, filled: Solid) -> Self {
+        Self { filled: Some(filled), ..self }
     }
 
     /// Whether it leaves a hidden region free.
     #[must_use]
     pub fn has_open_core(&self) -> bool {
-        self.open_core
+        self.filled.is_some()
     }
 
     /// The body whose hull it is, if it is one's.
@@ -186,6 +187,28 @@ impl Hull {
     pub fn holds(&self, point: DVec3) -> bool {
         let inside = self.solids.iter().any(|solid| solid.holds(point));
         inside && self.metal.as_ref().is_none_or(|metal| metal.contains(point.truncate()))
+    }
+}
+
+impl Hull {
+    /// The solids with an open core filled.
+    fn filled_solids(&self) -> impl Iterator<Item = &Solid> {
+        self.filled.iter().chain(self.solids.iter().filter(|_| self.filled.is_none()))
+    }
+
+    /// Whether a point (in the device's frame) is of the device or of its hidden region, border included.
+    #[must_use]
+    pub fn spans(&self, point: DVec3) -> bool {
+        self.filled_solids().any(|solid| solid.contains(point))
+            && self.metal.as_ref().is_none_or(|metal| metal.contains(point.truncate()))
+    }
+
+    /// The least and the greatest coordinates of what it spans when it is at a place, infinite (or very
+    /// large) where it has no end; `None` if it spans nothing.
+    #[must_use]
+    pub fn bounds(&self, pose: &Pose) -> Option<[DVec3; 2]> {
+        let bounds = self.filled_solids().filter_map(|solid| solid.placed(pose).bounds());
+        bounds.reduce(|[low, high], [from, to]| [low.min(from), high.max(to)])
     }
 }
 

@@ -3,8 +3,11 @@
 
 mod color_bar;
 mod color_scale;
+mod diagram;
 mod drawing;
+mod heat_map;
 mod lettering;
+mod plot;
 mod quantity;
 mod scalar_map;
 mod setting;
@@ -15,8 +18,11 @@ mod ticks;
 
 pub use color_bar::ColorBar;
 pub use color_scale::ColorScale;
+pub use diagram::{Diagram, DiagramError, DiagramSettings, Projected, Source, diagram};
 pub use drawing::{Drawing, Element, Face, Ink, Shape, Stroke, Words};
+pub use heat_map::{HeatMap, HeatMapPanel};
 pub use lettering::{Lettering, Weight};
+pub use plot::{Curve, CurvePoint, Plot, PlotPanel};
 pub use quantity::{Dimension, Quantity, Unit};
 pub use scalar_map::{ScalarMap, scalar_map};
 pub use setting::{Setting, View, setting};

@@ -1,11 +1,15 @@
-//! Pictures into files: PNG, EXR and NPZ, each whole or not at all.
+//! Pictures (PNG, EXR, NPZ) and data on grids (NPZ, VTI, CSV) into files, each whole or not at all.
 
+mod arrays;
 mod exr_file;
+mod grid_file;
 mod npz_file;
 mod picture;
 mod png_file;
 mod whole_file;
 
+pub use arrays::{Arrays, write_arrays};
+pub use grid_file::{GridArray, GridFile, GridFormat, GridValues, write_grid};
 pub use image::RgbImage;
 pub use picture::{Channel, Picture, Samples};
 pub use png_file::{to_srgb, write_png, write_png_in_strips};
@@ -30,6 +34,14 @@ pub enum OutputError {
         "cannot tell the format of {} by its ending; use .png, .exr or .npz", path.display()
     )]
     UnknownFormat {
+        /// Which file.
+        path: PathBuf,
+    },
+    /// The ending of the file's name is not that of a format of data on grids.
+    #[error(
+        "cannot tell the format of {} by its ending; use .npz, .vti or .csv", path.display()
+    )]
+    UnknownGridFormat {
         /// Which file.
         path: PathBuf,
     },

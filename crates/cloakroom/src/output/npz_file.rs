@@ -34,13 +34,22 @@ pub(super) fn write_npz(picture: &Picture, path: &Path) -> Result<(), OutputErro
                 }
             }
         }
-        let metadata: serde_json::Map<String, serde_json::Value> =
-            picture.metadata.iter().map(|(key, text)| (key.clone(), text.clone().into())).collect();
-        let bytes = serde_json::to_vec(&metadata).map_err(io::Error::other)?;
-        npz.add_array("metadata", &ArrayView1::from(&bytes[..])).map_err(io::Error::other)?;
+        add_metadata(&mut npz, &picture.metadata)?;
         npz.finish().map_err(io::Error::other)?;
         Ok(())
     })
+}
+
+/// Adds metadata as the array of bytes `metadata`, which holds a JSON object in UTF-8.
+pub(super) fn add_metadata<W: io::Write + io::Seek>(
+    npz: &mut NpzWriter<W>,
+    metadata: &[(String, String)],
+) -> io::Result<()> {
+    let metadata: serde_json::Map<String, serde_json::Value> =
+        metadata.iter().map(|(key, text)| (key.clone(), text.clone().into())).collect();
+    let bytes = serde_json::to_vec(&metadata).map_err(io::Error::other)?;
+    npz.add_array("metadata", &ArrayView1::from(&bytes[..])).map_err(io::Error::other)?;
+    Ok(())
 }
 
 #[cfg(test)]

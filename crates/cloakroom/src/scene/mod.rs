@@ -5,6 +5,7 @@
 
 mod camera;
 mod polarizer;
+mod receiver;
 mod tables;
 
 use std::path::Path;
@@ -13,9 +14,10 @@ use glam::DVec3;
 
 pub use camera::{Camera, CameraRay, CameraSettings, Projection};
 pub use polarizer::Polarizer;
+pub use receiver::Receiver;
 pub use tables::{
     CAMERA_KEYS, DEFAULT_PHOTOGRAPH, LIGHT_KEYS, OPTIONAL_CHANNELS, PHOTOGRAPH_KEYS, PICTURE_KEYS,
-    PLACEMENT_KEYS, SCALAR_CHANNELS, SURROUNDINGS_KEYS, TABLES, TRACE_KEYS,
+    PLACEMENT_KEYS, RECEIVER_KEYS, SCALAR_CHANNELS, SURROUNDINGS_KEYS, TABLES, TRACE_KEYS,
 };
 
 use crate::device::Entry;
@@ -38,6 +40,8 @@ pub struct Scene {
     pub trace: TraceSettings,
     /// What a picture shows and holds.
     pub picture: PictureSettings,
+    /// The plane that `cloakroom flux` receives light on.
+    pub receiver: Receiver,
     /// The devices, in the order of the scene file.
     pub devices: Vec<DeviceSettings>,
     /// The scene as TOML, overrides applied: it goes into the metadata of pictures.

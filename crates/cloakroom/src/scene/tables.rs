@@ -190,6 +190,30 @@ pub static PLACEMENT_KEYS: &[Key] = &[
     },
 ];
 
+/// `[receiver]`.
+pub static RECEIVER_KEYS: &[Key] = &[
+    Key {
+        name: "position",
+        doc: "The middle of the rectangle on which light is received.",
+        kind: vector([50.0, 0.0, 0.0], "cm", Limits::Finite),
+    },
+    Key {
+        name: "normal",
+        doc: "The direction that it faces, of any length: light is received from there.",
+        kind: vector([-1.0, 0.0, 0.0], "", Limits::Finite),
+    },
+    Key {
+        name: "width",
+        doc: "Its size across the z axis.",
+        kind: number(60.0, "cm", Limits::Positive),
+    },
+    Key {
+        name: "length",
+        doc: "Its size along the z axis; of no matter where all devices are endless along z.",
+        kind: number(60.0, "cm", Limits::Positive),
+    },
+];
+
 /// The tables that stand at most once in a scene, in the order in which they are documented.
 pub static TABLES: &[(&str, &[Key])] = &[
     ("camera", CAMERA_KEYS),
@@ -198,6 +222,7 @@ pub static TABLES: &[(&str, &[Key])] = &[
     ("surroundings", SURROUNDINGS_KEYS),
     ("trace", TRACE_KEYS),
     ("picture", PICTURE_KEYS),
+    ("receiver", RECEIVER_KEYS),
 ];
 
 /// "none", then every scalar channel.

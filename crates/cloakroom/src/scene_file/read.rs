@@ -10,7 +10,7 @@ use crate::keys::{Key, KeyError, KeyKind, Value, Values, hint, quoted, unknown};
 use crate::photograph::ImageSource;
 use crate::scene::{
     Camera, CameraSettings, DeviceSettings, Light, PLACEMENT_KEYS, PhotographSettings,
-    PictureSettings, Scene, SurroundingsSettings, TABLES, TraceSettings,
+    PictureSettings, Receiver, Scene, SurroundingsSettings, TABLES, TraceSettings,
 };
 
 /// The list of devices.
@@ -67,6 +67,7 @@ fn store<'a>(
         }
         "trace" => scene.trace = TraceSettings::from_values(values),
         "picture" => scene.picture = PictureSettings::from_values(values),
+        "receiver" => scene.receiver = Receiver::from_values(values)?,
         _ => unreachable!("`{table}` is in the list of tables but not in the scene"),
     }
     Ok(())

@@ -3,9 +3,9 @@
 
 use super::Placed;
 use crate::device::{Body, Filling};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use optics::geometry::Pose;
-use optics::medium::{Medium, Tensor};
+use optics::medium::Medium;
 
 /// The most bodies a scene may have: a ray keeps track of those around it in the bits of one word.
 pub const MOST_BODIES: usize = 64;
@@ -137,18 +137,10 @@ impl Bodies {
 /// A filling in the world's frame.
 fn turned(filling: &Filling, pose: &Pose) -> Filling {
     let Filling::Medium { medium, group_index } = filling else { return filling.clone() };
-    let [x, y, z] = DVec3::AXES.map(|axis| pose.vector_to_world(axis));
-    let turn = DMat3::from_cols(x, y, z);
-    let turned = |tensor: Tensor| {
-        let part = |m: DMat3| {
-            let m = turn * m * turn.transpose();
-            // Symmetric to the last bit.
-            (m + m.transpose()) * 0.5
-        };
-        Tensor { re: part(tensor.re), im: part(tensor.im) }
-    };
+    let turn = pose.rotation();
     let (permittivity, permeability) = medium.tensors();
     // A medium stays one when it is turned.
-    let medium = Medium::new(turned(permittivity), turned(permeability)).unwrap_or(*medium);
+    let medium =
+        Medium::new(permittivity.turned(&turn), permeability.turned(&turn)).unwrap_or(*medium);
     Filling::Medium { medium, group_index: *group_index }
 }

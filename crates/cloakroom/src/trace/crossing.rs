@@ -3,6 +3,7 @@
 use super::bodies::{Around, Bodies, Crossing, Inside, ONE_SURFACE};
 use super::branch::{Branch, Place};
 use super::tracer::Tracer;
+use super::{Leg, Witness};
 use crate::device::Finish;
 use glam::DVec3;
 use optics::interface::Side;
@@ -15,7 +16,7 @@ const MOST_STANDSTILLS: u8 = 16;
 /// Tells events at bodies from those at devices in the fingerprint of a path.
 const BODY_EVENT: u64 = 1 << 55;
 
-impl<const N: usize> Tracer<'_, N> {
+impl<const N: usize, W: Witness<N>> Tracer<'_, N, W> {
     /// The surface of a body that a ray in air meets before the screen and before the surface of another device
     /// at the distance `hit`.
     pub(super) fn body_ahead(
@@ -50,9 +51,11 @@ impl<const N: usize> Tracer<'_, N> {
             Inside::Medium(medium, group_index) => (medium, group_index),
             Inside::Air | Inside::Opaque(_) => (&Medium::AIR, None),
         };
+        let from = branch.position;
         branch.position += way;
         branch.met_device = true;
         let optical_path = branch.wave_vector.dot(way);
+        self.witness.saw(|| Leg::straight(branch, from, optical_path));
         branch.optical_path += optical_path;
         branch.group_path += match group_index {
             Some(index) => index * crossing.distance,

@@ -1,7 +1,7 @@
 //! The first surface that a ray meets, looked at on its own.
 
 use super::bodies::{Around, Bodies, Inside};
-use super::{Launch, Tracer};
+use super::{Launch, Tracer, Witness};
 use crate::device::{Beyond, Finish};
 use glam::DVec3;
 use optics::interface::{IncidentWave, OutgoingWave, Side, split, transmit_antireflection};
@@ -36,7 +36,7 @@ impl<const N: usize> FirstFace<N> {
     }
 }
 
-impl<const N: usize> Tracer<'_, N> {
+impl<const N: usize, W: Witness<N>> Tracer<'_, N, W> {
     /// What becomes of a ray at the first surface that it meets, without following it any further;
     /// `None` if it meets none before the screen. The ray must start in air.
     #[must_use]

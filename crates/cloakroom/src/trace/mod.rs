@@ -16,6 +16,7 @@ mod leaf;
 mod screen;
 mod surfaces;
 mod tracer;
+mod witness;
 
 pub use bench::{Bench, Placed};
 pub use bodies::MOST_BODIES;
@@ -25,3 +26,4 @@ pub use four::FourTracers;
 pub use leaf::{Leaf, Outcome, Rarities};
 pub use screen::Screen;
 pub use tracer::{Launch, Limits, Tracer};
+pub use witness::{Leg, Line, Witness, lines};

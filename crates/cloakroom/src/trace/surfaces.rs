@@ -1,7 +1,7 @@
 //! From surface to surface: how a branch runs on, and what becomes of it where media meet.
 
 use super::branch::{Branch, Place};
-use super::{Placed, Tracer};
+use super::{Leg, Placed, Tracer, Witness};
 use crate::device::{Beyond, Cell, Entrance, Finish, Passage, SkinHit};
 use glam::DVec3;
 use optics::interface::{
@@ -9,7 +9,7 @@ use optics::interface::{
 };
 use optics::medium::{Medium, ModeKind};
 
-impl<'a, const N: usize> Tracer<'a, N> {
+impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
     /// Whether a ray in air runs on through air to the screen, or for ever.
     #[must_use]
     pub fn meets_nothing(&self, origin: DVec3, direction: DVec3) -> bool {
@@ -36,7 +36,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
             self.leaves.push(branch.leaf(None));
             return false;
         };
+        let from = branch.position;
         branch.position += branch.direction * hit.distance;
+        self.witness.saw(|| Leg::straight(branch, from, hit.distance));
         branch.optical_path += hit.distance;
         branch.group_path += hit.distance;
         branch.met_device = true;
@@ -104,6 +106,12 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let device = &self.bench.devices()[usize::from(device_index)];
         let cell = self.cell(device, cell_index);
         let way = passage.position - branch.position;
+        self.witness.saw(|| Leg {
+            power: branch.power,
+            optical_path: branch.optical_path,
+            inside: Some((device_index, cell_index)),
+            path: cell.path(&branch.inner_ray(), &passage, self.limits.tolerance),
+        });
         branch.position = passage.position;
         let mut graded_here = None;
         let medium = cell.medium(passage.position, passage.foothold.as_ref(), &mut graded_here);

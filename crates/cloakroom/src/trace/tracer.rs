@@ -1,7 +1,7 @@
 //! The walk along the ray tree.
 
 use super::branch::{Branch, Place};
-use super::{Bench, Leaf, Outcome, Screen};
+use super::{Bench, Leaf, Outcome, Screen, Witness};
 use crate::device::{InnerRay, Passage};
 use glam::DVec3;
 use optics::interface::OutgoingWave;
@@ -41,9 +41,9 @@ const NO_POWER: f64 = 1e-24;
 /// The share of the power that rounding may take at an interface.
 const LEAK: f64 = 1e-10;
 
-/// Traces rays. It keeps its memory from ray to ray: make one a thread.
+/// Traces rays. It keeps its memory from ray to ray: make one a thread. `W` is who watches it, nobody as a rule.
 #[derive(Clone, Debug)]
-pub struct Tracer<'a, const N: usize> {
+pub struct Tracer<'a, const N: usize, W = ()> {
     pub(super) bench: &'a Bench,
     pub(super) limits: Limits,
     pub(super) screen: Option<Screen>,
@@ -53,6 +53,7 @@ pub struct Tracer<'a, const N: usize> {
     /// Surfaces met, and the power below which branches have become endless.
     events: u32,
     threshold: f64,
+    pub(super) witness: W,
 }
 
 /// A branch that waits to be taken through a cell.
@@ -69,7 +70,22 @@ impl<'a, const N: usize> Tracer<'a, N> {
     pub fn new(bench: &'a Bench, limits: Limits) -> Self {
         let outcome = Outcome::default();
         let (waiting, leaves) = (Vec::new(), Vec::new());
-        Self { bench, limits, screen: None, waiting, leaves, outcome, events: 0, threshold: 0.0 }
+        let (screen, events, threshold, witness) = (None, 0, 0.0, ());
+        Self { bench, limits, screen, waiting, leaves, outcome, events, threshold, witness }
+    }
+
+    /// The same tracer, watched.
+    #[must_use]
+    pub fn watched<W: Witness<N>>(self, witness: W) -> Tracer<'a, N, W> {
+        let Self { bench, limits, screen, waiting, leaves, outcome, events, threshold, .. } = self;
+        Tracer { bench, limits, screen, waiting, leaves, outcome, events, threshold, witness }
+    }
+}
+
+impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
+    /// Who has watched it.
+    pub fn witness(&mut self) -> &mut W {
+        &mut self.witness
     }
 
     /// Ends branches that meet a screen.

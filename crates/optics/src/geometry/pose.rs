@@ -1,7 +1,7 @@
 //! Where a device stands and how it is turned.
 
 use crate::wave::ComplexVector;
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// A rotation about the device's own z axis followed by a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +41,13 @@ impl Pose {
     #[must_use]
     pub fn origin(&self) -> DVec3 {
         self.origin
+    }
+
+    /// The rotation that takes vectors of the device's frame to the world.
+    #[must_use]
+    pub fn rotation(&self) -> DMat3 {
+        let [x, y, z] = DVec3::AXES.map(|axis| self.vector_to_world(axis));
+        DMat3::from_cols(x, y, z)
     }
 
     /// A point of the world in the device's frame.

@@ -79,6 +79,48 @@ impl Solid {
         }
     }
 
+    /// Whether a point lies inside or on the border.
+    #[must_use]
+    pub fn contains(&self, point: DVec3) -> bool {
+        match self {
+            Self::Nothing => false,
+            Self::Prism { outline, extent } => {
+                let p = point.truncate();
+                extent.contains(point.z) && !outline.corners().is_empty() && outline.contains(p)
+            }
+            Self::Cylinder { centre, radius, extent } => {
+                let beside = point.truncate().distance_squared(*centre);
+                extent.contains(point.z) && beside <= radius * radius
+            }
+            Self::Ball { centre, radius } => point.distance_squared(*centre) <= radius * radius,
+            Self::Hollow { whole, hole } => whole.contains(point) && !hole.holds(point),
+        }
+    }
+
+    /// The least and the greatest coordinates, infinite where it has no end; `None` for nothing.
+    #[must_use]
+    pub fn bounds(&self) -> Option<[DVec3; 2]> {
+        let boxed = |[low, high]: [DVec2; 2], extent: &Extent| {
+            [low.extend(extent.min), high.extend(extent.max)]
+        };
+        match self {
+            Self::Nothing => None,
+            Self::Prism { outline, extent } => {
+                let first = *outline.corners().first()?;
+                let ends = outline
+                    .corners()
+                    .iter()
+                    .fold([first; 2], |[low, high], corner| [low.min(*corner), high.max(*corner)]);
+                Some(boxed(ends, extent))
+            }
+            Self::Cylinder { centre, radius, extent } => {
+                Some(boxed([*centre - *radius, *centre + *radius], extent))
+            }
+            Self::Ball { centre, radius } => Some([*centre - *radius, *centre + *radius]),
+            Self::Hollow { whole, .. } => whole.bounds(),
+        }
+    }
+
     /// The body at its place in the world.
     #[must_use]
     pub fn placed(&self, pose: &Pose) -> Self {

@@ -261,6 +261,16 @@ impl Medium {
         }
     }
 
+    /// The refractive index of an isotropic medium, the geometric mean over the principal axes and
+    /// polarizations of another: (det ε det µ)^(1/6), negative where both are. Of an absorbing medium, that of
+    /// the real parts.
+    #[must_use]
+    pub fn mean_index(&self) -> f64 {
+        let (e, m) = (self.permittivity.determinant(), self.permeability.determinant());
+        let size = (e * m).abs().powf(1.0 / 6.0);
+        if e < 0.0 && m < 0.0 { -size } else { size }
+    }
+
     /// The optic axis of a uniaxial medium, a unit vector of either sense.
     #[must_use]
     pub fn optic_axis(&self) -> Option<DVec3> {

@@ -23,6 +23,17 @@ impl Tensor {
         Self { re: dyad * along.re + rest * across.re, im: dyad * along.im + rest * across.im }
     }
 
+    /// The tensor of a medium that has been turned by a rotation.
+    #[must_use]
+    pub fn turned(&self, rotation: &DMat3) -> Self {
+        let part = |m: &DMat3| {
+            let m = *rotation * *m * rotation.transpose();
+            // Symmetric to the last bit.
+            (m + m.transpose()) * 0.5
+        };
+        Self { re: part(&self.re), im: part(&self.im) }
+    }
+
     /// The tensor, made symmetric to the last bit, if it can be that of a medium.
     pub(super) fn checked(self, quantity: &'static str) -> Result<Self, MediumError> {
         if !self.re.is_finite() || !self.im.is_finite() {

@@ -10,3 +10,14 @@ pub use radial::{
     Border, CentralLens, OpticAxis, RadialEnd, RadialFlow, TransformedShell, TransmutedSphere,
     UniaxialCylinder,
 };
+
+use glam::DVec3;
+
+/// A point of a ray's path, for drawings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPoint {
+    /// Where it is, cm.
+    pub position: DVec3,
+    /// The optical path from the start of the path, cm.
+    pub optical_path: f64,
+}

@@ -2,7 +2,7 @@
 
 use super::super::drawing::{Drawing, Ink, Shape};
 use super::device;
-use super::index_map::{mean_index, on_sheet};
+use super::index_map::on_sheet;
 use super::medium_axes::MediumAxes;
 use super::subject::{Subject, bounds};
 use super::view::View;
@@ -25,7 +25,7 @@ pub(super) fn tint(body: &Body) -> Ink {
     const POSITIVE: [f64; 3] = [107.0, 174.0, 214.0];
     const NEGATIVE: [f64; 3] = [244.0, 165.0, 130.0];
     let Some(medium) = medium(body) else { return OPAQUE };
-    let index = mean_index(medium);
+    let index = medium.mean_index();
     let (far, off) = if index < 0.0 { (NEGATIVE, -index) } else { (POSITIVE, (index - 1.0).abs()) };
     let share = off / (off + 1.0);
     let mix = |paper: u8, far: f64| (f64::from(paper) * (1.0 - share) + far * share).round() as u8;

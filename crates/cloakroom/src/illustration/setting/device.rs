@@ -2,7 +2,7 @@
 
 use super::super::drawing::{Drawing, Face, Ink, Shape, Words};
 use super::body;
-use super::index_map::{IndexScale, mean_index, on_sheet};
+use super::index_map::{IndexScale, on_sheet};
 use super::medium_axes::{MediumAxes, draw_cross};
 use super::subject::{Subject, bounds};
 use super::view::View;
@@ -113,7 +113,7 @@ pub(super) fn draw_filling(
 
 /// The index of a medium in words.
 pub(super) fn index_label(medium: &Medium) -> Vec<(Face, String)> {
-    let value = format!(" = {}", rounded(mean_index(medium)));
+    let value = format!(" = {}", rounded(medium.mean_index()));
     vec![(Face::Italic, "n".to_owned()), (Face::Regular, value)]
 }
 

@@ -65,7 +65,7 @@ pub(super) fn double_arrow(
 }
 
 /// The head of an arrow with its tip at a point; `back` is the unit vector along its shaft.
-pub(super) fn arrow_head(tip: DVec2, back: DVec2, length: f64) -> Shape {
+pub(in crate::illustration) fn arrow_head(tip: DVec2, back: DVec2, length: f64) -> Shape {
     let base = tip + length * back;
     let side = 0.32 * length * back.perp();
     Shape::Area(vec![vec![tip, base + side, base - side]])

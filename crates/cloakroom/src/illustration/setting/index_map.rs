@@ -12,7 +12,6 @@ use crate::device::Region;
 use crate::output::RgbImage;
 use glam::{DAffine2, DVec2};
 use optics::geometry::Pose;
-use optics::medium::Medium;
 
 /// The width of the colours of the bar.
 const BAR: f64 = 22.0;
@@ -43,7 +42,7 @@ impl IndexScale {
                 .filter_map(|p| region.cell.medium_at(p))
             {
                 isotropic &= MediumAxes::of(&medium).is_none();
-                numbers.push(mean_index(&medium));
+                numbers.push(medium.mean_index());
             }
         }
         let title = if isotropic { "refractive index" } else { "mean refractive index" };
@@ -76,7 +75,7 @@ impl IndexScale {
             .flat_map(|row| (0..columns).map(move |column| (column, row)))
             .map(|(column, row)| {
                 let medium = region.cell.medium_at(at(column, row))?;
-                Some(mean_index(&medium)).filter(|index| index.is_finite())
+                Some(medium.mean_index()).filter(|index| index.is_finite())
             })
             .collect();
         // What lies just outside the medium shows where a pixel is cut by the border.
@@ -100,54 +99,56 @@ impl IndexScale {
     }
 
     /// Draws the colour bar with its top left corner at a point, as high as told.
-    pub fn draw_bar(&self, drawing: &mut Drawing, [at, size]: [DVec2; 2]) {
-        let steps = 128;
-        let image = RgbImage::from_fn(1, steps, |_, row| {
-            self.colors.color_at(1.0 - (f64::from(row) + 0.5) / f64::from(steps))
-        });
-        let (width, height) = (BAR, size.y);
-        let place = DAffine2::from_cols(DVec2::X * width, DVec2::Y * height, at);
-        let frame = corners([at, DVec2::new(width, height)]);
-        drawing.add("color-bar", Shape::Image { image, place }).within(vec![frame.clone()]);
-        drawing.add("color-bar-frame", Shape::Area(vec![frame])).stroked(INK, THIN);
-        let (below, above) = self.colors.is_clipped();
-        for (clipped, end, up) in [(above, at, -1.0), (below, at + DVec2::Y * height, 1.0)] {
-            if clipped {
-                // A point: there are numbers beyond.
-                let tip = end + DVec2::new(width / 2.0, up * width / 2.0);
-                let rgb = self.colors.color_at(if up < 0.0 { 1.0 } else { 0.0 }).0;
-                let point = Shape::Area(vec![vec![end, tip, end + DVec2::X * width]]);
-                drawing.add("color-bar-end", point).filled(Ink::new(rgb)).stroked(INK, THIN);
-            }
-        }
-        let most = (height / (1.6 * TEXT)) as usize;
-        let axis = axis(&self.quantity, self.colors.range(), most);
-        let mut widest = 0.0_f64;
-        for tick in &axis.ticks {
-            let from = at + DVec2::new(width, (1.0 - tick.place) * height);
-            let line = vec![from, from + DVec2::X * 7.0];
-            drawing.add("tick", Shape::Line(line)).stroked(INK, THIN);
-            let words = Words::new(tick.label.clone(), from + DVec2::X * 12.0, TEXT).anchored(0.0);
-            widest = widest.max(words.width());
-            drawing.add("tick-label", Shape::Words(words)).filled(INK);
-        }
-        let x = width + 12.0 + widest + 0.8 * TEXT;
-        let title = Words::new(axis.title, at + DVec2::new(x, height / 2.0), TEXT).turned(90.0);
-        drawing.add("color-bar-title", Shape::Words(title)).filled(INK);
+    pub fn draw_bar(&self, drawing: &mut Drawing, place: [DVec2; 2]) {
+        draw_color_bar(drawing, &self.colors, &self.quantity, place);
     }
+}
+
+/// Draws the bar of a scale of colours with its top left corner at a point, as high as told.
+pub(in crate::illustration) fn draw_color_bar(
+    drawing: &mut Drawing,
+    colors: &ColorScale,
+    quantity: &Quantity,
+    [at, size]: [DVec2; 2],
+) {
+    let steps = 128;
+    let image = RgbImage::from_fn(1, steps, |_, row| {
+        colors.color_at(1.0 - (f64::from(row) + 0.5) / f64::from(steps))
+    });
+    let (width, height) = (BAR, size.y);
+    let place = DAffine2::from_cols(DVec2::X * width, DVec2::Y * height, at);
+    let frame = corners([at, DVec2::new(width, height)]);
+    drawing.add("color-bar", Shape::Image { image, place }).within(vec![frame.clone()]);
+    drawing.add("color-bar-frame", Shape::Area(vec![frame])).stroked(INK, THIN);
+    let (below, above) = colors.is_clipped();
+    for (clipped, end, up) in [(above, at, -1.0), (below, at + DVec2::Y * height, 1.0)] {
+        if clipped {
+            // A point: there are numbers beyond.
+            let tip = end + DVec2::new(width / 2.0, up * width / 2.0);
+            let rgb = colors.color_at(if up < 0.0 { 1.0 } else { 0.0 }).0;
+            let point = Shape::Area(vec![vec![end, tip, end + DVec2::X * width]]);
+            drawing.add("color-bar-end", point).filled(Ink::new(rgb)).stroked(INK, THIN);
+        }
+    }
+    let most = (height / (1.6 * TEXT)) as usize;
+    let axis = axis(quantity, colors.range(), most);
+    let mut widest = 0.0_f64;
+    for tick in &axis.ticks {
+        let from = at + DVec2::new(width, (1.0 - tick.place) * height);
+        let line = vec![from, from + DVec2::X * 7.0];
+        drawing.add("tick", Shape::Line(line)).stroked(INK, THIN);
+        let words = Words::new(tick.label.clone(), from + DVec2::X * 12.0, TEXT).anchored(0.0);
+        widest = widest.max(words.width());
+        drawing.add("tick-label", Shape::Words(words)).filled(INK);
+    }
+    let x = width + 12.0 + widest + 0.8 * TEXT;
+    let title = Words::new(axis.title, at + DVec2::new(x, height / 2.0), TEXT).turned(90.0);
+    drawing.add("color-bar-title", Shape::Words(title)).filled(INK);
 }
 
 /// Points of a device's frame on the sheet.
 pub(super) fn on_sheet(view: &View, pose: &Pose, points: &[DVec2]) -> Vec<DVec2> {
     points.iter().map(|p| view.place(pose.point_to_world(*p))).collect()
-}
-
-/// The refractive index of an isotropic medium, the geometric mean over all directions and
-/// polarizations of another: (det ε det µ)^(1/6), negative where both are.
-pub(super) fn mean_index(medium: &Medium) -> f64 {
-    let (e, m) = (medium.permittivity().determinant(), medium.permeability().determinant());
-    let size = (e * m).abs().powf(1.0 / 6.0);
-    if e < 0.0 && m < 0.0 { -size } else { size }
 }
 
 /// Fills pixels without a number from their neighbours.

@@ -12,11 +12,15 @@ mod stage;
 mod subject;
 mod view;
 
+pub(super) use dimension::arrow_head;
+pub(super) use index_map::draw_color_bar;
+pub(super) use stage::draw_axes;
 pub use view::View;
 
 use super::drawing::{Drawing, Ink, Shape, Words};
 use crate::render::{Studio, StudioError, metadata};
 use crate::scene::Scene;
+use crate::trace::Bench;
 use glam::DVec2;
 use index_map::IndexScale;
 use layout::Layout;
@@ -35,21 +39,21 @@ pub struct Setting {
 }
 
 /// The size of lettering. All lengths are for a sheet as large as 1024 x 768.
-const TEXT: f64 = 24.0;
+pub(super) const TEXT: f64 = 24.0;
 /// The width of thin lines.
-const THIN: f64 = 1.5;
+pub(super) const THIN: f64 = 1.5;
 /// The width of the lines that matter.
-const THICK: f64 = 2.6;
+pub(super) const THICK: f64 = 2.6;
 
-const INK: Ink = Ink::new([24, 24, 24]);
-const GRAY: Ink = Ink::new([120, 120, 120]);
-const PAPER: Ink = Ink::new([255, 255, 255]);
-const METAL: Ink = Ink::new([196, 196, 196]);
-const MEDIUM: Ink = Ink::new([222, 235, 247]);
+pub(super) const INK: Ink = Ink::new([24, 24, 24]);
+pub(super) const GRAY: Ink = Ink::new([120, 120, 120]);
+pub(super) const PAPER: Ink = Ink::new([255, 255, 255]);
+pub(super) const METAL: Ink = Ink::new([196, 196, 196]);
+pub(super) const MEDIUM: Ink = Ink::new([222, 235, 247]);
 const OPAQUE: Ink = Ink::new([122, 92, 66]).faint(0.55);
 /// Colours that most people tell apart (Okabe & Ito, Color universal design, 2008).
-const BLUE: Ink = Ink::new([0, 114, 178]);
-const VERMILION: Ink = Ink::new([213, 94, 0]);
+pub(super) const BLUE: Ink = Ink::new([0, 114, 178]);
+pub(super) const VERMILION: Ink = Ink::new([213, 94, 0]);
 const SKY: Ink = Ink::new([86, 180, 233]);
 
 /// Draws the setting of a scene: a projection on the xy-plane (x to the right, y up, z out of the
@@ -87,7 +91,7 @@ pub fn setting(scene: &Scene) -> Result<Setting, StudioError> {
     draw_devices(&mut drawing, &layout.view, &whole, scale.as_ref());
     stage.draw_before(&mut drawing, &layout.view);
     stage.draw_distances(&mut drawing, &layout.view, &subjects);
-    stage::draw_axes(&mut drawing, layout.axes);
+    draw_axes(&mut drawing, layout.axes);
     for inset in &layout.insets {
         inset.draw_frame(&mut drawing, &layout.view);
         let is_in = |index: &&usize| inset.group.subjects.contains(*index);
@@ -102,9 +106,65 @@ pub fn setting(scene: &Scene) -> Result<Setting, StudioError> {
     Ok(Setting { drawing, view: layout.view, metadata: metadata(scene) })
 }
 
+/// The devices of a scene in cross-section, to be drawn in any view.
+pub(super) struct Devices<'s> {
+    subjects: Vec<Subject<'s>>,
+    scale: Option<IndexScale>,
+}
+
+impl<'s> Devices<'s> {
+    pub fn new(bench: &'s Bench) -> Self {
+        let subjects = Subject::all(bench);
+        let scale = IndexScale::of(&subjects);
+        Self { subjects, scale }
+    }
+
+    /// Least and greatest x and y of all that has an end, cm.
+    pub fn bounds(&self) -> Option<[DVec2; 2]> {
+        subject::bounds(self.subjects.iter().filter_map(Subject::bounds).flatten())
+    }
+
+    /// Whether the index of graded media is drawn in colours, which a bar explains.
+    pub fn has_bar(&self) -> bool {
+        self.scale.is_some()
+    }
+
+    /// Draws the devices with the axes of their media.
+    pub fn draw(&self, drawing: &mut Drawing, view: &View) {
+        let order = Subject::from_back(&self.subjects);
+        let shown: Vec<_> = order.iter().map(|index| (&self.subjects[*index], true)).collect();
+        draw_shapes(drawing, view, &shown, self.scale.as_ref());
+    }
+
+    /// Draws the bar of the colours at a place: its top left corner and size.
+    pub fn draw_bar(&self, drawing: &mut Drawing, place: [DVec2; 2]) {
+        if let Some(scale) = &self.scale {
+            scale.draw_bar(drawing, place);
+        }
+    }
+}
+
 /// Draws devices from back to front, and where it says so in detail: with the axes of their media and, before
 /// everything else so that they can be read, their dimensions.
 fn draw_devices(
+    drawing: &mut Drawing,
+    view: &View,
+    devices: &[(&Subject<'_>, bool)],
+    scale: Option<&IndexScale>,
+) {
+    draw_shapes(drawing, view, devices, scale);
+    for (place, (subject, _)) in devices.iter().enumerate().filter(|(_, (_, detail))| *detail) {
+        let is_inner = |(other, (around, _)): (usize, &(&Subject<'_>, bool))| {
+            other != place && subject.is_within(around, other > place)
+        };
+        if !devices.iter().enumerate().any(is_inner) {
+            device::draw_dimensions(drawing, view, subject);
+        }
+    }
+}
+
+/// Draws devices from back to front, without their dimensions.
+fn draw_shapes(
     drawing: &mut Drawing,
     view: &View,
     devices: &[(&Subject<'_>, bool)],
@@ -116,18 +176,10 @@ fn draw_devices(
             device::draw_media(drawing, view, subject, &devices[place + 1..]);
         }
     }
-    for (place, (subject, _)) in devices.iter().enumerate().filter(|(_, (_, detail))| *detail) {
-        let is_inner = |(other, (around, _)): (usize, &(&Subject<'_>, bool))| {
-            other != place && subject.is_within(around, other > place)
-        };
-        if !devices.iter().enumerate().any(is_inner) {
-            device::draw_dimensions(drawing, view, subject);
-        }
-    }
 }
 
 /// The sheet for a picture of that many pixels: of its aspect, and as large as one of 1024 x 768.
-fn sheet(resolution: [u32; 2]) -> DVec2 {
+pub(super) fn sheet(resolution: [u32; 2]) -> DVec2 {
     let pixels = DVec2::from(resolution.map(f64::from));
     pixels * (1024.0 * 768.0 / (pixels.x * pixels.y)).sqrt()
 }

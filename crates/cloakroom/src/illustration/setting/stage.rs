@@ -245,7 +245,7 @@ fn draw_eye(drawing: &mut Drawing, at: DVec2, forward: DVec2) {
 }
 
 /// Draws the directions of x, y and z in a box of the sheet whose top left corner is at a point.
-pub(super) fn draw_axes(drawing: &mut Drawing, corner: DVec2) {
+pub(in crate::illustration) fn draw_axes(drawing: &mut Drawing, corner: DVec2) {
     let origin = corner + DVec2::new(0.26 * AXES.x, 0.74 * AXES.y);
     let length = 0.5 * AXES.x;
     for (name, direction) in [("x", DVec2::X), ("y", -DVec2::Y)] {

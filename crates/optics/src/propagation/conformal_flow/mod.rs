@@ -12,6 +12,7 @@
 mod course;
 mod crossing;
 mod frame;
+mod path;
 mod strides;
 mod walk;
 
@@ -279,6 +280,16 @@ impl ConformalFlow {
         wave_vector: DVec3,
         tolerance: f64,
     ) -> Result<Walk, FlowError> {
+        let (course, begin) = self.course(start, wave_vector, tolerance)?;
+        Ok(Walk::new(self, course, begin))
+    }
+
+    fn course(
+        &self,
+        start: &Foothold,
+        wave_vector: DVec3,
+        tolerance: f64,
+    ) -> Result<(Course, Point), FlowError> {
         if !wave_vector.is_finite() {
             return Err(FlowError::NotFinite);
         }
@@ -299,7 +310,7 @@ impl ConformalFlow {
         if self.aims_at_floor(&begin) {
             course = Course::new(p.z, self.strength, &demands(MIRROR_MAGNIFIES * tolerance));
         }
-        Ok(Walk::new(self, course, begin))
+        Ok((course, begin))
     }
 
     /// Whether a straight line in virtual space leads to the mirror.

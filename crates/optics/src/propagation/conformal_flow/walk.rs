@@ -68,6 +68,11 @@ impl Walk {
         self.moved(flow, &trial.end, trial.error);
     }
 
+    /// Where it is, if that is on its way and not beyond the border, which it looks for.
+    pub fn waypoint(&self) -> Option<&Point> {
+        matches!(self.state, State::Stepping(_) | State::Arrived(_)).then_some(&self.here)
+    }
+
     /// The end of the walk.
     pub fn arrival(&self) -> Result<(Point, Boundary), FlowError> {
         match self.state {

@@ -1,7 +1,7 @@
 //! Balls of graded index with closed-form transfers: Eaton's family, Luneburg's lens and Maxwell's
 //! fish-eye.
 
-use super::{Border, RadialEnd, plane_normal, turn_in_plane};
+use super::{Border, PathPoint, RadialEnd, plane_normal, turn_in_plane};
 use crate::medium::Medium;
 use glam::{DMat3, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -79,6 +79,31 @@ impl CentralLens {
         }
     }
 
+    /// The point at a share of the way that [`Self::advance`] takes.
+    pub(super) fn way_point(&self, position: DVec3, wave_vector: DVec3, share: f64) -> PathPoint {
+        let (x, d) = (position.normalize(), wave_vector.normalize());
+        let normal = plane_normal(x, d);
+        let cosine = x.dot(d);
+        let (place, path) = match self.profile {
+            Profile::Eaton(angle) => {
+                let way = EatonWay::new(x, d, angle / PI, share);
+                (x.rotate_axis(normal, way.swept) * eaton_radius(angle / PI, way.c), way.path)
+            }
+            Profile::Luneburg => {
+                // An ellipse about the centre.
+                let (sin, cos) = (FRAC_PI_2 * share).sin_cos();
+                (x * cos + d * sin, FRAC_PI_2 * share - cosine * sin * sin)
+            }
+            Profile::Fisheye => {
+                // The stereographic image of a great circle.
+                let (sin, cos) = (PI * share).sin_cos();
+                let across = x * cos + (d - x * cosine) * sin;
+                (across / (1.0 - cosine * sin), PI * share)
+            }
+        };
+        PathPoint { position: place * self.radius, optical_path: path * self.radius }
+    }
+
     /// Follows a ray from a point of the surface to where it comes out.
     #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3) -> RadialEnd {
@@ -110,6 +135,41 @@ impl CentralLens {
             outward,
         }
     }
+}
+
+/// A point of a way through a ball of Eaton's family, of radius 1.
+pub(super) struct EatonWay {
+    /// (v² - 1)/(v² + 1): 0 at the surface, 1 at the centre.
+    pub c: f64,
+    /// The polar angle swept, about the normal of [`plane_normal`].
+    pub swept: f64,
+    /// The optical path.
+    pub path: f64,
+}
+
+impl EatonWay {
+    /// The point at a share of the way of a ray from `x` along `d`, `turn` being 1/m. With L and S the sine and
+    /// cosine of the angle to the radius, c = S sin ψ, ψ from 0 to the turning point at π/2.
+    pub fn new(x: DVec3, d: DVec3, turn: f64, share: f64) -> Self {
+        let (s, l) = ((-x.dot(d)).max(0.0), x.cross(d).length());
+        let half = |psi: f64| {
+            let (sin, cos) = psi.sin_cos();
+            let swept = (l * sin).atan2(cos) * turn + s.atan2(l) - (s * cos).atan2(l);
+            (turn * psi + s * (1.0 - cos), swept, s * sin)
+        };
+        let (path, swept, c) = half(FRAC_PI_2 * (1.0 - (2.0 * share - 1.0).abs()));
+        if share <= 0.5 {
+            return Self { c, swept, path };
+        }
+        let (most, around, _) = half(FRAC_PI_2);
+        Self { c, swept: 2.0 * around - swept, path: 2.0 * most - path }
+    }
+}
+
+/// r/R of Eaton's family at c, see [`EatonWay::c`]: 2 v^(1 - 1/m)/(1 + v²).
+fn eaton_radius(turn: f64, c: f64) -> f64 {
+    let v = ((1.0 + c) / (1.0 - c).max(f64::MIN_POSITIVE)).sqrt();
+    (1.0 - c) * v.powf(1.0 - turn)
 }
 
 /// Closer to the centre than this share of the radius the local medium is that of here.

@@ -17,8 +17,10 @@ pub use transformed_shell::TransformedShell;
 pub use transmuted_sphere::TransmutedSphere;
 pub use uniaxial_cylinder::{OpticAxis, UniaxialCylinder};
 
+use super::PathPoint;
 use crate::geometry::CylinderPart;
 use crate::medium::{Medium, ModeKind};
+use crate::transformation::RadialMap;
 use glam::{DMat3, DVec3};
 
 /// A radially symmetric medium.
@@ -121,6 +123,40 @@ impl RadialFlow {
         }
     }
 
+    /// Points along the way that [`Self::advance`] takes, from its start to its end, in that many pieces.
+    #[must_use]
+    pub fn path(
+        &self,
+        position: DVec3,
+        wave_vector: DVec3,
+        mode: ModeKind,
+        pieces: u32,
+    ) -> Vec<PathPoint> {
+        let end = self.advance(position, wave_vector, mode);
+        let shares = (0..=pieces).map(|k| f64::from(k) / f64::from(pieces.max(1)));
+        match self {
+            Self::Lens(lens) => {
+                shares.map(|share| lens.way_point(position, wave_vector, share)).collect()
+            }
+            Self::Transmuted(sphere) if mode == ModeKind::Extraordinary => {
+                shares.map(|share| sphere.way_point(position, wave_vector, share)).collect()
+            }
+            Self::Transmuted(_) => shares.map(|share| straight(position, &end, share)).collect(),
+            Self::Transformed(shell) => {
+                shares.map(|share| straight_in(shell.map(), position, &end, share)).collect()
+            }
+            Self::Uniaxial(cylinder) => {
+                let turning = cylinder.turning_course(position, wave_vector, mode);
+                let way_point = |share| match (&turning, cylinder.comes_to_core(mode)) {
+                    (Some(course), _) => course.way_point(position, share),
+                    (None, true) => straight(position, &end, share),
+                    (None, false) => straight_in(cylinder.map(), position, &end, share),
+                };
+                shares.map(way_point).collect()
+            }
+        }
+    }
+
     /// Where both waves of the medium start as one, along the optic axis, and then part: their
     /// electric fields, of unit power.
     #[must_use]
@@ -130,6 +166,20 @@ impl RadialFlow {
             // In the transmuted sphere they run to the far side together.
             Self::Lens(_) | Self::Transmuted(_) | Self::Transformed(_) => None,
         }
+    }
+}
+
+/// A point of a straight way.
+fn straight(from: DVec3, end: &RadialEnd, share: f64) -> PathPoint {
+    PathPoint { position: from.lerp(end.position, share), optical_path: share * end.optical_path }
+}
+
+/// A point of a way that is straight in virtual space.
+fn straight_in(map: &RadialMap, from: DVec3, end: &RadialEnd, share: f64) -> PathPoint {
+    let [start, stop] = [from, end.position].map(|at| map.to_virtual(at));
+    PathPoint {
+        position: map.to_physical(start.lerp(stop, share)),
+        optical_path: share * end.optical_path,
     }
 }
 

@@ -1,6 +1,7 @@
 //! The regularized invisible sphere.
 
-use super::{Border, RadialEnd, plane_normal};
+use super::lens::EatonWay;
+use super::{Border, PathPoint, RadialEnd, plane_normal};
 use crate::medium::{Medium, ModeKind};
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
@@ -68,6 +69,24 @@ impl TransmutedSphere {
             }
         }
         Self::ORDINARY_INDEX * gamma.sin() / goal
+    }
+
+    /// The point at a share of the way of the extraordinary wave: that in the invisible sphere, the radius
+    /// stretched.
+    pub(super) fn way_point(&self, position: DVec3, wave_vector: DVec3, share: f64) -> PathPoint {
+        let from = position.normalize();
+        let normal = plane_normal(from, wave_vector.normalize());
+        // In the invisible sphere light enters unbent.
+        let tangential = wave_vector.dot(normal.cross(from)).clamp(-1.0, 1.0);
+        let inward = (1.0 - tangential * tangential).sqrt();
+        let direction = normal.cross(from) * tangential - from * inward;
+        let way = EatonWay::new(from, direction, 2.0, share);
+        let psi = way.c.min(1.0).asin();
+        let x = (PI - 2.0 * psi + psi.cos()) / Self::ORDINARY_INDEX;
+        PathPoint {
+            position: from.rotate_axis(normal, way.swept) * (x * self.radius),
+            optical_path: way.path * self.radius,
+        }
     }
 
     /// Follows a ray of either wave from a point of the surface to where it comes out.

@@ -3,7 +3,7 @@
 use super::core_integrals::{CoreIntegrals, RadialQuadratic};
 use super::transformed_shell::VirtualLine;
 use super::uniaxial_wave::{UniaxialPoint, transport};
-use super::{Border, RadialEnd};
+use super::{Border, PathPoint, RadialEnd};
 use crate::geometry::{Cylinder, CylinderPart, Extent};
 use crate::medium::{Medium, ModeKind};
 use crate::transformation::{RadialMap, Symmetry, root_in_bracket};
@@ -101,16 +101,11 @@ impl UniaxialCylinder {
         let leg = match (self.axis, mode == ModeKind::Extraordinary) {
             (OpticAxis::Radial, false) => self.straight(position, wave_vector),
             (OpticAxis::Azimuthal, true) => self.virtually_straight(position, wave_vector),
-            (OpticAxis::Radial, true) => {
-                let momentum = position.truncate().perp_dot(wave_vector.truncate());
-                let least = momentum.hypot(wave_vector.z * self.map.inner());
-                if least < CENTRAL * self.map.outer() {
-                    // At the axis: as its neighbours in the plane, which run as in the other cloak.
-                    self.virtually_straight(position, wave_vector)
-                } else {
-                    self.turning(position, wave_vector)
-                }
+            (OpticAxis::Radial, true) if self.aims_at_axis(position, wave_vector) => {
+                // As its neighbours in the plane, which run as in the other cloak.
+                self.virtually_straight(position, wave_vector)
             }
+            (OpticAxis::Radial, true) => self.turning(position, wave_vector),
             (OpticAxis::Azimuthal, false) => self.turning(position, wave_vector),
         };
         let (here, there) = (self.point(position), self.point(leg.position));
@@ -129,6 +124,26 @@ impl UniaxialCylinder {
             transport: transport(fields.0, fields.1),
             outward: leg.outward,
         }
+    }
+
+    fn aims_at_axis(&self, position: DVec3, wave_vector: DVec3) -> bool {
+        let momentum = position.truncate().perp_dot(wave_vector.truncate());
+        momentum.hypot(wave_vector.z * self.map.inner()) < CENTRAL * self.map.outer()
+    }
+
+    /// The course of a wave that turns back before the core, if it is one.
+    pub(super) fn turning_course(
+        &self,
+        position: DVec3,
+        wave_vector: DVec3,
+        mode: ModeKind,
+    ) -> Option<TurningCourse> {
+        let turns = match (self.axis, mode == ModeKind::Extraordinary) {
+            (OpticAxis::Radial, true) => !self.aims_at_axis(position, wave_vector),
+            (OpticAxis::Azimuthal, false) => true,
+            _ => false,
+        };
+        turns.then(|| TurningCourse::new(self, position, wave_vector))
     }
 
     /// The ordinary wave of the radial axis.
@@ -176,26 +191,10 @@ impl UniaxialCylinder {
 
     /// Waves that turn back before the core.
     fn turning(&self, position: DVec3, wave_vector: DVec3) -> Leg {
-        let radial = self.map.radial(position);
-        let momentum = position.truncate().perp_dot(wave_vector.truncate());
-        let course = Course::new(self, momentum, wave_vector.z);
-        let radius = self.map.radius(position);
-        let start = course.quadratic.parameter(course.rho(radius));
-        let start = if wave_vector.dot(radial) < 0.0 { -start } else { start };
-        let begin = course.place(start);
-        let last = course.quadratic.parameter(course.rho(self.map.outer()));
-        let mut border = Border::Outer;
-        let mut eta = last.max(start);
-        let mut end = course.place(eta);
-        let whole = Cylinder { radius: self.map.outer(), extent: self.extent };
-        let (share, part) = whole.time_to_end(position.z, end.z - begin.z);
-        if share < 1.0 {
-            border = part.into();
-            let goal = begin.z + share * (end.z - begin.z);
-            let off = |eta: f64| (course.place(eta).z - goal, course.z_slope(eta));
-            eta = root_in_bracket((start, begin.z - goal), (eta, end.z - goal), off);
-            end = course.place(eta);
-        }
+        let TurningCourse { course, radial, border, etas: [start, eta] } =
+            TurningCourse::new(self, position, wave_vector);
+        let momentum = course.momentum;
+        let (begin, end) = (course.place(start), course.place(eta));
         let (rho, root) = course.quadratic.radius(eta);
         let radius = if border == Border::Outer { self.map.outer() } else { course.radius(rho) };
         let turned = DVec2::from_angle(end.angle - begin.angle).rotate(radial.truncate());
@@ -238,6 +237,55 @@ struct Leg {
     outward: DVec3,
     wave_vector: DVec3,
     optical_path: f64,
+}
+
+/// The way of a ray that turns back before the core.
+pub(super) struct TurningCourse {
+    course: Course,
+    /// The unit vector away from the axis at its start.
+    radial: DVec3,
+    /// Where it ends.
+    border: Border,
+    /// The parameters of its start and its end.
+    etas: [f64; 2],
+}
+
+impl TurningCourse {
+    fn new(cylinder: &UniaxialCylinder, position: DVec3, wave_vector: DVec3) -> Self {
+        let radial = cylinder.map.radial(position);
+        let momentum = position.truncate().perp_dot(wave_vector.truncate());
+        let course = Course::new(cylinder, momentum, wave_vector.z);
+        let radius = cylinder.map.radius(position);
+        let start = course.quadratic.parameter(course.rho(radius));
+        let start = if wave_vector.dot(radial) < 0.0 { -start } else { start };
+        let begin = course.place(start);
+        let last = course.quadratic.parameter(course.rho(cylinder.map.outer()));
+        let mut border = Border::Outer;
+        let mut eta = last.max(start);
+        let end = course.place(eta);
+        let whole = Cylinder { radius: cylinder.map.outer(), extent: cylinder.extent };
+        let (share, part) = whole.time_to_end(position.z, end.z - begin.z);
+        if share < 1.0 {
+            border = part.into();
+            let goal = begin.z + share * (end.z - begin.z);
+            let off = |eta: f64| (course.place(eta).z - goal, course.z_slope(eta));
+            eta = root_in_bracket((start, begin.z - goal), (eta, end.z - goal), off);
+        }
+        Self { course, radial, border, etas: [start, eta] }
+    }
+
+    /// The point at a share of the way from a position.
+    pub fn way_point(&self, position: DVec3, share: f64) -> PathPoint {
+        let [start, end] = self.etas;
+        let eta = start + share * (end - start);
+        let (begin, here) = (self.course.place(start), self.course.place(eta));
+        let radius = self.course.radius(self.course.quadratic.radius(eta).0);
+        let turned = DVec2::from_angle(here.angle - begin.angle).rotate(self.radial.truncate());
+        PathPoint {
+            position: (turned * radius).extend(position.z + here.z - begin.z),
+            optical_path: here.optical_path - begin.optical_path,
+        }
+    }
 }
 
 /// What a ray that turns has done since its turning point.

@@ -1,0 +1,76 @@
+//! `cloakroom export`: what a device is made of.
+
+use crate::arguments::ExportArguments;
+use crate::report::Failure;
+use crate::{interruption, progress, scene};
+use cloakroom::material::{self, Frame, MaterialError, Resolution};
+use cloakroom::output::{self, GridFormat};
+use cloakroom::render::{self, Supervision};
+use cloakroom::scene_file::Loaded;
+use cloakroom::trace::Bench;
+use std::sync::atomic::AtomicBool;
+
+/// Writes the material of a device.
+pub fn run(arguments: &ExportArguments, stop: &AtomicBool) -> Result<(), Failure> {
+    scene::use_threads(arguments.threads)?;
+    let loaded = scene::load(&arguments.scene)?;
+    let bench = render::bench(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    if arguments.table {
+        table(arguments, &loaded, &bench)
+    } else {
+        grid(arguments, &loaded, &bench, stop)
+    }
+}
+
+fn grid(
+    arguments: &ExportArguments,
+    loaded: &Loaded,
+    bench: &Bench,
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
+    GridFormat::of(&arguments.output).map_err(Failure::from_error)?;
+    output::check_writable(&arguments.output).map_err(Failure::from_error)?;
+    let frame = if arguments.frame == "world" { Frame::World } else { Frame::Device };
+    let resolution = arguments.grid.unwrap_or(Resolution::Default);
+    let _busy = interruption::busy();
+    let bar = progress::bar(0, "sampling");
+    let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
+    let begun = |rows| bar.set_length(rows);
+    let sampled = material::sample(
+        &loaded.scene,
+        bench,
+        arguments.device,
+        frame,
+        resolution,
+        &begun,
+        &supervision,
+    );
+    bar.finish_and_clear();
+    let sampled = sampled.map_err(failure)?;
+    output::write_grid(&sampled, &arguments.output).map_err(Failure::from_error)
+}
+
+fn table(arguments: &ExportArguments, loaded: &Loaded, bench: &Bench) -> Result<(), Failure> {
+    let path = &arguments.output;
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    let segments = material::segments(&loaded.scene, bench, arguments.device).map_err(failure)?;
+    let text = match ending.as_deref() {
+        Some("csv") => material::segments_csv(&segments),
+        Some("json") => material::segments_json(&segments).map_err(Failure::from_error)?,
+        _ => {
+            let message = format!(
+                "cannot tell the format of {} by its ending; a table is a .csv or a .json",
+                path.display()
+            );
+            return Err(Failure::Failed(message));
+        }
+    };
+    output::write_whole(path, |out| out.write_all(text.as_bytes())).map_err(Failure::from_error)
+}
+
+fn failure(error: MaterialError) -> Failure {
+    match error {
+        MaterialError::Stopped => Failure::Interrupted,
+        other => Failure::from_error(other),
+    }
+}

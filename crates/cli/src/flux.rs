@@ -1,0 +1,159 @@
+//! `cloakroom flux`: the light that comes through to a receiver.
+
+use crate::arguments::FluxArguments;
+use crate::drawn::{self, DrawingFormat};
+use crate::report::{Failure, say};
+use crate::{interruption, progress, render, report, scene};
+use cloakroom::flux::{self, Direction, FluxError, FluxReport, Sampling};
+use cloakroom::output;
+use cloakroom::render::Supervision;
+use cloakroom::scene::Scene;
+use std::fmt::Write;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// Pixels of a drawing's unit in a PNG.
+const PIXELS: f64 = 1.0;
+
+/// Measures the flux and writes every file asked for.
+pub fn run(arguments: &FluxArguments, stop: &AtomicBool) -> Result<(), Failure> {
+    for path in arguments.outputs.iter().chain(&arguments.map) {
+        if arguments.map.as_ref() == Some(path) || !is_data(path) {
+            drawn::format(path).map_err(|_| unknown(path))?;
+        }
+        output::check_writable(path).map_err(Failure::from_error)?;
+    }
+    scene::use_threads(arguments.threads)?;
+    let loaded = scene::load(&arguments.scene)?;
+    let (directions, axis) = directions(arguments, &loaded.scene)?;
+    let sampling =
+        Sampling { rays: arguments.rays, samples: arguments.samples, cells: arguments.cells };
+    let _busy = interruption::busy();
+    let bar = progress::bar(0, "tracing");
+    let supervision = Supervision { rows_done: &|steps| bar.inc(steps), stop };
+    let begun = |steps| bar.set_length(steps);
+    let measured = flux::flux(&loaded.scene, &directions, sampling, &begun, &supervision);
+    bar.finish_and_clear();
+    let measured = measured.map_err(|error| match error {
+        FluxError::Scene(error) => scene::located(&loaded, &error),
+        FluxError::Stopped => Failure::Interrupted,
+        other => Failure::from_error(other),
+    })?;
+    let mut rarities = cloakroom::trace::Rarities::default();
+    measured.incidences.iter().for_each(|incidence| rarities += incidence.rarities);
+    render::tell_rarities(&rarities);
+    for path in &arguments.outputs {
+        write(&measured, axis, path)?;
+    }
+    if let Some(path) = &arguments.map
+        && let Some(map) = flux::flux_map(&measured, axis)
+    {
+        let drawing = map.draw().map_err(Failure::from_error)?;
+        save(&drawing, "Irradiance of the receiver", &measured, path)?;
+    }
+    report::print(&table(&measured, axis))
+}
+
+/// The directions asked for, and what they are named by.
+fn directions(
+    arguments: &FluxArguments,
+    scene: &Scene,
+) -> Result<(Vec<Direction>, &'static str), Failure> {
+    let receiver = &scene.receiver;
+    if let Some([latitude, declination]) = arguments.sun {
+        if latitude.abs() > 90.0 || declination.abs() > 90.0 {
+            let message =
+                format!("--sun is {latitude},{declination}; both must be from -90 to 90 degrees");
+            return Err(Failure::Usage(message));
+        }
+        let day = flux::sun_day(receiver, latitude, declination, 0.5);
+        if day.is_empty() {
+            return Err(Failure::Failed(
+                "the sun does not rise above the receiver that day".to_owned(),
+            ));
+        }
+        return Ok((day, "solar time (h)"));
+    }
+    let [from, to, step] = arguments.angles;
+    if !(step > 0.0 && to >= from && (to - from) / step < 10_000.0) {
+        let message = format!(
+            "--angles is {from}..{to}:{step}; the step must be above 0, the end not before the beginning"
+        );
+        return Err(Failure::Usage(message));
+    }
+    let count = ((to - from) / step + 1e-9).floor() as u32;
+    let angles: Vec<f64> = (0..=count).map(|k| from + f64::from(k) * step).collect();
+    Ok((flux::across_range(receiver, &angles, arguments.tilt), "angle of incidence (°)"))
+}
+
+/// Whether a file is one of data.
+fn is_data(path: &Path) -> bool {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    matches!(ending.as_deref(), Some("csv" | "npz"))
+}
+
+fn unknown(path: &Path) -> Failure {
+    Failure::Failed(format!(
+        "cannot tell the format of {} by its ending; use .csv or .npz for data, .svg or .png for plots",
+        path.display()
+    ))
+}
+
+fn write(measured: &FluxReport, axis: &str, path: &Path) -> Result<(), Failure> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    match ending.as_deref() {
+        Some("npz") => flux::write_flux_npz(measured, path).map_err(Failure::from_error),
+        Some("csv") => {
+            let text = flux::flux_csv(measured);
+            output::write_whole(path, |out| out.write_all(text.as_bytes()))
+                .map_err(Failure::from_error)
+        }
+        _ => save(&flux::flux_plot(measured, axis).draw(), "Flux on the receiver", measured, path),
+    }
+}
+
+fn save(
+    drawing: &cloakroom::illustration::Drawing,
+    title: &str,
+    measured: &FluxReport,
+    path: &Path,
+) -> Result<(), Failure> {
+    let size = [drawing.size.x, drawing.size.y].map(|side| (side * PIXELS).round() as u32);
+    if drawn::format(path)? == DrawingFormat::Png {
+        say(&format!("{}: {} x {} pixels", path.display(), size[0], size[1]));
+    }
+    drawn::write(drawing, title, &measured.metadata, size, path)
+}
+
+/// The totals and their convergence in words.
+fn table(measured: &FluxReport, axis: &str) -> String {
+    let mut text = format!(
+        "{axis:>22} {:>9} {:>9} {:>19} {:>23}\n",
+        "nothing", "bare", "cloaked", "shadow given back, %"
+    );
+    // Writing to a string cannot fail.
+    for incidence in &measured.incidences {
+        let [nothing, bare, cloaked] = incidence.totals.map(|stand| stand[2]);
+        let given = incidence.gains[2]
+            .map_or("-".to_owned(), |gain| format!("{:.3} ± {:.3}", gain.percent, gain.error));
+        let _ = writeln!(
+            text,
+            "{:>22.4} {:>9.5} {:>9.5} {:>9.5} ± {:>7.5} {given:>23}",
+            incidence.direction.label, nothing.mean, bare.mean, cloaked.mean, cloaked.error
+        );
+    }
+    if let Some(middle) = measured.incidences.get(measured.incidences.len() / 2) {
+        let _ = writeln!(text, "convergence at {}:", middle.direction.label);
+        for step in &middle.convergence {
+            let given = step
+                .gain
+                .map_or("-".to_owned(), |gain| format!("{:.3} ± {:.3}", gain.percent, gain.error));
+            let _ = writeln!(
+                text,
+                "{:>12} rays: cloaked {:.5} ± {:.5}, given back {given} %",
+                step.rays, step.cloaked.mean, step.cloaked.error
+            );
+        }
+    }
+    text
+}

@@ -1,0 +1,138 @@
+//! Regular grids of cells around a device.
+
+use super::MaterialError;
+use crate::device::REACH;
+use crate::trace::Placed;
+use glam::DVec3;
+use optics::geometry::Pose;
+
+/// Along which axes a grid lies, and its tensors' components.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Frame {
+    /// The device's own: its axis is z, and it is not turned.
+    #[default]
+    Device,
+    /// The scene's.
+    World,
+}
+
+/// How fine a grid is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Resolution {
+    /// So many cells along x, y and z.
+    Cells([u32; 3]),
+    /// Cubic cells of that side, cm.
+    Spacing(f64),
+    /// Cubic cells, 64 along the longest side.
+    Default,
+}
+
+/// A regular grid of cells; what is said of a cell is so in its middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// The corner of the least coordinates, cm.
+    pub corner: DVec3,
+    /// The sides of a cell, cm.
+    pub spacing: DVec3,
+    /// Cells along x, y and z.
+    pub cells: [usize; 3],
+}
+
+/// Cells along the longest side where nothing is asked for.
+const DEFAULT_CELLS: f64 = 64.0;
+
+/// More cells than this along an axis are no grid.
+const MOST_CELLS: f64 = 1e9;
+
+impl Grid {
+    /// The grid around a device with its hidden region. Along an axis on which the device has no end its cells
+    /// are centred on the device's origin: a single layer, unless more are asked for.
+    ///
+    /// # Errors
+    ///
+    /// If it would have no cells, or far too many.
+    pub fn around(
+        placed: &Placed,
+        frame: Frame,
+        resolution: Resolution,
+    ) -> Result<Self, MaterialError> {
+        let pose = match frame {
+            Frame::Device => Pose::new(DVec3::ZERO, 0.0),
+            Frame::World => placed.pose,
+        };
+        let bounds = placed.structure.hull.bounds(&pose);
+        let [low, high] = bounds.ok_or(MaterialError::Endless)?;
+        let size = high - low;
+        let has_ends = |axis: usize| size[axis] < REACH;
+        let longest = (0..3).filter(|axis| has_ends(*axis)).map(|axis| size[axis]);
+        let longest = longest.reduce(f64::max).ok_or(MaterialError::Endless)?;
+        let resolution = match resolution {
+            Resolution::Default => Resolution::Spacing(longest / DEFAULT_CELLS),
+            given => given,
+        };
+        let (spacing, cells) = match resolution {
+            Resolution::Cells(cells) => {
+                if cells.contains(&0) {
+                    return Err(MaterialError::EmptyGrid);
+                }
+                let side = |axis: usize| size[axis] / f64::from(cells[axis]);
+                let sides = (0..3).filter(|axis| has_ends(*axis)).map(side);
+                let least = sides.reduce(f64::min).unwrap_or(longest);
+                let spacing = [0, 1, 2].map(|axis| if has_ends(axis) { side(axis) } else { least });
+                (DVec3::from(spacing), cells.map(f64::from))
+            }
+            Resolution::Spacing(side) => {
+                if !(side > 0.0 && side.is_finite()) {
+                    return Err(MaterialError::EmptyGrid);
+                }
+                // A side that divides the size but for rounding does.
+                let count = |axis: usize| (size[axis] / side - 1e-9).ceil().max(1.0);
+                let cells = [0, 1, 2].map(|axis| if has_ends(axis) { count(axis) } else { 1.0 });
+                (DVec3::splat(side), cells)
+            }
+            Resolution::Default => return Err(MaterialError::EmptyGrid),
+        };
+        check_memory(cells)?;
+        let middle = [0, 1, 2].map(|axis| {
+            if has_ends(axis) { 0.5 * (low[axis] + high[axis]) } else { pose.origin()[axis] }
+        });
+        let corner = DVec3::from(middle) - spacing * DVec3::from(cells) * 0.5;
+        Ok(Self { corner, spacing, cells: cells.map(|count| count as usize) })
+    }
+
+    /// How many cells there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.cells.iter().product()
+    }
+
+    /// The middle of a cell, the cells being counted along x, then y, then z.
+    #[must_use]
+    pub fn middle(&self, index: usize) -> DVec3 {
+        let [nx, ny, _] = self.cells;
+        let at = [index % nx, index / nx % ny, index / (nx * ny)];
+        DVec3::from([0, 1, 2].map(|axis| self.coordinate(axis, at[axis])))
+    }
+
+    /// The coordinate of the middles of the cells of that number along an axis, cm.
+    #[must_use]
+    pub fn coordinate(&self, axis: usize, number: usize) -> f64 {
+        self.corner[axis] + (number as f64 + 0.5) * self.spacing[axis]
+    }
+}
+
+/// Refuses a grid that would not fit into the memory that is free now.
+fn check_memory(cells: [f64; 3]) -> Result<(), MaterialError> {
+    /// Index, two tensors with their imaginary parts, and a copy in the order of a file.
+    const BYTES: f64 = 8.0 * (1.0 + 4.0 * 6.0 + 18.0);
+    let needed = cells.iter().product::<f64>() * BYTES;
+    let available = crate::memory::available().map_or(f64::INFINITY, |bytes| bytes as f64);
+    if needed > available || cells.iter().any(|count| *count > MOST_CELLS) {
+        return Err(MaterialError::TooLarge {
+            cells: cells.map(|count| count as u64),
+            needed_mb: (needed / 1e6) as u64,
+            available_mb: (available / 1e6) as u64,
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,102 @@
+//! What a device is made of, for fabrication and for full-wave solvers: the index and the tensors on a regular
+//! grid, and the homogeneous segments as a table. The media are those that the tracer meets.
+
+mod grid;
+mod sampling;
+mod segments;
+
+pub use grid::{Frame, Grid, Resolution};
+pub use sampling::{Region, Sampled, sample};
+pub use segments::{Segment, segments, segments_csv, segments_json};
+
+use crate::device::{Filling, Show};
+use crate::scene::Scene;
+use crate::trace::{Bench, Placed};
+
+/// Why the material of a device cannot be given.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MaterialError {
+    /// There is no device of that number.
+    #[error("there is no device {device}; the scene has {count}, counted from 0")]
+    NoDevice {
+        /// The number asked for.
+        device: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// It is not said which device.
+    #[error("the scene has {count} devices; say which one is meant, from 0 to {}", count - 1)]
+    WhichDevice {
+        /// How many there are.
+        count: usize,
+    },
+    /// The device has no medium in it.
+    #[error("device {device}, {kind}, {reason}: it has no material")]
+    NoMaterial {
+        /// Which device, counted from 0.
+        device: usize,
+        /// Its kind.
+        kind: &'static str,
+        /// What it is instead.
+        reason: &'static str,
+    },
+    /// The device has no homogeneous segments.
+    #[error("device {device}, {kind}, has no homogeneous segments: its medium is graded")]
+    NoSegments {
+        /// Which device, counted from 0.
+        device: usize,
+        /// Its kind.
+        kind: &'static str,
+    },
+    /// The grid has no cells.
+    #[error("a grid needs a positive spacing, and at least one cell along each axis")]
+    EmptyGrid,
+    /// The grid has too many cells.
+    #[error(
+        "a grid of {} x {} x {} cells needs {needed_mb} MB of memory, but only {available_mb} MB are free; \
+         take fewer", cells[0], cells[1], cells[2]
+    )]
+    TooLarge {
+        /// Cells along x, y and z.
+        cells: [u64; 3],
+        /// Memory needed, in 10^6 bytes.
+        needed_mb: u64,
+        /// Memory free, in 10^6 bytes.
+        available_mb: u64,
+    },
+    /// The device has no end in the plane, so no grid fits around it.
+    #[error("the device is endless along every axis of the grid; take the device's frame")]
+    Endless,
+    /// The work was stopped from outside.
+    #[error("stopped")]
+    Stopped,
+}
+
+/// The device that is meant: that of the number, or the only one there is.
+fn chosen(bench: &Bench, device: Option<usize>) -> Result<(usize, &Placed), MaterialError> {
+    let count = bench.devices().len();
+    let index = match device {
+        Some(device) => device,
+        None if count > 1 => return Err(MaterialError::WhichDevice { count }),
+        None => 0,
+    };
+    let placed = bench.devices().get(index);
+    placed.map(|placed| (index, placed)).ok_or(MaterialError::NoDevice { device: index, count })
+}
+
+/// Why a device has no medium in it, if it has none.
+fn without_material(scene: &Scene, device: usize, placed: &Placed) -> Option<MaterialError> {
+    let structure = &placed.structure;
+    let settings = &scene.devices[device];
+    let reason = match (settings.show, structure.hull.body()) {
+        (Show::Bare, _) => "is shown as bare metal",
+        (Show::Mirror, _) => "is shown as the mirror it imitates",
+        (Show::Cloak, Some(body)) => match body.filling {
+            Filling::Medium { .. } => return None,
+            Filling::Opaque(_) => "is opaque",
+        },
+        (Show::Cloak, None) if structure.cells.is_empty() => "is made of metal alone",
+        (Show::Cloak, None) => return None,
+    };
+    Some(MaterialError::NoMaterial { device, kind: settings.entry.kind, reason })
+}

@@ -1,0 +1,163 @@
+//! The homogeneous segments of a device as a table: corners, axes, tensors.
+
+use super::{MaterialError, chosen, without_material};
+use crate::device::{Cell, Prism};
+use crate::scene::Scene;
+use crate::trace::Bench;
+use glam::{DMat3, DVec2, DVec3};
+use optics::medium::principal_axes;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// A piece of a device: a prism of one medium, or a piece of metal. All in the device's frame.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Segment {
+    /// Its number among the device's segments; metal comes last.
+    pub segment: usize,
+    /// `medium` or `metal`.
+    pub filling: &'static str,
+    /// The corners of its cross-section in the xy-plane, in order around it, cm.
+    pub corners_cm: Vec<[f64; 2]>,
+    /// From where to where it reaches along z, cm; `None` if it is endless.
+    pub z_cm: Option<[f64; 2]>,
+    /// Its permittivity; `None` for metal.
+    pub permittivity: Option<Principal>,
+    /// Its permeability; `None` for metal.
+    pub permeability: Option<Principal>,
+    /// The optic axis of a uniaxial medium, a unit vector with x ≥ 0.
+    pub optic_axis: Option<[f64; 3]>,
+}
+
+/// A symmetric tensor by its principal values. Those in the xy-plane come first, the greater of them before the
+/// smaller.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Principal {
+    /// The principal values.
+    pub values: [f64; 3],
+    /// The unit vectors along them, with x ≥ 0.
+    pub axes: [[f64; 3]; 3],
+}
+
+impl Principal {
+    fn of(tensor: &DMat3) -> Self {
+        let (values, axes) = principal_axes(tensor);
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| axes.col(i).z.abs().total_cmp(&axes.col(j).z.abs()));
+        order[..2].sort_by(|&i, &j| values[j].total_cmp(&values[i]));
+        Self { values: order.map(|i| values[i]), axes: order.map(|i| towards_x(axes.col(i))) }
+    }
+}
+
+/// The sense of an axis with x ≥ 0, and y > 0 where x is 0.
+fn towards_x(axis: DVec3) -> [f64; 3] {
+    let first = axis.to_array().into_iter().find(|component| *component != 0.0);
+    let axis = if first.is_some_and(|component| component < 0.0) { -axis } else { axis };
+    // No negative zeros in files.
+    axis.to_array().map(|component| component + 0.0)
+}
+
+/// The segments of a device of homogeneous media, then its metal. `device` may be left out if there is only one.
+///
+/// # Errors
+///
+/// If there is no such device, or it has no segments.
+pub fn segments(
+    scene: &Scene,
+    bench: &Bench,
+    device: Option<usize>,
+) -> Result<Vec<Segment>, MaterialError> {
+    let (device, placed) = chosen(bench, device)?;
+    if let Some(error) = without_material(scene, device, placed) {
+        return Err(error);
+    }
+    let structure = &placed.structure;
+    let section = structure.cross_section();
+    let z_cm = scene.devices[device].length.map(|length| [-length / 2.0, length / 2.0]);
+    let corners = |points: Vec<DVec2>| points.into_iter().map(|p| (p + 0.0).to_array()).collect();
+    let of_medium = section.regions.iter().filter_map(|region| {
+        let Cell::Prism(Prism { medium, .. }) = region.cell else { return None };
+        Some(Segment {
+            segment: 0,
+            filling: "medium",
+            corners_cm: corners(region.border.first()?.corners()),
+            z_cm,
+            permittivity: Some(Principal::of(medium.permittivity())),
+            permeability: Some(Principal::of(medium.permeability())),
+            optic_axis: medium.optic_axis().map(towards_x),
+        })
+    });
+    let mut segments: Vec<Segment> = of_medium.collect();
+    if segments.is_empty() {
+        let kind = scene.devices[device].entry.kind;
+        return Err(MaterialError::NoSegments { device, kind });
+    }
+    let metal = section.metal.iter().filter(|contour| contour.closed);
+    segments.extend(metal.map(|contour| Segment {
+        segment: 0,
+        filling: "metal",
+        corners_cm: corners(contour.corners()),
+        z_cm,
+        permittivity: None,
+        permeability: None,
+        optic_axis: None,
+    }));
+    for (number, segment) in segments.iter_mut().enumerate() {
+        segment.segment = number;
+    }
+    Ok(segments)
+}
+
+/// Segments as JSON: an array of [`Segment`]s.
+///
+/// # Errors
+///
+/// If a number is not finite.
+pub fn segments_json(segments: &[Segment]) -> Result<String, serde_json::Error> {
+    serde_json::to_string_pretty(segments)
+}
+
+/// Segments as CSV, a line each: `segment`, `filling`, `z_min_cm`, `z_max_cm`, the optic axis, principal values
+/// 1 to 3 of both tensors with their axes, and the corners. What a segment does not have is left empty.
+#[must_use]
+pub fn segments_csv(segments: &[Segment]) -> String {
+    let most = segments.iter().map(|segment| segment.corners_cm.len()).max().unwrap_or(0);
+    let mut text =
+        "segment,filling,z_min_cm,z_max_cm,optic_axis_x,optic_axis_y,optic_axis_z".to_owned();
+    let mut name = |name: String| {
+        text.push(',');
+        text.push_str(&name);
+    };
+    for tensor in ["permittivity", "permeability"] {
+        for i in 1..=3 {
+            name(format!("{tensor}_{i}"));
+            ["x", "y", "z"].into_iter().for_each(|axis| name(format!("{tensor}_axis_{i}_{axis}")));
+        }
+    }
+    for corner in 1..=most {
+        ["x", "y"].into_iter().for_each(|axis| name(format!("corner_{corner}_{axis}_cm")));
+    }
+    text.push('\n');
+    for segment in segments {
+        let mut numbers: Vec<Option<f64>> = Vec::new();
+        numbers.extend([0, 1].map(|end| segment.z_cm.map(|z| z[end])));
+        numbers.extend([0, 1, 2].map(|i| segment.optic_axis.map(|axis| axis[i])));
+        for tensor in [segment.permittivity, segment.permeability] {
+            for i in 0..3 {
+                numbers.push(tensor.map(|tensor| tensor.values[i]));
+                numbers.extend([0, 1, 2].map(|k| tensor.map(|tensor| tensor.axes[i][k])));
+            }
+        }
+        for corner in 0..most {
+            let at = segment.corners_cm.get(corner);
+            numbers.extend([0, 1].map(|axis| at.map(|at| at[axis])));
+        }
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{},{}", segment.segment, segment.filling);
+        for number in numbers {
+            text.push(',');
+            text.extend(number.map(|number| number.to_string()));
+        }
+        text.push('\n');
+    }
+    text
+}
