@@ -2,6 +2,7 @@
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use cloakroom::measure::STANDARD_PLOT;
 use cloakroom::scene::OPTIONAL_CHANNELS;
 use std::path::PathBuf;
 
@@ -32,6 +33,12 @@ pub enum Command {
     Figures(FiguresArguments),
     /// Make a picture and a map of times of flight of every device, and the table of them all.
     Gallery(GalleryArguments),
+    /// Compare two pictures: correlation, structural similarity, FLIP, times of flight, power.
+    Compare(CompareArguments),
+    /// Measure how well a scene's devices work over a range of settings: a table, data and a plot.
+    Quality(QualityArguments),
+    /// Go through the statements of the paper, one by one: what comes out here, and a verdict (Markdown).
+    Verify(VerifyArguments),
     /// List the devices with their keys and computed facts.
     Devices(DevicesArguments),
     /// Print the JSON Schema of scene files, for editors.
@@ -148,6 +155,66 @@ pub struct PanelArguments {
     pub threads: Option<u16>,
 }
 
+/// Arguments of `compare`.
+#[derive(Args, Debug)]
+pub struct CompareArguments {
+    /// The picture to compare with, .npz, .exr or .png: what should be seen.
+    pub first: PathBuf,
+    /// The picture to be judged.
+    pub second: PathBuf,
+    /// Compare also what is white in this picture (.png, .exr or .npz).
+    #[arg(long, value_name = "FILE")]
+    pub mask: Option<PathBuf>,
+    /// Compare also this rectangle: left column, top row, width and height in pixels.
+    #[arg(long, value_name = "X,Y,W,H", conflicts_with = "mask", value_parser = rectangle)]
+    pub region: Option<Rectangle>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
+/// Arguments of `quality`.
+#[derive(Args, Debug)]
+pub struct QualityArguments {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// A key and its values, as in device.0.rotation=0..90:5 or camera.polarizer=horizontal,vertical. May be
+    /// given several times: every combination is measured.
+    #[arg(long = "sweep", value_name = "KEY=VALUES", required = true)]
+    pub sweeps: Vec<String>,
+    /// A file to write; its ending decides: .csv, .npz, or .svg and .png for a plot. May be given several times.
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub outputs: Vec<PathBuf>,
+    /// What a plot shows, as in ideal_picture_flip,delivered: names of the table's columns, a panel each.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_values = STANDARD_PLOT)]
+    pub plot: Vec<String>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
+/// Arguments of `verify`.
+#[derive(Args, Debug)]
+pub struct VerifyArguments {
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
+/// A rectangle of a picture: left column, top row, width and height in pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Rectangle(pub [usize; 4]);
+
 /// Arguments of `devices`.
 #[derive(Args, Debug)]
 pub struct DevicesArguments {
@@ -163,6 +230,15 @@ fn pixel(text: &str) -> Result<[u32; 2], String> {
         Some((Ok(column), Ok(row))) => Ok([column, row]),
         _ => Err("write COLUMN,ROW, counted from 0 at the top left, as in 512,384".to_owned()),
     }
+}
+
+/// Reads a rectangle such as 100,50,200,150.
+fn rectangle(text: &str) -> Result<Rectangle, String> {
+    let numbers: Option<Vec<usize>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    numbers.and_then(|numbers| numbers.try_into().ok()).map(Rectangle).ok_or_else(|| {
+        "write X,Y,W,H in pixels: left column, top row, width, height, as in 100,50,200,150"
+            .to_owned()
+    })
 }
 
 /// Reads a size such as 1024x768.

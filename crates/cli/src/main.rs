@@ -5,6 +5,7 @@
 
 mod arguments;
 mod check;
+mod compare;
 mod devices;
 mod figures;
 mod gallery;
@@ -14,10 +15,12 @@ mod interruption;
 mod panels;
 mod progress;
 mod pulses;
+mod quality;
 mod render;
 mod report;
 mod scene;
 mod trace;
+mod verify;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -42,6 +45,9 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Interface(arguments) => interface::run(arguments),
         Command::Figures(arguments) => figures::run(arguments, stop),
         Command::Gallery(arguments) => gallery::run(arguments, stop),
+        Command::Compare(arguments) => compare::run(arguments),
+        Command::Quality(arguments) => quality::run(arguments, stop),
+        Command::Verify(arguments) => verify::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),
         Command::Schema => report::print_json(&cloakroom::scene_file::schema()),
     }

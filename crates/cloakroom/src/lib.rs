@@ -15,6 +15,7 @@ pub mod gallery;
 pub mod illustration;
 pub mod interface_exchange;
 pub mod keys;
+pub mod measure;
 mod memory;
 pub mod output;
 pub mod paper;
