@@ -1,7 +1,7 @@
 //! Section 3, designs (i) and (ii).
 
 use super::VerificationError;
-use super::finding::{Finding, Verdict, below, percent};
+use super::finding::{DOUBLE, Finding, SINGLE, Verdict, below, percent};
 use super::laboratory::{
     CAMERA, DESIGNS, HALF_VIEW, Laboratory, Rays, gaze, largest_difference, likeness,
     principal_values, square, statistics,
@@ -42,7 +42,10 @@ pub(super) fn along_the_axis(laboratory: &Laboratory<'_>) -> Findings {
             findings.push(Finding::new(
                 "3, (i)",
                 "Horizontal light in the centre vertical plane is cloaked perfectly",
-                format!("all but {} of its power is on its own line", below(1.0 - least, "")),
+                format!(
+                    "all but {} of its power is on its own line",
+                    below(1.0 - least, DOUBLE, "")
+                ),
                 Verdict::of(least > 1.0 - 1e-6),
             ));
             findings.push(Finding::new(
@@ -57,7 +60,7 @@ pub(super) fn along_the_axis(laboratory: &Laboratory<'_>) -> Findings {
                 "So it is for (ii): horizontal light is cloaked in this plane, vertical light is not",
                 format!(
                     "H: all but {} on its own line; V: at most {}",
-                    below(1.0 - least, ""),
+                    below(1.0 - least, DOUBLE, ""),
                     percent(most, 1)
                 ),
                 Verdict::of(least > 1.0 - 1e-6 && most < 0.05),
@@ -113,7 +116,7 @@ pub(super) fn views(laboratory: &Laboratory<'_>) -> Findings {
             "Unpolarized, the image is an admixture of a cloaked and an uncloaked contribution",
             format!(
                 "it is the mean of H and V; largest difference {} of white",
-                below(admixture, "")
+                below(admixture, SINGLE, "")
             ),
             Verdict::of(admixture < 1e-5),
         ),

@@ -126,23 +126,24 @@ pub fn markdown(findings: &[Finding]) -> String {
     text
 }
 
+/// What double precision leaves of equal numbers near 1, and what single precision leaves of equal light.
+pub(super) const DOUBLE: f64 = 2e-13;
+pub(super) const SINGLE: f64 = 2e-6;
+
 /// A number in percent, to a number of decimals.
 pub(super) fn percent(share: f64, decimals: usize) -> String {
     format!("{:.decimals$} %", 100.0 * share)
 }
 
-/// The power of ten that a number stays below: what rounding leaves is not worth more digits.
-pub(super) fn below(number: f64, unit: &str) -> String {
-    if number == 0.0 {
-        return format!("0 {unit}").trim_end().to_owned();
-    }
-    let exponent = number.abs().log10().floor() as i32 + 1;
-    match exponent {
-        0..=3 => format!("below {} {unit}", 10f64.powi(exponent)),
-        _ => format!("below 1e{exponent} {unit}"),
-    }
-    .trim_end()
-    .to_owned()
+/// The power of ten that a number, of which what is below `least` is rounding, stays below: that is worth no more
+/// digits, and would change from machine to machine.
+pub(super) fn below(number: f64, least: f64, unit: &str) -> String {
+    let exponent = number.abs().max(least).log10().floor() as i32 + 1;
+    let power = match exponent {
+        0..=3 => 10f64.powi(exponent).to_string(),
+        _ => format!("1e{exponent}"),
+    };
+    format!("below {power} {unit}").trim_end().to_owned()
 }
 
 #[cfg(test)]
@@ -170,8 +171,8 @@ mod tests {
         let page = markdown(&findings);
         assert!(page.contains("2 statements: 1 agree, 0 agree in order of magnitude, 1 differ."));
         assert!(page.ends_with("| there | it is 3 | 9 | **differs** | It is 9. |\n"));
-        assert_eq!(below(3e-5, "ys"), "below 1e-4 ys");
-        assert_eq!(below(0.0, ""), "0");
-        assert_eq!(below(4.0, "ys"), "below 10 ys");
+        assert_eq!(below(3e-5, 1e-12, "cm"), "below 1e-4 cm");
+        assert_eq!(below(0.0, 2e-13, ""), "below 1e-12");
+        assert_eq!(below(4.0, 20.0, "ys"), "below 100 ys");
     }
 }

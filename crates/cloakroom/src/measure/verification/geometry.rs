@@ -1,7 +1,7 @@
 //! Section 1 and 2: the trivial cloak, the setting and the materials.
 
 use super::VerificationError;
-use super::finding::{Finding, Verdict, below, percent};
+use super::finding::{DOUBLE, Finding, Verdict, below, percent};
 use super::laboratory::{DESIGNS, GAUSSIAN, Laboratory, Rays, fact, principal_values, square};
 use glam::DVec3;
 use optics::interface::{IncidentWave, Side, split};
@@ -29,8 +29,8 @@ pub(super) fn introduction(laboratory: &Laboratory<'_>) -> Findings {
              polarization",
             format!(
                 "along x: turned by {}, {} off its line, power H {}, V {}",
-                below(turned, "rad"),
-                below(beside, "cm"),
+                below(turned, DOUBLE, "rad"),
+                below(beside, DOUBLE, "cm"),
                 percent(leaf.power[0], 0),
                 percent(leaf.power[1], 0)
             ),

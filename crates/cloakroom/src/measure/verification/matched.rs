@@ -1,7 +1,7 @@
 //! Section 3, design (iii).
 
 use super::VerificationError;
-use super::finding::{Finding, Verdict, below};
+use super::finding::{DOUBLE, Finding, SINGLE, Verdict, below};
 use super::laboratory::{
     CAMERA, DESIGNS, Laboratory, Rays, gaze, largest_difference, square, statistics,
 };
@@ -35,20 +35,23 @@ pub(super) fn along_the_axis(laboratory: &Laboratory<'_>) -> Findings {
             "Bare metal distorts the view; (iii) retrieves the empty view perfectly",
             format!(
                 "largest difference of linear light: {}, bare {bare:.2}",
-                below(difference, "")
+                below(difference, SINGLE, "")
             ),
             Verdict::of(difference < 1e-5 && bare > 0.1),
         ),
         Finding::new(
             "3, Fig. 6",
             "The time of flight is retrieved, too, to machine precision: yoctoseconds",
-            format!("largest difference {}", below(late * YOCTOSECONDS, "ys")),
+            format!("largest difference {}", below(late * YOCTOSECONDS, 20.0, "ys")),
             Verdict::of(late * YOCTOSECONDS < 1000.0),
         ),
         Finding::new(
             "3",
             "(iii) is impedance matched to air, for any polarization",
-            format!("power that is not on its own line, over the view: {}", below(lost.abs(), "")),
+            format!(
+                "power that is not on its own line, over the view: {}",
+                below(lost, DOUBLE, "")
+            ),
             Verdict::of(lost < 1e-9),
         ),
     ])
@@ -65,7 +68,7 @@ pub(super) fn turned(laboratory: &Laboratory<'_>) -> Findings {
     Ok(vec![Finding::new(
         "3, Fig. 7",
         "Turned by 5, 10, 20 degrees, (iii) looks exactly as a flat mirror 19.94 cm wide does",
-        format!("largest difference of linear light: {}", below(largest, "")),
+        format!("largest difference of linear light: {}", below(largest, SINGLE, "")),
         Verdict::of(largest < 1e-5),
     )])
 }

@@ -1,7 +1,7 @@
 //! Section 2: the equation of motion of rays.
 
 use super::VerificationError;
-use super::finding::{Finding, Verdict, below};
+use super::finding::{Finding, SINGLE, Verdict, below};
 use super::laboratory::{CAMERA, GAUSSIAN, Laboratory, Rays, gaze};
 use glam::DVec3;
 use num_complex::Complex64;
@@ -55,7 +55,7 @@ pub(super) fn equation(laboratory: &Laboratory<'_>) -> Result<Vec<Finding>, Veri
         format!(
             "9 rays through (iv), stepped along it in physical space, differ from the program's by {} in place, optical \
              path, and 100 cm of direction",
-            below(off, "cm")
+            below(off, SINGLE, "cm")
         ),
         Verdict::of(off < 1e-3),
     )])
