@@ -1,10 +1,14 @@
 //! The command line.
 
+mod values;
+
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use cloakroom::material::Resolution;
+use cloakroom::measure::STANDARD_PLOT;
 use cloakroom::scene::OPTIONAL_CHANNELS;
 use std::path::PathBuf;
+use values::{angles, grid, pixel, point, range, rectangle, size};
 
 /// Photorealistic, physically exact pictures of invisibility cloaks.
 #[derive(Debug, Parser)]
@@ -40,6 +44,12 @@ pub enum Command {
     /// Write what a device is made of, for fabrication and full-wave solvers: its index and tensors on a grid,
     /// or its segments as a table.
     Export(ExportArguments),
+    /// Compare two pictures: correlation, structural similarity, FLIP, times of flight, power.
+    Compare(CompareArguments),
+    /// Measure how well a scene's devices work over a range of settings: a table, data and a plot.
+    Quality(QualityArguments),
+    /// Go through the statements of the paper, one by one: what comes out here, and a verdict (Markdown).
+    Verify(VerifyArguments),
     /// List the devices with their keys and computed facts.
     Devices(DevicesArguments),
     /// Print the JSON Schema of scene files, for editors.
@@ -199,6 +209,51 @@ pub struct FluxArguments {
     pub threads: Option<u16>,
 }
 
+/// Arguments of `compare`.
+#[derive(Args, Debug)]
+pub struct CompareArguments {
+    /// The picture to compare with, .npz, .exr or .png: what should be seen.
+    pub first: PathBuf,
+    /// The picture to be judged.
+    pub second: PathBuf,
+    /// Compare also what is white in this picture (.png, .exr or .npz).
+    #[arg(long, value_name = "FILE")]
+    pub mask: Option<PathBuf>,
+    /// Compare also this rectangle: left column, top row, width and height in pixels.
+    #[arg(long, value_name = "X,Y,W,H", conflicts_with = "mask", value_parser = rectangle)]
+    pub region: Option<Rectangle>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
+/// Arguments of `quality`.
+#[derive(Args, Debug)]
+pub struct QualityArguments {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// A key and its values, as in device.0.rotation=0..90:5 or camera.polarizer=horizontal,vertical. May be
+    /// given several times: every combination is measured.
+    #[arg(long = "sweep", value_name = "KEY=VALUES", required = true)]
+    pub sweeps: Vec<String>,
+    /// A file to write; its ending decides: .csv, .npz, or .svg and .png for a plot. May be given several times.
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub outputs: Vec<PathBuf>,
+    /// What a plot shows, as in ideal_picture_flip,delivered: names of the table's columns, a panel each.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_values = STANDARD_PLOT)]
+    pub plot: Vec<String>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
 /// Arguments of `diagram`.
 #[derive(Args, Debug)]
 pub struct DiagramArguments {
@@ -278,67 +333,25 @@ pub struct ExportArguments {
     pub threads: Option<u16>,
 }
 
+/// Arguments of `verify`.
+#[derive(Args, Debug)]
+pub struct VerifyArguments {
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
+/// A rectangle of a picture: left column, top row, width and height in pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Rectangle(pub [usize; 4]);
+
 /// Arguments of `devices`.
 #[derive(Args, Debug)]
 pub struct DevicesArguments {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
-}
-
-/// Reads a point such as -30,0,0.
-fn point(text: &str) -> Result<[f64; 3], String> {
-    numbers(text).ok_or_else(|| "write X,Y,Z in cm, as in -30,0,0".to_owned())
-}
-
-/// Reads two angles such as 30,20.
-fn angles(text: &str) -> Result<[f64; 2], String> {
-    numbers(text).ok_or_else(|| "write AZIMUTH,ELEVATION in degrees, as in 30,20".to_owned())
-}
-
-/// Reads a range such as -60..60:5.
-fn range(text: &str) -> Result<[f64; 3], String> {
-    let parts = text.split_once("..").and_then(|(from, rest)| {
-        let (to, step) = rest.split_once(':')?;
-        numbers(&format!("{from},{to},{step}"))
-    });
-    parts.ok_or_else(|| "write FROM..TO:STEP in degrees, as in -60..60:5".to_owned())
-}
-
-/// Finite numbers between commas.
-fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
-    let numbers: Result<Vec<f64>, _> =
-        text.split(',').map(|number| number.trim().parse()).collect();
-    let numbers = numbers.ok().filter(|numbers| numbers.iter().all(|n| n.is_finite()))?;
-    numbers.try_into().ok()
-}
-
-/// Reads a grid such as 200x200x1 or 0.1.
-fn grid(text: &str) -> Result<Resolution, String> {
-    let counts: Result<Vec<u32>, _> = text.split('x').map(|count| count.trim().parse()).collect();
-    if let Some(counts) = counts.ok().and_then(|counts| <[u32; 3]>::try_from(counts).ok()) {
-        return Ok(Resolution::Cells(counts));
-    }
-    text.parse().map(Resolution::Spacing).map_err(|_| {
-        "write how many cells along x, y and z, as in 200x200x1, or the side of a cell in cm, as in 0.1"
-            .to_owned()
-    })
-}
-
-/// Reads a pixel such as 512,384.
-fn pixel(text: &str) -> Result<[u32; 2], String> {
-    let pair = text.split_once(',').map(|(x, y)| (x.trim().parse(), y.trim().parse()));
-    match pair {
-        Some((Ok(column), Ok(row))) => Ok([column, row]),
-        _ => Err("write COLUMN,ROW, counted from 0 at the top left, as in 512,384".to_owned()),
-    }
-}
-
-/// Reads a size such as 1024x768.
-fn size(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once('x').map(|(w, h)| (w.parse(), h.parse()));
-    match sides {
-        Some((Ok(w), Ok(h))) if (1..=65536).contains(&w) && (1..=65536).contains(&h) => Ok([w, h]),
-        _ => Err("write WIDTHxHEIGHT in pixels, each from 1 to 65536, as in 1024x768".to_owned()),
-    }
 }

@@ -5,6 +5,7 @@
 
 mod arguments;
 mod check;
+mod compare;
 mod devices;
 mod diagram;
 mod drawn;
@@ -18,10 +19,12 @@ mod interruption;
 mod panels;
 mod progress;
 mod pulses;
+mod quality;
 mod render;
 mod report;
 mod scene;
 mod trace;
+mod verify;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -49,6 +52,9 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Flux(arguments) => flux::run(arguments, stop),
         Command::Diagram(arguments) => diagram::run(arguments, stop),
         Command::Export(arguments) => export::run(arguments, stop),
+        Command::Compare(arguments) => compare::run(arguments),
+        Command::Quality(arguments) => quality::run(arguments, stop),
+        Command::Verify(arguments) => verify::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),
         Command::Schema => report::print_json(&cloakroom::scene_file::schema()),
     }

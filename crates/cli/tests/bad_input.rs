@@ -273,3 +273,48 @@ fn diagrams_and_fluxes_that_cannot_be_made() {
     square.refuses_with(&["flux", "scene.toml", "--sun", "80,-23"], &["does not rise"]);
     small("").refuses_with(&["flux", "scene.toml"], &["no device"]);
 }
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let desk = Desk::with_scene("[camera]\nresolution = [8, 6]\nsamples = 1\n");
+    let render = |size: &str, name: &str| {
+        let size = format!("camera.resolution={size}");
+        desk.cloakroom(&["render", "scene.toml", "--set", &size, "-o", name]).assert().success();
+    };
+    render("[8, 6]", "a.npz");
+    render("[6, 8]", "b.npz");
+    render("[8, 6]", "c.png");
+    desk.write("broken.npz", b"not an archive").write("empty.png", b"");
+    let refuses = |arguments: &[&str], parts: &[&str]| {
+        desk.refuses_with(&[&["compare"], arguments].concat(), parts);
+    };
+    refuses(&["a.npz", "b.npz"], &["one size", "8 x 6", "6 x 8"]);
+    refuses(&["a.npz", "c.png", "--mask", "b.npz"], &["one size"]);
+    refuses(&["a.npz", "c.png", "--region", "4,4,5,1"], &["beyond the picture"]);
+    refuses(&["a.npz", "c.png", "--region", "4,4,0,1"], &["no pixels"]);
+    refuses(&["a.npz", "broken.npz"], &["broken.npz"]);
+    refuses(&["a.npz", "empty.png"], &["empty.png is empty"]);
+    refuses(&["a.npz", "none.exr"], &["none.exr"]);
+    refuses(&["a.npz", "scene.toml"], &["ending"]);
+}
+
+#[test]
+fn sweeps_without_sense_are_refused() {
+    let desk = Desk::with_scene("[[device]]\nkind = \"square-cloak\"\n");
+    let refuses = |sweep: &str, parts: &[&str]| {
+        let arguments = ["quality", "scene.toml", "--sweep", sweep, "-o", "out.csv"];
+        desk.refuses_with(&arguments, parts);
+    };
+    refuses("device.0.rotation=0..10:-1", &["empty"]);
+    refuses("device.0.rotation=", &["missing"]);
+    refuses("device.0.rotation=0,inf", &["not a finite number"]);
+    refuses("device.0.rotaton=0,1", &["--sweep device.0.rotaton=0", "did you mean `rotation`"]);
+    refuses("device.1.rotation=0", &["kind"]);
+    let arguments = ["quality", "scene.toml", "--sweep", "device.0.rotation=0"];
+    desk.refuses_with(&[&arguments[..], &["-o", "out.txt"]].concat(), &["ending"]);
+    desk.refuses_with(
+        &[&arguments[..], &["--plot", "corelation", "-o", "out.svg"]].concat(),
+        &["no figure `corelation`"],
+    );
+    desk.refuses_with(&[&arguments[..], &["-o", "nowhere/out.csv"]].concat(), &["no folder"]);
+}

@@ -17,6 +17,7 @@ pub mod illustration;
 pub mod interface_exchange;
 pub mod keys;
 pub mod material;
+pub mod measure;
 mod memory;
 pub mod output;
 pub mod paper;

@@ -243,6 +243,18 @@ impl<'s> Studio<'s> {
         u64::from(self.scene.camera.resolution()[1])
     }
 
+    /// The rectangle in space on which the photograph is.
+    #[must_use]
+    pub fn screen(&self) -> Screen {
+        self.screen
+    }
+
+    /// The limits within which rays are followed.
+    #[must_use]
+    pub fn limits(&self) -> Limits {
+        self.limits
+    }
+
     /// The devices at their places.
     #[must_use]
     pub fn bench(&self) -> &Bench {

@@ -1,0 +1,70 @@
+//! Values on the command line, read.
+
+use super::Rectangle;
+use cloakroom::material::Resolution;
+
+/// Reads a point such as -30,0,0.
+pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
+    numbers(text).ok_or_else(|| "write X,Y,Z in cm, as in -30,0,0".to_owned())
+}
+
+/// Reads two angles such as 30,20.
+pub(super) fn angles(text: &str) -> Result<[f64; 2], String> {
+    numbers(text).ok_or_else(|| "write AZIMUTH,ELEVATION in degrees, as in 30,20".to_owned())
+}
+
+/// Reads a range such as -60..60:5.
+pub(super) fn range(text: &str) -> Result<[f64; 3], String> {
+    let parts = text.split_once("..").and_then(|(from, rest)| {
+        let (to, step) = rest.split_once(':')?;
+        numbers(&format!("{from},{to},{step}"))
+    });
+    parts.ok_or_else(|| "write FROM..TO:STEP in degrees, as in -60..60:5".to_owned())
+}
+
+/// Finite numbers between commas.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let numbers: Result<Vec<f64>, _> =
+        text.split(',').map(|number| number.trim().parse()).collect();
+    let numbers = numbers.ok().filter(|numbers| numbers.iter().all(|n| n.is_finite()))?;
+    numbers.try_into().ok()
+}
+
+/// Reads a grid such as 200x200x1 or 0.1.
+pub(super) fn grid(text: &str) -> Result<Resolution, String> {
+    let counts: Result<Vec<u32>, _> = text.split('x').map(|count| count.trim().parse()).collect();
+    if let Some(counts) = counts.ok().and_then(|counts| <[u32; 3]>::try_from(counts).ok()) {
+        return Ok(Resolution::Cells(counts));
+    }
+    text.parse().map(Resolution::Spacing).map_err(|_| {
+        "write how many cells along x, y and z, as in 200x200x1, or the side of a cell in cm, as in 0.1"
+            .to_owned()
+    })
+}
+
+/// Reads a pixel such as 512,384.
+pub(super) fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let pair = text.split_once(',').map(|(x, y)| (x.trim().parse(), y.trim().parse()));
+    match pair {
+        Some((Ok(column), Ok(row))) => Ok([column, row]),
+        _ => Err("write COLUMN,ROW, counted from 0 at the top left, as in 512,384".to_owned()),
+    }
+}
+
+/// Reads a rectangle such as 100,50,200,150.
+pub(super) fn rectangle(text: &str) -> Result<Rectangle, String> {
+    let numbers: Option<Vec<usize>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    numbers.and_then(|numbers| numbers.try_into().ok()).map(Rectangle).ok_or_else(|| {
+        "write X,Y,W,H in pixels: left column, top row, width, height, as in 100,50,200,150"
+            .to_owned()
+    })
+}
+
+/// Reads a size such as 1024x768.
+pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once('x').map(|(w, h)| (w.parse(), h.parse()));
+    match sides {
+        Some((Ok(w), Ok(h))) if (1..=65536).contains(&w) && (1..=65536).contains(&h) => Ok([w, h]),
+        _ => Err("write WIDTHxHEIGHT in pixels, each from 1 to 65536, as in 1024x768".to_owned()),
+    }
+}

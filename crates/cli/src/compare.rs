@@ -1,0 +1,95 @@
+//! `cloakroom compare`: how alike two pictures are.
+
+use crate::arguments::CompareArguments;
+use crate::report::{self, Failure};
+use crate::scene;
+use cloakroom::measure::{Comparison, Figures, MeasureError, Region, View, compare};
+use std::fmt::Write;
+use std::path::Path;
+
+/// Compares two pictures.
+pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
+    scene::use_threads(arguments.threads)?;
+    let read = |path: &Path| View::read(path).map_err(Failure::from_error);
+    let (first, second) = (read(&arguments.first)?, read(&arguments.second)?);
+    let region = match (&arguments.mask, arguments.region) {
+        (Some(mask), _) => {
+            Some(Region::bright(&read(mask)?).map_err(|error| in_mask(mask, &error))?)
+        }
+        (None, Some(rectangle)) => {
+            Some(Region::rectangle(&first, rectangle.0).map_err(Failure::from_error)?)
+        }
+        (None, None) => None,
+    };
+    let comparison = compare(&first, &second, region.as_ref()).map_err(|error| match error {
+        MeasureError::SizesDiffer { .. } => Failure::Failed(format!(
+            "pictures to be compared, and a mask, must be of one size; {error}"
+        )),
+        error => Failure::from_error(error),
+    })?;
+    if arguments.json {
+        return report::print_json(&comparison);
+    }
+    report::print(&table(&comparison).map_err(Failure::from_error)?)
+}
+
+fn in_mask(mask: &Path, error: &MeasureError) -> Failure {
+    match error {
+        MeasureError::EmptyRegion => {
+            Failure::Failed(format!("{}: nothing in this mask is white", mask.display()))
+        }
+        error => Failure::from_error(error),
+    }
+}
+
+/// The figures for people: a column for the picture, and one for the region.
+fn table(comparison: &Comparison) -> Result<String, std::fmt::Error> {
+    let columns: Vec<&Figures> =
+        [Some(&comparison.picture), comparison.region.as_ref()].into_iter().flatten().collect();
+    let mut text = String::new();
+    let mut row = |name: &str, value: &dyn Fn(&Figures) -> String| {
+        write!(text, "{name:<36}")?;
+        for figures in &columns {
+            write!(text, " {:>26}", value(figures))?;
+        }
+        writeln!(text)
+    };
+    row("", &|figures| {
+        let whole = std::ptr::eq(figures, columns[0]);
+        if whole { "picture".to_owned() } else { "region".to_owned() }
+    })?;
+    row("pixels", &|f| f.pixels.to_string())?;
+    row("correlation (R G B)", &|f| triple(f.correlation.map(|c| number(c, 5))))?;
+    row("  at the best shift", &|f| {
+        triple(f.correlation_maximum.map(|best| number(best.map(|b| b.correlation), 5)))
+    })?;
+    row("  best shift (right,down; pixels)", &|f| {
+        triple(f.correlation_maximum.map(|best| {
+            best.map_or("-".to_owned(), |b| format!("{},{}", b.shift_pixels[0], b.shift_pixels[1]))
+        }))
+    })?;
+    row("rms difference, linear light", &|f| triple(f.rms_difference.map(|d| number(Some(d), 5))))?;
+    row("structural similarity (SSIM)", &|f| number(Some(f.structural_similarity), 5))?;
+    row("FLIP", &|f| number(Some(f.flip), 5))?;
+    if columns.iter().any(|f| f.time_of_flight_difference.is_some()) {
+        let time = |f: &Figures, value: &dyn Fn(cloakroom::measure::FlightFigures) -> f64| {
+            f.time_of_flight_difference.map_or("-".to_owned(), |t| format!("{:.4e}", value(t)))
+        };
+        row("time of flight: largest (ns)", &|f| time(f, &|t| t.maximum_ns))?;
+        row("  largest share of the flight", &|f| time(f, &|t| t.maximum_relative))?;
+        row("  mean (ns)", &|f| time(f, &|t| t.mean_ns))?;
+        row("  rms about the mean (ns)", &|f| time(f, &|t| t.rms_about_mean_ns))?;
+    }
+    if columns.iter().any(|f| f.delivered.iter().any(Option::is_some)) {
+        row("power from the photograph", &|f| f.delivered.map(|p| number(p, 5)).join("  "))?;
+    }
+    Ok(text)
+}
+
+fn triple(words: [String; 3]) -> String {
+    words.join("  ")
+}
+
+fn number(value: Option<f64>, decimals: usize) -> String {
+    value.map_or("-".to_owned(), |value| format!("{value:.decimals$}"))
+}

@@ -1,0 +1,112 @@
+//! Numbers for what pictures show: how alike two views are, how well a device does over a range of its
+//! settings, and what of the paper's statements comes out here.
+//!
+//! - [`View`] is a picture to be measured, from memory or a file; [`Region`] a part of it.
+//! - [`compare`] holds two views against each other: correlation, structural similarity, FLIP, times of
+//!   flight, power.
+//! - [`survey`](survey()) asks the rays themselves: where they land, against where they should.
+//! - [`quality`](quality()) does both for every combination of swept keys ([`Sweep`]).
+//! - [`verification`] goes through the paper, statement by statement.
+//! - [`survey`] asks the rays themselves: where they land, against where they should.
+//! - [`quality`] does both for every combination of swept keys ([`Sweep`]).
+
+mod comparison;
+mod correlation;
+mod flip;
+mod plane;
+mod quality;
+mod quality_files;
+mod region;
+mod structural_similarity;
+mod survey;
+mod sweep;
+pub mod verification;
+mod view;
+
+pub use comparison::{Comparison, Figures, FlightFigures, Shifted, compare, compare_in};
+pub use correlation::{BestShift, best_shift, correlation};
+pub use flip::{DEFAULT_PIXELS_PER_DEGREE, flip};
+pub use quality::{
+    Column, Plan, QualityError, QualityTable, Row, UnknownColumn, columns, empty, ideal, quality,
+};
+pub use quality_files::{STANDARD_PLOT, TableError, TableFormat};
+pub use region::Region;
+pub use structural_similarity::structural_similarity;
+pub use survey::{CLOAKED_WITHIN_CM, Survey, survey};
+pub use sweep::{Sweep, SweepError, combinations};
+pub use view::View;
+
+use std::path::PathBuf;
+
+/// Why something cannot be measured.
+#[derive(Debug, thiserror::Error)]
+pub enum MeasureError {
+    /// A file cannot be read as a picture.
+    #[error("cannot read {}: {reason}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        reason: String,
+    },
+    /// An image cannot be loaded.
+    #[error("{0}")]
+    Image(#[from] crate::photograph::LoadError),
+    /// A picture lacks a channel that is needed.
+    #[error("{name} has no channel `{channel}`")]
+    MissingChannel {
+        /// What the picture is called.
+        name: String,
+        /// The channel.
+        channel: String,
+    },
+    /// A pixel is infinite or not a number.
+    #[error(
+        "channel `{channel}` of {name} has a pixel that is not a finite number, in column {column} and \
+         row {row}"
+    )]
+    NotFinite {
+        /// What the picture is called.
+        name: String,
+        /// The channel.
+        channel: String,
+        /// Column of the first such pixel, from 0.
+        column: usize,
+        /// Row of the first such pixel, from 0.
+        row: usize,
+    },
+    /// Two pictures, or a picture and a mask, differ in size.
+    #[error("the sizes differ: {} x {} pixels and {} x {}", first[0], first[1], second[0], second[1])]
+    SizesDiffer {
+        /// Width and height of one.
+        first: [usize; 2],
+        /// Width and height of the other.
+        second: [usize; 2],
+    },
+    /// A region holds no pixels.
+    #[error("there are no pixels in the region to be measured")]
+    EmptyRegion,
+    /// A rectangle reaches beyond the picture.
+    #[error("the rectangle reaches beyond the picture of {width} x {height} pixels")]
+    OutsidePicture {
+        /// Width of the picture.
+        width: usize,
+        /// Height of the picture.
+        height: usize,
+    },
+    /// There is not enough memory.
+    #[error(
+        "comparing pictures of {width} x {height} pixels over all shifts needs {needed_mb} MB of memory, \
+         but only {available_mb} MB are free; compare smaller ones"
+    )]
+    TooLarge {
+        /// Width of the pictures.
+        width: usize,
+        /// Height of the pictures.
+        height: usize,
+        /// Memory needed, in 10^6 bytes.
+        needed_mb: u64,
+        /// Memory free, in 10^6 bytes.
+        available_mb: u64,
+    },
+}

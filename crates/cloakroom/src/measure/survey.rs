@@ -1,0 +1,174 @@
+//! What the rays themselves tell of a cloak: where they land on the photograph, against where they should.
+
+use crate::render::Studio;
+use crate::scene::Camera;
+use crate::trace::{Launch, Leaf, Outcome, Screen, Tracer};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How near to where it should a ray must land to count as cloaked, cm on the photograph.
+pub const CLOAKED_WITHIN_CM: f64 = 1.0;
+
+/// What the ray through the middle of each pixel has met, and how well.
+///
+/// A ray's leaves count by their power. Errors are those of the leaves on the photograph against the strongest leaf
+/// of the same camera ray in the ideal scene, if that is on the photograph, too.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Survey {
+    /// Whether the ray meets a device, row by row from the top left.
+    pub silhouette: Vec<bool>,
+    /// Root mean square of the distance at the photograph from where light should land, over the silhouette, cm;
+    /// `None` if none of it can be compared.
+    pub displacement_rms_cm: Option<f64>,
+    /// Root mean square of the angle to the direction that light should have there, over the silhouette,
+    /// degrees.
+    pub direction_error_rms_deg: Option<f64>,
+    /// Share of the silhouette's pixels that are not cloaked: less than half of their power goes within
+    /// [`CLOAKED_WITHIN_CM`] of where it should, or, where it should miss the photograph, misses it. `None` without
+    /// a silhouette.
+    pub uncloaked_share: Option<f64>,
+    /// What these pixels cover of the plane of the photograph in the empty view, cm².
+    pub uncloaked_area_cm2: f64,
+}
+
+/// One pixel's share in a survey.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sight {
+    met: bool,
+    /// Power that can be compared, and the sums over it.
+    compared: f64,
+    square_cm: f64,
+    square_rad: f64,
+    /// Power that goes where it should.
+    faithful: f64,
+}
+
+/// Sends a ray through the middle of each pixel of a scene, and the same ray through the ideal scene, which must
+/// have the same camera and photograph; `None` if the work was stopped. `rows_done` is called now and then with the
+/// rows finished since the last call.
+#[must_use]
+pub fn survey(
+    studio: &Studio<'_>,
+    ideal: &Studio<'_>,
+    camera: &Camera,
+    rows_done: &(dyn Fn(u64) + Sync),
+    stop: &AtomicBool,
+) -> Option<Survey> {
+    match camera.polarizer().amplitudes() {
+        Some(amplitudes) => launched(studio, ideal, camera, [amplitudes], rows_done, stop),
+        None => launched(studio, ideal, camera, [[1.0, 0.0], [0.0, 1.0]], rows_done, stop),
+    }
+}
+
+fn launched<const N: usize>(
+    studio: &Studio<'_>,
+    ideal: &Studio<'_>,
+    camera: &Camera,
+    amplitudes: [[f64; 2]; N],
+    rows_done: &(dyn Fn(u64) + Sync),
+    stop: &AtomicBool,
+) -> Option<Survey> {
+    let [width, height] = camera.resolution();
+    fn tracer<'b, const N: usize>(studio: &'b Studio<'_>) -> Tracer<'b, N> {
+        Tracer::new(studio.bench(), studio.limits()).with_screen(studio.screen())
+    }
+    let rows: Option<Vec<Vec<Sight>>> = (0..height)
+        .into_par_iter()
+        .map_init(
+            || (tracer::<N>(studio), tracer::<N>(ideal)),
+            |(tracer, ideal), row| {
+                if stop.load(Ordering::Relaxed) {
+                    return None;
+                }
+                let sights = (0..width).map(|column| {
+                    let ray = camera.ray(f64::from(column) + 0.5, f64::from(row) + 0.5);
+                    let (h, v) = camera.polarization_basis(ray.direction);
+                    let electric = amplitudes.map(|[a, b]| (h * a + v * b).into());
+                    let launch = Launch { origin: ray.origin, direction: ray.direction, electric };
+                    let (wanted, _) = ideal.trace(&launch);
+                    let wanted = strongest(wanted).copied();
+                    let (leaves, outcome) = tracer.trace(&launch);
+                    sight(&studio.screen(), leaves, outcome, wanted.as_ref())
+                });
+                let sights = sights.collect();
+                rows_done(1);
+                Some(sights)
+            },
+        )
+        .collect();
+    let sights: Vec<Sight> = rows?.into_iter().flatten().collect();
+    Some(summary(&sights, camera, &studio.screen()))
+}
+
+fn power<const N: usize>(leaf: &Leaf<N>) -> f64 {
+    leaf.power.iter().sum::<f64>() / N as f64
+}
+
+fn strongest<const N: usize>(leaves: &[Leaf<N>]) -> Option<&Leaf<N>> {
+    leaves.iter().max_by(|a, b| power(a).total_cmp(&power(b)))
+}
+
+fn landing<const N: usize>(screen: &Screen, leaf: &Leaf<N>) -> Option<glam::DVec3> {
+    let distance = screen.hit(leaf.position, leaf.direction).filter(|_| leaf.body.is_none())?;
+    Some(leaf.position + leaf.direction * distance)
+}
+
+fn sight<const N: usize>(
+    screen: &Screen,
+    leaves: &[Leaf<N>],
+    outcome: &Outcome<N>,
+    wanted: Option<&Leaf<N>>,
+) -> Sight {
+    let lost = outcome.absorbed.iter().chain(&outcome.pruned).any(|power| *power > 0.0);
+    let mut sight = Sight {
+        met: lost || leaves.len() != 1 || leaves.iter().any(|leaf| leaf.met_device),
+        ..Sight::default()
+    };
+    let wanted = wanted.map(|leaf| (leaf.direction, landing(screen, leaf)));
+    for leaf in leaves {
+        match (landing(screen, leaf), wanted) {
+            (Some(place), Some((direction, Some(wanted)))) => {
+                let away = place.distance(wanted);
+                sight.compared += power(leaf);
+                sight.square_cm += power(leaf) * away * away;
+                // By the chord: exact to rounding for small angles.
+                let angle = 2.0 * (0.5 * leaf.direction.distance(direction)).min(1.0).asin();
+                sight.square_rad += power(leaf) * angle * angle;
+                if away <= CLOAKED_WITHIN_CM {
+                    sight.faithful += power(leaf);
+                }
+            }
+            (None, Some((_, None))) => sight.faithful += power(leaf),
+            _ => {}
+        }
+    }
+    sight
+}
+
+fn summary(sights: &[Sight], camera: &Camera, screen: &Screen) -> Survey {
+    let width = camera.resolution()[0] as usize;
+    let met = || sights.iter().enumerate().filter(|(_, sight)| sight.met);
+    let sum = |value: &dyn Fn(&Sight) -> f64| met().map(|(_, sight)| value(sight)).sum::<f64>();
+    let compared = sum(&|sight| sight.compared);
+    let rms = |squares: f64| (compared > 0.0).then(|| (squares / compared).sqrt());
+    let uncloaked = || met().filter(|(_, sight)| sight.faithful < 0.5);
+    let area = |index: usize| {
+        let corner = |right: f64, down: f64| {
+            let (column, row) = ((index % width) as f64 + right, (index / width) as f64 + down);
+            let ray = camera.ray(column, row);
+            screen
+                .plane_distance(ray.origin, ray.direction)
+                .map(|distance| ray.origin + ray.direction * distance)
+        };
+        let sides = corner(0.0, 0.0).zip(corner(1.0, 0.0)).zip(corner(0.0, 1.0));
+        sides.map_or(0.0, |((at, right), below)| (right - at).cross(below - at).length())
+    };
+    let silhouette = met().count();
+    Survey {
+        silhouette: sights.iter().map(|sight| sight.met).collect(),
+        displacement_rms_cm: rms(sum(&|sight| sight.square_cm)),
+        direction_error_rms_deg: rms(sum(&|sight| sight.square_rad)).map(f64::to_degrees),
+        uncloaked_share: (silhouette > 0).then(|| uncloaked().count() as f64 / silhouette as f64),
+        uncloaked_area_cm2: uncloaked().fold(0.0, |sum, (index, _)| sum + area(index)),
+    }
+}

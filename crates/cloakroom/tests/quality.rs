@@ -1,0 +1,135 @@
+//! Tables of cloaking quality, against scenes whose figures are known.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use cloakroom::measure::{Plan, QualityError, QualityTable, Sweep, quality};
+use cloakroom::render::{RenderError, Supervision};
+use cloakroom::scene_file;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+fn plan(scene: &str, sweeps: &[&str]) -> Result<Plan, QualityError> {
+    let sweeps = sweeps.iter().map(|text| Sweep::parse(text).unwrap()).collect();
+    Plan::new(sweeps, |more| scene_file::parse(scene, "test", Path::new(""), more))
+}
+
+fn measured(scene: &str, sweeps: &[&str]) -> QualityTable {
+    let plan = plan(scene, sweeps).unwrap();
+    let (done, stop) = (AtomicU64::new(0), AtomicBool::new(false));
+    let count = |rows| {
+        done.fetch_add(rows, Ordering::Relaxed);
+    };
+    let table = quality(&plan, &Supervision { rows_done: &count, stop: &stop }).unwrap();
+    assert_eq!(done.into_inner(), plan.steps(), "the progress runs to its end");
+    assert_eq!(table.rows.len(), plan.combinations());
+    table
+}
+
+/// A number of a table, by its row and its column's name.
+trait Figure {
+    fn figure(&self, row: usize, name: &str) -> f64;
+}
+
+impl Figure for QualityTable {
+    fn figure(&self, row: usize, name: &str) -> f64 {
+        self.rows[row].numbers[self.column(name).unwrap()]
+    }
+}
+
+#[test]
+fn design_iii_is_perfect_and_bare_metal_is_not() {
+    let scene =
+        "[camera]\nresolution = [80, 60]\nsamples = 1\n[[device]]\nkind = \"square-cloak\"\n";
+    let table = measured(scene, &["device.0.show=cloak,bare", "device.0.rotation=0,10"]);
+    for row in [0, 1] {
+        for name in ["ideal_picture_correlation", "ideal_silhouette_correlation_maximum_red"] {
+            assert!((table.figure(row, name) - 1.0).abs() < 1e-9, "{name}");
+        }
+        assert!((table.figure(row, "ideal_silhouette_structural_similarity") - 1.0).abs() < 1e-6);
+        assert!(table.figure(row, "ideal_silhouette_flip") < 1e-3);
+        assert!(table.figure(row, "displacement_rms_cm") < 1e-9);
+        assert!(table.figure(row, "direction_error_rms_deg") < 1e-6);
+        assert_eq!(table.figure(row, "uncloaked_area_cm2"), 0.0);
+    }
+    assert!((table.figure(0, "delivered") - 1.0).abs() < 1e-6);
+    assert!(table.figure(0, "time_of_flight_difference_maximum_ns").abs() < 1e-13);
+    // Turned, it is a mirror, which is not the empty view.
+    assert!(table.figure(0, "empty_silhouette_correlation") > 1.0 - 1e-9);
+    assert!(table.figure(1, "empty_silhouette_correlation") < 0.9);
+    // The rhombus, 11.51 cm high and 100 cm away, covers the middles of 12 rows of pixels.
+    assert!(table.figure(2, "uncloaked_share") > 0.99);
+    let pixel = 2.0 * 150.0 * 20f64.to_radians().tan() / 80.0;
+    let share = table.figure(2, "silhouette_share");
+    assert!((share - 12.0 / 60.0).abs() < 1e-12, "{share}");
+    let area = table.figure(2, "uncloaked_area_cm2") / table.figure(2, "uncloaked_share");
+    assert!((area / (12.0 * 80.0 * pixel * pixel) - 1.0).abs() < 1e-9, "{area}");
+    assert!(table.figure(2, "ideal_silhouette_correlation") < 0.5);
+}
+
+#[test]
+fn a_glass_plate_moves_the_view_as_snell_says() {
+    // All rays slant by atan(0.3); the plate moves each by t (tan a - tan b), sin a = n sin b, turns none, and
+    // sends what is reflected twice, 0.2 % at this angle, into branches too weak to follow.
+    let scene = "[camera]\nposition = [-100, -30, 0]\ntarget = [0, 0, 0]\nprojection = \"orthographic\"\n\
+                 width = 8\nresolution = [40, 30]\nsamples = 1\n[trace]\nmin_power = 0.01\n\
+                 [[device]]\nkind = \"body\"\nshape = \"slab\"\nthickness = 1\npermittivity = 2.25\n";
+    let table = measured(scene, &["device.0.thickness=1..15:2"]);
+    let sine = 0.3 / 1.09f64.sqrt();
+    let inside = (sine / 1.5).asin().tan();
+    for (row, thickness) in [1.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0, 15.0].into_iter().enumerate() {
+        let expected = thickness * (0.3 - inside);
+        let off = table.figure(row, "displacement_rms_cm");
+        assert!((off - expected).abs() < 1e-9, "{thickness} cm: {off} {expected}");
+        assert!(table.figure(row, "direction_error_rms_deg") < 1e-7);
+        // Later by the path in glass less that in air between the same two planes.
+        let late = thickness * (1.5 * inside.hypot(1.0) - 1.09f64.sqrt());
+        let mean = table.figure(row, "time_of_flight_difference_mean_ns") * 29.979_245_8;
+        assert!((mean - late).abs() < 1e-9, "{mean} {late}");
+        assert!(table.figure(row, "time_of_flight_difference_rms_about_mean_ns") < 1e-12);
+        // Moved by more than 1 cm, nothing is where it should be.
+        let uncloaked = table.figure(row, "uncloaked_share");
+        assert_eq!(uncloaked, if expected > 1.0 { 1.0 } else { 0.0 }, "{thickness} cm");
+    }
+}
+
+#[test]
+fn polarizations_add_up() {
+    let scene = "[camera]\nresolution = [48, 36]\nsamples = 1\n\
+                 [[device]]\nkind = \"square-cloak\"\nmaterial = \"negative-uniaxial\"\n";
+    let table = measured(scene, &["camera.polarizer=horizontal,vertical,none"]);
+    for name in ["delivered", "escaped", "absorbed", "pruned"] {
+        let [h, v, both] = [0, 1, 2].map(|row| table.figure(row, name));
+        assert!((0.5 * (h + v) - both).abs() < 1e-6, "{name}: {h} {v} {both}");
+    }
+    let off = |row| table.figure(row, "displacement_rms_cm");
+    assert!(off(0) < off(2) && off(2) < off(1));
+    let sum: f64 = ["delivered", "escaped", "absorbed", "pruned"]
+        .iter()
+        .map(|name| table.figure(2, name))
+        .sum();
+    assert!((sum - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_view_without_the_device_has_no_figures_of_it() {
+    let scene = "[camera]\nresolution = [16, 12]\nsamples = 1\n\
+                 [[device]]\nkind = \"luneburg-lens\"\nposition = [0, 200, 0]\n";
+    let table = measured(scene, &["device.0.radius=5,10"]);
+    assert_eq!(table.figure(0, "silhouette_share"), 0.0);
+    assert!((table.figure(0, "ideal_picture_correlation") - 1.0).abs() < 1e-12);
+    for name in ["ideal_silhouette_correlation", "displacement_rms_cm", "delivered"] {
+        assert!(table.figure(0, name).is_nan(), "{name}");
+    }
+}
+
+#[test]
+fn what_cannot_be_is_told_before_the_work() {
+    let scene = "[[device]]\nkind = \"square-cloak\"\n";
+    let message = |sweeps: &[&str]| plan(scene, sweeps).unwrap_err().to_string();
+    assert!(message(&["device.0.rotaton=0,5"]).contains("did you mean `rotation`"));
+    assert!(message(&["device.0.kappa=0.5,2"]).contains("kappa"));
+    assert!(message(&["device.0.side=1,2", "device.0.side=3,4"]).contains("twice"));
+    let plan = plan(scene, &["device.0.rotation=0"]).unwrap();
+    let supervision = Supervision { rows_done: &|_| {}, stop: &AtomicBool::new(true) };
+    let stopped = quality(&plan, &supervision);
+    assert!(matches!(stopped, Err(QualityError::Render(RenderError::Stopped))));
+}
