@@ -152,7 +152,7 @@ impl ConformalMap {
     #[must_use]
     pub fn trough(&self) -> f64 {
         match self {
-            Self::Gaussian(_) | Self::QuasiConformal(_) => 3.0,
+            Self::Gaussian(_) | Self::QuasiConformal(_) => 0.0,
             Self::Grating(map) => -map.height(),
         }
     }
