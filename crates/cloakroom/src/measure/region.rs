@@ -16,7 +16,7 @@ impl Region {
     ///
     /// If there are none, or the mask is no rectangle of that width.
     pub fn new(width: usize, mask: Vec<bool>) -> Result<Self, MeasureError> {
-        if width == 0 || mask.len() % width != 0 || !mask.contains(&true) {
+        if !mask.len().is_multiple_of(width) || mask.is_empty() || !mask.contains(&true) {
             return Err(MeasureError::EmptyRegion);
         }
         Ok(Self { width, mask })

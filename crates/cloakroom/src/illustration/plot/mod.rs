@@ -255,7 +255,7 @@ fn number(value: f64, range: &Range<f64>) -> String {
     let largest = range.start.abs().max(range.end.abs());
     // Zero is not what is left of a sum of steps.
     let value = if value.abs() < 1e-9 * width { 0.0 } else { value };
-    let text = if largest >= 1e5 || largest < 1e-3 {
+    let text = if !(1e-3..1e5).contains(&largest) {
         let text = format!("{value:.2e}");
         let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
         let digits = digits.trim_end_matches('0').trim_end_matches('.');
