@@ -135,7 +135,8 @@ pub fn flux(
             tallies.push(tally(scene, bench, &launcher, *direction, sampling, supervision)?);
             (supervision.rows_done)(1);
         }
-        incidences.push(Incidence::new(*direction, degrees, &tallies));
+        let rays = launcher.field(*direction).count();
+        incidences.push(Incidence::new(*direction, degrees, &tallies, rays));
     }
     Ok(FluxReport {
         cells: launcher.cells(),

@@ -118,8 +118,13 @@ pub struct FluxReport {
 }
 
 impl Incidence {
-    /// From the samples of each of [`STANDS`], in that order.
-    pub(super) fn new(direction: Direction, degrees: f64, tallies: &[Vec<Tally>]) -> Self {
+    /// From the samples of each of [`STANDS`], in that order, of so many rays each.
+    pub(super) fn new(
+        direction: Direction,
+        degrees: f64,
+        tallies: &[Vec<Tally>],
+        rays: u32,
+    ) -> Self {
         let sums: Vec<Vec<[f64; 3]>> =
             tallies.iter().map(|samples| samples.iter().map(Tally::total).collect()).collect();
         let of = |stand: Stand, light: usize| -> Vec<f64> {
@@ -132,7 +137,6 @@ impl Incidence {
         let samples = sums.first().map_or(0, Vec::len);
         let steps = std::iter::successors(Some(2), |step| Some(step * 2));
         let steps = steps.take_while(|step| *step < samples).chain([samples]);
-        let rays = |samples: usize| tallies.len() as u64 * samples as u64;
         Self {
             direction,
             degrees,
@@ -141,7 +145,7 @@ impl Incidence {
             maps: STANDS.map(|stand| map(&tallies[stand as usize])),
             convergence: steps
                 .map(|most| Convergence {
-                    rays: rays(most),
+                    rays: u64::from(rays) * most as u64,
                     cloaked: Total::of(&of(Stand::Cloaked, 2)[..most]),
                     gain: gain(2, most),
                 })
