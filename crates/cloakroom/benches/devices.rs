@@ -25,10 +25,7 @@ const RAYS: u32 = 256;
 
 /// The keys of kinds that are nothing without: a prism of glass, a ball of glass.
 const NEEDED: [(&str, &str); 2] = [
-    (
-        "prisms",
-        "[[device.prism]]\ncorners = [[-8, -6], [8, -6], [0, 9]]\npermittivity = 2.25\n",
-    ),
+    ("prisms", "[[device.prism]]\ncorners = [[-8, -6], [8, -6], [0, 9]]\npermittivity = 2.25\n"),
     ("body", "permittivity = 2.25\n"),
 ];
 
