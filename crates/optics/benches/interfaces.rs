@@ -1,10 +1,12 @@
 //! Single interfaces between pairs of media.
 //!
-//! `cargo bench -p cloakroom-optics`
+//! `cargo bench -p cloakroom-optics --bench interfaces`; items are interfaces, each with all the modes of both
+//! media for two polarizations at once.
 
+use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use glam::{DMat3, DVec2, DVec3};
-use optics::interface::{IncidentWave, reflect_at_conductor, split};
+use optics::interface::{IncidentWave, Reflectionless, reflect_at_conductor, split};
 use optics::medium::{Heading, Medium};
 use optics::transformation::StripToRhombus;
 
@@ -44,11 +46,13 @@ fn wave(medium: &Medium) -> IncidentWave<2> {
 
 fn bench_split(bencher: Bencher, from: &Medium, to: &Medium) {
     let wave = wave(from);
+    let bencher = bencher.counter(ItemsCount::new(1u32));
     bencher.bench(|| split(black_box(from), black_box(to), black_box(&wave), DVec3::X));
 }
 
 fn bench_conductor(bencher: Bencher, medium: &Medium) {
     let wave = wave(medium);
+    let bencher = bencher.counter(ItemsCount::new(1u32));
     bencher.bench(|| reflect_at_conductor(black_box(medium), black_box(&wave), DVec3::X));
 }
 
@@ -100,4 +104,16 @@ fn conductor_in_air(bencher: Bencher) {
 #[divan::bench]
 fn conductor_in_uniaxial(bencher: Bencher) {
     bench_conductor(bencher, &birefringent(DVec2::ONE));
+}
+
+/// The reflectionless interface of design (iii), found once from the tensors.
+#[divan::bench]
+fn reflectionless(bencher: Bencher) {
+    let normal = DVec3::new(-1.0, -1.0, 0.0).normalize();
+    let medium = segment();
+    let interface = Reflectionless::between(&Medium::AIR, &medium, normal);
+    let interface = interface.expect("a matched interface");
+    let wave = wave(&Medium::AIR);
+    let bencher = bencher.counter(ItemsCount::new(1u32));
+    bencher.bench(|| black_box(&interface).transmit(black_box(&wave)));
 }
