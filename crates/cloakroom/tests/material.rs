@@ -24,8 +24,11 @@ fn cells(scene: &str, frame: Frame, cells: [u32; 3]) -> GridFile {
     sampled(scene, frame, Resolution::Cells(cells)).expect("a grid")
 }
 
-/// The values of all cells: middle, region, index, permittivity and permeability.
-fn points(grid: &GridFile) -> Vec<([f64; 3], u8, f64, [[f64; 6]; 2])> {
+/// A cell: middle, region, index, permittivity and permeability.
+type Point = ([f64; 3], u8, f64, [[f64; 6]; 2]);
+
+/// The values of all cells.
+fn points(grid: &GridFile) -> Vec<Point> {
     let values =
         |name: &str| &grid.arrays.iter().find(|array| array.name == name).expect("an array").values;
     let (GridValues::Codes(regions, _), GridValues::Numbers(indices)) =
