@@ -40,9 +40,10 @@ count() { # edge in pixels, keys
 
 # The instructions of each function, by its name.
 functions() {
-    callgrind_annotate --threshold=100 "$1" | awk '/^ *[0-9,]+ \(/ {
+    # Recursion is told apart by a mark; here it is not.
+    callgrind_annotate --threshold=100 "$1" | awk '/^ *[0-9,]+ \(/ && !/PROGRAM TOTALS/ {
         gsub(",", "", $1); count = $1
-        sub(/^[^)]*\) +/, ""); sub(/ \[[^]]*\]$/, ""); sub(/^[^:]*:/, "")
+        sub(/^[^)]*\) +/, ""); sub(/ \[[^]]*\]$/, ""); sub(/^[^:]*:/, ""); sub(/\x27[0-9]+$/, "")
         print count "\t" $0
     }'
 }

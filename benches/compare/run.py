@@ -91,9 +91,10 @@ def mitsuba(device, samples, picture):
     return [PYTHON, HERE / "strip_mitsuba.py", *words]
 
 
-def rounds(commands, count):
-    """The CPU and the wall seconds of each command in each round, after one that warms caches up."""
-    for command in commands.values():
+def rounds(commands, count, warm=True):
+    """The CPU and the wall seconds of each command in each round, after one that warms caches up (files,
+    and the kernels that Mitsuba compiles)."""
+    for command in commands.values() if warm else ():
         timed(command)
     runs = {name: [] for name in commands}
     for _ in range(count):
@@ -139,7 +140,7 @@ def pictures(count, folder):
                 "cloakroom, mirror": cloakroom(device, "mirror", samples, picture("mirror")),
                 "cloakroom, cloak": cloakroom(device, "cloak", samples, picture("cloak")),
             }
-            runs = rounds(commands, count)
+            runs = rounds(commands, count, warm=samples == 1)
             for name in commands:
                 against = f"{ratio(runs[name], runs[POV_RAY]):.2f}"
                 times = [f"{median(runs[name]):.2f}", f"{median(runs[name], 1):.2f}", against]
@@ -181,7 +182,7 @@ def threads(count, folder):
             for number in (1, 2)
             for samples in (base, more)
         }
-        runs = rounds(commands, count)
+        runs = rounds(commands, count, warm=False)
         phase = [
             [big[1] - small[1] for big, small in zip(runs[number, more], runs[number, base])]
             for number in (1, 2)
