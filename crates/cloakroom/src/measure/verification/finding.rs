@@ -97,10 +97,12 @@ pub fn markdown(findings: &[Finding]) -> String {
     let mut text = String::from(
         "# Validation\n\n\
          What of Halimeh & Wegener, Opt. Express 21, 9457 (2013) comes out here. `cloakroom verify` computes this page\n\
-         from the scenes of the paper, and a test keeps the two in step. Nothing is adjusted to agree.\n\n\
+         from the scenes of the paper, and a test keeps the two in step. No number is adjusted to agree.\n\n\
          A number *agrees* if it does to the digits that are printed, or keeps the limit that is stated; it agrees *in order\n\
          of magnitude* within a factor of 3. A judgement without a number (good, formidable) agrees if the comparison behind\n\
-         it comes out: nearer to what should be seen than bare metal is, or than the design that it is held against.\n\n\
+         it comes out: nearer to what should be seen than bare metal is, or than the design that it is held against.\n\
+         Which comparison stands for a judgement, and over which part of the picture, is our choice; the numbers let\n\
+         everyone choose another.\n\n\
          Pictures are of 160 x 120 pixels with one ray each, `min_power` 1e-4. A correlation is the zero-mean normalized one\n\
          of linear light at zero shift, the mean of red, green and blue, over the silhouette of the device unless it says\n\
          otherwise; RMS displacements are at the photograph, from rays. H and V are horizontal and vertical polarization.\n\n",

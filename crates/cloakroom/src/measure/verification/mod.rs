@@ -2,7 +2,7 @@
 //! free-space invisibility cloaks", Opt. Express 21, 9457 (2013).
 //!
 //! Each statement that can be checked is computed afresh from the program's own scenes and rays, and the verdict
-//! follows from the numbers by a rule that is written down here, once. Nothing is adjusted to agree.
+//! follows from the numbers by a rule that is written down here, once. No number is adjusted to agree.
 
 mod birefringent;
 mod finding;
