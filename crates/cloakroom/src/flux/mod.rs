@@ -135,7 +135,8 @@ pub fn flux(
             tallies.push(tally(scene, bench, &launcher, *direction, sampling, supervision)?);
             (supervision.rows_done)(1);
         }
-        let rays = launcher.field(*direction).count();
+        let field = launcher.field(*direction);
+        let rays = (field.count(), field.share());
         incidences.push(Incidence::new(*direction, degrees, &tallies, rays));
     }
     Ok(FluxReport {

@@ -118,12 +118,13 @@ pub struct FluxReport {
 }
 
 impl Incidence {
-    /// From the samples of each of [`STANDS`], in that order, of so many rays each.
+    /// From the samples of each of [`STANDS`], in that order, of so many rays each, of which one stands for the
+    /// irradiance `share`.
     pub(super) fn new(
         direction: Direction,
         degrees: f64,
         tallies: &[Vec<Tally>],
-        rays: u32,
+        (rays, share): (u32, f64),
     ) -> Self {
         let sums: Vec<Vec<[f64; 3]>> =
             tallies.iter().map(|samples| samples.iter().map(Tally::total).collect()).collect();
@@ -140,13 +141,13 @@ impl Incidence {
         Self {
             direction,
             degrees,
-            totals: STANDS.map(|stand| [0, 1, 2].map(|light| Total::of(&of(stand, light)))),
+            totals: STANDS.map(|stand| [0, 1, 2].map(|light| Total::of(&of(stand, light), share))),
             gains: [0, 1, 2].map(|light| gain(light, samples)),
             maps: STANDS.map(|stand| map(&tallies[stand as usize])),
             convergence: steps
                 .map(|most| Convergence {
                     rays: u64::from(rays) * most as u64,
-                    cloaked: Total::of(&of(Stand::Cloaked, 2)[..most]),
+                    cloaked: Total::of(&of(Stand::Cloaked, 2)[..most], share),
                     gain: gain(2, most),
                 })
                 .collect(),
@@ -159,11 +160,16 @@ impl Incidence {
 }
 
 impl Total {
-    fn of(samples: &[f64]) -> Self {
+    /// From samples of a grid of rays, of which one stands for `share`.
+    fn of(samples: &[f64], share: f64) -> Self {
         let count = samples.len() as f64;
         let mean = samples.iter().sum::<f64>() / count;
         let square: f64 = samples.iter().map(|sample| (sample - mean).powi(2)).sum();
-        Self { mean, error: (square / (count - 1.0).max(1.0) / count).sqrt() }
+        // The edges of the receiver cut two strata of a row: whether their rays come down on it is chance, p(1 - p) of
+        // a ray, which is 1/6 on average. A few samples may all fall alike.
+        let edges = 2.0 / 6.0 * share * share;
+        let variance = (square / (count - 1.0).max(1.0)).max(edges);
+        Self { mean, error: (variance / count).sqrt() }
     }
 }
 

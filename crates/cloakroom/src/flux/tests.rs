@@ -24,7 +24,7 @@ const FEW: Sampling = Sampling { rays: 2048, samples: 4, cells: 40 };
 const RECEIVER: &str = "[receiver]\nposition = [30, 0, 0]\nwidth = 50\nlength = 40\n";
 const SQUARE: &str = "[[device]]\nkind = \"square-cloak\"\n";
 
-/// That a number is what it should be within five of its errors, and what the edges of a grid of rays take.
+/// That a number is what it should be within five of its errors.
 fn agrees(total: Total, expected: f64, name: &str) {
     let off = (total.mean - expected).abs();
     assert!(

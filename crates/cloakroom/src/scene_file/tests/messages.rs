@@ -36,7 +36,7 @@ fn unknown_words_are_answered_with_known_ones() {
         (
             "[banana]",
             "1:2: unknown table `banana`; known tables: camera, light, photograph, surroundings, \
-             trace, picture, device",
+             trace, picture, receiver, device",
         ),
         ("samples = 4", "1:1: `samples` stands outside of its table, [camera]"),
         ("kind = 'square-cloak'", "1:1: `kind` stands outside of its table, [[device]]"),
