@@ -2,13 +2,14 @@
 //! device, and each word that one of its keys takes, is here by itself.
 //!
 //! `cargo bench -p cloakroom --bench devices`; items are rays. What a device's error is for, `trace.tolerance`,
-//! is the default, 1e-6 cm; branches are followed down to the default share of the power, too.
+//! is the default, 1e-6 cm; branches are followed down to the default share of the power, too. In `surfaces` items are
+//! what they meet.
 
 use cloakroom::device::{CATALOGUE, Cell, InnerRay, Prism};
 use cloakroom::keys::KeyKind;
 use cloakroom::scene::Scene;
 use cloakroom::scene_file;
-use cloakroom::trace::{Bench, FourTracers, Launch, Limits, Tracer};
+use cloakroom::trace::{Bench, FourTracers, Launch, Leg, Limits, Tracer, Witness};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use glam::DVec3;
@@ -96,6 +97,33 @@ fn one_ray(bencher: Bencher, name: &str) {
     let (bench, launches) = (bench(&scene), launches(name));
     let mut tracer = Tracer::new(&bench, limits(&scene));
     bencher.counter(ItemsCount::new(RAYS)).bench_local(|| {
+        for launch in black_box(&launches) {
+            black_box(tracer.trace(launch));
+        }
+    });
+}
+
+/// Counts the surfaces that a tree meets.
+struct Surfaces(u64);
+
+impl Witness<2> for Surfaces {
+    fn saw(&mut self, _: impl FnOnce() -> Leg<2>) {
+        self.0 += 1;
+    }
+}
+
+/// The same by surfaces: an item is a leg of a branch with the interface at its end, two events.
+#[divan::bench(args = devices())]
+fn surfaces(bencher: Bencher, name: &str) {
+    let scene = scene(name);
+    let (bench, launches) = (bench(&scene), launches(name));
+    let mut watched = Tracer::new(&bench, limits(&scene)).watched(Surfaces(0));
+    for launch in &launches {
+        watched.trace(launch);
+    }
+    let count = watched.witness().0;
+    let mut tracer = Tracer::new(&bench, limits(&scene));
+    bencher.counter(ItemsCount::new(count)).bench_local(|| {
         for launch in black_box(&launches) {
             black_box(tracer.trace(launch));
         }
