@@ -45,7 +45,8 @@ impl Desk {
         assert_eq!(output.status.code(), Some(1), "{message}");
         assert!(output.stdout.is_empty());
         assert!(message.starts_with("error: "), "{message}");
-        assert_eq!(message.matches("error").count(), 1, "{message}");
+        let errors = message.lines().filter(|line| line.starts_with("error"));
+        assert_eq!(errors.count(), 1, "{message}");
         for part in parts {
             assert!(message.contains(part), "{part:?} is not in {message:?}");
         }

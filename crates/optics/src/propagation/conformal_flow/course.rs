@@ -44,6 +44,8 @@ pub(super) struct Course {
     pub lever: f64,
     /// The longest step where the map varies most.
     pub longest: f64,
+    /// Whether it is the longest anywhere.
+    pub even: bool,
 }
 
 /// How a map is followed.
@@ -71,7 +73,7 @@ impl Course {
         // Where the estimate is low by chance, the order of the method still keeps a shorter step right.
         let longest = 1.5 * demands.scale * (tolerance / 1e-6).min(1.0).sqrt().sqrt().sqrt();
         let Demands { scale, lever, .. } = *demands;
-        Self { p_z, strength, scale, allowed, lever, longest }
+        Self { p_z, strength, scale, allowed, lever, longest, even: false }
     }
 
     /// The start of the path, `p` the transverse wave vector.

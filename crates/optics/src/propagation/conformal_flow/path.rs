@@ -46,7 +46,7 @@ impl ConformalFlow {
                 })
                 .collect());
         }
-        course.longest = course.longest.min(spacing);
+        (course.longest, course.even) = (course.longest.min(spacing), true);
         let mut walk = Walk::new(self, course, begin);
         let mut way: Vec<Point> = vec![begin];
         loop {

@@ -133,7 +133,11 @@ impl Walk {
     /// Sets out for the next step.
     fn go_on(&mut self, flow: &ConformalFlow) {
         let course = &self.course;
-        let usual = flow.map.longest_stride(self.here.zeta, course.longest) / course.strength;
+        let usual = if course.even {
+            course.longest
+        } else {
+            flow.map.longest_stride(self.here.zeta, course.longest)
+        } / course.strength;
         let beyond = flow.gauges.time_ahead(course, &self.here) + OVERSHOOT * course.scale;
         self.state = State::Stepping(self.stride.min(usual).min(beyond));
     }
