@@ -25,5 +25,6 @@ pub mod photograph;
 pub mod render;
 pub mod scene;
 pub mod scene_file;
+mod split_mix;
 pub mod threads;
 pub mod trace;

@@ -3,6 +3,7 @@
 use super::{Direction, FluxError, Sampling};
 use crate::device::REACH;
 use crate::scene::{Receiver, Scene};
+use crate::split_mix::{STEP, mix};
 use crate::trace::{Bench, Launch};
 use glam::{DVec2, DVec3};
 use optics::wave::transverse_basis;
@@ -177,17 +178,10 @@ impl Field {
     }
 }
 
-/// Two numbers from 0 to 1 that depend on a ray alone (`SplitMix64`).
+/// Two numbers from 0 to 1 that depend on a ray alone.
 fn jitter(seed: u64, sample: u32, number: u32) -> DVec2 {
-    let mut state = seed ^ (u64::from(sample) << 32 | u64::from(number));
-    let mut next = || {
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^= z >> 31;
-        (z >> 11) as f64 / (1u64 << 53) as f64
-    };
-    next();
-    DVec2::new(next(), next())
+    let state = seed ^ (u64::from(sample) << 32 | u64::from(number));
+    // Not the first number: rays side by side begin side by side.
+    let nth = |n: u64| (mix(state.wrapping_add(STEP.wrapping_mul(n))) >> 11) as f64;
+    DVec2::new(nth(1), nth(2)) / (1u64 << 53) as f64
 }

@@ -4,6 +4,8 @@
 //! of an aligned 2 x 2 block share their offsets, so that differences between neighbours in a
 //! block are those of one pixel spacing: the filter's footprint.
 
+use crate::split_mix::mix;
+
 /// Offsets of a pixel's samples, each in [0, 1)²: the centre for a single sample, else the R2
 /// low-discrepancy sequence (powers of the inverse of the plastic number), shifted block by block.
 pub(super) fn offset(sample: u32, samples: u32, block: [u32; 2], seed: u64) -> [f64; 2] {
@@ -16,14 +18,6 @@ pub(super) fn offset(sample: u32, samples: u32, block: [u32; 2], seed: u64) -> [
     let n = f64::from(sample);
     // Much faster than `f64::fract` on processors without an instruction for it.
     [0, 1].map(|i| n * STEPS[i] + shift[i]).map(|place| place - (place as i64) as f64)
-}
-
-/// The finalizer of `SplitMix64`.
-fn mix(value: u64) -> u64 {
-    let z = value.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
 }
 
 /// 32 random bits as a number in [0, 1).

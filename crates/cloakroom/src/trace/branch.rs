@@ -3,6 +3,7 @@
 use super::bodies::Around;
 use super::{Launch, Leaf};
 use crate::device::InnerRay;
+use crate::split_mix::mix;
 use glam::DVec3;
 use optics::geometry::Pose;
 use optics::interface::{IncidentWave, OutgoingWave};
@@ -182,10 +183,7 @@ impl<const N: usize> Branch<N> {
     }
 }
 
-/// Adds an event to the fingerprint of a path (the mixing step of `SplitMix64`).
+/// Adds an event to the fingerprint of a path.
 fn fingerprint(path: u64, event: u64) -> u64 {
-    let mut z = (path ^ event).wrapping_add(0x9E37_79B9_7F4A_7C15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
+    mix(path ^ event)
 }
