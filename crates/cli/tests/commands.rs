@@ -1,26 +1,12 @@
 //! The commands at work: what they print and write.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use assert_cmd::Command;
+mod running;
+
+use running::{cloakroom, json, paper, stdout};
 use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
-
-fn cloakroom() -> Command {
-    Command::cargo_bin("cloakroom").unwrap()
-}
-
-fn paper(panel: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenes/paper/fig{panel}.toml"))
-}
-
-fn json(output: &[u8]) -> Value {
-    serde_json::from_slice(output).unwrap()
-}
-
-fn stdout(command: &mut Command) -> Vec<u8> {
-    command.assert().success().get_output().stdout.clone()
-}
+use std::path::Path;
 
 /// Renders a panel of the paper at a small size into a PNG and returns its pixels.
 fn pixels(folder: &Path, panel: &str, more: &[&str]) -> image::RgbImage {

@@ -1,26 +1,10 @@
 //! Pictures compared and devices measured: what the commands print and write.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use assert_cmd::Command;
-use serde_json::Value;
+mod running;
+
+use running::{cloakroom, json, paper, stdout};
 use std::fs;
-use std::path::{Path, PathBuf};
-
-fn cloakroom() -> Command {
-    Command::cargo_bin("cloakroom").unwrap()
-}
-
-fn paper(panel: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenes/paper/fig{panel}.toml"))
-}
-
-fn json(output: &[u8]) -> Value {
-    serde_json::from_slice(output).unwrap()
-}
-
-fn stdout(command: &mut Command) -> Vec<u8> {
-    command.assert().success().get_output().stdout.clone()
-}
 
 #[test]
 fn pictures_are_compared() {
