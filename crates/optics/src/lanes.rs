@@ -79,6 +79,66 @@ impl<S: Simd> Lanes<S> {
     pub fn divided_by(self, other: Self) -> Self {
         Self { values: self.simd.div_f64s(self.values, other.values), ..self }
     }
+
+    /// Where it is less than another number; not where one is not a number.
+    #[inline(always)]
+    pub fn less_than(self, other: Self) -> Mask<S> {
+        Mask { simd: self.simd, holds: self.simd.less_than_f64s(self.values, other.values) }
+    }
+}
+
+/// Where something holds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mask<S: Simd> {
+    simd: S,
+    holds: S::m64s,
+}
+
+impl<S: Simd> Mask<S> {
+    #[inline(always)]
+    pub fn and(self, other: Self) -> Self {
+        Self { holds: self.simd.and_m64s(self.holds, other.holds), ..self }
+    }
+
+    #[inline(always)]
+    pub fn or(self, other: Self) -> Self {
+        Self { holds: self.simd.or_m64s(self.holds, other.holds), ..self }
+    }
+
+    /// One number where it holds, the other elsewhere.
+    #[inline(always)]
+    pub fn choose(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
+        Lanes { values: self.simd.select_f64s(self.holds, yes.values, no.values), ..yes }
+    }
+}
+
+/// Complex numbers of four rays, in memory.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Complexes {
+    pub re: [f64; LANES],
+    pub im: [f64; LANES],
+}
+
+impl Complexes {
+    #[inline(always)]
+    pub fn at(&self, i: usize) -> Complex64 {
+        Complex64::new(self.re[i], self.im[i])
+    }
+
+    #[inline(always)]
+    pub fn put(&mut self, i: usize, value: Complex64) {
+        (self.re[i], self.im[i]) = (value.re, value.im);
+    }
+
+    #[inline(always)]
+    pub fn load<S: Simd>(&self, simd: S) -> ComplexLanes<S> {
+        ComplexLanes { re: Lanes::new(simd, self.re), im: Lanes::new(simd, self.im) }
+    }
+
+    #[inline(always)]
+    pub fn store<S: Simd>(&mut self, lanes: ComplexLanes<S>) {
+        (self.re, self.im) = (lanes.re.values(), lanes.im.values());
+    }
 }
 
 impl<S: Simd> Add for Lanes<S> {

@@ -6,7 +6,7 @@ use super::tracer::Tracer;
 use super::{Leg, Witness};
 use crate::device::Finish;
 use glam::DVec3;
-use optics::interface::Side;
+use optics::interface::{OutgoingWaves, Side};
 use optics::medium::Medium;
 
 /// Light that crosses more surfaces than this in a row within rounding of one point has spiralled into an
@@ -81,7 +81,8 @@ impl<const N: usize, W: Witness<N>> Tracer<'_, N, W> {
             Inside::Air => (&Medium::AIR, true),
         };
         let event = BODY_EVENT | (crossing.body as u64) << 32;
-        let waves = self.split(medium, beyond, branch, crossing.onward, Finish::Bare);
+        let mut waves = OutgoingWaves::new();
+        self.split(medium, beyond, branch, crossing.onward, Finish::Bare, &mut waves);
         self.go_on(branch, &waves, event, |branch, side| {
             if side == Side::Transmitted {
                 branch.around = around;

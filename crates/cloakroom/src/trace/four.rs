@@ -1,7 +1,8 @@
 //! Four trees side by side: neighbouring rays meet the same cells, and some cells take four rays at once.
 
-use super::tracer::Suspended;
+use super::branch::Branch;
 use super::{Launch, Tracer};
+use crate::device::InnerRay;
 
 /// Traces four rays at once. Each tree is what [`Tracer::trace`] makes of its ray alone.
 #[derive(Clone, Debug)]
@@ -24,18 +25,19 @@ impl<'a, const N: usize> FourTracers<'a, N> {
 
     /// Follows four rays to the end of every branch. They must start in air.
     pub fn trace(&mut self, launches: &[Launch<N>; 4]) {
-        let mut suspended: [Option<Suspended<N>>; 4] =
-            std::array::from_fn(|i| self.tracers[i].begin(&launches[i]));
-        while let Some(first) = suspended.iter().flatten().next() {
-            let cell = first.cell;
-            let rays = suspended.each_ref().map(|suspended| {
-                let here = suspended.as_ref().filter(|suspended| suspended.cell == cell)?;
-                Some(here.branch.inner_ray())
-            });
+        let mut branches = launches.each_ref().map(Branch::launched);
+        // Where each waits to be taken through a cell.
+        let mut cells: [Option<(u16, u16)>; 4] = [None; 4];
+        for (i, cell) in cells.iter_mut().enumerate() {
+            *cell = self.tracers[i].begin(&mut branches[i]);
+        }
+        while let Some(&cell) = cells.iter().flatten().next() {
+            let rays: [Option<InnerRay>; 4] =
+                std::array::from_fn(|i| (cells[i] == Some(cell)).then(|| branches[i].inner_ray()));
             let passages = self.tracers[0].advance_four(cell, &rays);
-            for (i, passage) in passages.into_iter().enumerate() {
-                if let Some(Suspended { branch, .. }) = suspended[i].take_if(|s| s.cell == cell) {
-                    suspended[i] = self.tracers[i].resume(branch, cell, passage);
+            for (i, passage) in passages.iter().enumerate() {
+                if rays[i].is_some() {
+                    cells[i] = self.tracers[i].resume(&mut branches[i], cell, passage.as_ref());
                 }
             }
         }

@@ -71,7 +71,8 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         let Some((entrance, beyond)) = entered(cell, branch.position, &mut graded) else {
             return self.lose(branch.power);
         };
-        let waves = self.split(&Medium::AIR, beyond, branch, into, hit.finish);
+        let mut waves = OutgoingWaves::new();
+        self.split(&Medium::AIR, beyond, branch, into, hit.finish, &mut waves);
         self.go_on(branch, &waves, event, |branch, side| match side {
             Side::Reflected => branch.leave_frame(&device.pose, left),
             Side::Transmitted => branch.enter_cell(device_index, cell_index, entrance.foothold),
@@ -98,7 +99,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         &mut self,
         branch: &mut Branch<N>,
         (device_index, cell_index): (u16, u16),
-        passage: Option<Passage>,
+        passage: Option<&Passage>,
     ) -> bool {
         let Some(passage) = passage else {
             return self.lose(branch.power);
@@ -110,7 +111,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
             power: branch.power,
             optical_path: branch.optical_path,
             inside: Some((device_index, cell_index)),
-            path: cell.path(&branch.inner_ray(), &passage, self.limits.tolerance),
+            path: cell.path(&branch.inner_ray(), passage, self.limits.tolerance),
         });
         branch.position = passage.position;
         let mut graded_here = None;
@@ -157,7 +158,8 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
                 let Some((entrance, beyond)) = beyond else {
                     return self.lose(branch.power);
                 };
-                let waves = self.split(medium, beyond, branch, passage.outward, passage.finish);
+                let mut waves = OutgoingWaves::new();
+                self.split(medium, beyond, branch, passage.outward, passage.finish, &mut waves);
                 self.go_on(branch, &waves, event, |branch, side| {
                     if side == Side::Transmitted {
                         branch.enter_cell(device_index, next, entrance.foothold);
@@ -175,7 +177,8 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
                     return true;
                 }
                 let air = &Medium::AIR;
-                let waves = self.split(medium, air, branch, passage.outward, passage.finish);
+                let mut waves = OutgoingWaves::new();
+                self.split(medium, air, branch, passage.outward, passage.finish, &mut waves);
                 self.go_on(branch, &waves, event, |branch, side| {
                     if side == Side::Transmitted {
                         leave(branch);
@@ -231,20 +234,19 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         branch: &Branch<N>,
         normal: DVec3,
         finish: Finish,
-    ) -> OutgoingWaves<N> {
+        waves: &mut OutgoingWaves<N>,
+    ) {
         let wave = branch.incident();
-        let mut waves = OutgoingWaves::new();
         let mut weak = [0.0; N];
         match finish {
             Finish::Bare => {
-                weak = split_down_to(from, to, &wave, normal, self.least_power(), &mut waves);
+                weak = split_down_to(from, to, &wave, normal, self.least_power(), waves);
             }
             Finish::Antireflection => {
                 waves.extend(transmit_antireflection(from, to, &wave, normal));
             }
         }
-        self.check_account(branch, &waves, weak);
-        waves
+        self.check_account(branch, waves, weak);
     }
 
     pub(super) fn cell(&self, device: &'a Placed, index: u16) -> &'a Cell {

@@ -56,14 +56,6 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     pub(super) witness: W,
 }
 
-/// A branch that waits to be taken through a cell.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Suspended<const N: usize> {
-    pub branch: Branch<N>,
-    /// The device and its cell.
-    pub cell: (u16, u16),
-}
-
 impl<'a, const N: usize> Tracer<'a, N> {
     /// A tracer for the devices of `bench`.
     #[must_use]
@@ -97,10 +89,11 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
     /// Follows one ray to the end of every branch: the leaves, in the order the tree was walked,
     /// and the account of the rest of the power. The ray must start in air.
     pub fn trace(&mut self, launch: &Launch<N>) -> (&[Leaf<N>], &Outcome<N>) {
-        let mut suspended = self.begin(launch);
-        while let Some(Suspended { branch, cell }) = suspended {
-            let passage = self.bench.cell(cell).advance(&branch.inner_ray(), self.limits.tolerance);
-            suspended = self.resume(branch, cell, passage);
+        let mut branch = Branch::launched(launch);
+        let mut cell = self.begin(&mut branch);
+        while let Some(here) = cell {
+            let passage = self.bench.cell(here).advance(&branch.inner_ray(), self.limits.tolerance);
+            cell = self.resume(&mut branch, here, passage.as_ref());
         }
         self.traced()
     }
@@ -111,25 +104,25 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         (&self.leaves, &self.outcome)
     }
 
-    /// Launches a ray and follows its tree to where a branch is to be taken through a cell that takes four;
-    /// None if it is at the end.
-    pub(super) fn begin(&mut self, launch: &Launch<N>) -> Option<Suspended<N>> {
+    /// Follows the tree of a launched ray to where a branch, which takes the place of the given one, is to be
+    /// taken through a cell that takes four: the device and its cell. None if it is at the end.
+    pub(super) fn begin(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
         self.leaves.clear();
         self.outcome = Outcome::default();
         self.waiting.clear();
         (self.events, self.threshold) = (0, self.least_power());
-        self.walk(Branch::launched(launch))
+        self.walk(branch)
     }
 
-    /// As [`Self::begin`], from where a branch has been taken through a cell.
+    /// As [`Self::begin`], from where the branch has been taken through a cell.
     pub(super) fn resume(
         &mut self,
-        mut branch: Branch<N>,
+        branch: &mut Branch<N>,
         cell: (u16, u16),
-        passage: Option<Passage>,
-    ) -> Option<Suspended<N>> {
-        if !self.pass(&mut branch, cell, passage) {
-            branch = self.waiting.pop()?;
+        passage: Option<&Passage>,
+    ) -> Option<(u16, u16)> {
+        if !self.pass(branch, cell, passage) {
+            *branch = self.waiting.pop()?;
         }
         self.walk(branch)
     }
@@ -143,7 +136,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         self.bench.cell(cell).advance_four(rays, self.limits.tolerance)
     }
 
-    fn walk(&mut self, mut branch: Branch<N>) -> Option<Suspended<N>> {
+    fn walk(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
         loop {
             let goes_on = if branch.largest_power() < self.threshold {
                 self.outcome.rarities.endless += 1;
@@ -156,21 +149,21 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
                     self.threshold *= 10.0;
                 }
                 match branch.place {
-                    Place::Air { left } => self.through_air(&mut branch, left),
+                    Place::Air { left } => self.through_air(branch, left),
                     Place::Cell { device, cell: index } => {
                         let cell = self.bench.cell((device, index));
                         if cell.takes_four() {
-                            return Some(Suspended { branch, cell: (device, index) });
+                            return Some((device, index));
                         }
-                        !self.parts(&branch, cell) && {
+                        !self.parts(branch, cell) && {
                             let passage = cell.advance(&branch.inner_ray(), self.limits.tolerance);
-                            self.pass(&mut branch, (device, index), passage)
+                            self.pass(branch, (device, index), passage.as_ref())
                         }
                     }
                 }
             };
             if !goes_on {
-                branch = self.waiting.pop()?;
+                *branch = self.waiting.pop()?;
             }
         }
     }

@@ -13,6 +13,7 @@
 mod admittance;
 mod coating;
 mod conductor;
+mod isotropic;
 mod matching;
 mod reflectionless;
 mod scattering;
@@ -128,6 +129,11 @@ pub fn split_down_to<const N: usize>(
     least_power: f64,
     waves: &mut OutgoingWaves<N>,
 ) -> [f64; N] {
+    if let (Some(here), Some(there)) = (incident_medium.scalars(), transmitted_medium.scalars())
+        && wave.attenuation == DVec3::ZERO
+    {
+        return isotropic::split_isotropic([here, there], wave, normal, least_power, waves);
+    }
     let surfaces = (incident_medium.wave_surface(), transmitted_medium.wave_surface());
     if let (Some(from), Some(to)) = surfaces
         && wave.attenuation == DVec3::ZERO

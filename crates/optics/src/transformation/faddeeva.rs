@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 use num_complex::Complex64;
 use pulp::Simd;
 
-use crate::lanes::{ComplexLanes, LANES};
+use crate::lanes::{ComplexLanes, LANES, Lanes};
 
 /// Grid points per unit length.
 const DENSITY: f64 = 8.0;
@@ -102,26 +102,62 @@ pub(super) fn faddeeva_lanes<S: Simd>(t: ComplexLanes<S>) -> ComplexLanes<S> {
         // Where it is not, any patch does.
         patches[i] = table.get(index(columns[i], rows[i])).unwrap_or(&table[0]);
     }
-    let [p, q, r, s] = patches;
-    let zero = ComplexLanes { re: t.re.all(0.0), im: t.re.all(0.0) };
-    let mut c = [zero; TERMS];
-    for (k, c) in c.iter_mut().enumerate() {
-        c.re = t.re.with([p.re[k], q.re[k], r.re[k], s.re[k]]);
-        c.im = t.re.with([p.im[k], q.im[k], r.im[k], s.im[k]]);
+    let first = patches[0];
+    let w = if patches.iter().all(|patch| std::ptr::eq(*patch, first)) {
+        // As a rule: rays that go side by side are near each other.
+        taylor(d, OnePatch(first))
+    } else {
+        taylor(d, Patches(patches))
+    };
+    // w_F(-conj t) = conj w_F(t)
+    let w = ComplexLanes { re: w.re, im: w.im * t.re.signs() };
+    if inside { w } else { w.elsewhere(arguments, is_tabulated, faddeeva) }
+}
+
+/// Where the coefficients of four rays come from.
+trait Coefficients {
+    /// The `k`th of them, in the order in which they are summed.
+    fn term<S: Simd>(&self, lanes: Lanes<S>, k: usize) -> ComplexLanes<S>;
+}
+
+/// The same patch for all.
+struct OnePatch<'t>(&'t Patch);
+
+impl Coefficients for OnePatch<'_> {
+    #[inline(always)]
+    fn term<S: Simd>(&self, lanes: Lanes<S>, k: usize) -> ComplexLanes<S> {
+        ComplexLanes { re: lanes.all(self.0.re[k]), im: lanes.all(self.0.im[k]) }
     }
+}
+
+/// A patch for each.
+struct Patches<'t>([&'t Patch; LANES]);
+
+impl Coefficients for Patches<'_> {
+    #[inline(always)]
+    fn term<S: Simd>(&self, lanes: Lanes<S>, k: usize) -> ComplexLanes<S> {
+        let [p, q, r, s] = self.0;
+        ComplexLanes {
+            re: lanes.with([p.re[k], q.re[k], r.re[k], s.re[k]]),
+            im: lanes.with([p.im[k], q.im[k], r.im[k], s.im[k]]),
+        }
+    }
+}
+
+/// Σ c_n d^n by Estrin's scheme, as in [`tabulated`].
+#[inline(always)]
+fn taylor<S: Simd, C: Coefficients>(d: ComplexLanes<S>, c: C) -> ComplexLanes<S> {
+    let zero = ComplexLanes { re: d.re.all(0.0), im: d.re.all(0.0) };
     let (mut pairs, mut fours) = ([zero; 6], [zero; 3]);
     for k in 0..6 {
-        pairs[k] = c[k] + c[k + 6] * d;
+        pairs[k] = c.term(d.re, k) + c.term(d.re, k + 6) * d;
     }
     let d2 = d * d;
     for k in 0..3 {
         fours[k] = pairs[k] + pairs[k + 3] * d2;
     }
     let d4 = d2 * d2;
-    let w = (fours[0] + d4 * fours[1]) + (d4 * d4) * fours[2];
-    // w_F(-conj t) = conj w_F(t)
-    let w = ComplexLanes { re: w.re, im: w.im * t.re.signs() };
-    if inside { w } else { w.elsewhere(arguments, is_tabulated, faddeeva) }
+    (fours[0] + d4 * fours[1]) + (d4 * d4) * fours[2]
 }
 
 /// Whether the table holds an argument.

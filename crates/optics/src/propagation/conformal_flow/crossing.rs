@@ -1,8 +1,11 @@
 //! Where a ray meets the border: the first crossing within a step, and landing on it.
 
+use pulp::Simd;
+
 use super::Boundary;
-use super::course::{Course, Point};
+use super::points::{Point, PointLanes};
 use crate::geometry::Extent;
+use crate::lanes::Lanes;
 use crate::transformation::{Truncation, root_in_bracket};
 
 /// Rates below this count as going along the border.
@@ -59,26 +62,52 @@ impl Gauge {
         let sign = self.sign;
         Motion { value: sign * (value - self.limit), rate: sign * rate, bend: sign * bend }
     }
+
+    #[inline(always)]
+    fn motions<S: Simd>(&self, at: &PointLanes<S>, p_z: Lanes<S>) -> MotionLanes<S> {
+        let (value, rate, bend) = match self.coordinate {
+            Coordinate::X => (at.jet.f.re, at.velocity.re, at.bend.re),
+            Coordinate::Y => (at.jet.f.im, at.velocity.im, at.bend.im),
+            Coordinate::VirtualY => (at.zeta.im, at.momentum.im, at.force.im),
+            Coordinate::Z => {
+                let bend = (at.jet.f1.conj() * at.jet.f2 * at.momentum).re * p_z * 2.0;
+                (at.z, p_z * at.jet.f1.norm_squared(), bend)
+            }
+        };
+        let sign = self.sign;
+        MotionLanes {
+            value: (value - value.all(self.limit)) * sign,
+            rate: rate * sign,
+            bend: bend * sign,
+        }
+    }
+}
+
+/// The same of four rays.
+struct MotionLanes<S: Simd> {
+    value: Lanes<S>,
+    rate: Lanes<S>,
+    bend: Lanes<S>,
+}
+
+impl<S: Simd> MotionLanes<S> {
+    /// When the value next falls through zero, by extrapolation; infinity for never.
+    #[inline(always)]
+    fn time_ahead(&self) -> Lanes<S> {
+        let Self { value, rate, bend } = *self;
+        let (zero, never) = (value.all(0.0), value.all(f64::INFINITY));
+        let discriminant = rate * rate - value * bend * 2.0;
+        let root = discriminant.sqrt();
+        let falling = rate.less_than(zero);
+        let time =
+            falling.choose(value * 2.0, rate + root).divided_by(falling.choose(root - rate, -bend));
+        // Without a real root it is not a number, and less than nothing.
+        let falls = falling.or(bend.less_than(zero)).and(time.less_than(never));
+        falls.choose(time, never)
+    }
 }
 
 impl Motion {
-    /// When the value next falls through zero, by extrapolation; infinity for never.
-    fn time_ahead(&self) -> f64 {
-        let Self { value, rate, bend } = *self;
-        let discriminant = rate * rate - 2.0 * value * bend;
-        if discriminant < 0.0 || discriminant.is_nan() {
-            return f64::INFINITY;
-        }
-        let root = discriminant.sqrt();
-        if rate < 0.0 {
-            2.0 * value / (root - rate)
-        } else if bend < 0.0 {
-            (rate + root) / -bend
-        } else {
-            f64::INFINITY
-        }
-    }
-
     /// The time (of any sign) to the nearest zero; to the nearest extremum where there is none.
     fn time_to_zero(&self) -> f64 {
         let Self { value, rate, bend } = *self;
@@ -90,6 +119,14 @@ impl Motion {
             -rate / bend
         }
     }
+}
+
+/// What can be seen of the border at both ends of a move.
+pub(super) struct Outlook<S: Simd> {
+    /// When the ray next meets the border, by extrapolation from the end; infinity for never.
+    pub ahead: Lanes<S>,
+    /// Not zero if it may have crossed the border on the way: see [`Gauges::first_crossing`].
+    pub crossed: Lanes<S>,
 }
 
 /// What a step has to do with the border.
@@ -125,10 +162,12 @@ pub(super) enum Look {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gauges {
     all: [Gauge; 6],
+    /// The length over which the map varies.
+    scale: f64,
 }
 
 impl Gauges {
-    pub fn new(cut: &Truncation, extent: Extent) -> Self {
+    pub fn new(cut: &Truncation, extent: Extent, scale: f64) -> Self {
         let gauge = |boundary, coordinate, sign, limit| Gauge { boundary, coordinate, sign, limit };
         Self {
             all: [
@@ -139,6 +178,7 @@ impl Gauges {
                 gauge(Boundary::ZMin, Coordinate::Z, 1.0, extent.min),
                 gauge(Boundary::ZMax, Coordinate::Z, -1.0, extent.max),
             ],
+            scale,
         }
     }
 
@@ -147,26 +187,43 @@ impl Gauges {
     }
 
     /// The part of the border a ray starts on if it goes outwards from there.
-    pub fn leaving_at(&self, course: &Course, point: &Point, slack: f64) -> Option<Boundary> {
+    pub fn leaving_at(&self, p_z: f64, point: &Point, slack: f64) -> Option<Boundary> {
         self.finite()
-            .map(|gauge| (gauge, gauge.at(point, course.p_z)))
+            .map(|gauge| (gauge, gauge.at(point, p_z)))
             .filter(|(_, motion)| motion.value <= slack && motion.rate < -ALONG)
             .min_by(|a, b| a.1.rate.total_cmp(&b.1.rate))
             .map(|(gauge, _)| gauge.boundary)
     }
 
-    /// When the ray next meets the border, by extrapolation.
-    pub fn time_ahead(&self, course: &Course, point: &Point) -> f64 {
-        self.finite()
-            .map(|gauge| gauge.at(point, course.p_z).time_ahead())
-            .fold(f64::INFINITY, f64::min)
+    /// What can be seen of the border at both ends of a move of four rays.
+    #[inline(always)]
+    pub fn outlook<S: Simd>(
+        &self,
+        from: &PointLanes<S>,
+        to: &PointLanes<S>,
+        p_z: Lanes<S>,
+    ) -> Outlook<S> {
+        let zero = p_z.all(0.0);
+        let (mut ahead, mut crossed) = (p_z.all(f64::INFINITY), zero);
+        for gauge in &self.all {
+            if gauge.limit.is_infinite() {
+                continue;
+            }
+            let (before, after) = (gauge.motions(from, p_z), gauge.motions(to, p_z));
+            let time = after.time_ahead();
+            ahead = time.less_than(ahead).choose(time, ahead);
+            let dips = before.rate.less_than(zero).and(zero.less_than(after.rate));
+            let leaves = after.value.less_than(zero);
+            crossed = dips.or(leaves).choose(zero.all(1.0), crossed);
+        }
+        Outlook { ahead, crossed }
     }
 
     /// The first crossing of the border in a step of length `reach` from `a` to `b`.
-    pub fn first_crossing(&self, course: &Course, a: &Point, b: &Point, reach: f64) -> Crossing {
+    pub fn first_crossing(&self, p_z: f64, a: &Point, b: &Point, reach: f64) -> Crossing {
         let (mut first, mut earliest) = (Crossing::None, f64::INFINITY);
         for &gauge in self.finite() {
-            let (from, to) = (gauge.at(a, course.p_z), gauge.at(b, course.p_z));
+            let (from, to) = (gauge.at(a, p_z), gauge.at(b, p_z));
             let (share, found) = if to.value < 0.0 {
                 let share = Hermite::new(from, to, reach).first_fall();
                 (share, Crossing::At { gauge, share })
@@ -174,8 +231,8 @@ impl Gauges {
                 let hermite = Hermite::new(from, to, reach);
                 let (share, least) = hermite.minimum();
                 // The interpolation is not trusted beyond this.
-                let relative = reach / course.scale;
-                let margin = 2e-3 * course.scale * relative.powi(4);
+                let relative = reach / self.scale;
+                let margin = 2e-3 * self.scale * relative.powi(4);
                 if share * relative > SHORTEST_SPLIT {
                     if least >= margin {
                         continue;
@@ -205,9 +262,9 @@ impl Landing {
     }
 
     /// Looks where the ray is after a move, that is `here`.
-    pub fn look(&mut self, here: &Point, gauges: &Gauges, course: &Course) -> Look {
+    pub fn look(&mut self, here: &Point, gauges: &Gauges, p_z: f64) -> Look {
         self.corrections += 1;
-        let motion = self.gauge.at(here, course.p_z);
+        let motion = self.gauge.at(here, p_z);
         let remaining = motion.time_to_zero();
         if remaining.abs() > self.reach || remaining.is_nan() {
             return Look::Missed;
@@ -216,19 +273,19 @@ impl Landing {
             // Grazing incidence: as near as rounding allows.
             return Look::Landed(self.gauge.boundary);
         }
-        let exact = LANDED * (course.scale + self.gauge.limit.abs());
+        let exact = LANDED * (gauges.scale + self.gauge.limit.abs());
         if motion.value.abs() > exact && remaining != 0.0 {
             self.ahead = remaining;
             return Look::Move;
         }
         // Near an edge the interpolation may have taken the later of two crossings for the first.
         let missed = gauges.finite().find(|other| {
-            let motion = other.at(here, course.p_z);
-            motion.value < -MISSED * course.scale && motion.rate < 0.0
+            let motion = other.at(here, p_z);
+            motion.value < -MISSED * gauges.scale && motion.rate < 0.0
         });
         let Some(&other) = missed else { return Look::Landed(self.gauge.boundary) };
         self.gauge = other;
-        self.ahead = other.at(here, course.p_z).time_to_zero().max(-self.reach);
+        self.ahead = other.at(here, p_z).time_to_zero().max(-self.reach);
         Look::Move
     }
 }
@@ -283,7 +340,24 @@ fn horner(coefficients: &[f64], s: f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
+    use pulp::WithSimd;
+
     use super::*;
+    use crate::lanes::side_by_side;
+
+    /// When a value next falls through zero.
+    struct Fall(Motion);
+
+    impl WithSimd for Fall {
+        type Output = f64;
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> f64 {
+            let Motion { value, rate, bend } = self.0;
+            let [value, rate, bend] = [value, rate, bend].map(|x| Lanes::splat(simd, x));
+            MotionLanes { value, rate, bend }.time_ahead().values()[2]
+        }
+    }
 
     /// (s - a)(s - b)(s - c) and its derivatives at s.
     fn cubic(s: f64, [a, b, c]: [f64; 3]) -> Motion {
@@ -313,7 +387,7 @@ mod tests {
 
     #[test]
     fn extrapolation_sees_the_next_fall_only() {
-        let time = |value, rate, bend| Motion { value, rate, bend }.time_ahead();
+        let time = |value, rate, bend| side_by_side(Fall(Motion { value, rate, bend }));
         assert_eq!(time(2.0, -1.0, 0.0), 2.0);
         assert_eq!(time(2.0, 1.0, 0.0), f64::INFINITY);
         assert_eq!(time(2.0, 0.0, -1.0), 2.0);

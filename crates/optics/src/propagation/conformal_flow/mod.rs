@@ -13,19 +13,18 @@ mod course;
 mod crossing;
 mod frame;
 mod path;
+mod points;
 mod strides;
 mod walk;
-
-use std::array;
 
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 use thiserror::Error;
 
-use self::course::{Course, Demands, Point};
+use self::course::Course;
 use self::crossing::Gauges;
-use self::strides::strides;
-use self::walk::Walk;
+use self::points::Point;
+use self::walk::Convoy;
 use crate::geometry::Extent;
 use crate::lanes::LANES;
 use crate::transformation::{ConformalMap, Truncation};
@@ -131,6 +130,15 @@ const MIRROR_MAGNIFIES: f64 = 0.1;
 /// How far (relative to the map's scale) a start may lie outside by rounding.
 const BORDER_SLACK: f64 = 1e-9;
 
+/// A ray at its end.
+struct Arrival {
+    course: Course,
+    begin: Point,
+    end: Point,
+    boundary: Boundary,
+    evaluations: u32,
+}
+
 /// One half of a conformal cloak cut to a box, and its mirror image under y -> -y.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConformalFlow {
@@ -148,7 +156,8 @@ impl ConformalFlow {
     #[must_use]
     pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, strength: f64) -> Self {
         let slack = BORDER_SLACK * map.scale();
-        Self { map, cut, extent, strength, gauges: Gauges::new(&cut, extent), slack }
+        let gauges = Gauges::new(&cut, extent, map.scale());
+        Self { map, cut, extent, strength, gauges, slack }
     }
 
     /// The map.
@@ -251,71 +260,28 @@ impl ConformalFlow {
         starts: &[Option<(Foothold, DVec3)>; LANES],
         tolerance: f64,
     ) -> [Option<Result<FlowEnd, FlowError>>; LANES] {
-        let mut walks = starts.map(|start| {
-            start.map(|(start, wave_vector)| self.set_out(&start, wave_vector, tolerance))
-        });
-        loop {
-            let wishes = walks.each_mut().map(|walk| walk.as_mut()?.as_mut().ok()?.wish(self));
-            let wished = wishes.each_ref().map(Option::is_some);
-            let Some(trials) = strides(&self.map, wishes) else { break };
-            for i in 0..LANES {
-                if wished[i]
-                    && let Some(Ok(walk)) = &mut walks[i]
-                {
-                    walk.take(self, &trials[i]);
-                }
-            }
-        }
-        array::from_fn(|i| {
-            let start = starts[i]?.0;
-            Some(
-                walks[i].as_ref()?.as_ref().map_err(|e| *e).and_then(|walk| self.end(&start, walk)),
-            )
+        let mut convoy = Convoy::new(self, starts, tolerance);
+        while convoy.moves(self) {}
+        std::array::from_fn(|i| {
+            let (start, _) = starts[i].as_ref()?;
+            Some(convoy.arrival(i).map(|arrival| self.end(start, &arrival)))
         })
     }
 
-    fn set_out(
-        &self,
-        start: &Foothold,
-        wave_vector: DVec3,
-        tolerance: f64,
-    ) -> Result<Walk, FlowError> {
-        let (course, begin) = self.course(start, wave_vector, tolerance)?;
-        Ok(Walk::new(self, course, begin))
-    }
-
-    fn course(
-        &self,
-        start: &Foothold,
-        wave_vector: DVec3,
-        tolerance: f64,
-    ) -> Result<(Course, Point), FlowError> {
+    /// Whether a ray can set out so.
+    fn sets_out(&self, start: &Foothold, wave_vector: DVec3) -> Result<(), FlowError> {
         if !wave_vector.is_finite() {
             return Err(FlowError::NotFinite);
         }
-        let (position, p) = (start.half.mirrored(start.position), start.half.mirrored(wave_vector));
-        let length = p.length();
+        let length = wave_vector.length();
         if (length - start.index).abs() > 1e-6 * start.index {
             return Err(FlowError::WaveVector { length, index: start.index });
         }
-        let demands = |tolerance| Demands {
-            tolerance,
-            smoothness: self.map.smoothness(),
-            scale: self.map.scale(),
-            lever: self.lever(),
-        };
-        let mut course = Course::new(p.z, self.strength, &demands(tolerance));
-        let zeta = start.virtual_position;
-        let begin = course.start(self.map.jet(zeta), zeta, Complex64::new(p.x, p.y), position.z);
-        if self.aims_at_floor(&begin) {
-            course = Course::new(p.z, self.strength, &demands(MIRROR_MAGNIFIES * tolerance));
-        }
-        Ok((course, begin))
+        Ok(())
     }
 
     /// Whether a straight line in virtual space leads to the mirror.
-    fn aims_at_floor(&self, point: &Point) -> bool {
-        let (zeta, momentum) = (point.zeta, point.momentum);
+    fn aims_at_floor(&self, zeta: Complex64, momentum: Complex64) -> bool {
         let x = zeta.re - momentum.re / momentum.im * zeta.im;
         momentum.im < 0.0 && x > self.cut.x_min && x < self.cut.x_max
     }
@@ -325,12 +291,11 @@ impl ConformalFlow {
         0.5 * (self.cut.x_max - self.cut.x_min).max(self.cut.y_max)
     }
 
-    fn end(&self, start: &Foothold, walk: &Walk) -> Result<FlowEnd, FlowError> {
-        let (mut point, boundary) = walk.arrival()?;
-        let Walk { course, begin, evaluations, .. } = walk;
+    fn end(&self, start: &Foothold, arrival: &Arrival) -> FlowEnd {
+        let Arrival { course, begin, mut end, boundary, evaluations } = *arrival;
         let half = start.half;
-        let mut position = DVec3::new(point.jet.f.re, point.jet.f.im, point.z);
-        let inward = Complex64::i() * point.jet.f1 / point.jet.stretch();
+        let mut position = DVec3::new(end.jet.f.re, end.jet.f.im, end.z);
+        let inward = Complex64::i() * end.jet.f1 / end.jet.stretch();
         let normal = match boundary {
             Boundary::XMin => DVec3::NEG_X,
             Boundary::XMax => DVec3::X,
@@ -346,11 +311,11 @@ impl ConformalFlow {
             Boundary::YMax => position.y = self.cut.y_max,
             Boundary::ZMin => position.z = self.extent.min,
             Boundary::ZMax => position.z = self.extent.max,
-            Boundary::Floor => point.zeta.im = 0.0,
+            Boundary::Floor => end.zeta.im = 0.0,
         }
-        point.momentum = course.on_shell(point.momentum, &point.jet);
-        let p = point.momentum / point.jet.f1.conj();
-        let turn = course.transport(begin, &point);
+        end.momentum = course.on_shell(self.strength, end.momentum, &end.jet);
+        let p = end.momentum / end.jet.f1.conj();
+        let turn = course.transport(&begin, &end);
         let transport = match half {
             Half::Upper => turn,
             Half::Lower => {
@@ -358,19 +323,19 @@ impl ConformalFlow {
                 mirror * turn * mirror
             }
         };
-        Ok(FlowEnd {
+        FlowEnd {
             boundary,
             at: Foothold {
                 half,
                 position: half.mirrored(position),
-                virtual_position: point.zeta,
-                index: self.strength / point.jet.stretch(),
+                virtual_position: end.zeta,
+                index: self.strength / end.jet.stretch(),
             },
             wave_vector: half.mirrored(DVec3::new(p.re, p.im, course.p_z)),
-            optical_path: self.strength * self.strength * point.tau,
+            optical_path: self.strength * self.strength * end.tau,
             transport,
             normal: half.mirrored(normal),
-            evaluations: *evaluations,
-        })
+            evaluations,
+        }
     }
 }

@@ -1,8 +1,6 @@
 //! Points along a ray, for drawings.
 
-use super::course::Point;
-use super::strides::strides;
-use super::walk::Walk;
+use super::walk::Convoy;
 use super::{ConformalFlow, FlowError, Foothold};
 use crate::propagation::PathPoint;
 use glam::DVec3;
@@ -24,7 +22,6 @@ impl ConformalFlow {
         wave_vector: DVec3,
         tolerance: f64,
     ) -> Result<Vec<PathPoint>, FlowError> {
-        let (mut course, begin) = self.course(start, wave_vector, tolerance)?;
         let half = start.half;
         let speed = self.strength * self.strength;
         let point = |at: Complex64, z: f64, tau: f64| PathPoint {
@@ -32,39 +29,39 @@ impl ConformalFlow {
             optical_path: speed * tau,
         };
         let spacing = self.map.scale() / DENSITY;
-        if course.p_z == 0.0 {
+        if wave_vector.z == 0.0 {
             // A straight line in virtual space.
             let end = self.advance_from(start, wave_vector, tolerance)?;
-            let (from, to) = (begin.zeta, end.at.virtual_position);
+            let (from, to) = (start.virtual_position, end.at.virtual_position);
             let pieces = ((to - from).norm() / spacing).ceil().max(1.0) as u32;
             let tau = end.optical_path / speed;
             return Ok((0..=pieces)
                 .map(|k| {
                     let share = f64::from(k) / f64::from(pieces);
                     let zeta = from + (to - from) * share;
-                    point(self.map.jet(zeta).f, begin.z, tau * share)
+                    point(self.map.jet(zeta).f, start.position.z, tau * share)
                 })
                 .collect());
         }
-        (course.longest, course.even) = (course.longest.min(spacing), true);
-        let mut walk = Walk::new(self, course, begin);
-        let mut way: Vec<Point> = vec![begin];
+        let mut convoy =
+            Convoy::new(self, &[Some((*start, wave_vector)), None, None, None], tolerance);
+        convoy.even_out(self, 0, spacing);
+        let mut way = Vec::new();
+        let mut last = -1.0;
         loop {
-            let trial = match walk.wish(self) {
-                None => break,
-                Some(wish) => strides(&self.map, [Some(wish), None, None, None]),
-            };
-            let Some([trial, ..]) = trial else { break };
-            walk.take(self, &trial);
-            if let Some(here) = walk.waypoint()
-                && way.last().is_none_or(|last| here.tau > last.tau)
+            if let Some((at, z, tau)) = convoy.waypoint(0)
+                && tau > last
             {
-                way.push(*here);
+                way.push((at, z, tau));
+                last = tau;
+            }
+            if !convoy.moves(self) {
+                break;
             }
         }
-        let (end, _) = walk.arrival()?;
-        way.retain(|at| at.tau < end.tau);
-        way.push(end);
-        Ok(way.iter().map(|at| point(at.jet.f, at.z, at.tau)).collect())
+        let end = convoy.arrival(0)?.end;
+        way.retain(|(_, _, tau)| *tau < end.tau);
+        way.push((end.jet.f, end.z, end.tau));
+        Ok(way.into_iter().map(|(at, z, tau)| point(at, z, tau)).collect())
     }
 }

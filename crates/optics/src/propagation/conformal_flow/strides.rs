@@ -1,53 +1,98 @@
-//! Steps of four rays at once.
+//! Moves of four rays at once.
 
-use std::array;
-
-use num_complex::Complex64;
 use pulp::{Simd, WithSimd};
 
-use super::course::{Course, Point};
+use super::crossing::Gauges;
+use super::points::{PointLanes, Points};
 use crate::lanes::{ComplexLanes, LANES, Lanes, side_by_side};
-use crate::propagation::nystrom::{self, ErrorWeight, Field, Motion, Stage};
-use crate::transformation::{ConformalMap, JetLanes, LaneMap, MapJet};
+use crate::propagation::nystrom::order_eight::ErrorWeight;
+use crate::propagation::nystrom::{Field, Motion, Stage, order_eight, order_four};
+use crate::transformation::{ConformalMap, JetLanes, LaneMap};
 
-/// A step that a ray wants to take.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Wish<'w> {
-    pub course: &'w Course,
-    pub from: &'w Point,
-    /// Of any sign.
-    pub length: f64,
+/// How a ray moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Pace {
+    /// Not at all: it is at its start, where the momentum is still conj(f') and the length of P short of P itself.
+    Departure,
+    /// By Taylor's formula of order two, but for the map at the new place; exact for straight rays.
+    Coast,
+    /// By the method of order four.
+    Short,
+    /// By the method of order eight.
+    Full,
 }
 
-/// A step that may be taken.
+impl Pace {
+    /// Evaluations of the map.
+    pub fn evaluations(self) -> u32 {
+        match self {
+            Self::Departure | Self::Coast => 1,
+            Self::Short => 3,
+            Self::Full => order_eight::EVALUATIONS,
+        }
+    }
+}
+
+/// What four rays keep on their way.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Trial {
-    pub end: Point,
+pub(super) struct Rays {
+    pub p_z: [f64; LANES],
+    /// One over the error allowed in a step.
+    pub weight: [f64; LANES],
+    /// c.
+    pub strength: f64,
+    /// The length over which errors of direction grow into errors of position.
+    pub lever: f64,
+}
+
+/// What has come of a move.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Trials {
+    pub end: Points,
     /// Estimated error over the allowed one.
-    pub error: f64,
+    pub error: [f64; LANES],
+    /// When the ray next meets the border, by extrapolation from the end; infinity for never.
+    pub ahead: [f64; LANES],
+    /// Not zero if the ray may have crossed the border on the way.
+    pub crossed: [f64; LANES],
 }
 
-/// Steps of up to four rays; in the places of those that want none there is anything. None if none does.
-pub(super) fn strides(
+/// Moves four rays by the lengths (of any sign) into `to`.
+pub(super) fn stride(
     map: &ConformalMap,
-    wishes: [Option<Wish<'_>>; LANES],
-) -> Option<[Trial; LANES]> {
-    let any = *wishes.iter().flatten().next()?;
-    let wishes = wishes.map(|wish| wish.unwrap_or(any));
+    gauges: &Gauges,
+    rays: &Rays,
+    pace: Pace,
+    from: &Points,
+    length: &[f64; LANES],
+    to: &mut Trials,
+) {
     // Which map it is is settled once for a step, not at every evaluation.
-    Some(match map {
-        ConformalMap::Gaussian(map) => side_by_side(Strides { map, wishes }),
-        ConformalMap::Grating(map) => side_by_side(Strides { map, wishes }),
-        ConformalMap::QuasiConformal(map) => side_by_side(Strides { map, wishes }),
-    })
+    match map {
+        ConformalMap::Gaussian(map) => {
+            side_by_side(Strides { map, gauges, rays, pace, from, length, to });
+        }
+        ConformalMap::Grating(map) => {
+            side_by_side(Strides { map, gauges, rays, pace, from, length, to });
+        }
+        ConformalMap::QuasiConformal(map) => {
+            side_by_side(Strides { map, gauges, rays, pace, from, length, to });
+        }
+    }
 }
 
 struct Strides<'w, M> {
     map: &'w M,
-    wishes: [Wish<'w>; LANES],
+    gauges: &'w Gauges,
+    rays: &'w Rays,
+    pace: Pace,
+    from: &'w Points,
+    length: &'w [f64; LANES],
+    to: &'w mut Trials,
 }
 
 /// The force on rays in virtual space.
+#[derive(Clone, Copy)]
 struct Force<'w, S: Simd, M> {
     map: &'w M,
     p_z: Lanes<S>,
@@ -63,7 +108,8 @@ impl<S: Simd, M: LaneMap> Field<S, 2> for Force<'_, S, M> {
         Stage { force: jet.f1 * jet.f2.conj() * -(self.p_z * self.p_z), jet }
     }
 
-    /// dz/dτ and dθ/dτ: see [`Course::coasted`].
+    /// dz/dτ = p_z |f'|², and dθ/dτ: with σ = p_z |f'|/c the sine of the ray's angle to the virtual plane,
+    /// -σ/(1 + |σ|) Im(P f''/f').
     #[inline(always)]
     fn rates(&self, jet: &JetLanes<S>, momentum: ComplexLanes<S>) -> [Lanes<S>; 2] {
         let square = jet.f1.norm_squared();
@@ -74,61 +120,99 @@ impl<S: Simd, M: LaneMap> Field<S, 2> for Force<'_, S, M> {
     }
 }
 
+impl<S: Simd, M: LaneMap> Force<'_, S, M> {
+    /// d²z/dτ².
+    #[inline(always)]
+    fn axial_bend(&self, at: &PointLanes<S>) -> Lanes<S> {
+        (at.jet.f1.conj() * at.jet.f2 * at.momentum).re * self.p_z * 2.0
+    }
+
+    /// A momentum with its length made to fit |P|² = c² - p_z² |f'|².
+    #[inline(always)]
+    fn on_shell(&self, momentum: ComplexLanes<S>, jet: &JetLanes<S>) -> ComplexLanes<S> {
+        let axial = self.p_z * self.p_z * jet.f1.norm_squared();
+        let zero = axial.all(0.0);
+        let square = self.strength * self.strength - axial;
+        let square = zero.less_than(square).choose(square, zero);
+        let present = momentum.norm_squared();
+        let moving = zero.less_than(present);
+        momentum
+            * moving.choose(square, zero).divided_by(moving.choose(present, zero.all(1.0))).sqrt()
+    }
+}
+
 impl<M: LaneMap> WithSimd for Strides<'_, M> {
-    type Output = [Trial; LANES];
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let real = |value: fn(&Wish<'_>) -> f64| self.wishes.each_ref().map(value);
-        let complex = |value: fn(&Point) -> Complex64| self.wishes.map(|wish| value(wish.from));
-        let p_z = Lanes::new(simd, real(|w| w.course.p_z));
-        let field =
-            Force { map: self.map, p_z, strength: Lanes::new(simd, real(|w| w.course.strength)) };
-        let one = Lanes::splat(simd, 1.0);
-        let weight = one.divided_by(Lanes::new(simd, real(|w| w.course.allowed)));
-        let weight = ErrorWeight {
-            position: weight,
-            velocity: weight * Lanes::new(simd, real(|w| w.course.lever)),
-            // z is all there is to control for rays nearly across it, and estimates of a quadrature tend to
-            // be low. The field's angle is wanted in radians, not in cm.
-            quadrature: [weight * (1.0 / 0.6), weight * 0.1],
+    fn with_simd<S: Simd>(self, simd: S) {
+        let p_z = Lanes::new(simd, self.rays.p_z);
+        let strength = Lanes::splat(simd, self.rays.strength);
+        let field = Force { map: self.map, p_z, strength };
+        let from = self.from.load(simd);
+        let h = Lanes::new(simd, *self.length);
+        let start = Motion { position: from.zeta, velocity: from.momentum };
+        let first = Stage { force: from.force, jet: from.jet };
+        let mut error = p_z.all(0.0);
+        let (motion, stage, z, theta) = match self.pace {
+            Pace::Departure => {
+                let stage = field.look(from.zeta);
+                let velocity = field.on_shell(stage.jet.f1.conj() * from.momentum, &stage.jet);
+                (Motion { velocity, ..start }, stage, from.z, from.theta)
+            }
+            Pace::Coast => {
+                let [z_rate, theta_rate] = field.rates(&from.jet, from.momentum);
+                let half = h * 0.5;
+                let position = from.zeta + (from.momentum + from.force * half) * h;
+                let velocity = from.momentum + from.force * h;
+                let z = from.z + (z_rate + field.axial_bend(&from) * half) * h;
+                let stage = field.look(position);
+                (Motion { position, velocity }, stage, z, from.theta + theta_rate * h)
+            }
+            Pace::Short => {
+                let step = order_four::step(&field, start, first, h);
+                // By the values and slopes at both ends, which are at hand.
+                let [[z0, _], [z1, _]] = [
+                    field.rates(&from.jet, from.momentum),
+                    field.rates(&step.stage.jet, step.end.velocity),
+                ];
+                let end = PointLanes { jet: step.stage.jet, momentum: step.end.velocity, ..from };
+                let slopes = field.axial_bend(&from) - field.axial_bend(&end);
+                let z = from.z + ((z0 + z1) * 0.5 + slopes * h * (1.0 / 12.0)) * h;
+                (step.end, step.stage, z, from.theta + step.quadrature[1])
+            }
+            Pace::Full => {
+                let weight = Lanes::new(simd, self.rays.weight);
+                let weight = ErrorWeight {
+                    position: weight,
+                    velocity: weight * self.rays.lever,
+                    // z is all there is to control for rays nearly across it, and estimates of a quadrature
+                    // tend to be low. The field's angle is wanted in radians, not in cm.
+                    quadrature: [weight * (1.0 / 0.6), weight * 0.1],
+                };
+                let step = order_eight::step(&field, start, first, h, &weight);
+                error = step.error;
+                let [z, theta] = step.quadrature;
+                (step.end, step.stage, from.z + z, from.theta + theta)
+            }
         };
-        let start = Motion {
-            position: ComplexLanes::new(simd, complex(|p| p.zeta)),
-            velocity: ComplexLanes::new(simd, complex(|p| p.momentum)),
+        let (momentum, jet, force) = (motion.velocity, stage.jet, stage.force);
+        let end = PointLanes {
+            tau: from.tau + h,
+            zeta: motion.position,
+            momentum,
+            z,
+            theta,
+            jet,
+            force,
+            velocity: jet.f1 * momentum,
+            bend: jet.f2 * momentum * momentum + jet.f1 * force,
         };
-        let jet = JetLanes {
-            f: ComplexLanes::new(simd, complex(|p| p.jet.f)),
-            f1: ComplexLanes::new(simd, complex(|p| p.jet.f1)),
-            f2: ComplexLanes::new(simd, complex(|p| p.jet.f2)),
-        };
-        let first = Stage { force: ComplexLanes::new(simd, complex(|p| p.force)), jet };
-        let length = Lanes::new(simd, real(|w| w.length));
-        let step = nystrom::step(&field, start, first, length, &weight);
-
-        let (zeta, momentum) = (step.end.position.values(), step.end.velocity.values());
-        let force = step.stage.force.values();
-        let jet = step.stage.jet;
-        let velocity = jet.f1 * step.end.velocity;
-        let bend = jet.f2 * step.end.velocity * step.end.velocity + jet.f1 * step.stage.force;
-        let (f, f1, f2) = (jet.f.values(), jet.f1.values(), jet.f2.values());
-        let (velocity, bend) = (velocity.values(), bend.values());
-        let (z, theta) = (step.quadrature[0].values(), step.quadrature[1].values());
-        let error = step.error.values();
-        array::from_fn(|i| {
-            let Wish { from, length, .. } = self.wishes[i];
-            let end = Point {
-                tau: from.tau + length,
-                zeta: zeta[i],
-                momentum: momentum[i],
-                z: from.z + z[i],
-                theta: from.theta + theta[i],
-                jet: MapJet { f: f[i], f1: f1[i], f2: f2[i] },
-                force: force[i],
-                velocity: velocity[i],
-                bend: bend[i],
-            };
-            Trial { end, error: error[i] }
-        })
+        let to = self.to;
+        to.end.store(&end);
+        to.error = error.values();
+        let outlook = self.gauges.outlook(&from, &end, p_z);
+        to.ahead = outlook.ahead.values();
+        to.crossed = outlook.crossed.values();
     }
 }

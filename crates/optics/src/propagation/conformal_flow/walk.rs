@@ -1,144 +1,292 @@
-//! The walk of one ray to the border. It does all but the full steps, which it wishes for.
+//! The walk of four rays to the border.
 
-use super::course::{Course, Point};
+use glam::DVec3;
+use num_complex::Complex64;
+
+use super::course::{Course, Demands};
 use super::crossing::{Crossing, Landing, Look};
-use super::strides::{Trial, Wish};
-use super::{Boundary, ConformalFlow, FlowError, MAX_STEPS};
-use crate::propagation::nystrom;
+use super::points::Points;
+use super::strides::{Pace, Rays, Trials, stride};
+use super::{Arrival, Boundary, ConformalFlow, FlowError, Foothold, MAX_STEPS, MIRROR_MAGNIFIES};
+use crate::lanes::LANES;
+use crate::propagation::nystrom::order_eight::step_factor;
+
+/// Moves below this share of the map's scale are exact to rounding by Taylor's formula of order two.
+const COASTING: f64 = 1e-4;
 
 /// How far beyond a border that is near to aim, as a share of the map's scale.
 const OVERSHOOT: f64 = 0.012;
 
-/// A ray on its way.
-#[derive(Clone, Debug)]
-pub(super) struct Walk {
-    pub course: Course,
-    pub begin: Point,
-    here: Point,
-    stride: f64,
+/// Four rays on their way, or fewer: each goes where it would go alone.
+pub(super) struct Convoy {
+    rays: Rays,
+    courses: [Course; LANES],
+    walks: [Walk; LANES],
+    begin: Points,
+    here: Points,
+    trials: Trials,
+}
+
+/// How far one of them has come.
+#[derive(Clone, Copy, Debug)]
+struct Walk {
     state: State,
+    stride: f64,
     steps: u32,
-    pub evaluations: u32,
+    evaluations: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum State {
+    /// There is no such ray.
+    Absent,
     /// A step of this length is to be taken.
     Stepping(f64),
     /// It moves onto the border.
     Landing(Landing),
     Arrived(Boundary),
-    Lost,
+    Failed(FlowError),
 }
 
-impl Walk {
-    /// A ray at `begin`, which is there already if it leaves at once.
-    pub fn new(flow: &ConformalFlow, course: Course, begin: Point) -> Self {
-        let stride = 0.8 * course.longest;
-        let state = State::Lost;
-        let mut walk = Self { course, begin, here: begin, stride, state, steps: 0, evaluations: 1 };
-        match flow.gauges.leaving_at(&course, &begin, flow.slack) {
-            Some(boundary) => walk.state = State::Arrived(boundary),
-            None => walk.go_on(flow),
+impl State {
+    /// The next move, if there is one.
+    fn ahead(&self) -> Option<f64> {
+        match self {
+            Self::Stepping(length) => Some(*length),
+            Self::Landing(landing) => Some(landing.ahead),
+            Self::Absent | Self::Arrived(_) | Self::Failed(_) => None,
         }
-        walk
     }
+}
 
-    /// Walks as far as it can alone. What it needs then is a full step; None if it is at the end.
-    pub fn wish(&mut self, flow: &ConformalFlow) -> Option<Wish<'_>> {
-        loop {
-            let length = match self.state {
-                State::Stepping(length) => length,
-                State::Landing(landing) => landing.ahead,
-                State::Arrived(_) | State::Lost => return None,
-            };
-            if !self.course.may_coast(length) {
-                return Some(Wish { course: &self.course, from: &self.here, length });
+impl Convoy {
+    /// Rays at their starts with their wave vectors, to be followed to the tolerance (cm).
+    pub fn new(
+        flow: &ConformalFlow,
+        starts: &[Option<(Foothold, DVec3)>; LANES],
+        tolerance: f64,
+    ) -> Self {
+        let walk = Walk { state: State::Absent, stride: 0.0, steps: 0, evaluations: 0 };
+        let demands = Demands::new(&flow.map, tolerance);
+        let rays = Rays {
+            p_z: [0.0; LANES],
+            weight: [0.0; LANES],
+            strength: flow.strength,
+            lever: flow.lever(),
+        };
+        let mut convoy = Self {
+            rays,
+            courses: [Course::new(0.0, flow.strength, &demands); LANES],
+            walks: [walk; LANES],
+            begin: Points::default(),
+            here: Points::default(),
+            trials: Trials::default(),
+        };
+        for i in 0..LANES {
+            let Some((start, wave_vector)) = &starts[i] else { continue };
+            match flow.sets_out(start, *wave_vector) {
+                Ok(()) => convoy.put(i, start, *wave_vector),
+                Err(error) => convoy.walks[i].state = State::Failed(error),
             }
-            let coasted = self.course.coasted(&self.here, length);
-            self.evaluations += 1;
-            let jet = flow.map.jet(coasted.zeta);
-            self.moved(flow, &self.course.with_rates(Point { jet, ..coasted }), 0.0);
+        }
+        convoy.set_out(flow, &demands, tolerance);
+        convoy
+    }
+
+    /// Puts a ray at its start.
+    fn put(&mut self, i: usize, start: &Foothold, wave_vector: DVec3) {
+        let p = start.half.mirrored(wave_vector);
+        self.walks[i].state = State::Stepping(0.0);
+        self.rays.p_z[i] = p.z;
+        self.here.zeta.put(i, start.virtual_position);
+        self.here.momentum.put(i, Complex64::new(p.x, p.y));
+        self.here.z[i] = start.half.mirrored(start.position).z;
+    }
+
+    /// Looks where the rays are, and how far they may go.
+    fn set_out(&mut self, flow: &ConformalFlow, demands: &Demands, tolerance: f64) {
+        let Some(any) = (0..LANES).find(|&i| self.walks[i].state.ahead().is_some()) else {
+            return;
+        };
+        // In the places of those that are not there, something that does no harm.
+        for i in 0..LANES {
+            if self.walks[i].state.ahead().is_none() {
+                self.rays.p_z[i] = self.rays.p_z[any];
+                self.here.zeta.put(i, self.here.zeta.at(any));
+                self.here.momentum.put(i, self.here.momentum.at(any));
+                self.here.z[i] = self.here.z[any];
+            }
+        }
+        self.stride(flow, Pace::Departure, &[0.0; LANES]);
+        self.begin = self.trials.end;
+        self.here = self.trials.end;
+        let nearer = Demands::new(&flow.map, MIRROR_MAGNIFIES * tolerance);
+        for i in 0..LANES {
+            if self.walks[i].state.ahead().is_none() {
+                continue;
+            }
+            let aims_at_floor = flow.aims_at_floor(self.here.zeta.at(i), self.here.momentum.at(i));
+            let demands = if aims_at_floor { &nearer } else { demands };
+            let course = Course::new(self.rays.p_z[i], flow.strength, demands);
+            self.courses[i] = course;
+            self.rays.weight[i] = course.allowed.recip();
+            self.walks[i].stride = 0.8 * course.longest;
+            let leaving = flow.gauges.leaving_at(course.p_z, &self.here.at(i), flow.slack);
+            match leaving {
+                Some(boundary) => self.walks[i].state = State::Arrived(boundary),
+                None => self.go_on(flow, i),
+            }
         }
     }
 
-    /// Takes the step it wished for, if it is good enough.
-    pub fn take(&mut self, flow: &ConformalFlow, trial: &Trial) {
-        self.evaluations += nystrom::EVALUATIONS;
-        self.moved(flow, &trial.end, trial.error);
+    /// Moves each ray that is not at its end once, or more often if that is cheap; whether one has moved.
+    pub fn moves(&mut self, flow: &ConformalFlow) -> bool {
+        let mut any = false;
+        for pace in [Pace::Full, Pace::Short, Pace::Coast] {
+            let mut length = [0.0; LANES];
+            let mut moves = [false; LANES];
+            for i in 0..LANES {
+                if let Some(ahead) = self.walks[i].state.ahead()
+                    && self.pace(flow, i, ahead) == pace
+                {
+                    (length[i], moves[i]) = (ahead, true);
+                }
+            }
+            if moves == [false; LANES] {
+                continue;
+            }
+            any = true;
+            self.stride(flow, pace, &length);
+            for i in 0..LANES {
+                if moves[i] {
+                    self.walks[i].evaluations += pace.evaluations();
+                    self.moved(flow, i);
+                }
+            }
+        }
+        any
     }
 
-    /// Where it is, if that is on its way and not beyond the border, which it looks for.
-    pub fn waypoint(&self) -> Option<&Point> {
-        matches!(self.state, State::Stepping(_) | State::Arrived(_)).then_some(&self.here)
+    fn stride(&mut self, flow: &ConformalFlow, pace: Pace, length: &[f64; LANES]) {
+        let Self { rays, here, trials, .. } = self;
+        stride(&flow.map, &flow.gauges, rays, pace, here, length, trials);
     }
 
-    /// The end of the walk.
-    pub fn arrival(&self) -> Result<(Point, Boundary), FlowError> {
-        match self.state {
-            State::Arrived(boundary) => Ok((self.here, boundary)),
+    /// How a ray moves by `length`.
+    fn pace(&self, flow: &ConformalFlow, i: usize, length: f64) -> Pace {
+        let (course, length) = (&self.courses[i], length.abs());
+        if course.p_z == 0.0 || length <= COASTING * flow.map.scale() {
+            Pace::Coast
+        } else if length <= course.short {
+            Pace::Short
+        } else {
+            Pace::Full
+        }
+    }
+
+    /// Makes all steps of one ray short enough for a smooth drawing.
+    pub fn even_out(&mut self, flow: &ConformalFlow, i: usize, longest: f64) {
+        let course = &mut self.courses[i];
+        (course.longest, course.even) = (course.longest.min(longest), true);
+        if let State::Stepping(length) = &mut self.walks[i].state {
+            *length = length.min(longest / flow.strength);
+        }
+    }
+
+    /// Where a ray is, if that is on its way and not beyond the border, which it looks for: x + iy, z and τ.
+    pub fn waypoint(&self, i: usize) -> Option<(Complex64, f64, f64)> {
+        let on_its_way = matches!(self.walks[i].state, State::Stepping(_) | State::Arrived(_));
+        on_its_way.then(|| (self.here.f.at(i), self.here.z[i], self.here.tau[i]))
+    }
+
+    /// The end of a ray's way.
+    pub fn arrival(&self, i: usize) -> Result<Arrival, FlowError> {
+        match self.walks[i].state {
+            State::Arrived(boundary) => Ok(Arrival {
+                course: self.courses[i],
+                begin: self.begin.at(i),
+                end: self.here.at(i),
+                boundary,
+                evaluations: self.walks[i].evaluations + 1,
+            }),
+            State::Failed(error) => Err(error),
             _ => Err(FlowError::StepLimit),
         }
     }
 
-    fn moved(&mut self, flow: &ConformalFlow, end: &Point, error: f64) {
-        match &mut self.state {
+    fn moved(&mut self, flow: &ConformalFlow, i: usize) {
+        let walk = &mut self.walks[i];
+        match &mut walk.state {
             State::Stepping(length) => {
                 let length = *length;
-                self.stepped(flow, end, error, length);
+                self.stepped(flow, i, length);
             }
             State::Landing(landing) => {
-                self.here = *end;
-                match landing.look(end, &flow.gauges, &self.course) {
+                self.here.take(i, &self.trials.end);
+                match landing.look(&self.here.at(i), &flow.gauges, self.courses[i].p_z) {
                     Look::Move => {}
-                    Look::Landed(boundary) => self.state = State::Arrived(boundary),
-                    Look::Missed => self.state = State::Lost,
+                    Look::Landed(boundary) => walk.state = State::Arrived(boundary),
+                    Look::Missed => walk.state = State::Failed(FlowError::StepLimit),
                 }
             }
-            State::Arrived(_) | State::Lost => {}
+            State::Absent | State::Arrived(_) | State::Failed(_) => {}
         }
     }
 
-    fn stepped(&mut self, flow: &ConformalFlow, end: &Point, error: f64, length: f64) {
-        self.stride = length * nystrom::step_factor(error);
-        self.steps += 1;
+    fn stepped(&mut self, flow: &ConformalFlow, i: usize, length: f64) {
+        let error = self.trials.error[i];
+        let walk = &mut self.walks[i];
+        walk.stride = length * step_factor(error);
+        walk.steps += 1;
         let good = error <= 1.0;
-        if self.steps > MAX_STEPS || !(good || self.stride >= 1e-9 * flow.slack) {
-            self.state = State::Lost;
+        if walk.steps > MAX_STEPS || !(good || walk.stride >= 1e-9 * flow.slack) {
+            walk.state = State::Failed(FlowError::StepLimit);
             return;
         }
         if !good {
-            self.go_on(flow);
+            self.shorten(i);
             return;
         }
-        match flow.gauges.first_crossing(&self.course, &self.here, end, length) {
+        let crossing = if self.trials.crossed[i] == 0.0 {
+            Crossing::None
+        } else {
+            let (from, to) = (self.here.at(i), self.trials.end.at(i));
+            flow.gauges.first_crossing(self.courses[i].p_z, &from, &to, length)
+        };
+        match crossing {
             Crossing::None => {
-                self.here = *end;
-                self.go_on(flow);
+                self.here.take(i, &self.trials.end);
+                self.go_on(flow, i);
             }
-            Crossing::Unclear { share } => self.state = State::Stepping(share * length),
+            Crossing::Unclear { share } => walk.state = State::Stepping(share * length),
             Crossing::At { gauge, share } => {
                 // From the nearer end.
                 let ahead = if share < 0.5 {
                     share * length
                 } else {
-                    self.here = *end;
+                    self.here.take(i, &self.trials.end);
                     (share - 1.0) * length
                 };
-                self.state = State::Landing(Landing::new(ahead, gauge, length));
+                walk.state = State::Landing(Landing::new(ahead, gauge, length));
             }
         }
     }
 
-    /// Sets out for the next step.
-    fn go_on(&mut self, flow: &ConformalFlow) {
-        let course = &self.course;
+    /// Sets out for the next step, from where the last move has led.
+    fn go_on(&mut self, flow: &ConformalFlow, i: usize) {
+        let (course, walk) = (&self.courses[i], &mut self.walks[i]);
         let usual = if course.even {
             course.longest
         } else {
-            flow.map.longest_stride(self.here.zeta, course.longest)
-        } / course.strength;
-        let beyond = flow.gauges.time_ahead(course, &self.here) + OVERSHOOT * course.scale;
-        self.state = State::Stepping(self.stride.min(usual).min(beyond));
+            flow.map.longest_stride(self.here.zeta.at(i), course.longest)
+        } / flow.strength;
+        let beyond = self.trials.ahead[i] + OVERSHOOT * flow.map.scale();
+        walk.state = State::Stepping(walk.stride.min(usual).min(beyond));
+    }
+
+    /// Takes the same step again, shorter.
+    fn shorten(&mut self, i: usize) {
+        let walk = &mut self.walks[i];
+        walk.state = State::Stepping(walk.stride);
     }
 }

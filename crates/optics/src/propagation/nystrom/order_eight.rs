@@ -1,30 +1,12 @@
 //! The Runge-Kutta-Nyström method of order 8 by Dormand, El-Mikkawy and Prince.
 //!
-//! For y'' = F(y), a force that does not depend on the velocity: nine stages, the last at the end of the
-//! step, with an embedded formula of order 6 for the error (RKN8(6)9FM, IMA J. Numer. Anal. 7, 423 (1987),
-//! with the corrections of 11, 297 (1991)). Four steps are taken at once.
+//! Nine stages, the last at the end of the step, with an embedded formula of order 6 for the error
+//! (RKN8(6)9FM, IMA J. Numer. Anal. 7, 423 (1987), with the corrections of 11, 297 (1991)).
 
 use pulp::Simd;
 
-use crate::lanes::{ComplexLanes, Lanes};
-
-/// Places in the plane and their velocities.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion<S: Simd> {
-    /// y.
-    pub position: ComplexLanes<S>,
-    /// y'.
-    pub velocity: ComplexLanes<S>,
-}
-
-/// What is known of the field of force at one place.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Stage<S: Simd, J> {
-    /// F.
-    pub force: ComplexLanes<S>,
-    /// What else was found there, for the quadratures.
-    pub jet: J,
-}
+use super::{Field, Motion, Stage, sum};
+use crate::lanes::Lanes;
 
 /// One over the largest errors allowed in a step, to weigh the estimates with.
 #[derive(Clone, Copy, Debug)]
@@ -63,39 +45,6 @@ pub(crate) fn step_factor(error: f64) -> f64 {
     let factor = 0.9 / error.sqrt().sqrt().sqrt();
     // A NaN shortens the step.
     if factor > FACTOR_RANGE.0 { factor.min(FACTOR_RANGE.1) } else { FACTOR_RANGE.0 }
-}
-
-/// Σ c_k f_k
-#[inline(always)]
-fn sum<S: Simd, const N: usize>(
-    weights: &[f64; N],
-    terms: [ComplexLanes<S>; N],
-) -> ComplexLanes<S> {
-    let mut sum = terms[0] * weights[0];
-    for k in 1..N {
-        sum = sum + terms[k] * weights[k];
-    }
-    sum
-}
-
-/// A field of force, and what is to be integrated along the way.
-pub(crate) trait Field<S: Simd, const Q: usize> {
-    /// What is found at a place.
-    type Jet: Copy;
-
-    /// The force at a place; to be inlined.
-    fn look(&self, place: ComplexLanes<S>) -> Stage<S, Self::Jet>;
-
-    /// The integrands g of the quadratures; to be inlined.
-    fn rates(&self, jet: &Self::Jet, velocity: ComplexLanes<S>) -> [Lanes<S>; Q];
-}
-
-impl<S: Simd> Motion<S> {
-    /// The place after a share of the step, but for the force.
-    #[inline(always)]
-    fn coasted(&self, h: Lanes<S>, share: f64) -> ComplexLanes<S> {
-        self.position + self.velocity * (h * share)
-    }
 }
 
 /// Σ c_n g_n of the quadrature k.
@@ -285,37 +234,17 @@ const V6: [f64; 7] = [
 mod tests {
     use std::array;
 
-    use num_complex::Complex64;
     use pulp::WithSimd;
 
     use super::*;
-    use crate::lanes::{LANES, side_by_side};
-
-    /// Position and velocity.
-    type Place = [Complex64; 2];
+    use crate::lanes::{ComplexLanes, LANES, side_by_side};
+    use crate::propagation::nystrom::kepler::{Place, Sun, distance, start};
 
     /// A step of length `h` of four Kepler orbits from `start`; the quadrature is the time integral of the
     /// speed squared.
     struct Orbits {
         start: [Place; LANES],
         h: [f64; LANES],
-    }
-
-    struct Sun;
-
-    impl<S: Simd> Field<S, 1> for Sun {
-        type Jet = ();
-
-        #[inline(always)]
-        fn look(&self, y: ComplexLanes<S>) -> Stage<S, ()> {
-            let r = y.norm_squared().sqrt();
-            Stage { force: y * r.all(-1.0).divided_by(r * r * r), jet: () }
-        }
-
-        #[inline(always)]
-        fn rates(&self, (): &(), velocity: ComplexLanes<S>) -> [Lanes<S>; 1] {
-            [velocity.norm_squared()]
-        }
     }
 
     impl WithSimd for Orbits {
@@ -334,15 +263,6 @@ mod tests {
             let ends = array::from_fn(|i| [position[i], velocity[i]]);
             (ends, step.quadrature[0].values(), step.error.values())
         }
-    }
-
-    /// Eccentricity 0.3.
-    fn start() -> Place {
-        [0.7.into(), Complex64::new(0.0, (1.3_f64 / 0.7).sqrt())]
-    }
-
-    fn distance(a: Place, b: Place) -> f64 {
-        (a[0] - b[0]).norm().hypot((a[1] - b[1]).norm())
     }
 
     /// Errors of state and of quadrature after one revolution in `count` steps, in each direction.

@@ -1,0 +1,100 @@
+//! Runge-Kutta-Nyström methods: y'' = F(y), for a force that does not depend on the velocity. Four steps are
+//! taken at once.
+
+pub(crate) mod order_eight;
+pub(crate) mod order_four;
+
+use pulp::Simd;
+
+use crate::lanes::{ComplexLanes, Lanes};
+
+/// Places in the plane and their velocities.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Motion<S: Simd> {
+    /// y.
+    pub position: ComplexLanes<S>,
+    /// y'.
+    pub velocity: ComplexLanes<S>,
+}
+
+/// What is known of the field of force at one place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stage<S: Simd, J> {
+    /// F.
+    pub force: ComplexLanes<S>,
+    /// What else was found there, for the quadratures.
+    pub jet: J,
+}
+
+/// A field of force, and what is to be integrated along the way.
+pub(crate) trait Field<S: Simd, const Q: usize> {
+    /// What is found at a place.
+    type Jet: Copy;
+
+    /// The force at a place; to be inlined.
+    fn look(&self, place: ComplexLanes<S>) -> Stage<S, Self::Jet>;
+
+    /// The integrands g of the quadratures ∫ g(y, y'); to be inlined.
+    fn rates(&self, jet: &Self::Jet, velocity: ComplexLanes<S>) -> [Lanes<S>; Q];
+}
+
+impl<S: Simd> Motion<S> {
+    /// The place after a share of the step, but for the force.
+    #[inline(always)]
+    fn coasted(&self, h: Lanes<S>, share: f64) -> ComplexLanes<S> {
+        self.position + self.velocity * (h * share)
+    }
+}
+
+/// Σ c_k f_k
+#[inline(always)]
+fn sum<S: Simd, const N: usize>(
+    weights: &[f64; N],
+    terms: [ComplexLanes<S>; N],
+) -> ComplexLanes<S> {
+    let mut sum = terms[0] * weights[0];
+    for k in 1..N {
+        sum = sum + terms[k] * weights[k];
+    }
+    sum
+}
+
+/// What the methods are tested with: orbits about a sun.
+#[cfg(test)]
+mod kepler {
+    use num_complex::Complex64;
+    use pulp::Simd;
+
+    use super::{Field, Stage};
+    use crate::lanes::{ComplexLanes, Lanes};
+
+    /// Position and velocity.
+    pub type Place = [Complex64; 2];
+
+    /// It pulls with 1/r²; the quadrature is the time integral of the speed squared.
+    pub struct Sun;
+
+    impl<S: Simd> Field<S, 1> for Sun {
+        type Jet = ();
+
+        #[inline(always)]
+        fn look(&self, y: ComplexLanes<S>) -> Stage<S, ()> {
+            let r = y.norm_squared().sqrt();
+            Stage { force: y * r.all(-1.0).divided_by(r * r * r), jet: () }
+        }
+
+        #[inline(always)]
+        fn rates(&self, (): &(), velocity: ComplexLanes<S>) -> [Lanes<S>; 1] {
+            [velocity.norm_squared()]
+        }
+    }
+
+    /// The perihelion of an orbit of eccentricity 0.3 and period 2π.
+    pub fn start() -> Place {
+        [0.7.into(), Complex64::new(0.0, (1.3_f64 / 0.7).sqrt())]
+    }
+
+    pub fn distance(a: Place, b: Place) -> f64 {
+        (a[0] - b[0]).norm().hypot((a[1] - b[1]).norm())
+    }
+}
