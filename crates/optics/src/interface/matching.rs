@@ -1,16 +1,13 @@
 //! The interface of any two media: two modes out on either side, four tangential fields to match.
 
 use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
-use crate::medium::{BothWays, LocalMode, LocalModes, Medium, ModeKind, Tangential, mutual_flux};
+use crate::medium::{BOTH_MODES, LocalMode, Medium, ModeKind, Tangential, mutual_flux};
 use crate::wave::{ComplexVector, Frame, Number, solve};
 use glam::DVec3;
 use num_complex::Complex64;
 
 /// Normal components closer than this are those of one wave, that both modes are.
 const ONE_WAVE: f64 = 1e-12;
-
-/// Incident waves closer than this to both modes are taken apart into them.
-const BOTH_MODES: f64 = 1e-7;
 
 /// Splits a wave at the interface of any two media, or at a conductor: adds the outgoing waves of at least
 /// `least_power` to `waves`; the power of the others.
@@ -35,23 +32,26 @@ pub(super) fn split_into_modes<const N: usize>(
         ])
     };
     // Modes are large, and stay where they are made.
-    let BothWays { forward, backward } =
-        &incident_medium.both_ways(&frame, tangential, Some(normal_component));
-    let onward = transmitted_medium.map(|medium| medium.onward(&frame, tangential));
+    let (arriving, backward) =
+        &incident_medium.arriving_and_back(&frame, tangential, normal_component);
+    let onward = &transmitted_medium.map(|medium| medium.onward(&frame, tangential));
     let mut scattered =
         Scattered { wave, frame: &frame, tangential, least_power, waves, weak: [0.0; N] };
     let absorbs = |medium: Option<&Medium>| medium.is_some_and(Medium::absorbs);
     let absorbing = [incident_medium.absorbs(), absorbs(transmitted_medium)];
-    match (forward, backward, &onward) {
-        (LocalModes::Real(f), LocalModes::Real(b), None) => {
-            scattered.scatter(f, b, None, normal_component, absorbing);
+    let onward_real = onward.as_ref().map(|onward| onward.real());
+    match (arriving.real(), backward.real(), onward_real) {
+        (Some(arriving), Some(backward), None) => {
+            scattered.scatter(arriving, backward, None, normal_component, absorbing);
         }
-        (LocalModes::Real(f), LocalModes::Real(b), Some(LocalModes::Real(o))) => {
-            scattered.scatter(f, b, Some(o), normal_component, absorbing);
+        (Some(arriving), Some(backward), Some(Some(onward))) => {
+            scattered.scatter(arriving, backward, Some(onward), normal_component, absorbing);
         }
         _ => {
-            let (f, b, o) = (forward.complex(), backward.complex(), onward.map(|o| o.complex()));
-            scattered.scatter(&f, &b, o.as_ref(), normal_component, absorbing);
+            let (arriving, backward) = (arriving.complex(), backward.complex());
+            let onward = onward.as_ref().map(|onward| onward.complex());
+            let onward = onward.as_ref();
+            scattered.scatter(&arriving, &backward, onward, normal_component, absorbing);
         }
     }
     scattered.weak
@@ -122,39 +122,52 @@ struct Shares<const N: usize> {
     field: [f64; N],
 }
 
+impl<const N: usize> Shares<N> {
+    /// What turns matched fields into those of rays, given the length of the Poynting vector of a unit of normal
+    /// flux: the fields of a ray are scaled to its power instead.
+    fn of_rays(&self, poynting: f64) -> [f64; N] {
+        let narrowing = poynting.sqrt().recip();
+        self.field.map(|field| field * narrowing)
+    }
+}
+
 impl<const N: usize> Scattered<'_, N> {
-    /// Matches the fields for the incident mode or, where the modes are nearly one, for both.
+    /// Matches the fields for the incident mode or, where two are nearly one, for both.
     fn scatter<T: Number>(
         &mut self,
-        forward: &[LocalMode<T>; 2],
+        arriving: &[LocalMode<T>],
         backward: &[LocalMode<T>; 2],
         onward: Option<&[LocalMode<T>; 2]>,
         normal_component: f64,
         absorbing: [bool; 2],
     ) {
-        let [a, b] = forward;
         let distance = |mode: &LocalMode<T>| {
             if mode.propagating { (mode.q.real() - normal_component).abs() } else { f64::MAX }
         };
         let near = BOTH_MODES * (1.0 + normal_component.abs());
-        let (to_a, to_b) = (distance(a), distance(b));
-        if to_a.max(to_b) < near {
-            let amplitudes = amplitudes([a, b], backward, onward);
-            let parts = self.parts(a, b);
-            let outgoing = amplitudes.map(|[with_a, with_b]| {
-                parts.map(|[in_a, in_b]| with_a.times(in_a) + with_b.times(in_b))
-            });
-            self.collect(backward, onward, &outgoing, absorbing);
-        } else {
-            let mode = if to_a <= to_b { a } else { b };
-            let amplitudes = amplitudes([mode], backward, onward);
-            let field = mode.electric_in_world(self.frame);
-            let conjugate = field.conj();
-            let scale = 1.0 / field.norm_squared();
-            let parts = self.wave.electric.map(|electric| conjugate.dot(electric) * scale);
-            let outgoing = amplitudes.map(|[with]| parts.map(|part| with.times(part)));
-            self.collect(backward, onward, &outgoing, absorbing);
-        }
+        let mode = match arriving {
+            [a, b] => {
+                let (to_a, to_b) = (distance(a), distance(b));
+                if to_a.max(to_b) < near {
+                    let amplitudes = amplitudes([a, b], backward, onward);
+                    let parts = self.parts(a, b);
+                    let outgoing = amplitudes.map(|[with_a, with_b]| {
+                        parts.map(|[in_a, in_b]| with_a.times(in_a) + with_b.times(in_b))
+                    });
+                    return self.collect(backward, onward, &outgoing, absorbing);
+                }
+                if to_a <= to_b { a } else { b }
+            }
+            [mode] => mode,
+            _ => return,
+        };
+        let amplitudes = amplitudes([mode], backward, onward);
+        let field = mode.electric_in_world(self.frame);
+        let conjugate = field.conj();
+        let scale = 1.0 / field.norm_squared();
+        let parts = self.wave.electric.map(|electric| conjugate.dot(electric) * scale);
+        let outgoing = amplitudes.map(|[with]| parts.map(|part| with.times(part)));
+        self.collect(backward, onward, &outgoing, absorbing);
     }
 
     /// The amplitudes of two modes in the launched fields, by least squares.
@@ -211,12 +224,14 @@ impl<const N: usize> Scattered<'_, N> {
                 std::array::from_fn(|i| (fluxes[0][i] + fluxes[1][i]) * shares.power[i]);
             if self.is_strong(power) {
                 let [ea, eb] = [a, b].map(|mode| mode.electric_in_world(self.frame));
-                let electric = std::array::from_fn(|i| {
-                    (ea.scaled(amplitudes[0][i]) + eb.scaled(amplitudes[1][i])) * shares.field[i]
-                });
                 // The same ray, but in absorbing media, where p's and s's part a little: their mean.
                 let ray = (a.ray_in_world(self.frame) + b.ray_in_world(self.frame)) * 0.5;
-                self.push(side, ModeKind::Shared, (a.q.into(), ray), electric, power);
+                let length = ray.length();
+                let fields = shares.of_rays(length);
+                let electric = std::array::from_fn(|i| {
+                    (ea.scaled(amplitudes[0][i]) + eb.scaled(amplitudes[1][i])) * fields[i]
+                });
+                self.push(side, ModeKind::Shared, a.q.into(), ray / length, electric, power);
             }
             return;
         }
@@ -224,10 +239,11 @@ impl<const N: usize> Scattered<'_, N> {
             let power: [f64; N] = std::array::from_fn(|i| flux[i] * shares.power[i]);
             if mode.propagating && self.is_strong(power) {
                 let field = T::vector(self.frame, mode.electric);
-                let electric =
-                    std::array::from_fn(|i| T::wave(field, amplitude[i] * shares.field[i]));
                 let ray = mode.ray_in_world(self.frame);
-                self.push(side, mode.kind, (mode.q.into(), ray), electric, power);
+                let length = ray.length();
+                let fields = shares.of_rays(length);
+                let electric = std::array::from_fn(|i| T::wave(field, amplitude[i] * fields[i]));
+                self.push(side, mode.kind, mode.q.into(), ray / length, electric, power);
             }
         }
     }
@@ -248,22 +264,24 @@ impl<const N: usize> Scattered<'_, N> {
         &mut self,
         side: Side,
         mode: ModeKind,
-        (q, ray): (Complex64, DVec3),
+        q: Complex64,
+        direction: DVec3,
         electric: [ComplexVector; N],
         power: [f64; N],
     ) {
-        let length = ray.length();
-        // A unit of normal flux is a Poynting vector of this length; the fields of a ray are scaled to
-        // its power instead.
-        let narrowing = length.sqrt().recip();
         let [first, second] = self.tangential.components();
+        let attenuation = match self.tangential {
+            Tangential::Real(_) if q.im == 0.0 => DVec3::ZERO,
+            _ => self.frame.vector([first.im, second.im, q.im]),
+        };
+        let wave_vector = self.frame.vector([first.re, second.re, q.re]);
         self.waves.push(OutgoingWave {
             side,
             mode,
-            wave_vector: self.frame.vector([first.re, second.re, q.re]),
-            attenuation: self.frame.vector([first.im, second.im, q.im]),
-            direction: ray / length,
-            electric: electric.map(|field| field * narrowing),
+            wave_vector,
+            attenuation,
+            direction,
+            electric,
             power,
         });
     }

@@ -16,7 +16,7 @@ mod tensor;
 mod wave_surface;
 
 pub use error::MediumError;
-pub(crate) use modes::{BothWays, LocalMode, LocalModes, Tangential, mutual_flux};
+pub(crate) use modes::{BOTH_MODES, BothWays, LocalMode, Tangential, mutual_flux};
 pub use modes::{Heading, Mode, ModeKind};
 pub use principal_axes::principal_axes;
 pub use tensor::Tensor;

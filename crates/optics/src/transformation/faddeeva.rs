@@ -150,14 +150,14 @@ fn taylor<S: Simd, C: Coefficients>(d: ComplexLanes<S>, c: C) -> ComplexLanes<S>
     let zero = ComplexLanes { re: d.re.all(0.0), im: d.re.all(0.0) };
     let (mut pairs, mut fours) = ([zero; 6], [zero; 3]);
     for k in 0..6 {
-        pairs[k] = c.term(d.re, k) + c.term(d.re, k + 6) * d;
+        pairs[k] = c.term(d.re, k).plus(c.term(d.re, k + 6), d);
     }
     let d2 = d * d;
     for k in 0..3 {
-        fours[k] = pairs[k] + pairs[k + 3] * d2;
+        fours[k] = pairs[k].plus(pairs[k + 3], d2);
     }
     let d4 = d2 * d2;
-    (fours[0] + d4 * fours[1]) + (d4 * d4) * fours[2]
+    fours[0].plus(d4, fours[1]).plus(d4 * d4, fours[2])
 }
 
 /// Whether the table holds an argument.
@@ -313,7 +313,10 @@ mod tests {
                 let x = f64::from(k) + 0.37 * i as f64;
                 Complex64::new(8.0 * (1.3 * x).sin(), 3.0 + 4.5 * (0.7 * x).cos())
             });
-            assert_eq!(side_by_side(Four(t)), t.map(faddeeva), "{t:?}");
+            // Alone, products are rounded before they are added.
+            for (four, alone) in side_by_side(Four(t)).into_iter().zip(t.map(faddeeva)) {
+                assert!((four - alone).norm() < 1e-14 * alone.norm().max(0.3), "{t:?}");
+            }
         }
     }
 

@@ -146,11 +146,11 @@ impl LaneMap for GaussianMap {
         let i_w = w.times_i();
         let i_w1 = -(twice * i_w);
         let i_w1 = ComplexLanes { re: i_w1.re - i_w1.re.all(FRAC_2_SQRT_PI), im: i_w1.im };
-        let i_w2 = -(i_w * 2.0 + twice * i_w1);
+        let i_w2 = -(i_w * 2.0).plus(twice, i_w1);
         let slope = self.height * self.inverse_width;
         let f1 = i_w1 * slope;
         JetLanes {
-            f: zeta + i_w * self.height,
+            f: zeta.plus_real(i_w, i_w.re.all(self.height)),
             f1: ComplexLanes { re: f1.re + f1.re.all(1.0), im: f1.im },
             f2: i_w2 * (slope * self.inverse_width),
         }

@@ -16,9 +16,13 @@ impl Frame {
     /// anywhere in the plane if that vanishes.
     pub fn new(normal: DVec3, tangential: DVec3) -> Self {
         let length = tangential.length();
+        if length > 0.1 {
+            let first = tangential / length;
+            return Self { first, second: normal.cross(first), normal };
+        }
         let first =
             if length > 1e-9 { tangential / length } else { normal.any_orthonormal_vector() };
-        // Once more across the normal: the tangential part may be short and its direction rough.
+        // Once more across the normal: the tangential part is short and its direction rough.
         let first = (first - normal * normal.dot(first)).normalize();
         Self { first, second: normal.cross(first), normal }
     }

@@ -2,8 +2,10 @@
 
 use super::{Mode, ModeKind};
 use crate::wave::{ComplexVector, Frame, Number, cross};
+use arrayvec::ArrayVec;
 use glam::DVec3;
 use num_complex::Complex64;
+use std::{iter, slice};
 
 /// The tangential part of a wave vector in the frame of an interface.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +44,16 @@ pub(crate) enum LocalModes {
     Real([LocalMode<f64>; 2]),
     /// Any others.
     Complex([LocalMode<Complex64>; 2]),
+}
+
+/// The modes of a wave that arrives at an interface.
+#[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "it stays where it is made")]
+pub(crate) enum Arriving {
+    /// The wave is this mode; its flux is any.
+    One(LocalMode<f64>),
+    /// It is one of these, or in absorbing media and where both are nearly one a mixture.
+    Both(LocalModes),
 }
 
 /// The four modes of a medium.
@@ -115,7 +127,36 @@ impl<T: Number> LocalMode<T> {
     }
 }
 
+/// A wave whose normal component is closer than this to those of both modes is taken for a mixture of them.
+pub(crate) const BOTH_MODES: f64 = 1e-7;
+
+impl Arriving {
+    /// The modes, if they carry power in a lossless medium.
+    pub fn real(&self) -> Option<&[LocalMode<f64>]> {
+        match self {
+            Self::One(mode) => Some(slice::from_ref(mode)),
+            Self::Both(LocalModes::Real(modes)) => Some(modes),
+            Self::Both(LocalModes::Complex(_)) => None,
+        }
+    }
+
+    pub fn complex(&self) -> ArrayVec<LocalMode<Complex64>, 2> {
+        match self {
+            Self::One(mode) => iter::once(mode.complex()).collect(),
+            Self::Both(modes) => modes.complex().into(),
+        }
+    }
+}
+
 impl LocalModes {
+    /// The modes, if both propagate in a lossless medium.
+    pub fn real(&self) -> Option<&[LocalMode<f64>; 2]> {
+        match self {
+            Self::Real(modes) => Some(modes),
+            Self::Complex(_) => None,
+        }
+    }
+
     pub fn complex(&self) -> [LocalMode<Complex64>; 2] {
         match self {
             Self::Real(modes) => [modes[0].complex(), modes[1].complex()],

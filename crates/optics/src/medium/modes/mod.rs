@@ -12,7 +12,9 @@ mod refinement;
 mod single_wave;
 mod uniaxial;
 
-pub(crate) use local::{BothWays, LocalMode, LocalModes, Tangential, mutual_flux};
+pub(crate) use local::{
+    Arriving, BOTH_MODES, BothWays, LocalMode, LocalModes, Tangential, mutual_flux,
+};
 
 use super::Medium;
 use super::class::Class;
@@ -138,6 +140,21 @@ impl Medium {
             }
             _ => self.absorbing_modes(frame, tangential.components()),
         }
+    }
+
+    /// The modes of a wave that arrives with the normal component `q`, and those that head back.
+    pub(crate) fn arriving_and_back(
+        &self,
+        frame: &Frame,
+        tangential: Tangential,
+        q: f64,
+    ) -> (Arriving, LocalModes) {
+        if let (Class::Uniaxial(medium), Tangential::Real(along)) = (&self.class, tangential) {
+            let waves = medium.waves(frame, along, Some(q));
+            return (waves.arriving(q), waves.modes(false));
+        }
+        let BothWays { forward, backward } = self.both_ways(frame, tangential, Some(q));
+        (Arriving::Both(forward), backward)
     }
 
     /// The modes that head forward.

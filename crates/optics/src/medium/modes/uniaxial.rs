@@ -4,7 +4,7 @@
 //! p·p = ε µ_o, H along p × a. Extraordinary wave: p·µp = ε µ_o µ_e, E along p × a. The electric
 //! case is its dual: ε and µ, E and H exchanged, one of the fields reversed.
 
-use super::{LocalMode, LocalModes, ModeKind};
+use super::{Arriving, BOTH_MODES, LocalMode, LocalModes, ModeKind};
 use crate::medium::class::Uniaxial;
 use crate::medium::quadratic::{Quadratic, Roots};
 use crate::wave::{Frame, Number, cross, dot};
@@ -135,6 +135,32 @@ impl UniaxialWaves<'_> {
         }
     }
 
+    /// The modes of the wave that arrives with the normal component `q`.
+    pub fn arriving(&self, q: f64) -> Arriving {
+        let (
+            Roots::Real { plus: o_plus, minus: o_minus, .. },
+            Roots::Real { plus: e_plus, minus: e_minus, root: e_root },
+        ) = (self.ordinary, self.extraordinary)
+        else {
+            return Arriving::Both(self.modes(true));
+        };
+        let [o_sign, e_sign] = self.signs(true);
+        let (qo, qe) = (pick(o_sign, o_plus, o_minus), pick(e_sign, e_plus, e_minus));
+        let (to_o, to_e) = ((qo - q).abs(), (qe - q).abs());
+        if to_o.max(to_e) < BOTH_MODES * (1.0 + q.abs()) {
+            return Arriving::Both(self.modes(true));
+        }
+        let po = [self.along, 0.0, qo];
+        let (u, angle) = across_axis(po, self.axis);
+        Arriving::One(if to_o <= to_e {
+            let u = if angle < ONE_WAVE { out_of_plane() } else { u };
+            self.medium.ordinary_mode(po, u)
+        } else {
+            let (qe, ue) = self.extraordinary(qo, qe, e_sign * e_root, u, angle);
+            self.medium.extraordinary_mode(self.axis, [self.along, 0.0, qe], ue)
+        })
+    }
+
     /// The sign of the root of each wave's equation that carries power the given way:
     /// S = p u²/ε and S = µp u²/(µ_o µ_e).
     fn signs(&self, forward: bool) -> [f64; 2] {
@@ -148,20 +174,33 @@ impl UniaxialWaves<'_> {
         let Uniaxial { scalar, ordinary, extraordinary, .. } = *medium;
         let po = [along, 0.0, qo];
         let (mut u, angle) = across_axis(po, axis);
-        let (qe, ue) = if angle < 1e-3 {
-            if angle < ONE_WAVE {
-                u = out_of_plane();
-            }
-            self.near_axis(qo, qe, e_root, u, angle)
-        } else {
-            (qe, across_axis([along, 0.0, qe], axis).0)
-        };
+        if angle < ONE_WAVE {
+            u = out_of_plane();
+        }
+        let (qe, ue) = self.extraordinary(qo, qe, e_root, u, angle);
         // Normal fluxes from the roots themselves, which keeps them exact down to grazing.
         let flux = (o_root * dot(u, u) / scalar).abs();
         let o = medium.ordinary_mode(po, u).scaled(flux.sqrt().recip());
         let flux = (e_root * dot(ue, ue) / (ordinary * extraordinary)).abs();
         let e = medium.extraordinary_mode(axis, [along, 0.0, qe], ue).scaled(flux.sqrt().recip());
         if angle < ONE_WAVE && qo == qe { medium.named_along_axis(o, e) } else { [o, e] }
+    }
+
+    /// q and p × a of the extraordinary wave, from its own q and from those of the ordinary one, whose angle
+    /// to the axis has the sin² `angle`.
+    fn extraordinary(
+        &self,
+        qo: f64,
+        qe: f64,
+        e_root: f64,
+        u: [f64; 3],
+        angle: f64,
+    ) -> (f64, [f64; 3]) {
+        if angle < 1e-3 {
+            self.near_axis(qo, qe, e_root, u, angle)
+        } else {
+            (qe, across_axis([self.along, 0.0, qe], self.axis).0)
+        }
     }
 
     /// The extraordinary wave close to the axis, q and p × a, from the ordinary one: the two

@@ -51,6 +51,8 @@ pub(super) struct Trials {
     pub end: Points,
     /// Estimated error over the allowed one.
     pub error: [f64; LANES],
+    /// By how much to stretch the next step.
+    pub factor: [f64; LANES],
     /// When the ray next meets the border, by extrapolation from the end; infinity for never.
     pub ahead: [f64; LANES],
     /// Not zero if the ray may have crossed the border on the way.
@@ -163,8 +165,8 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
             Pace::Coast => {
                 let [z_rate, theta_rate] = field.rates(&from.jet, from.momentum);
                 let half = h * 0.5;
-                let position = from.zeta + (from.momentum + from.force * half) * h;
-                let velocity = from.momentum + from.force * h;
+                let position = from.zeta.plus_real(from.momentum.plus_real(from.force, half), h);
+                let velocity = from.momentum.plus_real(from.force, h);
                 let z = from.z + (z_rate + field.axial_bend(&from) * half) * h;
                 let stage = field.look(position);
                 (Motion { position, velocity }, stage, z, from.theta + theta_rate * h)
@@ -206,11 +208,12 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
             jet,
             force,
             velocity: jet.f1 * momentum,
-            bend: jet.f2 * momentum * momentum + jet.f1 * force,
+            bend: (jet.f2 * momentum * momentum).plus(jet.f1, force),
         };
         let to = self.to;
         to.end.store(&end);
         to.error = error.values();
+        to.factor = order_eight::step_factor(error).values();
         let outlook = self.gauges.outlook(&from, &end, p_z);
         to.ahead = outlook.ahead.values();
         to.crossed = outlook.crossed.values();

@@ -9,7 +9,6 @@ use super::points::Points;
 use super::strides::{Pace, Rays, Trials, stride};
 use super::{Arrival, Boundary, ConformalFlow, FlowError, Foothold, MAX_STEPS, MIRROR_MAGNIFIES};
 use crate::lanes::LANES;
-use crate::propagation::nystrom::order_eight::step_factor;
 
 /// Moves below this share of the map's scale are exact to rounding by Taylor's formula of order two.
 const COASTING: f64 = 1e-4;
@@ -236,7 +235,7 @@ impl Convoy {
     fn stepped(&mut self, flow: &ConformalFlow, i: usize, length: f64) {
         let error = self.trials.error[i];
         let walk = &mut self.walks[i];
-        walk.stride = length * step_factor(error);
+        walk.stride = length * self.trials.factor[i];
         walk.steps += 1;
         let good = error <= 1.0;
         if walk.steps > MAX_STEPS || !(good || walk.stride >= 1e-9 * flow.slack) {

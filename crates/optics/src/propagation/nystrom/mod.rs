@@ -42,7 +42,7 @@ impl<S: Simd> Motion<S> {
     /// The place after a share of the step, but for the force.
     #[inline(always)]
     fn coasted(&self, h: Lanes<S>, share: f64) -> ComplexLanes<S> {
-        self.position + self.velocity * (h * share)
+        self.position.plus_real(self.velocity, h * share)
     }
 }
 
@@ -54,7 +54,7 @@ fn sum<S: Simd, const N: usize>(
 ) -> ComplexLanes<S> {
     let mut sum = terms[0] * weights[0];
     for k in 1..N {
-        sum = sum + terms[k] * weights[k];
+        sum = sum.plus_real(terms[k], terms[k].re.all(weights[k]));
     }
     sum
 }

@@ -38,13 +38,17 @@ pub(crate) const EVALUATIONS: u32 = 8;
 /// The largest and the smallest change of the step size from one step to the next.
 const FACTOR_RANGE: (f64, f64) = (0.2, 5.0);
 
-/// By how much to stretch the step size after a step of the given relative error.
+/// By how much to stretch the step sizes after steps of the given relative errors.
 #[must_use]
-pub(crate) fn step_factor(error: f64) -> f64 {
+#[inline(always)]
+pub(crate) fn step_factor<S: Simd>(error: Lanes<S>) -> Lanes<S> {
+    let (least, most) = (error.all(FACTOR_RANGE.0), error.all(FACTOR_RANGE.1));
     // error^(-1/8); the safety factor keeps most of the next steps acceptable.
-    let factor = 0.9 / error.sqrt().sqrt().sqrt();
-    // A NaN shortens the step.
-    if factor > FACTOR_RANGE.0 { factor.min(FACTOR_RANGE.1) } else { FACTOR_RANGE.0 }
+    let factor = error.all(0.9).divided_by(error.sqrt().sqrt().sqrt());
+    let factor = factor.less_than(most).choose(factor, most);
+    // An error that is not a number shortens the step.
+    let known = error.less_than(error.all(f64::INFINITY));
+    known.and(least.less_than(factor)).choose(factor, least)
 }
 
 /// Σ c_n g_n of the quadrature k.
@@ -56,7 +60,7 @@ fn weighted<S: Simd, const Q: usize>(
 ) -> Lanes<S> {
     let mut sum = rates[0][k] * weights[0];
     for n in 1..7 {
-        sum = sum + rates[n][k] * weights[n];
+        sum = sum.plus(rates[n][k], sum.all(weights[n]));
     }
     sum
 }
@@ -72,32 +76,34 @@ pub(crate) fn step<S: Simd, F: Field<S, Q>, const Q: usize>(
 ) -> Step<S, F::Jet, Q> {
     let square = h * h;
     let f0 = first.force;
-    let f1 = field.look(start.coasted(h, 0.05) + f0 * (square * A1)).force;
-    let s2 = field.look(start.coasted(h, 0.1) + sum(&A2, [f0, f1]) * square);
+    let f1 = field.look(start.coasted(h, 0.05).plus_real(f0, square * A1)).force;
+    let s2 = field.look(start.coasted(h, 0.1).plus_real(sum(&A2, [f0, f1]), square));
     let f2 = s2.force;
-    let s3 = field.look(start.coasted(h, 0.3) + sum(&A3, [f0, f1, f2]) * square);
+    let s3 = field.look(start.coasted(h, 0.3).plus_real(sum(&A3, [f0, f1, f2]), square));
     let f3 = s3.force;
-    let s4 = field.look(start.coasted(h, 0.5) + sum(&A4, [f0, f1, f2, f3]) * square);
+    let s4 = field.look(start.coasted(h, 0.5).plus_real(sum(&A4, [f0, f1, f2, f3]), square));
     let f4 = s4.force;
-    let s5 = field.look(start.coasted(h, 0.7) + sum(&A5, [f0, f1, f2, f3, f4]) * square);
+    let s5 = field.look(start.coasted(h, 0.7).plus_real(sum(&A5, [f0, f1, f2, f3, f4]), square));
     let f5 = s5.force;
-    let s6 = field.look(start.coasted(h, 0.9) + sum(&A6, [f0, f1, f2, f3, f4, f5]) * square);
+    let s6 =
+        field.look(start.coasted(h, 0.9).plus_real(sum(&A6, [f0, f1, f2, f3, f4, f5]), square));
     let f6 = s6.force;
-    let s7 = field.look(start.coasted(h, 1.0) + sum(&A7, [f0, f1, f2, f3, f4, f5, f6]) * square);
+    let s7 =
+        field.look(start.coasted(h, 1.0).plus_real(sum(&A7, [f0, f1, f2, f3, f4, f5, f6]), square));
     let places = [f0, f2, f3, f4, f5, f6];
-    let position = start.coasted(h, 1.0) + sum(&B, places) * square;
+    let position = start.coasted(h, 1.0).plus_real(sum(&B, places), square);
     let last = field.look(position);
     // The velocity formula is the quadrature that interpolates at its nodes, and so are those that give
     // the velocity there.
     let forces = [f0, f2, f3, f4, f5, f6, s7.force];
-    let velocity = start.velocity + sum(&DB, forces) * h;
+    let velocity = start.velocity.plus_real(sum(&DB, forces), h);
     let g = [
         field.rates(&first.jet, start.velocity),
-        field.rates(&s2.jet, start.velocity + sum(&V2, forces) * h),
-        field.rates(&s3.jet, start.velocity + sum(&V3, forces) * h),
-        field.rates(&s4.jet, start.velocity + sum(&V4, forces) * h),
-        field.rates(&s5.jet, start.velocity + sum(&V5, forces) * h),
-        field.rates(&s6.jet, start.velocity + sum(&V6, forces) * h),
+        field.rates(&s2.jet, start.velocity.plus_real(sum(&V2, forces), h)),
+        field.rates(&s3.jet, start.velocity.plus_real(sum(&V3, forces), h)),
+        field.rates(&s4.jet, start.velocity.plus_real(sum(&V4, forces), h)),
+        field.rates(&s5.jet, start.velocity.plus_real(sum(&V5, forces), h)),
+        field.rates(&s6.jet, start.velocity.plus_real(sum(&V6, forces), h)),
         field.rates(&s7.jet, velocity),
     ];
     let mut quadrature = field.rates(&last.jet, velocity);
@@ -306,8 +312,20 @@ mod tests {
         assert!((whole.2[0] / whole.2[1]).log2() > 6.5, "{:?}", whole.2);
     }
 
+    struct Factor(f64);
+
+    impl WithSimd for Factor {
+        type Output = f64;
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> f64 {
+            step_factor(Lanes::splat(simd, self.0)).values()[1]
+        }
+    }
+
     #[test]
     fn step_factor_stays_in_range_for_any_error() {
+        let step_factor = |error| side_by_side(Factor(error));
         assert_eq!(step_factor(0.0), FACTOR_RANGE.1);
         assert_eq!(step_factor(f64::NAN), FACTOR_RANGE.0);
         assert_eq!(step_factor(f64::INFINITY), FACTOR_RANGE.0);
