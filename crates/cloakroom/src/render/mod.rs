@@ -5,6 +5,7 @@
 
 mod body_surface;
 mod channels;
+mod contrast;
 mod detection;
 mod exposure;
 mod film;
@@ -20,6 +21,7 @@ pub use studio::{Studio, StudioError, bench, limits};
 use crate::output::Picture;
 use crate::scene::Scene;
 use crate::trace::{FourTracers, Rarities, Tracer};
+use contrast::{Contrast, first_look};
 use detection::Detection;
 use exposure::{Traced, expose, expose_unhindered};
 use film::{Band, Film};
@@ -231,22 +233,33 @@ impl<'a, const N: usize> Exposer<'a, N> {
         let width = camera.resolution()[0] as usize;
         let rows = band.len() / width;
         let samples = camera.samples();
+        let look = if camera.adaptive() > 0.0 { first_look(samples) } else { 0 };
         let mut rarities = Rarities::default();
         for row in (0..rows).step_by(2) {
             for column in (0..width).step_by(2) {
                 let corner = [column, band.first_row + row];
                 let mut pixels = [Pixel::default(); 4];
-                for sample in 0..samples {
+                let mut contrast = Contrast::new();
+                let mut taken = 0;
+                while taken < samples {
                     if stop.load(Ordering::Relaxed) {
                         return None;
                     }
-                    rarities += self.expose_block(corner, sample, &mut pixels);
+                    let before = (taken < look).then_some(pixels);
+                    rarities += self.expose_block(corner, taken, &mut pixels);
+                    taken += 1;
+                    if let Some(before) = before {
+                        contrast.add(&before, &pixels);
+                    }
+                    if taken == look && contrast.is_within(camera.adaptive()) {
+                        break;
+                    }
                 }
                 for (i, pixel) in pixels.iter().enumerate() {
                     let (x, y) = (column + i % 2, row + i / 2);
                     if x < width && y < rows {
                         band.set(y * width + x, |channel, color| {
-                            pixel.value(channel, color, f64::from(samples))
+                            pixel.value(channel, color, f64::from(taken))
                         });
                     }
                 }

@@ -125,7 +125,8 @@ fn list<const N: usize>(
             Some(distance) if power > 0.0 => arrivals.push(Arrival {
                 time: time_of_flight(leaf, distance),
                 power,
-                position: leaf.position + leaf.direction * distance,
+                // On the plane to the last digit.
+                position: (leaf.position + leaf.direction * distance).with_x(studio.screen.x),
             }),
             Some(_) => {}
             None => escaped += power,

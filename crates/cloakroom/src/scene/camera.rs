@@ -45,6 +45,9 @@ pub struct CameraSettings {
     pub resolution: [u32; 2],
     /// Rays per pixel, 1 to 65536.
     pub samples: u32,
+    /// Blocks of 2 x 2 pixels whose first samples (a quarter, at least 4) differ by no more than so many 8-bit
+    /// steps get no others; 0 for none.
+    pub adaptive: f64,
     /// Chooses where in its pixel each sample lies.
     pub seed: u64,
     /// The polarizer before the lens.
@@ -110,6 +113,7 @@ impl CameraSettings {
             projection,
             resolution: values.integer_pair("resolution").map(within),
             samples: within(values.integer("samples")),
+            adaptive: values.number("adaptive"),
             seed: values.integer("seed").unsigned_abs(),
             polarizer: Polarizer::from_value(values.choice_or_number("polarizer"))?,
         })
@@ -126,6 +130,7 @@ impl Default for CameraSettings {
             projection: Projection::Perspective { field_of_view: 40.0 },
             resolution: [1024, 768],
             samples: 4,
+            adaptive: 0.0,
             seed: 0,
             polarizer: Polarizer::None,
         }
@@ -185,6 +190,13 @@ impl Camera {
             let message = format!("samples is {}; it must be from 1 to {MOST}", settings.samples);
             return Err(KeyError::at("samples", message));
         }
+        if !(0.0..=255.0).contains(&settings.adaptive) {
+            let message = format!(
+                "adaptive is {} 8-bit steps; it must be from 0 to 255",
+                number_text(settings.adaptive)
+            );
+            return Err(KeyError::at("adaptive", message));
+        }
         if let Polarizer::Angle(degrees) = settings.polarizer {
             Polarizer::at_angle(degrees)?;
         }
@@ -235,6 +247,11 @@ impl Camera {
     /// Rays per pixel.
     pub fn samples(&self) -> u32 {
         self.settings.samples
+    }
+
+    /// By how many 8-bit steps the first samples of a 2 x 2 block may differ for it to get no others.
+    pub fn adaptive(&self) -> f64 {
+        self.settings.adaptive
     }
 
     /// Chooses where in its pixel each sample lies.

@@ -67,6 +67,13 @@ pub static CAMERA_KEYS: &[Key] = &[
         kind: KeyKind::Integer { default: 4, min: 1, max: MOST },
     },
     Key {
+        name: "adaptive",
+        doc: "Spends samples where the picture has edges: blocks of 2 x 2 pixels whose first samples (a \
+              quarter of them, at least 4) differ by no more than so many 8-bit steps get no others. 0: all \
+              pixels get all samples.",
+        kind: number(0.0, "8-bit steps", Limits::Within(0.0, 255.0)),
+    },
+    Key {
         name: "seed",
         doc: "Chooses where in its pixel each sample lies.",
         kind: KeyKind::Integer { default: 0, min: 0, max: i64::MAX },

@@ -149,12 +149,12 @@ impl Coefficients for Patches<'_> {
 fn taylor<S: Simd, C: Coefficients>(d: ComplexLanes<S>, c: C) -> ComplexLanes<S> {
     let zero = ComplexLanes { re: d.re.all(0.0), im: d.re.all(0.0) };
     let (mut pairs, mut fours) = ([zero; 6], [zero; 3]);
-    for k in 0..6 {
-        pairs[k] = c.term(d.re, k).plus(c.term(d.re, k + 6), d);
+    for (k, pair) in pairs.iter_mut().enumerate() {
+        *pair = c.term(d.re, k).plus(c.term(d.re, k + 6), d);
     }
     let d2 = d * d;
-    for k in 0..3 {
-        fours[k] = pairs[k].plus(pairs[k + 3], d2);
+    for (k, four) in fours.iter_mut().enumerate() {
+        *four = pairs[k].plus(pairs[k + 3], d2);
     }
     let d4 = d2 * d2;
     fours[0].plus(d4, fours[1]).plus(d4 * d4, fours[2])

@@ -117,3 +117,16 @@ fn refuses_what_it_cannot_follow() {
         assert!(flow.advance(Half::Upper, start, n * DVec3::Z, tolerance).is_ok());
     }
 }
+
+/// Near the top a ray turns back just before the border: the nearest point was looked for again and again.
+#[test]
+fn leaves_a_border_it_nearly_touches() {
+    let flow = flow();
+    let start = flow
+        .foothold(Half::Upper, DVec3::new(-25.0, 2.776_314_201_482_194_5e1, 0.0))
+        .expect("a point of the border");
+    let direction =
+        DVec3::new(0.954_058_304_274_097_1, 0.031_478_774_922_878_43, -0.297_962_814_416_479_15);
+    let end = flow.advance_from(&start, direction * start.index, 1e-6).expect("a way out");
+    assert_eq!(end.boundary, Boundary::XMax);
+}

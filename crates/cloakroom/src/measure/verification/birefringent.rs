@@ -218,7 +218,9 @@ pub(super) fn reflections(laboratory: &Laboratory<'_>) -> Findings {
     };
     let [[_, horizontal], [_, vertical]] =
         [reflection(DESIGNS[1], "horizontal")?, reflection(DESIGNS[1], "vertical")?];
-    // All that comes back, at 20 degrees to the side.
+    // All that comes back, at 20 degrees to the side. Some paths lead straight up or down, to the last digits;
+    // that light does not go on, and counts.
+    const STRAIGHT_UP: f64 = 1e-9;
     let mut backward = [0.0; 2];
     for (material, backward) in DESIGNS.iter().zip(&mut backward) {
         let bench = laboratory.bench(&square(material))?;
@@ -226,7 +228,7 @@ pub(super) fn reflections(laboratory: &Laboratory<'_>) -> Findings {
         for y in heights() {
             let direction = gaze(HALF_VIEW, 0.0);
             let (leaves, _) = rays.trace(DVec3::new(0.0, y, 0.0) - direction * 60.0, direction);
-            let back = leaves.iter().filter(|leaf| leaf.direction.x < 0.0);
+            let back = leaves.iter().filter(|leaf| leaf.direction.x < STRAIGHT_UP);
             *backward += back.map(|leaf| leaf.power[0]).sum::<f64>() / 40.0;
         }
     }

@@ -151,6 +151,8 @@ fn impossible_cameras_are_refused_at_the_right_key() {
         ("resolution", camera(|s| s.resolution = [0, 10])),
         ("resolution", camera(|s| s.resolution = [10, 65_537])),
         ("samples", camera(|s| s.samples = 0)),
+        ("adaptive", camera(|s| s.adaptive = -1.0)),
+        ("adaptive", camera(|s| s.adaptive = f64::NAN)),
         ("polarizer", camera(|s| s.polarizer = Polarizer::Angle(f64::NAN))),
         ("field_of_view", camera(perspective(0.0))),
         ("field_of_view", camera(perspective(180.0))),

@@ -48,7 +48,6 @@ pub(crate) enum LocalModes {
 
 /// The modes of a wave that arrives at an interface.
 #[derive(Clone, Copy, Debug)]
-#[expect(clippy::large_enum_variant, reason = "it stays where it is made")]
 pub(crate) enum Arriving {
     /// The wave is this mode; its flux is any.
     One(LocalMode<f64>),

@@ -14,6 +14,9 @@ const ALONG: f64 = 1e-14;
 /// Steps are not split at less than this share of the map's scale: the interpolation is exact there.
 const SHORTEST_SPLIT: f64 = 1e-3;
 
+/// Where the interpolation puts an end of the step.
+const AT_END: f64 = 1.0 - 1e-6;
+
 /// A landing this near to the border is exact, relative to the lengths at hand.
 const LANDED: f64 = 1e-15;
 
@@ -234,7 +237,8 @@ impl Gauges {
                 let relative = reach / self.scale;
                 let margin = 2e-3 * self.scale * relative.powi(4);
                 if share * relative > SHORTEST_SPLIT {
-                    if least >= margin {
+                    // At its end it has been looked at: it is not beyond.
+                    if least >= margin || share > AT_END {
                         continue;
                     }
                     (share, Crossing::Unclear { share })

@@ -81,8 +81,8 @@ impl Convoy {
             here: Points::default(),
             trials: Trials::default(),
         };
-        for i in 0..LANES {
-            let Some((start, wave_vector)) = &starts[i] else { continue };
+        for (i, start) in starts.iter().enumerate() {
+            let Some((start, wave_vector)) = start else { continue };
             match flow.sets_out(start, *wave_vector) {
                 Ok(()) => convoy.put(i, start, *wave_vector),
                 Err(error) => convoy.walks[i].state = State::Failed(error),
@@ -156,8 +156,8 @@ impl Convoy {
             }
             any = true;
             self.stride(flow, pace, &length);
-            for i in 0..LANES {
-                if moves[i] {
+            for (i, moves) in moves.into_iter().enumerate() {
+                if moves {
                     self.walks[i].evaluations += pace.evaluations();
                     self.moved(flow, i);
                 }
