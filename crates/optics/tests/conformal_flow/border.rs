@@ -121,7 +121,7 @@ fn refuses_what_it_cannot_follow() {
 /// Near the top a ray turns back just before the border: the nearest point was looked for again and again.
 #[test]
 fn leaves_a_border_it_nearly_touches() {
-    let flow = flow();
+    let flow = flow(Extent::ENDLESS, 1.0);
     let start = flow
         .foothold(Half::Upper, DVec3::new(-25.0, 2.776_314_201_482_194_5e1, 0.0))
         .expect("a point of the border");
