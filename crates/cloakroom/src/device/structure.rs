@@ -154,6 +154,15 @@ impl Hull {
         self.body.as_deref()
     }
 
+    /// Whether it is one convex body: light that has left it does not come back by itself.
+    #[must_use]
+    pub fn is_convex(&self) -> bool {
+        matches!(&self.solids[..], [solid] if !matches!(solid, Solid::Hollow { .. }))
+            && self.thin_mirror.is_none()
+            && self.metal.is_none()
+            && self.filled.is_none()
+    }
+
     /// The solids that it fills.
     #[must_use]
     pub fn solids(&self) -> &[Solid] {

@@ -1,6 +1,7 @@
 //! The optical bench: all devices of a scene at their places.
 
 use super::bodies::Bodies;
+use super::branch::Left;
 use super::interfaces::Interfaces;
 use crate::device::{Cell, SkinHit, Structure};
 use glam::DVec3;
@@ -16,6 +17,12 @@ pub struct Placed {
 }
 
 impl Placed {
+    /// What a branch has left that comes from a surface of the skin of this device, the `number`th.
+    pub(super) fn left(&self, number: u16, surface: u16) -> Left {
+        let surface = (!self.structure.hull.is_convex()).then_some(surface);
+        Left { device: number, surface }
+    }
+
     /// Whether a point of the world lies inside the device.
     #[must_use]
     pub fn holds(&self, point: DVec3) -> bool {
@@ -140,18 +147,21 @@ impl Bench {
         self.devices.iter().position(|device| device.holds(point))
     }
 
-    /// The nearest surface that a ray in air meets. `last` is the device and the surface of its skin
-    /// that the ray has just left.
+    /// The nearest surface that a ray in air meets, `left` being what it has just left.
     #[must_use]
     pub(super) fn first_hit(
         &self,
         origin: DVec3,
         direction: DVec3,
-        last: Option<(u16, u16)>,
+        left: Option<Left>,
     ) -> Option<(u16, SkinHit)> {
         let mut nearest: Option<(u16, SkinHit)> = None;
         for (index, device) in (0u16..).zip(&self.devices) {
-            let last = last.filter(|(which, _)| *which == index).map(|(_, skin)| skin);
+            let left = left.filter(|left| left.device == index);
+            if left.is_some_and(|left| left.surface.is_none()) {
+                continue;
+            }
+            let last = left.and_then(|left| left.surface);
             let hit = device.structure.first_hit(
                 device.pose.to_local(origin),
                 device.pose.vector_to_local(direction),

@@ -11,11 +11,19 @@ use optics::medium::ModeKind;
 use optics::propagation::Foothold;
 use optics::wave::ComplexVector;
 
+/// What a branch in air has just left, and does not meet next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Left {
+    pub device: u16,
+    /// Of the device's skin; the whole device if it is convex.
+    pub surface: Option<u16>,
+}
+
 /// Where a branch runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     /// In air, in the world's frame, having just left a surface of a device's skin, if any.
-    Air { left: Option<(u16, u16)> },
+    Air { left: Option<Left> },
     /// In a cell of a device, in the device's frame.
     Cell { device: u16, cell: u16 },
 }
@@ -162,7 +170,7 @@ impl<const N: usize> Branch<N> {
 
     /// Takes the branch from the frame of a device into air, in the world's frame, `left` being the surface
     /// of the device's skin that it runs away from.
-    pub fn leave_frame(&mut self, pose: &Pose, left: Option<(u16, u16)>) {
+    pub fn leave_frame(&mut self, pose: &Pose, left: Option<Left>) {
         self.place = Place::Air { left };
         self.position = pose.to_world(self.position);
         self.wave_vector = pose.vector_to_world(self.wave_vector);

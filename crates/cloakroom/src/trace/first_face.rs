@@ -1,6 +1,7 @@
 //! The first surface that a ray meets, looked at on its own.
 
 use super::bodies::{Around, Bodies, Inside};
+use super::branch::Left;
 use super::{Launch, Tracer, Witness};
 use crate::device::{Beyond, Finish};
 use glam::DVec3;
@@ -68,7 +69,7 @@ impl<const N: usize, W: Witness<N>> Tracer<'_, N, W> {
             match hit.beyond {
                 // A thin sheet of air: nothing there.
                 Beyond::Air => {
-                    left = Some((device_index, hit.skin));
+                    left = Some(Left { device: device_index, surface: Some(hit.skin) });
                     continue;
                 }
                 Beyond::Conductor => face.reflected = power,

@@ -1,6 +1,6 @@
 //! From surface to surface: how a branch runs on, and what becomes of it where media meet.
 
-use super::branch::{Branch, Place};
+use super::branch::{Branch, Left, Place};
 use super::{Leg, Placed, Tracer, Witness};
 use crate::device::{Beyond, Cell, Entrance, Finish, Passage, SkinHit};
 use glam::DVec3;
@@ -18,7 +18,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
     }
 
     /// Follows a branch in air to the next surface; whether it goes on from there.
-    pub(super) fn through_air(&mut self, branch: &mut Branch<N>, left: Option<(u16, u16)>) -> bool {
+    pub(super) fn through_air(&mut self, branch: &mut Branch<N>, left: Option<Left>) -> bool {
         if !branch.around.nothing() {
             let bodies = self.bench.bodies();
             return match bodies.crossing(branch.around, branch.position, branch.direction) {
@@ -42,17 +42,18 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         branch.optical_path += hit.distance;
         branch.group_path += hit.distance;
         branch.met_device = true;
-        let left = Some((device_index, hit.skin));
+        let device = &self.bench.devices()[usize::from(device_index)];
+        let left = Some(device.left(device_index, hit.skin));
         let (cell_index, into) = match hit.beyond {
             // A thin sheet of air: nothing there.
             Beyond::Air => {
-                branch.place = Place::Air { left };
+                let surface = Some(hit.skin);
+                branch.place = Place::Air { left: Some(Left { device: device_index, surface }) };
                 return true;
             }
             Beyond::Conductor => (None, -hit.outward),
             Beyond::Cell(cell) | Beyond::Seam(cell) => (Some(cell), -hit.outward),
         };
-        let device = &self.bench.devices()[usize::from(device_index)];
         branch.enter_frame(&device.pose);
         let event = u64::from(device_index) << 32 | u64::from(hit.skin) << 2;
         let Some(cell_index) = cell_index else {
@@ -167,9 +168,12 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
                 })
             }
             Beyond::Air => {
+                // It has met no surface of the skin, which it may meet next unless the device is convex.
+                let convex = device.structure.hull.is_convex();
+                let left = convex.then_some(Left { device: device_index, surface: None });
                 let leave = |branch: &mut Branch<N>| {
                     branch.come_out();
-                    branch.leave_frame(&device.pose, None);
+                    branch.leave_frame(&device.pose, left);
                 };
                 if let Some(interface) = interface {
                     branch.go_on_as(&interface.transmit(&branch.incident()), event);
@@ -220,7 +224,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         &self,
         position: DVec3,
         direction: DVec3,
-        left: Option<(u16, u16)>,
+        left: Option<Left>,
     ) -> Option<(u16, SkinHit)> {
         let hit = self.bench.first_hit(position, direction, left)?;
         let screen = self.screen.and_then(|screen| screen.hit(position, direction));

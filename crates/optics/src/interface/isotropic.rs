@@ -14,25 +14,30 @@ const LEAST_SQUARE: f64 = 1e-30;
 
 /// An isotropic medium, and the square of the wave vectors' normal component there.
 #[derive(Clone, Copy)]
-struct Layer {
-    permittivity: f64,
-    permeability: f64,
+pub(super) struct Layer {
+    pub permittivity: f64,
+    pub permeability: f64,
     square: f64,
 }
 
 impl Layer {
-    fn new((permittivity, permeability): (f64, f64), along: f64) -> Self {
+    pub fn new((permittivity, permeability): (f64, f64), along: f64) -> Self {
         Self { permittivity, permeability, square: permittivity * permeability - along * along }
     }
 
+    /// The magnitude of the normal component where waves decay.
+    pub fn decay(&self) -> Option<f64> {
+        (self.square < 0.0).then(|| self.square.min(-LEAST_SQUARE).abs().sqrt())
+    }
+
     /// The normal component of the wave whose power flows along the normal.
-    fn forward(&self) -> f64 {
+    pub fn forward(&self) -> f64 {
         self.square.max(LEAST_SQUARE).sqrt().copysign(self.permeability)
     }
 
     /// The normal fluxes of waves with the normal component `q` and unit tangential fields: along the plane of
     /// incidence (p), across it (s).
-    fn fluxes(&self, q: f64) -> [f64; 2] {
+    pub fn fluxes(&self, q: f64) -> [f64; 2] {
         [(self.permittivity / q).abs(), (q / self.permeability).abs()]
     }
 }
@@ -56,9 +61,8 @@ pub(super) fn split_isotropic<const N: usize>(
     let fields: [[Complex64; 2]; N] =
         wave.electric.map(|field| [field.dot_real(frame.first), field.dot_real(frame.second)]);
     let outgoing = Outgoing { wave, frame, along };
-    if there.square < 0.0 {
-        let decay = Complex64::new(0.0, there.square.min(-LEAST_SQUARE).abs().sqrt());
-        let back = reflected(here, there, q, decay);
+    if let Some(decay) = there.decay() {
+        let back = reflected(here, there, q, Complex64::new(0.0, decay));
         let fields = fields.map(|[p, s]| [p * back[0], s * back[1]]);
         let flux = fields.map(|field| flux(here.fluxes(q), field));
         waves.push(outgoing.wave(Side::Reflected, here, -q, &fields, &flux, &flux));
@@ -109,21 +113,21 @@ where
 }
 
 /// The normal flux of tangential fields, given those of unit ones.
-fn flux(unit: [f64; 2], [p, s]: [Complex64; 2]) -> f64 {
+pub(super) fn flux(unit: [f64; 2], [p, s]: [Complex64; 2]) -> f64 {
     unit[0] * p.norm_sqr() + unit[1] * s.norm_sqr()
 }
 
 /// What the outgoing waves are made with.
-struct Outgoing<'a, const N: usize> {
-    wave: &'a IncidentWave<N>,
-    frame: Frame,
-    along: f64,
+pub(super) struct Outgoing<'a, const N: usize> {
+    pub wave: &'a IncidentWave<N>,
+    pub frame: Frame,
+    pub along: f64,
 }
 
 impl<const N: usize> Outgoing<'_, N> {
     /// A wave with the normal component `q` from its tangential fields, its normal flux and that of all
     /// outgoing waves.
-    fn wave(
+    pub fn wave(
         &self,
         side: Side,
         layer: Layer,

@@ -1,8 +1,12 @@
 //! The interface of any two media: two modes out on either side, four tangential fields to match.
 
+mod isotropic_beyond;
+
+use super::isotropic::Layer;
 use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
 use crate::medium::{BOTH_MODES, LocalMode, Medium, ModeKind, Tangential, mutual_flux};
 use crate::wave::{ComplexVector, Frame, Number, solve};
+use arrayvec::ArrayVec;
 use glam::DVec3;
 use num_complex::Complex64;
 
@@ -34,9 +38,18 @@ pub(super) fn split_into_modes<const N: usize>(
     // Modes are large, and stay where they are made.
     let (arriving, backward) =
         &incident_medium.arriving_and_back(&frame, tangential, normal_component);
-    let onward = &transmitted_medium.map(|medium| medium.onward(&frame, tangential));
     let mut scattered =
         Scattered { wave, frame: &frame, tangential, least_power, waves, weak: [0.0; N] };
+    if let (Some(medium), Tangential::Real(along)) =
+        (transmitted_medium.and_then(Medium::scalars), tangential)
+        && let (Some(arriving), Some(backward)) = (arriving.real(), backward.real())
+        && !incident_medium.absorbs()
+    {
+        let incident = scattered.incident(arriving, normal_component);
+        scattered.match_isotropic(&incident, backward, along, Layer::new(medium, along));
+        return scattered.weak;
+    }
+    let onward = &transmitted_medium.map(|medium| medium.onward(&frame, tangential));
     let absorbs = |medium: Option<&Medium>| medium.is_some_and(Medium::absorbs);
     let absorbing = [incident_medium.absorbs(), absorbs(transmitted_medium)];
     let onward_real = onward.as_ref().map(|onward| onward.real());
@@ -112,6 +125,9 @@ struct Scattered<'a, const N: usize> {
     weak: [f64; N],
 }
 
+/// A mode of the wave that arrives, and its amplitudes in the launched fields.
+type Incident<'m, T, const N: usize> = (&'m LocalMode<T>, [Complex64; N]);
+
 /// The normal fluxes of both modes on one side, for each launched polarization.
 type Fluxes<const N: usize> = [[f64; N]; 2];
 
@@ -123,6 +139,12 @@ struct Shares<const N: usize> {
 }
 
 impl<const N: usize> Shares<N> {
+    /// Of the incident powers, given the sums of all outgoing fluxes.
+    fn of(power: [f64; N], total: [f64; N]) -> Self {
+        let power = std::array::from_fn(|i| if total[i] > 0.0 { power[i] / total[i] } else { 0.0 });
+        Self { power, field: power.map(f64::sqrt) }
+    }
+
     /// What turns matched fields into those of rays, given the length of the Poynting vector of a unit of normal
     /// flux: the fields of a ray are scaled to its power instead.
     fn of_rays(&self, poynting: f64) -> [f64; N] {
@@ -132,15 +154,12 @@ impl<const N: usize> Shares<N> {
 }
 
 impl<const N: usize> Scattered<'_, N> {
-    /// Matches the fields for the incident mode or, where two are nearly one, for both.
-    fn scatter<T: Number>(
-        &mut self,
-        arriving: &[LocalMode<T>],
-        backward: &[LocalMode<T>; 2],
-        onward: Option<&[LocalMode<T>; 2]>,
+    /// The incident mode or, where two are nearly one, both.
+    fn incident<'m, T: Number>(
+        &self,
+        arriving: &'m [LocalMode<T>],
         normal_component: f64,
-        absorbing: [bool; 2],
-    ) {
+    ) -> ArrayVec<Incident<'m, T, N>, 2> {
         let distance = |mode: &LocalMode<T>| {
             if mode.propagating { (mode.q.real() - normal_component).abs() } else { f64::MAX }
         };
@@ -149,24 +168,42 @@ impl<const N: usize> Scattered<'_, N> {
             [a, b] => {
                 let (to_a, to_b) = (distance(a), distance(b));
                 if to_a.max(to_b) < near {
-                    let amplitudes = amplitudes([a, b], backward, onward);
                     let parts = self.parts(a, b);
-                    let outgoing = amplitudes.map(|[with_a, with_b]| {
-                        parts.map(|[in_a, in_b]| with_a.times(in_a) + with_b.times(in_b))
-                    });
-                    return self.collect(backward, onward, &outgoing, absorbing);
+                    return [(a, parts.map(|[in_a, _]| in_a)), (b, parts.map(|[_, in_b]| in_b))]
+                        .into();
                 }
                 if to_a <= to_b { a } else { b }
             }
             [mode] => mode,
-            _ => return,
+            _ => return ArrayVec::new(),
         };
-        let amplitudes = amplitudes([mode], backward, onward);
         let field = mode.electric_in_world(self.frame);
         let conjugate = field.conj();
         let scale = 1.0 / field.norm_squared();
         let parts = self.wave.electric.map(|electric| conjugate.dot(electric) * scale);
-        let outgoing = amplitudes.map(|[with]| parts.map(|part| with.times(part)));
+        std::iter::once((mode, parts)).collect()
+    }
+
+    /// Matches the fields.
+    fn scatter<T: Number>(
+        &mut self,
+        arriving: &[LocalMode<T>],
+        backward: &[LocalMode<T>; 2],
+        onward: Option<&[LocalMode<T>; 2]>,
+        normal_component: f64,
+        absorbing: [bool; 2],
+    ) {
+        let outgoing = match self.incident(arriving, normal_component).as_slice() {
+            [(a, in_a), (b, in_b)] => {
+                let with = amplitudes([*a, *b], backward, onward);
+                with.map(|[with_a, with_b]| {
+                    std::array::from_fn(|i| with_a.times(in_a[i]) + with_b.times(in_b[i]))
+                })
+            }
+            [(mode, parts)] => amplitudes([*mode], backward, onward)
+                .map(|[with]| parts.map(|part| with.times(part))),
+            _ => return,
+        };
         self.collect(backward, onward, &outgoing, absorbing);
     }
 
@@ -195,11 +232,8 @@ impl<const N: usize> Scattered<'_, N> {
         });
         // Over the sum, not over the incident flux: the same in a lossless medium, but for rounding
         // near grazing incidence, which would show in the account of the power.
-        let power: [f64; N] = std::array::from_fn(|i| {
-            let sum = back[0][i] + back[1][i] + on[0][i] + on[1][i];
-            if sum > 0.0 { self.wave.power[i] / sum } else { 0.0 }
-        });
-        let shares = Shares { power, field: power.map(f64::sqrt) };
+        let total = std::array::from_fn(|i| back[0][i] + back[1][i] + on[0][i] + on[1][i]);
+        let shares = Shares::of(self.wave.power, total);
         self.one_side(Side::Reflected, backward, [r1, r2], &back, &shares);
         if let Some(onward) = onward {
             self.one_side(Side::Transmitted, onward, [t1, t2], &on, &shares);
