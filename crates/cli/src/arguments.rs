@@ -6,6 +6,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use cloakroom::material::Resolution;
 use cloakroom::measure::STANDARD_PLOT;
+use cloakroom::render::Tile;
 use cloakroom::scene::OPTIONAL_CHANNELS;
 use std::path::PathBuf;
 use values::{angles, grid, pixel, point, range, rectangle, size};
@@ -24,6 +25,8 @@ pub struct Arguments {
 pub enum Command {
     /// Render a scene to pictures and data.
     Render(RenderArguments),
+    /// Put tiles that `render --tile` has written together: the picture as if it had been rendered whole.
+    Merge(MergeArguments),
     /// Validate a scene and print facts and an estimate of the time, without rendering.
     Check(SceneArguments),
     /// Trace given rays through a scene; JSON in, JSON out.
@@ -78,9 +81,25 @@ pub struct RenderArguments {
     /// More channels for .exr and .npz files, as in stokes,first_face_reflectance (`picture.channels`).
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = PossibleValuesParser::new(OPTIONAL_CHANNELS))]
     pub channels: Vec<String>,
+    /// Render this part of the picture alone, in pixels from the top left: other machines may render the others, and
+    /// `merge` puts them together. Tiles are .npz or .png; even edges save work.
+    #[arg(long, value_name = "LEFT,TOP,WIDTH,HEIGHT")]
+    pub tile: Option<Tile>,
     /// Number of threads; all cores if absent.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
+}
+
+/// Arguments of `merge`.
+#[derive(Args, Debug)]
+pub struct MergeArguments {
+    /// The tiles, all .npz or all .png; they must cover the picture and not overlap.
+    #[arg(required = true)]
+    pub tiles: Vec<PathBuf>,
+    /// A file to write; its ending decides: .png, .exr or .npz; .png alone where the tiles are .png. May be given several
+    /// times.
+    #[arg(short, long = "output", value_name = "FILE", required = true)]
+    pub outputs: Vec<PathBuf>,
 }
 
 /// Arguments of `trace`.

@@ -16,6 +16,7 @@ mod gallery;
 mod input;
 mod interface;
 mod interruption;
+mod merge;
 mod panels;
 mod progress;
 mod pulses;
@@ -43,6 +44,7 @@ fn run(command: &Command) -> Result<(), Failure> {
     let stop = interruption::watch()?;
     match command {
         Command::Render(arguments) => render::run(arguments, stop),
+        Command::Merge(arguments) => merge::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Trace(arguments) => trace::run(arguments, stop),
         Command::Pulses(arguments) => pulses::run(arguments),

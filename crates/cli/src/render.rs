@@ -7,7 +7,7 @@ use crate::report::{Failure, say};
 use crate::scene;
 use cloakroom::illustration::scalar_map;
 use cloakroom::output::{self, Format, Picture};
-use cloakroom::render::{self, RenderError, Rendered, Studio, Supervision, Wanted};
+use cloakroom::render::{self, RenderError, Rendered, Studio, Supervision, Tile, Wanted};
 use cloakroom::scene::Scene;
 use cloakroom::trace::Rarities;
 use std::io;
@@ -28,6 +28,10 @@ pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure
         output::check_writable(path).map_err(Failure::from_error)?;
     }
     let _busy = interruption::busy();
+    if let Some(tile) = arguments.tile {
+        let tile = check_tile(tile, &loaded.scene, &formats)?;
+        return in_tile(&studio, wanted, tile, &formats, stop);
+    }
     if let [(path, Format::Png)] = formats[..]
         && loaded.scene.picture.map.is_none()
         && render::strips(&studio).nth(1).is_some()
@@ -43,6 +47,43 @@ pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure
             output::write(&picture, path)
         }
         .map_err(Failure::from_error)?;
+    }
+    Ok(())
+}
+
+/// The tile, if the picture has one there and its files can be tiles.
+fn check_tile(tile: Tile, scene: &Scene, formats: &[(&PathBuf, Format)]) -> Result<Tile, Failure> {
+    for (path, format) in formats {
+        if *format == Format::Exr {
+            let path = path.display();
+            return Err(Failure::Failed(format!("{path}: a tile is a .npz or a .png")));
+        }
+        if *format == Format::Png && scene.picture.map.is_some() {
+            return Err(Failure::Failed(format!(
+                "{}: the scale of a map is that of the whole picture; write tiles of it as .npz",
+                path.display()
+            )));
+        }
+    }
+    tile.check(scene.camera.resolution()).map_err(Failure::from_error)
+}
+
+/// Renders a tile and writes its files.
+fn in_tile(
+    studio: &Studio<'_>,
+    wanted: Wanted,
+    tile: Tile,
+    formats: &[(&PathBuf, Format)],
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
+    let bar = progress::bar(tile.height.into(), "rendering");
+    let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
+    let rendered = render::render_tile(studio, wanted, tile, &supervision);
+    bar.finish_and_clear();
+    let Rendered { picture, rarities } = rendered.map_err(failed)?;
+    tell_rarities(&rarities);
+    for (path, _) in formats {
+        output::write(&picture, path).map_err(Failure::from_error)?;
     }
     Ok(())
 }

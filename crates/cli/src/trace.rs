@@ -6,33 +6,24 @@ use crate::interruption;
 use crate::report::{self, Failure};
 use crate::scene;
 use cloakroom::render;
-use cloakroom::trace::{Limits, RayError, RayRequest, trace_rays};
+use cloakroom::trace::{RayError, RayRequest, trace_rays};
 use std::sync::atomic::AtomicBool;
-
-/// The threshold where neither the command line nor the scene gives one.
-const DEFAULT_MIN_POWER: f64 = 1e-9;
 
 /// Traces the rays of a file through a scene.
 pub fn run(arguments: &TraceArguments, stop: &AtomicBool) -> Result<(), Failure> {
     scene::use_threads(arguments.threads)?;
     let loaded = scene::load(&arguments.scene)?;
     let bench = render::bench(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
-    let settings = &loaded.scene.trace;
-    let min_power = match arguments.min_power {
-        Some(p) if (0.0..=1.0).contains(&p) => p,
-        Some(p) => {
-            return Err(Failure::Usage(format!("--min-power is {p}; it must be from 0 to 1")));
-        }
-        None if settings.min_power_given => settings.min_power,
-        None => DEFAULT_MIN_POWER,
-    };
+    if let Some(p) = arguments.min_power.filter(|p| !(0.0..=1.0).contains(p)) {
+        return Err(Failure::Usage(format!("--min-power is {p}; it must be from 0 to 1")));
+    }
+    let limits = render::ray_limits(&loaded.scene, arguments.min_power);
     let (text, name) = input::read(&arguments.rays)?;
     let rays = parse_rays(&text, &name)?;
     let busy = interruption::busy();
-    let limits = Limits { min_power, tolerance: settings.tolerance };
     let reports = trace_rays(&bench, limits, &rays, stop).map_err(|error| match error {
         RayError::Stopped => Failure::Interrupted,
-        RayError::Ray { .. } => Failure::Failed(format!("{name}: {error}")),
+        error => Failure::Failed(format!("{name}: {error}")),
     })?;
     drop(busy);
     let text = serde_json::to_string(&reports).map_err(Failure::from_error)?;

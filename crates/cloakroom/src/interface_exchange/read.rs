@@ -62,20 +62,36 @@ impl InterfaceRequest {
             value => Some(medium(value, &within("transmitted"))?),
         };
         let normal = vector(normal, &within("normal"))?;
+        let tangential = vector(tangential, &within("tangential"))?;
+        Self::new(incident, transmitted, normal, tangential)
+            .map_err(|fault| InterfaceError::at(&within(&fault.place), fault.problem))
+    }
+
+    /// The interface between two media, or at metal if `transmitted` is `None`; the normal may be of any length.
+    ///
+    /// # Errors
+    ///
+    /// If the normal is zero, or the tangential vector is not tangential or too long; the error's place is `normal` or
+    /// `tangential`.
+    pub fn new(
+        incident: Medium,
+        transmitted: Option<Medium>,
+        normal: DVec3,
+        tangential: DVec3,
+    ) -> Result<Self, InterfaceError> {
         // Scaled first, so that no length is too large or too small.
         let normal = (normal / normal.abs().max_element())
             .try_normalize()
-            .ok_or_else(|| InterfaceError::at(&within("normal"), "the normal is zero"))?;
-        let tangential = vector(tangential, &within("tangential"))?;
+            .ok_or_else(|| InterfaceError::at("normal", "the normal is zero"))?;
         let along = tangential.dot(normal);
         if along.abs() > TANGENTIAL {
             let problem = format!(
                 "the normal part is {along:e}; at most {TANGENTIAL:e} is allowed in a tangential vector"
             );
-            return Err(InterfaceError::at(&within("tangential"), problem));
+            return Err(InterfaceError::at("tangential", problem));
         }
         if !tangential.length_squared().is_finite() {
-            return Err(InterfaceError::at(&within("tangential"), "the vector is too long"));
+            return Err(InterfaceError::at("tangential", "the vector is too long"));
         }
         Ok(Self { incident, transmitted, normal, tangential: tangential - normal * along })
     }

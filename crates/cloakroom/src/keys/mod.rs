@@ -12,8 +12,7 @@ mod tests;
 mod value;
 mod values;
 
-pub(crate) use nearest::unknown;
-pub use nearest::{hint, nearest};
+pub use nearest::{hint, nearest, unknown};
 pub use value::Value;
 pub(crate) use value::{number_text, quoted};
 pub use values::{ChoiceOrNumber, KeyError, Values};

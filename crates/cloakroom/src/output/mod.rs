@@ -1,4 +1,5 @@
-//! Pictures (PNG, EXR, NPZ) and data on grids (NPZ, VTI, CSV) into files, each whole or not at all.
+//! Pictures (PNG, EXR, NPZ) and data on grids (NPZ, VTI, CSV) into files, each whole or not at all; and pictures back
+//! from PNG and NPZ.
 
 mod arrays;
 mod exr_file;
@@ -6,13 +7,15 @@ mod grid_file;
 mod npz_file;
 mod picture;
 mod png_file;
+mod reading;
 mod whole_file;
 
 pub use arrays::{Arrays, write_arrays};
 pub use grid_file::{GridArray, GridFile, GridFormat, GridValues, write_grid};
 pub use image::RgbImage;
 pub use picture::{Channel, Picture, Samples};
-pub use png_file::{to_srgb, write_png, write_png_in_strips};
+pub use png_file::{encode_png, to_srgb, write_png, write_png_in_strips};
+pub use reading::{ReadError, read_npz, read_png};
 pub use whole_file::{WriteSeek, check_writable, write_whole};
 
 use std::io;

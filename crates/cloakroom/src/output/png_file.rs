@@ -85,11 +85,22 @@ pub fn write_png(
     metadata: &[(String, String)],
     path: &Path,
 ) -> Result<(), OutputError> {
-    write_whole(path, |out| {
-        let mut writer = header(image.dimensions(), metadata, out)?;
-        writer.write_image_data(image.as_raw())?;
-        Ok(writer.finish()?)
-    })
+    write_whole(path, |out| encode_png(image, metadata, out))
+}
+
+/// Writes an image as the bytes of a PNG with text metadata.
+///
+/// # Errors
+///
+/// If they cannot be written.
+pub fn encode_png(
+    image: &RgbImage,
+    metadata: &[(String, String)],
+    out: &mut dyn super::WriteSeek,
+) -> io::Result<()> {
+    let mut writer = header(image.dimensions(), metadata, out)?;
+    writer.write_image_data(image.as_raw())?;
+    Ok(writer.finish()?)
 }
 
 /// Writes an image that comes in strips, as wide as the whole and from top to bottom, as a PNG with text

@@ -50,6 +50,10 @@ pub enum Texels {
 ///
 /// As [`load()`], as far as the file's header tells.
 pub fn dimensions(source: &ImageSource) -> Result<(u32, u32), LoadError> {
+    if let ImageSource::Memory(image) = source {
+        // Checked when it was made a source: far fewer than 2^32.
+        return Ok((image.width as u32, image.height as u32));
+    }
     let bytes = read_bytes(source)?;
     let (mut decoder, _) = open(source, &bytes)?;
     let (width, height) = decoder.dimensions();
@@ -70,16 +74,45 @@ pub fn dimensions(source: &ImageSource) -> Result<(u32, u32), LoadError> {
 /// large (decided before memory is taken), or where an EXR pixel is not finite: such a pixel would
 /// spread over the picture as soon as it is filtered.
 pub fn load(source: &ImageSource) -> Result<LinearImage, LoadError> {
-    let bytes = read_bytes(source)?;
-    let image = guarded(source, || decode(source, &bytes))?;
-    let image = linear(image);
-    if let Texels::Linear(values) = &image.texels
-        && let Some(at) = values.iter().position(|value| !value.is_finite())
-    {
-        let (column, row) = (at / 3 % image.width, at / 3 / image.width);
-        return Err(LoadError::NotFinite { image: source.clone(), column, row });
+    if let ImageSource::Memory(image) = source {
+        return Ok(LinearImage::clone(image));
     }
+    let bytes = read_bytes(source)?;
+    let image = linear(guarded(source, || decode(source, &bytes))?);
+    image.check(source)?;
     Ok(image)
+}
+
+impl LinearImage {
+    /// Refuses an image that cannot be looked at; `source` stands in the message.
+    pub(super) fn check(&self, source: &ImageSource) -> Result<(), LoadError> {
+        let (image, width, height) = (source.clone(), self.width, self.height);
+        let pixels = width.saturating_mul(height);
+        if pixels as u64 > MAX_PIXELS {
+            return Err(LoadError::TooLarge { image });
+        }
+        if pixels == 0 {
+            // Below the largest number of pixels, and thus of 32 bits.
+            return Err(LoadError::NoPixels { image, width: width as u32, height: height as u32 });
+        }
+        let count = match &self.texels {
+            Texels::Srgb8(codes) => codes.len(),
+            Texels::Linear(values) => values.len(),
+        };
+        if count != 3 * pixels {
+            return Err(LoadError::WrongCount { image, count });
+        }
+        match &self.texels {
+            Texels::Linear(values) => match values.iter().position(|value| !value.is_finite()) {
+                Some(at) => {
+                    let (column, row) = (at / 3 % width, at / 3 / width);
+                    Err(LoadError::NotFinite { image, column, row })
+                }
+                None => Ok(()),
+            },
+            Texels::Srgb8(_) => Ok(()),
+        }
+    }
 }
 
 /// The bytes of an image file, once its beginning shows that it can be one.
@@ -91,6 +124,8 @@ fn read_bytes(source: &ImageSource) -> Result<Cow<'static, [u8]>, LoadError> {
                 .ok_or_else(|| LoadError::UnknownBuiltIn { name: (*name).to_owned() });
         }
         ImageSource::File(path) => path,
+        // It has no file: `load` and `dimensions` look at it itself.
+        ImageSource::Memory(_) => return Err(LoadError::NotAnImage { image: source.clone() }),
     };
     let image = || source.clone();
     let failed = |reason: io::Error| match reason.kind() {

@@ -2,8 +2,9 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use super::load::{MAX_MEMORY, MAX_PIXELS};
+use super::load::{LinearImage, MAX_MEMORY, MAX_PIXELS};
 
 /// The images that come with the program, by name.
 const BUILT_IN: [(&str, &[u8]); 1] = [("bookshelf", include_bytes!("../../assets/bookshelf.jpg"))];
@@ -12,12 +13,14 @@ const BUILT_IN: [(&str, &[u8]); 1] = [("bookshelf", include_bytes!("../../assets
 const BUILT_IN_PREFIX: &str = "builtin:";
 
 /// Where an image comes from.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ImageSource {
     /// One of the images that come with the program, by its name without `builtin:`.
     BuiltIn(&'static str),
     /// An image file.
     File(PathBuf),
+    /// An image that is in memory already: see [`ImageSource::memory`].
+    Memory(Arc<LinearImage>),
 }
 
 impl ImageSource {
@@ -38,6 +41,20 @@ impl ImageSource {
             .ok_or_else(|| LoadError::UnknownBuiltIn { name: name.to_owned() })
     }
 
+    /// An image that is in memory already.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`] where it has no pixels or too many, its texels are not as many, or one of them is not
+    /// finite.
+    pub fn memory(image: LinearImage) -> Result<Self, LoadError> {
+        let source = Self::Memory(Arc::new(image));
+        if let Self::Memory(image) = &source {
+            image.check(&source)?;
+        }
+        Ok(source)
+    }
+
     /// The bytes of a built-in image.
     pub(super) fn built_in(name: &str) -> Option<&'static [u8]> {
         BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, bytes)| *bytes)
@@ -54,6 +71,7 @@ impl std::fmt::Display for ImageSource {
         match self {
             Self::BuiltIn(name) => write!(f, "{BUILT_IN_PREFIX}{name}"),
             Self::File(path) => write!(f, "{}", path.display()),
+            Self::Memory(image) => write!(f, "array:{}x{}", image.width, image.height),
         }
     }
 }
@@ -146,7 +164,15 @@ pub enum LoadError {
         /// The image.
         image: ImageSource,
     },
-    /// A pixel of an EXR image is infinite or not a number.
+    /// An image in memory has not as many texels as its size says.
+    #[error("{image} has {count} texels")]
+    WrongCount {
+        /// The image.
+        image: ImageSource,
+        /// How many there are.
+        count: usize,
+    },
+    /// A pixel of an EXR image or of one in memory is infinite or not a number.
     #[error("{image} has a pixel that is not a finite number, in column {column} and row {row}")]
     NotFinite {
         /// The image.

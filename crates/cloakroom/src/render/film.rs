@@ -1,14 +1,13 @@
 //! The film: the channels of a picture while it is being exposed, band by band.
 
-use super::Channel;
 use super::channels::Form;
+use super::{Channel, Tile};
 use crate::output::{Channel as FileChannel, Samples};
-use std::ops::Range;
 
 /// The planes of a picture, row by row.
 pub(super) struct Film {
     width: usize,
-    first_row: usize,
+    corner: [usize; 2],
     planes: Vec<(Channel, Plane)>,
 }
 
@@ -20,7 +19,10 @@ enum Plane {
 
 /// A band of rows of every plane, to be exposed by one thread.
 pub(super) struct Band<'f> {
-    pub first_row: usize,
+    /// Column and row of its first pixel in the whole picture.
+    pub corner: [usize; 2],
+    /// Pixels in a row.
+    pub width: usize,
     planes: Vec<(Channel, BandPlane<'f>)>,
 }
 
@@ -31,12 +33,13 @@ enum BandPlane<'f> {
 }
 
 impl Film {
-    /// For these rows of a picture.
-    pub fn new(width: usize, rows: Range<usize>, channels: &[Channel]) -> Self {
+    /// For a tile of a picture.
+    pub fn new(tile: Tile, channels: &[Channel]) -> Self {
+        let [width, height] = [tile.width, tile.height].map(|side| side as usize);
         let planes = channels
             .iter()
             .map(|channel| {
-                let size = width * rows.len();
+                let size = width * height;
                 let plane = match channel.form() {
                     Form::Single => Plane::Single(vec![0.0; size]),
                     Form::Double => Plane::Double(vec![0.0; size]),
@@ -45,7 +48,7 @@ impl Film {
                 (*channel, plane)
             })
             .collect();
-        Self { width, first_row: rows.start, planes }
+        Self { width, corner: [tile.left, tile.top].map(|first| first as usize), planes }
     }
 
     /// The film in bands of `rows` rows.
@@ -61,7 +64,8 @@ impl Film {
             for (index, piece) in pieces.into_iter().enumerate() {
                 if index == bands.len() {
                     bands.push(Band {
-                        first_row: self.first_row + index * rows,
+                        corner: [self.corner[0], self.corner[1] + index * rows],
+                        width: self.width,
                         planes: Vec::new(),
                     });
                 }

@@ -13,10 +13,12 @@ mod pixel;
 mod pulses;
 mod sampling;
 mod studio;
+mod tile;
 
 pub use channels::{Channel, Form, Wanted};
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
-pub use studio::{Studio, StudioError, bench, limits};
+pub use studio::{Studio, StudioError, bench, limits, ray_limits};
+pub use tile::{MergeError, Tile, TileError, merge, merge_images};
 
 use crate::output::Picture;
 use crate::scene::Scene;
@@ -109,13 +111,48 @@ pub fn render_rows(
     rows: Range<usize>,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
+    let width = studio.scene.camera.resolution()[0];
+    // A camera has at most 65536 rows.
+    let tile = Tile { left: 0, top: rows.start as u32, width, height: rows.len() as u32 };
+    expose_tile(studio, wanted, tile, supervision)
+}
+
+/// Renders a tile of a picture: the picture has these pixels alone, and its metadata say which they are. They are
+/// the same as in the whole picture; even edges save work, for pixels are exposed in aligned blocks of 2 x 2.
+///
+/// # Errors
+///
+/// If it would not fit into memory, or the work was stopped.
+///
+/// # Panics
+///
+/// If the tile is not [checked](Tile::check) against the picture's resolution.
+pub fn render_tile(
+    studio: &Studio<'_>,
+    wanted: Wanted,
+    tile: Tile,
+    supervision: &Supervision<'_>,
+) -> Result<Rendered, RenderError> {
+    let resolution = studio.scene.camera.resolution();
+    assert!(tile.check(resolution).is_ok(), "the tile is not of this picture");
+    let mut rendered = expose_tile(studio, wanted, tile, supervision)?;
+    rendered.picture.metadata.extend(tile.metadata(resolution));
+    Ok(rendered)
+}
+
+fn expose_tile(
+    studio: &Studio<'_>,
+    wanted: Wanted,
+    tile: Tile,
+    supervision: &Supervision<'_>,
+) -> Result<Rendered, RenderError> {
     match (wanted, studio.scene.camera.polarizer().amplitudes()) {
-        (_, None) => expose_film(studio, wanted, rows, supervision, Detection::UNPOLARIZED),
+        (_, None) => expose_film(studio, wanted, tile, supervision, Detection::UNPOLARIZED),
         (Wanted::Image, Some(amplitudes)) => {
-            expose_film(studio, wanted, rows, supervision, Detection::image(amplitudes))
+            expose_film(studio, wanted, tile, supervision, Detection::image(amplitudes))
         }
         (Wanted::Everything, Some(amplitudes)) => {
-            expose_film(studio, wanted, rows, supervision, Detection::through(amplitudes))
+            expose_film(studio, wanted, tile, supervision, Detection::through(amplitudes))
         }
     }
 }
@@ -123,16 +160,16 @@ pub fn render_rows(
 fn expose_film<const N: usize>(
     studio: &Studio<'_>,
     wanted: Wanted,
-    rows: Range<usize>,
+    tile: Tile,
     supervision: &Supervision<'_>,
     detection: Detection<N>,
 ) -> Result<Rendered, RenderError> {
-    let (width, height) = (studio.scene.camera.resolution()[0] as usize, rows.len());
-    check_memory(studio, wanted, rows.len())?;
+    let (width, height) = (tile.width as usize, tile.height as usize);
+    check_memory(studio, wanted, tile)?;
     let settings = &studio.scene.picture;
     let detection = detection.with_options(wanted, settings);
     let channels = Channel::of(wanted, settings);
-    let mut film = Film::new(width, rows, &channels);
+    let mut film = Film::new(tile, &channels);
     let rarities = film
         .bands(BAND_ROWS)
         .into_par_iter()
@@ -189,13 +226,13 @@ pub fn metadata(scene: &Scene) -> Vec<(String, String)> {
     .to_vec()
 }
 
-/// Refuses rows of a picture that would not fit into the memory that is free now.
-fn check_memory(studio: &Studio<'_>, wanted: Wanted, rows: usize) -> Result<(), RenderError> {
-    let [width, height] = studio.scene.camera.resolution();
+/// Refuses a tile of a picture that would not fit into the memory that is free now.
+fn check_memory(studio: &Studio<'_>, wanted: Wanted, tile: Tile) -> Result<(), RenderError> {
+    let Tile { width, height, .. } = tile;
     let channels = Channel::of(wanted, &studio.scene.picture);
     let bytes: u64 = channels.iter().map(|channel| channel.form().bytes()).sum();
     // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
-    let needed = u64::from(width) * rows as u64 * (bytes + bytes / 2);
+    let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2);
     match crate::memory::available() {
         Some(available) if needed > available => Err(RenderError::TooLarge {
             width,
@@ -230,14 +267,14 @@ impl<'a, const N: usize> Exposer<'a, N> {
     /// Exposes a band, 2 x 2 pixels at a time; `None` if it was stopped.
     fn expose_band(&mut self, band: &mut Band<'_>, stop: &AtomicBool) -> Option<Rarities> {
         let camera = &self.studio.scene.camera;
-        let width = camera.resolution()[0] as usize;
+        let (width, [first_column, first_row]) = (band.width, band.corner);
         let rows = band.len() / width;
         let samples = camera.samples();
         let look = if camera.adaptive() > 0.0 { first_look(samples) } else { 0 };
         let mut rarities = Rarities::default();
-        for row in (0..rows).step_by(2) {
-            for column in (0..width).step_by(2) {
-                let corner = [column, band.first_row + row];
+        // Blocks are those of the whole picture, and may reach beyond the band.
+        for top in ((first_row & !1)..first_row + rows).step_by(2) {
+            for left in ((first_column & !1)..first_column + width).step_by(2) {
                 let mut pixels = [Pixel::default(); 4];
                 let mut contrast = Contrast::new();
                 let mut taken = 0;
@@ -246,7 +283,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
                         return None;
                     }
                     let before = (taken < look).then_some(pixels);
-                    rarities += self.expose_block(corner, taken, &mut pixels);
+                    rarities += self.expose_block([left, top], taken, &mut pixels);
                     taken += 1;
                     if let Some(before) = before {
                         contrast.add(&before, &pixels);
@@ -256,8 +293,12 @@ impl<'a, const N: usize> Exposer<'a, N> {
                     }
                 }
                 for (i, pixel) in pixels.iter().enumerate() {
-                    let (x, y) = (column + i % 2, row + i / 2);
-                    if x < width && y < rows {
+                    let column = (left + i % 2).checked_sub(first_column);
+                    let row = (top + i / 2).checked_sub(first_row);
+                    if let (Some(x), Some(y)) = (column, row)
+                        && x < width
+                        && y < rows
+                    {
                         band.set(y * width + x, |channel, color| {
                             pixel.value(channel, color, f64::from(taken))
                         });

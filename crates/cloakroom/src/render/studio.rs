@@ -161,6 +161,18 @@ pub fn limits(scene: &Scene) -> Limits {
     Limits { min_power: scene.trace.min_power, tolerance: scene.trace.tolerance }
 }
 
+/// The threshold of given rays where nothing else is said.
+const RAY_MIN_POWER: f64 = 1e-9;
+
+/// The limits for tracing given rays: the threshold is the given one, else that which the scene writes, else 1e-9.
+#[must_use]
+pub fn ray_limits(scene: &Scene, min_power: Option<f64>) -> Limits {
+    let settings = &scene.trace;
+    let written = settings.min_power_given.then_some(settings.min_power);
+    let min_power = min_power.or(written).unwrap_or(RAY_MIN_POWER);
+    Limits { min_power, tolerance: settings.tolerance }
+}
+
 /// What rays see that hit nothing.
 #[derive(Clone, Debug)]
 pub(super) enum Surroundings {

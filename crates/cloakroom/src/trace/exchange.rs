@@ -1,11 +1,10 @@
 //! Rays in, leaves out, as JSON: the form of `cloakroom trace`.
 
-use super::{Bench, Launch, Leaf, Limits, Tracer};
+use super::{Bench, Launch, LeafTable, Limits};
 use glam::DVec3;
 use optics::wave::{ComplexVector, transverse_basis};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 /// How far from transverse a given electric field may be: |E·d|/|E|.
 const TRANSVERSE: f64 = 1e-6;
@@ -72,6 +71,19 @@ pub enum RayError {
         index: usize,
         /// What is wrong with it.
         problem: String,
+    },
+    /// There are more rays than leaves can be kept of.
+    #[error(
+        "the leaves of {count} rays need {needed_mb} MB of memory, but only {available_mb} MB are free; trace them \
+         in parts"
+    )]
+    TooMany {
+        /// How many rays.
+        count: usize,
+        /// Memory needed, in 10^6 bytes.
+        needed_mb: u64,
+        /// Memory free, in 10^6 bytes.
+        available_mb: u64,
     },
     /// The work was stopped from outside.
     #[error("stopped")]
@@ -142,53 +154,28 @@ pub fn trace_rays(
     rays: &[RayRequest],
     stop: &AtomicBool,
 ) -> Result<Vec<RayReport>, RayError> {
-    // One after the other, so that the first bad ray is the one that is named.
-    let launches = rays
-        .iter()
-        .enumerate()
-        .map(|(index, ray)| {
-            let launch = ray.launch().map_err(|problem| RayError::Ray { index, problem })?;
-            match bench.holder(launch.origin) {
-                None => Ok(launch),
-                Some(device) => {
-                    let problem = format!(
-                        "it starts inside device {device} (counted from 0); rays start in air"
-                    );
-                    Err(RayError::Ray { index, problem })
-                }
-            }
-        })
-        .collect::<Result<Vec<_>, _>>()?;
-    launches
-        .par_iter()
-        .map_init(
-            || Tracer::<1>::new(bench, limits),
-            |tracer, launch| {
-                if stop.load(Ordering::Relaxed) {
-                    return Err(RayError::Stopped);
-                }
-                let (leaves, outcome) = tracer.trace(launch);
-                let (away, ended): (Vec<&Leaf<1>>, Vec<&Leaf<1>>) =
-                    leaves.iter().partition(|leaf| leaf.body.is_none());
-                let mut leaves: Vec<LeafReport> = away.into_iter().map(LeafReport::from).collect();
-                leaves.sort_by(|a, b| b.power.total_cmp(&a.power));
-                // What ends on opaque bodies is absorbed there.
-                let ended: f64 = ended.iter().map(|leaf| leaf.power[0]).sum();
-                let absorbed = outcome.absorbed[0] + ended;
-                Ok(RayReport { leaves, absorbed, pruned: outcome.pruned[0] })
-            },
-        )
-        .collect()
+    let table = LeafTable::trace(bench, limits, rays.len(), &|i| rays[i].clone(), &|_| {}, stop)?;
+    let mut leaves = (0..table.ray.len()).peekable();
+    let report = |ray: usize| {
+        let of_ray = std::iter::from_fn(|| leaves.next_if(|leaf| table.ray[*leaf] as usize == ray));
+        RayReport {
+            leaves: of_ray.map(|leaf| LeafReport::of(&table, leaf)).collect(),
+            absorbed: table.absorbed[ray],
+            pruned: table.pruned[ray],
+        }
+    };
+    Ok((0..rays.len()).map(report).collect())
 }
 
-impl From<&Leaf<1>> for LeafReport {
-    fn from(leaf: &Leaf<1>) -> Self {
+impl LeafReport {
+    fn of(table: &LeafTable, leaf: usize) -> Self {
+        let position = table.position[leaf];
         Self {
-            position: leaf.met_device.then(|| leaf.position.to_array()),
-            direction: leaf.direction.to_array(),
-            power: leaf.power[0],
-            optical_path: if leaf.met_device { leaf.optical_path } else { 0.0 },
-            electric_field: leaf.electric[0].components().map(|c| [c.re, c.im]),
+            position: (!position[0].is_nan()).then_some(position),
+            direction: table.direction[leaf],
+            power: table.power[leaf],
+            optical_path: table.optical_path[leaf],
+            electric_field: table.electric_field[leaf].map(|c| [c.re, c.im]),
         }
     }
 }

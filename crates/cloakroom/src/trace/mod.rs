@@ -13,6 +13,7 @@ mod first_face;
 mod four;
 mod interfaces;
 mod leaf;
+mod leaf_table;
 mod screen;
 mod surfaces;
 mod tracer;
@@ -24,6 +25,7 @@ pub use exchange::{LeafReport, Polarization, RayError, RayReport, RayRequest, tr
 pub use first_face::FirstFace;
 pub use four::FourTracers;
 pub use leaf::{Leaf, Outcome, Rarities};
+pub use leaf_table::LeafTable;
 pub use screen::Screen;
 pub use tracer::{Launch, Limits, Tracer};
 pub use witness::{Leg, Line, Witness, lines};

@@ -1,0 +1,263 @@
+//! Tiles: rectangles of a picture that are rendered apart, by other processes or machines, and put together again.
+
+use crate::output::{Channel, Picture, RgbImage, Samples};
+use std::fmt;
+use std::str::FromStr;
+
+#[cfg(test)]
+mod tests;
+
+/// The keys under which the metadata of a tile say which one it is.
+const TILE: &str = "tile";
+const RESOLUTION: &str = "resolution";
+
+/// A rectangle of a picture, in pixels. It is written `LEFT,TOP,WIDTH,HEIGHT`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    /// Its first column, counted from 0.
+    pub left: u32,
+    /// Its first row, counted from 0 at the top.
+    pub top: u32,
+    /// How many columns it has.
+    pub width: u32,
+    /// How many rows it has.
+    pub height: u32,
+}
+
+/// What is wrong with a tile.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TileError {
+    /// It is not written as a tile.
+    #[error("`{text}` is no tile; write LEFT,TOP,WIDTH,HEIGHT in pixels, such as 0,0,512,384")]
+    Unreadable {
+        /// What is written.
+        text: String,
+    },
+    /// It has no pixels, or some that the picture has not.
+    #[error("the tile {tile} is empty or reaches beyond the picture of {width} x {height} pixels")]
+    Outside {
+        /// The tile.
+        tile: Tile,
+        /// Width of the picture.
+        width: u32,
+        /// Height of the picture.
+        height: u32,
+    },
+}
+
+impl Tile {
+    /// Checks that a tile is a part of a picture of that resolution.
+    ///
+    /// # Errors
+    ///
+    /// If it is empty or reaches beyond the picture.
+    pub fn check(self, [width, height]: [u32; 2]) -> Result<Self, TileError> {
+        let within = |first: u32, count: u32, all: u32| {
+            count > 0 && first.checked_add(count).is_some_and(|end| end <= all)
+        };
+        if within(self.left, self.width, width) && within(self.top, self.height, height) {
+            Ok(self)
+        } else {
+            Err(TileError::Outside { tile: self, width, height })
+        }
+    }
+
+    /// What the metadata of a tile say beside those of the picture.
+    pub(super) fn metadata(self, [width, height]: [u32; 2]) -> [(String, String); 2] {
+        [(TILE, self.to_string()), (RESOLUTION, format!("{width},{height}"))]
+            .map(|(key, text)| (key.to_owned(), text))
+    }
+
+    fn pixels(self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+
+    fn overlaps(self, other: Self) -> bool {
+        let meet = |a: u32, b: u32, first: u32, count: u32| a < first + count && first < a + b;
+        meet(self.left, self.width, other.left, other.width)
+            && meet(self.top, self.height, other.top, other.height)
+    }
+
+    /// Puts the pixels of the tile where they belong in a picture of that width.
+    fn place<T: Copy>(self, whole: &mut [T], width: usize, pixels: &[T]) {
+        let own = self.width as usize;
+        for (row, pixels) in pixels.chunks_exact(own).enumerate() {
+            let first = (self.top as usize + row) * width + self.left as usize;
+            whole[first..first + own].copy_from_slice(pixels);
+        }
+    }
+}
+
+impl fmt::Display for Tile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{},{},{}", self.left, self.top, self.width, self.height)
+    }
+}
+
+impl FromStr for Tile {
+    type Err = TileError;
+
+    fn from_str(text: &str) -> Result<Self, TileError> {
+        let [left, top, width, height] =
+            numbers(text).ok_or_else(|| TileError::Unreadable { text: text.to_owned() })?;
+        Ok(Self { left, top, width, height })
+    }
+}
+
+fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    numbers?.try_into().ok()
+}
+
+/// Why tiles cannot be put together.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MergeError {
+    /// A file is no tile.
+    #[error("{name} is not a tile of a picture: its metadata do not say which")]
+    NoTile {
+        /// What the tile is called.
+        name: String,
+    },
+    /// Two tiles are not of one picture.
+    #[error("{first} and {second} are not tiles of one picture: their {what} differ")]
+    OfDifferentPictures {
+        /// What one tile is called.
+        first: String,
+        /// What the other is called.
+        second: String,
+        /// What differs.
+        what: String,
+    },
+    /// Two tiles have a pixel in common.
+    #[error("{first} and {second} overlap")]
+    Overlap {
+        /// What one tile is called.
+        first: String,
+        /// What the other is called.
+        second: String,
+    },
+    /// Pixels are missing.
+    #[error(
+        "the tiles have {pixels} of the picture's {width} x {height} pixels; some tiles are missing"
+    )]
+    Missing {
+        /// How many pixels there are.
+        pixels: u64,
+        /// Width of the picture.
+        width: u32,
+        /// Height of the picture.
+        height: u32,
+    },
+}
+
+/// Pairs of key and text.
+type Metadata = Vec<(String, String)>;
+
+/// A tile to be put together with others: what it is called, its metadata and its pixels.
+pub type Piece<T> = (String, Metadata, T);
+
+/// Which tiles pieces are, the resolution of their picture, and its metadata.
+type Layout = (Vec<Tile>, [u32; 2], Metadata);
+
+/// Finds the places of pieces of one picture, which they cover.
+fn layout<T>(pieces: &[Piece<T>]) -> Result<Layout, MergeError> {
+    let mut tiles: Vec<Tile> = Vec::new();
+    let mut picture: Option<([u32; 2], Metadata)> = None;
+    for (name, metadata, _) in pieces {
+        let say = |key: &str| Some(metadata.iter().find(|(known, _)| known == key)?.1.as_str());
+        let place = || {
+            let resolution: [u32; 2] = numbers(say(RESOLUTION)?)?;
+            let tile: Tile = say(TILE)?.parse().ok()?;
+            Some((tile.check(resolution).ok()?, resolution))
+        };
+        let (tile, resolution) =
+            place().ok_or_else(|| MergeError::NoTile { name: name.clone() })?;
+        let rest = metadata.iter().filter(|(key, _)| key != TILE && key != RESOLUTION);
+        let rest: Metadata = rest.cloned().collect();
+        let (known, of_first) = picture.get_or_insert_with(|| (resolution, rest.clone()));
+        let what = if *known != resolution {
+            Some("resolutions".to_owned())
+        } else if *of_first != rest {
+            let other = of_first.iter().zip(&rest).find(|(a, b)| a != b);
+            Some(other.map_or("metadata".to_owned(), |(a, _)| format!("`{}` metadata", a.0)))
+        } else {
+            None
+        };
+        if let Some(what) = what {
+            let (first, second) = (pieces[0].0.clone(), name.clone());
+            return Err(MergeError::OfDifferentPictures { first, second, what });
+        }
+        if let Some(other) = tiles.iter().position(|other| other.overlaps(tile)) {
+            let (first, second) = (pieces[other].0.clone(), name.clone());
+            return Err(MergeError::Overlap { first, second });
+        }
+        tiles.push(tile);
+    }
+    let ([width, height], metadata) = picture.unwrap_or_default();
+    let pixels = tiles.iter().map(|tile| tile.pixels()).sum();
+    if pixels == 0 || pixels != u64::from(width) * u64::from(height) {
+        return Err(MergeError::Missing { pixels, width, height });
+    }
+    Ok((tiles, [width, height], metadata))
+}
+
+/// Puts tiles of data together: the picture that they are parts of, as if it had been rendered whole.
+///
+/// # Errors
+///
+/// If they are not tiles of one picture, overlap, or do not cover it.
+pub fn merge(pieces: &[Piece<Picture>]) -> Result<Picture, MergeError> {
+    let (tiles, [width, height], metadata) = layout(pieces)?;
+    let [width, height] = [width, height].map(|side| side as usize);
+    let size = width * height;
+    let blank = |channel: &Channel| Channel {
+        name: channel.name.clone(),
+        samples: match channel.samples {
+            Samples::F32(_) => Samples::F32(vec![0.0; size]),
+            Samples::Rgb(_) => Samples::Rgb(vec![[0.0; 3]; size]),
+            Samples::F64(_) => Samples::F64(vec![0.0; size]),
+        },
+    };
+    let mut channels: Vec<Channel> = pieces[0].2.channels.iter().map(blank).collect();
+    for ((name, _, piece), tile) in pieces.iter().zip(&tiles) {
+        let differ = || MergeError::OfDifferentPictures {
+            first: pieces[0].0.clone(),
+            second: name.clone(),
+            what: "channels".to_owned(),
+        };
+        let of_size = [piece.width, piece.height] == [tile.width, tile.height].map(|s| s as usize);
+        if piece.channels.len() != channels.len() || !of_size {
+            return Err(differ());
+        }
+        for (channel, part) in channels.iter_mut().zip(&piece.channels) {
+            match (&mut channel.samples, &part.samples) {
+                _ if channel.name != part.name => return Err(differ()),
+                (Samples::F32(whole), Samples::F32(part)) => tile.place(whole, width, part),
+                (Samples::Rgb(whole), Samples::Rgb(part)) => tile.place(whole, width, part),
+                (Samples::F64(whole), Samples::F64(part)) => tile.place(whole, width, part),
+                _ => return Err(differ()),
+            }
+        }
+    }
+    Ok(Picture { width, height, channels, metadata })
+}
+
+/// As [`merge`], for 8-bit images.
+///
+/// # Errors
+///
+/// As [`merge`].
+pub fn merge_images(pieces: &[Piece<RgbImage>]) -> Result<(RgbImage, Metadata), MergeError> {
+    let (tiles, [width, height], metadata) = layout(pieces)?;
+    let mut whole = RgbImage::new(width, height);
+    for ((name, _, piece), tile) in pieces.iter().zip(&tiles) {
+        if piece.dimensions() != (tile.width, tile.height) {
+            let (first, second) = (pieces[0].0.clone(), name.clone());
+            let what = "sizes".to_owned();
+            return Err(MergeError::OfDifferentPictures { first, second, what });
+        }
+        let (whole, _) = whole.as_chunks_mut::<3>();
+        tile.place(whole, width as usize, piece.as_raw().as_chunks::<3>().0);
+    }
+    Ok((whole, metadata))
+}

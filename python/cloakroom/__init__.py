@@ -1,0 +1,39 @@
+"""Physically exact pictures of invisibility cloaks and other transformation-optics devices.
+
+A scene has a camera, a photograph and devices; rays are traced through the physical media of the devices, with
+polarization, Fresnel reflections and times of flight. Lengths are in cm, angles in degrees, times in ns; x is forward
+along the line of sight, y up, z right.
+
+>>> import cloakroom
+>>> scene = cloakroom.Scene(devices=cloakroom.SquareCloak(material="negative-uniaxial", rotation=10))
+>>> picture = scene.render(samples=1, resolution=(64, 48))
+>>> picture.image.shape
+(48, 64, 3)
+
+The devices are those of Halimeh & Wegener, "Photorealistic rendering of unidirectional free-space invisibility
+cloaks", Opt. Express 21, 9457 (2013), and more; `cloakroom.tables.DEVICES` has them all.
+"""
+
+from . import tables
+from ._cloakroom import __version__, set_threads, threads
+from .interfaces import Interface, Medium, Modes, interface
+from .pictures import Picture
+from .rays import Traced, trace
+from .scenes import Scene
+from .tables import *  # noqa: F403
+
+__all__ = [
+    "Interface",
+    "Medium",
+    "Modes",
+    "Picture",
+    "Scene",
+    "Traced",
+    "__version__",
+    "interface",
+    "set_threads",
+    "tables",
+    "threads",
+    "trace",
+]
+__all__ += [name for name in tables.__all__ if name not in ("DEVICES", "TABLES", "class_name")]

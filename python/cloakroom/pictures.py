@@ -1,0 +1,171 @@
+"""Pictures: channels as numpy arrays."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _cloakroom
+
+__all__ = ["Picture"]
+
+
+class Picture(Mapping[str, NDArray[Any]]):
+    """A picture: named channels, each a numpy array.
+
+    ``picture["time_of_flight"]`` and ``picture.time_of_flight`` are the same array; ``picture["horizontal.R"]`` has a
+    dot in its name. Shapes are (height, width), and (height, width, 3) for Stokes images; colors and shares of power
+    are ``float32``, times ``float64``. The arrays are the renderer's own memory, not copies: what you change in them
+    is changed in what is saved.
+
+    In a notebook a picture shows itself.
+
+    Parameters
+    ----------
+    channels : mapping of str to array
+        The channels by their names, in the order of files.
+    metadata : mapping of str to str, optional
+        What every file carries: scene, version, seed.
+    map : str, optional
+        The channel that ``image`` shows in false colors instead of what the camera sees.
+    color_bar : bool, default True
+        Whether the scale of a map is drawn beside it.
+    rarities : mapping of str to int, optional
+        How many branches of ray trees were cut because there was no end to them (``"endless"``), or could not be
+        followed (``"lost"``); their power is in ``pruned``.
+    """
+
+    def __init__(
+        self,
+        channels: Mapping[str, NDArray[Any]],
+        metadata: Mapping[str, str] | None = None,
+        *,
+        map: str | None = None,
+        color_bar: bool = True,
+        rarities: Mapping[str, int] | None = None,
+    ) -> None:
+        self._channels = dict(channels)
+        #: What every file carries: scene, version, seed.
+        self.metadata: dict[str, str] = dict(metadata or {})
+        #: Branches of ray trees that were cut (``"endless"``) or lost (``"lost"``).
+        self.rarities: dict[str, int] = dict(rarities or {})
+        self._map = (map, color_bar)
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Picture:
+        """Reads a picture from an ``.npz`` that ``save`` or ``cloakroom render`` has written.
+
+        Raises
+        ------
+        FileNotFoundError
+            If there is no such file.
+        ValueError
+            If it is no such file.
+        """
+        try:
+            with np.load(path, allow_pickle=False) as arrays:
+                channels = {name: arrays[name] for name in arrays.files}
+        except (ValueError, EOFError, AttributeError, OSError) as error:
+            if isinstance(error, FileNotFoundError):
+                raise
+            raise ValueError(f"{os.fspath(path)} is no .npz of a picture: {error}") from None
+        try:
+            metadata = json.loads(channels.pop("metadata").tobytes())
+        except (KeyError, ValueError):
+            raise ValueError(f"{os.fspath(path)} has no metadata of a picture") from None
+        return Picture(channels, metadata)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        try:
+            return self._channels[name]
+        except KeyError:
+            known = ", ".join(self._channels)
+            raise KeyError(f"the picture has no channel `{name}`; it has {known}") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._channels)
+
+    def __len__(self) -> int:
+        return len(self._channels)
+
+    def __getattr__(self, name: str) -> NDArray[Any]:
+        if not name.startswith("_") and name in self._channels:
+            return self._channels[name]
+        raise AttributeError(f"the picture has no channel `{name}`")
+
+    def __dir__(self) -> Iterator[str]:
+        yield from super().__dir__()
+        yield from (name for name in self._channels if "." not in name)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Height and width in pixels."""
+        height, width = next(iter(self._channels.values())).shape[:2]
+        return height, width
+
+    @property
+    def image(self) -> NDArray[np.uint8]:
+        """What a PNG shows: 8-bit sRGB, (height, width, 3); with ``picture.map`` in the scene, the map."""
+        return _cloakroom.srgb(self._channels, self._map)
+
+    @property
+    def linear(self) -> NDArray[np.float32]:
+        """Linear light through the camera's polarizer, (height, width, 3)."""
+        return self._colors("")
+
+    @property
+    def horizontal(self) -> NDArray[np.float32]:
+        """Linear light through a horizontal polarizer, (height, width, 3)."""
+        return self._colors("horizontal.")
+
+    @property
+    def vertical(self) -> NDArray[np.float32]:
+        """Linear light through a vertical polarizer, (height, width, 3)."""
+        return self._colors("vertical.")
+
+    def _colors(self, prefix: str) -> NDArray[np.float32]:
+        try:
+            return np.stack([self[prefix + color] for color in "RGB"], axis=-1)
+        except KeyError as error:
+            raise AttributeError(error.args[0]) from None
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the picture as the ending asks for: ``.png`` (8-bit sRGB), ``.exr`` or ``.npz`` (all channels).
+
+        Raises
+        ------
+        ValueError
+            If the ending is another, or a channel is missing or of a wrong shape.
+        TypeError
+            If a channel is not an array of floats.
+        OSError
+            If the file cannot be written; then there is none.
+        """
+        _cloakroom.save(os.fspath(path), self._channels, list(self.metadata.items()), self._map)
+
+    def _repr_png_(self) -> bytes | None:
+        if self._map[0] is None and "R" not in self._channels:
+            return None
+        return _cloakroom.png_bytes(self._channels, list(self.metadata.items()), self._map)
+
+    def __repr__(self) -> str:
+        height, width = self.shape
+        return f"<Picture of {width} x {height} pixels: {', '.join(self._channels)}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuild, (self._channels, self.metadata, *self._map, self.rarities)
+
+
+def _rebuild(
+    channels: Mapping[str, NDArray[Any]],
+    metadata: Mapping[str, str],
+    map: str | None,
+    color_bar: bool,
+    rarities: Mapping[str, int],
+) -> Picture:
+    return Picture(channels, metadata, map=map, color_bar=color_bar, rarities=rarities)

@@ -1,0 +1,170 @@
+"""The tables of a scene as classes, devices among them.
+
+Every class here is made from the one description of scene files that the program has: the keys, their defaults,
+units and limits are those that ``cloakroom devices`` and ``cloakroom schema`` print. Lengths are in cm, angles in
+degrees.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+import textwrap
+from collections.abc import Mapping
+from typing import Any
+
+from . import _cloakroom
+from ._arrays import image_array, is_image_array
+
+_SCHEMA: dict[str, Any] = json.loads(_cloakroom.schema())
+
+#: Classes of tables whose table's name is that of something else in Python.
+_NAMES = {"trace": "TraceSettings", "picture": "PictureSettings"}
+
+
+class Table:
+    """A table of a scene: keys and their values.
+
+    Keys that are not given, or given as ``None``, are at their defaults. Every value is held against its key at once.
+
+    Raises
+    ------
+    TypeError
+        For a key that does not exist, or a value of a type that no key takes.
+    ValueError
+        For a value that does not fit its key.
+    """
+
+    _table: str = ""
+    _properties: dict[str, dict[str, Any]] = {}
+    _image: _cloakroom.Image | None = None
+
+    def __init__(self, **keys: Any) -> None:
+        if not self._table:
+            raise TypeError(f"{type(self).__name__} is what tables have in common; take one of its subclasses")
+        given = {name: value for name, value in keys.items() if value is not None}
+        image = given.get("image")
+        if "image" in self._properties and is_image_array(image):
+            self._image = _cloakroom.Image(image_array("image", image))
+            given["image"] = self._image.name
+        self._given = _cloakroom.fit(self._table, given)
+
+    def given(self) -> dict[str, Any]:
+        """The keys that were given, with their values as a scene file writes them."""
+        return dict(self._given)
+
+    def replace(self, **keys: Any) -> Any:
+        """The same table with some keys changed; ``None`` takes a key back to its default."""
+        image = {} if self._image is None else {"image": self._image.array()}
+        return type(self)(**{**self._given, **image, **keys})
+
+    def __repr__(self) -> str:
+        keys = ", ".join(f"{name}={value!r}" for name, value in self._given.items())
+        return f"{type(self).__name__}({keys})"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Table):
+            return NotImplemented
+        same = type(self) is type(other) and self._given == other._given
+        return same and self._image is other._image
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        image = {} if self._image is None else {"image": self._image.array()}
+        return _rebuild, (type(self).__name__, {**self._given, **image})
+
+
+class Device(Table):
+    """A device of a scene: the class of every device of the catalogue is made from this one."""
+
+    #: The kind as scene files write it.
+    kind: str = ""
+
+
+def _rebuild(name: str, keys: Mapping[str, Any]) -> Table:
+    table: Table = globals()[name](**keys)
+    return table
+
+
+def class_name(kind: str) -> str:
+    """The name of the class of a table or a kind of device: ``"square-cloak"`` is ``"SquareCloak"``."""
+    return _NAMES.get(kind) or "".join(word.capitalize() for word in kind.replace("_", "-").split("-"))
+
+
+def _type_words(description: Mapping[str, Any]) -> str:
+    """What a key takes, for its docstring."""
+    if "enum" in description:
+        return "{" + ", ".join(json.dumps(word) for word in description["enum"]) + "}"
+    if "anyOf" in description:
+        return " or ".join(_type_words(option) for option in description["anyOf"])
+    kind = description.get("type")
+    if kind == "array":
+        items, length = description["items"], description.get("maxItems")
+        if items.get("type") == "object":
+            return "list of tables"
+        return f"{length} x {_type_words(items)}" if length else f"list of {_type_words(items)}"
+    return {"number": "float", "integer": "int", "boolean": "bool", "string": "str", "object": "table"}[str(kind)]
+
+
+def _key_doc(name: str, description: Mapping[str, Any]) -> str:
+    default = f", default {description['default']!r}" if "default" in description else ", optional"
+    lines = [f"{name} : {_type_words(description)}{default}"]
+    lines += textwrap.wrap(description["description"], 110, initial_indent="    ", subsequent_indent="    ")
+    inner = description.get("properties") or description.get("items", {}).get("properties")
+    if inner:
+        keys = [f"``{key}`` ({_type_words(of)}): {of['description']}" for key, of in inner.items()]
+        for key in ["Its keys:", *keys]:
+            lines += textwrap.wrap(key, 110, initial_indent="    ", subsequent_indent="      ")
+    return "\n".join(lines)
+
+
+def _key(name: str, description: Mapping[str, Any]) -> property:
+    default = description.get("default")
+    return property(lambda table: table._given.get(name, default), doc=description["description"])
+
+
+def _make(name: str, base: type[Table], summary: str, properties: dict[str, Any], table: str) -> type[Table]:
+    properties = {key: description for key, description in properties.items() if key != "kind"}
+    parts = [_key_doc(key, description) for key, description in properties.items()]
+    doc = f"{summary}\n\nParameters\n----------\n" + "\n".join(parts) + "\n"
+    parameters = [
+        inspect.Parameter(key, inspect.Parameter.KEYWORD_ONLY, default=description.get("default"))
+        for key, description in properties.items()
+    ]
+    names: dict[str, Any] = {key: _key(key, description) for key, description in properties.items()}
+    names |= {
+        "__doc__": doc,
+        "__module__": __name__,
+        "__signature__": inspect.Signature(parameters),
+        "_table": table,
+        "_properties": properties,
+    }
+    if base is Device:
+        names["kind"] = table
+    return type(name, (base,), names)
+
+
+def _wrapped(*paragraphs: str) -> str:
+    return "\n\n".join("\n".join(textwrap.wrap(paragraph, 110)) for paragraph in paragraphs)
+
+
+#: The class of each kind of device, in the order of the catalogue.
+DEVICES: dict[str, type[Device]] = {}
+#: The class of each other table of a scene.
+TABLES: dict[str, type[Table]] = {}
+
+for _reference in _SCHEMA["properties"]["device"]["items"]["oneOf"]:
+    _kind = _reference["$ref"].rsplit("/", 1)[-1]
+    _description = _SCHEMA["$defs"][_kind]
+    _summary = _wrapped(_description["title"].rstrip(".") + ".", _description["description"])
+    _class = _make(class_name(_kind), Device, _summary, _description["properties"], _kind)
+    DEVICES[_kind] = globals()[_class.__name__] = _class
+for _kind, _description in _SCHEMA["properties"].items():
+    if _kind != "device":
+        _summary = f"The table ``[{_kind}]`` of a scene."
+        _class = _make(class_name(_kind), Table, _summary, _description["properties"], _kind)
+        TABLES[_kind] = globals()[_class.__name__] = _class
+
+__all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name"]
+__all__ += [_class.__name__ for _class in [*DEVICES.values(), *TABLES.values()]]

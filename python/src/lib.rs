@@ -1,0 +1,39 @@
+//! The compiled half of the Python package `cloakroom`: what Python hands over is checked and turned into scenes, rays
+//! and pictures, and what comes out goes back as numpy arrays. The other half, in `cloakroom/`, is what people
+//! see: classes, names and docstrings. No physics is here.
+
+mod errors;
+mod images;
+mod interfaces;
+mod pictures;
+mod rays;
+mod scenes;
+mod supervision;
+mod tables;
+mod values;
+
+/// The compiled half of cloakroom; not to be used by itself.
+#[pyo3::pymodule]
+mod _cloakroom {
+    #[pymodule_export]
+    use super::images::Image;
+    #[pymodule_export]
+    use super::interfaces::interface;
+    #[pymodule_export]
+    use super::pictures::{png_bytes, render, save, srgb};
+    #[pymodule_export]
+    use super::rays::trace;
+    #[pymodule_export]
+    use super::scenes::Scene;
+    #[pymodule_export]
+    use super::supervision::{fail_on_purpose, set_threads, threads};
+    #[pymodule_export]
+    use super::tables::{fit, schema, to_toml, toml_literal};
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

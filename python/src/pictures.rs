@@ -1,0 +1,160 @@
+//! Pictures: rendered into numpy arrays, and from them into files.
+
+use crate::errors::{output_error, render_error, value_error};
+use crate::scenes::Scene;
+use crate::supervision::supervised;
+use cloakroom::illustration::scalar_map;
+use cloakroom::output::{self, Channel, Format, Picture, RgbImage, Samples};
+use cloakroom::render as rendering;
+use cloakroom::render::{Studio, Wanted};
+use ndarray::{Array2, Array3};
+use numpy::{IntoPyArray, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::io::Cursor;
+use std::path::PathBuf;
+
+/// Channels by their names, metadata, and how many branches of ray trees were cut and lost.
+type Rendered<'py> = (Bound<'py, PyDict>, Vec<(String, String)>, (u64, u64));
+
+/// Renders a scene: the image alone, or every channel. `progress` is called with the rows done and all rows.
+#[pyfunction]
+#[pyo3(signature = (scene, image_only, progress=None))]
+pub fn render<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    image_only: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Rendered<'py>> {
+    let wanted = if image_only { Wanted::Image } else { Wanted::Everything };
+    let rendered = supervised(py, progress.as_ref(), |watch| {
+        let studio = Studio::new(scene.scene()).map_err(|error| scene.located(&error))?;
+        watch.begin(studio.rows());
+        watch
+            .supervise(|supervision| rendering::render(&studio, wanted, supervision))
+            .map_err(|error| render_error(&error))
+    })??;
+    let picture = rendered.picture;
+    let shape = (picture.height, picture.width);
+    let channels = PyDict::new(py);
+    for Channel { name, samples } in picture.channels {
+        // The memory of each channel goes to numpy as it is.
+        match samples {
+            Samples::F32(values) => channels.set_item(name, plane(py, shape, values)?)?,
+            Samples::F64(values) => channels.set_item(name, plane(py, shape, values)?)?,
+            Samples::Rgb(values) => {
+                let colors = Array3::from_shape_vec((shape.0, shape.1, 3), values.into_flattened());
+                channels.set_item(name, colors.map_err(value_error)?.into_pyarray(py))?;
+            }
+        }
+    }
+    let rarities = (rendered.rarities.endless, rendered.rarities.lost);
+    Ok((channels, picture.metadata, rarities))
+}
+
+fn plane<'py, T: numpy::Element>(
+    py: Python<'py>,
+    shape: (usize, usize),
+    values: Vec<T>,
+) -> PyResult<Bound<'py, numpy::PyArray2<T>>> {
+    Ok(Array2::from_shape_vec(shape, values).map_err(value_error)?.into_pyarray(py))
+}
+
+/// Writes channels as the ending of the file's name asks for; a PNG shows the image, or the map of one channel.
+#[pyfunction]
+pub fn save(
+    py: Python<'_>,
+    path: PathBuf,
+    channels: &Bound<'_, PyDict>,
+    metadata: Vec<(String, String)>,
+    map: (Option<String>, bool),
+) -> PyResult<()> {
+    let format = Format::of(&path).map_err(|error| output_error(&error))?;
+    let picture = picture_of(channels, metadata)?;
+    supervised(py, None, |_| {
+        if format == Format::Png {
+            let image = shown(&picture, &map)?;
+            return output::write_png(&image, &picture.metadata, &path)
+                .map_err(|error| output_error(&error));
+        }
+        output::write(&picture, &path).map_err(|error| output_error(&error))
+    })?
+}
+
+/// What a PNG of the channels shows, as 8-bit sRGB (height, width, 3).
+#[pyfunction]
+pub fn srgb<'py>(
+    py: Python<'py>,
+    channels: &Bound<'py, PyDict>,
+    map: (Option<String>, bool),
+) -> PyResult<Bound<'py, PyArray3<u8>>> {
+    let picture = picture_of(channels, Vec::new())?;
+    let image = supervised(py, None, |_| shown(&picture, &map))??;
+    let (width, height) = image.dimensions();
+    let shape = (height as usize, width as usize, 3);
+    let array = Array3::from_shape_vec(shape, image.into_raw()).map_err(value_error)?;
+    Ok(array.into_pyarray(py))
+}
+
+/// A PNG of the channels as bytes.
+#[pyfunction]
+pub fn png_bytes<'py>(
+    py: Python<'py>,
+    channels: &Bound<'py, PyDict>,
+    metadata: Vec<(String, String)>,
+    map: (Option<String>, bool),
+) -> PyResult<Bound<'py, PyBytes>> {
+    let picture = picture_of(channels, metadata)?;
+    let bytes = supervised(py, None, |_| {
+        let mut out = Cursor::new(Vec::new());
+        output::encode_png(&shown(&picture, &map)?, &picture.metadata, &mut out)
+            .map_err(value_error)?;
+        Ok::<_, PyErr>(out.into_inner())
+    })??;
+    Ok(PyBytes::new(py, &bytes))
+}
+
+fn shown(picture: &Picture, (map, color_bar): &(Option<String>, bool)) -> PyResult<RgbImage> {
+    match map {
+        None => output::to_srgb(picture).map_err(|error| output_error(&error)),
+        Some(channel) => scalar_map(picture, channel, *color_bar).map_err(value_error),
+    }
+}
+
+/// The picture that channels are.
+pub fn picture_of(
+    channels: &Bound<'_, PyDict>,
+    metadata: Vec<(String, String)>,
+) -> PyResult<Picture> {
+    let mut size = None;
+    let mut taken = Vec::new();
+    for (name, array) in channels {
+        let name: String = name.extract()?;
+        let (shape, samples) = if let Ok(plane) = array.extract::<PyReadonlyArray2<'_, f32>>() {
+            (plane.shape().to_vec(), Samples::F32(plane.as_array().iter().copied().collect()))
+        } else if let Ok(plane) = array.extract::<PyReadonlyArray2<'_, f64>>() {
+            (plane.shape().to_vec(), Samples::F64(plane.as_array().iter().copied().collect()))
+        } else if let Ok(colors) = array.extract::<PyReadonlyArray3<'_, f32>>()
+            && colors.shape()[2] == 3
+        {
+            let values: Vec<f32> = colors.as_array().iter().copied().collect();
+            let (texels, _) = values.as_chunks::<3>();
+            (colors.shape().to_vec(), Samples::Rgb(texels.to_vec()))
+        } else {
+            return Err(PyTypeError::new_err(format!(
+                "channel `{name}` must be an array of float32 or float64, (height, width), or of float32, \
+                 (height, width, 3)"
+            )));
+        };
+        let shape = [shape[0], shape[1]];
+        if *size.get_or_insert(shape) != shape {
+            return Err(value_error(format!("channel `{name}` is not of the size of the others")));
+        }
+        taken.push(Channel { name, samples });
+    }
+    let [height, width] = size.filter(|size| !size.contains(&0)).ok_or_else(|| {
+        value_error("a picture has one channel at least, and each one pixel at least")
+    })?;
+    Ok(Picture { width, height, channels: taken, metadata })
+}

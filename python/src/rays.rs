@@ -1,0 +1,84 @@
+//! Rays traced by the million.
+
+use crate::errors::{stopped, value_error};
+use crate::scenes::Scene;
+use crate::supervision::supervised;
+use cloakroom::render::ray_limits;
+use cloakroom::trace::{LeafTable, Polarization, RayError, RayRequest};
+use ndarray::{Array2, ArrayView2, Axis};
+use num_complex::Complex64;
+use numpy::{IntoPyArray, PyReadonlyArray2};
+use pyo3::exceptions::PyMemoryError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Polarizations of rays: a word for all of them, or a field for each.
+enum Polarizations<'a> {
+    Same(Polarization),
+    Fields(ArrayView2<'a, Complex64>),
+}
+
+/// Traces rays of shape (N, 3); `polarization` is a word, `fields` of shape (N, 3) stand instead of it. Gives the
+/// arrays of a `Traced` by their names.
+#[pyfunction]
+#[pyo3(signature = (scene, origins, directions, polarization, fields, min_power, progress=None))]
+#[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
+pub fn trace<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    origins: PyReadonlyArray2<'py, f64>,
+    directions: PyReadonlyArray2<'py, f64>,
+    polarization: &str,
+    fields: Option<PyReadonlyArray2<'py, Complex64>>,
+    min_power: Option<f64>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (origins, directions) = (origins.as_array(), directions.as_array());
+    let polarizations = match &fields {
+        Some(fields) => Polarizations::Fields(fields.as_array()),
+        None if polarization == "vertical" => Polarizations::Same(Polarization::Vertical),
+        None => Polarizations::Same(Polarization::Horizontal),
+    };
+    let count = origins.len_of(Axis(0));
+    let limits = ray_limits(scene.scene(), min_power);
+    let ray = |index: usize| {
+        let row = |array: &ArrayView2<'_, f64>| std::array::from_fn(|axis| array[[index, axis]]);
+        let polarization = match &polarizations {
+            Polarizations::Same(polarization) => *polarization,
+            Polarizations::Fields(fields) => {
+                let field = |axis| fields[[index, axis]];
+                Polarization::ElectricField([0, 1, 2].map(field).map(|c| [c.re, c.im]))
+            }
+        };
+        RayRequest { origin: row(&origins), direction: row(&directions), polarization }
+    };
+    let table = supervised(py, progress.as_ref(), |watch| {
+        let bench = scene.bench().map_err(|error| scene.located(&error))?;
+        watch.begin(count as u64);
+        let done = |rays| watch.advance(rays);
+        LeafTable::trace(&bench, limits, count, &ray, &done, watch.stop()).map_err(ray_error)
+    })??;
+    let arrays = PyDict::new(py);
+    arrays.set_item("ray", table.ray.into_pyarray(py))?;
+    arrays.set_item("position", triples(table.position)?.into_pyarray(py))?;
+    arrays.set_item("direction", triples(table.direction)?.into_pyarray(py))?;
+    arrays.set_item("power", table.power.into_pyarray(py))?;
+    arrays.set_item("optical_path", table.optical_path.into_pyarray(py))?;
+    arrays.set_item("electric_field", triples(table.electric_field)?.into_pyarray(py))?;
+    arrays.set_item("absorbed", table.absorbed.into_pyarray(py))?;
+    arrays.set_item("pruned", table.pruned.into_pyarray(py))?;
+    Ok(arrays)
+}
+
+/// Rows of three, their memory as it is.
+fn triples<T>(rows: Vec<[T; 3]>) -> PyResult<Array2<T>> {
+    Array2::from_shape_vec((rows.len(), 3), rows.into_flattened()).map_err(value_error)
+}
+
+fn ray_error(error: RayError) -> PyErr {
+    match error {
+        RayError::Stopped => stopped(),
+        RayError::TooMany { .. } => PyMemoryError::new_err(error.to_string()),
+        RayError::Ray { .. } => value_error(error),
+    }
+}

@@ -1,0 +1,165 @@
+//! Long work: without the interpreter's lock, with progress, stopped by Ctrl-C, its panics as exceptions.
+
+use cloakroom::render::Supervision;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+/// How often signals are looked for and progress is told.
+const BEAT: Duration = Duration::from_millis(50);
+
+/// More threads than any machine has.
+const MOST_THREADS: usize = 4096;
+
+/// How far the work is, and whether it is to stop.
+#[derive(Debug, Default)]
+pub struct Watch {
+    stop: AtomicBool,
+    done: AtomicU64,
+    total: AtomicU64,
+}
+
+impl Watch {
+    /// Set to stop the work.
+    pub fn stop(&self) -> &AtomicBool {
+        &self.stop
+    }
+
+    /// Says how many steps there are.
+    pub fn begin(&self, steps: u64) {
+        self.total.store(steps, Ordering::Relaxed);
+    }
+
+    /// Says how many more steps have been done.
+    pub fn advance(&self, steps: u64) {
+        self.done.fetch_add(steps, Ordering::Relaxed);
+    }
+
+    /// Runs work that wants to be supervised.
+    pub fn supervise<T>(&self, work: impl FnOnce(&Supervision<'_>) -> T) -> T {
+        work(&Supervision { rows_done: &|rows| self.advance(rows), stop: &self.stop })
+    }
+
+    fn tell(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+        if let Some(progress) = progress {
+            let [done, total] = [&self.done, &self.total].map(|n| n.load(Ordering::Relaxed));
+            progress.call1(py, (done, total))?;
+        }
+        Ok(())
+    }
+}
+
+/// Runs work on all threads while other Python threads go on; `progress` is called with the steps done and the steps
+/// in all.
+///
+/// # Errors
+///
+/// What a signal handler or `progress` raises, after the work has been stopped; `RuntimeError` for a panic.
+pub fn supervised<T: Send>(
+    py: Python<'_>,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(&Watch) -> T + Send,
+) -> PyResult<T> {
+    let pool = pool()?;
+    let watch = Watch::default();
+    let (result, raised) = py.detach(|| {
+        thread::scope(|scope| {
+            let (finished, news) = channel::<()>();
+            let worker = scope.spawn(|| {
+                let _finished = finished;
+                // What a panic leaves behind is dropped with it.
+                catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&watch))))
+            });
+            let mut raised = None;
+            while news.recv_timeout(BEAT) == Err(RecvTimeoutError::Timeout) {
+                if raised.is_some() {
+                    continue;
+                }
+                let told =
+                    Python::attach(|py| py.check_signals().and_then(|()| watch.tell(py, progress)));
+                if let Err(error) = told {
+                    watch.stop.store(true, Ordering::Relaxed);
+                    raised = Some(error);
+                }
+            }
+            (worker.join().and_then(|result| result), raised)
+        })
+    });
+    match (raised, result) {
+        (Some(error), _) => Err(error),
+        (None, Err(panic)) => Err(panicked(&*panic)),
+        (None, Ok(result)) => {
+            watch.tell(py, progress)?;
+            Ok(result)
+        }
+    }
+}
+
+/// A panic as an exception.
+fn panicked(panic: &(dyn Any + Send)) -> PyErr {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
+    PyRuntimeError::new_err(format!("a mistake in cloakroom, not in your input: {text}"))
+}
+
+/// The threads of this process. A process that was forked off another has none of the other's threads.
+struct Pool {
+    process: u32,
+    threads: usize,
+    pool: Option<Arc<ThreadPool>>,
+}
+
+static POOL: Mutex<Pool> = Mutex::new(Pool { process: 0, threads: 0, pool: None });
+
+fn pool() -> PyResult<Arc<ThreadPool>> {
+    let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(pool) = &known.pool
+        && known.process == std::process::id()
+    {
+        return Ok(Arc::clone(pool));
+    }
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(known.threads)
+        .build()
+        .map(Arc::new)
+        .map_err(|error| PyRuntimeError::new_err(format!("cannot start threads: {error}")))?;
+    // Threads of the parent process cannot be joined here.
+    std::mem::forget(known.pool.replace(Arc::clone(&pool)));
+    known.process = std::process::id();
+    Ok(pool)
+}
+
+/// Lets work use so many threads from now on; 0 stands for all cores.
+#[pyfunction]
+pub fn set_threads(count: usize) -> PyResult<()> {
+    if count > MOST_THREADS {
+        return Err(PyValueError::new_err(format!(
+            "count is {count}; it must be from 0 to {MOST_THREADS}"
+        )));
+    }
+    let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    known.threads = count;
+    if known.process == std::process::id() {
+        known.pool = None;
+    }
+    Ok(())
+}
+
+/// How many threads work uses.
+#[pyfunction]
+pub fn threads() -> PyResult<usize> {
+    Ok(pool()?.current_num_threads())
+}
+
+/// Panics, for the test that a panic does not take the interpreter down.
+#[pyfunction]
+pub fn fail_on_purpose(py: Python<'_>) -> PyResult<()> {
+    supervised(py, None, |_| panic!("on purpose"))
+}

@@ -1,0 +1,105 @@
+"""Classes made from the catalogue."""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+import json
+import math
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cloakroom
+from cloakroom import tables
+
+
+def test_every_device_of_the_catalogue_is_a_class(command) -> None:
+    listed = json.loads(command("devices", "--json").stdout)["devices"]
+    assert [device["kind"] for device in listed] == list(tables.DEVICES)
+    for device in listed:
+        cls = tables.DEVICES[device["kind"]]
+        assert getattr(cloakroom, cls.__name__) is cls
+        parameters = inspect.signature(cls).parameters
+        for key in device["keys"]:
+            assert parameters[key["name"]].default == key["default"]
+            assert f"\n{key['name']} : " in cls.__doc__
+        assert {"rotation", "position", "show"} <= set(parameters)
+
+
+def test_the_stub_is_that_of_the_catalogue() -> None:
+    folder = Path(__file__).parents[1]
+    spec = importlib.util.spec_from_file_location("stubs", folder / "stubs.py")
+    stubs = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(stubs)
+    assert (folder / "cloakroom" / "tables.pyi").read_text(encoding="utf-8") == stubs.stub()
+
+
+def test_keys_are_given_or_at_their_defaults() -> None:
+    cloak = cloakroom.SquareCloak(material="negative-uniaxial", rotation=10, length=None)
+    assert repr(cloak) == "SquareCloak(material='negative-uniaxial', rotation=10.0)"
+    assert cloak.rotation == 10 and cloak.side == 14.1 and cloak.length is None
+    assert math.isclose(cloak.kappa, 1 / math.sqrt(3))
+    assert cloak.kind == "square-cloak" and "rotation" in dir(cloak)
+    turned = cloak.replace(rotation=20, material=None)
+    assert turned == cloakroom.SquareCloak(rotation=20) and turned != cloak
+    assert cloak != "a text" and cloakroom.FisheyeLens() != cloakroom.LuneburgLens()
+    with pytest.raises(AttributeError, match="colour"):
+        cloak.colour
+
+
+def test_numpy_and_complex_numbers_are_numbers() -> None:
+    body = cloakroom.Body(
+        shape="sphere", permittivity=2.25 + 0.1j, position=np.array([1.0, 2, 3]), radius=np.float32(2), priority=np.int8(1)
+    )
+    assert body.permittivity == [2.25, 0.1] and body.position == [1, 2, 3] and body.radius == 2
+    tensor = np.diag([1.0, 2.0, 3.0])
+    assert cloakroom.Body(permittivity=tensor).permittivity == tensor.tolist()
+    prisms = cloakroom.Prisms(prism=[{"corners": np.array([[0, 0], [1, 0], [0, 1]]), "metal": True}])
+    assert prisms.prism == [{"corners": [[0, 0], [1, 0], [0, 1]], "metal": True}]
+
+
+@pytest.mark.parametrize(
+    ("kind", "keys", "error", "message"),
+    [
+        ("SquareCloak", {"sidee": 1}, TypeError, "unknown key `sidee` in a square-cloak; did you mean `side`?"),
+        ("SquareCloak", {"side": -3}, ValueError, "side is -3 cm; it must be above 0"),
+        ("SquareCloak", {"side": math.nan}, ValueError, "side is not a number (nan); numbers must be finite"),
+        ("SquareCloak", {"side": "wide"}, ValueError, 'side is "wide"; it must be a number (cm)'),
+        ("SquareCloak", {"material": "glas"}, ValueError, "material is"),
+        ("SquareCloak", {"side": object()}, TypeError, "side is a object; it must be"),
+        ("SquareCloak", {"position": [1, 2]}, ValueError, "position is [1, 2]; it must be three numbers (cm)"),
+        ("SquareCloak", {"position": np.zeros((2000, 2000))}, ValueError, "4000000 entries"),
+        ("Body", {"priority": 2**80}, ValueError, "priority: whole numbers must fit into 64 bits"),
+        ("Body", {"surface": {1: 2}}, TypeError, "a key that is not a text"),
+        ("Camera", {"resolution": [0, 10]}, ValueError, "the first number of resolution is 0"),
+        ("Camera", {"samples": 1.5}, ValueError, "samples is 1.5; it must be a whole number"),
+        ("Photograph", {"image": np.zeros((2, 3, 4))}, ValueError, "image has the shape (2, 3, 4)"),
+        ("Photograph", {"image": np.zeros((0, 3, 3))}, ValueError, "image has the shape (0, 3, 3)"),
+        ("Photograph", {"image": np.zeros((2, 3), dtype=int)}, TypeError, "image is of the type int64"),
+        ("Photograph", {"image": np.full((2, 3), np.inf)}, ValueError, "not a finite number, in column 0 and row 0"),
+        ("Photograph", {"image": b"x.png"}, TypeError, "image is a bytes"),
+        ("Device", {}, TypeError, "take one of its subclasses"),
+    ],
+)
+def test_bad_keys_are_told(kind: str, keys: dict, error: type[Exception], message: str) -> None:
+    with pytest.raises(error) as raised:
+        getattr(cloakroom, kind)(**keys)
+    assert message in str(raised.value)
+
+
+def test_lists_in_themselves_end() -> None:
+    endless: list = []
+    endless.append(endless)
+    with pytest.raises(TypeError, match="without end"):
+        cloakroom.SquareCloak(position=endless)
+
+
+def test_tables_can_be_sent_to_other_processes() -> None:
+    cloak = cloakroom.SquareCloak(rotation=3)
+    assert pickle.loads(pickle.dumps(cloak)) == cloak
+    photograph = cloakroom.Photograph(image=np.full((2, 3, 3), 7, dtype=np.uint8), x=60)
+    copy = pickle.loads(pickle.dumps(photograph))
+    assert copy.x == 60 and copy.image == photograph.image == "array:3x2"
