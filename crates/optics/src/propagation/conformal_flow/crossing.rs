@@ -14,6 +14,9 @@ const ALONG: f64 = 1e-14;
 /// Steps are not split at less than this share of the map's scale: the interpolation is exact there.
 const SHORTEST_SPLIT: f64 = 1e-3;
 
+/// A border that has been passed by so little, in units of the map's scale and of the step, is found from the end.
+const NEAR: f64 = 0.03;
+
 /// Where the interpolation puts an end of the step.
 const AT_END: f64 = 1.0 - 1e-6;
 
@@ -228,7 +231,13 @@ impl Gauges {
         for &gauge in self.finite() {
             let (from, to) = (gauge.at(a, p_z), gauge.at(b, p_z));
             let (share, found) = if to.value < 0.0 {
-                let share = Hermite::new(from, to, reach).first_fall();
+                let back = to.time_to_zero();
+                let near = from.rate < 0.0 && to.rate < 0.0 && -back < NEAR * self.scale.min(reach);
+                let share = if near && from.value > 0.0 {
+                    1.0 + back.min(0.0) / reach
+                } else {
+                    Hermite::new(from, to, reach).first_fall()
+                };
                 (share, Crossing::At { gauge, share })
             } else if from.rate < 0.0 && to.rate > 0.0 {
                 let hermite = Hermite::new(from, to, reach);
