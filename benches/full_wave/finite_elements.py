@@ -138,7 +138,7 @@ class Waves:
         return media
 
     def into_metal(self):
-        """The normal on metal that points into it: the metals are all thinner the further from y = 0."""
+        """The normal on metal that points into it: all surfaces of the metals face away from y = 0."""
         c, s = np.cos(np.radians(self.case.rotation)), np.sin(np.radians(self.case.rotation))
         along, across = c * x + s * y, -s * x + c * y
         outward = CoefficientFunction((1e-3 * c * along - s * across, 1e-3 * s * along + c * across))
