@@ -241,7 +241,9 @@ class Scene:
     def __reduce__(self) -> tuple[Any, ...]:
         native = self._native
         arrays = [None if image is None else image.array() for image in self._images]
-        fields = (native.text, native.name, native.folder, native.is_file, self._overrides, *arrays)
+        # The working folder may be another one there.
+        folder = os.path.abspath(native.folder)
+        fields = (native.text, native.name, folder, native.is_file, self._overrides, *arrays)
         return _rebuild, fields
 
 

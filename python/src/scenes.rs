@@ -76,16 +76,8 @@ impl Scene {
             .map_err(|error| scene_error(&error, is_file))?;
         let source = |image: Option<&Image>| image.map(|image| image.source.clone());
         let arrays = Arrays { photograph: source(photograph), surroundings: source(surroundings) };
-        let mut scene = Self {
-            text,
-            name,
-            folder,
-            is_file,
-            overrides,
-            arrays,
-            loaded,
-            bench: OnceLock::new(),
-        };
+        let mut scene =
+            Self { text, name, folder, is_file, overrides, arrays, loaded, bench: OnceLock::new() };
         scene.arrays.hang(&scene.folder, &mut scene.loaded.scene);
         Ok(scene)
     }
