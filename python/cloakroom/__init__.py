@@ -17,12 +17,15 @@ cloaks", Opt. Express 21, 9457 (2013), and more; `cloakroom.tables.DEVICES` has 
 from . import tables
 from ._cloakroom import __version__, set_threads, threads
 from .interfaces import Interface, Medium, Modes, interface
+from .materials import export
+from .measuring import Finding, flux, quality, sweep, verify
 from .pictures import Picture
 from .rays import Traced, trace
 from .scenes import Scene
 from .tables import *  # noqa: F403
 
 __all__ = [
+    "Finding",
     "Interface",
     "Medium",
     "Modes",
@@ -30,10 +33,15 @@ __all__ = [
     "Scene",
     "Traced",
     "__version__",
+    "export",
+    "flux",
     "interface",
+    "quality",
     "set_threads",
+    "sweep",
     "tables",
     "threads",
     "trace",
+    "verify",
 ]
 __all__ += [name for name in tables.__all__ if name not in ("DEVICES", "TABLES", "class_name")]

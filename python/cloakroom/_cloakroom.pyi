@@ -1,4 +1,4 @@
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, final
 
 import numpy as np
@@ -8,19 +8,27 @@ __all__ = [
     "__version__",
     "Image",
     "Scene",
+    "export_grid",
+    "export_table",
     "fail_on_purpose",
     "fit",
+    "flux",
     "interface",
+    "merge",
     "png_bytes",
+    "quality",
+    "read",
     "render",
     "save",
     "schema",
     "set_threads",
     "srgb",
+    "sweep",
     "threads",
     "to_toml",
     "toml_literal",
     "trace",
+    "verify",
 ]
 
 __version__: str
@@ -73,14 +81,18 @@ def fit(table: str, entries: dict[str, Any]) -> dict[str, Any]: ...
 def to_toml(tables: dict[str, dict[str, Any]], devices: Sequence[dict[str, Any]]) -> str: ...
 def toml_literal(name: str, value: object) -> str: ...
 def render(
-    scene: Scene, image_only: bool, progress: _Tell = None
+    scene: Scene, image_only: bool, tile: Sequence[int] | None = None, progress: _Tell = None
 ) -> tuple[dict[str, NDArray[Any]], list[tuple[str, str]], tuple[int, int]]: ...
+def read(path: str) -> tuple[dict[str, NDArray[Any]], list[tuple[str, str]]]: ...
+def merge(
+    tiles: Sequence[tuple[str, dict[str, NDArray[Any]], Sequence[tuple[str, str]]]],
+) -> tuple[dict[str, NDArray[Any]], list[tuple[str, str]]]: ...
 def save(
-    path: str, channels: Mapping[str, NDArray[Any]], metadata: Sequence[tuple[str, str]], map: _Map
+    path: str, channels: dict[str, NDArray[Any]], metadata: Sequence[tuple[str, str]], map: _Map
 ) -> None: ...
-def srgb(channels: Mapping[str, NDArray[Any]], map: _Map) -> NDArray[np.uint8]: ...
+def srgb(channels: dict[str, NDArray[Any]], map: _Map) -> NDArray[np.uint8]: ...
 def png_bytes(
-    channels: Mapping[str, NDArray[Any]], metadata: Sequence[tuple[str, str]], map: _Map
+    channels: dict[str, NDArray[Any]], metadata: Sequence[tuple[str, str]], map: _Map
 ) -> bytes: ...
 def trace(
     scene: Scene,
@@ -98,6 +110,38 @@ def interface(
     tangentials: NDArray[np.float64],
     progress: _Tell = None,
 ) -> dict[str, Any]: ...
+def quality(
+    first: object,
+    second: object,
+    mask: NDArray[np.bool_] | None = None,
+    rectangle: Sequence[int] | None = None,
+) -> str: ...
+def sweep(
+    scene: Scene,
+    sweeps: Sequence[tuple[str, Sequence[str]]],
+    path: str | None = None,
+    progress: _Tell = None,
+) -> str: ...
+def verify(progress: _Tell = None) -> str: ...
+def flux(
+    scene: Scene,
+    angles: Sequence[float],
+    tilt: float,
+    sun: tuple[float, float] | None,
+    sampling: Sequence[int],
+    path: str | None = None,
+    progress: _Tell = None,
+) -> dict[str, NDArray[np.float64]]: ...
+def export_grid(
+    scene: Scene,
+    path: str,
+    device: int | None,
+    cells: Sequence[int] | None,
+    spacing: float | None,
+    world: bool,
+    progress: _Tell = None,
+) -> None: ...
+def export_table(scene: Scene, path: str, device: int | None) -> None: ...
 def set_threads(count: int) -> None: ...
 def threads() -> int: ...
 def fail_on_purpose() -> None: ...

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -67,18 +66,41 @@ class Picture(Mapping[str, NDArray[Any]]):
         ValueError
             If it is no such file.
         """
-        try:
-            with np.load(path, allow_pickle=False) as arrays:
-                channels = {name: arrays[name] for name in arrays.files}
-        except (ValueError, EOFError, AttributeError, OSError) as error:
-            if isinstance(error, FileNotFoundError):
-                raise
-            raise ValueError(f"{os.fspath(path)} is no .npz of a picture: {error}") from None
-        try:
-            metadata = json.loads(channels.pop("metadata").tobytes())
-        except (KeyError, ValueError):
-            raise ValueError(f"{os.fspath(path)} has no metadata of a picture") from None
-        return Picture(channels, metadata)
+        channels, metadata = _cloakroom.read(os.fspath(path))
+        return Picture(channels, dict(metadata))
+
+    @staticmethod
+    def merge(
+        tiles: Iterable[str | os.PathLike[str] | Picture], *, map: str | None = None, color_bar: bool = True
+    ) -> Picture:
+        """Puts tiles together that ``Scene.render(tile=...)`` or ``cloakroom render --tile`` has made.
+
+        Parameters
+        ----------
+        tiles : iterable of Picture or path
+            The tiles, or their ``.npz`` files; they must cover the picture and not overlap.
+        map, color_bar
+            As for a `Picture`.
+
+        Returns
+        -------
+        Picture
+            The picture as if it had been rendered whole.
+
+        Raises
+        ------
+        FileNotFoundError, ValueError
+            If a tile is missing, or they are not tiles of one picture.
+        """
+        pieces = []
+        for number, tile in enumerate(tiles):
+            if isinstance(tile, Picture):
+                pieces.append((f"tile {number}", tile._channels, list(tile.metadata.items())))
+            else:
+                channels, metadata = _cloakroom.read(os.fspath(tile))
+                pieces.append((os.fspath(tile), channels, metadata))
+        channels, metadata = _cloakroom.merge(pieces)
+        return Picture(channels, dict(metadata), map=map, color_bar=color_bar)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         try:

@@ -189,6 +189,7 @@ class Scene:
         *,
         resolution: tuple[int, int] | None = None,
         image_only: bool = False,
+        tile: tuple[int, int, int, int] | None = None,
         progress: Progress = False,
     ) -> Picture:
         """Renders the scene on all cores; Ctrl-C stops it.
@@ -201,6 +202,9 @@ class Scene:
             Width and height in pixels, instead of ``camera.resolution``.
         image_only : bool, default False
             Only ``R``, ``G`` and ``B``, in less time: no times of flight, no shares of power.
+        tile : (int, int, int, int), optional
+            Left, top, width and height in pixels: this part of the picture alone, which `Picture.merge` puts together
+            with the others. Even edges save work.
         progress : bool or callable, default False
             ``True`` for a line on standard error, or a function that is called with the rows done and all rows.
 
@@ -224,8 +228,9 @@ class Scene:
         map, color_bar = scene._native.map
         if image_only and map is not None:
             raise ValueError(f"image_only leaves no channel `{map}` for picture.map to show")
+        place = None if tile is None else _tile(tile)
         with told(progress, "rendering") as tell:
-            channels, metadata, (endless, lost) = _cloakroom.render(scene._native, image_only, tell)
+            channels, metadata, (endless, lost) = _cloakroom.render(scene._native, image_only, place, tell)
         rarities = {"endless": endless, "lost": lost}
         return Picture(channels, dict(metadata), map=map, color_bar=color_bar, rarities=rarities)
 
@@ -236,7 +241,9 @@ class Scene:
     def __reduce__(self) -> tuple[Any, ...]:
         native = self._native
         arrays = [None if image is None else image.array() for image in self._images]
-        fields = (native.text, native.name, native.folder, native.is_file, self._overrides, *arrays)
+        # The working folder may be another one there.
+        folder = os.path.abspath(native.folder)
+        fields = (native.text, native.name, folder, native.is_file, self._overrides, *arrays)
         return _rebuild, fields
 
 
@@ -255,6 +262,13 @@ def _rebuild(
     scene._overrides = overrides
     scene._native = _cloakroom.Scene(text, name, folder, is_file, overrides, *images)
     return scene
+
+
+def _tile(tile: Any) -> list[int]:
+    array = np.asarray(tile)
+    if array.shape != (4,) or array.dtype.kind not in "iu" or not ((array >= 0) & (array < 2**32)).all():
+        raise ValueError(f"tile is {tile!r}; expected left, top, width and height in pixels")
+    return [int(side) for side in array]
 
 
 def _table(name: str, given: TableLike | None) -> Table:

@@ -5,6 +5,8 @@
 mod errors;
 mod images;
 mod interfaces;
+mod materials;
+mod measuring;
 mod pictures;
 mod rays;
 mod scenes;
@@ -20,7 +22,11 @@ mod _cloakroom {
     #[pymodule_export]
     use super::interfaces::interface;
     #[pymodule_export]
-    use super::pictures::{png_bytes, render, save, srgb};
+    use super::materials::{export_grid, export_table};
+    #[pymodule_export]
+    use super::measuring::{flux, quality, sweep, verify};
+    #[pymodule_export]
+    use super::pictures::{merge, png_bytes, read, render, save, srgb};
     #[pymodule_export]
     use super::rays::trace;
     #[pymodule_export]

@@ -6,40 +6,57 @@ use crate::supervision::supervised;
 use cloakroom::illustration::scalar_map;
 use cloakroom::output::{self, Channel, Format, Picture, RgbImage, Samples};
 use cloakroom::render as rendering;
-use cloakroom::render::{Studio, Wanted};
+use cloakroom::render::{Studio, Tile, Wanted};
 use ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyFileNotFoundError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::io::Cursor;
 use std::path::PathBuf;
 
+/// Channels by their names, and metadata.
+type Arrays<'py> = (Bound<'py, PyDict>, Vec<(String, String)>);
+
 /// Channels by their names, metadata, and how many branches of ray trees were cut and lost.
 type Rendered<'py> = (Bound<'py, PyDict>, Vec<(String, String)>, (u64, u64));
 
-/// Renders a scene: the image alone, or every channel. `progress` is called with the rows done and all rows.
+/// Renders a scene: the image alone, or every channel; all of the picture, or the tile left, top, width, height.
+/// `progress` is called with the rows done and all rows.
 #[pyfunction]
-#[pyo3(signature = (scene, image_only, progress=None))]
+#[pyo3(signature = (scene, image_only, tile=None, progress=None))]
 pub fn render<'py>(
     py: Python<'py>,
     scene: &Scene,
     image_only: bool,
+    tile: Option<[u32; 4]>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Rendered<'py>> {
+    let tile = tile.map(|[left, top, width, height]| {
+        Tile { left, top, width, height }.check(scene.scene().camera.resolution())
+    });
+    let tile = tile.transpose().map_err(value_error)?;
     let wanted = if image_only { Wanted::Image } else { Wanted::Everything };
     let rendered = supervised(py, progress.as_ref(), |watch| {
         let studio = Studio::new(scene.scene()).map_err(|error| scene.located(&error))?;
-        watch.begin(studio.rows());
+        watch.begin(tile.map_or(studio.rows(), |tile| tile.height.into()));
         watch
-            .supervise(|supervision| rendering::render(&studio, wanted, supervision))
+            .supervise(|supervision| match tile {
+                Some(tile) => rendering::render_tile(&studio, wanted, tile, supervision),
+                None => rendering::render(&studio, wanted, supervision),
+            })
             .map_err(|error| render_error(&error))
     })??;
-    let picture = rendered.picture;
+    let rarities = (rendered.rarities.endless, rendered.rarities.lost);
+    let (channels, metadata) = arrays(py, rendered.picture)?;
+    Ok((channels, metadata, rarities))
+}
+
+/// The channels of a picture as arrays, and its metadata. The memory of each channel goes to numpy as it is.
+fn arrays(py: Python<'_>, picture: Picture) -> PyResult<Arrays<'_>> {
     let shape = (picture.height, picture.width);
     let channels = PyDict::new(py);
     for Channel { name, samples } in picture.channels {
-        // The memory of each channel goes to numpy as it is.
         match samples {
             Samples::F32(values) => channels.set_item(name, plane(py, shape, values)?)?,
             Samples::F64(values) => channels.set_item(name, plane(py, shape, values)?)?,
@@ -49,8 +66,33 @@ pub fn render<'py>(
             }
         }
     }
-    let rarities = (rendered.rarities.endless, rendered.rarities.lost);
-    Ok((channels, picture.metadata, rarities))
+    Ok((channels, picture.metadata))
+}
+
+/// Reads a picture from an NPZ.
+#[pyfunction]
+pub fn read(py: Python<'_>, path: PathBuf) -> PyResult<Arrays<'_>> {
+    let picture = supervised(py, None, |_| output::read_npz(&path))?.map_err(|error| {
+        if path.exists() {
+            value_error(error)
+        } else {
+            PyFileNotFoundError::new_err(error.to_string())
+        }
+    })?;
+    arrays(py, picture)
+}
+
+/// Puts tiles together: for each what it is called, its channels and its metadata.
+#[pyfunction]
+pub fn merge<'py>(
+    py: Python<'py>,
+    tiles: Vec<(String, Bound<'py, PyDict>, Vec<(String, String)>)>,
+) -> PyResult<Arrays<'py>> {
+    let piece = |(name, channels, metadata): (String, Bound<'_, PyDict>, Vec<(String, String)>)| {
+        Ok((name, metadata, picture_of(&channels, Vec::new())?))
+    };
+    let pieces = tiles.into_iter().map(piece).collect::<PyResult<Vec<_>>>()?;
+    arrays(py, rendering::merge(&pieces).map_err(value_error)?)
 }
 
 fn plane<'py, T: numpy::Element>(

@@ -6,7 +6,7 @@ use crate::supervision::supervised;
 use cloakroom::photograph::ImageSource;
 use cloakroom::render::{StudioError, bench};
 use cloakroom::scene::{self, SurroundingsSettings};
-use cloakroom::scene_file::{self, Loaded};
+use cloakroom::scene_file::{self, Loaded, SceneFileError};
 use cloakroom::trace::Bench;
 use pyo3::exceptions::PyFileNotFoundError;
 use pyo3::prelude::*;
@@ -24,9 +24,39 @@ pub struct Scene {
     folder: PathBuf,
     /// Whether it comes from a file, so that messages may point into it.
     is_file: bool,
+    overrides: Vec<String>,
+    arrays: Arrays,
     loaded: Loaded,
     /// The devices, built when they are first needed.
     bench: OnceLock<Arc<Bench>>,
+}
+
+/// Images that are arrays, in the places of their names.
+#[derive(Debug, Default)]
+struct Arrays {
+    photograph: Option<ImageSource>,
+    surroundings: Option<ImageSource>,
+}
+
+impl Arrays {
+    /// Puts them where a scene names them; an override may name a file instead.
+    fn hang(&self, folder: &Path, scene: &mut scene::Scene) {
+        let stands = |image: &ImageSource, source: &ImageSource| {
+            let name = source.to_string();
+            [folder.join(&name), name.into()].map(ImageSource::File).contains(image)
+        };
+        if let Some(source) = &self.photograph
+            && stands(&scene.photograph.image, source)
+        {
+            scene.photograph.image = source.clone();
+        }
+        if let Some(source) = &self.surroundings
+            && let SurroundingsSettings::Image(image) = &scene.surroundings
+            && stands(image, source)
+        {
+            scene.surroundings = SurroundingsSettings::Image(source.clone());
+        }
+    }
 }
 
 #[pymethods]
@@ -42,26 +72,14 @@ impl Scene {
         photograph: Option<&Image>,
         surroundings: Option<&Image>,
     ) -> PyResult<Self> {
-        let mut loaded = scene_file::parse(&text, &name, &folder, &overrides)
+        let loaded = scene_file::parse(&text, &name, &folder, &overrides)
             .map_err(|error| scene_error(&error, is_file))?;
-        let scene = &mut loaded.scene;
-        // The name of an array stands where it does, unless an override names a file.
-        let stands = |image: &ImageSource, source: &ImageSource| {
-            let name = source.to_string();
-            [folder.join(&name), name.into()].map(ImageSource::File).contains(image)
-        };
-        if let Some(Image { source }) = photograph
-            && stands(&scene.photograph.image, source)
-        {
-            scene.photograph.image = source.clone();
-        }
-        if let Some(Image { source }) = surroundings
-            && let SurroundingsSettings::Image(image) = &scene.surroundings
-            && stands(image, source)
-        {
-            scene.surroundings = SurroundingsSettings::Image(source.clone());
-        }
-        Ok(Self { text, name, folder, is_file, loaded, bench: OnceLock::new() })
+        let source = |image: Option<&Image>| image.map(|image| image.source.clone());
+        let arrays = Arrays { photograph: source(photograph), surroundings: source(surroundings) };
+        let mut scene =
+            Self { text, name, folder, is_file, overrides, arrays, loaded, bench: OnceLock::new() };
+        scene.arrays.hang(&scene.folder, &mut scene.loaded.scene);
+        Ok(scene)
     }
 
     /// Reads a scene file.
@@ -80,6 +98,8 @@ impl Scene {
             name: path.display().to_string(),
             folder,
             is_file: true,
+            overrides: Vec::new(),
+            arrays: Arrays::default(),
             loaded,
             bench: OnceLock::new(),
         })
@@ -153,6 +173,14 @@ impl Scene {
             return scene_error(&located, true);
         }
         value_error(format!("{}: {error}", error.key()))
+    }
+
+    /// The same scene read again, with further overrides.
+    pub fn reload(&self, further: &[String]) -> Result<Loaded, SceneFileError> {
+        let overrides = [&self.overrides, further].concat();
+        let mut loaded = scene_file::parse(&self.text, &self.name, &self.folder, &overrides)?;
+        self.arrays.hang(&self.folder, &mut loaded.scene);
+        Ok(loaded)
     }
 
     /// Its devices, built.

@@ -22,7 +22,7 @@ def command() -> Run:
     """Runs the command line program, which the tests hold the package against."""
     named = os.environ.get("CLOAKROOM_COMMAND")
     built = [REPOSITORY / "target" / profile / "cloakroom" for profile in ("debug", "release")]
-    found = [Path(named)] if named else [path for path in built if path.exists()]
+    found = [Path(named).resolve()] if named else [path for path in built if path.exists()]
     if not found:
         pytest.skip("the command cloakroom is not built; CLOAKROOM_COMMAND may name it")
     newest = max(found, key=lambda path: path.stat().st_mtime)

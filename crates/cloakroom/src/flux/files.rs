@@ -39,17 +39,14 @@ pub fn flux_csv(report: &FluxReport) -> String {
     text
 }
 
-/// Writes arrays for numpy: `label`, `incidence_deg` and `direction` (3) of each direction; `total` and `total_error` with
+/// Arrays for numpy: `label`, `incidence_deg` and `direction` (3) of each direction; `total` and `total_error` with
 /// the indices direction, stand (nothing, bare, cloaked), polarization (horizontal, vertical, unpolarized);
 /// `given_back_percent` and `given_back_error` with the indices direction, polarization (NaN without a shadow); `map`, the
 /// irradiance of unpolarized light, with the indices direction, stand, and cell along and across the receiver, whose
 /// middles (cm) are `along` and `across`; and for convergence `rays`, `cloaked_by_rays`, `cloaked_error_by_rays`,
 /// `given_back_by_rays` and `given_back_error_by_rays`, indices direction and step.
-///
-/// # Errors
-///
-/// If the file cannot be written.
-pub fn write_flux_npz(report: &FluxReport, path: &Path) -> Result<(), OutputError> {
+#[must_use]
+pub fn flux_arrays(report: &FluxReport) -> Arrays {
     let all = &report.incidences;
     let count = all.len();
     let mut arrays = Arrays::default();
@@ -83,5 +80,14 @@ pub fn write_flux_npz(report: &FluxReport, path: &Path) -> Result<(), OutputErro
     arrays.add("given_back_by_rays", &size, by_rays);
     let by_rays = walk().map(|step| step.gain.map_or(f64::NAN, |gain| gain.error));
     arrays.add("given_back_error_by_rays", &size, by_rays);
-    write_arrays(&arrays, &report.metadata, path)
+    arrays
+}
+
+/// Writes [`flux_arrays`] as NPZ.
+///
+/// # Errors
+///
+/// If the file cannot be written.
+pub fn write_flux_npz(report: &FluxReport, path: &Path) -> Result<(), OutputError> {
+    write_arrays(&flux_arrays(report), &report.metadata, path)
 }

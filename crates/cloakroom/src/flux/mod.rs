@@ -10,7 +10,7 @@ mod pictures;
 mod result;
 
 pub use directions::{Direction, across_range, sun_day};
-pub use files::{flux_csv, write_flux_npz};
+pub use files::{flux_arrays, flux_csv, write_flux_npz};
 pub use pictures::{flux_map, flux_plot};
 pub use result::{Convergence, FluxReport, Gain, Incidence, STANDS, Stand, Total};
 

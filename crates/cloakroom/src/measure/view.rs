@@ -127,10 +127,19 @@ impl View {
     }
 
     fn of_image(path: &Path) -> Result<Self, MeasureError> {
-        let LinearImage { width, height, texels } = load(&ImageSource::File(path.to_owned()))?;
+        Self::of_linear(&load(&ImageSource::File(path.to_owned()))?)
+    }
+
+    /// An image as a view.
+    ///
+    /// # Errors
+    ///
+    /// If it has no pixels, or one that is not finite.
+    pub fn of_linear(image: &LinearImage) -> Result<Self, MeasureError> {
+        let LinearImage { width, height, texels } = image;
         let table = decode_table();
         let plane = |color: usize| -> Vec<f64> {
-            match &texels {
+            match texels {
                 Texels::Srgb8(codes) => {
                     codes.chunks_exact(3).map(|c| f64::from(table[usize::from(c[color])])).collect()
                 }
@@ -139,7 +148,7 @@ impl View {
                 }
             }
         };
-        Self::new(width, height, [plane(0), plane(1), plane(2)])
+        Self::new(*width, *height, [plane(0), plane(1), plane(2)])
     }
 
     fn from_planes(

@@ -17,6 +17,11 @@ impl Arrays {
     pub fn add(&mut self, name: &'static str, shape: &[usize], values: impl Iterator<Item = f64>) {
         self.arrays.push((name, shape.to_vec(), values.collect()));
     }
+
+    /// Name, shape and values of each array.
+    pub fn into_parts(self) -> impl Iterator<Item = (&'static str, Vec<usize>, Vec<f64>)> {
+        self.arrays.into_iter()
+    }
 }
 
 /// Writes arrays under their names, and the metadata as the array of bytes `metadata`, which holds a JSON object in
