@@ -143,6 +143,10 @@ fn same_view(one: &Scene, other: &Scene) -> bool {
         && one.surroundings == other.surroundings
 }
 
+fn studio<'s>(scene: &'s Scene, loaded: &Loaded) -> Result<Studio<'s>, QualityError> {
+    Studio::new(scene).map_err(|error| located(loaded, &error))
+}
+
 /// Renders the scene of every combination, its ideal and its empty view, and measures them; where the scene is random,
 /// every draw of it.
 ///
@@ -157,10 +161,9 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
     for Combination { settings, held, loaded } in &plan.scenes {
         let scene = &loaded.scene;
         let done = |rows| (supervision.rows_done)(rows);
-        let picture = |scene: &Scene, rarities: &mut Rarities| {
-            let studio = Studio::new(scene).map_err(|error| located(loaded, &error))?;
-            let rendered = render(&studio, Wanted::Everything, supervision)?;
-            *rarities += rendered.rarities;
+        let mut picture = |studio: &Studio<'_>| {
+            let rendered = render(studio, Wanted::Everything, supervision)?;
+            rarities += rendered.rarities;
             Ok::<_, QualityError>(rendered.picture)
         };
         let empty = match last_empty.take() {
@@ -168,26 +171,25 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
                 done(u64::from(scene.camera.resolution()[1]));
                 view
             }
-            _ => View::of(&picture(&empty(scene), &mut rarities)?)?,
+            _ => View::of(&picture(&studio(&empty(scene), loaded)?)?)?,
         };
         let wanted_scene = ideal(scene);
+        let wanted_studio = studio(&wanted_scene, loaded)?;
         let wanted = if wanted_scene.devices.is_empty() {
             done(u64::from(scene.camera.resolution()[1]));
             empty.clone()
         } else {
-            View::of(&picture(&wanted_scene, &mut rarities)?)?
+            View::of(&picture(&wanted_studio)?)?
         };
         let mut statistics = Statistics::default();
         for draw in 0..plan.draws_of(scene) {
             let scene = &drawn(scene, draw);
-            let shown = picture(scene, &mut rarities)?;
+            let drawn = studio(scene, loaded)?;
+            let shown = picture(&drawn)?;
             let view = View::of(&shown)?;
-            let rays = {
-                let [studio, ideal] = [scene, &wanted_scene]
-                    .map(|scene| Studio::new(scene).map_err(|error| located(loaded, &error)));
-                survey(&studio?, &ideal?, &scene.camera, supervision.rows_done, supervision.stop)
-                    .ok_or(RenderError::Stopped)?
-            };
+            let (rows_done, stop) = (supervision.rows_done, supervision.stop);
+            let rays = survey(&drawn, &wanted_studio, &scene.camera, rows_done, stop)
+                .ok_or(RenderError::Stopped)?;
             let measured = Measured::of(&shown, &view, [&wanted, &empty], rays)?;
             statistics.add(&measured.numbers().numbers);
             if metadata.is_empty() {

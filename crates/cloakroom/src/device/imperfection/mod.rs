@@ -1,6 +1,7 @@
 //! What a real process makes of a design: values that it can reach, levels, errors and loss.
 
 mod deviates;
+mod graded;
 mod homogeneous;
 #[cfg(test)]
 mod tests;
@@ -13,13 +14,19 @@ use deviates::Deviates;
 pub static IMPERFECTION_KEYS: &[Key] = &[
     Key {
         name: "error",
-        doc: "Relative standard deviation of a random error: of each principal value of the permittivity and the \
-              permeability of each homogeneous segment or body.",
+        doc: "Relative standard deviation of a random error: of the index of a graded medium, or of each principal \
+              value of the permittivity and the permeability of each homogeneous segment or body.",
         kind: KeyKind::Number { default: Some(0.0), unit: "", limits: Limits::Within(0.0, 0.5) },
     },
     Key {
+        name: "correlation",
+        doc: "The length l over which the error of a graded index is correlated, as exp(-r^2/(2 l^2)).",
+        kind: KeyKind::Number { default: Some(2.0), unit: "cm", limits: Limits::Positive },
+    },
+    Key {
         name: "minimum",
-        doc: "The least value that can be made; smaller ones become this one.",
+        doc: "The least value that can be made, of the index of a graded medium or of a principal value; smaller ones \
+              become this one.",
         kind: KeyKind::Number { default: None, unit: "", limits: Limits::Finite },
     },
     Key {
@@ -32,6 +39,11 @@ pub static IMPERFECTION_KEYS: &[Key] = &[
         doc: "How many values can be made, at equal steps from the minimum to the maximum (where these are \
               absent, those of the design); 0 for any.",
         kind: KeyKind::Integer { default: 0, min: 0, max: 1_000_000 },
+    },
+    Key {
+        name: "resolution",
+        doc: "The standard deviation of the Gaussian that smooths what a range and levels make of a graded index.",
+        kind: KeyKind::Number { default: Some(0.5), unit: "cm", limits: Limits::Positive },
     },
     Key {
         name: "loss_tangent",
@@ -48,18 +60,24 @@ pub static IMPERFECTION_KEYS: &[Key] = &[
 /// How what is made of a device differs from its design. Zero values change nothing.
 ///
 /// In this order: each value is brought into the range that can be made, then to the nearest level, then comes the
-/// random error; loss is added last. A tensor that is that of vacuum stays so, as the permeability of a
-/// dielectric does; principal values that are equal stay equal.
+/// random error; loss is added last. In homogeneous media the values are the principal ones of the tensors: a tensor that
+/// is that of vacuum stays so, as the permeability of a dielectric does, and principal values that are equal stay
+/// equal. In graded media the value is the index, and what a range and levels change of it is smoothed; loss counts along
+/// the way, not where light enters or leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imperfection {
     /// Relative standard deviation of the random, normally distributed error.
     pub error: f64,
+    /// The length over which the error of a graded index is correlated, cm.
+    pub correlation: f64,
     /// The least value that can be made.
     pub minimum: Option<f64>,
     /// The largest value that can be made.
     pub maximum: Option<f64>,
     /// How many values can be made; 0 for any.
     pub levels: u32,
+    /// The width of the Gaussian that smooths a limited graded index, cm.
+    pub resolution: f64,
     /// Imaginary over real part.
     pub loss_tangent: f64,
     /// The seed of the random errors.
@@ -74,6 +92,8 @@ impl Imperfection {
     pub fn from_values(values: &Values) -> Self {
         Self {
             error: values.number("error"),
+            correlation: values.number("correlation"),
+            resolution: values.number("resolution"),
             minimum: values.optional_number("minimum"),
             maximum: values.optional_number("maximum"),
             levels: values.integer("levels") as u32,
@@ -89,6 +109,11 @@ impl Imperfection {
         self.error > 0.0
     }
 
+    /// Whether there are values that cannot be made.
+    fn limits_values(&self) -> bool {
+        self.levels > 0 || self.minimum.is_some() || self.maximum.is_some()
+    }
+
     /// What is made of a device of that number in its scene, shown as it is and not as bare metal.
     ///
     /// # Errors
@@ -101,11 +126,16 @@ impl Imperfection {
             return Err(KeyError::at(TABLE, message));
         }
         let deviates = Deviates::new([self.seed, device as u64, u64::from(self.draw)]);
-        let graded = structure.cells.iter().any(|cell| !matches!(cell, Cell::Prism(_)));
-        if graded {
-            let message = "the imperfection of a graded medium is not known; it is that of homogeneous segments \
-                           and bodies";
-            return Err(KeyError::at(TABLE, message));
+        for cell in &mut structure.cells {
+            match cell {
+                Cell::Prism(_) => {}
+                Cell::Conformal(cell) => graded::apply(self, &deviates, cell)?,
+                Cell::Radial(_) => {
+                    let message = "round graded devices are followed in closed form, for their ideal index only; \
+                                   homogeneous and conformal ones can be imperfect";
+                    return Err(KeyError::at(TABLE, message));
+                }
+            }
         }
         homogeneous::apply(self, &deviates, &mut structure)?;
         Ok(structure)
