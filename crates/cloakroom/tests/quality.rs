@@ -136,14 +136,21 @@ fn what_cannot_be_is_told_before_the_work() {
     assert!(matches!(stopped, Err(QualityError::Render(RenderError::Stopped))));
 }
 
-/// Design (iii) with errors, seen by a small camera.
-const ERRONEOUS: &str = "[camera]\nresolution = [32, 24]\nsamples = 1\n[trace]\nmin_power = 1e-3\n\
+/// Design (iii) with errors, before a small photograph and seen by a small camera.
+const ERRONEOUS: &str = "[camera]\nresolution = [16, 12]\nsamples = 1\n[trace]\nmin_power = 1e-3\n\
+                         [photograph]\nimage = \"stripes.png\"\n\
                          [[device]]\nkind = \"square-cloak\"\nimperfection = { error = 0.02, seed = 5 }\n";
 
 #[test]
 fn draws_give_means_with_errors_that_shrink_as_one_over_root_n() {
+    let folder = tempfile::tempdir().unwrap();
+    let stripes =
+        image::RgbImage::from_fn(16, 12, |x, y| image::Rgb([(x * 15) as u8, (y * 20) as u8, 90]));
+    stripes.save(folder.path().join("stripes.png")).unwrap();
     let table = |draws: u32, sweep: &str| {
-        let plan = plan(ERRONEOUS, &[sweep]).unwrap().with_draws(draws).unwrap();
+        let sweeps = vec![Sweep::parse(sweep).unwrap()];
+        let load = |more: &[String]| scene_file::parse(ERRONEOUS, "test", folder.path(), more);
+        let plan = Plan::new(sweeps, load).unwrap().with_draws(draws).unwrap();
         let (done, stop) = (AtomicU64::new(0), AtomicBool::new(false));
         let count = |rows| {
             done.fetch_add(rows, Ordering::Relaxed);
@@ -155,29 +162,29 @@ fn draws_give_means_with_errors_that_shrink_as_one_over_root_n() {
     let error = |table: &QualityTable, row: usize, name: &str| {
         table.rows[row].standard_errors[table.column(name).unwrap()]
     };
-    let few = table(16, "device.0.imperfection.error=0,0.01,0.02");
+    let few = table(8, "device.0.imperfection.error=0,0.01,0.02");
     // Without errors it is perfect, and there is one draw.
     assert!(few.figure(0, "displacement_rms_cm") < 1e-9);
     assert_eq!(error(&few, 0, "displacement_rms_cm"), 0.0);
     // Small errors displace in proportion.
     let ratio = few.figure(2, "displacement_rms_cm") / few.figure(1, "displacement_rms_cm");
     assert!(ratio > 1.6 && ratio < 2.4, "{ratio}");
-    let many = table(256, "device.0.imperfection.error=0.02");
+    let many = table(128, "device.0.imperfection.error=0.02");
     for name in
         ["displacement_rms_cm", "direction_error_rms_deg", "time_of_flight_difference_mean_ns"]
     {
         let (rough, fine) = (error(&few, 2, name), error(&many, 0, name));
-        // 16 draws know their error to 18 % (one standard deviation).
+        // 8 draws know their error to 27 % (one standard deviation).
         let ratio = rough / fine;
-        assert!(ratio > 4.0 * 0.5 && ratio < 4.0 * 1.6, "{name}: {ratio}");
+        assert!(ratio > 4.0 * 0.4 && ratio < 4.0 * 1.7, "{name}: {ratio}");
         // The means agree within their errors.
         let off = few.figure(2, name) - many.figure(0, name);
         assert!(off.abs() < 4.0 * rough.hypot(fine), "{name}: {off} {rough} {fine}");
     }
     // The same seed, the same numbers.
-    assert_eq!(table(16, "device.0.imperfection.error=0,0.01,0.02").rows, few.rows);
+    assert_eq!(table(8, "device.0.imperfection.error=0,0.01,0.02").rows, few.rows);
     // Another seed, others.
-    let other = table(16, "device.0.imperfection.seed=6");
+    let other = table(8, "device.0.imperfection.seed=6");
     assert!(other.figure(0, "displacement_rms_cm") != few.figure(2, "displacement_rms_cm"));
     // All power is accounted for.
     let powers = ["delivered", "escaped", "absorbed", "pruned"];

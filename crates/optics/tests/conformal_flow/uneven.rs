@@ -11,7 +11,8 @@ fn grid(spacing: f64, square: impl Fn(DVec2) -> f64) -> GridSpline {
     let corner = DVec2::new(CUT.x_min - 4.0, -6.0);
     let end = DVec2::new(CUT.x_max + 4.0, CUT.y_max + 4.0);
     let count = ((end - corner) / spacing).ceil().as_usizevec2() + 1;
-    let place = |k: usize| corner + spacing * DVec2::new((k % count.x) as f64, (k / count.x) as f64);
+    let place =
+        |k: usize| corner + spacing * DVec2::new((k % count.x) as f64, (k / count.x) as f64);
     let samples: Vec<f64> = (0..count.x * count.y).map(|k| square(place(k))).collect();
     GridSpline::new(corner, DVec2::splat(spacing), count.to_array(), &samples).expect("a grid")
 }
@@ -25,11 +26,13 @@ fn hills(p: DVec2) -> f64 {
 fn an_even_unevenness_is_none() {
     let short = Extent { min: -10.0, max: 10.0 };
     let even = flow(short, 1.1);
-    let uneven = flow(short, 1.1).with_unevenness(Unevenness::new(grid(2.0, |_| 1.0)).expect("positive"));
+    let uneven =
+        flow(short, 1.1).with_unevenness(Unevenness::new(grid(2.0, |_| 1.0)).expect("positive"));
     let mut dice = Dice(77);
     for _ in 0..300 {
         let (start, p) = dice.enter(&even, short);
-        let [a, b] = [&even, &uneven].map(|flow| flow.advance_from(&start, p, 1e-9).expect("a ray"));
+        let [a, b] =
+            [&even, &uneven].map(|flow| flow.advance_from(&start, p, 1e-9).expect("a ray"));
         if steepness(&a) < 0.02 {
             continue;
         }
@@ -50,12 +53,14 @@ fn uneven_rays_obey_the_physical_ray_equation() {
     let (mut floors, mut compared, mut worst) = (0, 0, [0.0_f64; 4]);
     for k in 0..60 {
         let (extent, c) = [(Extent::ENDLESS, 1.0), (short, 1.0), (short, 1.1456)][k % 3];
-        let flow = flow(extent, c).with_unevenness(Unevenness::new(spline.clone()).expect("positive"));
+        let flow =
+            flow(extent, c).with_unevenness(Unevenness::new(spline.clone()).expect("positive"));
         for (start, p, end) in legs(&flow, dice.enter(&flow, extent), 1e-8) {
             if steepness(&end) < 0.02 {
                 continue;
             }
-            let exact = uneven_reference(&start, p, extent, c, |at| spline.look(at)).expect("a ray");
+            let exact =
+                uneven_reference(&start, p, extent, c, |at| spline.look(at)).expect("a ray");
             let coarse = flow.advance_from(&start, p, 1e-6).expect("the same ray");
             let field = end.transport * p.normalize().any_orthonormal_vector();
             let off = [
@@ -81,8 +86,8 @@ fn uneven_rays_obey_the_physical_ray_equation() {
 fn uneven_rays_can_be_reversed() {
     // Along z without an end, hills of the index can guide light for ever.
     let extent = Extent { min: -50.0, max: 50.0 };
-    let flow = flow(extent, 1.0)
-        .with_unevenness(Unevenness::new(grid(0.5, hills)).expect("positive"));
+    let flow =
+        flow(extent, 1.0).with_unevenness(Unevenness::new(grid(0.5, hills)).expect("positive"));
     let mut dice = Dice(99);
     for _ in 0..200 {
         let (start, p) = dice.enter(&flow, extent);

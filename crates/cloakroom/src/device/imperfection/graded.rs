@@ -118,7 +118,9 @@ impl Grid {
             .collect();
         let width = imperfection.resolution / self.spacing;
         self.smooth(&mut off, width);
-        off.iter().map(|[sum, weight]| if *weight > 0.0 { 1.0 + sum / weight } else { 1.0 }).collect()
+        off.iter()
+            .map(|[sum, weight]| if *weight > 0.0 { 1.0 + sum / weight } else { 1.0 })
+            .collect()
     }
 
     /// Smooths by a Gaussian of a standard deviation in samples, along x and then along y.
@@ -216,14 +218,18 @@ mod tests {
         let deviates = Deviates::new([4, 2, 0]);
         let coarse = Grid { corner: DVec2::new(-1.0, 0.0), spacing: 0.5, count: [5, 5] };
         let fine = Grid { corner: DVec2::new(-1.0, 0.0), spacing: 0.25, count: [9, 9] };
-        let [coarse, fine] = [coarse, fine].map(|grid| grid.random_field(1.0, &deviates, Half::Upper));
+        let [coarse, fine] =
+            [coarse, fine].map(|grid| grid.random_field(1.0, &deviates, Half::Upper));
         for (k, value) in coarse.iter().enumerate() {
             let same = fine[(k / 5) * 2 * 9 + (k % 5) * 2];
             assert!((value - same).abs() < 1e-12, "{value} {same}");
         }
         // In the lower half the plane goes on: the mirror image of y is -y.
         let grid = |y: f64| Grid { corner: DVec2::new(0.0, y), spacing: 1.0, count: [4, 1] };
-        let [upper, lower] = [grid(-2.0).random_field(1.0, &deviates, Half::Upper), grid(2.0).random_field(1.0, &deviates, Half::Lower)];
+        let [upper, lower] = [
+            grid(-2.0).random_field(1.0, &deviates, Half::Upper),
+            grid(2.0).random_field(1.0, &deviates, Half::Lower),
+        ];
         assert_eq!(upper, lower);
     }
 }

@@ -77,9 +77,10 @@ impl ConformalFlow {
 
     /// How exactly rays are to be followed for a tolerance, cm, that meet the mirror or do not.
     pub(super) fn demands(&self, tolerance: f64, to_mirror: bool) -> Demands {
-        // Of a spline, nothing can be counted on, nor that a ray meets the mirror where a straight one would.
+        // Of a spline, nothing can be counted on, nor that a ray meets the mirror where a straight one would; and the
+        // errors of many short steps add up.
         let uneven = self.is_uneven();
-        let smoothness = if uneven { 1.0 } else { self.map.smoothness() };
+        let smoothness = if uneven { 0.3 } else { self.map.smoothness() };
         let share = if uneven || to_mirror { MIRROR_MAGNIFIES } else { 1.0 };
         Demands::new(self.scale(), smoothness, share * tolerance)
     }
