@@ -259,6 +259,14 @@ pub struct QualityArguments {
     /// given several times: every combination is measured.
     #[arg(long = "sweep", value_name = "KEY=VALUES", required = true)]
     pub sweeps: Vec<String>,
+    /// A key of a device that follows, so that a computed fact of the device stays what it is without sweeps, as in
+    /// device.0.w=cloaked_area_cm2 (`cloakroom devices` lists facts). May be given several times.
+    #[arg(long = "hold", value_name = "KEY=FACT")]
+    pub holds: Vec<String>,
+    /// How often the random errors of devices (`device.N.imperfection.error`) are drawn for each combination: the
+    /// figures are means, with their standard errors.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub draws: u32,
     /// A file to write; its ending decides: .csv, .npz, or .svg and .png for a plot. May be given several times.
     #[arg(short, long = "output", value_name = "FILE")]
     pub outputs: Vec<PathBuf>,

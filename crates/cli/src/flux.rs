@@ -72,7 +72,7 @@ fn directions(
                 "the sun does not rise above the receiver that day".to_owned(),
             ));
         }
-        return Ok((day, "solar time (h)"));
+        return Ok((day, "Solar time (h)"));
     }
     let [from, to, step] = arguments.angles;
     if !(step > 0.0 && to >= from && (to - from) / step < 10_000.0) {
@@ -83,7 +83,7 @@ fn directions(
     }
     let count = ((to - from) / step + 1e-9).floor() as u32;
     let angles: Vec<f64> = (0..=count).map(|k| from + f64::from(k) * step).collect();
-    Ok((flux::across_range(receiver, &angles, arguments.tilt), "angle of incidence (°)"))
+    Ok((flux::across_range(receiver, &angles, arguments.tilt), "Angle of incidence (°)"))
 }
 
 /// Whether a file is one of data.

@@ -6,7 +6,7 @@ use crate::progress;
 use crate::render::tell_rarities;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::measure::{Plan, QualityError, QualityTable, Sweep, TableFormat, quality};
+use cloakroom::measure::{Hold, Plan, QualityError, QualityTable, Sweep, TableFormat, quality};
 use cloakroom::output;
 use cloakroom::render::{RenderError, Supervision};
 use cloakroom::scene_file;
@@ -39,7 +39,14 @@ pub fn run(arguments: &QualityArguments, stop: &AtomicBool) -> Result<(), Failur
     let load = |further: &[String]| {
         scene_file::load(&arguments.scene.scene, &[&arguments.scene.overrides, further].concat())
     };
-    let plan = Plan::new(sweeps, load).map_err(failure)?;
+    let holds: Vec<Hold> = arguments
+        .holds
+        .iter()
+        .map(|text| Hold::parse(text))
+        .collect::<Result<_, _>>()
+        .map_err(Failure::from_error)?;
+    let plan = Plan::holding(sweeps, holds, load).map_err(failure)?;
+    let plan = plan.with_draws(arguments.draws).map_err(failure)?;
     plan.check_columns(&arguments.plot).map_err(Failure::from_error)?;
     for path in &arguments.outputs {
         output::check_writable(path).map_err(Failure::from_error)?;
@@ -83,28 +90,74 @@ fn formats(outputs: &[PathBuf]) -> Result<Vec<(&PathBuf, TableFormat)>, Failure>
 /// The table for people.
 fn text(table: &QualityTable) -> Result<String, std::fmt::Error> {
     let mut text = String::from(
-        "Over the silhouette, against what should be seen: a cloak's flat mirror, else the empty view\n\n",
+        "Over the silhouette, against what should be seen: a cloak's flat mirror, else the empty view\n",
     );
+    if table.has_errors() {
+        let draws = table.draws;
+        writeln!(
+            text,
+            "Means of {draws} draws, with the standard error of the last digits: 0.98(3) is 0.98 ± 0.03"
+        )?;
+    }
+    writeln!(text)?;
     let longest = |sweep: &Sweep| sweep.values.iter().map(String::len).max().unwrap_or(0);
     let widths: Vec<usize> =
         table.sweeps.iter().map(|sweep| sweep.key.len().max(longest(sweep))).collect();
     for (sweep, width) in table.sweeps.iter().zip(&widths) {
         write!(text, "{:>width$}  ", sweep.key)?;
     }
-    for (_, title) in PRINTED {
-        write!(text, "{title:>12}")?;
+    // Held keys, which are no figures, are told apart by their dots.
+    let held = table.columns.iter().filter(|column| column.name.contains('.'));
+    let printed: Vec<(&str, &str)> = held
+        .map(|column| (column.name.as_str(), column.name.as_str()))
+        .chain(PRINTED.iter().copied())
+        .collect();
+    let column = |title: &str| (title.len() + 2).max(if table.has_errors() { 14 } else { 12 });
+    for (_, title) in &printed {
+        write!(text, "{title:>width$}", width = column(title))?;
     }
     writeln!(text)?;
     for row in &table.rows {
         for (setting, width) in row.settings.iter().zip(&widths) {
             write!(text, "{setting:>width$}  ")?;
         }
-        for (name, _) in PRINTED {
-            let number = table.column(name).map_or(f64::NAN, |index| row.numbers[index]);
-            let shown = if number.is_finite() { format!("{number:.4}") } else { "-".to_owned() };
-            write!(text, "{shown:>12}")?;
+        for (name, title) in &printed {
+            let shown = table.column(name).map_or_else(
+                || "-".to_owned(),
+                |index| number(row.numbers[index], row.standard_errors[index]),
+            );
+            write!(text, "{shown:>width$}", width = column(title))?;
         }
         writeln!(text)?;
     }
     Ok(text)
+}
+
+/// A number to four decimals, or to where two digits of its error end; in brackets the error in units of the last one.
+fn number(mean: f64, error: f64) -> String {
+    if !mean.is_finite() {
+        return "-".to_owned();
+    }
+    if error.is_nan() || error <= 0.0 {
+        return format!("{mean:.4}");
+    }
+    let decimals = (1.0 - error.log10().floor()).clamp(0.0, 4.0);
+    let places = decimals as usize;
+    let last = (error * 10f64.powf(decimals)).round().max(1.0);
+    format!("{mean:.places$}({last})")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn errors_stand_behind_the_digits_they_are_of() {
+        assert_eq!(number(0.98765, 0.0), "0.9877");
+        assert_eq!(number(0.98765, 0.0312), "0.988(31)");
+        assert_eq!(number(-2.5, 0.4), "-2.50(40)");
+        assert_eq!(number(12345.6, 123.0), "12346(123)");
+        assert_eq!(number(0.5, 1e-7), "0.5000(1)");
+        assert_eq!(number(f64::NAN, f64::NAN), "-");
+    }
 }

@@ -1,7 +1,7 @@
 //! Tables of cloaking quality, against scenes whose figures are known.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use cloakroom::measure::{Plan, QualityError, QualityTable, Sweep, quality};
+use cloakroom::measure::{Hold, Plan, QualityError, QualityTable, Sweep, quality};
 use cloakroom::render::{RenderError, Supervision};
 use cloakroom::scene_file;
 use std::path::Path;
@@ -134,4 +134,92 @@ fn what_cannot_be_is_told_before_the_work() {
     let supervision = Supervision { rows_done: &|_| {}, stop: &AtomicBool::new(true) };
     let stopped = quality(&plan, &supervision);
     assert!(matches!(stopped, Err(QualityError::Render(RenderError::Stopped))));
+}
+
+/// Design (iii) with errors, before a small photograph and seen by a small camera.
+const ERRONEOUS: &str = "[camera]\nresolution = [16, 12]\nsamples = 1\n[trace]\nmin_power = 1e-3\n\
+                         [photograph]\nimage = \"stripes.png\"\n\
+                         [[device]]\nkind = \"square-cloak\"\nimperfection = { error = 0.02, seed = 5 }\n";
+
+#[test]
+fn draws_give_means_with_errors_that_shrink_as_one_over_root_n() {
+    let folder = tempfile::tempdir().unwrap();
+    let stripes =
+        image::RgbImage::from_fn(16, 12, |x, y| image::Rgb([(x * 15) as u8, (y * 20) as u8, 90]));
+    stripes.save(folder.path().join("stripes.png")).unwrap();
+    let table = |draws: u32, sweep: &str| {
+        let sweeps = vec![Sweep::parse(sweep).unwrap()];
+        let load = |more: &[String]| scene_file::parse(ERRONEOUS, "test", folder.path(), more);
+        let plan = Plan::new(sweeps, load).unwrap().with_draws(draws).unwrap();
+        let (done, stop) = (AtomicU64::new(0), AtomicBool::new(false));
+        let count = |rows| {
+            done.fetch_add(rows, Ordering::Relaxed);
+        };
+        let table = quality(&plan, &Supervision { rows_done: &count, stop: &stop }).unwrap();
+        assert_eq!(done.into_inner(), plan.steps());
+        table
+    };
+    let error = |table: &QualityTable, row: usize, name: &str| {
+        table.rows[row].standard_errors[table.column(name).unwrap()]
+    };
+    let few = table(8, "device.0.imperfection.error=0,0.01,0.02");
+    // Without errors it is perfect, and there is one draw.
+    assert!(few.figure(0, "displacement_rms_cm") < 1e-9);
+    assert_eq!(error(&few, 0, "displacement_rms_cm"), 0.0);
+    // Small errors displace in proportion.
+    let ratio = few.figure(2, "displacement_rms_cm") / few.figure(1, "displacement_rms_cm");
+    assert!(ratio > 1.6 && ratio < 2.4, "{ratio}");
+    let many = table(128, "device.0.imperfection.error=0.02");
+    for name in
+        ["displacement_rms_cm", "direction_error_rms_deg", "time_of_flight_difference_mean_ns"]
+    {
+        let (rough, fine) = (error(&few, 2, name), error(&many, 0, name));
+        // 8 draws know their error to 27 % (one standard deviation).
+        let ratio = rough / fine;
+        assert!(ratio > 4.0 * 0.4 && ratio < 4.0 * 1.7, "{name}: {ratio}");
+        // The means agree within their errors.
+        let off = few.figure(2, name) - many.figure(0, name);
+        assert!(off.abs() < 4.0 * rough.hypot(fine), "{name}: {off} {rough} {fine}");
+    }
+    // The same seed, the same numbers.
+    assert_eq!(table(8, "device.0.imperfection.error=0,0.01,0.02").rows, few.rows);
+    // Another seed, others.
+    let other = table(8, "device.0.imperfection.seed=6");
+    assert!(other.figure(0, "displacement_rms_cm") != few.figure(2, "displacement_rms_cm"));
+    // All power is accounted for.
+    let powers = ["delivered", "escaped", "absorbed", "pruned"];
+    let sum: f64 = powers.iter().map(|name| many.figure(0, name)).sum();
+    assert!((sum - 1.0).abs() < 1e-6, "{sum}");
+}
+
+#[test]
+fn draws_of_nothing_random_are_refused() {
+    let scene = "[[device]]\nkind = \"square-cloak\"\n";
+    let message = plan(scene, &["device.0.rotation=0"]).unwrap().with_draws(4).unwrap_err();
+    assert!(message.to_string().contains("nothing in the scene is random"), "{message}");
+    let bad = plan(scene, &["device.0.imperfection.levels=2,1"]).unwrap_err().to_string();
+    assert!(bad.contains("levels is 1") && bad.contains("device.0.imperfection.levels=1"), "{bad}");
+}
+
+#[test]
+fn a_held_fact_stays_while_keys_are_swept() {
+    let scene = "[camera]\nresolution = [8, 6]\nsamples = 1\n[[device]]\nkind = \"double-gaussian-cloak\"\n";
+    let held = |hold: &str, sweep: &str| {
+        let (sweeps, holds) =
+            (vec![Sweep::parse(sweep).unwrap()], vec![Hold::parse(hold).unwrap()]);
+        Plan::holding(sweeps, holds, |more| scene_file::parse(scene, "test", Path::new(""), more))
+    };
+    let plan = held("device.0.w=cloaked_area_cm2", "device.0.h=3,4.25").unwrap();
+    plan.check_columns(&["device.0.w".to_owned()]).unwrap();
+    let supervision = Supervision { rows_done: &|_| {}, stop: &AtomicBool::new(false) };
+    let table = quality(&plan, &supervision).unwrap();
+    // h (sqrt(pi) w - h) is the same.
+    let area = |w: f64, h: f64| h * (std::f64::consts::PI.sqrt() * w - h);
+    let w = table.figure(0, "device.0.w");
+    assert!((area(w, 3.0) - area(10.02, 4.25)).abs() < 1e-10, "{w}");
+    assert_eq!(table.figure(1, "device.0.w"), 10.02);
+    let message = held("device.0.w=cloaked_area_cm2", "device.0.w=9,10").unwrap_err().to_string();
+    assert!(message.contains("both swept and held"), "{message}");
+    let message = held("device.0.w=cloaked_area_cm2", "device.0.h=4,30").unwrap_err().to_string();
+    assert!(message.contains("h=30"), "{message}");
 }

@@ -140,6 +140,7 @@ impl Site {
             half: Half::Upper,
             floor: Beyond::Conductor,
             finish,
+            loss_tangent: 0.0,
         };
         self.on_floor(vec![Cell::Conformal(cell)], skin, Hull::prism(outline, self.extent))
     }

@@ -40,6 +40,8 @@ pub struct ConformalCell {
     pub floor: Beyond,
     /// How the medium meets the air.
     pub finish: Finish,
+    /// Imaginary over real part of its permittivity.
+    pub loss_tangent: f64,
 }
 
 /// A convex region between planes, filled with a homogeneous medium.
@@ -107,6 +109,8 @@ pub struct Passage {
     pub transport: Option<DMat3>,
     /// Optical path length, cm.
     pub optical_path: f64,
+    /// ∫ Im n ds along a bent way through a medium that absorbs, cm.
+    pub extinction: f64,
     /// The point in the virtual space of a conformal cell, to go on from after a reflection.
     pub foothold: Option<Foothold>,
     /// Which surface.
@@ -250,6 +254,7 @@ impl Prism {
             direction,
             transport: None,
             optical_path: wave_vector.dot(end - position),
+            extinction: 0.0,
             foothold: None,
             face: index,
             outward: face.plane.normal,
@@ -289,6 +294,8 @@ impl ConformalCell {
             // |Re(E × H*)| = n |E|² is what stays.
             transport: Some(end.transport * (start.index / end.at.index).sqrt()),
             optical_path: end.optical_path,
+            // Im n = n tan δ/2 to first order.
+            extinction: 0.5 * self.loss_tangent * end.optical_path,
             foothold: Some(end.at),
             face: end.boundary as u16,
             outward: end.normal,
@@ -314,6 +321,7 @@ impl RadialCell {
             direction: end.direction,
             transport: Some(end.transport),
             optical_path: end.optical_path,
+            extinction: 0.0,
             foothold: None,
             face: end.border as u16,
             outward: end.outward,
@@ -342,6 +350,7 @@ impl RadialCell {
             direction: turned(ray.direction),
             transport: Some(DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z))),
             optical_path: 0.0,
+            extinction: 0.0,
             foothold: None,
             face: Border::Inner as u16,
             outward: -outward,

@@ -130,7 +130,10 @@ fn cloak(flow: &ConformalFlow, finish: Finish, extent: Extent, open_core: bool) 
         }));
     }
     let cells = [Half::Upper, Half::Lower]
-        .map(|half| Cell::Conformal(ConformalCell { flow: flow.clone(), half, floor, finish }))
+        .map(|half| {
+            let (flow, loss_tangent) = (flow.clone(), 0.0);
+            Cell::Conformal(ConformalCell { flow, half, floor, finish, loss_tangent })
+        })
         .to_vec();
     if !open_core {
         return Structure { cells, skin, hull: Hull::prism(outline, extent) };

@@ -163,6 +163,10 @@ impl Hull {
             && self.filled.is_none()
     }
 
+    pub(super) fn body_mut(&mut self) -> Option<&mut Body> {
+        self.body.as_deref_mut()
+    }
+
     /// The solids that it fills.
     #[must_use]
     pub fn solids(&self) -> &[Solid] {

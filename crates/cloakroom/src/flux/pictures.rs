@@ -47,8 +47,8 @@ pub fn flux_plot(report: &FluxReport, axis: &str) -> Plot {
         axis: axis.to_owned(),
         categories: Vec::new(),
         panels: vec![
-            PlotPanel { title: "mean irradiance".to_owned(), curves: irradiance },
-            PlotPanel { title: "shadow given back (%)".to_owned(), curves: given_back },
+            PlotPanel { title: "Mean irradiance".to_owned(), curves: irradiance },
+            PlotPanel { title: "Shadow given back (%)".to_owned(), curves: given_back },
         ],
     }
 }
@@ -74,12 +74,12 @@ pub fn flux_map(report: &FluxReport, axis: &str) -> Option<HeatMap> {
     // A row is as high as the step to the next direction.
     let step = (last.direction.label - first.direction.label) / (all.len().max(2) - 1) as f64;
     Some(HeatMap {
-        quantity: "irradiance".to_owned(),
-        across: "place across the receiver (cm)".to_owned(),
+        quantity: "Irradiance".to_owned(),
+        across: "Place across the receiver (cm)".to_owned(),
         up: if over_directions {
             axis.to_owned()
         } else {
-            "place along the receiver (cm)".to_owned()
+            "Place along the receiver (cm)".to_owned()
         },
         across_range: [-half[0], half[0]],
         up_range: if over_directions {

@@ -67,7 +67,7 @@ fn ticks(low: f64, high: f64, most: usize) -> Vec<Tick> {
         return Vec::new();
     };
     let size = step.size();
-    let decimals = usize::try_from(-step.exponent).unwrap_or(0) + usize::from(step.digits == 2.5);
+    let decimals = usize::try_from(i32::from(step.digits == 2.5) - step.exponent).unwrap_or(0);
     let (first, last) = step.ends(low, high);
     (first as i64..=last as i64)
         .map(|n| {
@@ -164,6 +164,8 @@ mod tests {
         // Neither 5 nor 2 would give between 4 and 7.
         let ticks = labels("time_of_flight", 0.5, 19.5).1;
         assert_eq!(ticks, ["2.5", "5.0", "7.5", "10.0", "12.5", "15.0", "17.5"]);
+        // Whole numbers stay whole.
+        assert_eq!(labels("time_of_flight", -65.0, 65.0).1, ["−50", "−25", "0", "25", "50"]);
     }
 
     #[test]

@@ -7,16 +7,18 @@
 //! - [`survey`](survey()) asks the rays themselves: where they land, against where they should.
 //! - [`quality`](quality()) does both for every combination of swept keys ([`Sweep`]).
 //! - [`verification`] goes through the paper, statement by statement.
-//! - [`survey`] asks the rays themselves: where they land, against where they should.
-//! - [`quality`] does both for every combination of swept keys ([`Sweep`]).
 
 mod comparison;
 mod correlation;
 mod flip;
+mod hold;
+mod measured;
+mod plan;
 mod plane;
 mod quality;
 mod quality_files;
 mod region;
+mod statistics;
 mod structural_similarity;
 mod survey;
 mod sweep;
@@ -26,9 +28,10 @@ mod view;
 pub use comparison::{Comparison, Figures, FlightFigures, Shifted, compare, compare_in};
 pub use correlation::{BestShift, best_shift, correlation};
 pub use flip::{DEFAULT_PIXELS_PER_DEGREE, flip};
-pub use quality::{
-    Column, Plan, QualityError, QualityTable, Row, UnknownColumn, columns, empty, ideal, quality,
-};
+pub use hold::{Hold, HoldError};
+pub use measured::columns;
+pub use plan::Plan;
+pub use quality::{Column, QualityError, QualityTable, Row, UnknownColumn, empty, ideal, quality};
 pub use quality_files::{STANDARD_PLOT, TableError, TableFormat};
 pub use region::Region;
 pub use structural_similarity::structural_similarity;

@@ -91,14 +91,20 @@ impl QualityTable {
     fn write_csv(&self, path: &Path) -> Result<(), OutputError> {
         write_whole(path, |out| {
             let mut table = csv::Writer::from_writer(out);
-            let keys = self.sweeps.iter().map(|sweep| sweep.key.as_str());
-            table
-                .write_record(keys.chain(self.columns.iter().map(|column| column.name.as_str())))?;
+            let keys = self.sweeps.iter().map(|sweep| sweep.key.clone());
+            let names = self.columns.iter().flat_map(|column| {
+                let error = self.has_errors().then(|| error_name(&column.name));
+                [Some(column.name.clone()), error].into_iter().flatten()
+            });
+            table.write_record(keys.chain(names))?;
             for row in &self.rows {
                 let number = |n: &f64| if n.is_finite() { n.to_string() } else { String::new() };
-                table.write_record(
-                    row.settings.iter().cloned().chain(row.numbers.iter().map(number)),
-                )?;
+                let numbers =
+                    row.numbers.iter().zip(&row.standard_errors).flat_map(|(mean, error)| {
+                        let error = self.has_errors().then(|| number(error));
+                        [Some(number(mean)), error].into_iter().flatten()
+                    });
+                table.write_record(row.settings.iter().cloned().chain(numbers))?;
             }
             table.flush()
         })
@@ -121,11 +127,17 @@ impl QualityTable {
             for (i, column) in self.columns.iter().enumerate() {
                 let values: Vec<f64> = self.rows.iter().map(|row| row.numbers[i]).collect();
                 add(&column.name, &values)?;
+                if self.has_errors() {
+                    let errors: Vec<f64> =
+                        self.rows.iter().map(|row| row.standard_errors[i]).collect();
+                    add(&error_name(&column.name), &errors)?;
+                }
             }
             let mut metadata: serde_json::Map<String, serde_json::Value> =
                 self.metadata.iter().map(|(k, text)| (k.clone(), text.clone().into())).collect();
             let sweeps = serde_json::to_value(&self.sweeps).map_err(io::Error::other)?;
             metadata.insert("sweeps".to_owned(), sweeps);
+            metadata.insert("draws".to_owned(), self.draws.into());
             let bytes = serde_json::to_vec(&metadata).map_err(io::Error::other)?;
             npz.add_array("metadata", &ArrayView1::from(&bytes[..])).map_err(io::Error::other)?;
             npz.finish().map_err(io::Error::other)?;
@@ -133,8 +145,14 @@ impl QualityTable {
         })
     }
 
-    /// The table as a JSON object: `sweeps`, `columns`, and `rows` of `settings` and `figures` by name, null
-    /// where there is no number.
+    /// Whether its numbers are means with standard errors.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.draws > 1
+    }
+
+    /// The table as a JSON object: `sweeps`, `columns`, `draws`, and `rows` of `settings` and `figures` by name, and of
+    /// their `standard_errors` where there are several draws; null where there is no number.
     #[must_use]
     pub fn to_json(&self) -> serde_json::Value {
         let rows: Vec<serde_json::Value> = self
@@ -145,16 +163,25 @@ impl QualityTable {
                 let settings: serde_json::Map<String, serde_json::Value> =
                     keys.zip(row.settings.iter().map(|text| text.clone().into())).collect();
                 let names = self.columns.iter().map(|column| column.name.clone());
-                let figures: serde_json::Map<String, serde_json::Value> =
-                    names.zip(row.numbers.iter().map(|number| (*number).into())).collect();
-                serde_json::json!({ "settings": settings, "figures": figures })
+                let named = |numbers: &[f64]| -> serde_json::Map<String, serde_json::Value> {
+                    names.clone().zip(numbers.iter().map(|number| (*number).into())).collect()
+                };
+                let figures = named(&row.numbers);
+                let mut row_object =
+                    serde_json::json!({ "settings": settings, "figures": figures });
+                if self.has_errors() {
+                    row_object["standard_errors"] = named(&row.standard_errors).into();
+                }
+                row_object
             })
             .collect();
-        serde_json::json!({ "sweeps": self.sweeps, "columns": self.columns, "rows": rows })
+        serde_json::json!({
+            "sweeps": self.sweeps, "columns": self.columns, "draws": self.draws, "rows": rows,
+        })
     }
 
     /// A plot of the columns of these names over the first sweep of several numbers, else over the first of
-    /// several values; a curve for each combination of the others.
+    /// several values; a curve for each combination of the others, with standard errors as error bars.
     ///
     /// # Errors
     ///
@@ -189,7 +216,8 @@ impl QualityTable {
             let point = |(chosen, row): (&Vec<usize>, &super::Row)| {
                 let place = axis.map_or(0, |i| chosen[i]);
                 let x = numbers.as_ref().map_or(place as f64, |numbers| numbers[place]);
-                CurvePoint { x, y: row.numbers[index], error: 0.0 }
+                let error = Some(row.standard_errors[index]).filter(|error| error.is_finite());
+                CurvePoint { x, y: row.numbers[index], error: error.unwrap_or(0.0) }
             };
             let curve = |(other, label): &(Vec<usize>, String)| {
                 let rows = chosen.iter().zip(&self.rows);
@@ -216,8 +244,19 @@ fn with_unit(title: &str, unit: &str) -> String {
     if unit.is_empty() { title.to_owned() } else { format!("{title} ({unit})") }
 }
 
+/// What the column of standard errors of a column is called.
+fn error_name(name: &str) -> String {
+    format!("{name}_standard_error")
+}
+
 /// What an axis says of a swept key: its name in words, with the unit that keys of that name have.
 fn axis_title(key: &str) -> String {
+    let (title, unit) = name_and_unit(key);
+    with_unit(&title, unit)
+}
+
+/// The name of a key in words, and the unit that keys of that name have.
+pub(super) fn name_and_unit(key: &str) -> (String, &'static str) {
     let name = key.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or(key);
     let words = name.replace('_', " ");
     let mut letters = words.chars();
@@ -226,7 +265,7 @@ fn axis_title(key: &str) -> String {
         Some(first) if words.len() > 1 => first.to_uppercase().chain(letters).collect(),
         _ => words,
     };
-    with_unit(&title, unit_of(name))
+    (title, unit_of(name))
 }
 
 /// The unit of a key, from the lists of keys.
@@ -237,6 +276,7 @@ fn unit_of(name: &str) -> &'static str {
         crate::scene::CAMERA_KEYS,
         crate::scene::PHOTOGRAPH_KEYS,
         crate::scene::PLACEMENT_KEYS,
+        crate::device::IMPERFECTION_KEYS,
         crate::scene::LIGHT_KEYS,
         crate::scene::TRACE_KEYS,
     ];
@@ -265,6 +305,7 @@ mod tests {
         let rows = combinations(&sweeps).expect("few").into_iter().map(|chosen| Row {
             settings: sweeps.iter().zip(&chosen).map(|(s, i)| s.values[*i].clone()).collect(),
             numbers: vec![chosen[1] as f64, if chosen == [1, 2] { f64::NAN } else { 0.5 }],
+            standard_errors: vec![0.25; 2],
         });
         let column = |name: &str, title: &str, unit| Column {
             name: name.to_owned(),
@@ -278,6 +319,7 @@ mod tests {
                 column("delivered", "Power", ""),
             ],
             sweeps,
+            draws: 1,
             rarities: Rarities::default(),
             metadata: vec![("scene".to_owned(), "# a scene".to_owned())],
         }

@@ -1,7 +1,7 @@
 //! The studio: a scene made ready to be looked at, images read and devices built.
 
 use super::body_surface::BodySurface;
-use crate::device::Request;
+use crate::device::{Request, Show};
 use crate::keys::KeyError;
 use crate::photograph::{self, Edges, Equirectangular, LoadError, Pyramid};
 use crate::scene::{Projection, Scene, SurroundingsSettings};
@@ -135,7 +135,12 @@ pub fn bench(scene: &Scene) -> Result<Bench, StudioError> {
                     let message = format!("{kind} with these keys has no core that could be open");
                     return Err(KeyError::at("core", message));
                 }
-                Ok(structure)
+                match &device.imperfection {
+                    Some(imperfection) if device.show == Show::Cloak => {
+                        imperfection.apply(structure, index)
+                    }
+                    _ => Ok(structure),
+                }
             })
             .map_err(|error| StudioError::Device { device: index, error })?;
         placed.push(Placed { pose: Pose::new(device.position, device.rotation), structure });

@@ -20,8 +20,8 @@ pub use tables::{
     PLACEMENT_KEYS, RECEIVER_KEYS, SCALAR_CHANNELS, SURROUNDINGS_KEYS, TABLES, TRACE_KEYS,
 };
 
-use crate::device::Entry;
 pub use crate::device::Show;
+use crate::device::{Entry, Imperfection};
 use crate::keys::{KeyError, Values};
 use crate::photograph::ImageSource;
 
@@ -115,6 +115,8 @@ pub struct DeviceSettings {
     pub position: DVec3,
     /// Whole length along its z axis in cm; `None`: endless.
     pub length: Option<f64>,
+    /// How what is made of it differs from its design.
+    pub imperfection: Option<Imperfection>,
 }
 
 impl Light {
@@ -203,6 +205,7 @@ impl DeviceSettings {
             rotation: placement.number("rotation"),
             position: DVec3::from_array(placement.vector("position")),
             length: placement.optional_number("length"),
+            imperfection: placement.table("imperfection").map(Imperfection::from_values),
         }
     }
 

@@ -1,5 +1,6 @@
 //! The keys of every table of a scene file but a device's own.
 
+use crate::device::IMPERFECTION_KEYS;
 use crate::keys::{Key, KeyKind, Limits};
 
 /// Most pixels a side, and most samples a pixel.
@@ -194,6 +195,11 @@ pub static PLACEMENT_KEYS: &[Key] = &[
         name: "length",
         doc: "Whole length along the device's z axis; endless where it is absent.",
         kind: KeyKind::Number { default: None, unit: "cm", limits: Limits::Positive },
+    },
+    Key {
+        name: "imperfection",
+        doc: "How what is made of it differs from its design: random errors, levels, a limited range, loss.",
+        kind: KeyKind::Table { keys: IMPERFECTION_KEYS },
     },
 ];
 

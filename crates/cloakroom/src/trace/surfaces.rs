@@ -123,6 +123,9 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         if medium.absorbs() && !self.absorb(branch, way) {
             return false;
         }
+        if passage.extinction > 0.0 && !self.extinguish(branch, passage.extinction) {
+            return false;
+        }
         branch.wave_vector = passage.wave_vector;
         branch.direction = passage.direction;
         branch.optical_path += passage.optical_path;

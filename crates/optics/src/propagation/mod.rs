@@ -4,12 +4,15 @@ mod conformal_flow;
 mod nystrom;
 mod radial;
 pub mod reference;
+mod spline;
 
-pub use conformal_flow::{Boundary, ConformalFlow, FlowEnd, FlowError, Foothold, Half};
+pub use conformal_flow::{Boundary, ConformalFlow, FlowEnd, FlowError, Foothold, Half, Unevenness};
 pub use radial::{
     Border, CentralLens, OpticAxis, RadialEnd, RadialFlow, TransformedShell, TransmutedSphere,
     UniaxialCylinder,
 };
+
+pub use spline::{GridSpline, GridSplineError};
 
 use glam::DVec3;
 

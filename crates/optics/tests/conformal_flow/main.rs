@@ -3,12 +3,13 @@
 
 mod border;
 mod rays;
+mod uneven;
 
 use std::cell::Cell;
 use std::f64::consts::FRAC_2_SQRT_PI;
 
 use errorfunctions::ComplexErrorFunctions;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use num_complex::Complex64;
 use optics::geometry::Extent;
 use optics::propagation::reference::{ReferenceRay, SquaredIndex, follow};
@@ -41,6 +42,18 @@ fn independent_map(z: Complex64, guess: Complex64) -> (Complex64, Complex64, Com
 
 /// The end of a ray by the reference integrator, extrapolated from two step sizes.
 fn reference(start: &Foothold, wave_vector: DVec3, extent: Extent, c: f64) -> Option<ReferenceRay> {
+    uneven_reference(start, wave_vector, extent, c, |_| (1.0, DVec2::ZERO))
+}
+
+/// The same in an index that is uneven by a factor: its square and the gradient of that, in the upper half or in
+/// the mirror image of the lower one.
+fn uneven_reference(
+    start: &Foothold,
+    wave_vector: DVec3,
+    extent: Extent,
+    c: f64,
+    factor: impl Fn(DVec2) -> (f64, DVec2),
+) -> Option<ReferenceRay> {
     let field = wave_vector.normalize().any_orthonormal_vector();
     let ray = ReferenceRay {
         position: start.position,
@@ -60,7 +73,12 @@ fn reference(start: &Foothold, wave_vector: DVec3, extent: Extent, c: f64) -> Op
         let value = c * c / f1.norm_sqr();
         // ∇ ln n = -conj(f''/f') in virtual space, over conj(f') in physical space.
         let g = -(f2 / f1).conj() / f1.conj();
-        SquaredIndex { value, gradient: 2.0 * value * DVec3::new(g.re, side * g.im, 0.0) }
+        let (square, uphill) = factor(DVec2::new(r.x, side * r.y));
+        let gradient = 2.0 * value * square * DVec2::new(g.re, g.im) + value * uphill;
+        SquaredIndex {
+            value: value * square,
+            gradient: DVec3::new(gradient.x, side * gradient.y, 0.0),
+        }
     };
     let inside = |r: DVec3| {
         [r.x - CUT.x_min, CUT.x_max - r.x, CUT.y_max - side * r.y]

@@ -151,7 +151,12 @@ pub fn diagram(
         }
         Projected::Space { azimuth, elevation } => {
             let view = SpaceView::new(&scenery, drawing.size, [azimuth, elevation]);
-            solids::draw(&mut drawing, &view, &bench, &trees, &scenery);
+            let fronts: Vec<Vec<DVec3>> = settings.wavefronts.map_or_else(Vec::new, |distance| {
+                let count = settings.rays as usize;
+                let wavefronts = rays::Wavefronts { distance, apart: scenery.apart(count) };
+                trees.chunks(count).flat_map(|layer| wavefronts.lines(layer, &bench)).collect()
+            });
+            solids::draw(&mut drawing, &view, &bench, (&trees, &fronts), &scenery);
             view::draw_key(&mut drawing, settings);
         }
     }

@@ -94,12 +94,22 @@ impl Wavefronts {
         trees: &[Vec<Line>],
         bench: &Bench,
     ) {
+        for front in self.lines(trees, bench) {
+            let line = Shape::Line(front.into_iter().map(place).collect());
+            let line = drawing.add("wavefront", line);
+            line.stroked(FRONT, FRONT_WIDTH).within(vec![frame.to_vec()]);
+        }
+    }
+
+    /// The fronts as lines in space.
+    pub fn lines(&self, trees: &[Vec<Line>], bench: &Bench) -> Vec<Vec<DVec3>> {
         /// Weaker branches have no wavefronts of their own.
         const LEAST_POWER: f64 = 0.2;
         const MOST: u32 = 4000;
         let longest = trees.iter().flatten().filter_map(|line| line.points.last());
         let longest = longest.map(|point| point.optical_path).fold(0.0, f64::max);
         let count = ((longest / self.distance) as u32).min(MOST);
+        let mut fronts = Vec::new();
         for number in 1..=count {
             let path = f64::from(number) * self.distance;
             let strongest = |tree: &Vec<Line>| {
@@ -107,23 +117,20 @@ impl Wavefronts {
                 let met = strong.filter_map(|line| Some((line.power, point_at(line, path)?)));
                 met.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, point)| point)
             };
-            let mut front: Vec<DVec2> = Vec::new();
+            let mut front: Vec<DVec3> = Vec::new();
             let mut last: Option<DVec3> = None;
             for point in trees.iter().map(strongest).chain([None]) {
                 let joins =
                     matches!((last, point), (Some(a), Some(b)) if self.are_one(a, b, bench));
                 if !joins {
-                    if front.len() > 1 {
-                        let line = Shape::Line(std::mem::take(&mut front));
-                        let line = drawing.add("wavefront", line);
-                        line.stroked(FRONT, FRONT_WIDTH).within(vec![frame.to_vec()]);
-                    }
-                    front.clear();
+                    let whole = std::mem::take(&mut front);
+                    fronts.extend(Some(whole).filter(|front| front.len() > 1));
                 }
-                front.extend(point.map(place));
+                front.extend(point);
                 last = point;
             }
         }
+        fronts
     }
 
     /// Whether points of neighbouring rays are of one front: near, and without metal between them.

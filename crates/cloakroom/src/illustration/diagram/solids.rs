@@ -23,14 +23,15 @@ enum Paint {
     Face(Ink),
     Edge(Ink, f64),
     Ray(f64),
+    Front,
 }
 
-/// Draws the devices and the rays among them; what is nearer hides what is behind metal.
+/// Draws the devices, and the rays and wavefronts among them; what is nearer hides what is behind metal.
 pub(super) fn draw(
     drawing: &mut Drawing,
     view: &SpaceView,
     bench: &Bench,
-    trees: &[Vec<Line>],
+    (trees, fronts): (&[Vec<Line>], &[Vec<DVec3>]),
     scenery: &Scenery,
 ) {
     let mut items = Vec::new();
@@ -39,6 +40,9 @@ pub(super) fn draw(
     }
     for line in trees.iter().flatten() {
         add_ray(&mut items, line, scenery);
+    }
+    for pair in fronts.iter().flat_map(|front| front.windows(2)) {
+        items.push(Item { points: pair.to_vec(), paint: Paint::Front });
     }
     let depth = |item: &Item| {
         let sum: f64 = item.points.iter().map(|point| point.dot(view.toward)).sum();
@@ -51,6 +55,10 @@ pub(super) fn draw(
         match paint {
             Paint::Face(ink) => drawing.add("face", Shape::Area(vec![at])).filled(ink),
             Paint::Edge(ink, width) => drawing.add("edge", Shape::Line(at)).stroked(ink, width),
+            Paint::Front => {
+                let front = drawing.add("wavefront", Shape::Line(at));
+                front.stroked(rays::FRONT, rays::FRONT_WIDTH)
+            }
             Paint::Ray(power) => {
                 let (ink, width) = rays::stroke(power);
                 drawing.add("ray", Shape::Line(at)).stroked(ink, width)

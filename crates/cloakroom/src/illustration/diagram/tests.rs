@@ -90,6 +90,23 @@ fn every_device_can_be_drawn_in_every_way() {
 }
 
 #[test]
+fn wavefronts_are_drawn_in_space_too() {
+    let settings = DiagramSettings {
+        projected: Projected::Space { azimuth: 0.0, elevation: 90.0 },
+        wavefronts: Some(4.0),
+        rays: 6,
+        layers: 2,
+        ..DiagramSettings::default()
+    };
+    let drawing = drawn("[[device]]\nkind = \"square-cloak\"", &settings).expect("drawn").drawing;
+    let fronts = fronts(&drawing);
+    assert!(fronts.len() > 20, "{}", fronts.len());
+    // Seen from above, pieces of fronts across the light are points: layers are not joined.
+    let plane = fronts.iter().filter(|front| front[0].distance(front[1]) < 1e-6).count();
+    assert!(plane > 10 && fronts.iter().all(|front| (front[0].y - front[1].y).abs() < 1e-6));
+}
+
+#[test]
 fn nonsense_is_refused() {
     let refused = |settings: DiagramSettings, part: &str| {
         let error = drawn("[[device]]\nkind = \"square-cloak\"", &settings).expect_err("refused");

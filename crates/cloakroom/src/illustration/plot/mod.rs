@@ -109,13 +109,14 @@ impl Plot {
             }
         }
         drop(sheet);
+        marks.sort_by_key(|(curve, _)| *curve);
         for (curve, at) in marks {
             mark(&mut drawing, curve, at);
         }
         for (i, label) in labels.iter().enumerate() {
             let at = DVec2::new(18.0, 2.6 + LINE * i as f64) * MM;
             let ends = vec![at - DVec2::X * 3.0 * MM, at + DVec2::X * 3.0 * MM];
-            drawing.add("key", Shape::Line(ends)).stroked(color(i), 0.3 * MM);
+            drawing.add("key", Shape::Line(ends)).stroked(color(i), 0.3 * MM * size_of(i));
             mark(&mut drawing, i, at);
             let words = Words::new(*label, at + DVec2::X * 4.5 * MM, TYPE * MM).anchored(0.0);
             drawing.add("key-words", Shape::Words(words)).filled(ink(BLACK));
@@ -142,7 +143,8 @@ impl Plot {
             padded(points().flat_map(|point| [point.y - point.error, point.y + point.error]), 0.08);
         let units = |mm: f64| (mm * MM) as i32;
         let mut chart = ChartBuilder::on(area)
-            .margin_top(units(2.5))
+            // Half a line of type stands out above the panel, and below the one before.
+            .margin_top(units(TYPE + 0.7))
             .margin_right(units(3.0))
             .margin_left(units(1.0))
             .x_label_area_size(if last { units(AXIS) } else { 0 })
@@ -184,7 +186,8 @@ impl Plot {
         for (i, curve) in panel.curves.iter().enumerate() {
             let [red, green, blue] = COLORS[i % COLORS.len()];
             let color = RGBColor(red, green, blue);
-            let style = ShapeStyle { color: color.into(), filled: false, stroke_width: 6 };
+            let stroke_width = (0.3 * MM * size_of(i)).round() as u32;
+            let style = ShapeStyle { color: color.into(), filled: false, stroke_width };
             let whole = |point: &CurvePoint| point.x.is_finite() && point.y.is_finite();
             for run in curve.points.split(|point| !whole(point)) {
                 chart.draw_series(LineSeries::new(run.iter().map(|p| (p.x, p.y)), style))?;
@@ -213,9 +216,15 @@ fn color(curve: usize) -> Ink {
     Ink { rgb: COLORS[curve % COLORS.len()], opacity: 1.0 }
 }
 
+/// How large marks and how thick lines of a curve are: later ones are smaller, so that of curves that lie on each other all
+/// are seen.
+fn size_of(curve: usize) -> f64 {
+    0.82_f64.powi(curve.min(5) as i32) * 1.15
+}
+
 /// The mark of a curve: its form tells curves apart where colour does not.
 fn mark(drawing: &mut Drawing, curve: usize, at: DVec2) {
-    let radius = 0.75 * MM;
+    let radius = 0.75 * MM * size_of(curve);
     let polygon = |corners: u32, turn: f64| {
         let corner = |k: u32| {
             let angle = std::f64::consts::TAU * (f64::from(k) / f64::from(corners) + turn);

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 
 use super::frame::{Frame, transport};
 use super::points::Point;
-use crate::transformation::{ConformalMap, MapJet};
+use crate::transformation::MapJet;
 
 /// A ray's constants, and how accurately to follow it.
 #[derive(Clone, Copy, Debug)]
@@ -31,10 +31,12 @@ pub(super) struct Demands {
 }
 
 impl Demands {
-    /// For a largest error at the end of `tolerance`, cm.
-    pub fn new(map: &ConformalMap, tolerance: f64) -> Self {
+    /// For a medium that varies over `scale` (cm), whose `smoothness` is that of [`ConformalMap::smoothness`], and a largest
+    /// error at the end of `tolerance`, cm.
+    ///
+    /// [`ConformalMap::smoothness`]: crate::transformation::ConformalMap::smoothness
+    pub fn new(scale: f64, smoothness: f64, tolerance: f64) -> Self {
         let tolerance = tolerance.max(1e-12);
-        let (scale, smoothness) = (map.scale(), map.smoothness());
         Self {
             allowed: smoothness * tolerance,
             // Where the estimate is low by chance, the order of the method still keeps a shorter step right.

@@ -7,7 +7,8 @@
 //!
 //! These are Hamilton's equations of H = (|P|² + p_z² |f'|² - c²)/2, that is of p² = n². For p_z = 0 the
 //! path in ζ is a straight line; else the force is small and smooth, and the method of order 8 takes a
-//! handful of steps. Lengths are in cm, wave vectors in units of the vacuum wave number.
+//! handful of steps. Where the index is ρ(x, y) times that ([`Unevenness`]), it is c² ρ² that |P|² + p_z² |f'|² must be,
+//! and another force comes in: see the module `uneven_strides`. Lengths are in cm, wave vectors in units of the vacuum wave number.
 
 mod course;
 mod crossing;
@@ -15,7 +16,11 @@ mod frame;
 mod path;
 mod points;
 mod strides;
+mod uneven_strides;
+mod unevenness;
 mod walk;
+
+use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
@@ -24,6 +29,7 @@ use thiserror::Error;
 use self::course::Course;
 use self::crossing::Gauges;
 use self::points::Point;
+pub use self::unevenness::Unevenness;
 use self::walk::Convoy;
 use crate::geometry::Extent;
 use crate::lanes::LANES;
@@ -148,6 +154,7 @@ pub struct ConformalFlow {
     strength: f64,
     gauges: Gauges,
     slack: f64,
+    unevenness: Option<Arc<Unevenness>>,
 }
 
 impl ConformalFlow {
@@ -157,7 +164,7 @@ impl ConformalFlow {
     pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, strength: f64) -> Self {
         let slack = BORDER_SLACK * map.scale();
         let gauges = Gauges::new(&cut, extent, map.scale());
-        Self { map, cut, extent, strength, gauges, slack }
+        Self { map, cut, extent, strength, gauges, slack, unevenness: None }
     }
 
     /// The map.
@@ -172,11 +179,12 @@ impl ConformalFlow {
         &self.cut
     }
 
-    /// Least and largest index.
+    /// Least and largest index; bounds of them where the medium is uneven.
     #[must_use]
     pub fn index_range(&self) -> (f64, f64) {
         let (least, largest) = self.map.index_range(&self.cut);
-        (self.strength * least, self.strength * largest)
+        let [low, high] = self.unevenness.as_ref().map_or([1.0; 2], |uneven| uneven.bounds());
+        (self.strength * least * low, self.strength * largest * high)
     }
 
     /// The index at a point of one half; None deep inside the metal, where the map has no inverse.
@@ -184,7 +192,7 @@ impl ConformalFlow {
     pub fn index(&self, half: Half, position: DVec3) -> Option<f64> {
         let local = half.mirrored(position);
         let zeta = self.map.invert(Complex64::new(local.x, local.y))?;
-        Some(self.strength / self.map.jet(zeta).stretch())
+        Some(self.index_at(&self.map.jet(zeta)))
     }
 
     /// Finds a point of one half, inside or on the border, in virtual space.
@@ -203,7 +211,7 @@ impl ConformalFlow {
         if zeta.im.abs() <= self.slack {
             zeta.im = 0.0;
         }
-        let index = self.strength / self.map.jet(zeta).stretch();
+        let index = self.index_at(&self.map.jet(zeta));
         let inside = zeta.im >= 0.0
             && z.re >= self.cut.x_min - self.slack
             && z.re <= self.cut.x_max + self.slack
@@ -313,7 +321,8 @@ impl ConformalFlow {
             Boundary::ZMax => position.z = self.extent.max,
             Boundary::Floor => end.zeta.im = 0.0,
         }
-        end.momentum = course.on_shell(self.strength, end.momentum, &end.jet);
+        let strength = self.strength * self.factor(end.jet.f).square.sqrt();
+        end.momentum = course.on_shell(strength, end.momentum, &end.jet);
         let p = end.momentum / end.jet.f1.conj();
         let turn = course.transport(&begin, &end);
         let transport = match half {
@@ -329,7 +338,7 @@ impl ConformalFlow {
                 half,
                 position: half.mirrored(position),
                 virtual_position: end.zeta,
-                index: self.strength / end.jet.stretch(),
+                index: strength / end.jet.stretch(),
             },
             wave_vector: half.mirrored(DVec3::new(p.re, p.im, course.p_z)),
             optical_path: self.strength * self.strength * end.tau,

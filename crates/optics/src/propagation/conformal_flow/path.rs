@@ -29,7 +29,7 @@ impl ConformalFlow {
             optical_path: speed * tau,
         };
         let spacing = self.map.scale() / DENSITY;
-        if wave_vector.z == 0.0 {
+        if wave_vector.z == 0.0 && !self.is_uneven() {
             // A straight line in virtual space.
             let end = self.advance_from(start, wave_vector, tolerance)?;
             let (from, to) = (start.virtual_position, end.at.virtual_position);

@@ -6,8 +6,8 @@ use num_complex::Complex64;
 use super::course::{Course, Demands};
 use super::crossing::{Crossing, Landing, Look};
 use super::points::Points;
-use super::strides::{Pace, Rays, Trials, stride};
-use super::{Arrival, Boundary, ConformalFlow, FlowError, Foothold, MAX_STEPS, MIRROR_MAGNIFIES};
+use super::strides::{Pace, Rays, Trials};
+use super::{Arrival, Boundary, ConformalFlow, FlowError, Foothold, MAX_STEPS};
 use crate::lanes::LANES;
 
 /// Moves below this share of the map's scale are exact to rounding by Taylor's formula of order two.
@@ -66,7 +66,7 @@ impl Convoy {
         tolerance: f64,
     ) -> Self {
         let walk = Walk { state: State::Absent, stride: 0.0, steps: 0, evaluations: 0 };
-        let demands = Demands::new(&flow.map, tolerance);
+        let demands = flow.demands(tolerance, false);
         let rays = Rays {
             p_z: [0.0; LANES],
             weight: [0.0; LANES],
@@ -119,14 +119,15 @@ impl Convoy {
         self.stride(flow, Pace::Departure, &[0.0; LANES]);
         self.begin = self.trials.end;
         self.here = self.trials.end;
-        let nearer = Demands::new(&flow.map, MIRROR_MAGNIFIES * tolerance);
+        let nearer = flow.demands(tolerance, true);
         for i in 0..LANES {
             if self.walks[i].state.ahead().is_none() {
                 continue;
             }
             let aims_at_floor = flow.aims_at_floor(self.here.zeta.at(i), self.here.momentum.at(i));
             let demands = if aims_at_floor { &nearer } else { demands };
-            let course = Course::new(self.rays.p_z[i], flow.strength, demands);
+            let mut course = Course::new(self.rays.p_z[i], flow.strength, demands);
+            course.even = flow.is_uneven();
             self.courses[i] = course;
             self.rays.weight[i] = course.allowed.recip();
             self.walks[i].stride = 0.8 * course.longest;
@@ -168,15 +169,15 @@ impl Convoy {
 
     fn stride(&mut self, flow: &ConformalFlow, pace: Pace, length: &[f64; LANES]) {
         let Self { rays, here, trials, .. } = self;
-        stride(&flow.map, &flow.gauges, rays, pace, here, length, trials);
+        flow.stride(rays, pace, here, length, trials);
     }
 
     /// How a ray moves by `length`.
     fn pace(&self, flow: &ConformalFlow, i: usize, length: f64) -> Pace {
         let (course, length) = (&self.courses[i], length.abs());
-        if course.p_z == 0.0 || length <= COASTING * flow.map.scale() {
+        if course.p_z == 0.0 && !flow.is_uneven() || length <= COASTING * flow.scale() {
             Pace::Coast
-        } else if length <= course.short {
+        } else if length <= course.short && !flow.is_uneven() {
             Pace::Short
         } else {
             Pace::Full
@@ -279,7 +280,7 @@ impl Convoy {
         } else {
             flow.map.longest_stride(self.here.zeta.at(i), course.longest)
         } / flow.strength;
-        let beyond = self.trials.ahead[i] + OVERSHOOT * flow.map.scale();
+        let beyond = self.trials.ahead[i] + OVERSHOOT * flow.scale();
         walk.state = State::Stepping(walk.stride.min(usual).min(beyond));
     }
 

@@ -1,0 +1,276 @@
+//! A key that is chosen so that a computed fact of its device stays what it is: designs at equal hidden area.
+
+use crate::device::{FactValue, Request};
+use crate::keys::{hint, number_text, quoted};
+use crate::scene::{DeviceSettings, Scene};
+
+/// A key of a device that follows the swept ones, so that a computed fact of the device stays what it is in the
+/// scene as given.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Hold {
+    /// The key, as in `device.0.w`.
+    pub key: String,
+    /// The fact, as in `cloaked_area_cm2`.
+    pub fact: String,
+    /// The number of the device in the scene.
+    #[serde(skip)]
+    device: usize,
+}
+
+/// Why a fact cannot be held.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum HoldError {
+    /// It is not written as it should be.
+    #[error("--hold {text}: write device.N.KEY=FACT, as in device.0.w=cloaked_area_cm2")]
+    Unreadable {
+        /// As it was written.
+        text: String,
+    },
+    /// The scene has no such device.
+    #[error("--hold {key}: the scene has no device {device} (devices are counted from 0)")]
+    NoDevice {
+        /// The key.
+        key: String,
+        /// The device asked for.
+        device: usize,
+    },
+    /// The key is not a number that could be scaled.
+    #[error("--hold {key}: {problem}")]
+    Key {
+        /// The key.
+        key: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The device has no such fact.
+    #[error("--hold {key}: a {kind} has no computed number {}{hint}", quoted(.fact, '`'))]
+    NoFact {
+        /// The key.
+        key: String,
+        /// The kind of device.
+        kind: &'static str,
+        /// The fact asked for.
+        fact: String,
+        /// What may have been meant.
+        hint: String,
+    },
+    /// A held key is swept, too.
+    #[error("{key} is both swept and held")]
+    Swept {
+        /// The key.
+        key: String,
+    },
+    /// No value of the key will do.
+    #[error(
+        "--hold {key}: no value from {} to {} keeps {fact} at {}{}", number_text(range[0].0),
+        number_text(range[1].0), number_text(target.0), at(.settings)
+    )]
+    NoSolution {
+        /// The key.
+        key: String,
+        /// The fact.
+        fact: String,
+        /// What it should be.
+        target: Bits,
+        /// The values that were tried.
+        range: [Bits; 2],
+        /// The swept settings.
+        settings: Vec<String>,
+    },
+}
+
+/// A number in an error: equal to itself.
+#[derive(Clone, Copy, Debug)]
+pub struct Bits(pub f64);
+
+impl PartialEq for Bits {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.to_bits() == other.0.to_bits()
+    }
+}
+
+impl Eq for Bits {}
+
+fn at(settings: &[String]) -> String {
+    if settings.is_empty() { String::new() } else { format!(" with {}", settings.join(", ")) }
+}
+
+/// Factors between neighbouring trial values: the eighth root of 2, over six octaves to either side.
+const TRIALS_AN_OCTAVE: i32 = 8;
+const OCTAVES: i32 = 6;
+
+impl Hold {
+    /// Reads `device.N.KEY=FACT`.
+    ///
+    /// # Errors
+    ///
+    /// If it is written otherwise.
+    pub fn parse(text: &str) -> Result<Self, HoldError> {
+        let read = || {
+            let (key, fact) = text.split_once('=')?;
+            let (key, fact) = (key.trim(), fact.trim());
+            let (number, name) = key.strip_prefix("device.")?.split_once('.')?;
+            let sound = !name.is_empty() && !fact.is_empty();
+            Some(Self { key: key.to_owned(), fact: fact.to_owned(), device: number.parse().ok()? })
+                .filter(|_| sound)
+        };
+        read().ok_or_else(|| HoldError::Unreadable { text: text.to_owned() })
+    }
+
+    /// The name of the key in its device.
+    fn name(&self) -> &str {
+        self.key.rsplit('.').next().unwrap_or(&self.key)
+    }
+
+    fn device<'s>(&self, scene: &'s Scene) -> Result<&'s DeviceSettings, HoldError> {
+        let missing = || HoldError::NoDevice { key: self.key.clone(), device: self.device };
+        scene.devices.get(self.device).ok_or_else(missing)
+    }
+
+    /// The fact as it is in a scene.
+    pub(super) fn target(&self, scene: &Scene) -> Result<f64, HoldError> {
+        let device = self.device(scene)?;
+        self.start(device)?;
+        fact(device, &self.fact).ok_or_else(|| {
+            let facts = (device.entry.facts)(&device.values);
+            let numbers = facts.iter().filter(|fact| matches!(fact.value, FactValue::Number(_)));
+            let known: Vec<&str> = numbers.map(|fact| fact.name).collect();
+            HoldError::NoFact {
+                key: self.key.clone(),
+                kind: device.entry.kind,
+                fact: self.fact.clone(),
+                hint: hint(&self.fact, &known, "known ones"),
+            }
+        })
+    }
+
+    /// The value of the key from which the search starts.
+    fn start(&self, device: &DeviceSettings) -> Result<f64, HoldError> {
+        let refuse = |problem: String| HoldError::Key { key: self.key.clone(), problem };
+        let keys = device.entry.keys;
+        if !keys.iter().any(|key| key.name == self.name()) {
+            let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
+            let hint = hint(self.name(), &known, "its keys");
+            let kind = device.entry.kind;
+            return Err(refuse(format!("a {kind} has no key {}{hint}", quoted(self.name(), '`'))));
+        }
+        let number = device.values.get(self.name()).and_then(|value| value.as_number());
+        number
+            .filter(|number| *number > 0.0)
+            .ok_or_else(|| refuse("the key must be a number above 0 in the scene".to_owned()))
+    }
+
+    /// The value of the key with which the fact is `target` in a scene in which all other keys are set.
+    pub(super) fn solve(
+        &self,
+        scene: &Scene,
+        target: f64,
+        settings: &[String],
+    ) -> Result<f64, HoldError> {
+        let mut device = self.device(scene)?.clone();
+        let start = self.start(&device)?;
+        let mut excess = |value: f64| {
+            device.values.set(self.name(), value).ok()?;
+            fact(&device, &self.fact).map(|fact| fact - target)
+        };
+        let value = |k: i32| start * 2f64.powf(f64::from(k) / f64::from(TRIALS_AN_OCTAVE));
+        let none = || HoldError::NoSolution {
+            key: self.key.clone(),
+            fact: self.fact.clone(),
+            target: Bits(target),
+            range: [-1, 1].map(|side| Bits(value(side * OCTAVES * TRIALS_AN_OCTAVE))),
+            settings: settings.to_vec(),
+        };
+        let mut bracket = None;
+        // Away from where it is, to either side in turn.
+        for k in 0..OCTAVES * TRIALS_AN_OCTAVE {
+            for (from, to) in [(k, k + 1), (-k, -k - 1)] {
+                let (from, to) = (value(from), value(to));
+                if let (Some(a), Some(b)) = (excess(from), excess(to)) {
+                    if a == 0.0 {
+                        return Ok(from);
+                    }
+                    if bracket.is_none() && (a > 0.0) != (b > 0.0) {
+                        bracket = Some((from, to, a > 0.0));
+                    }
+                }
+            }
+            if bracket.is_some() {
+                break;
+            }
+        }
+        let (mut from, mut to, positive) = bracket.ok_or_else(none)?;
+        while (to - from).abs() > 4.0 * f64::EPSILON * start.max(to.abs()) {
+            let middle = 0.5 * (from + to);
+            if middle == from || middle == to {
+                break;
+            }
+            let excess = excess(middle).ok_or_else(none)?;
+            if (excess > 0.0) == positive { from = middle } else { to = middle }
+        }
+        Ok(0.5 * (from + to))
+    }
+}
+
+/// A computed number of a device, if it can be built.
+fn fact(device: &DeviceSettings, name: &str) -> Option<f64> {
+    let request = Request { length: device.length, ..Request::default() };
+    (device.entry.build)(&device.values, request).ok()?;
+    (device.entry.facts)(&device.values).into_iter().find_map(|fact| match fact.value {
+        FactValue::Number(number) if fact.name == name => Some(number),
+        _ => None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene_file;
+    use std::path::Path;
+
+    fn scene(text: &str) -> Scene {
+        scene_file::parse(text, "test", Path::new(""), &[]).expect("a scene").scene
+    }
+
+    #[test]
+    fn a_thinner_higher_bump_hides_the_same_area() {
+        let hold = Hold::parse("device.0.w=cloaked_area_cm2").expect("a hold");
+        let base = scene("[[device]]\nkind = \"double-gaussian-cloak\"\n");
+        let target = hold.target(&base).expect("a fact");
+        for h in [2.0, 4.25, 6.0, 8.0] {
+            let other = scene(&format!("[[device]]\nkind = \"double-gaussian-cloak\"\nh = {h}\n"));
+            // 2 h (sqrt(pi) w - h) = A.
+            let exact = (0.5 * target / h + h) / std::f64::consts::PI.sqrt();
+            let found = hold.solve(&other, target, &[]);
+            // Beyond h/w = 0.886 there is no such map.
+            if h / exact > 0.886 {
+                assert!(matches!(found, Err(HoldError::NoSolution { .. })), "{found:?}");
+            } else {
+                let found = found.expect("a width");
+                assert!((found - exact).abs() < 1e-12, "h = {h}: {found} {exact}");
+            }
+        }
+        // A fact that needs no solving for is met at once.
+        assert_eq!(hold.solve(&base, target, &[]), Ok(10.02));
+    }
+
+    #[test]
+    fn what_cannot_be_held_is_refused() {
+        for text in ["w=a", "device.0.w", "device.x.w=a", "device.0.=a", "device.0.w="] {
+            assert!(Hold::parse(text).is_err_and(|e| e.to_string().contains(text)), "{text}");
+        }
+        let base = scene("[[device]]\nkind = \"square-cloak\"\n");
+        let message = |text: &str| {
+            let hold = Hold::parse(text).expect(text);
+            hold.target(&base).expect_err(text).to_string()
+        };
+        assert!(message("device.1.side=a").contains("no device 1"));
+        assert!(message("device.0.sid=a").contains("did you mean `side`"));
+        assert!(message("device.0.rounded=a").contains("number above 0"));
+        assert!(message("device.0.side=cloaked_area").contains("did you mean `cloaked_area_cm2`"));
+        let hold = Hold::parse("device.0.kappa=mirror_width_cm").expect("a hold");
+        let message = hold.solve(&base, 25.0, &["device.0.side=9".to_owned()]);
+        let message = message.expect_err("it does not depend on it").to_string();
+        assert!(message.contains("keeps mirror_width_cm at 25 with device.0.side=9"), "{message}");
+    }
+}

@@ -1,0 +1,172 @@
+//! What is to be measured, read and checked before the work.
+
+use super::hold::Hold;
+use super::quality::{QualityError, UnknownColumn, find_column, located};
+use super::quality_files::name_and_unit;
+use super::sweep::{Sweep, combinations};
+use super::{Column, HoldError, SweepError, columns};
+use crate::device::Imperfection;
+use crate::render::bench;
+use crate::scene::Scene;
+use crate::scene_file::{Loaded, SceneFileError};
+
+/// A sweep with all its scenes read.
+#[derive(Debug)]
+pub struct Plan {
+    pub(super) sweeps: Vec<Sweep>,
+    pub(super) holds: Vec<Hold>,
+    pub(super) scenes: Vec<Combination>,
+    pub(super) draws: u32,
+}
+
+/// One combination of settings.
+#[derive(Debug)]
+pub(super) struct Combination {
+    /// The value of each swept key.
+    pub settings: Vec<String>,
+    /// The value of each held key.
+    pub held: Vec<f64>,
+    pub loaded: Loaded,
+}
+
+impl Plan {
+    /// Reads the scene of every combination; `load` reads the scene with further overrides, such as
+    /// `device.0.rotation=5`. Every scene is built once, so that what cannot be is told before the work.
+    ///
+    /// # Errors
+    ///
+    /// If the sweeps make no sense, or a scene cannot be read or built.
+    pub fn new(
+        sweeps: Vec<Sweep>,
+        load: impl Fn(&[String]) -> Result<Loaded, SceneFileError>,
+    ) -> Result<Self, QualityError> {
+        Self::holding(sweeps, Vec::new(), load)
+    }
+
+    /// As [`Self::new`], with keys that follow the swept ones so that a computed fact of their device stays what it
+    /// is in the scene without sweeps.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`], and if a fact cannot be held.
+    pub fn holding(
+        sweeps: Vec<Sweep>,
+        holds: Vec<Hold>,
+        load: impl Fn(&[String]) -> Result<Loaded, SceneFileError>,
+    ) -> Result<Self, QualityError> {
+        let load = |overrides: &[String]| {
+            load(overrides).map_err(|error| QualityError::Scene(Box::new(error)))
+        };
+        let both = |hold: &&Hold| sweeps.iter().any(|sweep| sweep.key == hold.key);
+        if let Some(hold) = holds.iter().find(both) {
+            return Err(HoldError::Swept { key: hold.key.clone() }.into());
+        }
+        for (i, hold) in holds.iter().enumerate() {
+            if holds[..i].iter().any(|other| other.key == hold.key) {
+                return Err(SweepError::Twice { key: hold.key.clone() }.into());
+            }
+        }
+        let chosen = combinations(&sweeps)?;
+        let targets: Vec<f64> = if holds.is_empty() {
+            Vec::new()
+        } else {
+            let scene = load(&[])?.scene;
+            holds.iter().map(|hold| hold.target(&scene)).collect::<Result<_, _>>()?
+        };
+        let scene = |chosen: Vec<usize>| {
+            let settings: Vec<String> =
+                sweeps.iter().zip(chosen).map(|(sweep, i)| sweep.values[i].clone()).collect();
+            let assignment = |(sweep, value): (&Sweep, &String)| format!("{}={value}", sweep.key);
+            let mut overrides: Vec<String> = sweeps.iter().zip(&settings).map(assignment).collect();
+            let swept = overrides.len();
+            let mut loaded = load(&overrides)?;
+            let mut held = Vec::new();
+            for (hold, target) in holds.iter().zip(&targets) {
+                let value = hold.solve(&loaded.scene, *target, &overrides[..swept])?;
+                overrides.push(format!("{}={value}", hold.key));
+                held.push(value);
+                loaded = load(&overrides)?;
+            }
+            bench(&loaded.scene).map_err(|error| located(&loaded, &error))?;
+            Ok(Combination { settings, held, loaded })
+        };
+        let scenes = chosen.into_iter().map(scene);
+        let scenes = scenes.collect::<Result<Vec<_>, QualityError>>()?;
+        Ok(Self { sweeps, holds, scenes, draws: 1 })
+    }
+
+    /// The same plan with that many draws of the devices' random errors for each combination, one at least.
+    ///
+    /// # Errors
+    ///
+    /// If there are several and nothing is random.
+    pub fn with_draws(self, draws: u32) -> Result<Self, QualityError> {
+        let random = self.scenes.iter().any(|one| is_random(&one.loaded.scene));
+        if draws > 1 && !random {
+            return Err(QualityError::NothingRandom { draws });
+        }
+        Ok(Self { draws: draws.max(1), ..self })
+    }
+
+    /// How often a scene is drawn.
+    pub(super) fn draws_of(&self, scene: &Scene) -> u32 {
+        if is_random(scene) { self.draws } else { 1 }
+    }
+
+    /// The steps of its progress: the rows of all pictures, and of the surveys of rays.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        let steps = |one: &Combination| {
+            let scene = &one.loaded.scene;
+            let pictures = FIXED_PICTURES + PICTURES_A_DRAW * u64::from(self.draws_of(scene));
+            pictures * u64::from(scene.camera.resolution()[1])
+        };
+        self.scenes.iter().map(steps).sum()
+    }
+
+    /// What the numbers of each row will be: the held keys, then the figures.
+    #[must_use]
+    pub fn columns(&self) -> Vec<Column> {
+        let held = self.holds.iter().map(|hold| {
+            let (title, unit) = name_and_unit(&hold.key);
+            Column { name: hold.key.clone(), title, unit }
+        });
+        held.chain(columns()).collect()
+    }
+
+    /// Checks before the work that a table will have columns of these names.
+    ///
+    /// # Errors
+    ///
+    /// If one has not.
+    pub fn check_columns(&self, names: &[String]) -> Result<(), UnknownColumn> {
+        let columns = self.columns();
+        names.iter().try_for_each(|name| find_column(&columns, name).map(drop))
+    }
+
+    /// How many combinations there are.
+    #[must_use]
+    pub fn combinations(&self) -> usize {
+        self.scenes.len()
+    }
+}
+
+/// The ideal and the empty view.
+const FIXED_PICTURES: u64 = 2;
+
+/// The scene, and the survey of rays.
+const PICTURES_A_DRAW: u64 = 2;
+
+fn is_random(scene: &Scene) -> bool {
+    let imperfections = scene.devices.iter().filter_map(|device| device.imperfection.as_ref());
+    imperfections.into_iter().any(Imperfection::is_random)
+}
+
+/// A scene with that draw of its devices' random errors.
+pub(super) fn drawn(scene: &Scene, draw: u32) -> Scene {
+    let mut scene = scene.clone();
+    for imperfection in scene.devices.iter_mut().filter_map(|device| device.imperfection.as_mut()) {
+        imperfection.draw = draw;
+    }
+    scene
+}

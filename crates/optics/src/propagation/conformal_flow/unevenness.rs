@@ -1,0 +1,118 @@
+//! An index that is not quite that of a map.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use num_complex::Complex64;
+
+use super::course::Demands;
+use super::crossing::Gauges;
+use super::points::Points;
+use super::strides::{Pace, Rays, Trials, stride};
+use super::uneven_strides::uneven_stride;
+use super::{ConformalFlow, MIRROR_MAGNIFIES};
+use crate::lanes::LANES;
+use crate::propagation::GridSpline;
+use crate::transformation::MapJet;
+
+/// A smooth factor ρ(x, y) of the index of a conformal map, by its square on a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unevenness {
+    square: GridSpline,
+    scale: f64,
+}
+
+/// The square of the factor at one place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Factor {
+    /// ρ².
+    pub square: f64,
+    /// ∂ρ²/∂x + i ∂ρ²/∂y, 1/cm.
+    pub gradient: Complex64,
+}
+
+/// Grid cells over which an unevenness is taken to vary.
+const CELLS_A_SCALE: f64 = 4.0;
+
+impl Unevenness {
+    /// The unevenness whose factor ρ has the square `square`; `None` if that is not positive everywhere. The grid should
+    /// reach a few cells beyond the device, and resolve what varies in about four cells.
+    #[must_use]
+    pub fn new(square: GridSpline) -> Option<Self> {
+        let scale = CELLS_A_SCALE * square.finest_spacing();
+        (square.bounds()[0] > 0.0).then_some(Self { square, scale })
+    }
+
+    /// Bounds of the factor.
+    pub(super) fn bounds(&self) -> [f64; 2] {
+        self.square.bounds().map(f64::sqrt)
+    }
+
+    #[inline]
+    pub(super) fn look(&self, z: Complex64) -> Factor {
+        let (square, gradient) = self.square.look(DVec2::new(z.re, z.im));
+        Factor { square, gradient: Complex64::new(gradient.x, gradient.y) }
+    }
+}
+
+impl ConformalFlow {
+    /// The same medium with an index that is uneven: ρ times that of the map. The unevenness is that of the upper half
+    /// plane, in which the lower half is looked at as its mirror image.
+    #[must_use]
+    pub fn with_unevenness(self, unevenness: Unevenness) -> Self {
+        let flow = Self { unevenness: Some(Arc::new(unevenness)), ..self };
+        Self { gauges: Gauges::new(&flow.cut, flow.extent, flow.scale()), ..flow }
+    }
+
+    /// Whether the index is not quite that of the map.
+    pub(super) fn is_uneven(&self) -> bool {
+        self.unevenness.is_some()
+    }
+
+    /// The length over which the medium varies, cm.
+    pub(super) fn scale(&self) -> f64 {
+        let own = self.map.scale();
+        self.unevenness.as_ref().map_or(own, |unevenness| unevenness.scale.min(own))
+    }
+
+    /// How exactly rays are to be followed for a tolerance, cm, that meet the mirror or do not.
+    pub(super) fn demands(&self, tolerance: f64, to_mirror: bool) -> Demands {
+        // Of a spline, nothing can be counted on, nor that a ray meets the mirror where a straight one would; and the
+        // errors of many short steps add up.
+        let uneven = self.is_uneven();
+        let smoothness = if uneven { 0.3 } else { self.map.smoothness() };
+        let share = if uneven || to_mirror { MIRROR_MAGNIFIES } else { 1.0 };
+        Demands::new(self.scale(), smoothness, share * tolerance)
+    }
+
+    /// How uneven the medium is at a physical point of the upper half.
+    pub(super) fn factor(&self, z: Complex64) -> Factor {
+        let none = Factor { square: 1.0, gradient: Complex64::ZERO };
+        self.unevenness.as_ref().map_or(none, |unevenness| unevenness.look(z))
+    }
+
+    /// The index at a virtual point.
+    pub(super) fn index_at(&self, jet: &MapJet) -> f64 {
+        self.strength * self.factor(jet.f).square.sqrt() / jet.stretch()
+    }
+
+    /// Moves four rays by the lengths (of any sign) into `to`.
+    pub(super) fn stride(
+        &self,
+        rays: &Rays,
+        pace: Pace,
+        from: &Points,
+        length: &[f64; LANES],
+        to: &mut Trials,
+    ) {
+        match &self.unevenness {
+            None => stride(&self.map, &self.gauges, rays, pace, from, length, to),
+            Some(unevenness) => uneven_stride(self, unevenness, rays, pace, from, length, to),
+        }
+    }
+
+    /// The map's border.
+    pub(super) fn gauges(&self) -> &Gauges {
+        &self.gauges
+    }
+}

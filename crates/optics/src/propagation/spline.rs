@@ -1,0 +1,242 @@
+//! Smooth functions in the plane through samples on a grid.
+
+use glam::DVec2;
+
+/// A bicubic spline through samples on a rectangular grid: two derivatives are continuous, and the third is over
+/// the lines next to the border ("not a knot", de Boor, A Practical Guide to Splines, chapter IV), so that cubic
+/// polynomials are kept as they are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridSpline {
+    corner: DVec2,
+    spacing: DVec2,
+    /// How many basis functions there are along x and y: two more than samples.
+    count: [usize; 2],
+    /// Their coefficients, those along x side by side.
+    coefficients: Vec<f64>,
+}
+
+/// Why there is no [`GridSpline`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum GridSplineError {
+    /// There are too few samples.
+    #[error("a grid of {} x {} samples is too small; it must have {LEAST} along either side", count[0], count[1])]
+    TooFew {
+        /// How many along x and y.
+        count: [usize; 2],
+    },
+    /// Samples are missing, or too many.
+    #[error("a grid of {} x {} has {samples} samples", count[0], count[1])]
+    Count {
+        /// How many along x and y.
+        count: [usize; 2],
+        /// How many samples there are.
+        samples: usize,
+    },
+    /// The grid's spacing is no length, or a sample is no number.
+    #[error(
+        "a sample or the spacing of the grid is not a finite number, or the spacing is not above 0"
+    )]
+    NotFinite,
+}
+
+/// The least number of samples along a side.
+const LEAST: usize = 4;
+
+impl GridSpline {
+    /// The spline through `samples`, those along x side by side, `count` along x and y: the first at `corner`, the
+    /// others at steps of `spacing` (cm).
+    ///
+    /// # Errors
+    ///
+    /// If there are fewer than four along a side, their number is another, or something is not finite.
+    pub fn new(
+        corner: DVec2,
+        spacing: DVec2,
+        count: [usize; 2],
+        samples: &[f64],
+    ) -> Result<Self, GridSplineError> {
+        let [nx, ny] = count;
+        if nx < LEAST || ny < LEAST {
+            return Err(GridSplineError::TooFew { count });
+        }
+        if nx.checked_mul(ny) != Some(samples.len()) {
+            return Err(GridSplineError::Count { count, samples: samples.len() });
+        }
+        let sound = corner.is_finite() && spacing.is_finite() && spacing.min_element() > 0.0;
+        if !sound || samples.iter().any(|sample| !sample.is_finite()) {
+            return Err(GridSplineError::NotFinite);
+        }
+        let (mx, my) = (nx + 2, ny + 2);
+        let mut line = vec![0.0; mx.max(my)];
+        let mut along_x = vec![0.0; mx * ny];
+        for (row, samples) in along_x.chunks_exact_mut(mx).zip(samples.chunks_exact(nx)) {
+            coefficients(samples.iter().copied(), row, &mut line);
+        }
+        let mut coefficients_xy = vec![0.0; mx * my];
+        let mut column = vec![0.0; my];
+        for i in 0..mx {
+            let samples = (0..ny).map(|j| along_x[j * mx + i]);
+            coefficients(samples, &mut column, &mut line);
+            for (j, value) in column.iter().enumerate() {
+                coefficients_xy[j * mx + i] = *value;
+            }
+        }
+        Ok(Self { corner, spacing, count: [mx, my], coefficients: coefficients_xy })
+    }
+
+    /// Value and gradient (1/cm) at a point. Beyond the grid the outermost pieces go on.
+    #[inline]
+    #[must_use]
+    pub fn look(&self, point: DVec2) -> (f64, DVec2) {
+        let place = (point - self.corner) / self.spacing;
+        let cell = |place: f64, count: usize| (place as i64).clamp(0, count as i64 - 4) as usize;
+        let (i, j) = (cell(place.x, self.count[0]), cell(place.y, self.count[1]));
+        let (x, y) = (basis(place.x - i as f64), basis(place.y - j as f64));
+        let (mut value, mut gradient) = (0.0, DVec2::ZERO);
+        for k in 0..4 {
+            let start = (j + k) * self.count[0] + i;
+            let row = &self.coefficients[start..start + 4];
+            let (mut along, mut slope) = (0.0, 0.0);
+            for (l, c) in row.iter().enumerate() {
+                along += x.0[l] * c;
+                slope += x.1[l] * c;
+            }
+            value += y.0[k] * along;
+            gradient += DVec2::new(y.0[k] * slope, y.1[k] * along);
+        }
+        (value, gradient / self.spacing)
+    }
+
+    /// Bounds of the values within the grid: those of the coefficients, which differ little from the values where
+    /// the grid is fine.
+    #[must_use]
+    pub fn bounds(&self) -> [f64; 2] {
+        let start = [f64::INFINITY, f64::NEG_INFINITY];
+        self.coefficients.iter().fold(start, |[low, high], c| [low.min(*c), high.max(*c)])
+    }
+
+    /// The distance between neighbouring samples along the side where it is smaller, cm.
+    #[must_use]
+    pub fn finest_spacing(&self) -> f64 {
+        self.spacing.min_element()
+    }
+}
+
+/// The four basis functions of a cell at a place in it, 0 to 1, and their derivatives.
+#[inline]
+fn basis(t: f64) -> ([f64; 4], [f64; 4]) {
+    let s = 1.0 - t;
+    let (tt, ss) = (t * t, s * s);
+    let values = [
+        ss * s / 6.0,
+        (4.0 - 3.0 * tt * (2.0 - t)) / 6.0,
+        (4.0 - 3.0 * ss * (2.0 - s)) / 6.0,
+        tt * t / 6.0,
+    ];
+    let slopes = [-0.5 * ss, 0.5 * t * (3.0 * t - 4.0), -0.5 * s * (3.0 * s - 4.0), 0.5 * tt];
+    (values, slopes)
+}
+
+/// The coefficients of the spline in one dimension through samples, of which there are two fewer: with f the samples,
+/// (c[i] + 4 c[i+1] + c[i+2])/6 = f[i], and the fourth differences at both ends are zero, which gives the coefficients at the
+/// second samples from the ends at once.
+fn coefficients(samples: impl Iterator<Item = f64>, c: &mut [f64], line: &mut [f64]) {
+    let m = c.len();
+    for (place, sample) in c[1..m - 1].iter_mut().zip(samples) {
+        *place = sample;
+    }
+    // c[i] holds the sample i - 1 till it is done with; the ends' samples are needed last.
+    let (first, last) = (c[1], c[m - 2]);
+    let near = (8.0 * c[2] - c[1] - c[3]) / 6.0;
+    let far = (8.0 * c[m - 3] - c[m - 2] - c[m - 4]) / 6.0;
+    let (second, next_to_last) = (c[2], c[m - 3]);
+    // Thomas's algorithm for what lies between.
+    let unknowns = 3..m - 3;
+    if !unknowns.is_empty() {
+        let mut above = 0.0;
+        let mut before = near;
+        for i in unknowns.clone() {
+            let pivot = 4.0 - above;
+            let end = if i + 1 == m - 3 { far } else { 0.0 };
+            c[i] = (6.0 * c[i] - end - before) / pivot;
+            above = pivot.recip();
+            line[i] = above;
+            before = c[i];
+        }
+        for i in (3..m - 4).rev() {
+            c[i] -= line[i] * c[i + 1];
+        }
+    }
+    (c[2], c[m - 3]) = (near, far);
+    c[1] = 6.0 * second - 4.0 * c[2] - c[3];
+    c[m - 2] = 6.0 * next_to_last - 4.0 * c[m - 3] - c[m - 4];
+    c[0] = 6.0 * first - 4.0 * c[1] - c[2];
+    c[m - 1] = 6.0 * last - 4.0 * c[m - 2] - c[m - 3];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spline(count: [usize; 2], function: impl Fn(DVec2) -> f64) -> GridSpline {
+        let (corner, spacing) = (DVec2::new(-1.0, 2.0), DVec2::new(3.0, 1.5));
+        let spacing = spacing / DVec2::new(count[0] as f64 - 1.0, count[1] as f64 - 1.0);
+        let place = |k: usize| DVec2::new((k % count[0]) as f64, (k / count[0]) as f64);
+        let samples: Vec<f64> =
+            (0..count[0] * count[1]).map(|k| function(corner + spacing * place(k))).collect();
+        GridSpline::new(corner, spacing, count, &samples).expect("a spline")
+    }
+
+    fn points() -> impl Iterator<Item = DVec2> {
+        (0..200).map(|k| {
+            let share = f64::from(k) / 200.0;
+            DVec2::new(-1.0 + 3.0 * share, 2.0 + 1.5 * (17.3 * share).fract())
+        })
+    }
+
+    #[test]
+    fn cubic_polynomials_are_kept_up_to_the_border() {
+        let function = |p: DVec2| {
+            1.0 + p.x - 0.3 * p.x * p.x * p.y + 0.2 * p.y.powi(3) - 0.1 * (p.x * p.y).powi(3)
+        };
+        let slope = |p: DVec2| {
+            DVec2::new(
+                1.0 - 0.6 * p.x * p.y - 0.3 * p.x.powi(2) * p.y.powi(3),
+                -0.3 * p.x * p.x + 0.6 * p.y * p.y - 0.3 * p.x.powi(3) * p.y.powi(2),
+            )
+        };
+        for count in [[4, 4], [4, 5], [6, 7], [21, 5]] {
+            let spline = spline(count, function);
+            for point in points() {
+                let (value, gradient) = spline.look(point);
+                assert!((value - function(point)).abs() < 1e-12, "{count:?} {point}");
+                assert!((gradient - slope(point)).length() < 1e-11, "{count:?} {point}");
+            }
+        }
+    }
+
+    #[test]
+    fn smooth_functions_are_met_to_the_fourth_order() {
+        let function = |p: DVec2| (2.0 * p.x).sin() * (1.3 * p.y).cos();
+        let error = |n: usize| {
+            let spline = spline([n + 1, n + 1], function);
+            points().map(|p| (spline.look(p).0 - function(p)).abs()).fold(0.0, f64::max)
+        };
+        let order = (error(24) / error(48)).log2();
+        assert!(order > 3.7 && order < 4.6, "{order}");
+        // Interpolation: at a sample it is the sample.
+        let spline = spline([13, 13], function);
+        let sample = DVec2::new(-1.0 + 0.25 * 7.0, 2.0 + 0.125 * 4.0);
+        assert!((spline.look(sample).0 - function(sample)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn what_is_no_grid_is_refused() {
+        let new = |count, samples: &[f64]| GridSpline::new(DVec2::ZERO, DVec2::ONE, count, samples);
+        assert!(matches!(new([3, 4], &[0.0; 12]), Err(GridSplineError::TooFew { .. })));
+        assert!(matches!(new([4, 4], &[0.0; 12]), Err(GridSplineError::Count { .. })));
+        assert_eq!(new([4, 4], &[f64::NAN; 16]), Err(GridSplineError::NotFinite));
+        let flat = GridSpline::new(DVec2::ZERO, DVec2::ZERO, [4, 4], &[0.0; 16]);
+        assert_eq!(flat, Err(GridSplineError::NotFinite));
+    }
+}

@@ -1,0 +1,109 @@
+//! An index that is uneven, against the physical ray equation.
+
+use super::rays::{CUT, Dice, flow, legs, steepness};
+use super::uneven_reference;
+use glam::DVec2;
+use optics::geometry::Extent;
+use optics::propagation::{Boundary, GridSpline, Unevenness};
+
+/// Samples of the square of a factor on a grid that reaches beyond the cut.
+fn grid(spacing: f64, square: impl Fn(DVec2) -> f64) -> GridSpline {
+    let corner = DVec2::new(CUT.x_min - 4.0, -6.0);
+    let end = DVec2::new(CUT.x_max + 4.0, CUT.y_max + 4.0);
+    let count = ((end - corner) / spacing).ceil().as_usizevec2() + 1;
+    let place =
+        |k: usize| corner + spacing * DVec2::new((k % count.x) as f64, (k / count.x) as f64);
+    let samples: Vec<f64> = (0..count.x * count.y).map(|k| square(place(k))).collect();
+    GridSpline::new(corner, DVec2::splat(spacing), count.to_array(), &samples).expect("a grid")
+}
+
+/// Hills and dells of 3 %, about 10 cm apart.
+fn hills(p: DVec2) -> f64 {
+    1.0 + 0.06 * (0.6 * p.x + 0.2).sin() * (0.5 * p.y - 0.1 * p.x).cos()
+}
+
+#[test]
+fn an_even_unevenness_is_none() {
+    let short = Extent { min: -10.0, max: 10.0 };
+    let even = flow(short, 1.1);
+    let uneven =
+        flow(short, 1.1).with_unevenness(Unevenness::new(grid(2.0, |_| 1.0)).expect("positive"));
+    let mut dice = Dice(77);
+    for _ in 0..300 {
+        let (start, p) = dice.enter(&even, short);
+        let [a, b] =
+            [&even, &uneven].map(|flow| flow.advance_from(&start, p, 1e-9).expect("a ray"));
+        if steepness(&a) < 0.02 {
+            continue;
+        }
+        assert_eq!(a.boundary, b.boundary);
+        assert!((a.at.position - b.at.position).length() < 1e-8, "{a:?} {b:?}");
+        assert!((a.wave_vector - b.wave_vector).length() < 1e-9);
+        assert!((a.optical_path - b.optical_path).abs() < 1e-8);
+        let turned = a.transport - b.transport;
+        assert!(turned.to_cols_array().iter().all(|e| e.abs() < 1e-8), "{turned}");
+    }
+}
+
+#[test]
+fn uneven_rays_obey_the_physical_ray_equation() {
+    let short = Extent { min: -10.0, max: 10.0 };
+    let spline = grid(0.8, hills);
+    let mut dice = Dice(0x0dd5_eed5);
+    let (mut floors, mut compared, mut worst) = (0, 0, [0.0_f64; 4]);
+    for k in 0..60 {
+        let (extent, c) = [(Extent::ENDLESS, 1.0), (short, 1.0), (short, 1.1456)][k % 3];
+        let flow =
+            flow(extent, c).with_unevenness(Unevenness::new(spline.clone()).expect("positive"));
+        for (start, p, end) in legs(&flow, dice.enter(&flow, extent), 1e-8) {
+            if steepness(&end) < 0.02 {
+                continue;
+            }
+            let exact =
+                uneven_reference(&start, p, extent, c, |at| spline.look(at)).expect("a ray");
+            let coarse = flow.advance_from(&start, p, 1e-6).expect("the same ray");
+            let field = end.transport * p.normalize().any_orthonormal_vector();
+            let off = [
+                (end.at.position - exact.position).length(),
+                (coarse.at.position - exact.position).length(),
+                (end.optical_path - exact.optical_path).abs(),
+                (field - exact.electric_field).length(),
+            ];
+            for (worst, off) in worst.iter_mut().zip(off) {
+                *worst = worst.max(off);
+            }
+            floors += u32::from(end.boundary == Boundary::Floor);
+            compared += 1;
+        }
+    }
+    assert!(compared > 50 && floors > 5, "{compared} {floors}");
+    // The reference crosses the lines of the grid without care.
+    assert!(worst[0] < 2e-7 && worst[1] < 1e-6, "{worst:?}");
+    assert!(worst[2] < 2e-7 && worst[3] < 2e-7, "{worst:?}");
+}
+
+#[test]
+fn uneven_rays_can_be_reversed() {
+    // Along z without an end, hills of the index can guide light for ever.
+    let extent = Extent { min: -50.0, max: 50.0 };
+    let flow =
+        flow(extent, 1.0).with_unevenness(Unevenness::new(grid(0.5, hills)).expect("positive"));
+    let mut dice = Dice(99);
+    for _ in 0..200 {
+        let (start, p) = dice.enter(&flow, extent);
+        let there = flow.advance_from(&start, p, 1e-9).expect("a ray");
+        let back = flow.advance(there.at.half, there.at.position, -there.wave_vector, 1e-9);
+        let back = back.expect("the same ray");
+        if steepness(&there) < 2e-2 || steepness(&back) < 2e-2 {
+            continue;
+        }
+        assert!((back.at.position - start.position).length() < 1e-7);
+        assert!((back.optical_path - there.optical_path).abs() < 1e-7);
+        assert!((there.wave_vector.length() - there.at.index).abs() < 1e-10);
+    }
+}
+
+#[test]
+fn a_factor_must_be_positive() {
+    assert!(Unevenness::new(grid(1.0, |p| p.x)).is_none());
+}
