@@ -82,13 +82,13 @@ pub fn read(py: Python<'_>, path: PathBuf) -> PyResult<Arrays<'_>> {
     arrays(py, picture)
 }
 
-/// Puts tiles together: for each what it is called, its channels and its metadata.
+/// What a tile is called, its channels and its metadata.
+type Tile<'py> = (String, Bound<'py, PyDict>, Vec<(String, String)>);
+
+/// Puts tiles together.
 #[pyfunction]
-pub fn merge<'py>(
-    py: Python<'py>,
-    tiles: Vec<(String, Bound<'py, PyDict>, Vec<(String, String)>)>,
-) -> PyResult<Arrays<'py>> {
-    let piece = |(name, channels, metadata): (String, Bound<'_, PyDict>, Vec<(String, String)>)| {
+pub fn merge<'py>(py: Python<'py>, tiles: Vec<Tile<'py>>) -> PyResult<Arrays<'py>> {
+    let piece = |(name, channels, metadata): Tile<'_>| {
         Ok((name, metadata, picture_of(&channels, Vec::new())?))
     };
     let pieces = tiles.into_iter().map(piece).collect::<PyResult<Vec<_>>>()?;
