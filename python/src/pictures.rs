@@ -83,12 +83,12 @@ pub fn read(py: Python<'_>, path: PathBuf) -> PyResult<Arrays<'_>> {
 }
 
 /// What a tile is called, its channels and its metadata.
-type Tile<'py> = (String, Bound<'py, PyDict>, Vec<(String, String)>);
+type Piece<'py> = (String, Bound<'py, PyDict>, Vec<(String, String)>);
 
 /// Puts tiles together.
 #[pyfunction]
-pub fn merge<'py>(py: Python<'py>, tiles: Vec<Tile<'py>>) -> PyResult<Arrays<'py>> {
-    let piece = |(name, channels, metadata): Tile<'_>| {
+pub fn merge<'py>(py: Python<'py>, tiles: Vec<Piece<'py>>) -> PyResult<Arrays<'py>> {
+    let piece = |(name, channels, metadata): Piece<'_>| {
         Ok((name, metadata, picture_of(&channels, Vec::new())?))
     };
     let pieces = tiles.into_iter().map(piece).collect::<PyResult<Vec<_>>>()?;
