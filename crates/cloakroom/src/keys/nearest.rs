@@ -34,7 +34,7 @@ pub fn hint(word: &str, known: &[&str], known_as: &str) -> String {
     }
 }
 
-/// "unknown key `positon`" with the hint of [`hint`]; `place` is empty or such as " in [camera]".
+/// "unknown key `positon`" with the hint of [`hint`]; `place` is empty or such as ` in [camera]`.
 pub fn unknown(what: &str, word: &str, place: &str, known: &[&str]) -> String {
     let known_as = format!("known {what}s");
     format!("unknown {what} {}{place}{}", quoted(word, '`'), hint(word, known, &known_as))
