@@ -69,8 +69,6 @@ export async function openPage(context, address, fragment = "") {
 
 // Waits until the finished picture of the last wish is there.
 export async function finished(page, timeout = 60000) {
-  // A wish that is only just being made resets it.
-  await page.waitForTimeout(300);
   await page.waitForFunction(() => document.body.dataset.finished === "true", undefined, { timeout });
 }
 

@@ -31,6 +31,7 @@ const look = () => ({ scene: state.scene, size: state.size, samples: state.sampl
 // Something has changed: a coarse picture now if it goes on, else the finished one.
 function changed(moving = false) {
   clearTimeout(settle);
+  document.body.dataset.finished = "false";
   if (moving) {
     connection.look(look, true);
     settle = setTimeout(() => changed(false), REST);
@@ -238,8 +239,9 @@ function rotate(degrees, moving) {
 }
 
 function showSplit() {
-  const shown = { bare: "bare metal", mirror: "mirror" }[state.device?.show] ?? "the scene";
-  picture.layOut(state, shown);
+  const cloak = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1);
+  const words = { bare: "bare metal", mirror: "mirror", cloak: "cloak" };
+  picture.layOut(state, cloak ? words[cloak.show ?? "cloak"] : "the scene");
 }
 
 function setBeside(beside) {
