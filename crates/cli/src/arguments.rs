@@ -104,6 +104,8 @@ pub struct MergeArguments {
     /// times.
     #[arg(short, long = "output", value_name = "FILE", required = true)]
     pub outputs: Vec<PathBuf>,
+}
+
 /// Arguments of `animate`.
 #[derive(Args, Debug)]
 pub struct AnimateArguments {

@@ -53,7 +53,7 @@ impl Opened {
                     let absolute = std::path::absolute(path).map(ImageSource::File).ok();
                     vec![Some(source), absolute]
                 }
-                ImageSource::BuiltIn(_) => vec![Some(source)],
+                ImageSource::BuiltIn(_) | ImageSource::Memory(_) => vec![Some(source)],
             })
             .flatten()
             .collect();

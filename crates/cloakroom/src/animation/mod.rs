@@ -220,7 +220,7 @@ pub fn image_files(scene: &Scene, studio: &Studio<'_>) -> Vec<PathBuf> {
     }
     let file = |source: &ImageSource| match source {
         ImageSource::File(path) => Some(path.clone()),
-        ImageSource::BuiltIn(_) => None,
+        ImageSource::BuiltIn(_) | ImageSource::Memory(_) => None,
     };
     sources.into_iter().filter_map(file).collect()
 }
