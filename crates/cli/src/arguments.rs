@@ -9,7 +9,7 @@ use cloakroom::measure::STANDARD_PLOT;
 use cloakroom::render::Tile;
 use cloakroom::scene::OPTIONAL_CHANNELS;
 use std::path::PathBuf;
-use values::{angles, grid, pixel, point, range, rectangle, size};
+use values::{angles, frames_only, grid, map_range, pixel, point, range, rectangle, size};
 
 /// Photorealistic, physically exact pictures of invisibility cloaks.
 #[derive(Debug, Parser)]
@@ -27,6 +27,8 @@ pub enum Command {
     Render(RenderArguments),
     /// Put tiles that `render --tile` has written together: the picture as if it had been rendered whole.
     Merge(MergeArguments),
+    /// Make a film of a scene while keys of it change: GIF, animated PNG or WebP, MP4, WebM, or a folder of frames.
+    Animate(AnimateArguments),
     /// Validate a scene and print facts and an estimate of the time, without rendering.
     Check(SceneArguments),
     /// Trace given rays through a scene; JSON in, JSON out.
@@ -53,6 +55,8 @@ pub enum Command {
     Quality(QualityArguments),
     /// Go through the statements of the paper, one by one: what comes out here, and a verdict (Markdown).
     Verify(VerifyArguments),
+    /// Open a page in the browser, served on this machine alone, on which devices can be turned and changed.
+    View(ViewArguments),
     /// List the devices with their keys and computed facts.
     Devices(DevicesArguments),
     /// Print the JSON Schema of scene files, for editors.
@@ -100,6 +104,41 @@ pub struct MergeArguments {
     /// times.
     #[arg(short, long = "output", value_name = "FILE", required = true)]
     pub outputs: Vec<PathBuf>,
+}
+
+/// Arguments of `animate`.
+#[derive(Args, Debug)]
+pub struct AnimateArguments {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// A key and its way, spread evenly over the frames, as in device.0.rotation=0..360 or, there and back, 0..25..0;
+    /// or a value a frame, as in 0..90:5 or 1,2,4. May be given several times: the keys change together.
+    #[arg(long = "sweep", value_name = "KEY=START..END", required = true)]
+    pub sweeps: Vec<String>,
+    /// How many frames.
+    #[arg(long, value_name = "N")]
+    pub frames: Option<usize>,
+    /// The file to write; its ending decides: .gif, .apng, .png, .webp, .mp4 or .webm (with ffmpeg), or none for a
+    /// folder of frames.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Frames a second.
+    #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=100))]
+    pub fps: u32,
+    /// Render only these frames, the first being 0, into the folder of frames, and make no film: a part of a job
+    /// that is shared.
+    #[arg(long, value_name = "FIRST..LAST", value_parser = frames_only)]
+    pub frames_only: Option<[usize; 2]>,
+    /// Keep the folder of frames beside the film.
+    #[arg(long)]
+    pub keep_frames: bool,
+    /// The range of a map's colors (`picture.map`), in ns for times and as shares for powers.
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, value_parser = map_range)]
+    pub map_range: Option<[f64; 2]>,
+    /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
 }
 
 /// Arguments of `trace`.
@@ -367,6 +406,25 @@ pub struct VerifyArguments {
     #[arg(long)]
     pub json: bool,
     /// Number of threads; all cores if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
+/// Arguments of `view`.
+#[derive(Args, Debug)]
+pub struct ViewArguments {
+    /// The scene to begin with (TOML) [default: cloak (iii) of the paper].
+    pub scene: Option<PathBuf>,
+    /// Override a key of the scene, as in device.0.rotation=5.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub overrides: Vec<String>,
+    /// The port on this machine; the next free one if it is taken, any free one if 0.
+    #[arg(long, value_name = "N", default_value_t = 8420)]
+    pub port: u16,
+    /// Do not open the browser; the address is printed.
+    #[arg(long)]
+    pub no_open: bool,
+    /// Number of threads that render; all cores if absent.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
 }

@@ -3,6 +3,7 @@
 //! Exit status: 0 done, 1 bad input or failed work (one message on standard error), 2 wrong usage,
 //! 130 on Ctrl-C.
 
+mod animate;
 mod arguments;
 mod check;
 mod compare;
@@ -26,6 +27,7 @@ mod report;
 mod scene;
 mod trace;
 mod verify;
+mod view;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -45,6 +47,7 @@ fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::Render(arguments) => render::run(arguments, stop),
         Command::Merge(arguments) => merge::run(arguments),
+        Command::Animate(arguments) => animate::run(arguments, stop),
         Command::Check(arguments) => check::run(arguments),
         Command::Trace(arguments) => trace::run(arguments, stop),
         Command::Pulses(arguments) => pulses::run(arguments),
@@ -57,6 +60,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Compare(arguments) => compare::run(arguments),
         Command::Quality(arguments) => quality::run(arguments, stop),
         Command::Verify(arguments) => verify::run(arguments, stop),
+        Command::View(arguments) => view::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),
         Command::Schema => report::print_json(&cloakroom::scene_file::schema()),
     }

@@ -10,6 +10,7 @@
 //! Lengths are in cm, angles in degrees, times in ns, unless a name says otherwise; axes and signs
 //! are those of [`optics::wave`].
 
+pub mod animation;
 pub mod device;
 pub mod flux;
 pub mod gallery;

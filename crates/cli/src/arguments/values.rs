@@ -22,6 +22,22 @@ pub(super) fn range(text: &str) -> Result<[f64; 3], String> {
     parts.ok_or_else(|| "write FROM..TO:STEP in degrees, as in -60..60:5".to_owned())
 }
 
+/// Reads the first and the last of some frames, such as 0..29.
+pub(super) fn frames_only(text: &str) -> Result<[usize; 2], String> {
+    let pair = text
+        .split_once("..")
+        .and_then(|(first, last)| Some([first.trim().parse().ok()?, last.trim().parse().ok()?]));
+    pair.filter(|[first, last]| first <= last)
+        .ok_or_else(|| "write FIRST..LAST, counted from 0, as in 0..29".to_owned())
+}
+
+/// Reads the range of a map, such as -0.1,0.1.
+pub(super) fn map_range(text: &str) -> Result<[f64; 2], String> {
+    numbers(text)
+        .filter(|[low, high]| low < high)
+        .ok_or_else(|| "write LOW,HIGH, the smaller number first, as in -0.1,0.1".to_owned())
+}
+
 /// Finite numbers between commas.
 fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let numbers: Result<Vec<f64>, _> =

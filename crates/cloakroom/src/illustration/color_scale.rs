@@ -50,6 +50,12 @@ impl ColorScale {
         Self { range: Some((low, high)), clipped }
     }
 
+    /// The scale of a range that is given, the same for many pictures: there may be numbers beyond it.
+    #[must_use]
+    pub fn between(low: f64, high: f64) -> Self {
+        Self { range: Some((low, high)), clipped: (true, true) }
+    }
+
     /// The least and the greatest number that have a colour of their own; equal if all numbers
     /// agree, none if no number is finite.
     #[must_use]

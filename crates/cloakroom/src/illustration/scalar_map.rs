@@ -22,6 +22,19 @@ impl ScalarMap {
     ///
     /// If the picture has no such channel, or the channel not one number a pixel.
     pub fn new(picture: &Picture, channel: &str) -> Result<Self, IllustrationError> {
+        Self::with_scale(picture, channel, None)
+    }
+
+    /// The same on a scale that is given, so that pictures can be compared; `None` for that of its numbers.
+    ///
+    /// # Errors
+    ///
+    /// As [`ScalarMap::new`].
+    pub fn with_scale(
+        picture: &Picture,
+        channel: &str,
+        scale: Option<ColorScale>,
+    ) -> Result<Self, IllustrationError> {
         let samples = &picture
             .channel(channel)
             .ok_or_else(|| IllustrationError::UnknownChannel {
@@ -45,7 +58,8 @@ impl ScalarMap {
             Samples::F32(_) | Samples::Rgb(_) => 8.0 * f64::from(f32::EPSILON),
             Samples::F64(_) => 8.0 * f64::EPSILON,
         };
-        let scale = ColorScale::new((0..samples.len()).map(|i| samples.get(i)), rounding);
+        let of_all = || ColorScale::new((0..samples.len()).map(|i| samples.get(i)), rounding);
+        let scale = scale.unwrap_or_else(of_all);
         let colors = (0..samples.len()).flat_map(|i| scale.color(samples.get(i)).0).collect();
         let image = RgbImage::from_raw(width, height, colors).ok_or_else(wrong_size)?;
         Ok(Self { image, bar: ColorBar { scale, quantity: Quantity::of_channel(channel) } })

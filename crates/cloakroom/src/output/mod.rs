@@ -14,6 +14,7 @@ pub use arrays::{Arrays, write_arrays};
 pub use grid_file::{GridArray, GridFile, GridFormat, GridValues, write_grid};
 pub use image::RgbImage;
 pub use picture::{Channel, Picture, Samples};
+pub(crate) use png_file::encoder as png_encoder;
 pub use png_file::{encode_png, to_srgb, write_png, write_png_in_strips};
 pub use reading::{ReadError, read_npz, read_png};
 pub use whole_file::{WriteSeek, check_writable, write_whole};

@@ -127,10 +127,19 @@ pub fn write_png_in_strips(
 }
 
 fn header<'o>(
-    (width, height): (u32, u32),
+    size: (u32, u32),
     metadata: &[(String, String)],
     out: &'o mut dyn super::WriteSeek,
 ) -> Result<png::Writer<&'o mut dyn super::WriteSeek>, png::EncodingError> {
+    encoder(size, metadata, out)?.write_header()
+}
+
+/// An encoder of 8-bit sRGB with text metadata.
+pub(crate) fn encoder<'o>(
+    (width, height): (u32, u32),
+    metadata: &[(String, String)],
+    out: &'o mut dyn super::WriteSeek,
+) -> Result<png::Encoder<'static, &'o mut dyn super::WriteSeek>, png::EncodingError> {
     let mut encoder = png::Encoder::new(out, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
@@ -141,7 +150,7 @@ fn header<'o>(
         let key = if key == "software" { "Software" } else { key };
         encoder.add_itxt_chunk(key.to_owned(), text.clone())?;
     }
-    encoder.write_header()
+    Ok(encoder)
 }
 
 #[cfg(test)]

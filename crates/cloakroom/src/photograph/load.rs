@@ -77,8 +77,30 @@ pub fn load(source: &ImageSource) -> Result<LinearImage, LoadError> {
     if let ImageSource::Memory(image) = source {
         return Ok(LinearImage::clone(image));
     }
-    let bytes = read_bytes(source)?;
-    let image = linear(guarded(source, || decode(source, &bytes))?);
+    read(source, &read_bytes(source)?)
+}
+
+/// Reads the bytes of an image file, as [`load()`] does; `source` is its name in messages. It may have
+/// `most_pixels` pixels.
+///
+/// # Errors
+///
+/// As [`load()`].
+pub fn load_bytes(
+    source: &ImageSource,
+    bytes: &[u8],
+    most_pixels: u64,
+) -> Result<LinearImage, LoadError> {
+    let (decoder, _) = open(source, bytes)?;
+    if u64::from(decoder.dimensions().0) * u64::from(decoder.dimensions().1) > most_pixels {
+        return Err(LoadError::TooLarge { image: source.clone() });
+    }
+    read(source, bytes)
+}
+
+/// Linear light from the bytes of an image file.
+fn read(source: &ImageSource, bytes: &[u8]) -> Result<LinearImage, LoadError> {
+    let image = linear(guarded(source, || decode(source, bytes))?);
     image.check(source)?;
     Ok(image)
 }

@@ -19,7 +19,7 @@ mod source;
 mod srgb;
 
 pub use equirectangular::Equirectangular;
-pub use load::{LinearImage, Texels, dimensions, load};
+pub use load::{LinearImage, Texels, dimensions, load, load_bytes};
 pub use pyramid::{Edges, Pyramid};
 pub use source::{ImageSource, LoadError};
 pub use srgb::{decode, decode_table};

@@ -9,6 +9,7 @@ mod contrast;
 mod detection;
 mod exposure;
 mod film;
+mod images;
 mod pixel;
 mod pulses;
 mod sampling;
@@ -16,6 +17,7 @@ mod studio;
 mod tile;
 
 pub use channels::{Channel, Form, Wanted};
+pub use images::Images;
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
 pub use studio::{Studio, StudioError, bench, limits, ray_limits};
 pub use tile::{MergeError, Tile, TileError, merge, merge_images};

@@ -1,13 +1,15 @@
 //! The studio: a scene made ready to be looked at, images read and devices built.
 
+use super::Images;
 use super::body_surface::BodySurface;
 use crate::device::{Request, Show};
 use crate::keys::KeyError;
-use crate::photograph::{self, Edges, Equirectangular, LoadError, Pyramid};
-use crate::scene::{Projection, Scene, SurroundingsSettings};
+use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
+use crate::scene::{Projection, Scene};
 use crate::trace::{Bench, Limits, MOST_BODIES, Placed, Screen};
 use glam::DVec3;
 use optics::geometry::Pose;
+use std::sync::Arc;
 
 /// Width of the builtin photograph, cm.
 const BUILTIN_WIDTH: f64 = 110.0;
@@ -182,7 +184,7 @@ pub fn ray_limits(scene: &Scene, min_power: Option<f64>) -> Limits {
 #[derive(Clone, Debug)]
 pub(super) enum Surroundings {
     Color([f64; 3]),
-    Image(Equirectangular),
+    Image(Arc<Equirectangular>),
 }
 
 /// A scene ready to be rendered.
@@ -192,7 +194,7 @@ pub struct Studio<'s> {
     pub(super) bench: Bench,
     pub(super) limits: Limits,
     pub(super) screen: Screen,
-    pub(super) image: Pyramid,
+    pub(super) image: Arc<Pyramid>,
     pub(super) surroundings: Surroundings,
     /// Those of the opaque bodies, by their numbers among the devices.
     body_surfaces: Vec<Option<BodySurface>>,
@@ -205,36 +207,32 @@ impl<'s> Studio<'s> {
     ///
     /// If an image cannot be read, a device is impossible, or something stands in something else.
     pub fn new(scene: &'s Scene) -> Result<Self, StudioError> {
+        Self::with_images(scene, &mut Images::default())
+    }
+
+    /// The same with images that have been read before, where the scene shows them; what is read goes among them.
+    ///
+    /// # Errors
+    ///
+    /// As [`Studio::new`].
+    pub fn with_images(scene: &'s Scene, images: &mut Images) -> Result<Self, StudioError> {
         let bench = bench(scene)?;
         if let Some(device) = camera_inside(scene, &bench) {
             return Err(StudioError::CameraInside { device });
         }
-        let image = photograph::load(&scene.photograph.image).map_err(StudioError::Photograph)?;
-        let aspect = image.width as f64 / image.height as f64;
+        let image = images.photograph(scene)?;
+        let aspect = image.width() as f64 / image.height() as f64;
         let screen = screen(scene, aspect)?;
         if let Some(device) = screen.cut_by(&bench) {
             return Err(StudioError::PhotographInside { device, x: screen.x });
         }
-        let surroundings = match &scene.surroundings {
-            SurroundingsSettings::Color(color) => Surroundings::Color(*color),
-            SurroundingsSettings::Image(source) => Surroundings::Image(Equirectangular::new(
-                photograph::load(source).map_err(StudioError::Surroundings)?,
-            )),
-        };
+        let surroundings = images.surroundings(scene)?;
         let surface = |(device, placed): (usize, &Placed)| {
             BodySurface::of(placed).map_err(|error| StudioError::Surface { device, error })
         };
         let body_surfaces =
             bench.devices().iter().enumerate().map(surface).collect::<Result<_, _>>()?;
-        Ok(Self {
-            scene,
-            bench,
-            limits: limits(scene),
-            screen,
-            image: Pyramid::new(image, Edges::Clamp),
-            surroundings,
-            body_surfaces,
-        })
+        Ok(Self { scene, bench, limits: limits(scene), screen, image, surroundings, body_surfaces })
     }
 
     /// The surface of an opaque body.

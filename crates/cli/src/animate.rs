@@ -1,0 +1,164 @@
+//! `cloakroom animate`: a film of a scene while keys of it change.
+
+use crate::arguments::AnimateArguments;
+use crate::interruption;
+use crate::progress;
+use crate::render::tell_rarities;
+use crate::report::{Failure, say};
+use crate::scene;
+use cloakroom::animation::{
+    FilmError, FilmFormat, FilmSettings, FrameFolder, Projector, Timeline, image_files, write_film,
+};
+use cloakroom::output;
+use cloakroom::render::{RenderError, Supervision};
+use cloakroom::scene_file::{self, Loaded};
+use cloakroom::trace::Rarities;
+use std::ffi::OsString;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+/// Renders the frames that are not there yet, and makes the film of them.
+pub fn run(arguments: &AnimateArguments, stop: &AtomicBool) -> Result<(), Failure> {
+    let path = &arguments.output;
+    let format = FilmFormat::of(path).map_err(Failure::Failed)?;
+    let timeline =
+        Timeline::new(&arguments.sweeps, arguments.frames).map_err(Failure::from_error)?;
+    let count = timeline.frames();
+    let range = range(arguments.frames_only, count)?;
+    if arguments.frames_only.is_none() && format != FilmFormat::Frames {
+        format.check().map_err(Failure::from_error)?;
+        output::check_writable(path).map_err(Failure::from_error)?;
+    }
+    scene::use_threads(arguments.threads)?;
+    let mut projector = Projector::with_map_range(arguments.map_range);
+    let scenes = scenes(arguments, &timeline, range.clone(), &mut projector)?;
+    let folder = if format == FilmFormat::Frames { path.clone() } else { frames_beside(path) };
+    let frames = FrameFolder::new(&folder, count).map_err(failure)?;
+    let _busy = interruption::busy();
+    let rendered = render(&scenes, range, &frames, &mut projector, stop);
+    if let Err(Failure::Interrupted) = rendered {
+        say(&format!("the finished frames are kept in {}", folder.display()));
+    }
+    rendered?;
+    if format == FilmFormat::Frames {
+        return Ok(());
+    }
+    if arguments.frames_only.is_some() {
+        say(&format!(
+            "the frames are in {}; the same command without --frames-only makes the film",
+            folder.display()
+        ));
+        return Ok(());
+    }
+    let bar = progress::bar(count as u64, "writing");
+    let metadata = scenes.first().map(|loaded| projector.metadata(&loaded.scene));
+    let settings = FilmSettings {
+        rate: arguments.fps,
+        metadata: &metadata.unwrap_or_default(),
+        frame_done: &|| bar.inc(1),
+        stop,
+    };
+    let written = write_film(&frames, format, path, &settings);
+    bar.finish_and_clear();
+    written.map_err(failure)?;
+    if !arguments.keep_frames {
+        frames.remove();
+    }
+    Ok(())
+}
+
+/// The scenes of a range of frames, each of which can be built.
+fn scenes(
+    arguments: &AnimateArguments,
+    timeline: &Timeline,
+    range: Range<usize>,
+    projector: &mut Projector,
+) -> Result<Vec<Loaded>, Failure> {
+    let mut scenes: Vec<Loaded> = Vec::new();
+    for frame in range {
+        let overrides = [&arguments.scene.overrides[..], &timeline.overrides(frame)].concat();
+        let loaded =
+            scene_file::load(&arguments.scene.scene, &overrides).map_err(Failure::from_error)?;
+        projector.studio(&loaded.scene).map_err(|error| scene::located(&loaded, &error))?;
+        if loaded.scene.picture.map.is_some() && arguments.map_range.is_none() {
+            return Err(Failure::Failed(
+                "a film of a map needs one scale for all frames; give --map-range LOW,HIGH, in ns for times \
+                 and as shares for powers"
+                    .to_owned(),
+            ));
+        }
+        let size = |loaded: &Loaded| loaded.scene.camera.resolution();
+        if scenes.first().is_some_and(|first| size(first) != size(&loaded)) {
+            return Err(Failure::Failed(
+                "camera.resolution changes from frame to frame; a film has one size".to_owned(),
+            ));
+        }
+        scenes.push(loaded);
+    }
+    Ok(scenes)
+}
+
+/// Renders the frames of a range that are not finished.
+fn render(
+    scenes: &[Loaded],
+    range: Range<usize>,
+    frames: &FrameFolder,
+    projector: &mut Projector,
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
+    let rows = scenes.first().map_or(0, |first| u64::from(first.scene.camera.resolution()[1]));
+    let bar = progress::bar(rows * scenes.len() as u64, "rendering");
+    let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
+    let (mut rarities, mut skipped) = (Rarities::default(), 0);
+    let mut all = || {
+        for (loaded, frame) in scenes.iter().zip(range) {
+            let scene = &loaded.scene;
+            let studio = projector.studio(scene).map_err(|error| scene::located(loaded, &error))?;
+            let metadata = projector.metadata(scene);
+            if frames.is_finished(frame, &metadata, &image_files(scene, &studio)) {
+                skipped += 1;
+                bar.inc(rows);
+                continue;
+            }
+            let (image, rare) = projector.frame(scene, &studio, &supervision).map_err(failure)?;
+            rarities += rare;
+            frames.write(frame, &image, &metadata).map_err(failure)?;
+        }
+        Ok(())
+    };
+    let rendered = all();
+    bar.finish_and_clear();
+    rendered?;
+    tell_rarities(&rarities);
+    if skipped > 0 {
+        say(&format!("{skipped} of {} frames were there already", scenes.len()));
+    }
+    Ok(())
+}
+
+/// Which frames are to be rendered.
+fn range(only: Option<[usize; 2]>, count: usize) -> Result<Range<usize>, Failure> {
+    match only {
+        None => Ok(0..count),
+        Some([first, last]) if last < count => Ok(first..last + 1),
+        Some([first, last]) => Err(Failure::Failed(format!(
+            "--frames-only {first}..{last}: the frames are 0 to {}",
+            count - 1
+        ))),
+    }
+}
+
+/// The folder of the frames of a film: its name and `.frames`.
+fn frames_beside(path: &Path) -> PathBuf {
+    let mut name = OsString::from(path);
+    name.push(".frames");
+    name.into()
+}
+
+fn failure(error: FilmError) -> Failure {
+    match error {
+        FilmError::Render(RenderError::Stopped) => Failure::Interrupted,
+        error => Failure::from_error(error),
+    }
+}

@@ -1,0 +1,280 @@
+// The page of `cloakroom view` in a real browser.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { decoded, difference, finished, openPage, pixels, program, startBrowser, startServer } from "./session.js";
+
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const folder = mkdtempSync(join(tmpdir(), "cloakroom-page-"));
+let server;
+let browser;
+
+before(async () => {
+  // Small and quick: what is tested is the page.
+  const scene = "[camera]\nresolution = [320, 240]\n[[device]]\nkind = 'square-cloak'\nrotation = 10\n";
+  writeFileSync(join(folder, "mine.toml"), scene);
+  server = await startServer(join(folder, "mine.toml"));
+  browser = await startBrowser();
+});
+
+after(async () => {
+  await browser?.end();
+  const status = await server?.end();
+  rmSync(folder, { recursive: true, force: true });
+  assert.equal(status, 130, "Ctrl-C ends the server cleanly");
+});
+
+async function violations(page) {
+  // The policy of the page forbids foreign scripts; the browser's own evaluation does not ask it.
+  await page.evaluate(axe);
+  const result = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+  return result.violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join("; ")}`);
+}
+
+// Opens the page with small pictures of few samples.
+async function open(fragment) {
+  const opened = await openPage(browser.context, server.address, fragment);
+  await finished(opened.page);
+  return opened;
+}
+
+async function small(page) {
+  await page.evaluate(() => {
+    for (const [id, value] of [["width", "320"], ["samples", "4"]]) {
+      const select = document.getElementById(id);
+      select.value = value;
+      select.dispatchEvent(new Event("change"));
+    }
+  });
+  await finished(page);
+}
+
+test("it opens, and its picture is the command line's", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  const shown = await pixels(page);
+  const file = join(folder, "picture.png");
+  execFileSync(program, ["render", join(folder, "mine.toml"), "--set", "camera.samples=4", "-o", file]);
+  const wanted = await decoded(page, readFileSync(file));
+  assert.deepEqual(difference(shown, wanted), { bytes: 0, most: 0 });
+  assert.match(await page.textContent("#quality"), /320 × 240, 4 samples a pixel/);
+  assert.equal(await page.locator("#numbers tr").count(), 10);
+  assert.ok((await page.locator("#section path").count()) >= 5);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("it rotates, plays and stops", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  const before = await pixels(page);
+  await page.locator("#rotation").fill("25");
+  await finished(page);
+  assert.ok(difference(before, await pixels(page)).most > 20);
+  assert.equal(await page.inputValue("#rotation-number"), "25");
+  await page.locator("#play").click();
+  const count = () => page.evaluate(() => Number(document.body.dataset.pictures));
+  const first = await count();
+  await page.waitForFunction((n) => Number(document.body.dataset.pictures) > n + 5, first);
+  await page.locator("#play").click();
+  await finished(page);
+  assert.ok(Number(await page.inputValue("#rotation-number")) > 25);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("devices and their parameters are switched", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  const kinds = JSON.parse(execFileSync(program, ["devices", "--json"])).devices;
+  const titles = await page.locator("#exhibit optgroup:first-of-type option").allTextContents();
+  assert.deepEqual(titles, kinds.map(({ title }) => title));
+  await page.selectOption("#exhibit", "luneburg-lens");
+  await finished(page);
+  const lens = await pixels(page);
+  // Sliders come from the catalogue.
+  assert.equal(await page.inputValue("#keys input[aria-label='radius, exactly']"), "10");
+  await page.fill("#keys input[aria-label='radius, exactly']", "5");
+  await page.keyboard.press("Tab");
+  await finished(page);
+  assert.ok(difference(lens, await pixels(page)).most > 20);
+  // A lens is no cloak: there is no bare metal to show.
+  assert.equal(await page.locator("#shows input").count(), 1);
+  await page.fill("#keys input[aria-label='radius, exactly']", "-5");
+  await page.keyboard.press("Tab");
+  await page.waitForSelector("#banner:not([hidden])");
+  assert.match(await page.textContent("#banner-text"), /radius/);
+  await page.selectOption("#exhibit", "sphere-cloak");
+  await finished(page);
+  assert.ok(await page.locator("#banner").isHidden());
+  await page.locator("#shows input[value=bare]").check({ force: true });
+  await finished(page);
+  await page.selectOption("#map", "time_of_flight_difference");
+  await finished(page);
+  assert.ok(await page.locator("#scale").isVisible());
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("a photograph can be dropped, and is looked through", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  const before = await pixels(page);
+  await page.evaluate(async () => {
+    const canvas = new OffscreenCanvas(64, 48);
+    const context = canvas.getContext("2d");
+    context.fillStyle = "rgb(0 200 0)";
+    context.fillRect(0, 0, 64, 48);
+    const blob = await canvas.convertToBlob({ type: "image/png" });
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([blob], "green.png", { type: "image/png" }));
+    document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));
+  });
+  await page.waitForFunction(() => document.getElementById("live").textContent.includes("green.png"));
+  await finished(page);
+  const after = await pixels(page);
+  assert.ok(difference(before, after).most > 50);
+  assert.deepEqual(after.data.slice(0, 4), [0, 200, 0, 255]);
+  // Something that is no photograph is refused, and the picture stays.
+  await page.setInputFiles("#photograph", { name: "a.png", mimeType: "image/png", buffer: Buffer.from("no image") });
+  await page.waitForSelector("#banner:not([hidden])");
+  assert.match(await page.textContent("#banner-text"), /not an image/);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("pointing at the picture shows the rays of that point", async () => {
+  const { page, complaints } = await open();
+  await page.hover("#picture", { position: { x: 300, y: 230 } });
+  await page.waitForSelector("#lines path");
+  assert.match(await page.textContent("#ray-words"), /^Pixel \d+, \d+: .* from the photograph/);
+  const [x] = (await page.textContent("#ray-words")).match(/\d+/);
+  assert.ok(Number(x) > 0);
+  // Dragging orbits the camera, the wheel zooms.
+  const address = page.url();
+  await page.mouse.down();
+  await page.mouse.move(400, 330, { steps: 4 });
+  await page.mouse.up();
+  await page.mouse.wheel(0, -200);
+  await finished(page);
+  assert.notEqual(page.url(), address);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("the split view has a divider that moves", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  const cloak = await pixels(page);
+  await page.selectOption("#beside", "bare");
+  await finished(page);
+  await page.locator("#divider").focus();
+  await page.keyboard.press("Home");
+  assert.equal(difference(cloak, await pixels(page)).bytes, 0);
+  await page.keyboard.press("End");
+  assert.ok(difference(cloak, await pixels(page)).most > 20);
+  const box = await page.locator("#picture").boundingBox();
+  await page.mouse.move(box.x + box.width - 2, box.y + 30);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 4, box.y + 30, { steps: 3 });
+  await page.mouse.up();
+  assert.equal(await page.getAttribute("#divider", "aria-valuenow"), "25");
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("the keyboard alone is enough", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.id), "exhibit");
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.id), "picture");
+  const rotation = () => page.inputValue("#rotation-number");
+  await page.keyboard.press("]");
+  await page.keyboard.press("]");
+  assert.equal(await rotation(), "12");
+  await page.keyboard.press("b");
+  await finished(page);
+  assert.ok(await page.isChecked("#shows input[value=bare]"));
+  await page.keyboard.press("s");
+  assert.equal(await page.inputValue("#beside"), "bare");
+  const address = page.url();
+  await page.keyboard.press("ArrowLeft");
+  await finished(page);
+  assert.notEqual(page.url(), address);
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("ArrowDown");
+  await page.waitForSelector("#lines path");
+  await page.keyboard.press("Space");
+  assert.equal(await page.getAttribute("#play", "aria-pressed"), "true");
+  await page.keyboard.press("Space");
+  assert.equal(await page.getAttribute("#play", "aria-pressed"), "false");
+  // Every control can be reached, and shows it.
+  const reached = new Set();
+  for (let i = 0; i < 40; i += 1) {
+    await page.keyboard.press("Tab");
+    const outline = await page.evaluate(() => {
+      const at = document.activeElement;
+      return at === document.body ? "" : `${at.id}|${at.className}|${at.type}`;
+    });
+    if (outline) reached.add(outline.split("|")[0]);
+  }
+  for (const id of ["play", "rotation", "beside", "polarizer", "map", "photograph", "save-picture", "save-scene", "copy-link", "whole"]) {
+    assert.ok(reached.has(id), `${id} of ${[...reached]}`);
+  }
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("picture and scene are saved, and a link shows the same again", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  await page.locator("#rotation").fill("15");
+  await finished(page);
+  const shown = await pixels(page);
+  const saved = async (button) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.locator(button).click()]);
+    return readFileSync(await download.path());
+  };
+  const picture = await decoded(page, await saved("#save-picture"));
+  assert.equal(difference(shown, picture).bytes, 0);
+  writeFileSync(join(folder, "saved.toml"), await saved("#save-scene"));
+  const file = join(folder, "saved.png");
+  execFileSync(program, ["render", join(folder, "saved.toml"), "-o", file]);
+  assert.equal(difference(shown, await decoded(page, readFileSync(file))).bytes, 0);
+  await page.locator("#copy-link").click();
+  const other = await openPage(browser.context, page.url());
+  await finished(other.page);
+  assert.equal(difference(shown, await pixels(other.page)).bytes, 0);
+  assert.deepEqual([...complaints, ...other.complaints], []);
+  await other.page.close();
+  await page.close();
+});
+
+test("it is accessible, in light and dark, on a phone too", async () => {
+  const { page, complaints } = await open();
+  for (const colorScheme of ["light", "dark"]) {
+    await page.emulateMedia({ colorScheme });
+    assert.deepEqual(await violations(page), [], colorScheme);
+  }
+  await page.selectOption("#beside", "bare");
+  await page.selectOption("#map", "delivered");
+  await page.locator("details").evaluateAll((all) => all.forEach((one) => (one.open = true)));
+  await finished(page);
+  for (const width of [1280, 768, 360]) {
+    await page.setViewportSize({ width, height: 740 });
+    assert.deepEqual(await violations(page), [], String(width));
+    const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    assert.ok(overflow <= 0, `${overflow} pixels too wide at ${width}`);
+  }
+  const canvas = await page.locator("#picture").boundingBox();
+  assert.ok(canvas.width > 300 && canvas.width <= 360);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});

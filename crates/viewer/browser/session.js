@@ -1,0 +1,107 @@
+// A server and a browser for the tests. CLOAKROOM names the program, CHROMIUM the browser.
+
+import { spawn } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+
+export const program = process.env.CLOAKROOM ?? "../../../target/release/cloakroom";
+const browserPath = process.env.CHROMIUM ?? "/usr/bin/chromium";
+
+// A server with a scene of its own; `end` ends it as Ctrl-C does, and gives its exit status.
+export async function startServer(...parameters) {
+  const child = spawn(program, ["view", "--no-open", "--port", "0", ...parameters]);
+  const address = await new Promise((resolve, reject) => {
+    let said = "";
+    child.stdout.on("data", (data) => {
+      said += data;
+      if (said.includes("\n")) resolve(said.trim());
+    });
+    child.on("exit", (status) => reject(new Error(`the server has ended with ${status}`)));
+  });
+  const end = () =>
+    new Promise((resolve) => {
+      child.on("exit", resolve);
+      child.kill("SIGINT");
+    });
+  return { address, end };
+}
+
+export async function startBrowser() {
+  const folder = mkdtempSync(join(tmpdir(), "cloakroom-browser-"));
+  const context = await chromium.launchPersistentContext(folder, {
+    executablePath: browserPath,
+    headless: true,
+    acceptDownloads: true,
+    viewport: { width: 1280, height: 900 },
+    args: [
+      "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+      "--disable-component-update", "--disable-sync",
+    ],
+  });
+  const end = async () => {
+    await context.close();
+    rmSync(folder, { recursive: true, force: true });
+  };
+  return { context, end };
+}
+
+// Opens the page; what it asks for elsewhere and what the console says goes into `complaints`.
+export async function openPage(context, address, fragment = "") {
+  const page = await context.newPage();
+  const origin = `${new URL(address).origin}/`;
+  const complaints = [];
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type())) complaints.push(message.text());
+  });
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  page.on("request", (request) => {
+    const url = request.url();
+    if (!url.startsWith(origin) && !url.startsWith("blob:") && !url.startsWith("data:")) complaints.push(url);
+  });
+  page.on("websocket", (socket) => {
+    if (socket.url() !== `${origin.replace("http", "ws")}session`) complaints.push(socket.url());
+  });
+  await page.goto(address + fragment);
+  return { page, complaints };
+}
+
+// Waits until the finished picture of the last wish is there.
+export async function finished(page, timeout = 60000) {
+  await page.waitForFunction(() => document.body.dataset.finished === "true", undefined, { timeout });
+}
+
+// The canvas as RGBA.
+export function pixels(page) {
+  return page.evaluate(() => {
+    const canvas = document.getElementById("picture");
+    const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    return { width: canvas.width, height: canvas.height, data: Array.from(data) };
+  });
+}
+
+// A PNG file as RGBA, decoded by the browser.
+export function decoded(page, bytes) {
+  return page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const data = context.getImageData(0, 0, image.width, image.height).data;
+    return { width: image.width, height: image.height, data: Array.from(data) };
+  }, bytes.toString("base64"));
+}
+
+// How many bytes of two pictures differ, and the largest difference.
+export function difference(one, other) {
+  if (one.width !== other.width || one.height !== other.height) return { bytes: Infinity, most: 255 };
+  let [bytes, most] = [0, 0];
+  for (let i = 0; i < one.data.length; i += 1) {
+    const apart = Math.abs(one.data[i] - other.data[i]);
+    if (apart > 0) bytes += 1;
+    most = Math.max(most, apart);
+  }
+  return { bytes, most };
+}

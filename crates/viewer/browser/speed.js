@@ -1,0 +1,37 @@
+// How fast the page is: pictures a second while a device turns, and how soon the first one is there. `node speed.js`
+
+import { openPage, startBrowser, startServer } from "./session.js";
+
+const SECONDS = 6;
+const DEVICES = {
+  "(iii)": { kind: "square-cloak" },
+  "(iv)": { kind: "double-gaussian-cloak" },
+  "(i)": { kind: "square-cloak", material: "positive-uniaxial" },
+  "(ii)": { kind: "square-cloak", material: "negative-uniaxial" },
+};
+
+const server = await startServer();
+const browser = await startBrowser();
+const link = (device) => {
+  const scene = { device: [{ ...device, rotation: 5 }] };
+  return `#${Buffer.from(JSON.stringify({ scene, samples: 1 })).toString("base64url")}`;
+};
+
+for (const [name, device] of Object.entries(DEVICES)) {
+  const { page } = await openPage(browser.context, server.address, link(device));
+  const first = await page.waitForFunction(() => (document.body.dataset.pictures ? performance.now() : false), undefined, { polling: 10 });
+  const milliseconds = Math.round(await first.jsonValue());
+  await page.waitForTimeout(3000);
+  await page.locator("#play").click();
+  await page.waitForTimeout(1500);
+  const count = () => page.evaluate(() => [Number(document.body.dataset.pictures), performance.now()]);
+  const [from, start] = await count();
+  await page.waitForTimeout(1000 * SECONDS);
+  const [to, end] = await count();
+  const rate = (1000 * (to - from)) / (end - start);
+  const quality = await page.textContent("#quality");
+  process.stdout.write(`${name}: ${rate.toFixed(1)} pictures a second; first after ${milliseconds} ms; ${quality}\n`);
+  await page.close();
+}
+await browser.end();
+await server.end();

@@ -1,0 +1,406 @@
+// The page: what is done with it becomes a look, and what comes back is shown.
+
+import { Connection } from "./connection.js";
+import { buildControls } from "./controls.js";
+import { watchDrops, watchKeys, watchPointer } from "./gestures.js";
+import { percent, showNumbers } from "./numbers.js";
+import { picture, watchDivider } from "./picture.js";
+import { sectionView } from "./section.js";
+import { State, copy } from "./state.js";
+
+const $ = (id) => document.getElementById(id);
+
+const state = new State();
+let hello = null;
+let playing = false;
+// The point whose ray is followed: at first one that most devices stand before.
+let probing = [0.5, 0.47];
+let wanted = 0;
+let settle = 0;
+
+// How fast the device turns, degrees a second; how long after the last change the picture is finished, ms.
+const SPEED = 12;
+const REST = 180;
+
+const connection = new Connection({ hello: greeted, picture: received, section, rays, numbers, progress, error: failed, saved, photograph: hung }, gone);
+
+// --- What is asked for -------------------------------------------------------------------------------------------
+
+const look = () => ({ scene: state.scene, size: state.size, samples: state.samples, beside: state.beside });
+
+// Something has changed: a coarse picture now if it goes on, else the finished one.
+function changed(moving = false) {
+  clearTimeout(settle);
+  document.body.dataset.finished = "false";
+  if (moving) {
+    connection.look(look, true);
+    settle = setTimeout(() => changed(false), REST);
+    return;
+  }
+  if (playing) return connection.look(look, true);
+  wanted = connection.look(look, false) ?? wanted;
+  history.replaceState(null, "", `#${state.toFragment()}`);
+}
+
+function greeted(content) {
+  hello = content;
+  fillLists();
+  const linked = location.hash.length > 1 && state.fromFragment(location.hash.slice(1));
+  if (!linked && !state.exhibit) state.open("opened", hello.scene);
+  $("banner").hidden = true;
+  showState();
+  picture.mark(probing);
+  changed();
+}
+
+// --- What comes back ---------------------------------------------------------------------------------------------
+
+function received(caption, image) {
+  picture.show(caption, image, state);
+  document.body.dataset.pictures = String(Number(document.body.dataset.pictures ?? 0) + 1);
+  if (caption.view !== "scene") return;
+  clearError();
+  const { width, height, samples, min_power: power, finished } = caption;
+  const each = samples === 1 ? "1 sample" : `${samples} samples`;
+  const coarse = width < state.size[0];
+  $("quality").textContent = coarse || power > 0.001
+    ? `Preview: ${width} × ${height}, ${each} a pixel, branches above ${percent(power)}`
+    : `${width} × ${height}, ${each} a pixel${finished ? "" : ` of ${state.samples}`}`;
+  $("progress").hidden = finished;
+  if (!finished && !coarse) $("progress").value = samples / state.samples;
+  document.body.dataset.finished = String(finished && caption.id === wanted);
+  if (finished && !playing) $("live").textContent = `Finished: ${each} a pixel`;
+  showScale(caption.scale);
+  if (probing && (playing || finished || coarse)) connection.follow(probing);
+}
+
+function showScale(scale) {
+  $("scale").hidden = !scale;
+  if (!scale) return;
+  const number = (value) => (value === null ? "–" : Number(value.toPrecision(3)).toString().replace("-", "−"));
+  $("scale-low").textContent = number(scale.low);
+  $("scale-high").textContent = number(scale.high);
+  $("scale-title").textContent = scale.unit ? `${scale.title}, ${scale.unit}` : scale.title;
+}
+
+function section(content) {
+  sectionView.show(content);
+}
+
+function rays(content) {
+  if (probing) sectionView.rays(content);
+}
+
+function numbers(content) {
+  if (content.id >= wanted) showNumbers(content);
+}
+
+function progress({ id, samples, share }) {
+  if (id < wanted) return;
+  $("progress").hidden = false;
+  $("progress").value = (samples * share) / state.samples;
+}
+
+function failed({ id, message, key }) {
+  connection.failed(id);
+  if (id !== null && id < wanted) return;
+  $("banner-text").textContent = key ? `${key}: ${message}` : message;
+  $("retry").hidden = true;
+  $("banner").hidden = false;
+  $("progress").hidden = true;
+}
+
+function clearError() {
+  if ($("retry").hidden) $("banner").hidden = true;
+}
+
+function gone() {
+  stop();
+  $("banner-text").textContent = hello
+    ? "The server has ended, or cannot be reached."
+    : "No connection: ten pages may be open already, or the server has ended.";
+  $("banner").hidden = false;
+  $("retry").hidden = false;
+}
+$("retry").addEventListener("click", () => connection.open());
+
+function saved({ text }) {
+  download(new Blob([text], { type: "application/toml" }), "scene.toml");
+}
+
+function hung({ name }) {
+  const photograph = state.table("photograph");
+  photograph.image = name;
+  delete photograph.width;
+  $("live").textContent = `The photograph ${name} hangs behind the device`;
+  changed();
+}
+
+// --- What is chosen ----------------------------------------------------------------------------------------------
+
+function fillLists() {
+  const list = $("exhibit");
+  const kinds = document.createElement("optgroup");
+  kinds.label = "Devices";
+  const others = document.createElement("optgroup");
+  others.label = "More from the gallery";
+  for (const [kind, { title }] of Object.entries(hello.kinds)) {
+    const exhibit = hello.exhibits.find(({ scene }) => scene.device?.[0]?.kind === kind);
+    if (!exhibit) continue;
+    kinds.append(new Option(title, exhibit.name));
+  }
+  const listed = new Set(Array.from(kinds.children, (option) => option.value));
+  for (const { name } of hello.exhibits) {
+    if (!listed.has(name)) others.append(new Option(name.replaceAll("-", " "), name));
+  }
+  const opened = new Option(hello.name || "First scene", "opened");
+  list.replaceChildren(opened, kinds, others);
+  const map = $("map");
+  const titles = { none: "as seen", delivered: "power delivered", escaped: "power escaped", absorbed: "power absorbed", pruned: "power pruned" };
+  map.replaceChildren(...hello.maps.map((name) => new Option(titles[name] ?? name.replaceAll("_", " "), name)));
+}
+
+// Brings every control to the state.
+function showState() {
+  const device = state.device;
+  const kind = hello.kinds[device?.kind];
+  const exhibit = hello.exhibits.find(({ name }) => name === state.exhibit);
+  $("exhibit").value = exhibit ? exhibit.name : "opened";
+  $("about").textContent = exhibit?.words ?? kind?.title ?? "";
+  $("summary").textContent = kind?.summary ?? "There is no device in this scene.";
+  $("which-label").hidden = state.devices.length < 2;
+  $("which").replaceChildren(...state.devices.map(({ kind }, i) => new Option(`${i + 1}: ${kind}`, i)));
+  $("which").value = String(Math.min(state.which, state.devices.length - 1));
+  const { polarizer = "none" } = state.scene.camera ?? {};
+  $("polarizer").value = typeof polarizer === "number" ? "angle" : polarizer;
+  $("angle-label").hidden = typeof polarizer !== "number";
+  if (typeof polarizer === "number") $("angle").value = polarizer;
+  $("map").value = state.scene.picture?.map ?? "none";
+  $("beside").value = state.beside;
+  $("width").value = String(state.width);
+  $("samples").value = String(state.samples);
+  $("min-power").value = String(state.scene.trace?.min_power ?? 0.0001);
+  buildControls(device, kind, (moving) => changed(moving));
+  showShows();
+  showRotation();
+  showSplit();
+}
+
+// The ways in which the scene's devices can be shown: each those that can.
+function showShows() {
+  const can = (show) => state.devices.some(({ kind }) => hello.kinds[kind]?.shows.includes(show));
+  const names = { cloak: "Cloak", bare: "Bare metal", mirror: "Mirror" };
+  const segments = document.createElement("div");
+  segments.className = "segments";
+  const shown = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1)?.show ?? "cloak";
+  for (const [show, name] of Object.entries(names)) {
+    if (show !== "cloak" && !can(show)) continue;
+    const label = document.createElement("label");
+    const radio = document.createElement("input");
+    radio.type = "radio";
+    radio.name = "show";
+    radio.value = show;
+    radio.checked = show === shown;
+    radio.addEventListener("change", () => setShow(show));
+    const word = document.createElement("span");
+    word.textContent = name;
+    label.append(radio, word);
+    segments.append(label);
+  }
+  const legend = $("shows").querySelector("legend");
+  $("shows").replaceChildren(legend, segments);
+}
+
+function setShow(show) {
+  for (const device of state.devices) {
+    if (!hello.kinds[device.kind]?.shows.includes(show)) continue;
+    device.show = show;
+    // Bare metal and mirrors have no core that could be open.
+    if (show !== "cloak") delete device.core;
+  }
+  showState();
+  changed();
+}
+
+function showRotation() {
+  const degrees = state.device?.rotation ?? 0;
+  const wrapped = ((((degrees + 180) % 360) + 360) % 360) - 180;
+  $("rotation").value = String(wrapped);
+  $("rotation").setAttribute("aria-valuetext", `${Number(wrapped.toFixed(1))} degrees`);
+  $("rotation-number").value = String(Number(wrapped.toFixed(2)));
+  $("rotation").disabled = $("rotation-number").disabled = $("play").disabled = !state.device;
+}
+
+function rotate(degrees, moving) {
+  if (!state.device || !Number.isFinite(degrees)) return;
+  state.device.rotation = Math.round((((((degrees + 180) % 360) + 360) % 360) - 180) * 1e3) / 1e3;
+  showRotation();
+  changed(moving);
+}
+
+function showSplit() {
+  const cloak = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1);
+  const words = { bare: "bare metal", mirror: "mirror", cloak: "cloak" };
+  picture.layOut(state, cloak ? words[cloak.show ?? "cloak"] : "the scene");
+}
+
+function setBeside(beside) {
+  state.beside = beside;
+  $("beside").value = beside;
+  picture.forget();
+  showSplit();
+  changed();
+}
+
+function stop() {
+  if (!playing) return;
+  playing = false;
+  $("play").setAttribute("aria-pressed", "false");
+  $("play-word").textContent = "Turn";
+}
+
+function play() {
+  if (playing) {
+    stop();
+    changed();
+    return;
+  }
+  if (!state.device || !connection.isOpen) return;
+  playing = true;
+  $("play").setAttribute("aria-pressed", "true");
+  $("play-word").textContent = "Stop";
+  let before = performance.now();
+  const turn = (now) => {
+    if (!playing) return;
+    const seconds = Math.min(0.2, (now - before) / 1000);
+    before = now;
+    rotate((state.device?.rotation ?? 0) + SPEED * seconds, true);
+    clearTimeout(settle);
+    requestAnimationFrame(turn);
+  };
+  requestAnimationFrame(turn);
+}
+
+function download(blob, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+function bring(file) {
+  if (!file) return;
+  if (hello && file.size > hello.largest_photograph_bytes) {
+    failed({ id: null, message: `a photograph may have ${hello.largest_photograph_bytes >> 20} MiB` });
+    return;
+  }
+  const name = file.name.replace(/^[.\-]+/, "").replaceAll(/[\\/:\p{Cc}]/gu, "_").slice(-60) || "photograph";
+  connection.photograph(name, file);
+}
+
+function resetCamera() {
+  const exhibit = hello.exhibits.find(({ name }) => name === state.exhibit);
+  const camera = copy((exhibit?.scene ?? hello.scene).camera ?? {});
+  const { polarizer } = state.scene.camera ?? {};
+  if (polarizer !== undefined) camera.polarizer = polarizer;
+  state.scene.camera = camera;
+  changed();
+}
+
+function follow(at) {
+  probing = at;
+  picture.mark(at);
+  if (at) connection.follow(at);
+  else sectionView.clear();
+}
+
+$("exhibit").addEventListener("change", () => {
+  const name = $("exhibit").value;
+  const exhibit = hello.exhibits.find((one) => one.name === name);
+  state.open(name, exhibit?.scene ?? hello.scene);
+  showState();
+  changed();
+});
+$("which").addEventListener("change", () => {
+  state.which = Number($("which").value);
+  showState();
+});
+$("rotation").addEventListener("input", () => rotate($("rotation").valueAsNumber, true));
+$("rotation").addEventListener("change", () => rotate($("rotation").valueAsNumber, false));
+$("rotation-number").addEventListener("change", () => rotate($("rotation-number").valueAsNumber, false));
+$("play").addEventListener("click", play);
+$("beside").addEventListener("change", () => setBeside($("beside").value));
+$("polarizer").addEventListener("change", () => {
+  const word = $("polarizer").value;
+  state.set("camera", "polarizer", word === "angle" ? $("angle").valueAsNumber : word);
+  showState();
+  changed();
+});
+$("angle").addEventListener("change", () => {
+  if (!Number.isFinite($("angle").valueAsNumber)) return;
+  state.set("camera", "polarizer", $("angle").valueAsNumber);
+  changed();
+});
+$("map").addEventListener("change", () => {
+  const map = $("map").value;
+  state.set("picture", "map", map === "none" ? undefined : map);
+  changed();
+});
+$("width").addEventListener("change", () => {
+  state.width = Number($("width").value);
+  changed();
+});
+$("samples").addEventListener("change", () => {
+  state.samples = Number($("samples").value);
+  changed();
+});
+$("min-power").addEventListener("change", () => {
+  state.set("trace", "min_power", Number($("min-power").value));
+  changed();
+});
+$("whole").addEventListener("change", () => {
+  sectionView.whole = $("whole").checked;
+  sectionView.fit();
+});
+$("photograph").addEventListener("change", () => {
+  bring($("photograph").files[0]);
+  $("photograph").value = "";
+});
+$("save-picture").addEventListener("click", async () => download(await picture.toBlob(), "cloakroom.png"));
+$("save-scene").addEventListener("click", () => {
+  const scene = copy(state.scene);
+  scene.camera = { ...scene.camera, resolution: state.size, samples: state.samples };
+  connection.save(scene);
+});
+$("copy-link").addEventListener("click", async () => {
+  history.replaceState(null, "", `#${state.toFragment()}`);
+  try {
+    await navigator.clipboard.writeText(location.href);
+    $("live").textContent = "The link is copied";
+    $("quality").textContent = "The link is copied";
+  } catch {
+    $("quality").textContent = "The link is in the address bar";
+  }
+});
+$("reset-camera").addEventListener("click", resetCamera);
+watchDivider(state, () => {
+  showSplit();
+  picture.draw(state);
+});
+
+watchPointer(state, { changed, follow: (at) => follow(at), resetCamera, say: (words) => ($("live").textContent = words) });
+watchKeys({
+  ready: () => hello !== null,
+  play,
+  rotate: (by) => rotate((state.device?.rotation ?? 0) + by, true),
+  show: (show) => $("shows").querySelector(`input[value="${show}"]`)?.click(),
+  split: () => setBeside(state.beside === "nothing" ? "bare" : "nothing"),
+});
+watchDrops(bring);
+addEventListener("hashchange", () => {
+  if (hello && state.fromFragment(location.hash.slice(1))) {
+    showState();
+    changed();
+  }
+});

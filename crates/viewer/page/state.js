@@ -1,0 +1,81 @@
+// What the page shows: a scene as the tables of a scene file, and how it is looked at. All of it fits into the address.
+
+export const copy = (value) => JSON.parse(JSON.stringify(value));
+
+export class State {
+  constructor() {
+    this.exhibit = "";
+    this.scene = {};
+    this.beside = "nothing";
+    this.divider = 0.5;
+    this.width = 640;
+    this.samples = 16;
+    this.which = 0;
+  }
+
+  // The scene's devices.
+  get devices() {
+    return Array.isArray(this.scene.device) ? this.scene.device : [];
+  }
+
+  // The device whose parameters are shown.
+  get device() {
+    return this.devices[Math.min(this.which, this.devices.length - 1)];
+  }
+
+  table(name) {
+    this.scene[name] ??= {};
+    return this.scene[name];
+  }
+
+  // Sets a key of a table, or leaves it out.
+  set(table, key, value) {
+    const entries = this.table(table);
+    if (value === undefined) delete entries[key];
+    else entries[key] = value;
+    if (Object.keys(entries).length === 0) delete this.scene[table];
+  }
+
+  open(exhibit, scene) {
+    this.exhibit = exhibit;
+    this.scene = copy(scene);
+    const picked = this.devices.findIndex((device) => device.kind !== "body");
+    this.which = Math.max(0, picked);
+  }
+
+  // Width and height of the full picture: the scene's ratio, the chosen width.
+  get size() {
+    const [w, h] = this.scene.camera?.resolution ?? [4, 3];
+    return [this.width, Math.max(1, Math.min(2048, Math.round((this.width * h) / w)))];
+  }
+
+  toFragment() {
+    const { exhibit, scene, beside, divider, width, samples, which } = this;
+    const text = JSON.stringify({ exhibit, scene, beside, divider, width, samples, which });
+    const bytes = new TextEncoder().encode(text);
+    const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join("");
+    return btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+  }
+
+  // Reads an address; whether it says a state.
+  fromFragment(fragment) {
+    try {
+      const binary = atob(fragment.replaceAll("-", "+").replaceAll("_", "/"));
+      const bytes = Uint8Array.from(binary, (character) => character.charCodeAt(0));
+      const said = JSON.parse(new TextDecoder().decode(bytes));
+      if (typeof said.scene !== "object" || said.scene === null) return false;
+      const number = (value, low, high, fallback) =>
+        Number.isFinite(value) ? Math.min(high, Math.max(low, value)) : fallback;
+      this.scene = said.scene;
+      this.exhibit = String(said.exhibit ?? "");
+      this.beside = ["bare", "empty", "mirror"].includes(said.beside) ? said.beside : "nothing";
+      this.divider = number(said.divider, 0, 1, 0.5);
+      this.width = Math.round(number(said.width, 16, 2048, 640));
+      this.samples = Math.round(number(said.samples, 1, 64, 16));
+      this.which = Math.round(number(said.which, 0, 1000, 0));
+      return true;
+    } catch {
+      return false;
+    }
+  }
+}

@@ -1,0 +1,83 @@
+//! What a page is told first: the devices with their keys, scenes to begin with, and limits.
+
+use crate::protocol::LARGEST_PHOTOGRAPH;
+use crate::scenes::{Opened, tables};
+use cloakroom::device::{CATALOGUE, Entry, Request, Show};
+use cloakroom::gallery::EXHIBITS;
+use cloakroom::keys::Values;
+use cloakroom::scene_file;
+use serde_json::{Map, Value, json};
+
+/// The greeting of the server.
+pub(crate) fn greeting(opened: &Opened) -> Value {
+    let schema = scene_file::schema();
+    let kinds: Map<String, Value> =
+        CATALOGUE.iter().map(|entry| (entry.kind.to_owned(), kind(entry, &schema))).collect();
+    let exhibits: Vec<Value> = EXHIBITS
+        .iter()
+        .filter_map(|exhibit| {
+            let scene = tables(exhibit.scene).ok()?;
+            let words = format!("{}. {}", exhibit.map, exhibit.reference);
+            Some(json!({
+                "name": exhibit.name, "title": exhibit.title, "words": words, "scene": scene,
+            }))
+        })
+        .collect();
+    json!({
+        "hello": {
+            "version": env!("CARGO_PKG_VERSION"),
+            "name": opened.name,
+            "scene": opened.tables,
+            "kinds": kinds,
+            "exhibits": exhibits,
+            "maps": schema["properties"]["picture"]["properties"]["map"]["enum"],
+            "largest_photograph_bytes": LARGEST_PHOTOGRAPH,
+        }
+    })
+}
+
+/// A kind of device: its keys as the schema of scene files describes them, and how it can be shown.
+fn kind(entry: &Entry, schema: &Value) -> Value {
+    let built = |show, open_core| {
+        let request = Request { show, open_core, length: None };
+        (entry.build)(&Values::defaults(entry.keys), request).ok()
+    };
+    let shows: Vec<&str> = [("cloak", Show::Cloak), ("bare", Show::Bare), ("mirror", Show::Mirror)]
+        .into_iter()
+        .filter(|(word, show)| *word == "cloak" || built(*show, false).is_some())
+        .map(|(word, _)| word)
+        .collect();
+    let keys: Vec<&str> = entry.keys.iter().map(|key| key.name).collect();
+    json!({
+        "title": entry.title,
+        "summary": entry.summary,
+        "own_keys": keys,
+        "keys": schema["$defs"][entry.kind]["properties"],
+        "shows": shows,
+        "core_can_be_open": built(Show::Cloak, true).is_some_and(|built| built.hull.has_open_core()),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn the_greeting_describes_every_kind() {
+        let loaded = scene_file::parse("", "a", Path::new(""), &[]).expect("a scene");
+        let opened = Opened::new(&loaded, "a", Path::new("")).expect("tables");
+        let hello = &greeting(&opened)["hello"];
+        for entry in CATALOGUE {
+            let kind = &hello["kinds"][entry.kind];
+            assert!(kind["keys"]["rotation"]["default"].is_number(), "{}", entry.kind);
+            for key in entry.keys {
+                assert!(kind["keys"][key.name]["description"].is_string(), "{}", key.name);
+            }
+        }
+        assert_eq!(hello["kinds"]["square-cloak"]["shows"], json!(["cloak", "bare", "mirror"]));
+        assert_eq!(hello["kinds"]["square-cloak"]["core_can_be_open"], true);
+        assert_eq!(hello["kinds"]["luneburg-lens"]["shows"], json!(["cloak"]));
+        assert_eq!(hello["exhibits"].as_array().map(Vec::len), Some(EXHIBITS.len()));
+    }
+}

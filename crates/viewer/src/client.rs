@@ -1,0 +1,308 @@
+//! One open page: what it says is read here, and handed to its two threads.
+
+use crate::painter::{self, Shown, Wish};
+use crate::protocol::{LARGEST_PHOTOGRAPH, Message, error};
+use crate::ray_tree;
+use crate::scenes::{is_plain_name, text};
+use crate::server::Server;
+use crate::slot::Slot;
+use axum::body::Bytes;
+use axum::extract::ws;
+use cloakroom::photograph::{ImageSource, LoadError, load_bytes};
+use cloakroom::render::Images;
+use futures_util::{SinkExt, StreamExt};
+use serde_json::{Value, json};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tokio::sync::mpsc;
+
+/// Messages on the way to a page; who has more to say waits.
+const QUEUE: usize = 4;
+
+/// Most pixels of a photograph.
+const MOST_PIXELS: u64 = 40_000_000;
+
+/// Most pixels of the photographs of all pages together.
+const MOST_PIXELS_OF_ALL: u64 = 160_000_000;
+
+/// The page has gone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Gone;
+
+/// Where messages to a page go.
+#[derive(Clone, Debug)]
+pub(crate) struct Outbox(mpsc::Sender<ws::Message>);
+
+impl Outbox {
+    /// Says something, from a thread that may wait.
+    pub fn say(&self, message: &Value) -> Result<(), Gone> {
+        self.0.blocking_send(ws::Message::text(message.to_string())).map_err(|_| Gone)
+    }
+
+    /// Says something unless the page is busy.
+    pub fn say_if_room(&self, message: &Value) {
+        // What is lost is said again with newer numbers.
+        let _ = self.0.try_send(ws::Message::text(message.to_string()));
+    }
+
+    /// Sends bytes, from a thread that may wait.
+    pub fn send_bytes(&self, bytes: Vec<u8>) -> Result<(), Gone> {
+        self.0.blocking_send(ws::Message::binary(bytes)).map_err(|_| Gone)
+    }
+
+    async fn answer(&self, message: &Value) -> Result<(), Gone> {
+        self.0.send(ws::Message::text(message.to_string())).await.map_err(|_| Gone)
+    }
+}
+
+/// A photograph that a page has brought.
+#[derive(Clone, Debug)]
+pub(crate) struct Uploaded {
+    /// Its name as a file of the scene's folder, where nobody looks for it.
+    pub source: ImageSource,
+    /// It, hung up under that name.
+    pub images: Images,
+    /// Which of the page's uploads it is.
+    pub number: u64,
+    _space: Arc<Space>,
+}
+
+/// Some of the pixels that all pages may have; given back when dropped.
+#[derive(Debug)]
+struct Space {
+    server: Arc<Server>,
+    pixels: u64,
+}
+
+impl Space {
+    fn take(server: &Arc<Server>, pixels: u64) -> Option<Self> {
+        let fits = |taken: u64| Some(taken + pixels).filter(|sum| *sum <= MOST_PIXELS_OF_ALL);
+        let order = Ordering::Relaxed;
+        server.uploaded_pixels.fetch_update(order, order, fits).ok()?;
+        Some(Self { server: server.clone(), pixels })
+    }
+}
+
+impl Drop for Space {
+    fn drop(&mut self) {
+        self.server.uploaded_pixels.fetch_sub(self.pixels, Ordering::Relaxed);
+    }
+}
+
+/// The state of a page.
+#[derive(Debug)]
+pub(crate) struct Client {
+    pub server: Arc<Server>,
+    pub looks: Slot<Wish>,
+    rays: Slot<ray_tree::Wish>,
+    shown: Mutex<Option<Arc<Shown>>>,
+    uploaded: Mutex<Option<Uploaded>>,
+    uploads: AtomicU64,
+}
+
+impl Client {
+    fn new(server: Arc<Server>) -> Self {
+        Self {
+            server,
+            looks: Slot::default(),
+            rays: Slot::default(),
+            shown: Mutex::default(),
+            uploaded: Mutex::default(),
+            uploads: AtomicU64::new(0),
+        }
+    }
+
+    /// The images that all pages share.
+    pub fn images(&self) -> Images {
+        lock(&self.server.images).clone()
+    }
+
+    /// The photograph that the page has brought last.
+    pub fn uploaded(&self) -> Option<Uploaded> {
+        lock(&self.uploaded).clone()
+    }
+
+    /// Rays go through this from now on.
+    pub fn show(&self, shown: Shown) {
+        *lock(&self.shown) = Some(Arc::new(shown));
+    }
+
+    /// Reads a photograph, one at a time of all pages: memory for more is not taken.
+    fn hang(&self, name: &str, bytes: &[u8]) -> Result<Value, String> {
+        let source = self.server.opened.source_of(name);
+        let _one = lock(&self.server.reading);
+        let image = load_bytes(&source, bytes, MOST_PIXELS).map_err(|error| match error {
+            LoadError::TooLarge { .. } => {
+                format!(
+                    "the photograph is too large: at most {} million pixels",
+                    MOST_PIXELS / 1_000_000
+                )
+            }
+            LoadError::NotAnImage { .. } | LoadError::Empty { .. } => {
+                "this is not an image that can be read (PNG, JPEG or EXR)".to_owned()
+            }
+            LoadError::OtherFormat { format, .. } => {
+                format!("this is a {format} image; only PNG, JPEG and EXR can be read")
+            }
+            LoadError::Unsupported { reason, .. } => {
+                format!("this image uses a feature that is not supported: {reason}")
+            }
+            _ => "this image is damaged or cut short".to_owned(),
+        })?;
+        let (width, height) = (image.width, image.height);
+        // The old one makes room.
+        *lock(&self.uploaded) = None;
+        let space = Space::take(&self.server, (width * height) as u64).ok_or(
+            "other pages have brought so many photographs that there is no room; close some",
+        )?;
+        let mut images = self.images();
+        images.hang(source.clone(), image);
+        let number = self.uploads.fetch_add(1, Ordering::Relaxed);
+        *lock(&self.uploaded) = Some(Uploaded { source, images, number, _space: Arc::new(space) });
+        Ok(json!({ "photograph": { "name": name, "width": width, "height": height } }))
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Serves a page until it closes, or the server ends.
+pub(crate) async fn serve(socket: ws::WebSocket, server: Arc<Server>) {
+    let (mut sink, mut stream) = socket.split();
+    let (sender, mut receiver) = mpsc::channel(QUEUE);
+    let outbox = Outbox(sender);
+    let mut closing = server.closing.subscribe();
+    let writer = tokio::spawn(async move {
+        while let Some(message) = receiver.recv().await {
+            if sink.send(message).await.is_err() {
+                break;
+            }
+        }
+        // It may be closed already.
+        let _ = sink.close().await;
+    });
+    let client = Arc::new(Client::new(server));
+    if start_threads(&client, &outbox).is_ok() {
+        let mut session = Session { client: &client, outbox: &outbox, name: None, stop: None };
+        let greeting = client.server.greeting.clone();
+        let greeted = outbox.0.send(ws::Message::text(greeting)).await;
+        while greeted.is_ok() {
+            let message = tokio::select! {
+                message = stream.next() => message,
+                _ = closing.changed() => None,
+            };
+            let Some(Ok(message)) = message else { break };
+            if session.hear(message).await.is_err() {
+                break;
+            }
+        }
+        if let Some((stop, _)) = session.stop {
+            stop.store(true, Ordering::Relaxed);
+        }
+    }
+    client.looks.close();
+    client.rays.close();
+    drop(outbox);
+    drop(stream);
+    // Its threads end first, and with them the last of its outboxes.
+    let _ = tokio::time::timeout(std::time::Duration::from_secs(5), writer).await;
+}
+
+fn start_threads(client: &Arc<Client>, outbox: &Outbox) -> std::io::Result<()> {
+    let thread = |name: &str| std::thread::Builder::new().name(name.to_owned());
+    let (of_painter, to_page) = (client.clone(), outbox.clone());
+    thread("painter").spawn(move || painter::paint(&of_painter, &to_page))?;
+    let (of_rays, to_page) = (client.clone(), outbox.clone());
+    thread("rays").spawn(move || ray_tree::follow(&of_rays.rays, &to_page))?;
+    Ok(())
+}
+
+/// What is remembered between the messages of a page.
+struct Session<'a> {
+    client: &'a Arc<Client>,
+    outbox: &'a Outbox,
+    /// The name of the photograph that comes next.
+    name: Option<String>,
+    /// What cancels the last look, and whether it was of something that moves: such pictures are coarse and quick,
+    /// and are finished, or nothing would be seen to move.
+    stop: Option<(Arc<AtomicBool>, bool)>,
+}
+
+impl Session<'_> {
+    async fn hear(&mut self, message: ws::Message) -> Result<(), Gone> {
+        match message {
+            ws::Message::Text(text) => match Message::read(&text) {
+                Ok(message) => self.heed(message).await,
+                Err(problem) => self.outbox.answer(&error(None, &problem)).await,
+            },
+            ws::Message::Binary(bytes) => self.take_photograph(bytes).await,
+            ws::Message::Close(_) => Err(Gone),
+            ws::Message::Ping(_) | ws::Message::Pong(_) => Ok(()),
+        }
+    }
+
+    async fn heed(&mut self, message: Message) -> Result<(), Gone> {
+        match message {
+            Message::Look(look) => {
+                if let Some((stop, false)) = &self.stop {
+                    stop.store(true, Ordering::Relaxed);
+                }
+                let stop = Arc::new(AtomicBool::new(false));
+                self.stop = Some((stop.clone(), look.moving));
+                self.client.looks.put(Wish { look, stop });
+                Ok(())
+            }
+            Message::Ray(ray) => {
+                let shown = lock(&self.client.shown).clone();
+                match shown {
+                    Some(shown) => self.client.rays.put((ray, shown)),
+                    None => {
+                        let message =
+                            "there is no picture yet that a ray could be followed through";
+                        self.outbox.answer(&error(Some(ray.id), message)).await?;
+                    }
+                }
+                Ok(())
+            }
+            Message::Save(save) => {
+                let uploaded = self.client.uploaded();
+                let source = uploaded.as_ref().map(|uploaded| &uploaded.source);
+                let read = self.client.server.opened.read(&save.scene, source);
+                let text = read.and_then(|_| text(&save.scene));
+                let answer = match text {
+                    Ok(text) => json!({ "saved": { "text": text } }),
+                    Err(problem) => error(None, &problem),
+                };
+                self.outbox.answer(&answer).await
+            }
+            Message::Photograph(photograph) => {
+                if is_plain_name(&photograph.name) {
+                    self.name = Some(photograph.name);
+                    return Ok(());
+                }
+                let message = "a photograph's name is that of a file, without folders";
+                self.outbox.answer(&error(None, message)).await
+            }
+        }
+    }
+
+    async fn take_photograph(&mut self, bytes: Bytes) -> Result<(), Gone> {
+        let Some(name) = self.name.take() else {
+            let message = "these bytes belong to no photograph; say its name first";
+            return self.outbox.answer(&error(None, message)).await;
+        };
+        if bytes.len() > LARGEST_PHOTOGRAPH {
+            let message = format!("a photograph may have {} MiB", LARGEST_PHOTOGRAPH >> 20);
+            return self.outbox.answer(&error(None, &message)).await;
+        }
+        let client = self.client.clone();
+        let read = tokio::task::spawn_blocking(move || client.hang(&name, &bytes)).await;
+        let answer = match read {
+            Ok(Ok(answer)) => answer,
+            Ok(Err(problem)) => error(None, &problem),
+            Err(_) => error(None, "this image is damaged"),
+        };
+        self.outbox.answer(&answer).await
+    }
+}

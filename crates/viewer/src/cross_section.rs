@@ -1,0 +1,70 @@
+//! The cross-section of a scene in the plane z = 0, for the page to draw.
+
+use cloakroom::device::{Contour, Filling, Surface};
+use cloakroom::render::Studio;
+use cloakroom::scene::{Projection, Scene};
+use cloakroom::trace::Placed;
+use serde_json::{Value, json};
+
+/// Coordinates beyond this are drawn no better, cm.
+const FAR: f64 = 1e4;
+
+/// The shapes of all devices, the photograph and the camera, in world coordinates, cm.
+pub(crate) fn cross_section(scene: &Scene, studio: &Studio<'_>) -> Value {
+    let devices: Vec<Value> = studio.bench().devices().iter().map(device).collect();
+    let [_, height] = studio.photograph_size();
+    let camera = &scene.camera;
+    let [width_px, height_px] = camera.resolution().map(f64::from);
+    let ray = |y: f64| {
+        let ray = camera.ray(width_px / 2.0, y);
+        json!([point(ray.origin.x, ray.origin.y), point(ray.direction.x, ray.direction.y)])
+    };
+    json!({
+        "devices": devices,
+        "photograph": { "x": scene.photograph.x, "half_height": round(height / 2.0) },
+        "camera": {
+            "position": point(camera.position().x, camera.position().y),
+            "edges": [ray(0.0), ray(height_px)],
+            "parallel": matches!(camera.settings().projection, Projection::Orthographic { .. }),
+        },
+    })
+}
+
+fn device(placed: &Placed) -> Value {
+    let section = placed.structure.cross_section();
+    let points = |contour: &Contour| -> Vec<[f64; 2]> {
+        contour
+            .points
+            .iter()
+            .map(|at| placed.pose.point_to_world(*at))
+            .map(|at| point(at.x, at.y))
+            .collect()
+    };
+    let all = |contours: &[Contour]| contours.iter().map(points).collect::<Vec<_>>();
+    let regions: Vec<Value> = section
+        .regions
+        .iter()
+        .map(|region| json!({ "border": all(&region.border), "graded": region.cell.is_graded() }))
+        .collect();
+    let metal: Vec<Value> = section
+        .metal
+        .iter()
+        .map(|contour| json!({ "points": points(contour), "closed": contour.closed }))
+        .collect();
+    let body = section.body.map(|body| match &body.filling {
+        Filling::Medium { .. } => json!("medium"),
+        Filling::Opaque(Surface::Color(color)) => json!(color),
+        Filling::Opaque(Surface::Image(_)) => json!("image"),
+    });
+    json!({ "regions": regions, "metal": metal, "outlines": all(&section.outlines), "body": body })
+}
+
+/// A point of the drawing.
+pub(crate) fn point(x: f64, y: f64) -> [f64; 2] {
+    [x, y].map(|number| round(number.clamp(-FAR, FAR)))
+}
+
+/// Rounded to what can be seen.
+fn round(number: f64) -> f64 {
+    (number * 1e4).round() / 1e4
+}

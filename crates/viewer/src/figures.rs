@@ -1,0 +1,111 @@
+//! Numbers for what a page shows: power, times of flight, and likeness to what should be seen.
+
+use crate::scenes::shown_as;
+use cloakroom::device::Show;
+use cloakroom::measure::{
+    Figures, FlightFigures, MeasureError, Region, View, compare, empty, ideal, survey,
+};
+use cloakroom::output::Picture;
+use cloakroom::render::{Images, RenderError, Studio, StudioError, Supervision, Wanted, render};
+use cloakroom::scene::{Camera, CameraSettings, Scene};
+use serde_json::{Value, json};
+use std::sync::atomic::AtomicBool;
+
+/// Width of the pictures that numbers are taken from, pixels.
+const WIDTH: u32 = 160;
+
+/// Why there are no numbers.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum FiguresError {
+    /// A view cannot be set up.
+    #[error(transparent)]
+    Studio(#[from] StudioError),
+    /// A view cannot be rendered.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// Views cannot be compared.
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
+}
+
+/// The numbers of a scene, from small pictures of one sample a pixel: of the scene, of the empty view, of what
+/// should be seen, and of the bare metal.
+///
+/// Means of power and time are over the silhouette, the pixels that meet a device.
+pub(crate) fn figures(
+    scene: &Scene,
+    images: &mut Images,
+    stop: &AtomicBool,
+) -> Result<Value, FiguresError> {
+    let supervision = Supervision { rows_done: &|_| {}, stop };
+    let scene = small(scene);
+    let mut picture = |scene: &Scene| -> Result<Picture, FiguresError> {
+        let studio = Studio::with_images(scene, images)?;
+        Ok(render(&studio, Wanted::Everything, &supervision)?.picture)
+    };
+    let wanted_scene = ideal(&scene);
+    let shown = picture(&scene)?;
+    let nothing = View::of(&picture(&empty(&scene))?)?;
+    let wanted = View::of(&picture(&wanted_scene)?)?;
+    let bare = match shown_as(&scene, Show::Bare) {
+        Some(bare) => Some(View::of(&picture(&bare)?)?),
+        None => None,
+    };
+    let view = View::of(&shown)?;
+    let [studio, ideal] = [&scene, &wanted_scene].map(|scene| Studio::with_images(scene, images));
+    let rays =
+        survey(&studio?, &ideal?, &scene.camera, &|_| {}, stop).ok_or(RenderError::Stopped)?;
+    let silhouette = Region::new(view.width, rays.silhouette.clone()).ok();
+    let likeness = |of: &View, to: &View| -> Result<Value, MeasureError> {
+        let comparison = compare(to, of, silhouette.as_ref())?;
+        Ok(likeness(comparison.region.as_ref().unwrap_or(&comparison.picture)))
+    };
+    let mean = |name: &str| {
+        let (region, samples) = (silhouette.as_ref()?, &shown.channel(name)?.samples);
+        let sum: f64 = region.indices().map(|i| samples.get(i)).sum();
+        Some(sum / region.pixels() as f64)
+    };
+    let flight = silhouette.as_ref().and_then(|region| {
+        let (times, differences) =
+            (view.time_of_flight.as_ref()?, view.time_of_flight_difference.as_ref()?);
+        FlightFigures::of(region.indices().map(|i| (differences[i], times[i] - differences[i])))
+    });
+    Ok(json!({
+        "width_pixels": view.width,
+        "height_pixels": view.height,
+        "silhouette_share": silhouette.as_ref().map_or(0.0, Region::share),
+        "delivered": mean("delivered"),
+        "escaped": mean("escaped"),
+        "absorbed": mean("absorbed"),
+        "pruned": mean("pruned"),
+        "time_of_flight_difference_maximum_ns": flight.map(|flight| flight.maximum_ns),
+        "time_of_flight_difference_mean_ns": flight.map(|flight| flight.mean_ns),
+        "displacement_rms_cm": rays.displacement_rms_cm,
+        "to_ideal": likeness(&view, &wanted)?,
+        "to_empty": likeness(&view, &nothing)?,
+        "bare_to_empty": bare.map(|bare| likeness(&bare, &nothing)).transpose()?,
+    }))
+}
+
+fn likeness(figures: &Figures) -> Value {
+    json!({ "structural_similarity": figures.structural_similarity, "flip": figures.flip })
+}
+
+/// The same scene in few pixels.
+fn small(scene: &Scene) -> Scene {
+    let [width, height] = scene.camera.resolution();
+    let share = f64::from(WIDTH) / f64::from(width.max(WIDTH));
+    let resolution = [width, height].map(|side| ((f64::from(side) * share).round() as u32).max(1));
+    resized(scene, resolution, 1)
+}
+
+/// The same scene with another resolution and number of samples.
+pub(crate) fn resized(scene: &Scene, resolution: [u32; 2], samples: u32) -> Scene {
+    let settings = CameraSettings { resolution, samples, ..scene.camera.settings().clone() };
+    let mut scene = scene.clone();
+    // Both are within the limits of cameras, as the rest has been before.
+    if let Ok(camera) = Camera::new(settings) {
+        scene.camera = camera;
+    }
+    scene
+}

@@ -1,0 +1,129 @@
+//! What a page says: small JSON messages; and one kind of bytes, a photograph.
+
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
+
+/// Longest text message, bytes.
+pub(crate) const LONGEST_TEXT: usize = 64 << 10;
+
+/// Largest photograph, bytes.
+pub(crate) const LARGEST_PHOTOGRAPH: usize = 32 << 20;
+
+/// Most pixels a side of a picture.
+const MOST_PIXELS: u32 = 2048;
+
+/// Most samples a pixel.
+const MOST_SAMPLES: u32 = 64;
+
+/// A scene as a page sends it: the tables of a scene file as JSON.
+pub(crate) type SceneTables = Map<String, Value>;
+
+/// A message from a page.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Message {
+    /// Show this.
+    Look(Look),
+    /// Follow the ray of a point of the picture that is shown.
+    Ray(Ray),
+    /// Say this scene as TOML.
+    Save(Save),
+    /// The next binary message is a photograph of that name.
+    Photograph(PhotographName),
+}
+
+/// What to look at.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Look {
+    /// Comes back with every answer.
+    pub id: u64,
+    /// The scene; its resolution and samples are replaced by these.
+    pub scene: SceneTables,
+    /// Width and height of the full picture, pixels.
+    pub size: [u32; 2],
+    /// Samples a pixel of the finished picture.
+    pub samples: u32,
+    /// Whether more is to come at once: one coarse picture is enough.
+    #[serde(default)]
+    pub moving: bool,
+    /// What else is shown beside the scene.
+    #[serde(default)]
+    pub beside: Beside,
+}
+
+/// What is shown beside a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Beside {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The metal without its cloak.
+    Bare,
+    /// The scene without its devices.
+    Empty,
+    /// What the cloak should look like.
+    Mirror,
+}
+
+/// A point of the picture.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Ray {
+    /// Comes back with the answer.
+    pub id: u64,
+    /// The point, as shares of width and height from the top left.
+    pub at: [f64; 2],
+}
+
+/// A scene to be saved.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Save {
+    /// The scene.
+    pub scene: SceneTables,
+}
+
+/// The name of a photograph.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PhotographName {
+    /// A file's name, without folders.
+    pub name: String,
+}
+
+impl Message {
+    /// Reads a message.
+    ///
+    /// # Errors
+    ///
+    /// One sentence that says what is wrong with it.
+    pub fn read(text: &str) -> Result<Self, String> {
+        if text.len() > LONGEST_TEXT {
+            return Err(format!("a message may have {LONGEST_TEXT} bytes"));
+        }
+        let message: Self = serde_json::from_str(text)
+            .map_err(|error| format!("this is no message for this server: {error}"))?;
+        match &message {
+            Self::Look(look) => {
+                if look.size.iter().any(|side| !(1..=MOST_PIXELS).contains(side)) {
+                    return Err(format!("size must be 1 to {MOST_PIXELS} pixels a side"));
+                }
+                if !(1..=MOST_SAMPLES).contains(&look.samples) {
+                    return Err(format!("samples must be 1 to {MOST_SAMPLES}"));
+                }
+            }
+            Self::Ray(ray) if ray.at.iter().any(|share| !(0.0..=1.0).contains(share)) => {
+                return Err("at must be two shares from 0 to 1".to_owned());
+            }
+            _ => {}
+        }
+        Ok(message)
+    }
+}
+
+/// An error as a page gets it; `id` is that of the message at fault, where it is known.
+pub(crate) fn error(id: Option<u64>, message: &str) -> Value {
+    json!({ "error": { "id": id, "message": message } })
+}

@@ -1,0 +1,197 @@
+//! Scenes from pages: JSON tables in, a scene out, and no way to a file that the user has not opened.
+
+use crate::protocol::SceneTables;
+use cloakroom::device::Show;
+use cloakroom::photograph::ImageSource;
+use cloakroom::scene::{DeviceSettings, Scene, SurroundingsSettings};
+use cloakroom::scene_file::{self, Loaded};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// Weakest branches that a page may ask for.
+const LEAST_POWER: f64 = 1e-7;
+
+/// Finest tolerance that a page may ask for, cm.
+const LEAST_TOLERANCE: f64 = 1e-9;
+
+/// What scenes from pages are called in messages.
+const NAME: &str = "scene";
+
+/// The scene that pages begin with, and the folder and the images that came with it.
+#[derive(Clone, Debug)]
+pub(crate) struct Opened {
+    /// Its tables.
+    pub tables: SceneTables,
+    /// What it is called.
+    pub name: String,
+    folder: PathBuf,
+    images: Vec<ImageSource>,
+}
+
+impl Opened {
+    /// A scene that the user has opened; names of files in it are relative to `folder`.
+    ///
+    /// # Errors
+    ///
+    /// If its text cannot be read as TOML, which it has been read as before.
+    pub fn new(loaded: &Loaded, name: &str, folder: &Path) -> Result<Self, String> {
+        let mut tables = tables(&loaded.scene.source)?;
+        let images = images(&loaded.scene);
+        // A file named in an override is relative to where the user is.
+        if let (ImageSource::File(path), Some(Value::Object(photograph))) =
+            (&loaded.scene.photograph.image, tables.get_mut("photograph"))
+            && photograph.get("image").and_then(Value::as_str).map(|text| folder.join(text))
+                != Some(path.clone())
+            && let Ok(path) = std::path::absolute(path)
+        {
+            photograph.insert("image".to_owned(), path.display().to_string().into());
+        }
+        let images = images
+            .into_iter()
+            .flat_map(|source| match &source {
+                ImageSource::File(path) => {
+                    let absolute = std::path::absolute(path).map(ImageSource::File).ok();
+                    vec![Some(source), absolute]
+                }
+                ImageSource::BuiltIn(_) | ImageSource::Memory(_) => vec![Some(source)],
+            })
+            .flatten()
+            .collect();
+        Ok(Self { tables, name: name.to_owned(), folder: folder.to_owned(), images })
+    }
+
+    /// Where a photograph of that name would lie, were it a file of the scene's folder. Uploaded ones are hung up
+    /// under this name and never looked for.
+    pub fn source_of(&self, name: &str) -> ImageSource {
+        ImageSource::File(self.folder.join(name))
+    }
+
+    /// Reads the scene of a page. `uploaded` is the photograph that the page has brought.
+    ///
+    /// # Errors
+    ///
+    /// One message: what is wrong in the scene, or that it names a file it may not.
+    pub fn read(
+        &self,
+        scene: &SceneTables,
+        uploaded: Option<&ImageSource>,
+    ) -> Result<Loaded, String> {
+        let text = text(scene)?;
+        let mut loaded = scene_file::parse(&text, NAME, &self.folder, &[])
+            .map_err(|error| error.message.clone())?;
+        for image in images(&loaded.scene) {
+            let known = matches!(image, ImageSource::BuiltIn(_))
+                || self.images.contains(&image)
+                || uploaded == Some(&image);
+            if !known {
+                return Err(
+                    "a page can show the images that came with the program or with the scene that \
+                            was opened, and a photograph dropped onto it; it can open no file"
+                        .to_owned(),
+                );
+            }
+        }
+        let trace = &mut loaded.scene.trace;
+        trace.min_power = trace.min_power.max(LEAST_POWER);
+        trace.tolerance = trace.tolerance.max(LEAST_TOLERANCE);
+        Ok(loaded)
+    }
+}
+
+/// The tables of a scene file as JSON.
+///
+/// # Errors
+///
+/// If it is no TOML.
+pub(crate) fn tables(source: &str) -> Result<SceneTables, String> {
+    let table: toml::Table = toml::from_str(source).map_err(|error| error.to_string())?;
+    match serde_json::to_value(table) {
+        Ok(Value::Object(tables)) => Ok(tables),
+        Ok(_) => Err("a scene is a table".to_owned()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// The text of a scene file.
+///
+/// # Errors
+///
+/// If the JSON says what TOML cannot.
+pub(crate) fn text(scene: &SceneTables) -> Result<String, String> {
+    let mut table = toml::Table::new();
+    for (key, value) in scene {
+        table.insert(key.clone(), value_of(value)?);
+    }
+    toml::to_string_pretty(&table).map_err(|error| error.to_string())
+}
+
+fn value_of(value: &Value) -> Result<toml::Value, String> {
+    Ok(match value {
+        Value::Null => {
+            return Err("null stands for nothing in a scene; leave the key out".to_owned());
+        }
+        Value::Bool(flag) => (*flag).into(),
+        Value::Number(number) => match (number.as_i64(), number.as_f64()) {
+            (Some(integer), _) => integer.into(),
+            (None, Some(float)) => float.into(),
+            (None, None) => return Err(format!("{number} is no number of a scene")),
+        },
+        Value::String(text) => text.as_str().into(),
+        Value::Array(items) => {
+            toml::Value::Array(items.iter().map(value_of).collect::<Result<_, _>>()?)
+        }
+        Value::Object(entries) => {
+            let mut table = toml::Table::new();
+            for (key, value) in entries {
+                table.insert(key.clone(), value_of(value)?);
+            }
+            table.into()
+        }
+    })
+}
+
+/// Every image that a scene shows.
+fn images(scene: &Scene) -> Vec<ImageSource> {
+    let mut images = vec![scene.photograph.image.clone()];
+    if let SurroundingsSettings::Image(image) = &scene.surroundings {
+        images.push(image.clone());
+    }
+    images.extend(scene.devices.iter().filter_map(body_image));
+    images
+}
+
+/// The image on an opaque body.
+fn body_image(device: &DeviceSettings) -> Option<ImageSource> {
+    const SURFACE: &str = "surface";
+    device.entry.keys.iter().find(|key| key.name == SURFACE)?;
+    let image = device.values.table(SURFACE)?.optional_text("image")?;
+    // It was relative to the scene's folder, and is not any more.
+    ImageSource::parse(image, Path::new("")).ok()
+}
+
+/// A scene whose devices are shown otherwise, those that can be; `None` if none can.
+pub(crate) fn shown_as(scene: &Scene, show: Show) -> Option<Scene> {
+    let mut shown = scene.clone();
+    let mut changed = false;
+    for device in &mut shown.devices {
+        let open_core = device.open_core && show == Show::Cloak;
+        let request = cloakroom::device::Request { show, open_core, length: device.length };
+        if (device.entry.build)(&device.values, request).is_ok() {
+            (device.show, device.open_core) = (show, open_core);
+            changed = true;
+        }
+    }
+    changed.then_some(shown)
+}
+
+/// A file's name without folders, as a photograph may have.
+pub(crate) fn is_plain_name(name: &str) -> bool {
+    !name.is_empty()
+        && name.len() <= 200
+        && !name.starts_with(['.', '-'])
+        && !name.contains(['/', '\\', ':', '\0'])
+        && !name.chars().any(char::is_control)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,89 @@
+//! Which scenes pages may show.
+
+use super::*;
+use serde_json::json;
+
+fn opened(folder: &Path) -> Opened {
+    let text = "[photograph]\nimage = 'mine.png'\n[[device]]\nkind = 'square-cloak'\n";
+    let loaded = scene_file::parse(text, "a", folder, &[]).expect("a scene");
+    Opened::new(&loaded, "a", folder).expect("tables")
+}
+
+fn object(value: Value) -> SceneTables {
+    match value {
+        Value::Object(object) => object,
+        other => panic!("{other}"),
+    }
+}
+
+#[test]
+fn a_page_can_name_no_other_file() {
+    let opened = opened(Path::new("/home/user/scenes"));
+    let reads = |scene: Value, uploaded| opened.read(&object(scene), uploaded);
+    let photograph = |name: &str| json!({ "photograph": { "image": name } });
+    for name in ["mine.png", "builtin:bookshelf", "/home/user/scenes/mine.png"] {
+        reads(photograph(name), None).expect(name);
+    }
+    let surface =
+        |name: &str| json!({ "device": [{ "kind": "body", "surface": { "image": name } }] });
+    let around = |name: &str| json!({ "surroundings": { "image": name } });
+    for name in [
+        "/etc/passwd",
+        "../scenes/mine.png",
+        "./mine.png",
+        "other.png",
+        "../../../etc/passwd",
+        "mine.png\u{0}",
+        "file:///etc/passwd",
+    ] {
+        for scene in [photograph(name), surface(name), around(name)] {
+            let message = reads(scene, None).expect_err(name);
+            assert!(message.contains("it can open no file"), "{message}");
+        }
+    }
+    let uploaded = opened.source_of("other.png");
+    reads(photograph("other.png"), Some(&uploaded)).expect("uploaded");
+    assert!(reads(photograph("third.png"), Some(&uploaded)).is_err());
+}
+
+#[test]
+fn scenes_survive_the_way_there_and_back() {
+    for exhibit in cloakroom::gallery::EXHIBITS {
+        let tables = tables(exhibit.scene).expect(exhibit.name);
+        let text = text(&tables).expect(exhibit.name);
+        assert_eq!(super::tables(&text), Ok(tables), "{}", exhibit.name);
+        let [one, other] = [exhibit.scene, text.as_str()].map(|text| {
+            scene_file::parse(text, "a", Path::new(""), &[]).expect(exhibit.name).scene
+        });
+        assert_eq!(one.camera, other.camera);
+        assert_eq!(one.surroundings, other.surroundings);
+        for (one, other) in one.devices.iter().zip(&other.devices) {
+            assert_eq!((one.entry.kind, &one.values), (other.entry.kind, &other.values));
+            assert_eq!((one.rotation, one.position), (other.rotation, other.position));
+        }
+    }
+}
+
+#[test]
+fn devices_are_shown_otherwise_where_they_can_be() {
+    let scene = |kind: &str| {
+        let text =
+            format!("[[device]]\nkind = '{kind}'\ncore = 'open'\n[[device]]\nkind = 'body'\n");
+        let text = if kind == "luneburg-lens" { text.replace("core = 'open'", "") } else { text };
+        scene_file::parse(&text, "a", Path::new(""), &[]).expect("a scene").scene
+    };
+    let bare = shown_as(&scene("square-cloak"), Show::Bare).expect("a cloak");
+    assert_eq!(bare.devices[0].show, Show::Bare);
+    assert!(!bare.devices[0].open_core && bare.devices[1].show == Show::Cloak);
+    assert!(shown_as(&scene("luneburg-lens"), Show::Mirror).is_none());
+}
+
+#[test]
+fn names_of_photographs_are_plain() {
+    for name in ["holiday.jpg", "Foto vom Urlaub (3).PNG", "ü"] {
+        assert!(is_plain_name(name), "{name}");
+    }
+    for name in ["", "..", "../a.png", "a/b.png", "a\\b.png", "builtin:x", ".a", "-o", "a\nb"] {
+        assert!(!is_plain_name(name), "{name}");
+    }
+}

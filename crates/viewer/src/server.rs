@@ -1,0 +1,208 @@
+//! The server: the page's files, and one WebSocket a page.
+
+use crate::address::{Names, listen};
+use crate::assets::ASSETS;
+use crate::catalogue::greeting;
+use crate::client;
+use crate::protocol::{LARGEST_PHOTOGRAPH, LONGEST_TEXT};
+use crate::scenes::Opened;
+use axum::Router;
+use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::{Request, State};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
+use axum::middleware::{Next, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use cloakroom::render::{Images, Studio};
+use cloakroom::scene::Scene;
+use cloakroom::scene_file::Loaded;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+use tokio::sync::{Semaphore, watch};
+
+/// Most pages open at once.
+const MOST_PAGES: usize = 10;
+
+/// How often the server looks whether it is to end.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// How long the end may take.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// What a browser may do with the page: load what comes from here, and nothing else.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; \
+                      connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// What is served, and where.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The scene that pages begin with.
+    pub scene: Loaded,
+    /// What it is called.
+    pub name: String,
+    /// The folder that names of files in it are relative to.
+    pub folder: PathBuf,
+    /// The port; the next free one is taken if it is not free. 0 stands for any.
+    pub port: u16,
+}
+
+/// Why there is no server.
+#[derive(Debug, thiserror::Error)]
+pub enum ViewerError {
+    /// No port is free.
+    #[error("cannot listen on port {port} of this machine or on one of the next: {reason}")]
+    Listen {
+        /// The port asked for.
+        port: u16,
+        /// Why not.
+        reason: std::io::Error,
+    },
+    /// The server cannot run.
+    #[error("cannot start the server: {0}")]
+    Run(std::io::Error),
+    /// The scene cannot be shown to pages.
+    #[error("{0}")]
+    Scene(String),
+}
+
+/// What all pages share.
+#[derive(Debug)]
+pub(crate) struct Server {
+    pub opened: Opened,
+    /// The greeting, as JSON.
+    pub greeting: String,
+    /// Images that have been read.
+    pub images: Mutex<Images>,
+    /// Held while a photograph is read.
+    pub reading: Mutex<()>,
+    /// Pixels of the photographs that pages have brought.
+    pub uploaded_pixels: AtomicU64,
+    /// Tells pages that the server ends.
+    pub closing: watch::Sender<()>,
+    pages: Arc<Semaphore>,
+    names: Names,
+}
+
+/// Serves the page on this machine until `stop` is set. `ready` is told the address once it can be opened.
+///
+/// # Errors
+///
+/// If no port is free, or the server cannot run.
+pub fn serve(
+    settings: &Settings,
+    ready: impl FnOnce(&str),
+    stop: &'static AtomicBool,
+) -> Result<(), ViewerError> {
+    let opened = Opened::new(&settings.scene, &settings.name, &settings.folder)
+        .map_err(ViewerError::Scene)?;
+    let listener = listen(settings.port)
+        .map_err(|reason| ViewerError::Listen { port: settings.port, reason })?;
+    listener.set_nonblocking(true).map_err(ViewerError::Run)?;
+    let port = listener.local_addr().map_err(ViewerError::Run)?.port();
+    let server = Arc::new(Server {
+        greeting: greeting(&opened).to_string(),
+        opened,
+        images: Mutex::default(),
+        reading: Mutex::default(),
+        uploaded_pixels: AtomicU64::new(0),
+        closing: watch::Sender::new(()),
+        pages: Arc::new(Semaphore::new(MOST_PAGES)),
+        names: Names::of(port),
+    });
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_io()
+        .enable_time()
+        .build()
+        .map_err(ViewerError::Run)?;
+    read_images(&settings.scene.scene, &server);
+    let served = runtime.block_on(async {
+        let listener = tokio::net::TcpListener::from_std(listener)?;
+        let app = Router::new()
+            .route("/session", get(session))
+            .fallback(get(asset))
+            .layer(from_fn_with_state(server.clone(), guard))
+            .with_state(server.clone());
+        ready(&format!("http://127.0.0.1:{port}/"));
+        let closing = server.clone();
+        let end = async move {
+            while !stop.load(Ordering::Relaxed) {
+                tokio::time::sleep(LOOK).await;
+            }
+            closing.closing.send_replace(());
+        };
+        let ended = async {
+            while !stop.load(Ordering::Relaxed) {
+                tokio::time::sleep(LOOK).await;
+            }
+            tokio::time::sleep(PATIENCE).await;
+        };
+        tokio::select! {
+            served = axum::serve(listener, app).with_graceful_shutdown(end) => served,
+            () = ended => Ok(()),
+        }
+    });
+    runtime.shutdown_timeout(PATIENCE);
+    served.map_err(ViewerError::Run)
+}
+
+/// Reads the images of the first scene while the browser opens.
+fn read_images(scene: &Scene, server: &Arc<Server>) {
+    let (scene, server) = (scene.clone(), server.clone());
+    std::thread::spawn(move || {
+        let mut images = server.images.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        // The page is told what is wrong with the scene, if anything is.
+        let _ = Studio::with_images(&scene, &mut images);
+    });
+}
+
+/// Refuses who does not come to this server by its name, and says what browsers may do.
+async fn guard(State(server): State<Arc<Server>>, request: Request, next: Next) -> Response {
+    let mut response = if server.names.host_is_ours(request.headers()) {
+        next.run(request).await
+    } else {
+        (StatusCode::FORBIDDEN, "this server answers on this machine alone\n").into_response()
+    };
+    for (name, value) in [
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::CACHE_CONTROL, "no-store"),
+        (header::HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+        (header::HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
+    ] {
+        response.headers_mut().insert(name, HeaderValue::from_static(value));
+    }
+    response
+}
+
+/// One of the page's files.
+async fn asset(uri: Uri) -> Response {
+    match ASSETS.iter().find(|asset| asset.path == uri.path()) {
+        Some(asset) => ([(header::CONTENT_TYPE, asset.kind)], asset.bytes).into_response(),
+        None => (StatusCode::NOT_FOUND, "there is no such page\n").into_response(),
+    }
+}
+
+/// Opens the WebSocket of a page, if it is ours and there is room.
+async fn session(
+    State(server): State<Arc<Server>>,
+    headers: HeaderMap,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    if !server.names.origin_is_ours(&headers) {
+        return (StatusCode::FORBIDDEN, "only this server's own page may do that\n")
+            .into_response();
+    }
+    let Ok(place) = server.pages.clone().try_acquire_owned() else {
+        let message = format!("{MOST_PAGES} pages are open already; close one\n");
+        return (StatusCode::SERVICE_UNAVAILABLE, message).into_response();
+    };
+    let largest = LARGEST_PHOTOGRAPH.max(LONGEST_TEXT);
+    upgrade.max_message_size(largest).max_frame_size(largest).on_upgrade(async move |socket| {
+        client::serve(socket, server).await;
+        drop(place);
+    })
+}

@@ -1,0 +1,198 @@
+//! The server without a browser: who may ask for what, and what comes of it.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod malformed;
+mod page;
+mod pictures;
+
+use page::{Heard, Server, look};
+use serde_json::json;
+use std::net::TcpListener;
+use tokio_tungstenite::tungstenite::Message;
+
+fn status(answer: &str) -> &str {
+    answer.split(' ').nth(1).unwrap_or("none")
+}
+
+#[test]
+fn the_page_comes_from_the_program_and_nothing_else_does() {
+    let server = Server::start(0);
+    let host = server.host();
+    for (path, kind) in [
+        ("/", "text/html"),
+        ("/main.js", "text/javascript"),
+        ("/style.css", "text/css"),
+        ("/icon.svg", "image/svg"),
+    ] {
+        let answer = server.get(path, &host);
+        assert_eq!(status(&answer), "200", "{path}");
+        let head = answer.to_lowercase();
+        assert!(head.contains(&format!("content-type: {kind}")), "{path}");
+        assert!(head.contains("content-security-policy: default-src 'none'"), "{path}");
+        assert!(head.contains("x-content-type-options: nosniff"), "{path}");
+    }
+    // The scripts name no other place.
+    let page = server.get("/", &host);
+    assert!(!page.contains("https://") && !page.contains("http://"), "{page}");
+    for path in [
+        "/../Cargo.toml",
+        "/..%2f..%2fetc/passwd",
+        "/%2e%2e/%2e%2e/etc/passwd",
+        "//etc/passwd",
+        "/etc/passwd",
+        "/page/main.js",
+        "/mine.png",
+        "/Cargo.toml",
+        "/index.html",
+        "/main.js/",
+        "/session/x",
+        "/%00",
+        "/main.js%00.png",
+        "http://127.0.0.1/etc/passwd",
+        "file:///etc/passwd",
+        "*",
+    ] {
+        let answer = server.get(path, &host);
+        assert!(["400", "404"].contains(&status(&answer)), "{path}: {answer}");
+        assert!(!answer.contains("root:") && !answer.contains("[package]"), "{path}");
+    }
+}
+
+#[test]
+fn foreign_hosts_and_origins_are_refused() {
+    let server = Server::start(0);
+    let port = server.port;
+    for host in
+        ["evil.example", "127.0.0.1", &format!("evil.example:{port}"), "localhost:1", "[::1]"]
+    {
+        assert_eq!(status(&server.get("/", host)), "403", "{host}");
+    }
+    assert_eq!(status(&server.get("/", &format!("localhost:{port}"))), "200");
+    assert_eq!(status(&server.raw(b"GET / HTTP/1.1\r\nConnection: close\r\n\r\n")), "403");
+    let ours = format!("http://127.0.0.1:{port}");
+    for origin in [
+        None,
+        Some("null"),
+        Some("https://evil.example"),
+        Some("http://evil.example"),
+        Some(&*format!("https://127.0.0.1:{port}")),
+        Some(&*format!("http://127.0.0.1:{port}.evil.example")),
+        Some("http://127.0.0.1"),
+    ] {
+        assert_eq!(server.connect(origin, None).err(), Some(403), "{origin:?}");
+    }
+    assert_eq!(server.connect(Some(&ours), Some("evil.example")).err(), Some(403));
+    server.connect(Some(&ours), None).expect("our own page");
+}
+
+#[test]
+fn requests_that_are_none_are_refused() {
+    let server = Server::start(0);
+    let host = server.host();
+    let request = |line: &str, more: &str| {
+        server.raw(format!("{line}\r\nHost: {host}\r\n{more}Connection: close\r\n\r\n").as_bytes())
+    };
+    for method in ["POST", "PUT", "DELETE", "OPTIONS", "PATCH"] {
+        let answer = request(&format!("{method} / HTTP/1.1"), "Content-Length: 0\r\n");
+        assert_eq!(status(&answer), "405", "{method}");
+    }
+    // A session that is no WebSocket.
+    assert!(status(&request("GET /session HTTP/1.1", "")).starts_with('4'));
+    assert!(status(&request("POST /session HTTP/1.1", "Content-Length: 0\r\n")).starts_with('4'));
+    for nonsense in [&b"\0\0\0\0\r\n\r\n"[..], b"GET\r\n\r\n", &[b'a'; 100_000]] {
+        let answer = server.raw(nonsense);
+        assert!(answer.is_empty() || status(&answer).starts_with('4'), "{answer}");
+    }
+    let long = format!("X: {}\r\n", "y".repeat(1 << 20));
+    assert!(!request("GET / HTTP/1.1", &long).contains("<!doctype"));
+    assert_eq!(status(&server.get("/", &host)), "200");
+}
+
+#[test]
+fn ten_pages_are_served_and_the_eleventh_is_refused() {
+    let server = Server::start(0);
+    let mut pages: Vec<_> = (0..10).map(|_| server.page()).collect();
+    for (page, id) in pages.iter_mut().zip(1..) {
+        page.say(&look(id, id as f64, 2));
+    }
+    let origin = format!("http://{}", server.host());
+    assert_eq!(server.connect(Some(&origin), None).err(), Some(503));
+    let mut pictures: Vec<_> =
+        pages.iter_mut().zip(1..).map(|(page, id)| page.finished(id).1).collect();
+    pictures.sort();
+    pictures.dedup();
+    assert_eq!(pictures.len(), 10, "each has its own");
+    // One that goes makes room.
+    pages.pop().unwrap().socket.close(None).unwrap();
+    let room = (0..400).any(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        server.connect(Some(&origin), None).is_ok()
+    });
+    assert!(room);
+}
+
+#[test]
+fn a_port_that_is_taken_is_passed_over() {
+    let other = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = other.local_addr().unwrap().port();
+    let server = Server::start(port);
+    assert!(server.port > port && server.port < port + 100);
+    assert_eq!(status(&server.get("/", &server.host())), "200");
+}
+
+#[test]
+fn the_end_is_clean_while_work_goes_on() {
+    let mut server = Server::start(0);
+    let mut page = server.page();
+    let scene = json!({ "device": [{ "kind": "square-cloak", "material": "negative-uniaxial" }] });
+    page.say(&json!({ "look": { "id": 1, "scene": scene, "size": [2000, 2000], "samples": 64 } }));
+    page.hear_of("section");
+    let start = std::time::Instant::now();
+    server.end();
+    assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
+    while !matches!(page.listen(), Heard::End) {}
+}
+
+#[test]
+fn photographs_are_read_with_care() {
+    let server = Server::start(0);
+    let mut page = server.page();
+    let mut png = Vec::new();
+    let image = image::RgbImage::from_fn(40, 30, |x, y| image::Rgb([6 * x as u8, 8 * y as u8, 60]));
+    image.write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png).unwrap();
+    let mut bring = |name: &str, bytes: &[u8]| {
+        page.say(&json!({ "photograph": { "name": name } }));
+        page.socket.send(Message::binary(bytes.to_vec())).unwrap();
+        page.hear()
+    };
+    assert_eq!(
+        bring("mine.png", &png)["photograph"],
+        json!({ "name": "mine.png", "width": 40, "height": 30 })
+    );
+    // A header that promises 60000 x 60000 pixels, and no bytes to go with it.
+    let mut bomb = png.clone();
+    bomb[16..24].copy_from_slice(&[0, 0, 0xEA, 0x60, 0, 0, 0xEA, 0x60]);
+    for (bytes, part) in [
+        (&png[..png.len() / 2], "damaged"),
+        (&b"GIF89a\x01\x00\x01\x00\x00\x00\x00"[..], "only PNG, JPEG and EXR"),
+        (&b""[..], "not an image"),
+        (&b"hello, world, this is no image"[..], "not an image"),
+        (&bomb[..], ""),
+    ] {
+        let message = bring("other.png", bytes);
+        let message = message["error"]["message"].as_str().unwrap();
+        assert!(message.contains(part), "{message}");
+        assert!(!message.contains('/'), "no path is told: {message}");
+    }
+    page.say(&json!({ "photograph": { "name": "../mine.png" } }));
+    assert!(page.hear()["error"]["message"].as_str().unwrap().contains("without folders"));
+    // Bytes without a name.
+    page.socket.send(Message::binary(png)).unwrap();
+    assert!(page.hear()["error"]["message"].as_str().unwrap().contains("say its name first"));
+    // More than may come at once closes the page, and no other.
+    let mut other = server.page();
+    let _ = page.socket.send(Message::binary(vec![0; (32 << 20) + 1]));
+    while !matches!(page.listen(), Heard::End) {}
+    other.say(&look(1, 3.0, 1));
+    other.finished(1);
+}
