@@ -32,6 +32,7 @@ class SquareCloak(Device):
         self,
         *,
         core: Literal["metal", "open"] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         kappa: float | None = ...,
         length: float | None = ...,
         material: Literal["impedance-matched", "positive-uniaxial", "negative-uniaxial"] | None = ...,
@@ -43,6 +44,8 @@ class SquareCloak(Device):
     ) -> None: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def kappa(self) -> float: ...
     @property
@@ -68,6 +71,7 @@ class DoubleGaussianCloak(Device):
         fresnel: bool | None = ...,
         h: float | None = ...,
         height: float | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
         referenced: bool | None = ...,
@@ -84,6 +88,8 @@ class DoubleGaussianCloak(Device):
     def h(self) -> float: ...
     @property
     def height(self) -> float: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
@@ -104,6 +110,7 @@ class CylinderCloak(Device):
         self,
         *,
         core: Literal["metal", "open"] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
         material: Literal["impedance-matched", "radial-uniaxial", "azimuthal-uniaxial"] | None = ...,
@@ -114,6 +121,8 @@ class CylinderCloak(Device):
     ) -> None: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def inner(self) -> float: ...
     @property
@@ -134,6 +143,7 @@ class SphereCloak(Device):
         self,
         *,
         core: Literal["metal", "open"] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
         outer: float | None = ...,
@@ -143,6 +153,8 @@ class SphereCloak(Device):
     ) -> None: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def inner(self) -> float: ...
     @property
@@ -161,6 +173,7 @@ class InvisibleSphere(Device):
         self,
         *,
         core: Literal["metal", "open"] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         material: Literal["graded", "regularized"] | None = ...,
         position: ArrayLike | None = ...,
@@ -170,6 +183,8 @@ class InvisibleSphere(Device):
     ) -> None: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
@@ -189,6 +204,7 @@ class BendingSphere(Device):
         *,
         angle: float | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
@@ -199,6 +215,8 @@ class BendingSphere(Device):
     def angle(self) -> float: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
@@ -215,6 +233,7 @@ class EatonLens(Device):
         self,
         *,
         core: Literal["metal", "open"] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
@@ -223,6 +242,8 @@ class EatonLens(Device):
     ) -> None: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
@@ -239,6 +260,7 @@ class LuneburgLens(Device):
         self,
         *,
         core: Literal["metal", "open"] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
@@ -247,6 +269,8 @@ class LuneburgLens(Device):
     ) -> None: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
@@ -263,6 +287,7 @@ class FisheyeLens(Device):
         self,
         *,
         core: Literal["metal", "open"] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
@@ -271,6 +296,8 @@ class FisheyeLens(Device):
     ) -> None: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
@@ -288,6 +315,7 @@ class MirrorDetour(Device):
         *,
         core: Literal["metal", "open"] | None = ...,
         half_length: float | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         offset: float | None = ...,
         position: ArrayLike | None = ...,
@@ -298,6 +326,8 @@ class MirrorDetour(Device):
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def half_length(self) -> float: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
@@ -314,6 +344,7 @@ class Prisms(Device):
         self,
         *,
         core: Literal["metal", "open"] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
         prism: Sequence[Mapping[str, Any]] | None = ...,
@@ -322,6 +353,8 @@ class Prisms(Device):
     ) -> None: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
@@ -339,6 +372,7 @@ class Body(Device):
         *,
         core: Literal["metal", "open"] | None = ...,
         group_index: float | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         permeability: ArrayLike | None = ...,
         permittivity: ArrayLike | None = ...,
@@ -356,6 +390,8 @@ class Body(Device):
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def group_index(self) -> float | None: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
@@ -389,6 +425,7 @@ class GaussianCarpet(Device):
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
@@ -404,6 +441,8 @@ class GaussianCarpet(Device):
     def h(self) -> float: ...
     @property
     def height(self) -> float: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
@@ -425,6 +464,7 @@ class GratingCarpet(Device):
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         period: float | None = ...,
         position: ArrayLike | None = ...,
@@ -440,6 +480,8 @@ class GratingCarpet(Device):
     def h(self) -> float: ...
     @property
     def height(self) -> float: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
@@ -461,6 +503,7 @@ class QuasiConformalCarpet(Device):
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
@@ -476,6 +519,8 @@ class QuasiConformalCarpet(Device):
     def h(self) -> float: ...
     @property
     def height(self) -> float: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
     @property
