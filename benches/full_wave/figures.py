@@ -113,7 +113,8 @@ def far_field(solved):
     figure, axis = plt.subplots(figsize=(3.4, 2.4), layout="constrained")
     angles = np.linspace(-30, 75, 2101)
     wavelength = 0.5
-    shows = [("metal", "bare", ORANGE, "-"), ("flat mirror", "mirror", "black", "-"), ("(iii)", "cloak", SKY, (0, (4, 3)))]
+    dashed = (0, (4, 3))
+    shows = [("metal", "bare", ORANGE, "-"), ("flat mirror", "mirror", "black", "-"), ("(iii)", "cloak", SKY, dashed)]
     for label, show, color, style in shows:
         got = solved("(iii)", Case(show, MAGNETIC, wavelength, 10.0))
         width = pattern(got["multipoles"], got["orders"], wavelength, angles)
