@@ -111,7 +111,7 @@ fn render(
     let bar = progress::bar(rows * scenes.len() as u64, "rendering");
     let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
     let (mut rarities, mut skipped) = (Rarities::default(), 0);
-    let mut all = || {
+    let all = || {
         for (loaded, frame) in scenes.iter().zip(range) {
             let scene = &loaded.scene;
             let studio = projector.studio(scene).map_err(|error| scene::located(loaded, &error))?;

@@ -67,7 +67,7 @@ fn shared_work_is_taken_up_where_it_was() {
     let mut render = cloakroom();
     render.current_dir(at).args(["render", "scene.toml", "-o", "b.png"]);
     render.args(["--set", "device.0.rotation=90"]);
-    assert!(render.status().unwrap().success());
+    assert!(render.output().unwrap().status.success());
     let open = |path| image::open(path).unwrap().into_rgb8();
     assert_eq!(open(frames.join("frame-000003.png")), open(at.join("b.png")));
 }
