@@ -163,9 +163,11 @@ def beams():
     rows = []
     cases = [
         ("(iii)", Case("cloak", MAGNETIC, 1.0, 0.0, beam=(2.5, 4.0))),
+        ("(iii)", Case("mirror", MAGNETIC, 1.0, 0.0, beam=(2.5, 4.0))),
         ("(iii)", Case("cloak", MAGNETIC, 1.0, 10.0, beam=(1.2, 0.0))),
         ("(iii)", Case("mirror", MAGNETIC, 1.0, 10.0, beam=(1.2, 0.0))),
         ("(iv)", Case("cloak", MAGNETIC, 2.0, 0.0, beam=(3.0, 8.0))),
+        ("(iv)", Case("cloak", MAGNETIC, 2.0, 10.0, beam=(2.5, 0.0))),
     ]
     for design, case in cases:
         got = solved(design, case)["beam"]
