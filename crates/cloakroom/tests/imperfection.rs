@@ -139,7 +139,7 @@ fn bad_imperfections_are_refused_at_their_place() {
     bench("[[device]]\nkind = \"square-cloak\"\nshow = \"bare\"\nimperfection = { error = 0.1 }\n");
 }
 
-/// How far beside where the ideal cloak sends them the strongest leaves run, the median, cm.
+/// How far beside where the ideal cloak sends them the strongest leaves run, the median of those that differ, cm.
 fn displaced(kind: &str, imperfection: &str) -> f64 {
     let scene = format!("[[device]]\nkind = \"{kind}\"\n");
     let made = bench(&format!("{scene}imperfection = {{ {imperfection} }}\n"));
@@ -151,7 +151,9 @@ fn displaced(kind: &str, imperfection: &str) -> f64 {
             distances.push((ideal.1 - made.1).reject_from_normalized(ideal.2).length());
         }
     }
-    assert!(distances.len() > 25, "{}", distances.len());
+    // Of a carpet, the floor is perfect.
+    distances.retain(|distance| *distance > 0.0);
+    assert!(distances.len() > 8, "{}", distances.len());
     distances.sort_by(f64::total_cmp);
     distances[distances.len() / 2]
 }
