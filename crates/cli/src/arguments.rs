@@ -1,15 +1,18 @@
 //! The command line.
 
+mod measuring;
 mod values;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
-use cloakroom::material::Resolution;
-use cloakroom::measure::STANDARD_PLOT;
 use cloakroom::render::Tile;
 use cloakroom::scene::OPTIONAL_CHANNELS;
+pub use measuring::{
+    CompareArguments, DiagramArguments, ExportArguments, FluxArguments, QualityArguments,
+    VerifyArguments,
+};
 use std::path::PathBuf;
-use values::{angles, frames_only, grid, map_range, pixel, point, range, rectangle, size};
+use values::{frames_only, map_range, pixel, size};
 
 /// Photorealistic, physically exact pictures of invisibility cloaks.
 #[derive(Debug, Parser)]
@@ -219,192 +222,6 @@ pub struct PanelArguments {
     /// Samples per pixel.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub samples: u32,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
-}
-
-/// Arguments of `flux`.
-#[derive(Args, Debug)]
-pub struct FluxArguments {
-    /// The scene; its [receiver] is the plane.
-    #[command(flatten)]
-    pub scene: SceneArguments,
-    /// A file to write: data as .csv or .npz, a plot over the directions as .svg or .png. May be given several
-    /// times; the totals are printed.
-    #[arg(short, long = "output", value_name = "FILE")]
-    pub outputs: Vec<PathBuf>,
-    /// A file for a map of the receiver, .svg or .png.
-    #[arg(long, value_name = "FILE")]
-    pub map: Option<PathBuf>,
-    /// Angles of incidence in the plane across z, degrees.
-    #[arg(long, value_name = "FROM..TO:STEP", allow_hyphen_values = true, default_value = "-60..60:10", value_parser = range, conflicts_with = "sun")]
-    pub angles: [f64; 3],
-    /// Tilt the light towards z, degrees.
-    #[arg(
-        long,
-        value_name = "DEGREES",
-        allow_hyphen_values = true,
-        default_value_t = 0.0,
-        conflicts_with = "sun"
-    )]
-    pub tilt: f64,
-    /// The sun over a day instead, from that latitude and with that declination (degrees; 23.44 at midsummer): the
-    /// receiver lies flat, z points north.
-    #[arg(long, value_name = "LATITUDE,DECLINATION", allow_hyphen_values = true, value_parser = angles)]
-    pub sun: Option<[f64; 2]>,
-    /// Rays in each of the independent samples.
-    #[arg(long, value_name = "N", default_value_t = 4096)]
-    pub rays: u32,
-    /// Independent samples, from which the errors come.
-    #[arg(long, value_name = "N", default_value_t = 8)]
-    pub samples: u32,
-    /// Cells of the map across the receiver.
-    #[arg(long, value_name = "N", default_value_t = 60)]
-    pub cells: u32,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
-}
-
-/// Arguments of `compare`.
-#[derive(Args, Debug)]
-pub struct CompareArguments {
-    /// The picture to compare with, .npz, .exr or .png: what should be seen.
-    pub first: PathBuf,
-    /// The picture to be judged.
-    pub second: PathBuf,
-    /// Compare also what is white in this picture (.png, .exr or .npz).
-    #[arg(long, value_name = "FILE")]
-    pub mask: Option<PathBuf>,
-    /// Compare also this rectangle: left column, top row, width and height in pixels.
-    #[arg(long, value_name = "X,Y,W,H", conflicts_with = "mask", value_parser = rectangle)]
-    pub region: Option<Rectangle>,
-    /// Print JSON.
-    #[arg(long)]
-    pub json: bool,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
-}
-
-/// Arguments of `quality`.
-#[derive(Args, Debug)]
-pub struct QualityArguments {
-    /// The scene.
-    #[command(flatten)]
-    pub scene: SceneArguments,
-    /// A key and its values, as in device.0.rotation=0..90:5 or camera.polarizer=horizontal,vertical. May be
-    /// given several times: every combination is measured.
-    #[arg(long = "sweep", value_name = "KEY=VALUES", required = true)]
-    pub sweeps: Vec<String>,
-    /// A key of a device that follows, so that a computed fact of the device stays what it is without sweeps, as in
-    /// device.0.w=cloaked_area_cm2 (`cloakroom devices` lists facts). May be given several times.
-    #[arg(long = "hold", value_name = "KEY=FACT")]
-    pub holds: Vec<String>,
-    /// How often the random errors of devices (`device.N.imperfection.error`) are drawn for each combination: the
-    /// figures are means, with their standard errors.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    pub draws: u32,
-    /// A file to write; its ending decides: .csv, .npz, or .svg and .png for a plot. May be given several times.
-    #[arg(short, long = "output", value_name = "FILE")]
-    pub outputs: Vec<PathBuf>,
-    /// What a plot shows, as in ideal_picture_flip,delivered: names of the table's columns, a panel each.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_values = STANDARD_PLOT)]
-    pub plot: Vec<String>,
-    /// Print JSON.
-    #[arg(long)]
-    pub json: bool,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
-}
-
-/// Arguments of `diagram`.
-#[derive(Args, Debug)]
-pub struct DiagramArguments {
-    /// The scene.
-    #[command(flatten)]
-    pub scene: SceneArguments,
-    /// A file to write, .svg or .png. May be given several times.
-    #[arg(short, long = "output", value_name = "FILE", required = true)]
-    pub outputs: Vec<PathBuf>,
-    /// How many rays.
-    #[arg(long, value_name = "N", default_value_t = 20)]
-    pub rays: u32,
-    /// Parallel rays in that direction, degrees from x in the xy-plane: the default, along x.
-    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, conflicts_with_all = ["point", "camera"])]
-    pub parallel: Option<f64>,
-    /// A fan of rays from that point, cm.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = point, conflicts_with = "camera")]
-    pub point: Option<[f64; 3]>,
-    /// A fan of rays from the scene's camera.
-    #[arg(long)]
-    pub camera: bool,
-    /// The width of a bundle of parallel rays, cm; that of the devices if absent.
-    #[arg(long, value_name = "CM")]
-    pub width: Option<f64>,
-    /// The plane z = const that the rays start in, cm; that of the first device if absent.
-    #[arg(long, value_name = "CM", allow_hyphen_values = true)]
-    pub z: Option<f64>,
-    /// The polarization: none (unpolarized), horizontal or vertical.
-    #[arg(long, value_name = "WORD", default_value = "none", value_parser = PossibleValuesParser::new(["none", "horizontal", "vertical"]))]
-    pub polarization: String,
-    /// Mark the points of equal optical path, as often as that (cm): the wavefronts.
-    #[arg(long, value_name = "CM")]
-    pub wavefronts: Option<f64>,
-    /// Leave out branches below this share of a ray's power.
-    #[arg(long, value_name = "P", default_value_t = 0.01)]
-    pub min_power: f64,
-    /// Show space in parallel projection instead of the cross-section, seen from that azimuth and elevation, in
-    /// degrees, as in 30,20.
-    #[arg(long, value_name = "AZIMUTH,ELEVATION", allow_hyphen_values = true, value_parser = angles)]
-    pub space: Option<[f64; 2]>,
-    /// With --space: layers of rays one behind the other along z.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub layers: u32,
-    /// Draw the setting instead: camera, photograph and devices to scale.
-    #[arg(long)]
-    pub setting: bool,
-    /// Size in pixels.
-    #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size)]
-    pub size: [u32; 2],
-}
-
-/// Arguments of `export`.
-#[derive(Args, Debug)]
-pub struct ExportArguments {
-    /// The scene.
-    #[command(flatten)]
-    pub scene: SceneArguments,
-    /// The file to write; its ending decides: .npz, .vti (ParaView) or .csv; with --table .csv or .json.
-    #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
-    /// Which device, counted from 0; the only one if absent.
-    #[arg(long, value_name = "N")]
-    pub device: Option<usize>,
-    /// The cells of the grid: how many along x, y and z, as in 200x200x1, or the side of a cubic cell in cm, as
-    /// in 0.1 [default: cubes, 64 along the longest side].
-    #[arg(long, value_name = "NxNxN|CM", value_parser = grid)]
-    pub grid: Option<Resolution>,
-    /// Along whose axes grid and tensors lie: the device's own, or the world's.
-    #[arg(long, value_name = "FRAME", default_value = "device", value_parser = PossibleValuesParser::new(["device", "world"]))]
-    pub frame: String,
-    /// Write the homogeneous segments as a table instead: corners, optic axes, principal values and axes of
-    /// the tensors, in the device's frame.
-    #[arg(long, conflicts_with_all = ["grid", "frame"])]
-    pub table: bool,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
-}
-
-/// Arguments of `verify`.
-#[derive(Args, Debug)]
-pub struct VerifyArguments {
-    /// Print JSON.
-    #[arg(long)]
-    pub json: bool,
     /// Number of threads; all cores if absent.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
