@@ -76,7 +76,10 @@ export async function finished(page, timeout = 60000) {
 export function pixels(page) {
   return page.evaluate(() => {
     const canvas = document.getElementById("picture");
-    const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    // From a copy: browsers complain of canvases that are read often.
+    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+    copy.drawImage(canvas, 0, 0);
+    const data = copy.getImageData(0, 0, canvas.width, canvas.height).data;
     return { width: canvas.width, height: canvas.height, data: Array.from(data) };
   });
 }

@@ -43,7 +43,7 @@ export class Connection {
     const caption = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
     const pixels = new Uint8ClampedArray(buffer.slice(4 + length));
     this.heard.picture?.(caption, new ImageData(pixels, caption.width, caption.height));
-    if (this.waiting && caption.id === this.waiting.id && --this.waiting.pictures === 0) this.#arrived();
+    if (this.waiting && caption.id === this.waiting.id && caption.last) this.#arrived();
   }
 
   #arrived() {
@@ -53,7 +53,7 @@ export class Connection {
     if (next) this.look(next.look, true);
   }
 
-  // Asks for a picture of a look; `moving` if another will follow at once. Returns its number, if it was asked for now.
+  // Asks for a picture of what `look` says; `moving` if another will follow at once. Returns its number, if it was asked for now.
   look(look, moving) {
     if (!this.isOpen) return undefined;
     if (moving && this.waiting && performance.now() - this.waiting.since < PATIENCE) {
@@ -62,10 +62,8 @@ export class Connection {
     }
     this.next = null;
     const id = ++this.id;
-    const said = typeof look === "function" ? look() : look;
-    const pictures = said.beside === "nothing" ? 1 : 2;
-    this.waiting = moving ? { id, pictures, since: performance.now() } : null;
-    this.#say({ look: { id, moving, ...said } });
+    this.waiting = moving ? { id, since: performance.now() } : null;
+    this.#say({ look: { id, moving, ...look() } });
     return id;
   }
 

@@ -58,6 +58,10 @@ function greeted(content) {
 function received(caption, image) {
   picture.show(caption, image, state);
   document.body.dataset.pictures = String(Number(document.body.dataset.pictures ?? 0) + 1);
+  if (caption.last && caption.finished) {
+    $("progress").hidden = true;
+    document.body.dataset.finished = String(caption.id === wanted);
+  }
   if (caption.view !== "scene") return;
   clearError();
   const { width, height, samples, min_power: power, finished } = caption;
@@ -66,9 +70,8 @@ function received(caption, image) {
   $("quality").textContent = coarse || power > 0.001
     ? `Preview: ${width} × ${height}, ${each} a pixel, branches above ${percent(power)}`
     : `${width} × ${height}, ${each} a pixel${finished ? "" : ` of ${state.samples}`}`;
-  $("progress").hidden = finished;
+  if (!finished) $("progress").hidden = false;
   if (!finished && !coarse) $("progress").value = samples / state.samples;
-  document.body.dataset.finished = String(finished && caption.id === wanted);
   if (finished && !playing) $("live").textContent = `Finished: ${each} a pixel`;
   showScale(caption.scale);
   if (probing && (playing || finished || coarse)) connection.follow(probing);
@@ -144,7 +147,8 @@ function fillLists() {
   kinds.label = "Devices";
   const others = document.createElement("optgroup");
   others.label = "More from the gallery";
-  for (const [kind, { title }] of Object.entries(hello.kinds)) {
+  for (const kind of hello.order) {
+    const { title } = hello.kinds[kind];
     const exhibit = hello.exhibits.find(({ scene }) => scene.device?.[0]?.kind === kind);
     if (!exhibit) continue;
     kinds.append(new Option(title, exhibit.name));

@@ -13,6 +13,8 @@ pub(crate) fn greeting(opened: &Opened) -> Value {
     let schema = scene_file::schema();
     let kinds: Map<String, Value> =
         CATALOGUE.iter().map(|entry| (entry.kind.to_owned(), kind(entry, &schema))).collect();
+    // Objects of JSON have no order of their own.
+    let order: Vec<&str> = CATALOGUE.iter().map(|entry| entry.kind).collect();
     let exhibits: Vec<Value> = EXHIBITS
         .iter()
         .filter_map(|exhibit| {
@@ -29,6 +31,7 @@ pub(crate) fn greeting(opened: &Opened) -> Value {
             "name": opened.name,
             "scene": opened.tables,
             "kinds": kinds,
+            "order": order,
             "exhibits": exhibits,
             "maps": schema["properties"]["picture"]["properties"]["map"]["enum"],
             "largest_photograph_bytes": LARGEST_PHOTOGRAPH,

@@ -20,6 +20,8 @@ pub(crate) struct Caption {
     pub min_power: f64,
     /// Whether this is the best that was asked for.
     pub finished: bool,
+    /// Whether this is the last of the views that are shown beside each other.
+    pub last: bool,
     /// How long it took to render, ms.
     pub milliseconds: f64,
     /// The scale of a map.

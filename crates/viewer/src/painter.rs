@@ -204,8 +204,9 @@ impl Painter<'_> {
             .collect();
         for pass in passes(look, self.nanoseconds_a_pixel) {
             let start = Instant::now();
-            for (name, scene) in &views {
-                self.picture(wish, name, scene, pass, images)?;
+            for (number, (name, scene)) in views.iter().enumerate() {
+                let last = number + 1 == views.len();
+                self.picture(wish, (name, last), scene, pass, images)?;
             }
             let pixels = f64::from(pass.size[0]) * f64::from(pass.size[1]);
             if pass.samples == 1 {
@@ -220,11 +221,11 @@ impl Painter<'_> {
         Ok(())
     }
 
-    /// Renders and sends one picture.
+    /// Renders and sends one picture: of a view, which may be the last of its pass.
     fn picture(
         &self,
         wish: &Wish,
-        view: &'static str,
+        (view, last): (&'static str, bool),
         scene: &Scene,
         pass: Pass,
         images: &mut Images,
@@ -261,6 +262,7 @@ impl Painter<'_> {
             samples: pass.samples,
             min_power: scene.trace.min_power,
             finished: pass.finished,
+            last,
             milliseconds: start.elapsed().as_secs_f64() * 1e3,
             scale,
         };

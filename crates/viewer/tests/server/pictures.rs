@@ -45,7 +45,10 @@ fn pictures_come_coarse_first_and_with_all_else() {
     let (mut samples, mut besides, mut section, mut numbers) = (Vec::new(), 0, None, None);
     while samples.last() != Some(&json!(16)) || besides < 4 {
         match page.listen() {
-            Heard::Picture(caption, _) if caption["view"] == "bare" => besides += 1,
+            Heard::Picture(caption, _) if caption["view"] == "bare" => {
+                assert_eq!(caption["last"], true);
+                besides += 1;
+            }
             Heard::Picture(caption, _) => {
                 if samples.is_empty() {
                     assert!(caption["width"].as_u64().unwrap() < 320);
