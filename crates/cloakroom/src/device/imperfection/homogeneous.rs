@@ -45,13 +45,13 @@ pub(super) fn apply(
             let normal = |k: u64| deviates.normal(group.wrapping_mul(6) + first + k);
             made(imperfection, &process, tensor, &normal)
         };
-        **medium =
-            Medium::new(made(&permittivity, 0), made(&permeability, 3)).map_err(|error| {
-                KeyError::at(
-                    TABLE,
-                    format!("with this imperfection there is no medium left: {error}"),
-                )
-            })?;
+        let made = (made(&permittivity, 0), made(&permeability, 3));
+        if made == (permittivity, permeability) {
+            continue;
+        }
+        **medium = Medium::new(made.0, made.1).map_err(|error| {
+            KeyError::at(TABLE, format!("with this imperfection there is no medium left: {error}"))
+        })?;
     }
     Ok(())
 }
