@@ -21,7 +21,7 @@ const SHORTEST_SPLIT: f64 = 1e-3;
 const NEAR: f64 = 0.03;
 
 /// Where the interpolation puts an end of the step.
-const AT_END: f64 = 1.0 - 1e-6;
+const AT_END: f64 = 1.0 - 1e-3;
 
 /// A landing this near to the border is exact, relative to the lengths at hand.
 const LANDED: f64 = 1e-15;
