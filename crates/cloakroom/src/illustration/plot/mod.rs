@@ -148,7 +148,7 @@ impl Plot {
             .margin_right(units(3.0))
             .margin_left(units(1.0))
             .x_label_area_size(if last { units(AXIS) } else { 0 })
-            .y_label_area_size(units(14.0))
+            .y_label_area_size(units(16.5))
             .build_cartesian_2d(across.clone(), along.clone())?;
         let type_size = TYPE * MM;
         let style: TextStyle<'_> =

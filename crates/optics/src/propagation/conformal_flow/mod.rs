@@ -126,8 +126,9 @@ pub enum FlowError {
     StepLimit,
 }
 
-/// Steps after which a ray is given up; an ordinary one takes about ten.
-const MAX_STEPS: u32 = 2000;
+/// Steps after which a ray is given up; an ordinary one takes about ten, and in an uneven medium some at every line of
+/// its grid.
+const MAX_STEPS: u32 = 20_000;
 
 /// What is off where the mirror is met, its bulge magnifies on the way out: such a leg is followed with
 /// this share of the tolerance.
