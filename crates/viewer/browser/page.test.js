@@ -259,6 +259,7 @@ test("picture and scene are saved, and a link shows the same again", async () =>
 
 test("it is accessible, in light and dark, on a phone too", async () => {
   const { page, complaints } = await open();
+  await small(page);
   for (const colorScheme of ["light", "dark"]) {
     await page.emulateMedia({ colorScheme });
     assert.deepEqual(await violations(page), [], colorScheme);

@@ -21,6 +21,7 @@ fn a_page_can_name_no_other_file() {
     let opened = opened(Path::new("/home/user/scenes"));
     let reads = |scene: Value, uploaded| opened.read(&object(scene), uploaded);
     let photograph = |name: &str| json!({ "photograph": { "image": name } });
+    // However it is written, it is the file that the user has opened.
     for name in ["mine.png", "./mine.png", "builtin:bookshelf", "/home/user/scenes/mine.png"] {
         reads(photograph(name), None).expect(name);
     }
