@@ -16,7 +16,8 @@ import itertools
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -260,13 +261,17 @@ def _run(tasks: list[_Task], folder: Path, client: Any, progress: Progress, what
         done = len(tasks) - len(waiting)
         if tell is not None:
             tell(done, len(tasks))
-        for task, result in _results(waiting, client):
-            _write(folder / task.file, result)
-            with record.open("a", encoding="utf-8") as lines:
+        # Closed at once where something is raised here: tasks that nobody waits for are given up.
+        with closing(_results(waiting, client)) as results, record.open("a", encoding="utf-8") as lines:
+            # A line that was cut short ends here.
+            lines.write("\n")
+            for task, result in results:
+                _write(folder / task.file, result)
                 lines.write(json.dumps({"file": task.file, "fingerprint": fingerprints[task.file]}) + "\n")
-            done += 1
-            if tell is not None:
-                tell(done, len(tasks))
+                lines.flush()
+                done += 1
+                if tell is not None:
+                    tell(done, len(tasks))
     return [folder / task.file for task in tasks]
 
 
@@ -288,7 +293,7 @@ def _write(file: Path, content: bytes) -> None:
     os.replace(unfinished, file)
 
 
-def _results(tasks: list[_Task], client: Any) -> Iterator[tuple[_Task, bytes]]:
+def _results(tasks: list[_Task], client: Any) -> Generator[tuple[_Task, bytes], None, None]:
     """Tasks and the bytes of their files, as they come."""
     if not tasks:
         return

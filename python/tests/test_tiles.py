@@ -120,7 +120,6 @@ def test_what_is_finished_is_not_done_again(cluster, scene: Scene, tmp_path: Pat
     assert len(times) == 3
     told: list[int] = []
     picture = render_tiles(scene, tmp_path, tile=(20, 16), progress=lambda done, total: told.append(done))
-    # The cut line has taken the next one with it, at most.
     assert told[0] == 3 and told[-1] == 16
     for name, time in times.items():
         assert (tmp_path / name).stat().st_mtime_ns == time
