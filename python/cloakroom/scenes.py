@@ -257,7 +257,11 @@ def _rebuild(
     surroundings: NDArray[Any] | None,
 ) -> Scene:
     scene = object.__new__(Scene)
-    images = [None if array is None else _cloakroom.Image(array) for array in (photograph, surroundings)]
+    # Arrays that have come through a network may lie anywhere in memory.
+    images = [
+        None if array is None else _cloakroom.Image(np.require(array, requirements=["ALIGNED"]))
+        for array in (photograph, surroundings)
+    ]
     scene._images = (images[0], images[1])
     scene._overrides = overrides
     scene._native = _cloakroom.Scene(text, name, folder, is_file, overrides, *images)
