@@ -268,8 +268,10 @@ except KeyboardInterrupt:
 """
 
 
-def test_ctrl_c_stops_a_render() -> None:
-    process = subprocess.Popen([sys.executable, "-c", INTERRUPTED], stdout=subprocess.PIPE, text=True)
+# Programs below start in a folder of their own: `python -c` looks into the working folder first, where the sources of the
+# package lie without its compiled part.
+def test_ctrl_c_stops_a_render(tmp_path: Path) -> None:
+    process = subprocess.Popen([sys.executable, "-c", INTERRUPTED], stdout=subprocess.PIPE, text=True, cwd=tmp_path)
     assert process.stdout is not None and process.stdout.readline() == "on\n"
     process.send_signal(signal.SIGINT)
     out, _ = process.communicate(timeout=60)
@@ -277,7 +279,7 @@ def test_ctrl_c_stops_a_render() -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
-def test_a_forked_process_has_threads_of_its_own(cloak: Scene) -> None:
+def test_a_forked_process_has_threads_of_its_own(tmp_path: Path) -> None:
     code = (
         "import os, cloakroom\n"
         "scene = cloakroom.Scene(devices=cloakroom.SquareCloak())\n"
@@ -287,7 +289,7 @@ def test_a_forked_process_has_threads_of_its_own(cloak: Scene) -> None:
         "if child:\n"
         "    print(shape, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))\n"
     )
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, cwd=tmp_path)
     assert run.stdout == "(6, 8) 0\n", run.stderr
 
 
