@@ -3,13 +3,14 @@
 use crate::arguments::FiguresArguments;
 use crate::interruption;
 use crate::panels::{self, merge, write_png};
-use crate::render::{picture, rgb, tell_rarities};
+use crate::render::rgb;
 use crate::report::{Failure, say};
 use crate::scene;
+use crate::views::{Subject, Views};
 use cloakroom::illustration::{self, ColorBar, ScalarMap, Setting, SheetPanel, sheet};
 use cloakroom::output::{self, RgbImage};
 use cloakroom::paper::{self, Figure, Panel, Shows};
-use cloakroom::render::{Rendered, Studio, Wanted};
+use cloakroom::render::Images;
 use cloakroom::scene_file::Loaded;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -20,8 +21,9 @@ pub fn run(arguments: &FiguresArguments, stop: &AtomicBool) -> Result<(), Failur
     scene::use_threads(arguments.panels.threads)?;
     panels::make_folder(&arguments.out)?;
     let _busy = interruption::busy();
+    let mut images = Images::default();
     for (figure, panels) in chosen {
-        make(figure, &panels, arguments, stop)?;
+        make(figure, &panels, arguments, &mut images, stop)?;
     }
     Ok(())
 }
@@ -29,18 +31,18 @@ pub fn run(arguments: &FiguresArguments, stop: &AtomicBool) -> Result<(), Failur
 /// Makes the chosen panels of one figure, and its sheet if all of them are chosen.
 fn make(
     figure: &Figure,
-    chosen: &[&Panel],
+    chosen: &[&'static Panel],
     arguments: &FiguresArguments,
+    images: &mut Images,
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
     let mut on_sheet = Vec::new();
     let mut metadata: Vec<(String, String)> = Vec::new();
-    for panel in chosen {
-        let name = format!("fig{}", panel.name);
-        let loaded = panels::load(panel.scene, &name, &arguments.panels)?;
+    let mut views = Views::new(chosen, arguments)?;
+    for (index, panel) in chosen.iter().enumerate() {
         let shown = match panel.shows {
-            Shows::Picture => rendered(panel, &loaded, arguments, stop)?,
-            Shows::Setting => drawn(panel, &loaded, arguments)?,
+            Shows::Picture => rendered(&mut views, index, arguments, images, stop)?,
+            Shows::Setting => drawn(panel, &views.subjects[index].loaded, arguments)?,
         };
         merge(&mut metadata, &shown.metadata);
         on_sheet.push(SheetPanel {
@@ -67,19 +69,16 @@ struct Shown {
 
 /// Renders a panel and writes it.
 fn rendered(
-    panel: &Panel,
-    loaded: &Loaded,
+    views: &mut Views,
+    index: usize,
     arguments: &FiguresArguments,
+    images: &mut Images,
     stop: &AtomicBool,
 ) -> Result<Shown, Failure> {
-    let scene = &loaded.scene;
-    let studio = Studio::new(scene).map_err(|e| scene::located(loaded, &e))?;
-    let wanted = if scene.picture.map.is_some() { Wanted::Everything } else { Wanted::Image };
-    let what = format!("figure {}", panel.name);
-    let Rendered { picture, rarities } = picture(&studio, wanted, &what, stop)?;
-    tell_rarities(&rarities);
-    let image = rgb(scene, &picture)?;
-    let bar = match scene.picture.map {
+    let picture = views.picture(index, images, stop)?;
+    let Subject { panel, loaded, .. } = &views.subjects[index];
+    let image = rgb(&loaded.scene, &picture)?;
+    let bar = match loaded.scene.picture.map {
         Some(channel) => Some(ScalarMap::new(&picture, channel).map_err(Failure::from_error)?.bar),
         None => None,
     };

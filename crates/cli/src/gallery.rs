@@ -8,7 +8,7 @@ use crate::report::Failure;
 use crate::scene;
 use cloakroom::gallery::{self, EXHIBITS, Exhibit};
 use cloakroom::illustration::{ScalarMap, TablePicture, TableRow, table};
-use cloakroom::render::{Rendered, Studio, Wanted};
+use cloakroom::render::{Images, Rendered, Studio, Wanted};
 use std::sync::atomic::AtomicBool;
 
 /// The channel whose map stands beside the picture.
@@ -20,10 +20,10 @@ pub fn run(arguments: &GalleryArguments, stop: &AtomicBool) -> Result<(), Failur
     scene::use_threads(arguments.panels.threads)?;
     panels::make_folder(&arguments.out)?;
     let _busy = interruption::busy();
-    let mut rows = Vec::new();
+    let (mut images, mut rows) = (Images::default(), Vec::new());
     let mut metadata = Vec::new();
     for exhibit in &chosen {
-        rows.push(make(exhibit, arguments, &mut metadata, stop)?);
+        rows.push(make(exhibit, arguments, &mut images, &mut metadata, stop)?);
     }
     if chosen.len() == EXHIBITS.len() {
         let path = arguments.out.join("gallery.png");
@@ -36,11 +36,13 @@ pub fn run(arguments: &GalleryArguments, stop: &AtomicBool) -> Result<(), Failur
 fn make(
     exhibit: &Exhibit,
     arguments: &GalleryArguments,
+    images: &mut Images,
     metadata: &mut Vec<(String, String)>,
     stop: &AtomicBool,
 ) -> Result<TableRow, Failure> {
-    let loaded = panels::load(exhibit.scene, exhibit.name, &arguments.panels)?;
-    let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let loaded = panels::load(exhibit.scene, exhibit.name, &arguments.panels, &[])?;
+    let studio = Studio::with_images(&loaded.scene, images)
+        .map_err(|error| scene::located(&loaded, &error))?;
     let Rendered { picture, rarities } = picture(&studio, Wanted::Everything, exhibit.name, stop)?;
     tell_rarities(&rarities);
     let image = rgb(&loaded.scene, &picture)?;

@@ -28,6 +28,7 @@ mod scene;
 mod trace;
 mod verify;
 mod view;
+mod views;
 
 use arguments::{Arguments, Command};
 use clap::Parser;

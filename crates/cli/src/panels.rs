@@ -13,8 +13,13 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Reads the scene of a panel, with what the command line changes in it.
-pub fn load(scene: &str, name: &str, arguments: &PanelArguments) -> Result<Loaded, Failure> {
+/// Reads the scene of a panel, with what the command line changes in it, and with more overrides.
+pub fn load(
+    scene: &str,
+    name: &str,
+    arguments: &PanelArguments,
+    more: &[&str],
+) -> Result<Loaded, Failure> {
     let [width, height] = arguments.size;
     let mut overrides = vec![
         format!("camera.resolution=[{width}, {height}]"),
@@ -25,6 +30,7 @@ pub fn load(scene: &str, name: &str, arguments: &PanelArguments) -> Result<Loade
     if let Some(photo) = &arguments.photo {
         overrides.push(format!("photograph.image={}", photo.display()));
     }
+    overrides.extend(more.iter().map(|more| (*more).to_owned()));
     scene_file::parse(scene, &format!("{name}.toml"), Path::new(""), &overrides)
         .map_err(Failure::from_error)
 }

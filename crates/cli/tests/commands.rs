@@ -248,6 +248,23 @@ fn figures_come_as_panels_and_sheets() {
 }
 
 #[test]
+fn panels_that_share_their_rays_are_those_made_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let make = |only: &str| {
+        let mut command = cloakroom();
+        command.args(["figures", "--only", only, "--size", "96x72", "--samples", "2", "--out"]);
+        command.arg(folder.path().join(only)).assert().success();
+        folder.path().join(only)
+    };
+    let together = make("2c,2d,2e,4c,4d,4e,8c,8d");
+    for panel in ["2c", "2d", "2e", "4c", "4d", "4e", "8c", "8d"] {
+        let name = format!("fig{panel}.png");
+        let alone = fs::read(make(panel).join(&name)).unwrap();
+        assert!(fs::read(together.join(&name)).unwrap() == alone, "{panel}");
+    }
+}
+
+#[test]
 fn the_gallery_has_a_picture_and_a_map_of_each_exhibit() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("gallery");

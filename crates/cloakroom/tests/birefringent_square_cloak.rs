@@ -148,6 +148,7 @@ fn paths_reversed_carry_the_same_power() {
                     .map(|other| sent.dot(other.electric[i]).norm_sqr())
                     .collect();
                 let start = Leaf {
+                    alone: [true; 1],
                     position: there.origin,
                     met_device: true,
                     direction: -there.direction,

@@ -1,4 +1,5 @@
-//! The table of what pruning costs in `docs/polarization.md` is true.
+//! The table of what pruning costs in `docs/polarization.md` is true, and what is followed for one polarization makes
+//! no difference to the image of another.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use cloakroom::render::{Studio, Supervision, Wanted, render};
@@ -51,4 +52,28 @@ fn the_documented_cost_of_pruning_is_what_pictures_have() {
         }
     }
     assert_eq!(count, 8 * 4);
+}
+
+#[test]
+fn images_through_polarizers_are_those_of_pictures_through_them_alone() {
+    for (material, rotation) in [("positive-uniaxial", 7), ("negative-uniaxial", 20)] {
+        let render = |polarizer: &str, wanted| {
+            let text = format!(
+                "[camera]\nresolution = [96, 72]\nsamples = 1\npolarizer = \"{polarizer}\"\n\
+                 [[device]]\nkind = \"square-cloak\"\nmaterial = \"{material}\"\n\
+                 rotation = {rotation}\n"
+            );
+            let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
+            let studio = Studio::new(&loaded.scene).unwrap();
+            let stop = AtomicBool::new(false);
+            let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
+            cloakroom::render::render(&studio, wanted, &supervision).unwrap().picture
+        };
+        let both = render("none", Wanted::Polarizers);
+        assert_eq!(both.image_through(""), render("none", Wanted::Image).image_through(""));
+        for polarizer in ["horizontal", "vertical"] {
+            let alone = render(polarizer, Wanted::Image).image_through("");
+            assert_eq!(both.image_through(polarizer), alone, "{material} {polarizer}");
+        }
+    }
 }

@@ -39,6 +39,20 @@ impl Picture {
     pub fn channel(&self, name: &str) -> Option<&Channel> {
         self.channels.iter().find(|channel| channel.name == name)
     }
+
+    /// The image of a polarizer by itself: the channels `horizontal.R` to `horizontal.B`, say, as `R` to `B`, and
+    /// without metadata. With "" for the name, the image through the camera's own. `None` if the picture has not all
+    /// three.
+    #[must_use]
+    pub fn image_through(&self, polarizer: &str) -> Option<Self> {
+        let dot = if polarizer.is_empty() { "" } else { "." };
+        let channel = |color: &str| {
+            let samples = self.channel(&format!("{polarizer}{dot}{color}"))?.samples.clone();
+            Some(Channel { name: color.to_owned(), samples })
+        };
+        let channels = ["R", "G", "B"].into_iter().map(channel).collect::<Option<_>>()?;
+        Some(Self { width: self.width, height: self.height, channels, metadata: Vec::new() })
+    }
 }
 
 impl Samples {

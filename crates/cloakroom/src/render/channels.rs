@@ -7,6 +7,9 @@ use crate::scene::PictureSettings;
 pub enum Wanted {
     /// The image through the camera's polarizer alone: `R`, `G`, `B`.
     Image,
+    /// That and the images through a horizontal and a vertical polarizer, `horizontal.R` to `vertical.B`, as pictures
+    /// through them alone would be. Where every channel is wanted, these too show all branches that are followed.
+    Polarizers,
     /// Every channel of [`Channel::ALWAYS`], and those of [`Channel::OPTIONAL`] that the scene asks for.
     Everything,
 }
@@ -117,6 +120,7 @@ impl Channel {
     pub fn of(wanted: Wanted, picture: &PictureSettings) -> Vec<Self> {
         match wanted {
             Wanted::Image => Self::ALWAYS[..3].to_vec(),
+            Wanted::Polarizers => Self::ALWAYS[..9].to_vec(),
             Wanted::Everything => {
                 let asked = Self::OPTIONAL.iter().filter(|c| picture.asks_for(c.keyword()));
                 Self::ALWAYS.iter().chain(asked).copied().collect()
@@ -169,6 +173,17 @@ mod tests {
             Channel::of(wanted, &settings).into_iter().map(Channel::name).collect::<Vec<_>>()
         };
         assert_eq!(names(Wanted::Everything, &[], None).len(), 16);
+        assert_eq!(
+            names(Wanted::Polarizers, &["stokes"], None)[3..],
+            [
+                "horizontal.R",
+                "horizontal.G",
+                "horizontal.B",
+                "vertical.R",
+                "vertical.G",
+                "vertical.B",
+            ]
+        );
         assert_eq!(names(Wanted::Image, OPTIONAL_CHANNELS, None), ["R", "G", "B"]);
         let stokes = ["stokes.S0", "stokes.S1", "stokes.S2", "stokes.S3"];
         assert_eq!(names(Wanted::Everything, &["stokes"], None)[16..], stokes);

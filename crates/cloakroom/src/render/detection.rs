@@ -14,6 +14,9 @@ pub(super) struct Detection<const N: usize> {
     /// Whether the first two launched polarizations are horizontal and vertical, with an image of
     /// their own each.
     pub separate: bool,
+    /// Whether the images of these two are to be as if each had been launched alone: without the branches that are too
+    /// weak in the one and followed because of the other.
+    pub alone: bool,
     /// Whether times of flight are wanted.
     pub times: bool,
     /// Whether the Stokes parameters are wanted: for those the first two are needed.
@@ -32,6 +35,7 @@ impl Detection<1> {
             launched: [amplitudes],
             weights: [1.0],
             separate: false,
+            alone: false,
             times: true,
             stokes: false,
             first_face: false,
@@ -45,6 +49,7 @@ impl Detection<2> {
         launched: [HORIZONTAL, VERTICAL],
         weights: [0.5, 0.5],
         separate: true,
+        alone: false,
         times: true,
         stokes: false,
         first_face: false,
@@ -58,6 +63,7 @@ impl Detection<3> {
             launched: [HORIZONTAL, VERTICAL, amplitudes],
             weights: [0.0, 0.0, 1.0],
             separate: true,
+            alone: false,
             times: true,
             stokes: false,
             first_face: false,
@@ -72,17 +78,18 @@ impl<const N: usize> Detection<N> {
         let everything = wanted == Wanted::Everything;
         let asked = |channel| everything && picture.asks_for(channel);
         Self {
-            separate: self.separate && everything,
+            separate: self.separate && wanted != Wanted::Image,
             times: everything,
+            alone: wanted == Wanted::Polarizers,
             stokes: self.separate && asked("stokes"),
             first_face: asked("extraordinary_share") || asked("first_face_reflectance"),
             ..self
         }
     }
 
-    /// Whether nothing but the image is wanted.
-    pub fn image_alone(&self) -> bool {
-        !(self.separate || self.times || self.stokes || self.first_face)
+    /// Whether nothing but images is wanted.
+    pub fn images_alone(&self) -> bool {
+        !(self.times || self.stokes || self.first_face)
     }
 
     /// The ray to launch for a camera ray.

@@ -33,29 +33,35 @@ pub(super) fn expose<const N: usize>(
     pixel.pruned += detection.detected(&here.outcome.pruned);
     for leaf in here.leaves {
         let power = detection.detected(&leaf.power);
-        let beside = [across, down].map(|neighbour| Neighbour { here, leaf, neighbour });
         let screen = studio.screen.hit(leaf.position, leaf.direction);
-        let light = match (leaf.body, screen) {
-            (Some(body), _) => {
-                pixel.absorbed += power;
-                body_light(studio, body, leaf, &beside, spacing)
-            }
+        match (leaf.body, screen) {
+            (Some(_), _) => pixel.absorbed += power,
             (None, Some(distance)) => {
                 pixel.delivered += power;
                 if detection.times {
                     pulses.push((time_of_flight(leaf, distance), power));
                 }
-                photograph_light(studio, leaf, distance, &beside, spacing)
             }
-            (None, None) => {
-                pixel.escaped += power;
-                surroundings_light(studio, leaf, &beside, spacing)
-            }
-        };
+            (None, None) => pixel.escaped += power,
+        }
+        let beside =
+            |alone| [across, down].map(|neighbour| Neighbour { here, leaf, neighbour, alone });
+        let among_all = beside(None);
+        let light = light(studio, leaf, screen, &among_all, spacing);
         add(&mut pixel.image, power, light);
         if detection.separate {
-            add(&mut pixel.horizontal, leaf.power[0], light);
-            add(&mut pixel.vertical, leaf.power[1], light);
+            for (i, sum) in [&mut pixel.horizontal, &mut pixel.vertical].into_iter().enumerate() {
+                let is_in = |leaf: &Leaf<N>| leaf.alone[i] || !detection.alone;
+                if is_in(leaf) {
+                    let same = among_all.iter().all(|n| n.twin().is_none_or(is_in));
+                    let light = if same {
+                        light
+                    } else {
+                        self::light(studio, leaf, screen, &beside(Some(i)), spacing)
+                    };
+                    add(sum, leaf.power[i], light);
+                }
+            }
         }
         if detection.stokes {
             let stokes = arriving_stokes(leaf.electric[0], leaf.electric[1]);
@@ -100,6 +106,10 @@ pub(super) fn expose_unhindered<const N: usize>(
         let light = studio.image.sample(places[i], dx, dy).map(f64::from);
         pixel.delivered += power;
         add(&mut pixel.image, power, light);
+        if detection.separate {
+            add(&mut pixel.horizontal, 1.0, light);
+            add(&mut pixel.vertical, 1.0, light);
+        }
     }
     true
 }
@@ -133,6 +143,8 @@ struct Neighbour<'a, const N: usize> {
     here: &'a Traced<'a, N>,
     leaf: &'a Leaf<N>,
     neighbour: &'a Traced<'a, N>,
+    /// The polarization in whose tree alone to look, else in that of all.
+    alone: Option<usize>,
 }
 
 impl<const N: usize> Neighbour<'_, N> {
@@ -149,14 +161,19 @@ impl<const N: usize> Neighbour<'_, N> {
     }
 
     /// The leaf of the neighbouring camera ray that has taken the same way, if there is one.
-    fn twin(&self) -> Option<Line> {
-        let leaves = self.neighbour.leaves;
-        let twin = leaves.iter().find(|twin| twin.path == self.leaf.path).or_else(|| {
+    fn twin(&self) -> Option<&Leaf<N>> {
+        let mut leaves = (self.neighbour.leaves.iter())
+            .filter(|leaf| self.alone.is_none_or(|polarization| leaf.alone[polarization]));
+        leaves.clone().find(|twin| twin.path == self.leaf.path).or_else(|| {
             // Light that enters by another face of a cloak may leave as if nothing had happened.
             let moved = self.moved();
-            leaves.iter().find(|other| is_close(&moved, self.leaf, other))
-        })?;
-        Some(Line { origin: twin.position, direction: twin.direction })
+            leaves.find(|other| is_close(&moved, self.leaf, other))
+        })
+    }
+
+    /// The line of the twin, if there is one.
+    fn twin_line(&self) -> Option<Line> {
+        self.twin().map(|twin| Line { origin: twin.position, direction: twin.direction })
     }
 }
 
@@ -179,7 +196,7 @@ fn footprint<const N: usize>(
         None => [0.0; 2],
     };
     let size = |step: [f64; 2]| step[0].hypot(step[1]);
-    let twins = [0, 1].map(|i| beside[i].twin().map(step));
+    let twins = [0, 1].map(|i| beside[i].twin_line().map(step));
     std::array::from_fn(|i| {
         twins[i].unwrap_or_else(|| {
             // At the edge of a device there is no twin: the other axis tells how much the picture
@@ -190,6 +207,21 @@ fn footprint<const N: usize>(
             step(beside[i].moved()).map(|change| change * stretch)
         })
     })
+}
+
+/// The light of a leaf, which meets the photograph at the distance `screen` (cm), if it does.
+fn light<const N: usize>(
+    studio: &Studio<'_>,
+    leaf: &Leaf<N>,
+    screen: Option<f64>,
+    beside: &[Neighbour<'_, N>; 2],
+    spacing: f64,
+) -> [f64; 3] {
+    match (leaf.body, screen) {
+        (Some(body), _) => body_light(studio, body, leaf, beside, spacing),
+        (None, Some(distance)) => photograph_light(studio, leaf, distance, beside, spacing),
+        (None, None) => surroundings_light(studio, leaf, beside, spacing),
+    }
 }
 
 fn photograph_light<const N: usize>(
@@ -222,7 +254,7 @@ fn surroundings_light<const N: usize>(
         Surroundings::Color(color) => *color,
         Surroundings::Image(image) => {
             let steps = [0, 1].map(|i| {
-                let line = beside[i].twin().unwrap_or_else(|| beside[i].moved());
+                let line = beside[i].twin_line().unwrap_or_else(|| beside[i].moved());
                 (line.direction - leaf.direction) * spacing
             });
             image.sample(leaf.direction, steps[0], steps[1]).map(f64::from)
@@ -240,7 +272,7 @@ fn body_light<const N: usize>(
     let Some(surface) = studio.body_surface(body) else { return [0.0; 3] };
     surface.light(leaf.position, |normal| {
         let steps = beside.each_ref().map(|neighbour| {
-            let line = neighbour.twin().unwrap_or_else(|| neighbour.moved());
+            let line = neighbour.twin_line().unwrap_or_else(|| neighbour.moved());
             let distance = normal.dot(leaf.position - line.origin) / normal.dot(line.direction);
             (line.origin + line.direction * distance - leaf.position) * spacing
         });

@@ -153,7 +153,7 @@ fn expose_tile(
         (Wanted::Image, Some(amplitudes)) => {
             expose_film(studio, wanted, tile, supervision, Detection::image(amplitudes))
         }
-        (Wanted::Everything, Some(amplitudes)) => {
+        (Wanted::Polarizers | Wanted::Everything, Some(amplitudes)) => {
             expose_film(studio, wanted, tile, supervision, Detection::through(amplitudes))
         }
     }
@@ -328,7 +328,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
         let spacing = 1.0 / f64::from(samples).sqrt();
         let mut rarities = Rarities::default();
         let any = &self.tracers.each()[0];
-        if self.detection.image_alone()
+        if self.detection.images_alone()
             && rays.iter().all(|ray| any.meets_nothing(ray.origin, ray.direction))
             && expose_unhindered(self.studio, self.detection, &rays, spacing, pixels)
         {

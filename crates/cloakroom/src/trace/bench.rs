@@ -17,10 +17,12 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// What a branch has left that comes from a surface of the skin of this device, the `number`th.
-    pub(super) fn left(&self, number: u16, surface: u16) -> Left {
-        let surface = (!self.structure.hull.is_convex()).then_some(surface);
-        Left { device: number, surface }
+    /// What a branch has left that runs away from this device, the `number`th: the surface of its skin that is
+    /// given, or all of it if it is convex.
+    pub(super) fn left(&self, number: u16, surface: Option<u16>) -> Option<Left> {
+        let convex = self.structure.hull.is_convex();
+        let surface = surface.filter(|_| !convex);
+        (convex || surface.is_some()).then_some(Left { device: number, surface })
     }
 
     /// Whether a point of the world lies inside the device.

@@ -38,6 +38,8 @@ pub(super) struct Branch<const N: usize> {
     pub direction: DVec3,
     pub electric: [ComplexVector; N],
     pub power: [f64; N],
+    /// Whether the tree of each launched polarization alone has this branch.
+    pub alone: [bool; N],
     pub optical_path: f64,
     /// Speed of light times the time of flight, cm.
     pub group_path: f64,
@@ -64,6 +66,7 @@ impl<const N: usize> Branch<N> {
             direction: launch.direction,
             electric: launch.electric,
             power: launch.electric.map(ComplexVector::norm_squared),
+            alone: [true; N],
             optical_path: 0.0,
             group_path: 0.0,
             around: Around::default(),
@@ -152,6 +155,7 @@ impl<const N: usize> Branch<N> {
             direction: self.direction,
             power: self.power,
             electric: self.electric,
+            alone: self.alone,
             optical_path: self.optical_path,
             group_path: self.group_path,
             body,
@@ -183,6 +187,13 @@ impl<const N: usize> Branch<N> {
     pub fn enter_cell(&mut self, device: u16, cell: u16, foothold: Option<Foothold>) {
         self.place = Place::Cell { device, cell };
         self.foothold = foothold;
+    }
+
+    /// Notes that branches below that power are not followed.
+    pub fn weigh(&mut self, least_power: f64) {
+        for (alone, power) in self.alone.iter_mut().zip(self.power) {
+            *alone &= power >= least_power;
+        }
     }
 
     /// The power of its strongest polarization.

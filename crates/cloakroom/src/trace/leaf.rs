@@ -17,6 +17,9 @@ pub struct Leaf<const N: usize> {
     /// Its electric field for each launched polarization, |E|² = power; it has the phases of the
     /// interfaces but not of the propagation.
     pub electric: [ComplexVector; N],
+    /// Whether the tree of each launched polarization alone has this leaf: elsewhere it is too weak for that one, and
+    /// here because of the others.
+    pub alone: [bool; N],
     /// Optical path length from the ray's origin to `position`, cm.
     pub optical_path: f64,
     /// The speed of light times the time of flight from the ray's origin to `position`, cm: the optical

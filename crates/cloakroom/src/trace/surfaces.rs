@@ -43,7 +43,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         branch.group_path += hit.distance;
         branch.met_device = true;
         let device = &self.bench.devices()[usize::from(device_index)];
-        let left = Some(device.left(device_index, hit.skin));
+        let left = device.left(device_index, Some(hit.skin));
         let (cell_index, into) = match hit.beyond {
             // A thin sheet of air: nothing there.
             Beyond::Air => {
@@ -87,8 +87,9 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         }
         let parted = cell.parted(branch.position, branch.wave_vector);
         let Some([(a, in_a), (b, in_b)]) = parted else { return false };
-        for part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
+        for mut part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
             if self.follows(part.power) {
+                part.weigh(self.least_power());
                 self.waiting.push(part);
             }
         }
@@ -172,8 +173,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
             }
             Beyond::Air => {
                 // It has met no surface of the skin, which it may meet next unless the device is convex.
-                let convex = device.structure.hull.is_convex();
-                let left = convex.then_some(Left { device: device_index, surface: None });
+                let left = device.left(device_index, None);
                 let leave = |branch: &mut Branch<N>| {
                     branch.come_out();
                     branch.leave_frame(&device.pose, left);
@@ -204,6 +204,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         event: u64,
         put: impl Fn(&mut Branch<N>, Side),
     ) -> bool {
+        let least_power = self.least_power();
         let mut last: Option<&OutgoingWave<N>> = None;
         for wave in waves {
             if !self.follows(wave.power) {
@@ -212,12 +213,14 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
             if let Some(earlier) = last.replace(wave) {
                 let mut other = *branch;
                 other.go_on_as(earlier, event | side_code(earlier));
+                other.weigh(least_power);
                 put(&mut other, earlier.side);
                 self.waiting.push(other);
             }
         }
         let Some(wave) = last else { return false };
         branch.go_on_as(wave, event | side_code(wave));
+        branch.weigh(least_power);
         put(branch, wave.side);
         true
     }

@@ -185,6 +185,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
             *power = left;
             branch.electric[i] = branch.electric[i] * amplitude;
         }
+        branch.weigh(self.least_power());
         self.follows(branch.power)
     }
 

@@ -1,13 +1,10 @@
 //! Fresnel's equations: the interface of two isotropic media.
 
-use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
+use super::{IncidentWave, OutgoingWave, OutgoingWaves, ROUNDING, Side};
 use crate::medium::ModeKind;
 use crate::wave::{ComplexVector, Frame};
 use glam::DVec3;
 use num_complex::Complex64;
-
-/// The share of the power that rounding leaves in a wave that is not there: matched media reflect nothing.
-const ROUNDING: f64 = 1e-28;
 
 /// Normal components that are this small coincide; they are set apart, which gives the limit.
 const LEAST_SQUARE: f64 = 1e-30;

@@ -29,6 +29,9 @@ use crate::wave::ComplexVector;
 use arrayvec::ArrayVec;
 use glam::DVec3;
 
+/// The share of the power that rounding leaves in a wave that is not there: matched media reflect nothing.
+const ROUNDING: f64 = 1e-28;
+
 /// On which side of an interface an outgoing wave runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {

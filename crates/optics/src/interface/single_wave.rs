@@ -1,14 +1,11 @@
 //! The interface of two media in which both polarizations share one wave vector.
 
 use super::admittance::{FramedMedium, TangentialWave};
-use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
+use super::{IncidentWave, OutgoingWave, OutgoingWaves, ROUNDING, Side};
 use crate::medium::{Medium, ModeKind, NormalComponent, WaveSurface};
 use crate::wave::{ComplexVector, Frame, Number};
 use glam::DVec3;
 use num_complex::Complex64;
-
-/// The share of the power that rounding leaves in a wave that is not there: matched media reflect nothing.
-const ROUNDING: f64 = 1e-28;
 
 /// Splits a wave at the interface of two lossless media in which both polarizations share one wave
 /// vector, given with their wave surfaces: adds the outgoing waves of at least `least_power` to `waves`; the

@@ -78,10 +78,7 @@ impl Gauge {
             Coordinate::X => (at.jet.f.re, at.velocity.re, at.bend.re),
             Coordinate::Y => (at.jet.f.im, at.velocity.im, at.bend.im),
             Coordinate::VirtualY => (at.zeta.im, at.momentum.im, at.force.im),
-            Coordinate::Z => {
-                let bend = (at.jet.f1.conj() * at.jet.f2 * at.momentum).re * p_z * 2.0;
-                (at.z, p_z * at.jet.f1.norm_squared(), bend)
-            }
+            Coordinate::Z => (at.z, p_z * at.jet.f1.norm_squared(), at.axial_bend(p_z)),
         };
         let sign = self.sign;
         MotionLanes {

@@ -4,6 +4,7 @@ use num_complex::Complex64;
 use pulp::Simd;
 
 use crate::lanes::{ComplexLanes, Complexes, LANES, Lanes};
+use crate::propagation::nystrom::Motion;
 use crate::transformation::{JetLanes, MapJet};
 
 /// Where a ray is, with the map there.
@@ -120,4 +121,26 @@ pub(super) struct PointLanes<S: Simd> {
     pub force: ComplexLanes<S>,
     pub velocity: ComplexLanes<S>,
     pub bend: ComplexLanes<S>,
+}
+
+impl<S: Simd> PointLanes<S> {
+    /// Where rays are that have moved so, the map and the force there being known.
+    #[inline(always)]
+    pub fn new(
+        motion: Motion<S>,
+        [tau, z, theta]: [Lanes<S>; 3],
+        jet: JetLanes<S>,
+        force: ComplexLanes<S>,
+    ) -> Self {
+        let (zeta, momentum) = (motion.position, motion.velocity);
+        let velocity = jet.f1 * momentum;
+        let bend = (jet.f2 * momentum * momentum).plus(jet.f1, force);
+        Self { tau, zeta, momentum, z, theta, jet, force, velocity, bend }
+    }
+
+    /// d²z/dτ².
+    #[inline(always)]
+    pub fn axial_bend(&self, p_z: Lanes<S>) -> Lanes<S> {
+        (self.jet.f1.conj() * self.jet.f2 * self.momentum).re * p_z * 2.0
+    }
 }

@@ -59,6 +59,36 @@ pub(super) struct Trials {
     pub crossed: [f64; LANES],
 }
 
+impl Trials {
+    /// Takes down what has come of a move.
+    #[inline(always)]
+    pub fn arrive<S: Simd>(
+        &mut self,
+        from: &PointLanes<S>,
+        end: &PointLanes<S>,
+        p_z: Lanes<S>,
+        error: Lanes<S>,
+        gauges: &Gauges,
+    ) {
+        self.end.store(end);
+        self.error = error.values();
+        self.factor = order_eight::step_factor(error).values();
+        let outlook = gauges.outlook(from, end, p_z);
+        self.ahead = outlook.ahead.values();
+        self.crossed = outlook.crossed.values();
+    }
+}
+
+/// A momentum with its length made to fit |P|² = `square`, or 0 where that is negative.
+#[inline(always)]
+pub(super) fn of_square<S: Simd>(momentum: ComplexLanes<S>, square: Lanes<S>) -> ComplexLanes<S> {
+    let (zero, one) = (square.all(0.0), square.all(1.0));
+    let square = zero.less_than(square).choose(square, zero);
+    let present = momentum.norm_squared();
+    let moving = zero.less_than(present);
+    momentum * moving.choose(square, zero).divided_by(moving.choose(present, one)).sqrt()
+}
+
 /// Moves four rays by the lengths (of any sign) into `to`.
 pub(super) fn stride(
     map: &ConformalMap,
@@ -123,23 +153,11 @@ impl<S: Simd, M: LaneMap> Field<S, 2> for Force<'_, S, M> {
 }
 
 impl<S: Simd, M: LaneMap> Force<'_, S, M> {
-    /// d²z/dτ².
-    #[inline(always)]
-    fn axial_bend(&self, at: &PointLanes<S>) -> Lanes<S> {
-        (at.jet.f1.conj() * at.jet.f2 * at.momentum).re * self.p_z * 2.0
-    }
-
     /// A momentum with its length made to fit |P|² = c² - p_z² |f'|².
     #[inline(always)]
     fn on_shell(&self, momentum: ComplexLanes<S>, jet: &JetLanes<S>) -> ComplexLanes<S> {
         let axial = self.p_z * self.p_z * jet.f1.norm_squared();
-        let zero = axial.all(0.0);
-        let square = self.strength * self.strength - axial;
-        let square = zero.less_than(square).choose(square, zero);
-        let present = momentum.norm_squared();
-        let moving = zero.less_than(present);
-        momentum
-            * moving.choose(square, zero).divided_by(moving.choose(present, zero.all(1.0))).sqrt()
+        of_square(momentum, self.strength * self.strength - axial)
     }
 }
 
@@ -167,7 +185,7 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
                 let half = h * 0.5;
                 let position = from.zeta.plus_real(from.momentum.plus_real(from.force, half), h);
                 let velocity = from.momentum.plus_real(from.force, h);
-                let z = from.z + (z_rate + field.axial_bend(&from) * half) * h;
+                let z = from.z + (z_rate + from.axial_bend(p_z) * half) * h;
                 let stage = field.look(position);
                 (Motion { position, velocity }, stage, z, from.theta + theta_rate * h)
             }
@@ -179,7 +197,7 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
                     field.rates(&step.stage.jet, step.end.velocity),
                 ];
                 let end = PointLanes { jet: step.stage.jet, momentum: step.end.velocity, ..from };
-                let slopes = field.axial_bend(&from) - field.axial_bend(&end);
+                let slopes = from.axial_bend(p_z) - end.axial_bend(p_z);
                 let z = from.z + ((z0 + z1) * 0.5 + slopes * h * (1.0 / 12.0)) * h;
                 (step.end, step.stage, z, from.theta + step.quadrature[1])
             }
@@ -198,24 +216,7 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
                 (step.end, step.stage, from.z + z, from.theta + theta)
             }
         };
-        let (momentum, jet, force) = (motion.velocity, stage.jet, stage.force);
-        let end = PointLanes {
-            tau: from.tau + h,
-            zeta: motion.position,
-            momentum,
-            z,
-            theta,
-            jet,
-            force,
-            velocity: jet.f1 * momentum,
-            bend: (jet.f2 * momentum * momentum).plus(jet.f1, force),
-        };
-        let to = self.to;
-        to.end.store(&end);
-        to.error = error.values();
-        to.factor = order_eight::step_factor(error).values();
-        let outlook = self.gauges.outlook(&from, &end, p_z);
-        to.ahead = outlook.ahead.values();
-        to.crossed = outlook.crossed.values();
+        let end = PointLanes::new(motion, [from.tau + h, z, theta], stage.jet, stage.force);
+        self.to.arrive(&from, &end, p_z, error, self.gauges);
     }
 }

@@ -15,7 +15,7 @@ use pulp::{Simd, WithSimd};
 use super::ConformalFlow;
 use super::crossing::Gauges;
 use super::points::{PointLanes, Points};
-use super::strides::{Pace, Rays, Trials};
+use super::strides::{Pace, Rays, Trials, of_square};
 use super::unevenness::{Factor, Unevenness};
 use crate::lanes::{ComplexLanes, LANES, Lanes, side_by_side};
 use crate::propagation::nystrom::order_eight::ErrorWeight;
@@ -89,12 +89,7 @@ impl<S: Simd, M: LaneMap> Force<'_, S, M> {
     #[inline(always)]
     fn on_shell(&self, momentum: ComplexLanes<S>, jet: &Jet<S>) -> ComplexLanes<S> {
         let axial = self.p_z * self.p_z * jet.map.f1.norm_squared();
-        let (zero, one) = (axial.all(0.0), axial.all(1.0));
-        let square = self.strength * self.strength * jet.square - axial;
-        let square = zero.less_than(square).choose(square, zero);
-        let present = momentum.norm_squared();
-        let moving = zero.less_than(present);
-        momentum * moving.choose(square, zero).divided_by(moving.choose(present, one)).sqrt()
+        of_square(momentum, self.strength * self.strength * jet.square - axial)
     }
 }
 
@@ -150,10 +145,9 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
                 let half = h * 0.5;
                 let position = from.zeta.plus_real(from.momentum.plus_real(from.force, half), h);
                 let velocity = from.momentum.plus_real(from.force, h);
-                let z_bend = (from.jet.f1.conj() * from.jet.f2 * from.momentum).re * p_z * 2.0;
                 let path_bend = (from.velocity.conj() * jet.gradient).re;
                 let growth = [
-                    (z_rate + z_bend * half) * h,
+                    (z_rate + from.axial_bend(p_z) * half) * h,
                     theta_rate * h,
                     (path_rate + path_bend * half) * h,
                 ];
@@ -172,24 +166,8 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
                 (step.end, step.stage, step.quadrature, step.error)
             }
         };
-        let (momentum, jet, force) = (motion.velocity, stage.jet.map, stage.force);
-        let end = PointLanes {
-            tau: from.tau + path,
-            zeta: motion.position,
-            momentum,
-            z: from.z + z,
-            theta: from.theta + theta,
-            jet,
-            force,
-            velocity: jet.f1 * momentum,
-            bend: (jet.f2 * momentum * momentum).plus(jet.f1, force),
-        };
-        let to = self.to;
-        to.end.store(&end);
-        to.error = error.values();
-        to.factor = order_eight::step_factor(error).values();
-        let outlook = self.gauges.outlook(&from, &end, p_z);
-        to.ahead = outlook.ahead.values();
-        to.crossed = outlook.crossed.values();
+        let along = [from.tau + path, from.z + z, from.theta + theta];
+        let end = PointLanes::new(motion, along, stage.jet.map, stage.force);
+        self.to.arrive(&from, &end, p_z, error, self.gauges);
     }
 }

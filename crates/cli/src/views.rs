@@ -1,0 +1,131 @@
+//! What the panels of a figure look at: panels that differ in nothing but the polarizer, or in that one of them shows a
+//! map, share their rays, which are traced once.
+
+use crate::arguments::FiguresArguments;
+use crate::panels;
+use crate::render::{picture, tell_rarities};
+use crate::report::Failure;
+use crate::scene;
+use cloakroom::output::Picture;
+use cloakroom::paper::{Panel, Shows};
+use cloakroom::render::{Images, Rendered, Studio, Wanted, metadata};
+use cloakroom::scene::Polarizer;
+use cloakroom::scene_file::Loaded;
+use std::sync::atomic::AtomicBool;
+
+/// A panel and its scene.
+pub struct Subject {
+    pub panel: &'static Panel,
+    pub loaded: Loaded,
+    /// Its scene without polarizer and with the figure's map: the same text for panels that share their rays. `None` if
+    /// it shares them with no other.
+    view: Option<Loaded>,
+}
+
+/// The panels of a figure, and the pictures of the views that they share, as far as they have been needed.
+pub struct Views {
+    pub subjects: Vec<Subject>,
+    /// With the text of their scenes.
+    pictures: Vec<(String, Picture)>,
+}
+
+impl Subject {
+    fn new(panel: &'static Panel, arguments: &FiguresArguments) -> Result<Self, Failure> {
+        let loaded = panels::load(panel.scene, &file_name(panel), &arguments.panels, &[])?;
+        Ok(Self { panel, loaded, view: None })
+    }
+
+    /// What must be rendered of a view for it.
+    fn wanted_of_view(&self) -> Wanted {
+        match (self.loaded.scene.picture.map, self.loaded.scene.camera.polarizer()) {
+            (Some(_), _) => Wanted::Everything,
+            (None, Polarizer::None) => Wanted::Image,
+            (None, _) => Wanted::Polarizers,
+        }
+    }
+
+    fn view_text(&self) -> Option<&str> {
+        self.view.as_ref().map(|view| view.scene.source.as_str())
+    }
+
+    /// Its own picture out of that of its view.
+    fn of_view(&self, view: &Picture) -> Option<Picture> {
+        let polarizer = self.loaded.scene.camera.polarizer();
+        let own = match (self.loaded.scene.picture.map, polarizer) {
+            (Some(_), _) => view.clone(),
+            (None, Polarizer::None) => view.image_through("")?,
+            (None, _) => view.image_through(&polarizer.to_string())?,
+        };
+        Some(Picture { metadata: metadata(&self.loaded.scene), ..own })
+    }
+}
+
+impl Views {
+    /// Reads the scenes of panels.
+    pub fn new(panels: &[&'static Panel], arguments: &FiguresArguments) -> Result<Self, Failure> {
+        let mut subjects = (panels.iter().map(|panel| Subject::new(panel, arguments)))
+            .collect::<Result<Vec<_>, _>>()?;
+        let map = subjects.iter().find_map(|subject| subject.loaded.scene.picture.map);
+        let map_override = map.map(|map| format!("picture.map={map}"));
+        let overrides: Vec<&str> =
+            std::iter::once("camera.polarizer=none").chain(map_override.as_deref()).collect();
+        for Subject { panel, loaded, view } in &mut subjects {
+            let (own_map, polarizer) = (loaded.scene.picture.map, loaded.scene.camera.polarizer());
+            let shares = match polarizer {
+                Polarizer::None => own_map.is_none() || own_map == map,
+                Polarizer::Horizontal | Polarizer::Vertical => map.is_none(),
+                Polarizer::Angle(_) => false,
+            };
+            if panel.shows == Shows::Picture && shares {
+                *view = Some(panels::load(
+                    panel.scene,
+                    &file_name(panel),
+                    &arguments.panels,
+                    &overrides,
+                )?);
+            }
+        }
+        Ok(Self { subjects, pictures: Vec::new() })
+    }
+
+    /// The picture of a panel, given its place among the panels.
+    pub fn picture(
+        &mut self,
+        index: usize,
+        images: &mut Images,
+        stop: &AtomicBool,
+    ) -> Result<Picture, Failure> {
+        let subject = &self.subjects[index];
+        let what = format!("figure {}", subject.panel.name);
+        let mut render = |loaded: &Loaded, wanted| {
+            let studio = Studio::with_images(&loaded.scene, images)
+                .map_err(|error| scene::located(loaded, &error))?;
+            let Rendered { picture, rarities } = picture(&studio, wanted, &what, stop)?;
+            tell_rarities(&rarities);
+            Ok(picture)
+        };
+        let sharing = || self.subjects.iter().filter(|s| s.view_text() == subject.view_text());
+        if let Some(view) = &subject.view
+            && sharing().nth(1).is_some()
+        {
+            let text = &view.scene.source;
+            if !self.pictures.iter().any(|(known, _)| known == text) {
+                let wanted = [Wanted::Everything, Wanted::Polarizers]
+                    .into_iter()
+                    .find(|wanted| sharing().any(|other| other.wanted_of_view() == *wanted))
+                    .unwrap_or(Wanted::Image);
+                self.pictures.push((text.clone(), render(view, wanted)?));
+            }
+            let shared = self.pictures.iter().find(|(known, _)| known == text);
+            if let Some(picture) = shared.and_then(|(_, picture)| subject.of_view(picture)) {
+                return Ok(picture);
+            }
+        }
+        let is_map = subject.loaded.scene.picture.map.is_some();
+        render(&subject.loaded, if is_map { Wanted::Everything } else { Wanted::Image })
+    }
+}
+
+fn file_name(panel: &Panel) -> String {
+    format!("fig{}", panel.name)
+}
