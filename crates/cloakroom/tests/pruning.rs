@@ -57,7 +57,7 @@ fn the_documented_cost_of_pruning_is_what_pictures_have() {
 #[test]
 fn images_through_polarizers_are_those_of_pictures_through_them_alone() {
     for (material, rotation) in [("positive-uniaxial", 7), ("negative-uniaxial", 20)] {
-        let render = |polarizer: &str, wanted| {
+        let seen = |polarizer: &str, wanted| {
             let text = format!(
                 "[camera]\nresolution = [96, 72]\nsamples = 1\npolarizer = \"{polarizer}\"\n\
                  [[device]]\nkind = \"square-cloak\"\nmaterial = \"{material}\"\n\
@@ -67,12 +67,12 @@ fn images_through_polarizers_are_those_of_pictures_through_them_alone() {
             let studio = Studio::new(&loaded.scene).unwrap();
             let stop = AtomicBool::new(false);
             let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-            cloakroom::render::render(&studio, wanted, &supervision).unwrap().picture
+            render(&studio, wanted, &supervision).unwrap().picture
         };
-        let both = render("none", Wanted::Polarizers);
-        assert_eq!(both.image_through(""), render("none", Wanted::Image).image_through(""));
+        let both = seen("none", Wanted::Polarizers);
+        assert_eq!(both.image_through(""), seen("none", Wanted::Image).image_through(""));
         for polarizer in ["horizontal", "vertical"] {
-            let alone = render(polarizer, Wanted::Image).image_through("");
+            let alone = seen(polarizer, Wanted::Image).image_through("");
             assert_eq!(both.image_through(polarizer), alone, "{material} {polarizer}");
         }
     }

@@ -3,6 +3,7 @@
 
 use super::plane::{Plane, gaussian};
 use super::{Region, View};
+use crate::photograph::encode;
 
 /// The constants K1 and K2 of the paper, and the range L of the signal.
 const K: [f64; 2] = [0.01, 0.03];
@@ -38,11 +39,6 @@ fn luminance(view: &View) -> Vec<f64> {
     (0..view.pixels())
         .map(|i| encode((0.2126 * red[i] + 0.7152 * green[i] + 0.0722 * blue[i]).clamp(0.0, 1.0)))
         .collect()
-}
-
-/// The sRGB value (0 to 1) of linear light (0 to 1): IEC 61966-2-1.
-fn encode(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]

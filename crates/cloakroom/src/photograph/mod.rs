@@ -22,4 +22,4 @@ pub use equirectangular::Equirectangular;
 pub use load::{LinearImage, Texels, dimensions, load, load_bytes};
 pub use pyramid::{Edges, Pyramid};
 pub use source::{ImageSource, LoadError};
-pub use srgb::{decode, decode_table};
+pub use srgb::{decode, decode_table, encode};

@@ -1,6 +1,7 @@
 //! Samples where the picture has edges: whether the first ones of a block say all there is to say.
 
 use super::pixel::Pixel;
+use crate::photograph::encode;
 
 /// At least so many samples are looked at, and a quarter of those asked for.
 const LEAST: u32 = 4;
@@ -39,12 +40,9 @@ pub(super) fn first_look(samples: u32) -> u32 {
     LEAST.max(samples.div_ceil(4))
 }
 
-/// The sRGB code of linear light, 0 to 255 (IEC 61966-2-1), not rounded.
+/// The sRGB code of linear light, 0 to 255, not rounded.
 fn srgb_code(light: f64) -> f64 {
-    let light = light.clamp(0.0, 1.0);
-    let encoded =
-        if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
-    255.0 * encoded
+    255.0 * encode(light.clamp(0.0, 1.0))
 }
 
 #[cfg(test)]
