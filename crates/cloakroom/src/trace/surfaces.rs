@@ -211,11 +211,13 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
                 continue;
             }
             if let Some(earlier) = last.replace(wave) {
-                let mut other = *branch;
-                other.go_on_as(earlier, event | side_code(earlier));
-                other.weigh(least_power);
-                put(&mut other, earlier.side);
-                self.waiting.push(other);
+                // Branches are large, and made where they wait.
+                self.waiting.push(*branch);
+                if let Some(other) = self.waiting.last_mut() {
+                    other.go_on_as(earlier, event | side_code(earlier));
+                    other.weigh(least_power);
+                    put(other, earlier.side);
+                }
             }
         }
         let Some(wave) = last else { return false };

@@ -163,7 +163,8 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
                 }
             };
             if !goes_on {
-                *branch = self.waiting.pop()?;
+                *branch = *self.waiting.last()?;
+                self.waiting.truncate(self.waiting.len() - 1);
             }
         }
     }

@@ -24,11 +24,11 @@ impl<T: Number> Quadratic<T> {
     /// The equation with its leading coefficient kept off zero, where one root would be infinite:
     /// the asymptotic cone of a hyperbolic medium.
     fn bounded(self) -> Self {
-        let size = (self.b.magnitude_squared() + self.c.magnitude_squared()).sqrt();
-        let least = 1e-14 * size;
-        if self.a.magnitude_squared() >= least * least {
+        let size = self.b.magnitude_squared() + self.c.magnitude_squared();
+        if self.a.magnitude_squared() >= 1e-28 * size {
             return self;
         }
+        let least = 1e-14 * size.sqrt();
         let a = if self.a.real() < 0.0 { -least } else { least };
         Self { a: T::from(a), ..self }
     }
@@ -75,6 +75,16 @@ impl Quadratic<Complex64> {
 }
 
 impl Roots {
+    /// The roots of q² = `square`; see [`Quadratic::roots`].
+    pub fn of_square(square: f64) -> Self {
+        let root = square.abs().max(1e-30).sqrt();
+        if square < 0.0 {
+            Self::Complex { re: 0.0, im: root, root }
+        } else {
+            Self::Real { plus: root, minus: -root, root }
+        }
+    }
+
     /// The roots of waves that are known to propagate, which by rounding at grazing incidence may
     /// seem evanescent: they then coincide, but for a hair.
     pub fn propagating(self) -> Self {

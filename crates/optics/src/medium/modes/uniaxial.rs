@@ -96,8 +96,8 @@ pub(super) fn out_of_plane<T: Number>() -> [T; 3] {
 impl Uniaxial<f64> {
     pub(super) fn waves(&self, frame: &Frame, along: f64, known: Option<f64>) -> UniaxialWaves<'_> {
         let axis = frame.components(self.axis);
-        let [ordinary, extraordinary] =
-            self.equations([along, 0.0], axis).map(|equation| equation.roots());
+        let [ordinary, extraordinary] = self.equations([along, 0.0], axis);
+        let (ordinary, extraordinary) = (Roots::of_square(-ordinary.c), extraordinary.roots());
         let mut waves = UniaxialWaves { medium: self, along, axis, ordinary, extraordinary };
         if let Some(q) = known {
             waves.keep_real(q);
