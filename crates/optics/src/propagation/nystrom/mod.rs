@@ -62,11 +62,14 @@ fn sum<S: Simd, const N: usize>(
 /// What the methods are tested with: orbits about a sun.
 #[cfg(test)]
 mod kepler {
+    use std::array;
+    use std::f64::consts::TAU;
+
     use num_complex::Complex64;
     use pulp::Simd;
 
-    use super::{Field, Stage};
-    use crate::lanes::{ComplexLanes, Lanes};
+    use super::{Field, Motion, Stage};
+    use crate::lanes::{ComplexLanes, LANES, Lanes};
 
     /// Position and velocity.
     pub type Place = [Complex64; 2];
@@ -92,6 +95,38 @@ mod kepler {
     /// The perihelion of an orbit of eccentricity 0.3 and period 2π.
     pub fn start() -> Place {
         [0.7.into(), Complex64::new(0.0, (1.3_f64 / 0.7).sqrt())]
+    }
+
+    /// Orbits side by side, as a step takes them.
+    #[inline(always)]
+    pub fn together<S: Simd>(simd: S, places: [Place; LANES]) -> Motion<S> {
+        let [position, velocity] =
+            [0, 1].map(|k| ComplexLanes::new(simd, places.map(|place| place[k])));
+        Motion { position, velocity }
+    }
+
+    #[inline(always)]
+    pub fn apart<S: Simd>(motion: Motion<S>) -> [Place; LANES] {
+        let (position, velocity) = (motion.position.values(), motion.velocity.values());
+        array::from_fn(|i| [position[i], velocity[i]])
+    }
+
+    /// Errors of state and of quadrature after one revolution in `count` steps, in each direction. `step` gives where
+    /// steps of the given lengths end, and their quadrature.
+    pub fn revolution(
+        count: u32,
+        step: impl Fn([Place; LANES], [f64; LANES]) -> ([Place; LANES], [f64; LANES]),
+    ) -> [(f64, f64); 2] {
+        let h = TAU / f64::from(count);
+        let mut places = [start(); LANES];
+        let mut action = [0.0; LANES];
+        for _ in 0..count {
+            let (ends, quadrature) = step(places, [h, -h, h, -h]);
+            places = ends;
+            action = array::from_fn(|i| action[i] + quadrature[i]);
+        }
+        // Virial theorem: the mean of v² is 1 for the unit period orbit.
+        [0, 1].map(|i| (distance(places[i], start()), (action[i].abs() - TAU).abs()))
     }
 
     pub fn distance(a: Place, b: Place) -> f64 {

@@ -238,13 +238,13 @@ const V6: [f64; 7] = [
 
 #[cfg(test)]
 mod tests {
-    use std::array;
-
     use pulp::WithSimd;
 
     use super::*;
-    use crate::lanes::{ComplexLanes, LANES, side_by_side};
-    use crate::propagation::nystrom::kepler::{Place, Sun, distance, start};
+    use crate::lanes::{LANES, side_by_side};
+    use crate::propagation::nystrom::kepler::{
+        Place, Sun, apart, distance, revolution, start, together,
+    };
 
     /// A step of length `h` of four Kepler orbits from `start`; the quadrature is the time integral of the
     /// speed squared.
@@ -258,38 +258,24 @@ mod tests {
 
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-            let [position, velocity] =
-                [0, 1].map(|k| ComplexLanes::new(simd, self.start.map(|place| place[k])));
             let one = Lanes::splat(simd, 1.0);
             let weight = ErrorWeight { position: one, velocity: one, quadrature: [one] };
             let h = Lanes::new(simd, self.h);
-            let start = Motion { position, velocity };
-            let step = step(&Sun, start, Sun.look(position), h, &weight);
-            let (position, velocity) = (step.end.position.values(), step.end.velocity.values());
-            let ends = array::from_fn(|i| [position[i], velocity[i]]);
-            (ends, step.quadrature[0].values(), step.error.values())
+            let start = together(simd, self.start);
+            let step = step(&Sun, start, Sun.look(start.position), h, &weight);
+            (apart(step.end), step.quadrature[0].values(), step.error.values())
         }
-    }
-
-    /// Errors of state and of quadrature after one revolution in `count` steps, in each direction.
-    fn revolution(count: u32) -> [(f64, f64); 2] {
-        let h = std::f64::consts::TAU / f64::from(count);
-        let mut places = [start(); LANES];
-        let mut action = [0.0; LANES];
-        for _ in 0..count {
-            let step = side_by_side(Orbits { start: places, h: [h, -h, h, -h] });
-            places = step.0;
-            action = array::from_fn(|i| action[i] + step.1[i]);
-        }
-        // Virial theorem: the mean of v² is 1 for the unit period orbit.
-        [0, 1].map(|i| {
-            (distance(places[i], start()), (action[i].abs() - std::f64::consts::TAU).abs())
-        })
     }
 
     #[test]
     fn converges_with_order_eight_forwards_and_backwards() {
-        for (coarse, fine) in revolution(60).into_iter().zip(revolution(120)) {
+        let errors = |count| {
+            revolution(count, |start, h| {
+                let (ends, quadrature, _) = side_by_side(Orbits { start, h });
+                (ends, quadrature)
+            })
+        };
+        for (coarse, fine) in errors(60).into_iter().zip(errors(120)) {
             let order = (coarse.0 / fine.0).log2();
             assert!(order > 7.6 && order < 8.8, "{order} {coarse:?} {fine:?}");
             let order = (coarse.1 / fine.1).log2();

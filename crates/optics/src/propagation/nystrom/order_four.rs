@@ -45,14 +45,11 @@ pub(crate) fn step<S: Simd, F: Field<S, Q>, const Q: usize>(
 
 #[cfg(test)]
 mod tests {
-    use std::array;
-    use std::f64::consts::TAU;
-
     use pulp::WithSimd;
 
     use super::*;
-    use crate::lanes::{Complexes, LANES, side_by_side};
-    use crate::propagation::nystrom::kepler::{Place, Sun, distance, start};
+    use crate::lanes::{LANES, side_by_side};
+    use crate::propagation::nystrom::kepler::{Place, Sun, apart, revolution, together};
 
     struct Orbits {
         start: [Place; LANES],
@@ -64,37 +61,16 @@ mod tests {
 
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-            let mut places = [Complexes::default(); 2];
-            for (k, place) in places.iter_mut().enumerate() {
-                for i in 0..LANES {
-                    place.put(i, self.start[i][k]);
-                }
-            }
-            let [position, velocity] = places;
-            let start = Motion { position: position.load(simd), velocity: velocity.load(simd) };
-            let first = Sun.look(start.position);
-            let step = step(&Sun, start, first, Lanes::new(simd, self.h));
-            let (position, velocity) = (step.end.position.values(), step.end.velocity.values());
-            (array::from_fn(|i| [position[i], velocity[i]]), step.quadrature[0].values())
+            let start = together(simd, self.start);
+            let step = step(&Sun, start, Sun.look(start.position), Lanes::new(simd, self.h));
+            (apart(step.end), step.quadrature[0].values())
         }
-    }
-
-    /// Errors of state and of quadrature after one revolution in `count` steps, in each direction.
-    fn revolution(count: u32) -> [(f64, f64); 2] {
-        let h = TAU / f64::from(count);
-        let mut places = [start(); LANES];
-        let mut action = [0.0; LANES];
-        for _ in 0..count {
-            let step = side_by_side(Orbits { start: places, h: [h, -h, h, -h] });
-            places = step.0;
-            action = array::from_fn(|i| action[i] + step.1[i]);
-        }
-        [0, 1].map(|i| (distance(places[i], start()), (action[i].abs() - TAU).abs()))
     }
 
     #[test]
     fn converges_with_order_four_forwards_and_backwards() {
-        for (coarse, fine) in revolution(400).into_iter().zip(revolution(800)) {
+        let errors = |count| revolution(count, |start, h| side_by_side(Orbits { start, h }));
+        for (coarse, fine) in errors(400).into_iter().zip(errors(800)) {
             let order = (coarse.0 / fine.0).log2();
             assert!(order > 3.8 && order < 5.2, "{order} {coarse:?} {fine:?}");
             let order = (coarse.1 / fine.1).log2();
