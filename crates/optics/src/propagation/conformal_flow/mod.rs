@@ -207,12 +207,13 @@ impl ConformalFlow {
         }
         let local = half.mirrored(position);
         let z = Complex64::new(local.x, local.y);
-        let mut zeta = self.map.invert(z).ok_or(FlowError::Outside)?;
+        let (mut zeta, mut jet) = self.map.invert_with_jet(z).ok_or(FlowError::Outside)?;
         // On the mirror by rounding means on the mirror.
-        if zeta.im.abs() <= self.slack {
+        if zeta.im.abs() <= self.slack && zeta.im != 0.0 {
             zeta.im = 0.0;
+            jet = self.map.jet(zeta);
         }
-        let index = self.index_at(&self.map.jet(zeta));
+        let index = self.index_at(&jet);
         let inside = zeta.im >= 0.0
             && z.re >= self.cut.x_min - self.slack
             && z.re <= self.cut.x_max + self.slack
