@@ -1,10 +1,12 @@
 //! The command line.
 
+mod carried;
 mod measuring;
 mod values;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+pub use carried::{CompletionsArguments, ManualArguments, ScenesArguments, SchemaArguments};
 use cloakroom::render::Tile;
 use cloakroom::scene::OPTIONAL_CHANNELS;
 pub use measuring::{
@@ -16,7 +18,7 @@ use values::{frames_only, map_range, pixel, size};
 
 /// Photorealistic, physically exact pictures of invisibility cloaks.
 #[derive(Debug, Parser)]
-#[command(version, about, arg_required_else_help = true)]
+#[command(name = "cloakroom", version = env!("CLOAKROOM_VERSION"), about, arg_required_else_help = true)]
 pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
@@ -62,8 +64,14 @@ pub enum Command {
     View(ViewArguments),
     /// List the devices with their keys and computed facts.
     Devices(DevicesArguments),
-    /// Print the JSON Schema of scene files, for editors.
-    Schema,
+    /// List the example scenes, or copy them.
+    Scenes(ScenesArguments),
+    /// Print the JSON Schema of scene files, for editors, or the same as a page to read.
+    Schema(SchemaArguments),
+    /// Print completions of the command line for a shell.
+    Completions(CompletionsArguments),
+    /// Print a manual page, as in `cloakroom manual render | man -l -`, or write them all.
+    Manual(ManualArguments),
 }
 
 /// A scene and what is changed in it.

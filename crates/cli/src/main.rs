@@ -17,6 +17,7 @@ mod gallery;
 mod input;
 mod interface;
 mod interruption;
+mod manual;
 mod merge;
 mod panels;
 mod progress;
@@ -25,6 +26,8 @@ mod quality;
 mod render;
 mod report;
 mod scene;
+mod scenes;
+mod schema;
 mod trace;
 mod verify;
 mod view;
@@ -63,6 +66,9 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Verify(arguments) => verify::run(arguments, stop),
         Command::View(arguments) => view::run(arguments, stop),
         Command::Devices(arguments) => devices::run(arguments),
-        Command::Schema => report::print_json(&cloakroom::scene_file::schema()),
+        Command::Scenes(arguments) => scenes::run(arguments),
+        Command::Completions(arguments) => manual::completions(arguments),
+        Command::Manual(arguments) => manual::run(arguments),
+        Command::Schema(arguments) => schema::run(arguments),
     }
 }

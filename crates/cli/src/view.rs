@@ -4,7 +4,7 @@ use crate::arguments::ViewArguments;
 use crate::interruption;
 use crate::report::{Failure, print, say};
 use crate::scene;
-use cloakroom::scene_file;
+use cloakroom::{examples, scene_file};
 use cloakroom_viewer::{Settings, serve};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -36,13 +36,10 @@ fn settings(arguments: &ViewArguments) -> Result<Settings, Failure> {
             (scene_file::load(path, overrides), name, folder)
         }
         None => {
-            let loaded = scene_file::parse(FIRST, "the first scene", Path::new(""), overrides);
+            let loaded = scene_file::parse(examples::FIRST, "the first scene", Path::new(""), overrides);
             (loaded, String::new(), PathBuf::new())
         }
     };
     let scene = loaded.map_err(Failure::from_error)?;
     Ok(Settings { scene, name, folder, port: arguments.port })
 }
-
-/// What is seen first: cloak (iii) of the paper, turned a little.
-const FIRST: &str = include_str!("../../../scenes/paper/fig7d.toml");

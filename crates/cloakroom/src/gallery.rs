@@ -22,6 +22,8 @@ pub struct Exhibit {
     pub direction: &'static str,
     /// Where it was rendered, or described, before.
     pub reference: &'static str,
+    /// Where its scene file is in `scenes/`.
+    pub file: &'static str,
     /// Its scene file.
     pub scene: &'static str,
 }
@@ -53,7 +55,8 @@ macro_rules! exhibit {
             polarization: $polarization,
             direction: $direction,
             reference: $reference,
-            scene: include_str!(concat!("../../../scenes/", $file, ".toml")),
+            file: concat!($file, ".toml"),
+            scene: include_str!(concat!("../scenes/", $file, ".toml")),
         }
     };
 }
@@ -163,7 +166,7 @@ mod tests {
 
     #[test]
     fn every_scene_of_the_folder_is_an_exhibit() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/gallery");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gallery");
         for file in std::fs::read_dir(folder).expect("the folder") {
             let text = std::fs::read_to_string(file.expect("a file").path()).expect("a text");
             assert!(EXHIBITS.iter().any(|exhibit| exhibit.scene == text), "{text}");

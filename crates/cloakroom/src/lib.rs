@@ -12,6 +12,7 @@
 
 pub mod animation;
 pub mod device;
+pub mod examples;
 pub mod flux;
 pub mod gallery;
 pub mod illustration;

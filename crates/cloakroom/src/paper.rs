@@ -21,6 +21,8 @@ pub struct Panel {
     pub name: &'static str,
     /// A few words under the panel.
     pub caption: &'static str,
+    /// Where its scene file is in `scenes/`.
+    pub file: &'static str,
     /// Its scene file.
     pub scene: &'static str,
     /// What of the scene is shown.
@@ -53,7 +55,8 @@ macro_rules! panel {
         Panel {
             name: $name,
             caption: $caption,
-            scene: include_str!(concat!("../../../scenes/paper/fig", $name, ".toml")),
+            file: concat!("paper/fig", $name, ".toml"),
+            scene: include_str!(concat!("../scenes/paper/fig", $name, ".toml")),
             shows: $shows,
         }
     };

@@ -1,0 +1,175 @@
+//! Every command of the book and the README is run, at reduced size, in a folder of its own; every scene is checked.
+
+use crate::page::{Page, pages};
+use crate::running::{cloakroom, paper};
+use std::env;
+use std::fs::{self, Permissions};
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// What is written smaller before a command is run; `small.sh` does the rest.
+const SMALLER: [(&str, &str); 9] = [
+    ("cargo run --release -- ", "cloakroom "),
+    ("--frames 120", "--frames 3"),
+    ("--frames 100", "--frames 3"),
+    ("--frames 50", "--frames 3"),
+    ("--frames-only 0..29", "--frames-only 0..1"),
+    ("--draws 20", "--draws 2"),
+    ("--draws 8", "--draws 2"),
+    ("--tile 0,0,2048,2048", "--tile 0,0,40,30"),
+    ("--region 300,250,400,200", "--region 4,4,20,16"),
+];
+
+/// How commands begin that are not run here, and where they are.
+const ELSEWHERE: [(&str, &str); 14] = [
+    ("cargo test", "runs this test"),
+    ("cargo bench", ".ci/run"),
+    ("cargo install", "installs into the home folder; by hand"),
+    ("cargo build", "by hand, a static program"),
+    ("cargo publish", "by hand, before a release"),
+    ("rustup target add", "by hand, a static program"),
+    ("pip install ./python", ".ci/run"),
+    ("pip wheel ./python", "by hand, before a release"),
+    ("python -m venv", "CONTRIBUTING's set-up; .ci/run does the same"),
+    ("cd python", "the same"),
+    ("../venv/bin", "the same"),
+    ("docs/pictures.sh", "by hand: makes the pictures of the devices"),
+    ("benches/", "by hand: other programs, a quiet machine"),
+    ("target/full_wave/venv", "by hand: full-wave solvers"),
+];
+
+/// Commands for programs that need not be there, and how to know whether they are.
+const WHERE_THERE_IS: [(&str, &str); 4] = [
+    ("python3 -c", "python3 -c 'import numpy'"),
+    (".mp4", "ffmpeg -version"),
+    ("mdbook ", "mdbook --version"),
+    ("man -l", "man --version"),
+];
+
+#[test]
+fn every_command_runs() {
+    let (mut run, mut failed) = (0, Vec::new());
+    let mut elsewhere = ELSEWHERE.map(|_| false);
+    for page in pages() {
+        let commands = commands(&page);
+        if commands.is_empty() {
+            continue;
+        }
+        let folder = tempfile::tempdir().unwrap();
+        furnish(folder.path());
+        for command in commands {
+            if let Some(i) = ELSEWHERE.iter().position(|(start, _)| command.starts_with(start)) {
+                elsewhere[i] = true;
+                continue;
+            }
+            let missing =
+                WHERE_THERE_IS.iter().find(|(part, test)| command.contains(part) && !works(test));
+            if missing.is_some() {
+                continue;
+            }
+            let smaller = SMALLER.iter().fold(command.clone(), |text, (a, b)| text.replace(a, b));
+            run += 1;
+            if let Err(words) = shell(&smaller, folder.path()) {
+                failed.push(format!("{}: {command}\n{words}", page.path));
+            }
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+    assert!(run > 60, "only {run} commands were found");
+    for ((start, _), met) in ELSEWHERE.iter().zip(elsewhere) {
+        assert!(met, "no page has a command `{start}` any more");
+    }
+}
+
+#[test]
+fn every_scene_in_the_pages_is_sound() {
+    let mut scenes = 0;
+    for page in pages() {
+        let folder = tempfile::tempdir().unwrap();
+        furnish(folder.path());
+        for (language, text) in &page.code {
+            if language == "toml" {
+                scenes += 1;
+                let scene = folder.path().join("of-the-page.toml");
+                fs::write(&scene, text).unwrap();
+                let output = cloakroom().arg("check").arg(&scene).output().unwrap();
+                let words = String::from_utf8_lossy(&output.stderr);
+                assert!(output.status.success(), "{}: {words}\n{text}", page.path);
+            }
+        }
+    }
+    assert!(scenes > 5, "only {scenes} scenes were found");
+}
+
+/// The commands of a page, without comments. One goes on in the next line after a backslash and within quotes.
+fn commands(page: &Page) -> Vec<String> {
+    let mut commands = Vec::new();
+    for (_, block) in page.code.iter().filter(|(language, _)| language == "sh") {
+        let (mut command, mut quoted) = (String::new(), false);
+        for line in block.lines() {
+            let mut before = ' ';
+            for c in line.chars() {
+                if c == '#' && before == ' ' && !quoted {
+                    break;
+                }
+                quoted ^= c == '\'';
+                command.push(c);
+                before = c;
+            }
+            if quoted || before == '\\' {
+                command.push('\n');
+            } else {
+                commands.push(std::mem::take(&mut command).trim().to_owned());
+            }
+        }
+        assert!(command.is_empty(), "{}: {command} has no end", page.path);
+    }
+    commands.retain(|command| !command.is_empty());
+    commands
+}
+
+/// Puts into a folder what the commands of the pages take for granted.
+fn furnish(folder: &Path) {
+    let scenes = folder.join("scenes");
+    cloakroom().args(["scenes", "--out"]).arg(scenes).assert().success();
+    let bin = folder.join("bin");
+    fs::create_dir(&bin).unwrap();
+    let small = bin.join("cloakroom");
+    fs::write(&small, include_str!("small.sh")).unwrap();
+    fs::set_permissions(&small, Permissions::from_mode(0o755)).unwrap();
+    image::RgbImage::from_fn(32, 24, |x, y| image::Rgb([8 * x as u8, 10 * y as u8, 99]))
+        .save(folder.join("holiday.jpg"))
+        .unwrap();
+    for name in ["scene.toml", "big.toml"] {
+        fs::write(folder.join(name), "[[device]]\nkind = \"square-cloak\"\nrotation = 5\n").unwrap();
+    }
+    for (panel, name) in [("6a", "empty"), ("6c", "cloaked")] {
+        let small = ["--set", "camera.resolution=[40,30]", "--set", "camera.samples=1"];
+        for ending in ["npz", "png"] {
+            let out = folder.join(format!("{name}.{ending}"));
+            cloakroom().arg("render").arg(paper(panel)).args(small).arg("-o").arg(out).assert().success();
+        }
+    }
+}
+
+/// Runs a command in a folder as a user would.
+fn shell(command: &str, folder: &Path) -> Result<(), String> {
+    let path = env::var("PATH").unwrap_or_default();
+    let output = Command::new("sh")
+        .args(["-ec", command])
+        .current_dir(folder)
+        .env("PATH", format!("{}:{path}", folder.join("bin").display()))
+        .env("CLOAKROOM", env!("CARGO_BIN_EXE_cloakroom"))
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| error.to_string())?;
+    let words = String::from_utf8_lossy(&output.stderr);
+    if output.status.success() { Ok(()) } else { Err(format!("{}\n{words}", output.status)) }
+}
+
+fn works(command: &str) -> bool {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", command]).stdout(Stdio::null()).stderr(Stdio::null());
+    shell.status().is_ok_and(|status| status.success())
+}
