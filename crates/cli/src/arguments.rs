@@ -4,9 +4,9 @@ mod carried;
 mod measuring;
 mod values;
 
+pub use carried::{CompletionsArguments, ManualArguments, ScenesArguments, SchemaArguments};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
-pub use carried::{CompletionsArguments, ManualArguments, ScenesArguments, SchemaArguments};
 use cloakroom::render::Tile;
 use cloakroom::scene::OPTIONAL_CHANNELS;
 pub use measuring::{

@@ -36,7 +36,8 @@ fn settings(arguments: &ViewArguments) -> Result<Settings, Failure> {
             (scene_file::load(path, overrides), name, folder)
         }
         None => {
-            let loaded = scene_file::parse(examples::FIRST, "the first scene", Path::new(""), overrides);
+            let loaded =
+                scene_file::parse(examples::FIRST, "the first scene", Path::new(""), overrides);
             (loaded, String::new(), PathBuf::new())
         }
     };

@@ -7,7 +7,6 @@ mod commands;
 mod links;
 mod page;
 #[path = "../running/mod.rs"]
-#[expect(dead_code, reason = "used by other tests")]
 mod running;
 
 use page::{pages, root};
@@ -49,9 +48,11 @@ fn every_device_has_its_section_with_a_picture() {
     for device in devices["devices"].as_array().unwrap() {
         let kind = device["kind"].as_str().unwrap();
         let words = |title: &str| title.split(&[' ', ',', ':'][..]).any(|word| word == kind);
-        let section = sections.iter().find(|section| words(&section.title));
-        let section = section.unwrap_or_else(|| panic!("docs/devices has no section on {kind}"));
-        assert!(!section.images.is_empty(), "the section on {kind} has no picture");
+        let mut named = sections.iter().filter(|section| words(&section.title));
+        assert!(
+            named.any(|section| !section.images.is_empty()),
+            "no section and picture of {kind}"
+        );
     }
 }
 

@@ -33,7 +33,8 @@ pub fn root() -> PathBuf {
 
 /// The pages of the book, and those beside it.
 pub fn pages() -> Vec<Page> {
-    let beside = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "python/README.md"];
+    let beside =
+        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "python/README.md"];
     let mut paths: Vec<String> = beside.map(str::to_owned).to_vec();
     for folder in ["docs", "docs/devices"] {
         for file in fs::read_dir(root().join(folder)).unwrap() {
