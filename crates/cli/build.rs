@@ -2,7 +2,6 @@
 //!
 //! A published crate carries it in `.cargo_vcs_info.json`, a clone has git. Without either, the program only knows its
 //! version.
-#![expect(clippy::print_stdout, reason = "this is how a build script speaks")]
 
 use std::env;
 use std::fs;
