@@ -22,7 +22,7 @@ const SMALLER: [(&str, &str); 9] = [
 ];
 
 /// How commands begin that are not run here, and where they are.
-const ELSEWHERE: [(&str, &str); 13] = [
+const ELSEWHERE: [(&str, &str); 12] = [
     ("cargo test", "runs this test"),
     ("cargo bench", ".ci/run"),
     ("cargo install", "installs into the home folder; by hand"),
@@ -33,7 +33,6 @@ const ELSEWHERE: [(&str, &str); 13] = [
     ("python -m venv", "CONTRIBUTING's set-up; .ci/run does the same"),
     ("cd python", "the same"),
     ("../venv/bin", "the same"),
-    ("docs/pictures.sh", "by hand: makes the pictures of the devices"),
     ("benches/", "by hand: other programs, a quiet machine"),
     ("target/full_wave/venv", "by hand: full-wave solvers"),
 ];
