@@ -115,6 +115,29 @@ impl GridSpline {
         self.coefficients.iter().fold(start, |[low, high], c| [low.min(*c), high.max(*c)])
     }
 
+    /// As [`Self::bounds`], within those cells of the grid alone whose distances from the origin, the least and the
+    /// largest (cm), `counts` accepts.
+    #[must_use]
+    pub fn bounds_within(&self, counts: impl Fn([f64; 2]) -> bool) -> [f64; 2] {
+        let [mx, my] = self.count;
+        let mut bounds = [f64::INFINITY, f64::NEG_INFINITY];
+        for (i, j) in (0..my - 3).flat_map(|j| (0..mx - 3).map(move |i| (i, j))) {
+            let low = self.corner + self.spacing * DVec2::new(i as f64, j as f64);
+            let high = low + self.spacing;
+            let nearest = DVec2::ZERO.clamp(low, high).length();
+            if !counts([nearest, low.abs().max(high.abs()).length()]) {
+                continue;
+            }
+            for row in 0..4 {
+                let start = (j + row) * mx + i;
+                for c in &self.coefficients[start..start + 4] {
+                    bounds = [bounds[0].min(*c), bounds[1].max(*c)];
+                }
+            }
+        }
+        bounds
+    }
+
     /// The distance between neighbouring samples along the side where it is smaller, cm.
     #[must_use]
     pub fn finest_spacing(&self) -> f64 {
@@ -228,6 +251,20 @@ mod tests {
         let spline = spline([13, 13], function);
         let sample = DVec2::new(-1.0 + 0.25 * 7.0, 2.0 + 0.125 * 4.0);
         assert!((spline.look(sample).0 - function(sample)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn bounds_hold_where_they_are_asked_for() {
+        // 0.2 at the first sample, which is the nearest to the origin, then rising.
+        let count = [7, 9];
+        let samples: Vec<f64> =
+            (0..63).map(|k| 0.2 + 0.1 * f64::from(k % 7) + 0.3 * f64::from(k / 7)).collect();
+        let spline = GridSpline::new(DVec2::ZERO, DVec2::ONE, count, &samples).expect("a spline");
+        assert_eq!(spline.bounds_within(|_| true), spline.bounds());
+        let [low, high] = spline.bounds_within(|[nearest, _]| nearest == 0.0);
+        assert!((low + 0.2).abs() < 1e-12 && (high - 1.0).abs() < 1e-12, "{low} {high}");
+        let [low, _] = spline.bounds_within(|[_, farthest]| farthest > 9.9);
+        assert!((low - (0.2 + 0.4 + 2.0)).abs() < 0.21, "{low}");
     }
 
     #[test]
