@@ -61,9 +61,9 @@ fn fisheye_off(steps: usize) -> f64 {
 #[test]
 fn a_sampled_fisheye_images_each_point_to_its_opposite() {
     let off = [24, 48, 96].map(fisheye_off);
-    let orders = [(off[0] / off[1]).log2(), (off[1] / off[2]).log2()];
-    assert!(off[2] < 1e-4, "{off:?}");
-    assert!(orders.iter().all(|order| *order > 3.5), "{off:?} {orders:?}");
+    // From grid to grid it depends on where the rays pass between the samples.
+    let order = (off[0] / off[2]).log2() / 2.0;
+    assert!(off[2] < 1e-5 && order > 3.5, "{off:?} {order}");
 }
 
 #[test]

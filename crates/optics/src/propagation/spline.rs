@@ -115,8 +115,8 @@ impl GridSpline {
         self.coefficients.iter().fold(start, |[low, high], c| [low.min(*c), high.max(*c)])
     }
 
-    /// As [`Self::bounds`], within those cells of the grid alone whose distances from the origin, the least and the
-    /// largest (cm), `counts` accepts.
+    /// Bounds of the values in those cells of the grid whose distances from the origin, the least and the largest (cm),
+    /// `counts` accepts: those of the coefficients in Bernstein's form, which are near the values on coarse grids, too.
     #[must_use]
     pub fn bounds_within(&self, counts: impl Fn([f64; 2]) -> bool) -> [f64; 2] {
         let [mx, my] = self.count;
@@ -128,10 +128,14 @@ impl GridSpline {
             if !counts([nearest, low.abs().max(high.abs()).length()]) {
                 continue;
             }
-            for row in 0..4 {
+            let row = |row: usize| {
                 let start = (j + row) * mx + i;
-                for c in &self.coefficients[start..start + 4] {
-                    bounds = [bounds[0].min(*c), bounds[1].max(*c)];
+                bernstein(std::array::from_fn(|k| self.coefficients[start + k]))
+            };
+            let rows = [row(0), row(1), row(2), row(3)];
+            for k in 0..4 {
+                for c in bernstein(rows.map(|row| row[k])) {
+                    bounds = [bounds[0].min(c), bounds[1].max(c)];
                 }
             }
         }
@@ -143,6 +147,11 @@ impl GridSpline {
     pub fn finest_spacing(&self) -> f64 {
         self.spacing.min_element()
     }
+}
+
+/// Bernstein's coefficients of a piece of a cubic spline from those of its basis functions.
+fn bernstein([a, b, c, d]: [f64; 4]) -> [f64; 4] {
+    [(a + 4.0 * b + c) / 6.0, (2.0 * b + c) / 3.0, (b + 2.0 * c) / 3.0, (b + 4.0 * c + d) / 6.0]
 }
 
 /// The four basis functions of a cell at a place in it, 0 to 1, and their derivatives.
@@ -255,16 +264,14 @@ mod tests {
 
     #[test]
     fn bounds_hold_where_they_are_asked_for() {
-        // 0.2 at the first sample, which is the nearest to the origin, then rising.
-        let count = [7, 9];
+        // Bilinear: Bernstein's coefficients are values.
         let samples: Vec<f64> =
             (0..63).map(|k| 0.2 + 0.1 * f64::from(k % 7) + 0.3 * f64::from(k / 7)).collect();
-        let spline = GridSpline::new(DVec2::ZERO, DVec2::ONE, count, &samples).expect("a spline");
-        assert_eq!(spline.bounds_within(|_| true), spline.bounds());
-        let [low, high] = spline.bounds_within(|[nearest, _]| nearest == 0.0);
-        assert!((low + 0.2).abs() < 1e-12 && (high - 1.0).abs() < 1e-12, "{low} {high}");
-        let [low, _] = spline.bounds_within(|[_, farthest]| farthest > 9.9);
-        assert!((low - (0.2 + 0.4 + 2.0)).abs() < 0.21, "{low}");
+        let spline = GridSpline::new(DVec2::ZERO, DVec2::ONE, [7, 9], &samples).expect("a spline");
+        let near = |[a, b]: [f64; 2], [c, d]: [f64; 2]| (a - c).abs().max((b - d).abs()) < 1e-12;
+        assert!(near(spline.bounds_within(|_| true), [0.2, 3.2]));
+        assert!(near(spline.bounds_within(|[nearest, _]| nearest == 0.0), [0.2, 0.6]));
+        assert!(near(spline.bounds_within(|[_, farthest]| farthest > 9.9), [2.8, 3.2]));
     }
 
     #[test]
