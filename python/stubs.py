@@ -15,15 +15,17 @@ from cloakroom import tables
 HEADER = '''\
 # Made by stubs.py from the catalogue of devices; do not edit.
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, TypeVar
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _cloakroom
 
 _Self = TypeVar("_Self", bound="Table")
 _Image = str | os.PathLike[str] | ArrayLike
+_Index = str | os.PathLike[str] | ArrayLike | Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 
 class Table:
     _table: str
@@ -51,6 +53,8 @@ def annotation(name: str, description: Mapping[str, Any], *, given: bool) -> str
     kind = description.get("type")
     if "anyOf" in description:
         options = dict.fromkeys(annotation(name, option, given=given) for option in description["anyOf"])
+        if name == "index":
+            return "_Index" if given else "str | list[list[float]]"
         numeric = all(option in ("float", "ArrayLike", "list[Any]") for option in options)
         return ("ArrayLike" if given else "Any") if numeric else " | ".join(options)
     if kind == "array":
@@ -78,6 +82,8 @@ def stub() -> str:
                 lines.append(f"        {name}: {annotation(name, description, given=True)} | None = ...,")
             lines.append("    ) -> None: ...")
             for name, description in cls._properties.items():
+                if not hasattr(cls, name):
+                    continue
                 optional = "" if "default" in description else " | None"
                 returned = annotation(name, description, given=False)
                 lines += ["    @property", f"    def {name}(self) -> {returned}{optional}: ..."]

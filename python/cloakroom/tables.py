@@ -15,6 +15,7 @@ from typing import Any
 
 from . import _cloakroom
 from ._arrays import image_array, is_image_array
+from ._index import SPACING, index_array
 
 _SCHEMA: dict[str, Any] = json.loads(_cloakroom.schema())
 
@@ -82,6 +83,30 @@ class Device(Table):
     kind: str = ""
 
 
+class _Graded(Device):
+    """A device whose index may be an array or a function."""
+
+    def __init__(self, **keys: Any) -> None:
+        spacing, index = keys.pop("spacing", None), keys.get("index")
+        if index is not None:
+            # Sizes that do not fit are told as those of any device.
+            kept = {name: keys[name] for name in ("width", "height", "inner") if keys.get(name) is not None}
+            kept = _cloakroom.fit(self._table, kept)
+            width, height, inner = (
+                kept.get(name, self._properties[name]["default"]) for name in ("width", "height", "inner")
+            )
+            keys["index"] = index_array(index, (width, height), inner, spacing)
+        super().__init__(**keys)
+
+    def __repr__(self) -> str:
+        words = {name: repr(value) for name, value in self._given.items()}
+        index = self._given.get("index")
+        if isinstance(index, list):
+            words["index"] = f"<{len(index)} x {len(index[0])} samples>"
+        keys = ", ".join(f"{name}={word}" for name, word in words.items())
+        return f"{type(self).__name__}({keys})"
+
+
 def _rebuild(name: str, keys: Mapping[str, Any]) -> Table:
     table: Table = globals()[name](**keys)
     return table
@@ -124,8 +149,20 @@ def _key(name: str, description: Mapping[str, Any]) -> property:
     return property(lambda table: table._given.get(name, default), doc=description["description"])
 
 
+#: What `Graded` takes as its index, which is more than a scene file does.
+_INDEX = (
+    "The refractive index: an array (samples along x, samples along y) on a regular grid from border to border, of four "
+    "or more either way, copied; a function of arrays x and y (cm) that is asked for it at such a grid, at once; or a .npy "
+    "file. Between the samples the square of the index is a bicubic spline. Within a core the function is asked for "
+    "no more than 12 steps of the grid from its border."
+)
+
+
 def _make(name: str, base: type[Table], summary: str, properties: dict[str, Any], table: str) -> type[Table]:
     properties = {key: description for key, description in properties.items() if key != "kind"}
+    if base is _Graded:
+        properties["index"] = {**properties["index"], "description": _INDEX}
+        properties["spacing"] = SPACING
     parts = [_key_doc(key, description) for key, description in properties.items()]
     doc = f"{summary}\n\nParameters\n----------\n" + "\n".join(parts) + "\n"
     parameters = [
@@ -140,8 +177,9 @@ def _make(name: str, base: type[Table], summary: str, properties: dict[str, Any]
         "_table": table,
         "_properties": properties,
     }
-    if base is Device:
+    if issubclass(base, Device):
         names["kind"] = table
+        names.pop("spacing", None)
     return type(name, (base,), names)
 
 
@@ -158,7 +196,8 @@ for _reference in _SCHEMA["properties"]["device"]["items"]["oneOf"]:
     _kind = _reference["$ref"].rsplit("/", 1)[-1]
     _description = _SCHEMA["$defs"][_kind]
     _summary = _wrapped(_description["title"].rstrip(".") + ".", _description["description"])
-    _class = _make(class_name(_kind), Device, _summary, _description["properties"], _kind)
+    _base = _Graded if _kind == "graded" else Device
+    _class = _make(class_name(_kind), _base, _summary, _description["properties"], _kind)
     DEVICES[_kind] = globals()[_class.__name__] = _class
 for _kind, _description in _SCHEMA["properties"].items():
     if _kind != "device":

@@ -1,14 +1,16 @@
 # Made by stubs.py from the catalogue of devices; do not edit.
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, TypeVar
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _cloakroom
 
 _Self = TypeVar("_Self", bound="Table")
 _Image = str | os.PathLike[str] | ArrayLike
+_Index = str | os.PathLike[str] | ArrayLike | Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 
 class Table:
     _table: str
@@ -366,6 +368,46 @@ class Prisms(Device):
     @property
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
 
+class Graded(Device):
+    def __init__(
+        self,
+        *,
+        core: Literal["metal", "open"] | None = ...,
+        height: float | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
+        index: _Index | None = ...,
+        inner: float | None = ...,
+        length: float | None = ...,
+        position: ArrayLike | None = ...,
+        rotation: float | None = ...,
+        shape: Literal["rectangle", "circle"] | None = ...,
+        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        width: float | None = ...,
+        spacing: float | None = ...,
+    ) -> None: ...
+    @property
+    def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def height(self) -> float: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
+    @property
+    def index(self) -> str | list[list[float]] | None: ...
+    @property
+    def inner(self) -> float: ...
+    @property
+    def length(self) -> float | None: ...
+    @property
+    def position(self) -> list[Any]: ...
+    @property
+    def rotation(self) -> float: ...
+    @property
+    def shape(self) -> Literal["rectangle", "circle"]: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    @property
+    def width(self) -> float: ...
+
 class Body(Device):
     def __init__(
         self,
@@ -654,4 +696,4 @@ class TraceSettings(Table):
     @property
     def tolerance(self) -> float: ...
 
-__all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name", "SquareCloak", "DoubleGaussianCloak", "CylinderCloak", "SphereCloak", "InvisibleSphere", "BendingSphere", "EatonLens", "LuneburgLens", "FisheyeLens", "MirrorDetour", "Prisms", "Body", "GaussianCarpet", "GratingCarpet", "QuasiConformalCarpet", "Camera", "Light", "Photograph", "PictureSettings", "Receiver", "Surroundings", "TraceSettings"]
+__all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name", "SquareCloak", "DoubleGaussianCloak", "CylinderCloak", "SphereCloak", "InvisibleSphere", "BendingSphere", "EatonLens", "LuneburgLens", "FisheyeLens", "MirrorDetour", "Prisms", "Graded", "Body", "GaussianCarpet", "GratingCarpet", "QuasiConformalCarpet", "Camera", "Light", "Photograph", "PictureSettings", "Receiver", "Surroundings", "TraceSettings"]

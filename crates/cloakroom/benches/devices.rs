@@ -24,8 +24,12 @@ fn main() {
 /// Rays in one go.
 const RAYS: u32 = 256;
 
-/// The keys of kinds that are nothing without: a prism of glass, a ball of glass.
-const NEEDED: [(&str, &str); 2] = [
+/// The keys of kinds that are nothing without: a prism of glass, a ball of glass, hills of the index.
+const NEEDED: [(&str, &str); 3] = [
+    (
+        "graded",
+        "index = [[1, 1, 1, 1, 1], [1, 1.2, 1, 1.4, 1], [1, 1, 1.3, 1, 1], [1, 1.4, 1, 1.2, 1], [1, 1, 1, 1, 1]]\n",
+    ),
     ("prisms", "[[device.prism]]\ncorners = [[-8, -6], [8, -6], [0, 9]]\npermittivity = 2.25\n"),
     ("body", "permittivity = 2.25\n"),
 ];

@@ -124,6 +124,8 @@ pub static EXHIBITS: &[Exhibit] = &[
         "independent", "uni", "this program"),
     exhibit!("prisms" in "gallery/prisms": "Device of one's own", "Prisms of any tensors: here those of cloak (iii), turned by 10°",
         "any", "any", "this program"),
+    exhibit!("graded" in "gallery/graded": "Device of one's own", "Any graded index: here a rod whose n² falls as a parabola",
+        "independent", "any", "this program"),
 ];
 
 /// The exhibits that a list names, in the order of the gallery; all of them for an empty list.

@@ -27,7 +27,21 @@ corners = [[-2, 0], [1, 0], [1, 5], [-2, 5]]
 metal = true",
     ),
     ("body", "permittivity = [1.4, 2e-7]\npermeability = 1.03\n"),
+    ("graded", GRADED),
 ];
+
+/// A hilly index, around a core.
+const GRADED: &str = "width = 24
+height = 20
+inner = 3
+index = [
+  [1.02, 1.05, 0.98, 1.04, 1.01],
+  [1.10, 1.15, 1.12, 1.03, 0.97],
+  [1.08, 1.12, 1.10, 1.11, 1.06],
+  [0.95, 1.07, 1.14, 1.18, 1.02],
+  [1.00, 1.02, 1.05, 1.09, 1.10],
+]
+";
 
 /// The devices that have a core to open, with more of their keys.
 const OPEN_CORES: &[(&str, &str)] = &[
@@ -36,6 +50,7 @@ const OPEN_CORES: &[(&str, &str)] = &[
     ("cylinder-cloak", ""),
     ("cylinder-cloak", "material = \"radial-uniaxial\"\n"),
     ("sphere-cloak", ""),
+    ("graded", ""),
 ];
 
 /// Every device in every view, endless and short, at a few rotations and places, in each of the words

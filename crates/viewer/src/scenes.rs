@@ -2,6 +2,7 @@
 
 use crate::protocol::SceneTables;
 use cloakroom::device::Show;
+use cloakroom::keys::{KeyKind, Sampled};
 use cloakroom::photograph::ImageSource;
 use cloakroom::scene::{DeviceSettings, Scene, SurroundingsSettings};
 use cloakroom::scene_file::{self, Loaded};
@@ -26,6 +27,8 @@ pub(crate) struct Opened {
     pub name: String,
     folder: PathBuf,
     images: Vec<ImageSource>,
+    /// The files that hold numbers on a grid.
+    grids: Vec<String>,
 }
 
 impl Opened {
@@ -57,7 +60,8 @@ impl Opened {
             })
             .flatten()
             .collect();
-        Ok(Self { tables, name: name.to_owned(), folder: folder.to_owned(), images })
+        let grids = grids(&loaded.scene).map(str::to_owned).collect();
+        Ok(Self { tables, name: name.to_owned(), folder: folder.to_owned(), images, grids })
     }
 
     /// Where a photograph of that name would lie, were it a file of the scene's folder. Uploaded ones are hung up
@@ -90,6 +94,11 @@ impl Opened {
                         .to_owned(),
                 );
             }
+        }
+        if grids(&loaded.scene).any(|file| !self.grids.iter().any(|known| known == file)) {
+            return Err("a page can take the grids of the scene that was opened, and rows of numbers; it can open no \
+                        file"
+                .to_owned());
         }
         let trace = &mut loaded.scene.trace;
         trace.min_power = trace.min_power.max(LEAST_POWER);
@@ -158,6 +167,21 @@ fn images(scene: &Scene) -> Vec<ImageSource> {
     }
     images.extend(scene.devices.iter().filter_map(body_image));
     images
+}
+
+/// The files that a scene takes numbers on a grid from.
+fn grids(scene: &Scene) -> impl Iterator<Item = &str> {
+    let keys = |device: &'_ DeviceSettings| {
+        let keys = device.entry.keys.iter();
+        keys.filter(|key| matches!(key.kind, KeyKind::Samples { .. })).map(|key| key.name)
+    };
+    let named = move |device| keys(device).map(move |key| (device, key));
+    scene.devices.iter().flat_map(named).filter_map(|(device, key)| {
+        match device.values.samples(key) {
+            Some(Sampled::InFile(file)) => Some(file),
+            Some(Sampled::Here(_)) | None => None,
+        }
+    })
 }
 
 /// The image on an opaque body.

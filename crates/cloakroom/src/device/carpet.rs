@@ -139,6 +139,7 @@ impl Site {
             flow: flow.clone(),
             half: Half::Upper,
             floor: Beyond::Conductor,
+            core: Beyond::Air,
             finish,
             loss_tangent: 0.0,
         };

@@ -38,6 +38,8 @@ pub struct ConformalCell {
     pub half: Half,
     /// What lies beyond its floor.
     pub floor: Beyond,
+    /// What lies in its round core, if it has one.
+    pub core: Beyond,
     /// How the medium meets the air.
     pub finish: Finish,
     /// Imaginary over real part of its permittivity.
@@ -281,8 +283,11 @@ impl ConformalCell {
     fn passage(&self, start: &Foothold, end: &FlowEnd) -> Passage {
         let beyond = match end.boundary {
             Boundary::Floor => self.floor,
+            Boundary::Core => self.core,
             // Below the floor's level, in the troughs of a grating, the ends are metal.
-            Boundary::XMin | Boundary::XMax if self.half.mirrored(end.at.position).y < 0.0 => {
+            Boundary::XMin | Boundary::XMax
+                if self.half.mirrored(end.at.position).y < self.flow.map().level() =>
+            {
                 Beyond::Conductor
             }
             _ => Beyond::Air,

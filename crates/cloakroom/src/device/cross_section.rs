@@ -142,6 +142,7 @@ impl Skin {
                 vec![Side { line: curve.side_line(*side, PIECES), beyond: *beyond }]
             }
             Self::Cap { .. }
+            | Self::PiercedCap { .. }
             | Self::Disc { .. }
             | Self::ConformalCap { .. }
             | Self::FloorCap { .. } => Vec::new(),
@@ -228,11 +229,16 @@ impl ConformalCell {
             line: line.into_iter().map(mirrored).collect(),
             beyond,
         };
+        let [core, rim] = self.flow.radii();
+        let core = core.map(|core| side(circle(core), self.core));
+        if let Some(rim) = rim {
+            return std::iter::once(side(circle(rim), Beyond::Air)).chain(core).collect();
+        }
         let floor = map.floor_line(cut.x_min, cut.x_max, PIECES);
         let upright = |x: f64| {
             // Below the floor's level, in the troughs of a grating, the ends are metal.
             let (low, high) = (map.floor_height_at(x), cut.y_max);
-            let level = low.max(0.0);
+            let level = low.max(map.level());
             let piece = |a: f64, b: f64| vec![DVec2::new(x, a), DVec2::new(x, b)];
             let buried = (low < level).then(|| side(piece(low, level), Beyond::Conductor));
             buried.into_iter().chain([side(piece(level, high), Beyond::Air)])
@@ -242,6 +248,7 @@ impl ConformalCell {
             .into_iter()
             .chain(upright(cut.x_min))
             .chain(upright(cut.x_max))
+            .chain(core)
             .collect()
     }
 }

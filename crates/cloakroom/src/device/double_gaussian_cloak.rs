@@ -132,7 +132,8 @@ fn cloak(flow: &ConformalFlow, finish: Finish, extent: Extent, open_core: bool) 
     let cells = [Half::Upper, Half::Lower]
         .map(|half| {
             let (flow, loss_tangent) = (flow.clone(), 0.0);
-            Cell::Conformal(ConformalCell { flow, half, floor, finish, loss_tangent })
+            let core = Beyond::Air;
+            Cell::Conformal(ConformalCell { flow, half, floor, core, finish, loss_tangent })
         })
         .to_vec();
     if !open_core {

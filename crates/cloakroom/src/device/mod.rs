@@ -13,6 +13,7 @@ mod cross_section;
 mod cylinder_cloak;
 mod double_gaussian_cloak;
 mod gaussian_carpet;
+mod graded;
 mod grating_carpet;
 mod imperfection;
 mod invisible_sphere;
@@ -119,6 +120,7 @@ pub static CATALOGUE: &[&Entry] = &[
     &lenses::FISHEYE,
     &mirror_detour::ENTRY,
     &prisms::ENTRY,
+    &graded::ENTRY,
     &body::ENTRY,
     &gaussian_carpet::ENTRY,
     &grating_carpet::ENTRY,

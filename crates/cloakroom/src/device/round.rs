@@ -115,7 +115,12 @@ pub(super) fn metal_cylinder(radius: f64, extent: Extent) -> Structure {
 }
 
 /// The side and the ends of a round cylinder, whose core has a radius and is something of its own.
-fn upright(core: (f64, Beyond), radius: f64, extent: Extent, beyond: Beyond) -> Vec<Skin> {
+pub(super) fn upright(
+    core: (f64, Beyond),
+    radius: f64,
+    extent: Extent,
+    beyond: Beyond,
+) -> Vec<Skin> {
     let (core, beyond_core) = core;
     let cylinder = Cylinder { radius, extent };
     let mut skin = vec![Skin::Side { cylinder, beyond }];

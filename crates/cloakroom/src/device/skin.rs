@@ -30,6 +30,17 @@ pub enum Skin {
         /// How the media meet.
         finish: Finish,
     },
+    /// A flat end of a device with a round core.
+    PiercedCap {
+        /// Its shape.
+        cap: Cap,
+        /// What lies behind it.
+        beyond: Beyond,
+        /// Radius of the core about the z axis, cm; 0 without one.
+        core: f64,
+        /// What lies behind it there: metal, or air where there is nothing.
+        beyond_core: Beyond,
+    },
     /// A flat end of a conformal device: one half or two, and what is below the floor.
     ConformalCap {
         /// Its shape.
@@ -139,7 +150,8 @@ impl Skin {
                 }
                 Some((cap.hit(origin, direction)?, cap.normal))
             }
-            Self::ConformalCap { cap, below, .. } => {
+            Self::ConformalCap { cap, below, .. }
+            | Self::PiercedCap { cap, beyond_core: below, .. } => {
                 if again || direction.dot(cap.normal) >= 0.0 {
                     return None;
                 }
@@ -204,7 +216,7 @@ impl Skin {
                 let is_below = y < map.peak() && y < map.floor_height_at(position.x);
                 if is_below { *below } else { Beyond::Cell(cell) }
             }
-            Self::Disc { core, beyond_core, .. }
+            Self::Disc { core, beyond_core, .. } | Self::PiercedCap { core, beyond_core, .. }
                 if position.truncate().length_squared() < core * core =>
             {
                 *beyond_core
@@ -214,6 +226,7 @@ impl Skin {
             | Self::Sphere { beyond, .. }
             | Self::Side { beyond, .. }
             | Self::Disc { beyond, .. }
+            | Self::PiercedCap { beyond, .. }
             | Self::InnerSphere { beyond, .. }
             | Self::InnerSide { beyond, .. }
             | Self::InnerFloor { beyond, .. } => *beyond,
@@ -233,6 +246,7 @@ impl Skin {
             | Self::Sphere { .. }
             | Self::Side { .. }
             | Self::Disc { .. }
+            | Self::PiercedCap { .. }
             | Self::InnerSphere { .. }
             | Self::InnerSide { .. }
             | Self::Floor { .. }

@@ -2,7 +2,7 @@
 
 use super::nearest::nearest;
 use super::value::{Value, number_text, quoted};
-use super::{Key, KeyKind, Limits, Values, tensor};
+use super::{Key, KeyKind, Limits, Samples, Values, tensor};
 use optics::medium::Tensor;
 
 /// A value that fits its key.
@@ -18,6 +18,7 @@ pub(super) enum Fitted {
     Text(String),
     Tensor(Tensor),
     Polygon(Vec<[f64; 2]>),
+    Samples(Samples),
     Table(Values),
     Tables(Vec<Values>),
 }
@@ -39,6 +40,7 @@ impl From<&Fitted> for Value {
             Fitted::Polygon(corners) => {
                 Value::List(corners.iter().map(|corner| Value::from(*corner)).collect())
             }
+            Fitted::Samples(samples) => Value::from(samples),
             Fitted::Table(table) => Value::Table(table.given()),
             Fitted::Tables(tables) => {
                 Value::List(tables.iter().map(|table| Value::Table(table.given())).collect())
@@ -98,6 +100,7 @@ impl Key {
             KeyKind::Polygon { unit } => {
                 format!("three or more corners [x, y]{}", in_brackets(unit))
             }
+            KeyKind::Samples { .. } => "rows of numbers, or the name of a file".to_owned(),
             KeyKind::Table { keys } => format!("a table with {}", key_names(keys)),
             KeyKind::Tables { keys } => format!("a list of tables with {}", key_names(keys)),
         }
@@ -118,7 +121,10 @@ impl Key {
             KeyKind::IntegerPair { default, .. } => Some(Fitted::IntegerPair(default)),
             KeyKind::Text { default } => default.map(|text| Fitted::Text(text.to_owned())),
             KeyKind::Tensor => Some(Fitted::Tensor(1.0.into())),
-            KeyKind::Image | KeyKind::Polygon { .. } | KeyKind::Table { .. } => None,
+            KeyKind::Image
+            | KeyKind::Polygon { .. }
+            | KeyKind::Samples { .. }
+            | KeyKind::Table { .. } => None,
             KeyKind::Tables { .. } => Some(Fitted::Tables(Vec::new())),
             KeyKind::Choice { options } | KeyKind::ChoiceOrNumber { options, .. } => {
                 options.first().map(|option| Fitted::Choice(option))
@@ -169,7 +175,10 @@ impl Key {
                 }
                 Ok(Fitted::IntegerPair(integers))
             }
-            KeyKind::Text { .. } | KeyKind::Image => match value {
+            KeyKind::Samples { limits } if !matches!(value, Value::Text(_)) => {
+                self.samples(value, limits).map(Fitted::Samples)
+            }
+            KeyKind::Text { .. } | KeyKind::Image | KeyKind::Samples { .. } => match value {
                 Value::Text(text) if text.is_empty() => Err(format!("{} is empty", self.name)),
                 Value::Text(text) => Ok(Fitted::Text(text.clone())),
                 _ => Err(self.wrong_type(value)),
@@ -213,6 +222,23 @@ impl Key {
             Ok(corner)
         };
         items.iter().map(corner).collect()
+    }
+
+    fn samples(&self, value: &Value, limits: Limits) -> Result<Samples, String> {
+        let Value::List(rows) = value else { return Err(self.wrong_type(value)) };
+        let number = |at: [usize; 2], item: &Value| -> Result<f64, String> {
+            let name = format!("{}[{}][{}]", self.name, at[0], at[1]);
+            let number =
+                item.as_number().ok_or_else(|| format!("{name} is {item}; it must be a number"))?;
+            self.limit(&name, number, "", limits)?;
+            Ok(number)
+        };
+        let row = |(i, row): (usize, &Value)| -> Result<Vec<f64>, String> {
+            let Value::List(items) = row else { return Err(self.wrong_type(value)) };
+            items.iter().enumerate().map(|(j, item)| number([i, j], item)).collect()
+        };
+        let rows: Vec<Vec<f64>> = rows.iter().enumerate().map(row).collect::<Result<_, _>>()?;
+        Samples::new(&rows).map_err(|error| format!("{} is no grid: {error}", self.name))
     }
 
     fn tables(&self, value: &Value, keys: &'static [Key]) -> Result<Vec<Values>, String> {

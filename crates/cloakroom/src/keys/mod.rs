@@ -6,6 +6,7 @@
 
 mod check;
 mod nearest;
+mod samples;
 mod tensor;
 #[cfg(test)]
 mod tests;
@@ -13,9 +14,10 @@ mod value;
 mod values;
 
 pub use nearest::{hint, nearest, unknown};
+pub use samples::{Samples, SamplesError};
 pub use value::Value;
 pub(crate) use value::{number_text, quoted};
-pub use values::{ChoiceOrNumber, KeyError, Values};
+pub use values::{ChoiceOrNumber, KeyError, Sampled, Values};
 
 /// One key of a table.
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +105,12 @@ pub enum KeyKind {
     Polygon {
         /// The unit of the coordinates.
         unit: &'static str,
+    },
+    /// Numbers on a grid: rows of numbers, or the name of a file that holds them; absence itself means something. A
+    /// scene file's reader makes names of files relative to its folder.
+    Samples {
+        /// What each number may be.
+        limits: Limits,
     },
     /// A table with keys of its own; absence itself means something.
     Table {

@@ -2,7 +2,7 @@
 
 use super::check::Fitted;
 use super::nearest::unknown;
-use super::{Key, KeyKind, Value};
+use super::{Key, KeyKind, Samples, Value};
 use optics::medium::Tensor;
 
 /// Why a table cannot be had: which key is impossible, and how.
@@ -54,6 +54,15 @@ pub enum ChoiceOrNumber {
     Choice(&'static str),
     /// A finite number, in the key's unit.
     Number(f64),
+}
+
+/// What a key that takes numbers on a grid was given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sampled<'v> {
+    /// The numbers.
+    Here(&'v Samples),
+    /// The name of a file that holds them.
+    InFile(&'v str),
 }
 
 /// The values of one table: every key of a list has its value, given or by default, and every
@@ -260,6 +269,18 @@ impl Values {
             (KeyKind::Polygon { .. }, Some(Fitted::Polygon(corners))) => Some(corners),
             (KeyKind::Polygon { .. }, None) => None,
             _ => mistaken(name, "polygon"),
+        }
+    }
+
+    /// Numbers on a grid; `None` where they are absent.
+    pub fn samples(&self, name: &str) -> Option<Sampled<'_>> {
+        match (self.slot(name).0.kind, &self.slot(name).1.value) {
+            (KeyKind::Samples { .. }, Some(Fitted::Samples(samples))) => {
+                Some(Sampled::Here(samples))
+            }
+            (KeyKind::Samples { .. }, Some(Fitted::Text(file))) => Some(Sampled::InFile(file)),
+            (KeyKind::Samples { .. }, None) => None,
+            _ => mistaken(name, "grid of numbers"),
         }
     }
 

@@ -176,6 +176,15 @@ fn fill(
                     list.set(key.name, source.to_string()).map_err(|error| error.message)
                 })
             }
+            Ok(Value::Text(name))
+                if matches!(key.kind, KeyKind::Samples { .. }) && !name.is_empty() =>
+            {
+                let file = folder_of(table, key.name, base_folder).join(name);
+                match file.into_os_string().into_string() {
+                    Ok(file) => list.set(key.name, file).map_err(|error| error.message),
+                    Err(_) => Err("the folder's name is not valid Unicode".to_owned()),
+                }
+            }
             Ok(value) => list.set(key.name, value).map_err(|error| error.message),
             Err(what) => Err(format!("{} is {what}; it must be {}", key.name, key.describe())),
         };

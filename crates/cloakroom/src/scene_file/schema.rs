@@ -119,6 +119,11 @@ fn property(key: &Key) -> Value {
             let corner = list(number(Limits::Finite), 2);
             (json!({ "type": "array", "items": corner, "minItems": 3 }), unit)
         }
+        KeyKind::Samples { limits } => {
+            let row = json!({ "type": "array", "items": number(limits), "minItems": 1 });
+            let rows = json!({ "type": "array", "items": row, "minItems": 1 });
+            (json!({ "anyOf": [{ "type": "string", "minLength": 1 }, rows] }), "")
+        }
         KeyKind::Table { keys } => (inner_table(keys).into(), ""),
         KeyKind::Tables { keys } => (json!({ "type": "array", "items": inner_table(keys) }), ""),
     };

@@ -115,11 +115,43 @@ impl GridSpline {
         self.coefficients.iter().fold(start, |[low, high], c| [low.min(*c), high.max(*c)])
     }
 
+    /// Bounds of the values in those cells of the grid whose distances from the origin, the least and the largest (cm),
+    /// `counts` accepts: those of the coefficients in Bernstein's form, which are near the values on coarse grids, too.
+    #[must_use]
+    pub fn bounds_within(&self, counts: impl Fn([f64; 2]) -> bool) -> [f64; 2] {
+        let [mx, my] = self.count;
+        let mut bounds = [f64::INFINITY, f64::NEG_INFINITY];
+        for (i, j) in (0..my - 3).flat_map(|j| (0..mx - 3).map(move |i| (i, j))) {
+            let low = self.corner + self.spacing * DVec2::new(i as f64, j as f64);
+            let high = low + self.spacing;
+            let nearest = DVec2::ZERO.clamp(low, high).length();
+            if !counts([nearest, low.abs().max(high.abs()).length()]) {
+                continue;
+            }
+            let row = |row: usize| {
+                let start = (j + row) * mx + i;
+                bernstein(std::array::from_fn(|k| self.coefficients[start + k]))
+            };
+            let rows = [row(0), row(1), row(2), row(3)];
+            for k in 0..4 {
+                for c in bernstein(rows.map(|row| row[k])) {
+                    bounds = [bounds[0].min(c), bounds[1].max(c)];
+                }
+            }
+        }
+        bounds
+    }
+
     /// The distance between neighbouring samples along the side where it is smaller, cm.
     #[must_use]
     pub fn finest_spacing(&self) -> f64 {
         self.spacing.min_element()
     }
+}
+
+/// Bernstein's coefficients of a piece of a cubic spline from those of its basis functions.
+fn bernstein([a, b, c, d]: [f64; 4]) -> [f64; 4] {
+    [(a + 4.0 * b + c) / 6.0, (2.0 * b + c) / 3.0, (b + 2.0 * c) / 3.0, (b + 4.0 * c + d) / 6.0]
 }
 
 /// The four basis functions of a cell at a place in it, 0 to 1, and their derivatives.
@@ -228,6 +260,18 @@ mod tests {
         let spline = spline([13, 13], function);
         let sample = DVec2::new(-1.0 + 0.25 * 7.0, 2.0 + 0.125 * 4.0);
         assert!((spline.look(sample).0 - function(sample)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn bounds_hold_where_they_are_asked_for() {
+        // Bilinear: Bernstein's coefficients are values.
+        let samples: Vec<f64> =
+            (0..63).map(|k| 0.2 + 0.1 * f64::from(k % 7) + 0.3 * f64::from(k / 7)).collect();
+        let spline = GridSpline::new(DVec2::ZERO, DVec2::ONE, [7, 9], &samples).expect("a spline");
+        let near = |[a, b]: [f64; 2], [c, d]: [f64; 2]| (a - c).abs().max((b - d).abs()) < 1e-12;
+        assert!(near(spline.bounds_within(|_| true), [0.2, 3.2]));
+        assert!(near(spline.bounds_within(|[nearest, _]| nearest == 0.0), [0.2, 0.6]));
+        assert!(near(spline.bounds_within(|[_, farthest]| farthest > 9.9), [2.8, 3.2]));
     }
 
     #[test]

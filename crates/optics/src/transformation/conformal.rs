@@ -4,6 +4,7 @@ use glam::DVec2;
 use num_complex::Complex64;
 use pulp::Simd;
 
+use super::flat::FlatMap;
 use super::gaussian::GaussianMap;
 use super::grating::GratingMap;
 use super::quasi_conformal::QuasiConformalMap;
@@ -78,6 +79,8 @@ pub enum ConformalMap {
     Grating(GratingMap),
     /// A box with a bump whose border slides.
     QuasiConformal(QuasiConformalMap),
+    /// No map: the space above a flat floor is as it was.
+    Flat(FlatMap),
 }
 
 impl From<GaussianMap> for ConformalMap {
@@ -98,6 +101,12 @@ impl From<QuasiConformalMap> for ConformalMap {
     }
 }
 
+impl From<FlatMap> for ConformalMap {
+    fn from(map: FlatMap) -> Self {
+        Self::Flat(map)
+    }
+}
+
 impl ConformalMap {
     /// Value and derivatives at a virtual point.
     #[inline]
@@ -107,6 +116,7 @@ impl ConformalMap {
             Self::Gaussian(map) => map.jet(zeta),
             Self::Grating(map) => map.jet(zeta),
             Self::QuasiConformal(map) => map.jet(zeta),
+            Self::Flat(map) => map.jet(zeta),
         }
     }
 
@@ -117,6 +127,7 @@ impl ConformalMap {
             Self::Gaussian(map) => map.width(),
             Self::Grating(map) => map.scale(),
             Self::QuasiConformal(map) => map.scale(),
+            Self::Flat(map) => map.scale(),
         }
     }
 
@@ -125,7 +136,7 @@ impl ConformalMap {
     /// jumps: measured, nothing can be counted on there.
     pub(crate) fn smoothness(&self) -> f64 {
         match self {
-            Self::Gaussian(_) | Self::Grating(_) => 100.0,
+            Self::Gaussian(_) | Self::Grating(_) | Self::Flat(_) => 100.0,
             Self::QuasiConformal(_) => 3.0,
         }
     }
@@ -135,6 +146,7 @@ impl ConformalMap {
         match self {
             Self::Gaussian(_) | Self::QuasiConformal(_) => usual.max(zeta.norm_sqr().sqrt() / 3.0),
             Self::Grating(_) => usual.max(zeta.im / 3.0),
+            Self::Flat(_) => usual,
         }
     }
 
@@ -145,6 +157,7 @@ impl ConformalMap {
             Self::Gaussian(map) => map.height(),
             Self::Grating(map) => map.height(),
             Self::QuasiConformal(map) => map.peak(),
+            Self::Flat(map) => map.level(),
         }
     }
 
@@ -154,6 +167,16 @@ impl ConformalMap {
         match self {
             Self::Gaussian(_) | Self::QuasiConformal(_) => 0.0,
             Self::Grating(map) => -map.height(),
+            Self::Flat(map) => map.level(),
+        }
+    }
+
+    /// The height y of the floor far from what is on it, cm.
+    #[must_use]
+    pub fn level(&self) -> f64 {
+        match self {
+            Self::Gaussian(_) | Self::Grating(_) | Self::QuasiConformal(_) => 0.0,
+            Self::Flat(map) => map.level(),
         }
     }
 
@@ -170,6 +193,7 @@ impl ConformalMap {
             Self::Gaussian(map) => map.first_guess(z),
             Self::Grating(map) => map.first_guess(z),
             Self::QuasiConformal(map) => map.first_guess(z),
+            Self::Flat(map) => return Some(map.inverse(z)),
         };
         self.newton(z, guess).or_else(|| self.invert_from_above(z))
     }
@@ -232,6 +256,7 @@ impl ConformalMap {
             Self::Gaussian(map) => map.floor_parameter(x),
             Self::Grating(map) => map.floor_parameter(x),
             Self::QuasiConformal(map) => map.floor_parameter(x),
+            Self::Flat(_) => x,
         }
     }
 
@@ -242,6 +267,7 @@ impl ConformalMap {
             Self::Gaussian(map) => map.floor_height_at(x),
             Self::Grating(map) => map.floor_height_at(x),
             Self::QuasiConformal(map) => map.floor_height_at(x),
+            Self::Flat(map) => map.level(),
         }
     }
 
@@ -262,7 +288,7 @@ impl ConformalMap {
     /// to where the map is a series.
     pub(crate) fn profile(&self, parameter: f64) -> MapJet {
         match self {
-            Self::Gaussian(_) | Self::Grating(_) => self.jet(parameter.into()),
+            Self::Gaussian(_) | Self::Grating(_) | Self::Flat(_) => self.jet(parameter.into()),
             Self::QuasiConformal(map) => map.profile(parameter),
         }
     }
@@ -270,7 +296,7 @@ impl ConformalMap {
     /// The parameter of [`Self::profile`] at physical `x`.
     pub(crate) fn profile_parameter(&self, x: f64) -> f64 {
         match self {
-            Self::Gaussian(_) | Self::Grating(_) => self.floor_parameter(x),
+            Self::Gaussian(_) | Self::Grating(_) | Self::Flat(_) => self.floor_parameter(x),
             Self::QuasiConformal(_) => x,
         }
     }
@@ -282,6 +308,7 @@ impl ConformalMap {
             Self::Gaussian(_) => self.sampled_inflections(start, end),
             Self::Grating(map) => map.inflections(start, end),
             Self::QuasiConformal(map) => map.inflections(start, end),
+            Self::Flat(_) => Vec::new(),
         }
     }
 
@@ -313,6 +340,7 @@ impl ConformalMap {
             Self::Gaussian(map) => map.area_from_middle_to(x),
             Self::Grating(map) => map.area_from_middle_to(x),
             Self::QuasiConformal(map) => map.area_from_middle_to(x),
+            Self::Flat(map) => map.level() * x,
         };
         from_middle(cut.x_max) - from_middle(cut.x_min)
     }

@@ -2,6 +2,7 @@
 
 mod conformal;
 mod faddeeva;
+mod flat;
 mod gaussian;
 mod grating;
 mod monotone_root;
@@ -12,6 +13,7 @@ mod strip_to_rhombus;
 pub use conformal::{ConformalMap, MapJet, Truncation};
 pub(crate) use conformal::{JetLanes, LaneMap};
 pub use faddeeva::{FaddeevaJet, faddeeva, faddeeva_jet};
+pub use flat::FlatMap;
 pub use gaussian::{GaussianMap, GaussianMapError};
 pub use grating::{GratingMap, GratingMapError};
 pub(crate) use monotone_root::root_in_bracket;

@@ -30,6 +30,7 @@ fn ends_on_the_border_and_on_shell_with_a_rotation() {
                 Boundary::ZMin => position.z - short.min,
                 Boundary::ZMax => position.z - short.max,
                 Boundary::Floor => position.y.abs() - flow.map().floor_height_at(position.x),
+                Boundary::Rim | Boundary::Core => f64::NAN,
             };
             assert!(limit.abs() < 1e-13, "{limit:e} {end:?}");
             let image = flow.map().jet(virtual_position).f;

@@ -41,6 +41,10 @@ pub(super) fn apply(
     if !limited && !imperfection.is_random() {
         return Ok(());
     }
+    if cell.flow.is_uneven() {
+        let message = "this index is given on a grid; what is made of it is to be given so, too. Loss alone can be asked for";
+        return Err(KeyError::at(TABLE, message));
+    }
     let finest = |spacing: f64, needed: bool| if needed { spacing } else { f64::INFINITY };
     let spacing = finest(imperfection.resolution / SAMPLES_A_RESOLUTION, limited)
         .min(finest(imperfection.correlation / SAMPLES_A_CORRELATION, imperfection.is_random()));

@@ -70,6 +70,9 @@ fn every_device_can_be_drawn_in_every_way() {
         let more = match entry.kind {
             "prisms" => "[[device.prism]]\ncorners = [[0, 0], [4, 0], [0, 4]]\npermittivity = 2",
             "body" => "permittivity = 2",
+            "graded" => {
+                "index = [[1, 1, 1, 1], [1, 1, 2, 1], [1, 2, 1, 1], [1, 1, 1, 1]]\ninner = 2"
+            }
             _ => "",
         };
         let text = format!("[[device]]\nkind = \"{}\"\n{more}", entry.kind);

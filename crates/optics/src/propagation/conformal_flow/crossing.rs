@@ -45,6 +45,8 @@ enum Coordinate {
     Y,
     VirtualY,
     Z,
+    /// The distance from the z axis, as (r²/l + l)/2 with the limit l: it has a derivative on the axis, too.
+    Radius,
 }
 
 /// The distance of a coordinate from its limit, positive inside.
@@ -67,6 +69,12 @@ impl Gauge {
                 let bend = 2.0 * p_z * (f1.conj() * point.jet.f2 * point.momentum).re;
                 (point.z, p_z * f1.norm_sqr(), bend)
             }
+            Coordinate::Radius => {
+                let (f, velocity, near) = (point.jet.f, point.velocity, self.limit.recip());
+                let bend = velocity.norm_sqr() + (f.conj() * point.bend).re;
+                let value = 0.5 * (f.norm_sqr() * near + self.limit);
+                (value, (f.conj() * velocity).re * near, bend * near)
+            }
         };
         let sign = self.sign;
         Motion { value: sign * (value - self.limit), rate: sign * rate, bend: sign * bend }
@@ -79,6 +87,12 @@ impl Gauge {
             Coordinate::Y => (at.jet.f.im, at.velocity.im, at.bend.im),
             Coordinate::VirtualY => (at.zeta.im, at.momentum.im, at.force.im),
             Coordinate::Z => (at.z, p_z * at.jet.f1.norm_squared(), at.axial_bend(p_z)),
+            Coordinate::Radius => {
+                let (f, velocity, near) = (at.jet.f, at.velocity, self.limit.recip());
+                let bend = velocity.norm_squared() + (f.conj() * at.bend).re;
+                let value = f.norm_squared() * (0.5 * near) + p_z.all(0.5 * self.limit);
+                (value, (f.conj() * velocity).re * near, bend * near)
+            }
         };
         let sign = self.sign;
         MotionLanes {
@@ -167,13 +181,15 @@ pub(super) enum Look {
 /// The distances from all parts of the border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gauges {
-    all: [Gauge; 6],
+    all: [Gauge; 8],
     /// The length over which the map varies.
     scale: f64,
 }
 
 impl Gauges {
-    pub fn new(cut: &Truncation, extent: Extent, scale: f64) -> Self {
+    /// Those of a cut map, the space within the first and beyond the second of two radii about the z axis, which
+    /// are infinite where there is none.
+    pub fn new(cut: &Truncation, extent: Extent, rim: f64, core: f64, scale: f64) -> Self {
         let gauge = |boundary, coordinate, sign, limit| Gauge { boundary, coordinate, sign, limit };
         Self {
             all: [
@@ -183,6 +199,8 @@ impl Gauges {
                 gauge(Boundary::YMax, Coordinate::Y, -1.0, cut.y_max),
                 gauge(Boundary::ZMin, Coordinate::Z, 1.0, extent.min),
                 gauge(Boundary::ZMax, Coordinate::Z, -1.0, extent.max),
+                gauge(Boundary::Rim, Coordinate::Radius, -1.0, rim),
+                gauge(Boundary::Core, Coordinate::Radius, 1.0, core),
             ],
             scale,
         }

@@ -70,6 +70,10 @@ pub enum Boundary {
     ZMax,
     /// The mirror, Y = 0.
     Floor,
+    /// The round border about the z axis, if it has one.
+    Rim,
+    /// The round core about the z axis, if it has one.
+    Core,
 }
 
 /// A point of one half of the device, known in physical and in virtual space.
@@ -152,6 +156,9 @@ pub struct ConformalFlow {
     map: ConformalMap,
     cut: Truncation,
     extent: Extent,
+    /// The radii of the round border and of the core, cm; infinite without them.
+    rim: f64,
+    core: f64,
     strength: f64,
     gauges: Gauges,
     slack: f64,
@@ -164,8 +171,29 @@ impl ConformalFlow {
     #[must_use]
     pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, strength: f64) -> Self {
         let slack = BORDER_SLACK * map.scale();
-        let gauges = Gauges::new(&cut, extent, map.scale());
-        Self { map, cut, extent, strength, gauges, slack, unevenness: None }
+        let (rim, core) = (f64::INFINITY, f64::INFINITY);
+        let gauges = Gauges::new(&cut, extent, rim, core, map.scale());
+        Self { map, cut, extent, rim, core, strength, gauges, slack, unevenness: None }
+    }
+
+    /// The same medium (all of it in the upper half) within the radius `rim` about the z axis and beyond the radius
+    /// `core`, both in cm, the latter less than the former.
+    #[must_use]
+    pub fn between(self, core: Option<f64>, rim: Option<f64>) -> Self {
+        let [rim, core] = [rim, core].map(|radius| radius.unwrap_or(f64::INFINITY));
+        Self { rim, core, ..self }.with_gauges()
+    }
+
+    /// The radii of its round core and of its round border, if it has them.
+    #[must_use]
+    pub fn radii(&self) -> [Option<f64>; 2] {
+        [self.core, self.rim].map(|radius| radius.is_finite().then_some(radius))
+    }
+
+    /// The same with the gauges that follow from the rest.
+    fn with_gauges(self) -> Self {
+        let gauges = Gauges::new(&self.cut, self.extent, self.rim, self.core, self.scale());
+        Self { gauges, ..self }
     }
 
     /// The map.
@@ -219,12 +247,19 @@ impl ConformalFlow {
             && z.re <= self.cut.x_max + self.slack
             && z.im <= self.cut.y_max + self.slack
             && local.z >= self.extent.min - self.slack
-            && local.z <= self.extent.max + self.slack;
+            && local.z <= self.extent.max + self.slack
+            && self.is_between(z.norm());
         if inside && index.is_finite() {
             Ok(Foothold { half, position, virtual_position: zeta, index })
         } else {
             Err(FlowError::Outside)
         }
+    }
+
+    /// Whether a distance from the z axis is within the round border and beyond the core.
+    fn is_between(&self, radius: f64) -> bool {
+        let beyond_core = self.core.is_infinite() || radius >= self.core - self.slack;
+        beyond_core && radius <= self.rim + self.slack
     }
 
     /// Follows a ray from a physical point to the border; see [`Self::advance_from`].
@@ -298,7 +333,7 @@ impl ConformalFlow {
 
     /// The distance over which an error of direction grows into one of position.
     fn lever(&self) -> f64 {
-        0.5 * (self.cut.x_max - self.cut.x_min).max(self.cut.y_max)
+        0.5 * (self.cut.x_max - self.cut.x_min).max(self.cut.y_max - self.map.level())
     }
 
     fn end(&self, start: &Foothold, arrival: &Arrival) -> FlowEnd {
@@ -306,6 +341,8 @@ impl ConformalFlow {
         let half = start.half;
         let mut position = DVec3::new(end.jet.f.re, end.jet.f.im, end.z);
         let inward = Complex64::i() * end.jet.f1 / end.jet.stretch();
+        let radial = DVec3::new(position.x, position.y, 0.0).normalize_or(DVec3::X);
+        let on_circle = |radius: f64| (radial * radius).with_z(end.z);
         let normal = match boundary {
             Boundary::XMin => DVec3::NEG_X,
             Boundary::XMax => DVec3::X,
@@ -313,6 +350,8 @@ impl ConformalFlow {
             Boundary::ZMin => DVec3::NEG_Z,
             Boundary::ZMax => DVec3::Z,
             Boundary::Floor => DVec3::new(-inward.re, -inward.im, 0.0),
+            Boundary::Rim => radial,
+            Boundary::Core => -radial,
         };
         // What is left of the distance to the border is rounding.
         match boundary {
@@ -322,6 +361,8 @@ impl ConformalFlow {
             Boundary::ZMin => position.z = self.extent.min,
             Boundary::ZMax => position.z = self.extent.max,
             Boundary::Floor => end.zeta.im = 0.0,
+            Boundary::Rim => position = on_circle(self.rim),
+            Boundary::Core => position = on_circle(self.core),
         }
         let strength = self.strength * self.factor(end.jet.f).square.sqrt();
         end.momentum = course.on_shell(strength, end.momentum, &end.jet);

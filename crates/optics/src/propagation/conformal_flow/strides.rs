@@ -110,6 +110,9 @@ pub(super) fn stride(
         ConformalMap::QuasiConformal(map) => {
             side_by_side(Strides { map, gauges, rays, pace, from, length, to });
         }
+        ConformalMap::Flat(map) => {
+            side_by_side(Strides { map, gauges, rays, pace, from, length, to });
+        }
     }
 }
 

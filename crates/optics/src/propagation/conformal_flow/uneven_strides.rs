@@ -43,6 +43,9 @@ pub(super) fn uneven_stride(
         ConformalMap::QuasiConformal(map) => {
             side_by_side(Strides { map, unevenness, gauges, rays, pace, from, length, to });
         }
+        ConformalMap::Flat(map) => {
+            side_by_side(Strides { map, unevenness, gauges, rays, pace, from, length, to });
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! An index that is not quite that of a map.
+//! An index that is not that of a map alone.
 
 use std::sync::Arc;
 
@@ -43,6 +43,15 @@ impl Unevenness {
         (square.bounds()[0] > 0.0).then_some(Self { square, scale })
     }
 
+    /// As [`Self::new`], where the square is positive in those cells of the grid whose distances from the z axis, the
+    /// least and the largest (cm), `counts` accepts: what it is elsewhere is not looked at but in steps that are taken
+    /// back.
+    #[must_use]
+    pub fn within(square: GridSpline, counts: impl Fn([f64; 2]) -> bool) -> Option<Self> {
+        let scale = CELLS_A_SCALE * square.finest_spacing();
+        (square.bounds_within(counts)[0] > 0.0).then_some(Self { square, scale })
+    }
+
     /// Bounds of the factor.
     pub(super) fn bounds(&self) -> [f64; 2] {
         self.square.bounds().map(f64::sqrt)
@@ -60,12 +69,12 @@ impl ConformalFlow {
     /// plane, in which the lower half is looked at as its mirror image.
     #[must_use]
     pub fn with_unevenness(self, unevenness: Unevenness) -> Self {
-        let flow = Self { unevenness: Some(Arc::new(unevenness)), ..self };
-        Self { gauges: Gauges::new(&flow.cut, flow.extent, flow.scale()), ..flow }
+        Self { unevenness: Some(Arc::new(unevenness)), ..self }.with_gauges()
     }
 
-    /// Whether the index is not quite that of the map.
-    pub(super) fn is_uneven(&self) -> bool {
+    /// Whether the index is not that of the map alone.
+    #[must_use]
+    pub fn is_uneven(&self) -> bool {
         self.unevenness.is_some()
     }
 

@@ -1,0 +1,81 @@
+"""An index of one's own, given as an array or as a function, on the grid that a scene has it on."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._arrays import numbers
+
+__all__ = ["SPACING", "index_array"]
+
+#: What a function's grid is asked for beside the keys of the catalogue.
+SPACING: dict[str, Any] = {
+    "type": "number",
+    "exclusiveMinimum": 0,
+    "description": "Distance between the samples of an index that is a function, made a little smaller to fit; 1/160 "
+    "of the longer side where it is absent. Unit: cm.",
+}
+
+#: Within a core, a function is asked for no more than these steps of the grid.
+_INTO_CORE = 12
+
+#: A cubic spline has as many samples as this along a side.
+_LEAST = 4
+
+
+def index_array(index: Any, size: tuple[float, float], inner: float, spacing: Any) -> Any:
+    """The index as a scene file has it: rows of numbers, or the name of a file."""
+    if isinstance(index, (str, os.PathLike)):
+        return os.path.abspath(index)
+    if callable(index):
+        return _sampled(index, size, inner, _step(spacing, size))
+    if spacing is not None:
+        raise ValueError("spacing is that of the samples of a function; an array is from border to border")
+    return _checked(index, "real numbers of the shape (samples along x, samples along y), a function or a path")
+
+
+def _checked(index: Any, expected: str) -> NDArray[np.float64]:
+    array = numbers("index", index, expected)
+    if array.ndim != 2:
+        raise ValueError(f"index has the shape {array.shape}; expected {expected}")
+    return array
+
+
+def _step(spacing: Any, size: tuple[float, float]) -> float:
+    if spacing is None:
+        return max(size) / 160
+    if isinstance(spacing, bool) or not isinstance(spacing, (int, float, np.integer, np.floating)):
+        raise TypeError(f"spacing is a {type(spacing).__name__}; expected a number (cm)")
+    if not 0 < spacing < float("inf"):
+        raise ValueError(f"spacing is {spacing} cm; it must be above 0 and finite")
+    return float(spacing)
+
+
+def _sampled(
+    index: Callable[[NDArray[np.float64], NDArray[np.float64]], Any],
+    size: tuple[float, float],
+    inner: float,
+    spacing: float,
+) -> NDArray[np.float64]:
+    counts = [max(_LEAST, int(np.ceil(min(side / spacing, 1e6) - 1e-9)) + 1) for side in size]
+    if counts[0] * counts[1] > 1_000_000:
+        raise ValueError(f"spacing is {spacing} cm: a grid of {counts[0]} x {counts[1]} samples is too large")
+    x, y = np.meshgrid(*(np.linspace(-side / 2, side / 2, count) for side, count in zip(size, counts)), indexing="ij")
+    # What an index is deep within a core does not matter; formulas often have a pole there.
+    radius = np.hypot(x, y)
+    least = inner - _INTO_CORE * spacing
+    if least > 0:
+        x = np.where(radius > 0, x, least)
+        radius = np.where(radius > 0, radius, least)
+        out = np.maximum(1.0, least / radius)
+        x, y = x * out, y * out
+    values = np.asarray(index(x, y))
+    expected = f"a real number for each of the {x.shape[0]} x {x.shape[1]} places x, y that it is given"
+    if values.dtype.kind not in "iuf" or values.shape not in ((), x.shape):
+        raise ValueError(f"index gives an array of {values.dtype} of the shape {values.shape}; expected {expected}")
+    return _checked(np.broadcast_to(values, x.shape), expected)
