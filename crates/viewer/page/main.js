@@ -3,7 +3,7 @@
 import { fillLists, showRotation, showSplit, showState } from "./choices.js";
 import { Connection } from "./connection.js";
 import { watchDrops, watchKeys, watchPointer } from "./gestures.js";
-import { percent, showNumbers } from "./numbers.js";
+import { ageNumbers, percent, showNumbers } from "./numbers.js";
 import { picture, watchDivider } from "./picture.js";
 import { sectionView } from "./section.js";
 import { State, copy } from "./state.js";
@@ -32,6 +32,7 @@ const look = () => ({ scene: state.scene, size: state.size, samples: state.sampl
 function changed(moving = false) {
   clearTimeout(settle);
   document.body.dataset.finished = "false";
+  ageNumbers();
   if (moving) {
     connection.look(look, true);
     settle = setTimeout(() => changed(false), REST);
