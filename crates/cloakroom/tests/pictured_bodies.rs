@@ -6,7 +6,7 @@ mod pictures;
 
 use cloakroom::output::Picture;
 use cloakroom::photograph::decode;
-use cloakroom::render::Studio;
+use cloakroom::render::{Images, Studio};
 use cloakroom::scene_file;
 use image::{Rgb, RgbImage};
 use pictures::picture_in;
@@ -204,4 +204,31 @@ fn what_cannot_be_is_refused_at_its_place() {
             "{text}\n{error}"
         );
     }
+}
+
+#[test]
+fn images_are_read_once_and_kept_while_they_are_shown() {
+    let folder = folder();
+    let scene = |image: &str| {
+        let surface = format!("surface = {{ image = \"{image}\" }}");
+        let bodies = [
+            "shape = \"box\"\nsize = [4, 4, 4]\nposition = [0, 9, 0]",
+            "shape = \"sphere\"\nradius = 3",
+            "shape = \"cylinder\"\nradius = 3\nlength = 4\nposition = [0, -9, 0]",
+        ]
+        .map(|shape| format!("[[device]]\nkind = \"body\"\n{shape}\n{surface}\n"))
+        .concat();
+        scene_file::parse(&bodies, "a", folder.path(), &[]).unwrap().scene
+    };
+    let (ramp, blocks) = (scene("ramp.png"), scene("blocks.png"));
+    let empty = scene_file::parse("", "a", folder.path(), &[]).unwrap().scene;
+    let mut images = Images::default();
+    Studio::with_images(&ramp, &mut images).unwrap();
+    std::fs::remove_file(folder.path().join("ramp.png")).unwrap();
+    assert!(Studio::new(&ramp).is_err());
+    Studio::with_images(&ramp, &mut images).unwrap();
+    Studio::with_images(&empty, &mut images).unwrap();
+    Studio::with_images(&ramp, &mut images).unwrap();
+    Studio::with_images(&blocks, &mut images).unwrap();
+    assert!(Studio::with_images(&ramp, &mut images).is_err());
 }

@@ -121,6 +121,32 @@ test("devices and their parameters are switched", async () => {
   await page.close();
 });
 
+test("vectors and tables among the parameters have controls, too", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  const before = await pixels(page);
+  const set = async (name, value) => {
+    await page.fill(`#keys input[aria-label='${name}, exactly']`, value);
+    await page.keyboard.press("Tab");
+    await finished(page);
+  };
+  await page.locator("#keys details[data-name=imperfection] summary").click();
+  await set("error", "0.1");
+  assert.ok(difference(before, await pixels(page)).most > 20);
+  await set("error", "");
+  assert.equal(difference(before, await pixels(page)).bytes, 0);
+  const up = await page.inputValue("#keys input[aria-label='position y, exactly']");
+  assert.equal(up, "0");
+  await set("position y", "5");
+  const moved = await pixels(page);
+  assert.ok(difference(before, moved).most > 20);
+  // What is saved has both as the scene file has them.
+  const [download] = await Promise.all([page.waitForEvent("download"), page.locator("#save-scene").click()]);
+  assert.match(readFileSync(await download.path(), "utf8"), /position = \[\s*0(\.0)?,\s*5(\.0)?,\s*0(\.0)?,?\s*\]/);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
 test("a photograph can be dropped, and is looked through", async () => {
   const { page, complaints } = await open();
   await small(page);

@@ -1,7 +1,10 @@
-// The WebSocket to the server. What moves is asked for one picture at a time; what stands still at once, which cancels
-// all that is under way.
+// The WebSocket to the server. What moves is asked for two pictures at a time, so that one is made while the other is
+// shown; what stands still at once, which cancels all that is under way.
 
-// A picture that moves and does not come within this time, ms, is given up.
+// How many pictures of what moves are under way.
+const AHEAD = 2;
+
+// One that does not come within this time, ms, is given up.
 const PATIENCE = 3000;
 
 export class Connection {
@@ -11,8 +14,6 @@ export class Connection {
     this.closed = closed;
     this.id = 0;
     this.ray = 0;
-    this.waiting = null;
-    this.next = null;
     this.open();
   }
 
@@ -30,7 +31,8 @@ export class Connection {
       if (this.socket === socket) this.closed();
     };
     this.socket = socket;
-    this.waiting = null;
+    // Pictures under way, and the look that comes next.
+    this.waiting = [];
     this.next = null;
   }
 
@@ -41,35 +43,38 @@ export class Connection {
   #receive(buffer) {
     const length = new DataView(buffer).getUint32(0, true);
     const caption = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
-    const pixels = new Uint8ClampedArray(buffer.slice(4 + length));
+    const pixels = new Uint8ClampedArray(buffer, 4 + length);
     this.heard.picture?.(caption, new ImageData(pixels, caption.width, caption.height));
-    if (this.waiting && caption.id === this.waiting.id && caption.last) this.#arrived();
+    if (caption.last) this.#arrived(caption.id);
   }
 
-  #arrived() {
-    this.waiting = null;
+  // A picture has come, or never will; those that were asked for before it have been passed over.
+  #arrived(id) {
+    this.waiting = this.waiting.filter((one) => one.id > id);
     const next = this.next;
     this.next = null;
-    if (next) this.look(next.look, true);
+    if (next) this.look(next, true);
   }
 
   // Asks for a picture of what `look` says; `moving` if another will follow at once. Returns its number, if it was asked for now.
   look(look, moving) {
     if (!this.isOpen) return undefined;
-    if (moving && this.waiting && performance.now() - this.waiting.since < PATIENCE) {
-      this.next = { look };
+    const now = performance.now();
+    this.waiting = moving ? this.waiting.filter(({ since }) => now - since < PATIENCE) : [];
+    this.next = null;
+    if (this.waiting.length >= AHEAD) {
+      this.next = look;
       return undefined;
     }
-    this.next = null;
     const id = ++this.id;
-    this.waiting = moving ? { id, since: performance.now() } : null;
+    if (moving) this.waiting.push({ id, since: now });
     this.#say({ look: { id, moving, ...look() } });
     return id;
   }
 
   // An error has come instead of a picture.
   failed(id) {
-    if (this.waiting && id === this.waiting.id) this.#arrived();
+    if (id !== null) this.#arrived(id);
   }
 
   // Asks for the ray of a point of the picture.

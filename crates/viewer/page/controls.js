@@ -1,7 +1,5 @@
 // The parameters of a device as sliders, built from the catalogue.
 
-import { copy } from "./state.js";
-
 const keys = document.getElementById("keys");
 
 const UNIT = / Unit: ([^.]+)\.$/;
@@ -12,7 +10,8 @@ function range(schema) {
   const [low, high] = [schema.minimum ?? schema.exclusiveMinimum, schema.maximum ?? schema.exclusiveMaximum];
   if (low !== undefined && high !== undefined && high - low <= 1e4) return [low, high];
   const size = Math.abs(schema.default ?? 10) || 10;
-  return [low !== undefined && low >= 0 ? 0.1 * size : -2.5 * size, 2.5 * size];
+  const least = schema.default === 0 ? 0 : 0.1 * size;
+  return [low !== undefined && low >= 0 ? least : -2.5 * size, 2.5 * size];
 }
 
 // A slider and a field for one number; `set` is told with the value, and whether more will follow.
@@ -74,16 +73,53 @@ function control(name, schema, value, set) {
   return undefined;
 }
 
-// Position along one axis: a vector's component.
-function component(axis, device, changed) {
-  const schema = { type: "number", default: 10 };
-  return number(`position ${"xyz"[axis]}`, schema, device.position?.[axis] ?? 0, (value, moving) => {
-    const position = copy(device.position ?? [0, 0, 0]);
-    position[axis] = value ?? 0;
-    device.position = position;
-    changed(moving);
-  });
+// The rows of a key: one, or one a component of a vector, or a group for a table.
+function rowsOf(name, schema, value, set) {
+  const doc = schema.description ?? "";
+  if (schema.type === "object") return [group(name, schema, value, set)];
+  if (schema.type === "array" && schema.maxItems === 3 && schema.items.type === "number") {
+    const components = name === "color" ? ["red", "green", "blue"] : ["x", "y", "z"];
+    const all = [...(value ?? schema.default)];
+    return components.map((component, i) => {
+      const one = { ...schema.items, default: schema.default[i] };
+      const setOne = (value, moving) => {
+        all[i] = value ?? schema.default[i];
+        set([...all], moving);
+      };
+      const called = `${name} ${component}`;
+      return row(called, doc, number(called, name === "color" ? { ...one, maximum: 1 } : one, all[i], setOne));
+    });
+  }
+  const controls = control(name, schema, value, set);
+  return controls ? [row(name, doc, controls)] : [];
 }
+
+// The keys of a table in a table.
+function group(name, schema, value, set) {
+  const entries = { ...value };
+  const setter = (key) => (value, moving) => {
+    if (value === undefined) delete entries[key];
+    else entries[key] = value;
+    set(Object.keys(entries).length > 0 ? { ...entries } : undefined, moving);
+  };
+  const details = document.createElement("details");
+  details.dataset.name = name;
+  details.open = keys.querySelector(`details[data-name="${name}"]`)?.open ?? false;
+  const summary = document.createElement("summary");
+  summary.textContent = words(name);
+  const hint = document.createElement("p");
+  hint.className = "hint";
+  hint.textContent = schema.description ?? "";
+  const grid = document.createElement("div");
+  grid.className = "keys";
+  for (const [key, one] of Object.entries(schema.properties)) {
+    grid.append(...rowsOf(key, one, entries[key], setter(key)));
+  }
+  details.append(summary, hint, grid);
+  return details;
+}
+
+let rowsMade = 0;
 
 function row(name, doc, controls) {
   const line = document.createElement("div");
@@ -99,7 +135,7 @@ function row(name, doc, controls) {
     label.append(small);
   }
   if (controls.length === 1) {
-    controls[0].id = `key-${name}`;
+    controls[0].id = `key-${++rowsMade}`;
     label.htmlFor = controls[0].id;
     if (controls[0].type === "checkbox") {
       line.classList.add("flag");
@@ -124,14 +160,9 @@ export function buildControls(device, kind, changed) {
       else device[name] = value;
       changed(moving, name);
     };
-    const placement = ["length", ...(kind.core_can_be_open ? ["core"] : [])];
+    const placement = ["length", ...(kind.core_can_be_open ? ["core"] : []), "position", "imperfection"];
     for (const name of [...kind.own_keys, ...placement]) {
-      const schema = kind.keys[name];
-      const controls = schema && control(name, schema, device[name], setter(name));
-      if (controls) rows.push(row(name, schema.description ?? "", controls));
-    }
-    for (const axis of [0, 1, 2]) {
-      rows.push(row(`position ${"xyz"[axis]}`, "Where it stands. Unit: cm.", component(axis, device, changed)));
+      if (kind.keys[name]) rows.push(...rowsOf(name, kind.keys[name], device[name], setter(name)));
     }
   }
   keys.replaceChildren(...rows);

@@ -1,9 +1,9 @@
 // The page: what is done with it becomes a look, and what comes back is shown.
 
+import { fillLists, showRotation, showSplit, showState } from "./choices.js";
 import { Connection } from "./connection.js";
-import { buildControls } from "./controls.js";
 import { watchDrops, watchKeys, watchPointer } from "./gestures.js";
-import { percent, showNumbers } from "./numbers.js";
+import { ageNumbers, percent, showNumbers } from "./numbers.js";
 import { picture, watchDivider } from "./picture.js";
 import { sectionView } from "./section.js";
 import { State, copy } from "./state.js";
@@ -32,6 +32,7 @@ const look = () => ({ scene: state.scene, size: state.size, samples: state.sampl
 function changed(moving = false) {
   clearTimeout(settle);
   document.body.dataset.finished = "false";
+  ageNumbers();
   if (moving) {
     connection.look(look, true);
     settle = setTimeout(() => changed(false), REST);
@@ -44,11 +45,11 @@ function changed(moving = false) {
 
 function greeted(content) {
   hello = content;
-  fillLists();
+  fillLists(hello);
   const linked = location.hash.length > 1 && state.fromFragment(location.hash.slice(1));
   if (!linked && !state.exhibit) state.open("opened", hello.scene);
   $("banner").hidden = true;
-  showState();
+  showControls();
   picture.mark(probing);
   changed();
 }
@@ -80,7 +81,10 @@ function received(caption, image) {
 function showScale(scale) {
   $("scale").hidden = !scale;
   if (!scale) return;
-  const number = (value) => (value === null ? "–" : Number(value.toPrecision(3)).toString().replace("-", "−"));
+  // What rounding leaves of nothing is nothing.
+  const least = 1e-4 * Math.max(Math.abs(scale.low), Math.abs(scale.high));
+  const number = (value) =>
+    value === null ? "–" : Number((Math.abs(value) < least ? 0 : value).toPrecision(3)).toString().replace("-", "−");
   $("scale-low").textContent = number(scale.low);
   $("scale-high").textContent = number(scale.high);
   $("scale-title").textContent = scale.unit ? `${scale.title}, ${scale.unit}` : scale.title;
@@ -141,79 +145,7 @@ function hung({ name }) {
 
 // --- What is chosen ----------------------------------------------------------------------------------------------
 
-function fillLists() {
-  const list = $("exhibit");
-  const kinds = document.createElement("optgroup");
-  kinds.label = "Devices";
-  const others = document.createElement("optgroup");
-  others.label = "More from the gallery";
-  for (const kind of hello.order) {
-    const { title } = hello.kinds[kind];
-    const exhibit = hello.exhibits.find(({ scene }) => scene.device?.[0]?.kind === kind);
-    if (!exhibit) continue;
-    kinds.append(new Option(title, exhibit.name));
-  }
-  const listed = new Set(Array.from(kinds.children, (option) => option.value));
-  for (const { name } of hello.exhibits) {
-    if (!listed.has(name)) others.append(new Option(name.replaceAll("-", " "), name));
-  }
-  const opened = new Option(hello.name || "First scene", "opened");
-  list.replaceChildren(opened, kinds, others);
-  const map = $("map");
-  const titles = { none: "as seen", delivered: "power delivered", escaped: "power escaped", absorbed: "power absorbed", pruned: "power pruned" };
-  map.replaceChildren(...hello.maps.map((name) => new Option(titles[name] ?? name.replaceAll("_", " "), name)));
-}
-
-// Brings every control to the state.
-function showState() {
-  const device = state.device;
-  const kind = hello.kinds[device?.kind];
-  const exhibit = hello.exhibits.find(({ name }) => name === state.exhibit);
-  $("exhibit").value = exhibit ? exhibit.name : "opened";
-  $("about").textContent = exhibit?.words ?? kind?.title ?? "";
-  $("summary").textContent = kind?.summary ?? "There is no device in this scene.";
-  $("which-label").hidden = state.devices.length < 2;
-  $("which").replaceChildren(...state.devices.map(({ kind }, i) => new Option(`${i + 1}: ${kind}`, i)));
-  $("which").value = String(Math.min(state.which, state.devices.length - 1));
-  const { polarizer = "none" } = state.scene.camera ?? {};
-  $("polarizer").value = typeof polarizer === "number" ? "angle" : polarizer;
-  $("angle-label").hidden = typeof polarizer !== "number";
-  if (typeof polarizer === "number") $("angle").value = polarizer;
-  $("map").value = state.scene.picture?.map ?? "none";
-  $("beside").value = state.beside;
-  $("width").value = String(state.width);
-  $("samples").value = String(state.samples);
-  $("min-power").value = String(state.scene.trace?.min_power ?? 0.0001);
-  buildControls(device, kind, (moving) => changed(moving));
-  showShows();
-  showRotation();
-  showSplit();
-}
-
-// The ways in which the scene's devices can be shown: each those that can.
-function showShows() {
-  const can = (show) => state.devices.some(({ kind }) => hello.kinds[kind]?.shows.includes(show));
-  const names = { cloak: "Cloak", bare: "Bare metal", mirror: "Mirror" };
-  const segments = document.createElement("div");
-  segments.className = "segments";
-  const shown = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1)?.show ?? "cloak";
-  for (const [show, name] of Object.entries(names)) {
-    if (show !== "cloak" && !can(show)) continue;
-    const label = document.createElement("label");
-    const radio = document.createElement("input");
-    radio.type = "radio";
-    radio.name = "show";
-    radio.value = show;
-    radio.checked = show === shown;
-    radio.addEventListener("change", () => setShow(show));
-    const word = document.createElement("span");
-    word.textContent = name;
-    label.append(radio, word);
-    segments.append(label);
-  }
-  const legend = $("shows").querySelector("legend");
-  $("shows").replaceChildren(legend, segments);
-}
+const showControls = () => showState(state, hello, { changed, setShow });
 
 function setShow(show) {
   for (const device of state.devices) {
@@ -222,37 +154,22 @@ function setShow(show) {
     // Bare metal and mirrors have no core that could be open.
     if (show !== "cloak") delete device.core;
   }
-  showState();
+  showControls();
   changed();
-}
-
-function showRotation() {
-  const degrees = state.device?.rotation ?? 0;
-  const wrapped = ((((degrees + 180) % 360) + 360) % 360) - 180;
-  $("rotation").value = String(wrapped);
-  $("rotation").setAttribute("aria-valuetext", `${Number(wrapped.toFixed(1))} degrees`);
-  $("rotation-number").value = String(Number(wrapped.toFixed(2)));
-  $("rotation").disabled = $("rotation-number").disabled = $("play").disabled = !state.device;
 }
 
 function rotate(degrees, moving) {
   if (!state.device || !Number.isFinite(degrees)) return;
   state.device.rotation = Math.round((((((degrees + 180) % 360) + 360) % 360) - 180) * 1e3) / 1e3;
-  showRotation();
+  showRotation(state);
   changed(moving);
-}
-
-function showSplit() {
-  const cloak = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1);
-  const words = { bare: "bare metal", mirror: "mirror", cloak: "cloak" };
-  picture.layOut(state, cloak ? words[cloak.show ?? "cloak"] : "the scene");
 }
 
 function setBeside(beside) {
   state.beside = beside;
   $("beside").value = beside;
   picture.forget();
-  showSplit();
+  showSplit(state, hello);
   changed();
 }
 
@@ -315,7 +232,8 @@ function resetCamera() {
 function follow(at) {
   probing = at;
   picture.mark(at);
-  if (at) connection.follow(at);
+  // The first picture asks for its rays itself.
+  if (at && document.body.dataset.pictures) connection.follow(at);
   else sectionView.clear();
 }
 
@@ -323,12 +241,12 @@ $("exhibit").addEventListener("change", () => {
   const name = $("exhibit").value;
   const exhibit = hello.exhibits.find((one) => one.name === name);
   state.open(name, exhibit?.scene ?? hello.scene);
-  showState();
+  showControls();
   changed();
 });
 $("which").addEventListener("change", () => {
   state.which = Number($("which").value);
-  showState();
+  showControls();
 });
 $("rotation").addEventListener("input", () => rotate($("rotation").valueAsNumber, true));
 $("rotation").addEventListener("change", () => rotate($("rotation").valueAsNumber, false));
@@ -338,7 +256,7 @@ $("beside").addEventListener("change", () => setBeside($("beside").value));
 $("polarizer").addEventListener("change", () => {
   const word = $("polarizer").value;
   state.set("camera", "polarizer", word === "angle" ? $("angle").valueAsNumber : word);
-  showState();
+  showControls();
   changed();
 });
 $("angle").addEventListener("change", () => {
@@ -389,7 +307,7 @@ $("copy-link").addEventListener("click", async () => {
 });
 $("reset-camera").addEventListener("click", resetCamera);
 watchDivider(state, () => {
-  showSplit();
+  showSplit(state, hello);
   picture.draw(state);
 });
 
@@ -404,7 +322,7 @@ watchKeys({
 watchDrops(bring);
 addEventListener("hashchange", () => {
   if (hello && state.fromFragment(location.hash.slice(1))) {
-    showState();
+    showControls();
     changed();
   }
 });

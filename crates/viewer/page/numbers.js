@@ -31,7 +31,15 @@ export function time(ns, signed = false) {
 
 const plain = (value, digits) => (value === null || value === undefined ? NONE : value.toFixed(digits));
 
+// Says that something has changed since the numbers came.
+export function ageNumbers() {
+  if (body.childElementCount === 0) return;
+  body.parentElement.classList.add("old");
+  note.textContent = "Of the view before; those of this one come when it rests.";
+}
+
 export function showNumbers(numbers) {
+  body.parentElement.classList.remove("old");
   const rows = [
     ["Delivered from the photograph", percent(numbers.delivered)],
     ["Light from the surroundings", percent(numbers.escaped)],

@@ -10,6 +10,8 @@ const title = document.getElementById("section-words");
 
 const WIDTH = 5;
 const HEIGHT = 4;
+// Steps of the rays' widths, each factor of ten of power.
+const LEVELS = 5;
 let section = null;
 let tree = null;
 
@@ -94,15 +96,22 @@ export const sectionView = {
   drawRays() {
     if (!tree) return;
     const size = Number(svg.getAttribute("viewBox")?.split(" ")[2] ?? 100);
+    // A tree may have hundreds of pieces: those of about the same power are one path.
+    const levels = new Map();
+    for (const line of tree.lines) {
+      const level = Math.round(LEVELS * Math.log10(Math.min(1, line.power)));
+      if (!levels.has(level)) levels.set(level, []);
+      levels.get(level).push(line);
+    }
     const drawn = [];
-    for (const line of [...tree.lines].reverse()) {
-      const power = Math.min(1, line.power);
-      const ray = element("path", { d: path(line.points, false), class: "ray" });
+    for (const [level, lines] of [...levels].sort(([a], [b]) => a - b)) {
+      const power = 10 ** (level / LEVELS);
+      const ray = element("path", { d: lines.map(({ points }) => path(points, false)).join(""), class: "ray" });
       ray.style.strokeOpacity = Math.max(0.15, power ** 0.4);
       ray.style.strokeWidth = `${Math.max(0.7, 2.4 * power ** 0.35)}px`;
       drawn.push(ray);
-      if (line.lands) {
-        const [x, y] = line.points[line.points.length - 1];
+      for (const { points } of lines.filter(({ lands }) => lands)) {
+        const [x, y] = points[points.length - 1];
         drawn.push(element("circle", { cx: x, cy: -y, r: (size / 130) * power ** 0.35, class: "landing" }));
       }
     }

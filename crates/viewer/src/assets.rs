@@ -24,6 +24,7 @@ pub(crate) static ASSETS: &[Asset] = &[
     asset!("/icon.svg", "icon.svg", "image/svg+xml"),
     asset!("/gestures.js", "gestures.js", "text/javascript; charset=utf-8"),
     asset!("/main.js", "main.js", "text/javascript; charset=utf-8"),
+    asset!("/choices.js", "choices.js", "text/javascript; charset=utf-8"),
     asset!("/state.js", "state.js", "text/javascript; charset=utf-8"),
     asset!("/orbit.js", "orbit.js", "text/javascript; charset=utf-8"),
     asset!("/connection.js", "connection.js", "text/javascript; charset=utf-8"),

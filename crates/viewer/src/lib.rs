@@ -2,7 +2,7 @@
 //! and to nobody else.
 //!
 //! A browser loads the page (`assets`), opens one WebSocket, and says what it wants to look at (`protocol`).
-//! Each page has a thread that renders (`painter`), coarsely at once and then better, and one that follows single
+//! Each page has a thread that renders (`painter`), coarsely at once and then better (`pace`), and one that follows single
 //! rays (`ray_tree`). New wishes cancel stale work. A page can name no file of this machine: the images it may show
 //! are those of the program, of the scene that was opened on the command line, and its own upload (`scenes`).
 
@@ -13,6 +13,7 @@ mod client;
 mod cross_section;
 mod figures;
 mod frame;
+mod pace;
 mod painter;
 mod protocol;
 mod ray_tree;

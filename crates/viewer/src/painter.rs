@@ -5,6 +5,7 @@ use crate::client::{Client, Outbox};
 use crate::cross_section::cross_section;
 use crate::figures::{FiguresError, figures, resized};
 use crate::frame::{Caption, Scale, encode};
+use crate::pace::{Pace, Pass};
 use crate::protocol::{Beside, Look, error};
 use crate::scenes::shown_as;
 use cloakroom::device::Show;
@@ -12,25 +13,16 @@ use cloakroom::illustration::{IllustrationError, Quantity, ScalarMap};
 use cloakroom::measure::{empty, ideal};
 use cloakroom::output::{OutputError, RgbImage, to_srgb};
 use cloakroom::render::{Images, RenderError, Studio, StudioError, Supervision, Wanted, render};
-use cloakroom::scene::Scene;
+use cloakroom::scene::{DeviceSettings, Scene};
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How long a coarse picture should take.
-const COARSE: Duration = Duration::from_millis(36);
-
-/// A full picture of one sample that takes longer than this is preceded by a coarse one.
-const PATIENCE: Duration = Duration::from_millis(120);
-
 /// What coarse pictures may leave out: branches weaker than this, and places less exact than this, cm.
 const COARSE_POWER: f64 = 1e-2;
 const COARSE_TOLERANCE: f64 = 1e-4;
-
-/// By how much coarse pictures are smaller, each way.
-const DIVISORS: [f64; 8] = [1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 6.0];
 
 /// How often progress is told.
 const PROGRESS: Duration = Duration::from_millis(150);
@@ -103,7 +95,8 @@ pub(crate) fn paint(client: &Client, outbox: &Outbox) {
         outbox,
         images: client.images(),
         uploaded: None,
-        nanoseconds_a_pixel: None,
+        pace: Pace::default(),
+        devices: Vec::new(),
         section: Value::Null,
     };
     while let Some(wish) = client.looks.take() {
@@ -134,19 +127,12 @@ struct Painter<'a> {
     images: Images,
     /// The images of the page's own photograph, and its number.
     uploaded: Option<(u64, Images)>,
-    /// What a pixel of the last coarse picture took, of all its views.
-    nanoseconds_a_pixel: Option<f64>,
+    /// How long its pictures take.
+    pace: Pace,
+    /// The devices that were shown last.
+    devices: Vec<DeviceSettings>,
     /// The cross-section that was sent last.
     section: Value,
-}
-
-/// One picture on the way to the finished one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Pass {
-    size: [u32; 2],
-    samples: u32,
-    coarse: bool,
-    finished: bool,
 }
 
 impl Painter<'_> {
@@ -202,16 +188,18 @@ impl Painter<'_> {
             .into_iter()
             .chain(beside.as_ref().map(|(name, scene)| (*name, scene)))
             .collect();
-        for pass in passes(look, self.nanoseconds_a_pixel) {
-            let start = Instant::now();
+        if !look.moving && !are_alike(&self.devices, &scene.devices) {
+            // Other devices take another time: something is to be seen at once.
+            self.pace = Pace::default();
+        }
+        self.devices.clone_from(&scene.devices);
+        for pass in self.pace.passes(look) {
+            let mut time = Duration::ZERO;
             for (number, (name, scene)) in views.iter().enumerate() {
                 let last = number + 1 == views.len();
-                self.picture(wish, (name, last), scene, pass, images)?;
+                time += self.picture(wish, (name, last), scene, pass, images)?;
             }
-            let pixels = f64::from(pass.size[0]) * f64::from(pass.size[1]);
-            if pass.samples == 1 {
-                self.nanoseconds_a_pixel = Some(start.elapsed().as_nanos() as f64 / pixels);
-            }
+            self.pace.add(pass, time);
             if !pass.coarse && pass.samples == 1 {
                 let mut numbers = figures(scene, images, &wish.stop)?;
                 numbers["id"] = json!(look.id);
@@ -221,7 +209,7 @@ impl Painter<'_> {
         Ok(())
     }
 
-    /// Renders and sends one picture: of a view, which may be the last of its pass.
+    /// Renders and sends one picture: of a view, which may be the last of its pass. How long rendering has taken.
     fn picture(
         &self,
         wish: &Wish,
@@ -229,7 +217,7 @@ impl Painter<'_> {
         scene: &Scene,
         pass: Pass,
         images: &mut Images,
-    ) -> Result<(), PaintError> {
+    ) -> Result<Duration, PaintError> {
         let mut scene = resized(scene, pass.size, pass.samples);
         if pass.coarse {
             scene.trace.min_power = scene.trace.min_power.max(COARSE_POWER);
@@ -254,6 +242,7 @@ impl Painter<'_> {
                 (map.image, Some(scale))
             }
         };
+        let time = start.elapsed();
         let caption = Caption {
             id: wish.look.id,
             view,
@@ -263,10 +252,11 @@ impl Painter<'_> {
             min_power: scene.trace.min_power,
             finished: pass.finished,
             last,
-            milliseconds: start.elapsed().as_secs_f64() * 1e3,
+            milliseconds: time.as_secs_f64() * 1e3,
             scale,
         };
-        self.outbox.send_bytes(encode(&caption, &image)).map_err(|_| PaintError::Gone)
+        self.outbox.send_bytes(encode(&caption, &image)).map_err(|_| PaintError::Gone)?;
+        Ok(time)
     }
 
     fn say(&self, message: &Value) -> Result<(), PaintError> {
@@ -274,31 +264,15 @@ impl Painter<'_> {
     }
 }
 
-/// The pictures on the way to a finished one.
-fn passes(look: &Look, nanoseconds_a_pixel: Option<f64>) -> Vec<Pass> {
-    let pixels = f64::from(look.size[0]) * f64::from(look.size[1]);
-    let divisor = match nanoseconds_a_pixel {
-        None => 4.0,
-        Some(each) => {
-            let fits =
-                |divisor: &&f64| each * pixels / (*divisor * *divisor) <= COARSE.as_nanos() as f64;
-            DIVISORS.iter().find(fits).copied().unwrap_or(DIVISORS[DIVISORS.len() - 1])
-        }
+/// Whether devices differ in nothing but how they stand.
+fn are_alike(some: &[DeviceSettings], others: &[DeviceSettings]) -> bool {
+    let alike = |(one, other): (&DeviceSettings, &DeviceSettings)| {
+        one.entry.kind == other.entry.kind
+            && one.values == other.values
+            && one.show == other.show
+            && one.open_core == other.open_core
     };
-    let size = look.size.map(|side| ((f64::from(side) / divisor).round() as u32).max(1));
-    let coarse = Pass { size, samples: 1, coarse: true, finished: false };
-    if look.moving {
-        return vec![coarse];
-    }
-    let quick = nanoseconds_a_pixel.is_some_and(|each| each * pixels < PATIENCE.as_nanos() as f64);
-    let mut passes = if quick { Vec::new() } else { vec![coarse] };
-    let steps = std::iter::successors(Some(1), |samples| Some(samples * 4));
-    let steps = steps.take_while(|samples| *samples < look.samples);
-    for samples in steps.chain([look.samples]) {
-        let finished = samples == look.samples;
-        passes.push(Pass { size: look.size, samples, coarse: false, finished });
-    }
-    passes
+    some.len() == others.len() && some.iter().zip(others).all(alike)
 }
 
 /// The scale of a map in a unit for people.
@@ -340,38 +314,5 @@ impl<'a> Progress<'a> {
                 &json!({ "progress": { "id": self.id, "samples": self.samples, "share": share } }),
             );
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn look(moving: bool, samples: u32) -> Look {
-        let scene = crate::protocol::SceneTables::new();
-        Look { id: 1, scene, size: [640, 480], samples, moving, beside: Beside::Nothing }
-    }
-
-    #[test]
-    fn pictures_get_better_step_by_step() {
-        let samples = |passes: Vec<Pass>| passes.iter().map(|p| p.samples).collect::<Vec<_>>();
-        let first = passes(&look(false, 16), None);
-        assert!(first[0].coarse && first[0].size == [160, 120]);
-        assert_eq!(samples(first), [1, 1, 4, 16]);
-        // Quick scenes need no coarse picture.
-        assert_eq!(samples(passes(&look(false, 16), Some(100.0))), [1, 4, 16]);
-        let last = passes(&look(false, 10), Some(1e5));
-        assert_eq!(samples(last.clone()), [1, 1, 4, 10]);
-        assert_eq!(last.iter().filter(|pass| pass.finished).count(), 1);
-        assert_eq!(samples(passes(&look(false, 1), Some(100.0))), [1]);
-    }
-
-    #[test]
-    fn what_moves_is_as_fine_as_time_allows() {
-        let size = |each| passes(&look(true, 16), Some(each))[0].size;
-        assert_eq!(size(100.0), [640, 480]);
-        assert_eq!(size(400.0), [320, 240]);
-        assert_eq!(size(1e9), [107, 80]);
-        assert_eq!(passes(&look(true, 16), Some(400.0)).len(), 1);
     }
 }

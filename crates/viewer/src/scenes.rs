@@ -83,10 +83,13 @@ impl Opened {
         let text = text(scene)?;
         let mut loaded = scene_file::parse(&text, NAME, &self.folder, &[])
             .map_err(|error| error.message.clone())?;
-        for image in images(&loaded.scene) {
+        // What the page has brought is the photograph and nothing else: on a body or around the scene a file of that
+        // name would be looked for.
+        let brought = uploaded == Some(&loaded.scene.photograph.image);
+        for (number, image) in images(&loaded.scene).into_iter().enumerate() {
             let known = matches!(image, ImageSource::BuiltIn(_))
                 || self.images.contains(&image)
-                || uploaded == Some(&image);
+                || (number == 0 && brought);
             if !known {
                 return Err(
                     "a page can show the images that came with the program or with the scene that \
@@ -159,7 +162,7 @@ fn value_of(value: &Value) -> Result<toml::Value, String> {
     })
 }
 
-/// Every image that a scene shows.
+/// Every image that a scene shows, its photograph first.
 fn images(scene: &Scene) -> Vec<ImageSource> {
     let mut images = vec![scene.photograph.image.clone()];
     if let SurroundingsSettings::Image(image) = &scene.surroundings {

@@ -13,6 +13,7 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use axum::serve::ListenerExt;
 use cloakroom::render::{Images, Studio};
 use cloakroom::scene::Scene;
 use cloakroom::scene_file::Loaded;
@@ -119,7 +120,11 @@ pub fn serve(
         .map_err(ViewerError::Run)?;
     read_images(&settings.scene.scene, &server);
     let served = runtime.block_on(async {
-        let listener = tokio::net::TcpListener::from_std(listener)?;
+        // A picture that waits for the page to confirm the last bytes of the one before would wait 40 ms.
+        let listener = tokio::net::TcpListener::from_std(listener)?.tap_io(|stream| {
+            // If it cannot be had, pages are slower.
+            let _ = stream.set_nodelay(true);
+        });
         let app = Router::new()
             .route("/session", get(session))
             .fallback(get(asset))

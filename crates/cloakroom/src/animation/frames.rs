@@ -45,11 +45,6 @@ impl FrameFolder {
         self.folder.join(format!("frame-{frame:06}.png"))
     }
 
-    /// The names of the files as `ffmpeg` takes them.
-    pub(super) fn pattern(&self) -> PathBuf {
-        self.folder.join("frame-%06d.png")
-    }
-
     /// Whether a frame is there that shows just this: it carries the same metadata, and none of `images` has
     /// changed since.
     #[must_use]

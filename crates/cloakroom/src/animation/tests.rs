@@ -7,6 +7,11 @@ use std::io::BufReader;
 use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::Ordering;
 
+mod video;
+
+/// The scene that the films say they show.
+const SCENE: &str = "[camera] # <&>\nsamples = 4 ; a\\b\n";
+
 /// Frames in which a bright square walks over a ramp.
 fn frames(folder: &Path, count: usize) -> FrameFolder {
     let frames = FrameFolder::new(&folder.join("frames"), count).expect("a folder");
@@ -29,7 +34,7 @@ fn picture(number: u32) -> RgbImage {
 fn film(name: &str, format: FilmFormat, count: usize, folder: &Path) -> PathBuf {
     let frames = frames(folder, count);
     let done = AtomicUsize::new(0);
-    let metadata = [("scene".to_owned(), "[camera] # <&>".to_owned())];
+    let metadata = [("scene".to_owned(), SCENE.to_owned())];
     let settings = FilmSettings {
         rate: 30,
         metadata: &metadata,

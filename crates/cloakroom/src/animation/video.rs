@@ -18,6 +18,9 @@ pub(super) enum Codec {
     Vp9,
 }
 
+/// The frames in their folder, as `ffmpeg` takes them: see [`FrameFolder::file`].
+const FRAMES: &str = "frame-%06d.png";
+
 /// How often `ffmpeg` is looked after.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -50,8 +53,12 @@ pub(super) fn write(
         .prefix(".cloakroom-")
         .tempdir_in(folder.unwrap_or(Path::new(".")))
         .map_err(unwritable)?;
-    let file = part.path().join("film");
-    let mut child = command(frames, &file, codec, settings).spawn().map_err(|error| {
+    // It works in the folder of the frames.
+    let inside = std::path::absolute(part.path()).map_err(unwritable)?;
+    let (file, metadata) = (inside.join("film"), inside.join("metadata"));
+    std::fs::write(&metadata, ffmetadata(settings.metadata)).map_err(unwritable)?;
+    let command = command(frames, [&metadata, &file], codec, settings.rate).spawn();
+    let mut child = command.map_err(|error| {
         if error.kind() == std::io::ErrorKind::NotFound {
             FilmError::NoFfmpeg
         } else {
@@ -80,29 +87,47 @@ fn wait(child: &mut Child, settings: &FilmSettings<'_>) -> Result<bool, FilmErro
         reason: error.to_string(),
     };
     loop {
-        if let Some(status) = child.try_wait().map_err(failed)? {
-            return Ok(status.success());
-        }
+        let ended = child.try_wait().map_err(failed)?;
+        // Ctrl-C in a terminal ends both.
         if settings.stop.load(Ordering::Relaxed) {
             // It may have ended by itself.
             let _ = child.kill();
             let _ = child.wait();
             return Err(RenderError::Stopped.into());
         }
+        if let Some(status) = ended {
+            return Ok(status.success());
+        }
         std::thread::sleep(LOOK);
     }
 }
 
-fn command(
-    frames: &FrameFolder,
-    file: &Path,
-    codec: Codec,
-    settings: &FilmSettings<'_>,
-) -> Command {
+/// The metadata of a film in a form that `ffmpeg` reads, of any length; the scene is the film's comment.
+fn ffmetadata(metadata: &[(String, String)]) -> String {
+    let mut text = ";FFMETADATA1\n".to_owned();
+    for (key, value) in metadata {
+        let key = if key == "scene" { "comment" } else { key };
+        for (part, end) in [(key, '='), (value, '\n')] {
+            for character in part.chars() {
+                if "=;#\\\n".contains(character) {
+                    text.push('\\');
+                }
+                text.push(character);
+            }
+            text.push(end);
+        }
+    }
+    text
+}
+
+fn command(frames: &FrameFolder, [metadata, file]: [&Path; 2], codec: Codec, rate: u32) -> Command {
     let mut command = Command::new("ffmpeg");
     command.args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"]);
-    command.args(["-framerate", &settings.rate.to_string(), "-start_number", "0", "-i"]);
-    command.arg(frames.pattern());
+    // In their folder: a `%` or a `:` in its name would mean something.
+    command.current_dir(frames.path());
+    command.args(["-framerate", &rate.to_string(), "-start_number", "0", "-i"]);
+    command.args([FRAMES, "-f", "ffmetadata", "-i"]).arg(metadata);
+    command.args(["-map", "0:v", "-map_metadata", "1"]);
     command.args(["-frames:v", &frames.count().to_string()]);
     // sRGB to BT.709, told in the file; colors are halved in size, so sides must be even.
     command.args([
@@ -115,10 +140,6 @@ fn command(
         "-color_trc",
         "iec61966-2-1",
     ]);
-    for (key, text) in settings.metadata {
-        let key = if key == "scene" { "comment" } else { key };
-        command.arg("-metadata").arg(format!("{key}={text}"));
-    }
     match codec {
         Codec::H264 => {
             command.args(["-c:v", "libx264", "-preset", "slow", "-crf", "18"]);

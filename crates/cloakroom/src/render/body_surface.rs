@@ -5,12 +5,14 @@
 //! that looks along -x, towards the usual camera. Around a ball and the side of a cylinder the image goes once:
 //! its middle column is on the side of -x, and its top row at the pole +y of a ball, at the end +z of a cylinder.
 
+use super::images::BodyImages;
 use crate::device::{BodyShape, Filling, Surface};
-use crate::photograph::{self, Edges, Equirectangular, LoadError, Pyramid};
+use crate::photograph::{Equirectangular, ImageSource, LoadError, Pyramid};
 use crate::trace::Placed;
 use glam::DVec3;
 use optics::geometry::{Cylinder, CylinderPart, Pose};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// What an opaque body shows.
 #[derive(Clone, Debug)]
@@ -29,11 +31,11 @@ pub(super) struct Picture {
 #[derive(Clone, Debug)]
 enum Texture {
     /// On the faces of a box of half that size.
-    Box(DVec3, Pyramid),
+    Box(DVec3, Arc<Pyramid>),
     /// On the side and the ends of a cylinder.
-    Cylinder(Cylinder, Pyramid),
+    Cylinder(Cylinder, Arc<Pyramid>),
     /// Around a ball.
-    Ball(Equirectangular),
+    Ball(Arc<Equirectangular>),
 }
 
 /// Where a point is on the image, and by how much (u, v) changes per cm along the surface; all in the body's frame.
@@ -46,30 +48,35 @@ struct Spot {
 }
 
 impl BodySurface {
-    /// The surface of a device, if it is an opaque body.
+    /// The surface of a device, if it is an opaque body; its image is taken from those that are known, or read.
     ///
     /// # Errors
     ///
     /// If its image cannot be read.
-    pub fn of(placed: &Placed) -> Result<Option<Self>, LoadError> {
+    pub fn of(placed: &Placed, images: &mut BodyImages) -> Result<Option<Self>, LoadError> {
         let Some(body) = placed.structure.hull.body() else { return Ok(None) };
         Ok(match &body.filling {
             Filling::Medium { .. } => None,
             Filling::Opaque(Surface::Color(color)) => Some(Self::Color(*color)),
             Filling::Opaque(Surface::Image(source)) => {
-                let image = photograph::load(source)?;
                 let texture = match body.shape {
-                    BodyShape::Ball(_) => Texture::Ball(Equirectangular::new(image)),
+                    BodyShape::Ball(_) => Texture::Ball(images.ball(source)?),
                     BodyShape::Cylinder(cylinder) => {
-                        Texture::Cylinder(cylinder, Pyramid::new(image, Edges::WrapHorizontally))
+                        Texture::Cylinder(cylinder, images.side(source)?)
                     }
-                    BodyShape::Box { half } => {
-                        Texture::Box(half, Pyramid::new(image, Edges::Clamp))
-                    }
+                    BodyShape::Box { half } => Texture::Box(half, images.face(source)?),
                 };
                 Some(Self::Image(Box::new(Picture { pose: placed.pose, texture })))
             }
         })
+    }
+
+    /// The image on a device, if it is an opaque body with one.
+    pub fn image_on(placed: &Placed) -> Option<&ImageSource> {
+        match &placed.structure.hull.body()?.filling {
+            Filling::Opaque(Surface::Image(source)) => Some(source),
+            _ => None,
+        }
     }
 
     /// Linear light from a point of the surface. `steps` says, for the normal of the tangent plane there, how far

@@ -2,16 +2,30 @@
 
 use super::StudioError;
 use super::studio::Surroundings;
-use crate::photograph::{self, Edges, Equirectangular, ImageSource, LinearImage, Pyramid};
+use crate::photograph::{
+    self, Edges, Equirectangular, ImageSource, LinearImage, LoadError, Pyramid,
+};
 use crate::scene::{Scene, SurroundingsSettings};
 use std::sync::Arc;
 
-/// The photograph and the surroundings that were read last. Scenes that are looked at one after the other mostly show
-/// the same.
+/// Images by their names.
+type Named<T> = Vec<(ImageSource, Arc<T>)>;
+
+/// The photograph, the surroundings and the images on bodies that were read last. Scenes that are looked at one after
+/// the other mostly show the same.
 #[derive(Clone, Debug, Default)]
 pub struct Images {
     photograph: Option<(ImageSource, Arc<Pyramid>)>,
     surroundings: Option<(ImageSource, Arc<Equirectangular>)>,
+    bodies: BodyImages,
+}
+
+/// The images on opaque bodies.
+#[derive(Clone, Debug, Default)]
+pub(super) struct BodyImages {
+    faces: Named<Pyramid>,
+    sides: Named<Pyramid>,
+    balls: Named<Equirectangular>,
 }
 
 impl Images {
@@ -50,4 +64,49 @@ impl Images {
             }
         }
     }
+
+    /// The images on bodies.
+    pub(super) fn bodies(&mut self) -> &mut BodyImages {
+        &mut self.bodies
+    }
+}
+
+impl BodyImages {
+    /// An image for flat faces, which ends at their edges.
+    pub fn face(&mut self, source: &ImageSource) -> Result<Arc<Pyramid>, LoadError> {
+        known(&mut self.faces, source, |image| Pyramid::new(image, Edges::Clamp))
+    }
+
+    /// An image that goes once around the side of a cylinder.
+    pub fn side(&mut self, source: &ImageSource) -> Result<Arc<Pyramid>, LoadError> {
+        known(&mut self.sides, source, |image| Pyramid::new(image, Edges::WrapHorizontally))
+    }
+
+    /// An image that covers a ball.
+    pub fn ball(&mut self, source: &ImageSource) -> Result<Arc<Equirectangular>, LoadError> {
+        known(&mut self.balls, source, Equirectangular::new)
+    }
+
+    /// Forgets all images but these, unless there are none: the next scene may show them again.
+    pub fn keep(&mut self, shown: &[&ImageSource]) {
+        if !shown.is_empty() {
+            self.faces.retain(|(name, _)| shown.contains(&name));
+            self.sides.retain(|(name, _)| shown.contains(&name));
+            self.balls.retain(|(name, _)| shown.contains(&name));
+        }
+    }
+}
+
+/// An image among those that are known, or read now.
+fn known<T>(
+    images: &mut Named<T>,
+    source: &ImageSource,
+    make: impl FnOnce(LinearImage) -> T,
+) -> Result<Arc<T>, LoadError> {
+    if let Some((_, image)) = images.iter().find(|(name, _)| name == source) {
+        return Ok(image.clone());
+    }
+    let image = Arc::new(make(photograph::load(source)?));
+    images.push((source.clone(), image.clone()));
+    Ok(image)
 }

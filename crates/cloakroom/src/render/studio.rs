@@ -228,10 +228,13 @@ impl<'s> Studio<'s> {
         }
         let surroundings = images.surroundings(scene)?;
         let surface = |(device, placed): (usize, &Placed)| {
-            BodySurface::of(placed).map_err(|error| StudioError::Surface { device, error })
+            BodySurface::of(placed, images.bodies())
+                .map_err(|error| StudioError::Surface { device, error })
         };
         let body_surfaces =
             bench.devices().iter().enumerate().map(surface).collect::<Result<_, _>>()?;
+        let shown: Vec<_> = bench.devices().iter().filter_map(BodySurface::image_on).collect();
+        images.bodies().keep(&shown);
         Ok(Self { scene, bench, limits: limits(scene), screen, image, surroundings, body_surfaces })
     }
 

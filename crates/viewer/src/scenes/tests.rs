@@ -44,6 +44,12 @@ fn a_page_can_name_no_other_file() {
     let uploaded = opened.source_of("other.png");
     reads(photograph("other.png"), Some(&uploaded)).expect("uploaded");
     assert!(reads(photograph("third.png"), Some(&uploaded)).is_err());
+    // A body, or the surroundings, would show a file of that name.
+    for mut scene in [surface("other.png"), around("other.png")] {
+        assert!(reads(scene.clone(), Some(&uploaded)).is_err());
+        scene["photograph"] = json!({ "image": "other.png" });
+        assert!(reads(scene, Some(&uploaded)).is_err());
+    }
 }
 
 #[test]

@@ -1,0 +1,98 @@
+// The controls that say what is shown, and how they follow the state.
+
+import { buildControls } from "./controls.js";
+import { picture } from "./picture.js";
+
+const $ = (id) => document.getElementById(id);
+
+// Fills the lists of devices and maps.
+export function fillLists(hello) {
+  const list = $("exhibit");
+  const kinds = document.createElement("optgroup");
+  kinds.label = "Devices";
+  const others = document.createElement("optgroup");
+  others.label = "More from the gallery";
+  for (const kind of hello.order) {
+    const { title } = hello.kinds[kind];
+    const exhibit = hello.exhibits.find(({ scene }) => scene.device?.[0]?.kind === kind);
+    if (!exhibit) continue;
+    kinds.append(new Option(title, exhibit.name));
+  }
+  const listed = new Set(Array.from(kinds.children, (option) => option.value));
+  for (const { name } of hello.exhibits) {
+    if (!listed.has(name)) others.append(new Option(name.replaceAll("-", " "), name));
+  }
+  const opened = new Option(hello.name || "First scene", "opened");
+  list.replaceChildren(opened, kinds, others);
+  const map = $("map");
+  const titles = { none: "as seen", delivered: "power delivered", escaped: "power escaped", absorbed: "power absorbed", pruned: "power pruned" };
+  map.replaceChildren(...hello.maps.map((name) => new Option(titles[name] ?? name.replaceAll("_", " "), name)));
+}
+
+// Brings every control to the state; `changed` and `setShow` are told what is done with them.
+export function showState(state, hello, { changed, setShow }) {
+  const device = state.device;
+  const kind = hello.kinds[device?.kind];
+  const exhibit = hello.exhibits.find(({ name }) => name === state.exhibit);
+  $("exhibit").value = exhibit ? exhibit.name : "opened";
+  $("about").textContent = exhibit?.words ?? kind?.title ?? "";
+  $("summary").textContent = kind?.summary ?? "There is no device in this scene.";
+  $("which-label").hidden = state.devices.length < 2;
+  $("which").replaceChildren(...state.devices.map(({ kind }, i) => new Option(`${i + 1}: ${kind}`, i)));
+  $("which").value = String(Math.min(state.which, state.devices.length - 1));
+  const { polarizer = "none" } = state.scene.camera ?? {};
+  $("polarizer").value = typeof polarizer === "number" ? "angle" : polarizer;
+  $("angle-label").hidden = typeof polarizer !== "number";
+  if (typeof polarizer === "number") $("angle").value = polarizer;
+  $("map").value = state.scene.picture?.map ?? "none";
+  $("beside").value = state.beside;
+  $("width").value = String(state.width);
+  $("samples").value = String(state.samples);
+  $("min-power").value = String(state.scene.trace?.min_power ?? 0.0001);
+  buildControls(device, kind, changed);
+  showShows(state, hello, setShow);
+  showRotation(state);
+  showSplit(state, hello);
+}
+
+// The ways in which the scene's devices can be shown: each those that can.
+function showShows(state, hello, setShow) {
+  const can = (show) => state.devices.some(({ kind }) => hello.kinds[kind]?.shows.includes(show));
+  const names = { cloak: "Cloak", bare: "Bare metal", mirror: "Mirror" };
+  const segments = document.createElement("div");
+  segments.className = "segments";
+  const shown = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1)?.show ?? "cloak";
+  for (const [show, name] of Object.entries(names)) {
+    if (show !== "cloak" && !can(show)) continue;
+    const label = document.createElement("label");
+    const radio = document.createElement("input");
+    radio.type = "radio";
+    radio.name = "show";
+    radio.value = show;
+    radio.checked = show === shown;
+    radio.addEventListener("change", () => setShow(show));
+    const word = document.createElement("span");
+    word.textContent = name;
+    label.append(radio, word);
+    segments.append(label);
+  }
+  const legend = $("shows").querySelector("legend");
+  const focused = $("shows").contains(document.activeElement);
+  $("shows").replaceChildren(legend, segments);
+  if (focused) segments.querySelector("input:checked")?.focus();
+}
+
+export function showRotation(state) {
+  const degrees = state.device?.rotation ?? 0;
+  const wrapped = ((((degrees + 180) % 360) + 360) % 360) - 180;
+  $("rotation").value = String(wrapped);
+  $("rotation").setAttribute("aria-valuetext", `${Number(wrapped.toFixed(1))} degrees`);
+  $("rotation-number").value = String(Number(wrapped.toFixed(2)));
+  $("rotation").disabled = $("rotation-number").disabled = $("play").disabled = !state.device;
+}
+
+export function showSplit(state, hello) {
+  const cloak = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1);
+  const words = { bare: "bare metal", mirror: "mirror", cloak: "cloak" };
+  picture.layOut(state, cloak ? words[cloak.show ?? "cloak"] : "the scene");
+}
