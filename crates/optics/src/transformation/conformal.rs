@@ -193,7 +193,10 @@ impl ConformalMap {
             Self::Gaussian(map) => map.first_guess(z),
             Self::Grating(map) => map.first_guess(z),
             Self::QuasiConformal(map) => map.first_guess(z),
-            Self::Flat(map) => return Some(map.inverse(z)),
+            Self::Flat(map) => {
+                let zeta = map.inverse(z);
+                return Some((zeta, map.jet(zeta)));
+            }
         };
         self.newton(z, guess).or_else(|| self.invert_from_above(z))
     }

@@ -1,7 +1,7 @@
 //! Videos read back by ffmpeg, where it is installed.
 
 use super::*;
-use std::io::Write;
+use std::io::{self, Write};
 use std::process::Command;
 
 /// The output of a program that comes with ffmpeg.
@@ -22,10 +22,8 @@ fn output(program: &str, arguments: &[&str], path: &Path) -> Vec<u8> {
 fn check(name: &str, format: FilmFormat, codec: &str) {
     if format.check().is_err() {
         // Past the harness, which shows nothing of tests that pass.
-        let _ = writeln!(
-            std::io::stderr(),
-            "SKIPPED: {name} is not tested, for ffmpeg is not installed"
-        );
+        let _ =
+            writeln!(io::stderr(), "SKIPPED: {name} is not tested, for ffmpeg is not installed");
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");
