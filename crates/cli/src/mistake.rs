@@ -29,7 +29,10 @@ pub fn caught(work: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure>
 
 /// A panic in one line.
 fn words(panic: &PanicHookInfo<'_>) -> String {
-    let message = panic.payload_as_str().unwrap_or("a panic without words");
+    let payload = panic.payload();
+    let text = payload.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    let message = text.unwrap_or("a panic without words");
     let message = message.lines().map(str::trim).collect::<Vec<_>>().join(" ");
     match panic.location() {
         Some(place) => format!("{message} ({}, line {})", place.file(), place.line()),

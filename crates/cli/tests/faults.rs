@@ -53,7 +53,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
         let path = entry.unwrap().path();
         if path.is_dir() {
             found.extend(files(&path));
-        } else if !path.extension().is_some_and(|ending| ending == "part") {
+        } else if path.extension().is_none_or(|ending| ending != "part") {
             let bytes = fs::read(&path).unwrap();
             found.insert(path, bytes);
         }

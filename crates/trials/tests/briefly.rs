@@ -1,5 +1,5 @@
 //! Every trial for a moment: its seeds, changed at random but the same each time, and what once found a fault.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![expect(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "a test may")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -33,7 +33,7 @@ const RAYS: u64 = 20_000;
 const LONGEST: Duration = Duration::from_secs(3);
 
 /// A ray, or the making of a device, that takes longer than this does not end.
-const STUCK: Duration = Duration::from_mins(1);
+const STUCK: Duration = Duration::from_secs(60);
 
 /// Branches weaker than this are not followed, as in pictures.
 const LEAST_POWER: f64 = 1e-4;
