@@ -19,6 +19,7 @@ mod interface;
 mod interruption;
 mod manual;
 mod merge;
+mod mistake;
 mod panels;
 mod progress;
 mod pulses;
@@ -40,7 +41,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    match run(&arguments.command) {
+    match mistake::caught(|| run(&arguments.command)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.tell(),
     }

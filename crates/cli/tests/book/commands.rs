@@ -22,7 +22,7 @@ const SMALLER: [(&str, &str); 9] = [
 ];
 
 /// How commands begin that are not run here, and where they are.
-const ELSEWHERE: [(&str, &str); 12] = [
+const ELSEWHERE: [(&str, &str); 14] = [
     ("cargo test", "runs this test"),
     ("cargo bench", ".ci/run"),
     ("cargo install", "installs into the home folder; by hand"),
@@ -33,6 +33,8 @@ const ELSEWHERE: [(&str, &str); 12] = [
     ("python -m venv", "CONTRIBUTING's set-up; .ci/run does the same"),
     ("cd python", "the same"),
     ("../venv/bin", "the same"),
+    ("cd fuzz", "by hand: nightly Rust and cargo-fuzz"),
+    ("cargo +nightly fuzz", "the same; the tests of crates/trials run each target for a moment"),
     ("benches/", "by hand: other programs, a quiet machine"),
     ("target/full_wave/venv", "by hand: full-wave solvers"),
 ];

@@ -1,0 +1,271 @@
+//! Traces random rays through random devices of every kind, for as long as one likes, and counts what must not be.
+//!
+//! The work is done in parcels: one random device each, and up to 20 000 rays. Every finished parcel is a line of the
+//! record; begun again with the same record, the program goes on where it was. A ray that does not end within a minute of
+//! computing is recorded, too, and ends the program.
+//!
+//! ```sh
+//! cargo run --release -p cloakroom-trials --bin soak -- --rays 100000000 --record soak.jsonl
+//! ```
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program for people")]
+
+use clap::Parser;
+use cloakroom::device::CATALOGUE;
+use cloakroom::render;
+use cloakroom::scene_file;
+use cloakroom::trace::{Bench, Limits, Tracer};
+use serde_json::{Value, json};
+use std::collections::HashSet;
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufRead, BufReader, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+use trials::{Draws, Fault};
+
+/// Most rays of a parcel.
+const RAYS: u64 = 20_000;
+
+/// A parcel whose rays take longer than this ends early: its device is one of deep trees.
+const LONGEST: Duration = Duration::from_secs(3);
+
+/// A ray, or the making of a device, that takes longer than this does not end.
+const STUCK: Duration = Duration::from_secs(60);
+
+/// Branches weaker than this are not followed, as in pictures.
+const LEAST_POWER: f64 = 1e-4;
+
+/// What is counted of each parcel, by its name in the record.
+const COUNTS: [&str; 9] = [
+    "devices",
+    "rays",
+    "leaves",
+    "unbalanced",
+    "not_finite",
+    "unsound",
+    "panics",
+    "lost",
+    "endless",
+];
+
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// How many rays the record shall have.
+    #[arg(long, default_value_t = 100_000_000)]
+    rays: u64,
+    /// The record: a line of JSON for each parcel.
+    #[arg(long, default_value = "soak.jsonl")]
+    record: PathBuf,
+    /// Ends after so many seconds, whatever has been done.
+    #[arg(long)]
+    seconds: Option<u64>,
+    /// Only prints the table of what has been done.
+    #[arg(long)]
+    table: bool,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match soak(&arguments) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {}: {error}", arguments.record.display());
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Whether nothing was counted that must not be.
+fn soak(arguments: &Arguments) -> io::Result<bool> {
+    let mut lines = recorded(&arguments.record)?;
+    if !arguments.table {
+        let start = Instant::now();
+        let done: HashSet<u64> = lines.iter().filter_map(|line| line["parcel"].as_u64()).collect();
+        let mut rays: u64 = lines.iter().filter_map(|line| line["rays"].as_u64()).sum();
+        let record = OpenOptions::new().create(true).append(true).open(&arguments.record)?;
+        let record = Arc::new(Mutex::new(record));
+        let watch = Arc::new(Watch::new());
+        watch.clone().begin(record.clone());
+        let in_time = || arguments.seconds.is_none_or(|most| start.elapsed().as_secs() < most);
+        for number in (0..).filter(|number| !done.contains(number)) {
+            if rays >= arguments.rays || !in_time() {
+                break;
+            }
+            let line = parcel(number, &watch);
+            rays += line["rays"].as_u64().unwrap_or(0);
+            write_line(&record, &line)?;
+            lines.push(line);
+        }
+    }
+    let sound = print_table(&lines);
+    Ok(sound)
+}
+
+/// The lines of a record; one that was cut short when the program was killed is left out.
+fn recorded(path: &Path) -> io::Result<Vec<Value>> {
+    let file = match File::open(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        file => file?,
+    };
+    let lines = BufReader::new(file).lines();
+    lines.filter_map(|line| line.map(|line| serde_json::from_str(&line).ok()).transpose()).collect()
+}
+
+fn write_line(record: &Mutex<File>, line: &Value) -> io::Result<()> {
+    // Begins with the end of a line: what was cut short before spoils nothing.
+    let mut record = record.lock().unwrap_or_else(PoisonError::into_inner);
+    record.write_all(format!("\n{line}").as_bytes())
+}
+
+/// One random device and the rays through it.
+fn parcel(number: u64, watch: &Watch) -> Value {
+    let entry = CATALOGUE[(number % CATALOGUE.len() as u64) as usize];
+    let mut line = json!({ "parcel": number, "kind": entry.kind });
+    let mut draws = Draws::from_seed(number.wrapping_mul(0xA076_1D64_78BD_642F));
+    watch.begin_parcel(number);
+    let ran = catch_unwind(AssertUnwindSafe(|| {
+        let scene = trials::scene_of(&mut draws, entry).to_string();
+        let loaded = scene_file::parse(&scene, "soak", Path::new("/nowhere"), &[]).ok()?;
+        let bench = render::bench(&loaded.scene).ok()?;
+        let tolerance = loaded.scene.trace.tolerance;
+        Some(trace(&bench, Limits { min_power: LEAST_POWER, tolerance }, &mut draws, watch))
+    }));
+    match ran {
+        Ok(None) => line["refused"] = json!(1),
+        Ok(Some(counts)) => line.as_object_mut().into_iter().for_each(|line| {
+            line.extend(counts.as_object().cloned().unwrap_or_default());
+        }),
+        Err(_) => line["panics"] = json!(1),
+    }
+    line
+}
+
+fn trace(bench: &Bench, limits: Limits, draws: &mut Draws<'_>, watch: &Watch) -> Value {
+    let start = Instant::now();
+    let mut tracer = Tracer::new(bench, limits);
+    let reach = 10f64.powf(draws.between(0.7, 1.7));
+    let [mut rays, mut leaves, mut lost, mut endless] = [0u64; 4];
+    let [mut unbalanced, mut not_finite, mut unsound] = [0u64; 3];
+    let (mut worst, mut slowest) = (0.0f64, Duration::ZERO);
+    let mut last = start;
+    // A device may be so large that rays begin in it: others are taken, but not for ever.
+    let launches = (0..2 * RAYS).map(|_| trials::launch(draws, reach));
+    for launch in launches.filter(|launch| trials::starts_in_air(bench, launch)) {
+        if rays == RAYS || last - start > LONGEST {
+            break;
+        }
+        watch.begin_ray();
+        let (found, outcome) = tracer.trace(&launch);
+        rays += 1;
+        leaves += found.len() as u64;
+        lost += outcome.rarities.lost;
+        endless += u64::from(outcome.rarities.endless > 0);
+        match trials::examine(found, outcome) {
+            Ok(off) => worst = worst.max(off),
+            Err(fault) => {
+                match fault {
+                    Fault::Unbalanced(_) => unbalanced += 1,
+                    Fault::NotFinite => not_finite += 1,
+                    Fault::Unsound => unsound += 1,
+                }
+                if unbalanced + not_finite + unsound == 1 {
+                    eprintln!("{fault:?}: {launch:?}");
+                }
+            }
+        }
+        let now = Instant::now();
+        slowest = slowest.max(now - last);
+        last = now;
+    }
+    json!({
+        "devices": 1, "rays": rays, "leaves": leaves, "unbalanced": unbalanced, "not_finite": not_finite,
+        "unsound": unsound, "lost": lost, "endless": endless, "worst_balance": worst,
+        "slowest_ms": slowest.as_secs_f64() * 1e3, "seconds": start.elapsed().as_secs_f64(),
+    })
+}
+
+/// Looks whether rays end.
+#[derive(Debug)]
+struct Watch {
+    start: Instant,
+    parcel: AtomicU64,
+    /// Rays and parcels begun.
+    begun: AtomicU64,
+}
+
+impl Watch {
+    fn new() -> Self {
+        Self { start: Instant::now(), parcel: AtomicU64::new(0), begun: AtomicU64::new(0) }
+    }
+
+    /// How long the main thread has computed: on a busy machine it may wait for long. Where the system does not say, how
+    /// long the program has run.
+    fn now(&self) -> Duration {
+        let text = std::fs::read_to_string("/proc/self/schedstat").ok();
+        let on_cpu = text.and_then(|text| text.split_whitespace().next()?.parse().ok());
+        on_cpu.map_or_else(|| self.start.elapsed(), Duration::from_nanos)
+    }
+
+    fn begin_parcel(&self, number: u64) {
+        self.parcel.store(number, Ordering::Relaxed);
+        self.begin_ray();
+    }
+
+    fn begin_ray(&self) {
+        self.begun.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Ends the program where a ray does not end.
+    fn begin(self: Arc<Self>, record: Arc<Mutex<File>>) {
+        std::thread::spawn(move || {
+            let (mut begun, mut since) = (0, self.now());
+            loop {
+                std::thread::sleep(Duration::from_secs(1));
+                let (last, now) = (self.begun.load(Ordering::Relaxed), self.now());
+                if last != begun {
+                    (begun, since) = (last, now);
+                } else if now.saturating_sub(since) > STUCK {
+                    let number = self.parcel.load(Ordering::Relaxed);
+                    let kind = CATALOGUE[(number % CATALOGUE.len() as u64) as usize].kind;
+                    let line = json!({ "parcel": number, "kind": kind, "stuck": 1 });
+                    let _ = write_line(&record, &line);
+                    eprintln!("error: a ray of parcel {number} does not end");
+                    std::process::exit(1);
+                }
+            }
+        });
+    }
+}
+
+/// Prints what was counted, kind by kind, as Markdown; whether nothing was that must not be.
+fn print_table(lines: &[Value]) -> bool {
+    let count = |lines: &[&Value], name: &str| -> u64 {
+        lines.iter().filter_map(|line| line[name].as_u64()).sum()
+    };
+    let largest = |lines: &[&Value], name: &str| -> f64 {
+        lines.iter().filter_map(|line| line[name].as_f64()).fold(0.0, f64::max)
+    };
+    println!("| device | {} | stuck | largest imbalance | slowest ray, ms |", COUNTS.join(" | "));
+    println!("| --- |{}", " ---: |".repeat(COUNTS.len() + 3));
+    let row = |name: &str, lines: &[&Value]| {
+        let counts = COUNTS.map(|name| count(lines, name).to_string()).join(" | ");
+        println!(
+            "| {name} | {counts} | {} | {:.1e} | {:.0} |",
+            count(lines, "stuck"),
+            largest(lines, "worst_balance"),
+            largest(lines, "slowest_ms")
+        );
+    };
+    for entry in CATALOGUE {
+        let of_kind: Vec<&Value> = lines.iter().filter(|line| line["kind"] == entry.kind).collect();
+        row(entry.kind, &of_kind);
+    }
+    let all: Vec<&Value> = lines.iter().collect();
+    row("all", &all);
+    let wrong = ["unbalanced", "not_finite", "unsound", "panics", "stuck"];
+    wrong.iter().all(|name| count(&all, name) == 0)
+}

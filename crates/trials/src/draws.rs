@@ -1,0 +1,151 @@
+//! Numbers, words and choices from the bytes of a fuzzer, or from a seed.
+
+use cloakroom::keys::Limits;
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// Where choices come from. The same source gives the same choices.
+#[derive(Clone, Debug)]
+pub struct Draws<'a> {
+    source: Source<'a>,
+}
+
+#[derive(Clone, Debug)]
+enum Source<'a> {
+    /// Zeros follow the last byte, which mean the first choice or the default everywhere.
+    Bytes(&'a [u8]),
+    /// `SplitMix64` (Steele, Lea & Flood, OOPSLA 2014).
+    Seed(u64),
+}
+
+/// Values at which something may change.
+const SPECIAL: [f64; 22] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    0.5,
+    2.0,
+    3.0,
+    4.0,
+    10.0,
+    45.0,
+    90.0,
+    180.0,
+    360.0,
+    1e-9,
+    1e-16,
+    1e9,
+    1e16,
+    1e154,
+    1e300,
+    1e-300,
+    f64::MAX,
+    f64::MIN_POSITIVE,
+];
+
+impl<'a> Draws<'a> {
+    /// Choices that bytes make, so that a fuzzer can change one and keep the others.
+    #[must_use]
+    pub fn from_bytes(bytes: &'a [u8]) -> Self {
+        Self { source: Source::Bytes(bytes) }
+    }
+
+    /// Choices without end.
+    #[must_use]
+    pub fn from_seed(seed: u64) -> Self {
+        Self { source: Source::Seed(seed) }
+    }
+
+    /// Whether bytes are left; a seed never ends.
+    #[must_use]
+    pub fn has_more(&self) -> bool {
+        match self.source {
+            Source::Bytes(bytes) => !bytes.is_empty(),
+            Source::Seed(_) => true,
+        }
+    }
+
+    fn bytes<const N: usize>(&mut self) -> [u8; N] {
+        let mut taken = [0; N];
+        match &mut self.source {
+            Source::Bytes(bytes) => {
+                let count = N.min(bytes.len());
+                let (first, rest) = bytes.split_at(count);
+                taken[..count].copy_from_slice(first);
+                *bytes = rest;
+            }
+            Source::Seed(state) => {
+                *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+                let z = (*state ^ (*state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+                let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+                let z = (z ^ (z >> 31)).to_le_bytes();
+                taken.copy_from_slice(&z[..N]);
+            }
+        }
+        taken
+    }
+
+    /// A number below `count`, at least 1 and at most 256.
+    pub fn below(&mut self, count: usize) -> usize {
+        let [byte] = self.bytes();
+        usize::from(byte) % count.max(1)
+    }
+
+    /// Yes in `of` of 256 cases; no where bytes have ended.
+    pub fn chance(&mut self, of: u8) -> bool {
+        let [byte] = self.bytes();
+        byte > u8::MAX - of
+    }
+
+    /// One of some; the first where bytes have ended.
+    pub fn pick<'t, T>(&mut self, among: &'t [T]) -> &'t T {
+        &among[self.below(among.len())]
+    }
+
+    /// A number in [0, 1).
+    pub fn share(&mut self) -> f64 {
+        f64::from(u32::from_le_bytes(self.bytes())) / 4_294_967_296.0
+    }
+
+    /// A number in [low, high).
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.share()
+    }
+
+    /// A whole number of any size.
+    pub fn integer(&mut self) -> i64 {
+        match self.below(3) {
+            0 => self.below(10) as i64,
+            1 => i64::from(i32::from_le_bytes(self.bytes())),
+            _ => i64::from_le_bytes(self.bytes()),
+        }
+    }
+
+    /// Any finite number, as a rule near a usual one and, but for a few, within limits.
+    pub fn number(&mut self, usual: f64, limits: Limits) -> f64 {
+        let (low, high) = match limits {
+            Limits::Between(low, high) | Limits::Within(low, high) => (low, high),
+            Limits::Positive | Limits::NonNegative => (0.0, f64::INFINITY),
+            Limits::Finite => (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        let size = if usual == 0.0 { 1.0 } else { usual };
+        let number = match self.below(16) {
+            0..3 => usual,
+            3..10 => size * self.between(-2.0, 2.0).exp2(),
+            10..12 if low.is_finite() && high.is_finite() => self.between(low, high),
+            10..12 => size * self.between(-4.0, 4.0),
+            12 | 13 => size * 10f64.powf(self.between(-6.0, 6.0)) * *self.pick(&[1.0, -1.0]),
+            14 => *self.pick(&SPECIAL),
+            _ => f64::from_bits(u64::from_le_bytes(self.bytes())),
+        };
+        if limits.allow(number) || (number.is_finite() && self.chance(8)) { number } else { usual }
+    }
+
+    /// A direction, evenly on the sphere.
+    pub fn direction(&mut self) -> DVec3 {
+        let (z, angle) = (self.between(-1.0, 1.0), self.between(0.0, TAU));
+        let across = (1.0 - z * z).sqrt();
+        DVec3::new(across * angle.cos(), across * angle.sin(), z)
+    }
+}

@@ -1,0 +1,27 @@
+//! What cloakroom must stand: any input, any scene, any ray.
+//!
+//! A [`Trial`] takes bytes, makes something of them (a text, an image, a scene with rays), hands it to the program,
+//! and panics where something comes out that must not: a panic, a number that is none, power out of nowhere. The folder
+//! `fuzz/` has libFuzzer choose the bytes; the tests of this crate do so briefly, and repeat every input that once
+//! found a fault (`regressions/`). The program `soak` traces random rays through random devices and counts.
+
+mod draws;
+mod page;
+mod rays;
+mod scenes;
+mod trials;
+
+pub use draws::Draws;
+pub use rays::{BALANCE, Fault, examine, launch, starts_in_air};
+pub use scenes::{scene, scene_of};
+pub use trials::{TRIALS, Trial};
+
+/// Runs the trial of a name.
+///
+/// # Panics
+///
+/// If something is wrong, or there is no such trial.
+pub fn run(name: &str, bytes: &[u8]) {
+    let trial = TRIALS.iter().find(|trial| trial.name == name);
+    (trial.unwrap_or_else(|| panic!("there is no trial {name}")).run)(bytes);
+}

@@ -1,0 +1,96 @@
+//! Random rays, and what must hold for the tree of each.
+
+use crate::draws::Draws;
+use cloakroom::trace::{Bench, Launch, Leaf, Outcome};
+use glam::DVec3;
+use optics::wave::transverse_basis;
+
+/// How far the account of the power may be off, of what is launched.
+pub const BALANCE: f64 = 1e-9;
+
+/// How far a leaf's direction may be from unit length, and |E|² from its power.
+const SOUND: f64 = 1e-9;
+
+/// What is wrong with the tree of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fault {
+    /// A number in it is none.
+    NotFinite,
+    /// A leaf is no wave in air.
+    Unsound,
+    /// What comes out is not what went in; this much is missing.
+    Unbalanced(f64),
+}
+
+/// A ray towards a place within `reach` (cm) of the origin, as a rule; some run along an axis, through the very
+/// middle, or from anywhere to anywhere.
+pub fn launch(draws: &mut Draws<'_>, reach: f64) -> Launch<2> {
+    const AXES: [DVec3; 6] =
+        [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
+    let from = draws.direction() * draws.between(1.5, 4.0) * reach;
+    let target = DVec3::new(draws.share(), draws.share(), draws.share()) - DVec3::splat(0.5);
+    let target = target * 2.0 * reach;
+    let (origin, direction) = match draws.below(16) {
+        0..12 => (from, target - from),
+        12 | 13 => {
+            let axis = *draws.pick(&AXES);
+            (target - axis * (4.0 * reach), axis)
+        }
+        14 => (from, -from),
+        _ => {
+            let flat = DVec3::new(from.x, from.y, 0.0);
+            (flat, DVec3::new(target.x.round(), target.y.round(), 0.0) - flat)
+        }
+    };
+    let direction = direction.try_normalize().unwrap_or(DVec3::X);
+    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
+    Launch { origin, direction, electric: [h.into(), v.into()] }
+}
+
+/// Whether a ray starts in air.
+#[must_use]
+pub fn starts_in_air(bench: &Bench, launch: &Launch<2>) -> bool {
+    bench.holder(launch.origin).is_none()
+}
+
+/// Looks at the tree of a ray: how far the account of its power is off.
+///
+/// # Errors
+///
+/// What is wrong with it.
+pub fn examine<const N: usize>(leaves: &[Leaf<N>], outcome: &Outcome<N>) -> Result<f64, Fault> {
+    let mut off: f64 = 0.0;
+    for leaf in leaves {
+        let finite = leaf.position.is_finite()
+            && leaf.direction.is_finite()
+            && leaf.optical_path.is_finite()
+            && leaf.group_path.is_finite()
+            && leaf.power.iter().all(|power| power.is_finite())
+            && leaf.electric.iter().all(|field| field.norm_squared().is_finite());
+        if !finite {
+            return Err(Fault::NotFinite);
+        }
+        // What ends on an opaque body counts as a leaf in air, too: there the field is that which arrives.
+        let sizes = leaf.electric.iter().zip(leaf.power);
+        let unsound = (leaf.direction.length() - 1.0).abs() > SOUND
+            || leaf.power.iter().any(|power| *power < 0.0)
+            || sizes.into_iter().any(|(field, power)| (field.norm_squared() - power).abs() > SOUND);
+        if unsound {
+            return Err(Fault::Unsound);
+        }
+    }
+    for i in 0..N {
+        let account: f64 = leaves.iter().map(|leaf| leaf.power[i]).sum::<f64>()
+            + outcome.absorbed[i]
+            + outcome.pruned[i];
+        let missing = 1.0 - account;
+        if missing.is_nan() {
+            return Err(Fault::NotFinite);
+        }
+        if missing.abs() > BALANCE {
+            return Err(Fault::Unbalanced(missing));
+        }
+        off = off.max(missing.abs());
+    }
+    Ok(off)
+}

@@ -1,0 +1,178 @@
+//! Random scenes: any device of the catalogue, with any of its keys.
+
+use crate::draws::Draws;
+use cloakroom::device::{CATALOGUE, Entry};
+use cloakroom::keys::{Key, KeyKind, Limits};
+use cloakroom::scene::{PLACEMENT_KEYS, TABLES};
+use std::f64::consts::TAU;
+use toml::{Table, Value};
+
+/// Imaginary parts around this dim light over centimetres at the default wavelength.
+const LOSS: f64 = 1e-6;
+
+/// A scene of one to three devices, as the tables of a scene file.
+#[must_use]
+pub fn scene(draws: &mut Draws<'_>) -> Table {
+    let count = 1 + draws.below(8) / 3;
+    let devices = (0..count).map(|_| {
+        let entry = *draws.pick(CATALOGUE);
+        Value::Table(device(draws, entry))
+    });
+    let mut scene = Table::from_iter([("device".to_owned(), devices.collect::<Vec<_>>().into())]);
+    for (name, keys) in TABLES {
+        if draws.chance(60) {
+            scene.insert((*name).to_owned(), Value::Table(table(draws, keys, 80)));
+        }
+    }
+    scene
+}
+
+/// A scene of one device of a kind, at the origin.
+#[must_use]
+pub fn scene_of(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
+    let mut device = device(draws, entry);
+    device.remove("position");
+    let trace = Table::from_iter([("tolerance".to_owned(), tolerance(draws).into())]);
+    Table::from_iter([
+        ("device".to_owned(), vec![Value::Table(device)].into()),
+        ("trace".to_owned(), Value::Table(trace)),
+    ])
+}
+
+fn tolerance(draws: &mut Draws<'_>) -> f64 {
+    10f64.powf(draws.between(-9.0, -3.0))
+}
+
+/// The table of a device of a kind.
+fn device(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
+    let mut device = table(draws, entry.keys, 100);
+    device.extend(table(draws, PLACEMENT_KEYS, 50));
+    device.insert("kind".to_owned(), entry.kind.into());
+    device
+}
+
+/// Some of the keys of a table: each in `share` of 256 cases. Lists without which there is nothing are there.
+fn table(draws: &mut Draws<'_>, keys: &'static [Key], share: u8) -> Table {
+    let mut table = Table::new();
+    for key in keys {
+        let needed = matches!(key.kind, KeyKind::Tables { .. } | KeyKind::Polygon { .. });
+        if needed || draws.chance(share) {
+            table.insert(key.name.to_owned(), value(draws, key));
+        }
+    }
+    table
+}
+
+/// A value of a key, allowed as a rule.
+fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
+    match key.kind {
+        KeyKind::Number { default, limits, .. } => {
+            draws.number(default.unwrap_or(1.5), limits).into()
+        }
+        KeyKind::Integer { default, min, max } => match draws.below(4) {
+            0 => default,
+            1 => draws.integer().clamp(min, max),
+            2 => (default + draws.below(5) as i64).clamp(min, max),
+            _ => draws.integer(),
+        }
+        .into(),
+        KeyKind::Flag { .. } => draws.chance(128).into(),
+        KeyKind::Choice { options } => (*draws.pick(options)).into(),
+        KeyKind::Choices { options } => {
+            let count = draws.below(options.len() + 1);
+            (0..count).map(|_| Value::from(*draws.pick(options))).collect::<Vec<_>>().into()
+        }
+        KeyKind::Vector { default, limits, .. } => {
+            let components = default.map(|usual| draws.number(usual, limits).into());
+            Value::Array(components.to_vec())
+        }
+        KeyKind::IntegerPair { default, min, max } => {
+            let pair = default.map(|usual| {
+                if draws.chance(60) { draws.integer() } else { usual.min(40).clamp(min, max) }
+            });
+            Value::Array(pair.map(Value::from).to_vec())
+        }
+        KeyKind::Text { .. } | KeyKind::Image => {
+            (*draws.pick(&["builtin:bookshelf", "nowhere.png", "builtin:", "", "/"])).into()
+        }
+        KeyKind::ChoiceOrNumber { options, .. } => match draws.below(2) {
+            0 => (*draws.pick(options)).into(),
+            _ => draws.number(30.0, Limits::Finite).into(),
+        },
+        KeyKind::Tensor => tensor(draws),
+        KeyKind::Polygon { .. } => polygon(draws),
+        KeyKind::Table { keys } => Value::Table(table(draws, keys, 128)),
+        KeyKind::Tables { keys } => {
+            let count = 1 + draws.below(4);
+            (0..count).map(|_| Value::Table(table(draws, keys, 100))).collect::<Vec<_>>().into()
+        }
+    }
+}
+
+/// A permittivity or a permeability: scalar, diagonal or full; mostly lossless and definite.
+#[must_use]
+pub fn tensor(draws: &mut Draws<'_>) -> Value {
+    let pair = |re: f64, im: f64| Value::Array(vec![re.into(), im.into()]);
+    let shape = draws.below(6);
+    let mut lossy = draws.chance(60);
+    let principal = |draws: &mut Draws<'_>| {
+        let sign = if draws.chance(40) { -1.0 } else { 1.0 };
+        draws.number(1.5, Limits::Finite) * sign
+    };
+    let loss = |draws: &mut Draws<'_>| {
+        if lossy { draws.number(LOSS, Limits::NonNegative) } else { 0.0 }
+    };
+    match shape {
+        0 | 1 => principal(draws).into(),
+        2 => pair(principal(draws), loss(draws)),
+        _ => {
+            let mut re = [[0.0; 3]; 3];
+            let mut im = [[0.0; 3]; 3];
+            for i in 0..3 {
+                (re[i][i], im[i][i]) = (principal(draws), loss(draws));
+            }
+            // Equal principal values are special.
+            if draws.chance(100) {
+                re[1][1] = re[0][0];
+                im[1][1] = im[0][0];
+            }
+            if shape > 3 {
+                for [i, j] in [[0, 1], [0, 2], [1, 2]] {
+                    let off = draws.between(-0.7, 0.7) * (re[i][i] * re[j][j]).abs().sqrt();
+                    let off_loss = draws.between(-0.7, 0.7) * (im[i][i] * im[j][j]).abs().sqrt();
+                    (re[i][j], im[i][j]) = (off, off_loss);
+                    if !draws.chance(8) {
+                        (re[j][i], im[j][i]) = (off, off_loss);
+                    }
+                }
+            }
+            lossy = lossy || im.iter().flatten().any(|part| *part != 0.0);
+            let entry = |i: usize, j: usize| {
+                if lossy { pair(re[i][j], im[i][j]) } else { re[i][j].into() }
+            };
+            let row = |i: usize| Value::Array((0..3).map(|j| entry(i, j)).collect());
+            Value::Array((0..3).map(row).collect())
+        }
+    }
+}
+
+/// A polygon: around a point as a rule, and else of any corners.
+fn polygon(draws: &mut Draws<'_>) -> Value {
+    let count = 3 + draws.below(5);
+    let wild = draws.chance(30);
+    let middle = [draws.between(-8.0, 8.0), draws.between(-8.0, 8.0)];
+    let corner = |i: usize, draws: &mut Draws<'_>| {
+        let corner = if wild {
+            [draws.number(3.0, Limits::Finite), draws.number(3.0, Limits::Finite)]
+        } else {
+            let angle = TAU * (i as f64 + draws.between(-0.4, 0.4)) / count as f64;
+            let radius = draws.between(0.5, 8.0);
+            // Neighbours that share an edge are common in designs, and so are round numbers.
+            let round = |x: f64| if draws.chance(100) { x.round() } else { x };
+            [middle[0] + radius * angle.cos(), middle[1] + radius * angle.sin()].map(round)
+        };
+        Value::Array(corner.map(Value::from).to_vec())
+    };
+    let corners: Vec<Value> = (0..count).map(|i| corner(i, draws)).collect();
+    corners.into()
+}

@@ -1,0 +1,131 @@
+//! Every trial for a moment: its seeds, changed at random but the same each time, and what once found a fault.
+#![expect(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "a test may")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use trials::{Draws, TRIALS, Trial};
+
+/// How many changed inputs each trial gets.
+fn count(trial: &Trial) -> u64 {
+    match trial.name {
+        // A connection and a picture each.
+        "page_messages" => 60,
+        "scene_file" | "physics" => 400,
+        _ => 3000,
+    }
+}
+
+fn trial(name: &str) -> &'static Trial {
+    TRIALS.iter().find(|trial| trial.name == name).unwrap()
+}
+
+/// An input changed in a few places, as a fuzzer would: bytes, numbers, pieces of another input.
+fn changed(input: &[u8], other: &[u8], draws: &mut Draws<'_>) -> Vec<u8> {
+    let mut bytes = input.to_vec();
+    for _ in 0..=draws.below(4) {
+        if bytes.is_empty() {
+            return other.to_vec();
+        }
+        let at = (draws.share() * bytes.len() as f64) as usize;
+        match draws.below(6) {
+            0 => bytes[at] ^= 1 << draws.below(8),
+            1 => bytes[at] = draws.below(256) as u8,
+            2 => bytes.truncate(at),
+            3 => {
+                let end = (at + 1 + draws.below(16)).min(bytes.len());
+                bytes.drain(at..end);
+            }
+            4 => {
+                let from = (draws.share() * other.len() as f64) as usize;
+                let to = (from + draws.below(40)).min(other.len());
+                bytes.splice(at..at, other[from..to].iter().copied());
+            }
+            _ => {
+                let numbers = ["0", "-1", "1e308", "nan", "1e-9", "90", "65536", "0.5", "null"];
+                let end = bytes[at..].iter().position(|byte| !byte.is_ascii_digit());
+                let end = at + end.unwrap_or(0);
+                bytes.splice(at..end, draws.pick(&numbers).bytes());
+            }
+        }
+    }
+    bytes
+}
+
+fn briefly(name: &str) {
+    let trial = trial(name);
+    let seeds = (trial.seeds)();
+    for seed in &seeds {
+        (trial.run)(seed);
+    }
+    let mut draws = Draws::from_seed(20_131_105);
+    for number in 0..count(trial) {
+        let [one, other] = [0, 1].map(|_| &seeds[(draws.share() * seeds.len() as f64) as usize]);
+        let input = changed(one, other, &mut draws);
+        let ran = std::panic::catch_unwind(|| (trial.run)(&input));
+        if let Err(panic) = ran {
+            let path = std::env::temp_dir().join(format!("{name}-{number}"));
+            fs::write(&path, &input).unwrap();
+            eprintln!("{name}: the input is {}", path.display());
+            std::panic::resume_unwind(panic);
+        }
+    }
+}
+
+/// The inputs that once found a fault, by trial.
+fn regressions(name: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("regressions").join(name);
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths
+}
+
+#[test]
+fn what_once_found_a_fault_finds_none() {
+    for trial in TRIALS {
+        for path in regressions(trial.name) {
+            println!("{}", path.display());
+            (trial.run)(&fs::read(path).unwrap());
+        }
+    }
+}
+
+#[test]
+fn scene_files() {
+    briefly("scene_file");
+}
+
+#[test]
+fn rays_as_json() {
+    briefly("trace_json");
+}
+
+#[test]
+fn interfaces_as_json() {
+    briefly("interface_json");
+}
+
+#[test]
+fn random_interfaces() {
+    briefly("interfaces");
+}
+
+#[test]
+fn image_files() {
+    briefly("images");
+}
+
+#[test]
+fn files_of_pictures() {
+    briefly("picture_files");
+}
+
+#[test]
+fn messages_of_pages() {
+    briefly("page_messages");
+}
+
+#[test]
+fn random_rays_through_random_devices() {
+    briefly("physics");
+}
