@@ -10,11 +10,12 @@ use optics::propagation::{Boundary, GridSpline, Unevenness};
 fn grid(spacing: f64, square: impl Fn(DVec2) -> f64) -> GridSpline {
     let corner = DVec2::new(CUT.x_min - 4.0, -6.0);
     let end = DVec2::new(CUT.x_max + 4.0, CUT.y_max + 4.0);
-    let count = ((end - corner) / spacing).ceil().as_usizevec2() + 1;
+    let [columns, rows] =
+        ((end - corner) / spacing).to_array().map(|steps| steps.ceil() as usize + 1);
     let place =
-        |k: usize| corner + spacing * DVec2::new((k % count.x) as f64, (k / count.x) as f64);
-    let samples: Vec<f64> = (0..count.x * count.y).map(|k| square(place(k))).collect();
-    GridSpline::new(corner, DVec2::splat(spacing), count.to_array(), &samples).expect("a grid")
+        |k: usize| corner + spacing * DVec2::new((k % columns) as f64, (k / columns) as f64);
+    let samples: Vec<f64> = (0..columns * rows).map(|k| square(place(k))).collect();
+    GridSpline::new(corner, DVec2::splat(spacing), [columns, rows], &samples).expect("a grid")
 }
 
 /// Hills and dells of 3 %, about 10 cm apart.
