@@ -55,7 +55,10 @@ fn device(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
 fn table(draws: &mut Draws<'_>, keys: &'static [Key], share: u8) -> Table {
     let mut table = Table::new();
     for key in keys {
-        let needed = matches!(key.kind, KeyKind::Tables { .. } | KeyKind::Polygon { .. });
+        let needed = matches!(
+            key.kind,
+            KeyKind::Tables { .. } | KeyKind::Polygon { .. } | KeyKind::Samples { .. }
+        );
         if needed || draws.chance(share) {
             table.insert(key.name.to_owned(), value(draws, key));
         }
@@ -101,12 +104,26 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
         },
         KeyKind::Tensor => tensor(draws),
         KeyKind::Polygon { .. } => polygon(draws),
+        KeyKind::Samples { limits } => samples(draws, limits),
         KeyKind::Table { keys } => Value::Table(table(draws, keys, 128)),
         KeyKind::Tables { keys } => {
             let count = 1 + draws.below(4);
             (0..count).map(|_| Value::Table(table(draws, keys, 100))).collect::<Vec<_>>().into()
         }
     }
+}
+
+/// Numbers on a grid, mostly near one another.
+fn samples(draws: &mut Draws<'_>, limits: Limits) -> Value {
+    let [rows, columns] = [0, 1].map(|_| if draws.chance(8) { 3 } else { 4 + draws.below(6) });
+    let mut row = || -> Value {
+        let number = |_| match draws.chance(1) {
+            true => draws.number(1.5, limits),
+            false => draws.between(0.8, 1.6),
+        };
+        (0..columns).map(number).map(Value::from).collect::<Vec<_>>().into()
+    };
+    (0..rows).map(|_| row()).collect::<Vec<_>>().into()
 }
 
 /// A permittivity or a permeability: scalar, diagonal or full; mostly lossless and definite.
