@@ -131,7 +131,12 @@ test("vectors and tables among the parameters have controls, too", async () => {
     await finished(page);
   };
   await page.locator("#keys details[data-name=imperfection] summary").click();
-  await set("error", "0.1");
+  // Light in a cloak that is not what it should be splits again and again: a coarse picture comes first, and is enough.
+  const count = await page.evaluate(() => Number(document.body.dataset.pictures));
+  await page.fill("#keys input[aria-label='error, exactly']", "0.1");
+  await page.keyboard.press("Tab");
+  await page.waitForFunction((n) => Number(document.body.dataset.pictures) > n, count);
+  assert.match(await page.textContent("#quality"), /^Preview/);
   assert.ok(difference(before, await pixels(page)).most > 20);
   await set("error", "");
   assert.equal(difference(before, await pixels(page)).bytes, 0);

@@ -151,9 +151,9 @@ mod tests {
             pace.add(pass, Duration::from_millis(milliseconds));
             pass.size[0]
         };
-        // 160 x 120 pixels in 10 ms: more fit, and stay while their time does not change much.
-        let sizes = [10, 30, 33, 40, 37, 30, 200].map(&mut step);
-        assert_eq!(sizes, [160, 320, 320, 320, 320, 320, 320]);
-        assert!(step(60) < 320);
+        // 160 x 120 pixels in 10 ms: 256 x 192 would take 26, and stay while their time does not change much.
+        let sizes = [10, 30, 33, 40, 37, 30, 400].map(&mut step);
+        assert_eq!(sizes, [160, 256, 256, 256, 256, 256, 256]);
+        assert!(step(60) < 256);
     }
 }

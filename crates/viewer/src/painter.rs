@@ -271,6 +271,8 @@ fn are_alike(some: &[DeviceSettings], others: &[DeviceSettings]) -> bool {
             && one.values == other.values
             && one.show == other.show
             && one.open_core == other.open_core
+            && one.length == other.length
+            && one.imperfection == other.imperfection
     };
     some.len() == others.len() && some.iter().zip(others).all(alike)
 }
