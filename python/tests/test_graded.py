@@ -59,7 +59,7 @@ def test_a_file_and_a_scene_hold_it_as_well(tmp_path: Path) -> None:
     (tmp_path / "a.toml").write_text(scene.toml)
     for copy in (Scene.load(tmp_path / "a.toml"), pickle.loads(pickle.dumps(scene))):
         assert copy.toml == scene.toml
-    assert repr(rod) == "Graded(height=20.0, index=<41 x 41 samples>, shape='circle', width=20.0)"
+    assert repr(rod) == "Graded(index=<41 x 41 samples>, shape='circle', width=20.0, height=20.0)"
     assert pickle.loads(pickle.dumps(rod)) == rod
 
 
