@@ -26,7 +26,7 @@ const ELSEWHERE: [(&str, &str); 14] = [
     ("cargo test", "runs this test"),
     ("cargo bench", ".ci/run"),
     ("cargo install", "installs into the home folder; by hand"),
-    ("cargo build", "by hand, a static program"),
+    ("CC_x86_64_unknown_linux_musl=cc", "by hand, a static program"),
     ("rustup target add", "by hand, a static program"),
     ("pip install ./python", ".ci/run"),
     ("pip wheel ./python", "by hand, before a release"),
