@@ -71,7 +71,7 @@ fn every_device_can_be_drawn_in_every_way() {
             "prisms" => "[[device.prism]]\ncorners = [[0, 0], [4, 0], [0, 4]]\npermittivity = 2",
             "body" => "permittivity = 2",
             "graded" => {
-                "index = [[1, 1, 1, 1], [1, 1, 2, 1], [1, 2, 1, 1], [1, 1, 1, 1]]\ninner = 2"
+                "index = [[1, 1, 1, 1], [1, 1, 1.2, 1], [1, 1.2, 1, 1], [1, 1, 1, 1]]\ninner = 2"
             }
             _ => "",
         };
