@@ -127,7 +127,8 @@ pub(crate) fn messages() -> Vec<Vec<u8>> {
         let look = json!({ "look": { "id": 7, "scene": scene, "size": [8, 6], "samples": 1, "beside": beside } });
         let ray = json!({ "ray": { "id": 8, "at": [0.5, 0.4] } });
         let save = json!({ "save": { "scene": scene } });
-        format!("{look}\n{ray}\n{save}\n{ray}").into_bytes()
+        let seen = json!({ "seen": { "id": 7 } });
+        format!("{look}\n{seen}\n{ray}\n{save}\n{ray}").into_bytes()
     });
     let photograph = json!({ "photograph": { "name": "a.png" } });
     let hung = json!({ "look": { "id": 9, "scene": { "photograph": { "image": "a.png" } },

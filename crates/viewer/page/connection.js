@@ -77,6 +77,11 @@ export class Connection {
     if (id !== null) this.#arrived(id);
   }
 
+  // Says that a picture of a look is on the screen.
+  seen(id) {
+    if (this.isOpen) this.#say({ seen: { id } });
+  }
+
   // Asks for the ray of a point of the picture.
   follow(at) {
     if (this.isOpen) this.#say({ ray: { id: ++this.ray, at } });

@@ -59,6 +59,8 @@ function greeted(content) {
 function received(caption, image) {
   picture.show(caption, image, state);
   document.body.dataset.pictures = String(Number(document.body.dataset.pictures ?? 0) + 1);
+  // Finer ones are made from then on.
+  if (caption.last && caption.id === wanted && !caption.finished) requestAnimationFrame(() => setTimeout(() => connection.seen(caption.id)));
   if (caption.last && caption.finished) {
     $("progress").hidden = true;
     document.body.dataset.finished = String(caption.id === wanted);

@@ -4,6 +4,7 @@ use crate::painter::{self, Shown, Wish};
 use crate::protocol::{LARGEST_PHOTOGRAPH, Message, error};
 use crate::ray_tree;
 use crate::scenes::{is_plain_name, text};
+use crate::seen::Seen;
 use crate::server::Server;
 use crate::slot::Slot;
 use axum::body::Bytes;
@@ -94,6 +95,7 @@ impl Drop for Space {
 pub(crate) struct Client {
     pub server: Arc<Server>,
     pub looks: Slot<Wish>,
+    pub seen: Seen,
     rays: Slot<ray_tree::Wish>,
     shown: Mutex<Option<Arc<Shown>>>,
     uploaded: Mutex<Option<Uploaded>>,
@@ -105,6 +107,7 @@ impl Client {
         Self {
             server,
             looks: Slot::default(),
+            seen: Seen::default(),
             rays: Slot::default(),
             shown: Mutex::default(),
             uploaded: Mutex::default(),
@@ -198,7 +201,7 @@ pub(crate) async fn serve(socket: ws::WebSocket, server: Arc<Server>) {
             }
         }
         if let Some((stop, _)) = session.stop {
-            stop.store(true, Ordering::Relaxed);
+            client.seen.stop(&stop);
         }
     }
     client.looks.close();
@@ -246,11 +249,15 @@ impl Session<'_> {
         match message {
             Message::Look(look) => {
                 if let Some((stop, false)) = &self.stop {
-                    stop.store(true, Ordering::Relaxed);
+                    self.client.seen.stop(stop);
                 }
                 let stop = Arc::new(AtomicBool::new(false));
                 self.stop = Some((stop.clone(), look.moving));
                 self.client.looks.put(Wish { look, stop });
+                Ok(())
+            }
+            Message::Seen(seen) => {
+                self.client.seen.tell(seen.id);
                 Ok(())
             }
             Message::Ray(ray) => {

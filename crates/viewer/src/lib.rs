@@ -18,6 +18,7 @@ mod painter;
 mod protocol;
 mod ray_tree;
 mod scenes;
+mod seen;
 mod server;
 mod slot;
 

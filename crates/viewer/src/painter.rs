@@ -24,6 +24,9 @@ use std::time::{Duration, Instant};
 const COARSE_POWER: f64 = 1e-2;
 const COARSE_TOLERANCE: f64 = 1e-4;
 
+/// How long a page may take to show the first coarse picture before finer ones are begun.
+const SIGHT: Duration = Duration::from_millis(400);
+
 /// How often progress is told.
 const PROGRESS: Duration = Duration::from_millis(150);
 
@@ -200,6 +203,9 @@ impl Painter<'_> {
                 time += self.picture(wish, (name, last), scene, pass, images)?;
             }
             self.pace.add(pass, time);
+            if pass.coarse && !look.moving {
+                self.client.seen.wait(look.id, SIGHT, &wish.stop);
+            }
             if !pass.coarse && pass.samples == 1 {
                 let mut numbers = figures(scene, images, &wish.stop)?;
                 numbers["id"] = json!(look.id);

@@ -24,6 +24,8 @@ pub(crate) type SceneTables = Map<String, Value>;
 pub(crate) enum Message {
     /// Show this.
     Look(Look),
+    /// The first picture of a look is on the screen.
+    Seen(Seen),
     /// Follow the ray of a point of the picture that is shown.
     Ray(Ray),
     /// Say this scene as TOML.
@@ -65,6 +67,14 @@ pub(crate) enum Beside {
     Empty,
     /// What the cloak should look like.
     Mirror,
+}
+
+/// What is on the screen.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Seen {
+    /// That of the look.
+    pub id: u64,
 }
 
 /// A point of the picture.

@@ -65,6 +65,7 @@ fn spoiled(random: &mut Random) -> String {
         json!({ "look": { "id": 7, "scene": scene, "size": [8, 6], "samples": 1, "beside": "bare" } }),
         json!({ "ray": { "id": 7, "at": [0.2, 0.3] } }),
         json!({ "save": { "scene": scene } }),
+        json!({ "seen": { "id": 7 } }),
         json!({ "photograph": { "name": "a.png" } }),
         json!({ "unknown": {} }),
     ];
