@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Rays that one thread takes at a time; a multiple of four.
+/// Rays that one thread takes at a time.
 const BATCH: usize = 512;
 
 /// What became of many rays: the leaves of all of them, ray by ray, the strongest of each first.
@@ -90,14 +90,17 @@ impl LeafTable {
             .clone()
             .map(|index| launch(bench, index, &ray(index)))
             .collect::<Result<Vec<Launch<1>>, _>>()?;
-        let last = launches.len().saturating_sub(1);
+        let mut all_leaves: Vec<Leaf<1>> = Vec::new();
+        let mut ended = Vec::with_capacity(launches.len());
+        tracers.trace_all(&launches, |ray, leaves, outcome| {
+            let first = all_leaves.len();
+            all_leaves.extend_from_slice(leaves);
+            ended.push((ray, first..all_leaves.len(), *outcome));
+        });
+        ended.sort_by_key(|(ray, ..)| *ray);
         let mut sorted: Vec<Leaf<1>> = Vec::new();
-        for first in (0..launches.len()).step_by(4) {
-            tracers.trace(&std::array::from_fn(|i| launches[(first + i).min(last)]));
-            for (i, tracer) in tracers.each().iter().take(launches.len() - first).enumerate() {
-                let (leaves, outcome) = tracer.traced();
-                table.push(rays.start + first + i, leaves, outcome, &mut sorted);
-            }
+        for (ray, leaves, outcome) in ended {
+            table.push(rays.start + ray, &all_leaves[leaves], &outcome, &mut sorted);
         }
         Ok(table)
     }
@@ -151,5 +154,44 @@ fn launch(bench: &Bench, index: usize, ray: &RayRequest) -> Result<Launch<1>, Ra
                 format!("it starts inside device {device} (counted from 0); rays start in air");
             Err(RayError::Ray { index, problem })
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+    use super::*;
+    use crate::trace::Polarization;
+    use crate::{render, scene_file};
+    use std::path::Path;
+
+    #[test]
+    fn rays_are_those_that_are_traced_alone() {
+        // Deep trees and flat ones, rays that miss, two devices with cells of their own.
+        let text = "[[device]]\nkind = \"double-gaussian-cloak\"\n\
+                    [[device]]\nkind = \"gaussian-carpet\"\nposition = [0, -60, 0]\n\
+                    [[device]]\nkind = \"square-cloak\"\nmaterial = \"negative-uniaxial\"\nposition = [0, 60, 0]\n";
+        let scene = scene_file::parse(text, "a test", Path::new(""), &[]).unwrap().scene;
+        let bench = render::bench(&scene).unwrap();
+        let limits = Limits { min_power: 1e-6, tolerance: 1e-5 };
+        let count = BATCH + 37;
+        let ray = |index: usize| RayRequest {
+            origin: [-100.0, 0.0, 0.0],
+            direction: [100.0, (index * 17 % 181) as f64 - 90.0, (index * 5 % 31) as f64 - 15.0],
+            polarization: Polarization::Horizontal,
+        };
+        let stop = AtomicBool::new(false);
+        let together = LeafTable::trace(&bench, limits, count, &ray, &|_| {}, &stop).unwrap();
+        let mut alone = LeafTable::default();
+        let mut tracer = Tracer::<1>::new(&bench, limits);
+        for index in 0..count {
+            let (leaves, outcome) = tracer.trace(&ray(index).launch().unwrap());
+            alone.push(index, leaves, outcome, &mut Vec::new());
+        }
+        // NaN stands for what met nothing.
+        assert_eq!(format!("{together:?}"), format!("{alone:?}"));
+        assert!(together.position.iter().any(|position| position[0].is_nan()));
+        assert!(together.ray.len() > 2 * count);
     }
 }
