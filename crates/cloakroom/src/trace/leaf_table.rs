@@ -1,12 +1,16 @@
 //! Many rays at once, their leaves side by side in arrays.
 
+use super::neighbours::side_by_side;
 use super::{Bench, FourTracers, Launch, Leaf, Limits, Outcome, RayError, RayRequest, Tracer};
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Rays that one thread takes at a time.
-const BATCH: usize = 512;
+/// Fewest and most rays that one thread takes at a time.
+const BATCH: [usize; 2] = [64, 4096];
+
+/// Batches a thread, so that all end at about the same time.
+const BATCHES: usize = 16;
 
 /// What became of many rays: the leaves of all of them, ray by ray, the strongest of each first.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,7 +59,9 @@ impl LeafTable {
             let [needed_mb, available_mb] = [needed, available].map(|bytes| bytes / 1_000_000);
             return Err(RayError::TooMany { count, needed_mb, available_mb });
         }
-        let batches: Vec<Result<Self, RayError>> = (0..count.div_ceil(BATCH))
+        let size = count / (BATCHES * crate::threads::count());
+        let size = size.clamp(BATCH[0], BATCH[1]);
+        let batches: Vec<Result<Self, RayError>> = (0..count.div_ceil(size))
             .into_par_iter()
             .map_init(
                 || FourTracers::new(&Tracer::<1>::new(bench, limits)),
@@ -63,7 +69,7 @@ impl LeafTable {
                     if stop.load(Ordering::Relaxed) {
                         return Err(RayError::Stopped);
                     }
-                    let rays = batch * BATCH..count.min((batch + 1) * BATCH);
+                    let rays = batch * size..count.min((batch + 1) * size);
                     let traced = (rays.len()) as u64;
                     let table = Self::of_batch(bench, tracers, rays, ray)?;
                     done(traced);
@@ -92,11 +98,15 @@ impl LeafTable {
             .collect::<Result<Vec<Launch<1>>, _>>()?;
         let mut all_leaves: Vec<Leaf<1>> = Vec::new();
         let mut ended = Vec::with_capacity(launches.len());
-        tracers.trace_all(&launches, |ray, leaves, outcome| {
-            let first = all_leaves.len();
-            all_leaves.extend_from_slice(leaves);
-            ended.push((ray, first..all_leaves.len(), *outcome));
-        });
+        for four in side_by_side(&launches).chunks(4) {
+            tracers.trace(&std::array::from_fn(|i| launches[four[i.min(four.len() - 1)]]));
+            for (ray, tracer) in four.iter().zip(tracers.each()) {
+                let (leaves, outcome) = tracer.traced();
+                let first = all_leaves.len();
+                all_leaves.extend_from_slice(leaves);
+                ended.push((*ray, first..all_leaves.len(), *outcome));
+            }
+        }
         ended.sort_by_key(|(ray, ..)| *ray);
         let mut sorted: Vec<Leaf<1>> = Vec::new();
         for (ray, leaves, outcome) in ended {
@@ -175,7 +185,7 @@ mod tests {
         let scene = scene_file::parse(text, "a test", Path::new(""), &[]).unwrap().scene;
         let bench = render::bench(&scene).unwrap();
         let limits = Limits { min_power: 1e-6, tolerance: 1e-5 };
-        let count = BATCH + 37;
+        let count = 2 * BATCH[0] + 37;
         let ray = |index: usize| RayRequest {
             origin: [-100.0, 0.0, 0.0],
             direction: [100.0, (index * 17 % 181) as f64 - 90.0, (index * 5 % 31) as f64 - 15.0],

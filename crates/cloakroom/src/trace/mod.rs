@@ -14,6 +14,7 @@ mod four;
 mod interfaces;
 mod leaf;
 mod leaf_table;
+mod neighbours;
 mod screen;
 mod surfaces;
 mod tracer;
