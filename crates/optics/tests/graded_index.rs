@@ -163,6 +163,15 @@ fn flat_ends_round_borders_and_round_cores_are_met_where_they_are() {
     assert!(cored.foothold(Half::Upper, DVec3::new(1.0, 2.0, 0.0)).is_err());
 }
 
+#[test]
+fn the_index_is_bounded_where_it_counts() {
+    // Near the axis its square is negative.
+    let (least, largest) =
+        flow(|p| p.length_squared() - 1.0, 64, Extent::ENDLESS, 2.0).index_range();
+    assert!(least > 1.2 && least < 3f64.sqrt(), "{least}");
+    assert!((largest - 99f64.sqrt()).abs() < 0.01, "{largest}");
+}
+
 /// The radius of the cylinder that ζ = z + a²/z makes a strip of; the medium |ζ'| hides it.
 const HIDDEN: f64 = 2.0;
 

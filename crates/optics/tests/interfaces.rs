@@ -8,7 +8,7 @@ use optics::interface::{
     IncidentWave, Reflectionless, Side, reflect_at_conductor, split, transmit_antireflection,
 };
 use optics::medium::Medium;
-use optics::wave::{ComplexVector, PlaneWave, transverse_basis};
+use optics::wave::{ComplexVector, poynting, transverse_basis};
 use proptest::prelude::*;
 
 fn unit_vector() -> impl Strategy<Value = DVec3> {
@@ -40,7 +40,11 @@ fn medium() -> impl Strategy<Value = Medium> {
 
 /// A wave in a medium that runs towards an interface, of unit power.
 fn incident(medium: &Medium, direction: DVec3, jones: [f64; 4]) -> IncidentWave<1> {
-    let wave_vector = medium.wave_surface().unwrap().wave_vector_along(direction);
+    // The ray lies along µp, and p·µp = z det µ for ε = zµ.
+    let mu = medium.permeability();
+    let ratio = medium.permittivity().x_axis.x / mu.x_axis.x;
+    let along = mu.inverse() * direction;
+    let wave_vector = along * (ratio * mu.determinant() / along.dot(direction)).sqrt();
     // Any field with p·εE = 0 is one of the medium's degenerate waves.
     let displacement_normal = *medium.permittivity() * wave_vector;
     let (a, b) = transverse_basis(displacement_normal.normalize(), DVec3::Z, DVec3::X);
@@ -55,8 +59,13 @@ fn incident(medium: &Medium, direction: DVec3, jones: [f64; 4]) -> IncidentWave<
     }
 }
 
-fn plane_wave(medium: &Medium, wave_vector: DVec3, electric: ComplexVector) -> PlaneWave {
-    PlaneWave { wave_vector, electric, magnetic: medium.magnetic_field(wave_vector, electric) }
+/// How far a wave with H = µ⁻¹ (p × E) is from solving p × H = -εE, relative to its fields, and its
+/// Poynting vector.
+fn examined(medium: &Medium, wave_vector: DVec3, electric: ComplexVector) -> (f64, DVec3) {
+    let magnetic = medium.magnetic_field(wave_vector, electric);
+    let ampere = magnetic.crossed_by(wave_vector) + electric.transformed(medium.permittivity());
+    let fields = electric.norm_squared() + magnetic.norm_squared();
+    ((ampere.norm_squared() / fields).sqrt(), poynting(electric, magnetic))
 }
 
 fn jones() -> impl Strategy<Value = [f64; 4]> {
@@ -100,10 +109,8 @@ proptest! {
             let narrowing = (cosine / direction.dot(normal)).abs().sqrt();
             add(medium, w.wave_vector, w.electric[0] * (1.0 / narrowing), sign);
 
-            let solved = plane_wave(medium, w.wave_vector, w.electric[0]);
-            let residual = solved.maxwell_residual(medium.permittivity(), medium.permeability());
+            let (residual, poynting) = examined(medium, w.wave_vector, w.electric[0]);
             prop_assert!(w.power[0] < 1e-20 || residual < 1e-11, "Maxwell {residual}");
-            let poynting = solved.poynting();
             let cosine = cosine.abs().min(facing.abs());
             prop_assert!((poynting - w.direction * w.power[0]).length() < 1e-13 / cosine.powi(2));
         }
@@ -129,12 +136,10 @@ proptest! {
         let wave = incident(&medium, direction, jones);
         let back = reflect_at_conductor(&medium, &wave, normal)[0];
         prop_assert!((back.power[0] - 1.0).abs() < 1e-12);
-        let solved = plane_wave(&medium, back.wave_vector, back.electric[0]);
-        prop_assert!(
-            solved.maxwell_residual(medium.permittivity(), medium.permeability()) < 1e-11
-        );
+        let (residual, poynting) = examined(&medium, back.wave_vector, back.electric[0]);
+        prop_assert!(residual < 1e-11, "Maxwell {residual}");
         let cosine = back.direction.dot(normal).abs().min(facing.abs());
-        prop_assert!((solved.poynting() - back.direction).length() < 1e-13 / cosine.powi(2));
+        prop_assert!((poynting - back.direction).length() < 1e-13 / cosine.powi(2));
         let narrowing = (back.direction.dot(normal) / direction.dot(normal)).abs().sqrt();
         let total = wave.electric[0] + back.electric[0] * (1.0 / narrowing);
         prop_assert!(total.crossed_by(normal).norm_squared().sqrt() < 1e-11);
@@ -305,8 +310,7 @@ fn an_antireflection_coating_refracts_without_loss() {
     assert_eq!(waves.len(), 1);
     assert!((waves[0].power[0] - 1.0).abs() < 1e-14);
     assert!((waves[0].direction.y - 0.24).abs() < 1e-15);
-    let solved = plane_wave(&glass, waves[0].wave_vector, waves[0].electric[0]);
-    assert!(solved.maxwell_residual(glass.permittivity(), glass.permeability()) < 1e-14);
+    assert!(examined(&glass, waves[0].wave_vector, waves[0].electric[0]).0 < 1e-14);
 }
 
 #[test]

@@ -67,8 +67,7 @@ impl Cylinder {
     }
 
     /// How long it takes to an end at a velocity along z.
-    #[must_use]
-    pub fn time_to_end(&self, z: f64, velocity: f64) -> (f64, CylinderPart) {
+    pub(crate) fn time_to_end(&self, z: f64, velocity: f64) -> (f64, CylinderPart) {
         let (end, part) = if velocity < 0.0 {
             (self.extent.min, CylinderPart::Bottom)
         } else {

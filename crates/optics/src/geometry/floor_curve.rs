@@ -36,17 +36,6 @@ pub enum CurvedSide {
     Image,
 }
 
-/// A part of the metal's outline.
-#[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
-pub enum MetalSide {
-    /// The floor.
-    Upper,
-    /// The back.
-    Lower,
-    /// The cut at one of the ends.
-    End,
-}
-
 /// Which way a ray crosses the outline of the metal.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 enum Sense {
@@ -61,8 +50,6 @@ pub struct FloorHit {
     pub t: f64,
     /// Unit normal out of the metal.
     pub normal: DVec2,
-    /// Which part of the metal.
-    pub side: MetalSide,
 }
 
 /// A point of the curve and its derivative by the parameter.
@@ -91,12 +78,15 @@ impl FloorCurve {
         Self { map, back, knots, box_y: [bottom, peak] }
     }
 
+    /// Its first and its last knot.
+    fn ends(&self) -> [&Knot; 2] {
+        [&self.knots[0], &self.knots[self.knots.len() - 1]]
+    }
+
     /// Whether a point lies inside the metal.
     #[must_use]
     pub fn contains(&self, point: DVec2) -> bool {
-        let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
-            return false;
-        };
+        let [first, last] = self.ends();
         let height = || self.map.profile(self.map.profile_parameter(point.x)).f.im;
         point.x > first.point.re
             && point.x < last.point.re
@@ -111,9 +101,7 @@ impl FloorCurve {
     /// A curved side from left to right in that many straight pieces.
     #[must_use]
     pub fn side_line(&self, side: CurvedSide, pieces: u32) -> Vec<DVec2> {
-        let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
-            return Vec::new();
-        };
+        let [first, last] = self.ends();
         let point = |k: u32| {
             let share = f64::from(k) / f64::from(pieces.max(1));
             let parameter = first.parameter + (last.parameter - first.parameter) * share;
@@ -136,8 +124,8 @@ impl FloorCurve {
                 self.side_line(CurvedSide::Image, pieces).into_iter().rev().collect()
             }
             MetalBack::Flat(y) => {
-                let ends = [self.knots.last(), self.knots.first()].into_iter().flatten();
-                ends.map(|end| DVec2::new(end.point.re, y)).collect()
+                let [first, last] = self.ends();
+                [last, first].map(|end| DVec2::new(end.point.re, y)).to_vec()
             }
         };
         floor.into_iter().chain(back).collect()
@@ -184,8 +172,7 @@ impl FloorCurve {
     }
 
     /// Whether an outline lies inside as a whole.
-    #[must_use]
-    pub fn encloses(&self, outline: &Outline) -> bool {
+    pub(super) fn encloses(&self, outline: &Outline) -> bool {
         // What leaves between two corners comes back before the second.
         outline.corners().iter().all(|corner| self.contains(*corner))
             && outline.sides().all(|(from, to)| {
@@ -194,12 +181,9 @@ impl FloorCurve {
     }
 
     /// How far a point inside a metal with a mirror image for its back lies from its curved sides.
-    #[must_use]
-    pub fn depth(&self, point: DVec2) -> f64 {
+    pub(super) fn depth(&self, point: DVec2) -> f64 {
         const SAMPLES: u32 = 512;
-        let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
-            return 0.0;
-        };
+        let [first, last] = self.ends();
         // No point of the image is nearer than its own image to a point above the line between the two.
         let here = Complex64::new(point.x, point.y.abs());
         let slope = |parameter: f64| {
@@ -229,9 +213,7 @@ impl FloorCurve {
         if !(inverse_square.is_finite() && origin.is_finite()) {
             return false;
         }
-        let [Some(first), Some(last)] = [self.knots.first(), self.knots.last()] else {
-            return false;
-        };
+        let [first, last] = self.ends();
         let [bottom, top] = self.box_y;
         let (low, high) =
             (DVec2::new(first.point.re, bottom) - origin, DVec2::new(last.point.re, top) - origin);
@@ -251,7 +233,7 @@ impl FloorCurve {
     ) -> Option<FloorHit> {
         let mirrored = |v: DVec2| DVec2::new(v.x, -v.y);
         self.first_on_curve(mirrored(origin), mirrored(direction), t_min, sense)
-            .map(|hit| FloorHit { normal: mirrored(hit.normal), side: MetalSide::Lower, ..hit })
+            .map(|hit| FloorHit { normal: mirrored(hit.normal), ..hit })
     }
 
     /// The first crossing of the floor.
@@ -290,7 +272,7 @@ impl FloorCurve {
             };
             if counts && t >= t_min && best.is_none_or(|hit| t < hit.t) {
                 let normal = DVec2::new(normal.re, normal.im);
-                best = Some(FloorHit { t, normal, side: MetalSide::Upper });
+                best = Some(FloorHit { t, normal });
             }
         };
         for pair in self.knots.windows(2) {
@@ -320,18 +302,19 @@ impl FloorCurve {
         direction: DVec2,
         t_min: f64,
     ) -> Option<FloorHit> {
-        let (first, last) = (self.knots.first()?, self.knots.last()?);
+        let [first, last] = self.ends();
         let t = (y - origin.y) / direction.y;
         let x = origin.x + t * direction.x;
         let inside = x >= first.point.re && x <= last.point.re;
-        let hit = FloorHit { t, normal: DVec2::NEG_Y, side: MetalSide::Lower };
+        let hit = FloorHit { t, normal: DVec2::NEG_Y };
         (direction.y > 0.0 && t >= t_min && inside).then_some(hit)
     }
 
     /// A hit of the vertical cuts through the metal.
     fn first_on_ends(&self, origin: DVec2, direction: DVec2, t_min: f64) -> Option<FloorHit> {
-        let ends = [(self.knots.first()?, -1.0), (self.knots.last()?, 1.0)];
-        ends.into_iter()
+        let [first, last] = self.ends();
+        [(first, -1.0), (last, 1.0)]
+            .into_iter()
             .filter(|(_, outward)| outward * direction.x < 0.0)
             .map(|(end, outward)| {
                 let t = (end.point.re - origin.x) / direction.x;
@@ -341,7 +324,7 @@ impl FloorCurve {
                     MetalBack::Flat(y) => y,
                 };
                 let normal = DVec2::new(outward, 0.0);
-                (y > bottom && y < end.point.im, FloorHit { t, normal, side: MetalSide::End })
+                (y > bottom && y < end.point.im, FloorHit { t, normal })
             })
             .find(|(inside, hit)| *inside && hit.t >= t_min)
             .map(|(_, hit)| hit)

@@ -44,8 +44,7 @@ impl Hole {
 
     /// Whether all of a body that lies between the ends of the hole is inside of it; `slack` (cm) is how deep it
     /// may press into the border by rounding.
-    #[must_use]
-    pub fn encloses(&self, body: &Solid, slack: f64) -> bool {
+    pub(super) fn encloses(&self, body: &Solid, slack: f64) -> bool {
         match (self, body) {
             (_, Solid::Nothing) => true,
             (_, Solid::Hollow { whole, .. }) => self.encloses(whole, slack),

@@ -19,7 +19,7 @@ mod wall;
 
 pub use cap::Cap;
 pub use cylinder::{Cylinder, CylinderPart, Disc};
-pub use floor_curve::{CurvedSide, FloorCurve, MetalBack};
+pub use floor_curve::{CurvedSide, FloorCurve, FloorHit, MetalBack};
 pub use hollow::Hole;
 pub use outline::Outline;
 pub use plane::Plane;

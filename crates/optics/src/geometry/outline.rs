@@ -34,16 +34,16 @@ impl Outline {
         (0..n).map(move |i| (self.corners[i], self.corners[(i + 1) % n]))
     }
 
-    /// Whether a point lies within, border included.
+    /// Whether a point lies within, border included; never in a line.
     #[must_use]
     pub fn contains(&self, point: DVec2) -> bool {
-        self.sides().all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
+        self.corners.len() > 2 && self.sides().all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
     }
 
     /// How far a point lies outside, 0 within; infinite for no outline at all.
     #[must_use]
     pub fn distance(&self, point: DVec2) -> f64 {
-        if self.corners.len() > 2 && self.contains(point) {
+        if self.contains(point) {
             return 0.0;
         }
         let to_side = |(a, b): (DVec2, DVec2)| {

@@ -67,7 +67,7 @@ impl Polygon {
         &self.corners
     }
 
-    /// The enclosed area.
+    /// The enclosed area, cm².
     #[must_use]
     pub fn area(&self) -> f64 {
         0.5 * doubled_area(&self.corners)

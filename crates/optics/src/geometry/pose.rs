@@ -28,8 +28,7 @@ impl Pose {
     }
 
     /// The place of what is at `first` in the frame that is at this pose.
-    #[must_use]
-    pub fn after(&self, first: &Self) -> Self {
+    pub(super) fn after(&self, first: &Self) -> Self {
         Self {
             origin: self.to_world(first.origin),
             cos: self.cos * first.cos - self.sin * first.sin,

@@ -79,14 +79,13 @@ impl Solid {
         }
     }
 
-    /// Whether a point lies inside or on the border.
+    /// Whether a point lies inside or on the border; never in a sheet.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
         match self {
             Self::Nothing => false,
             Self::Prism { outline, extent } => {
-                let p = point.truncate();
-                extent.contains(point.z) && !outline.corners().is_empty() && outline.contains(p)
+                extent.contains(point.z) && outline.contains(point.truncate())
             }
             Self::Cylinder { centre, radius, extent } => {
                 let beside = point.truncate().distance_squared(*centre);
@@ -235,6 +234,8 @@ mod tests {
         assert!(sheet.overlaps(&moved(&ball, DVec3::new(0.99, 3.0, 1.0)), SLACK));
         assert!(!sheet.overlaps(&moved(&ball, DVec3::new(1.01, 3.0, 1.0)), SLACK));
         assert!(!sheet.overlaps(&moved(&cylinder, DVec3::new(0.5, 0.0, 3.5)), SLACK));
+        // Without thickness it holds nothing, nor does the line that it lies on.
+        assert!(!sheet.contains(DVec3::ZERO) && !sheet.contains(DVec3::Y * 6.0));
         assert!(!Solid::Nothing.overlaps(&ball, SLACK) && !Solid::Nothing.holds(DVec3::ZERO));
     }
 
@@ -298,11 +299,12 @@ mod tests {
             low
         };
         check_along_x(&hollow, &box_of(1.0), [level(1.0) - 1.0, 26.0]);
-        let distance = |x: f64| {
-            let off =
-                |k: u32| DVec2::from(map_point(&map, f64::from(k) * 1e-4)).distance(DVec2::X * x);
-            (0..250_000).map(off).fold(f64::INFINITY, f64::min)
-        };
+        let border: Vec<DVec2> = (0..250_000)
+            .map(|k| f64::from(k) * 1e-4)
+            .map(|x| DVec2::new(x, map.floor_height_at(x)))
+            .collect();
+        let distance =
+            |x: f64| border.iter().map(|p| p.distance(DVec2::X * x)).fold(f64::INFINITY, f64::min);
         let (mut low, mut high) = (0.0, 20.0);
         for _ in 0..30 {
             let middle: f64 = 0.5 * (low + high);
@@ -311,10 +313,6 @@ mod tests {
         check_along_x(&hollow, &Solid::ball(1.0), [low, 26.0]);
         check_along_x(&hollow, &Solid::cylinder(1.0, extent), [low, 26.0]);
         assert!(hollow.holds(DVec3::Y * 4.01) && !hollow.holds(DVec3::Y * 3.99));
-    }
-
-    fn map_point(map: &ConformalMap, x: f64) -> [f64; 2] {
-        [x, map.floor_height_at(x)]
     }
 
     fn check_along_x(hollow: &Solid, body: &Solid, [inside, outside]: [f64; 2]) {

@@ -40,7 +40,8 @@ impl FramedMedium {
         }
         let (of_first, of_normal) =
             (*medium.permittivity() * first, *medium.permittivity() * normal);
-        let (mu_first, mu_second) = (medium.magnetic_row(first), medium.magnetic_row(second));
+        let inverse = *medium.inverse_permeability();
+        let (mu_first, mu_second) = (inverse * first, inverse * second);
         Self {
             along,
             permittivity: [

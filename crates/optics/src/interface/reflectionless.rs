@@ -1,7 +1,7 @@
 //! Interfaces that reflect nothing, at any angle and in any polarization.
 
 use super::{IncidentWave, OutgoingWave, Side};
-use crate::medium::{Medium, ModeKind};
+use crate::medium::{Medium, ModeKind, largest};
 use crate::wave::ComplexVector;
 use glam::{DMat3, DVec3};
 
@@ -25,11 +25,6 @@ pub struct Reflectionless {
 /// How far apart, relative to the terms they are made of, tensors are that differ by rounding alone.
 const ROUNDING: f64 = 1e-14;
 
-/// The largest magnitude of an entry.
-fn size(tensor: &DMat3) -> f64 {
-    tensor.to_cols_array().iter().fold(0.0, |size: f64, entry| size.max(entry.abs()))
-}
-
 impl Reflectionless {
     /// The interface from one medium into another, the unit vector `normal` pointing into the latter, if
     /// both are lossless, in each both polarizations share their wave vectors, and it reflects nothing.
@@ -47,8 +42,8 @@ impl Reflectionless {
         let rounding = ROUNDING * (there.length() / normal.dot(there)).abs().max(1.0);
         let becomes = |from: &DMat3, to: &DMat3| {
             let image = jacobian * *from * jacobian.transpose() * (1.0 / determinant);
-            let terms = size(&jacobian).powi(2) * size(from) / determinant.abs();
-            image.abs_diff_eq(*to, rounding * terms.max(size(to)))
+            let terms = largest(&jacobian).powi(2) * largest(from) / determinant.abs();
+            image.abs_diff_eq(*to, rounding * terms.max(largest(to)))
         };
         (becomes(incident.permeability(), transmitted.permeability())
             && becomes(incident.permittivity(), transmitted.permittivity()))

@@ -1,7 +1,8 @@
 //! The whole scattering matrix of an interface between modes.
 
-use super::matching::amplitudes;
-use crate::medium::{BothWays, LocalMode, Medium, Mode, Tangential, mutual_flux};
+use super::Side;
+use super::matching::{amplitudes, fluxes};
+use crate::medium::{BothWays, LocalMode, Medium, Mode, Tangential};
 use crate::wave::Frame;
 use glam::DVec3;
 use num_complex::Complex64;
@@ -51,8 +52,10 @@ impl Scattering {
                 return None;
             }
             let [r1, r2, t1, t2] = amplitudes.map(|row| row[column]);
-            let [r1, r2] = fluxes(&backward, [r1, r2]);
-            let [t1, t2] = onward.map_or([0.0; 2], |modes| fluxes(&modes, [t1, t2]));
+            let [[r1], [r2]] = fluxes(Side::Reflected, &backward, [&[r1], &[r2]], true);
+            let [[t1], [t2]] = onward
+                .as_ref()
+                .map_or([[0.0]; 2], |modes| fluxes(Side::Transmitted, modes, [&[t1], &[t2]], true));
             let flux = [r1, r2, t1, t2];
             // Over the sum where it must be 1: the same but for rounding near grazing incidence.
             let sum: f64 = flux.iter().sum();
@@ -67,17 +70,4 @@ impl Scattering {
             power,
         }
     }
-}
-
-/// The outgoing normal flux of each of two modes, with its part of what both carry together.
-fn fluxes(modes: &[LocalMode<Complex64>; 2], amplitudes: [Complex64; 2]) -> [f64; 2] {
-    let [a, b] = modes;
-    let own = [0, 1].map(|i| if modes[i].propagating { amplitudes[i].norm_sqr() } else { 0.0 });
-    let sum = own[0] + own[1];
-    if !(a.propagating && b.propagating && sum > 0.0) {
-        return own;
-    }
-    let orientation = a.flux().signum();
-    let mutual = (amplitudes[0] * amplitudes[1].conj() * mutual_flux(a, b)).re;
-    own.map(|own| own * (1.0 + 2.0 * orientation * mutual / sum).max(0.0))
 }

@@ -20,7 +20,8 @@ pub(crate) use modes::{BOTH_MODES, BothWays, LocalMode, Tangential, mutual_flux}
 pub use modes::{Heading, Mode, ModeKind};
 pub use principal_axes::principal_axes;
 pub use tensor::Tensor;
-pub use wave_surface::{NormalComponent, WaveSurface};
+pub(crate) use tensor::largest;
+pub(crate) use wave_surface::{NormalComponent, WaveSurface};
 
 use crate::wave::{ComplexVector, poynting};
 use class::{Class, Uniaxial};
@@ -69,7 +70,7 @@ impl Medium {
     ///
     /// let topaz = DMat3::from_diagonal(DVec3::new(2.609, 2.613, 2.641));
     /// let medium = Medium::new(topaz, 1.0)?;
-    /// assert!(medium.wave_surface().is_none());
+    /// assert_eq!(medium.optic_axis(), None);
     /// let gold = Medium::new(Complex64::new(-5.8, 2.1), 1.0)?;
     /// assert!(gold.absorbs());
     /// # Ok::<(), optics::medium::MediumError>(())
@@ -253,8 +254,7 @@ impl Medium {
 
     /// Which wave vectors the medium carries, if it is lossless and both polarizations share them:
     /// isotropic, or ε a multiple of µ.
-    #[must_use]
-    pub fn wave_surface(&self) -> Option<&WaveSurface> {
+    pub(crate) fn wave_surface(&self) -> Option<&WaveSurface> {
         match &self.class {
             Class::Isotropic(surface) | Class::Matched(surface) => Some(surface),
             _ => None,
@@ -317,9 +317,9 @@ impl Medium {
             .then_some((self.permittivity.x_axis.x, self.permeability.x_axis.x))
     }
 
-    /// µ⁻¹ applied to a real vector, in a lossless medium.
-    pub(crate) fn magnetic_row(&self, row: DVec3) -> DVec3 {
-        self.inverse_permeability * row
+    /// µ⁻¹, its real part if the medium absorbs.
+    pub(crate) fn inverse_permeability(&self) -> &DMat3 {
+        &self.inverse_permeability
     }
 }
 

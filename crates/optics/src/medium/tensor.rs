@@ -131,7 +131,8 @@ pub(super) enum Shape {
     Other,
 }
 
-fn largest(m: &DMat3) -> f64 {
+/// The largest magnitude of an entry.
+pub(crate) fn largest(m: &DMat3) -> f64 {
     m.to_cols_array().iter().fold(0.0, |largest, entry| entry.abs().max(largest))
 }
 

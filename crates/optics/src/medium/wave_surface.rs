@@ -9,14 +9,14 @@ use glam::{DMat3, DVec3};
 /// isotropic medium, A = M and c = z det M for µ = M, ε = z M (both times -1 for an indefinite M).
 /// The signs of negative-index media follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WaveSurface {
+pub(crate) struct WaveSurface {
     form: DMat3,
     constant: f64,
 }
 
 /// The wave-vector component along a surface's normal, for a given tangential part.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NormalComponent {
+pub(crate) enum NormalComponent {
     /// Waves that carry power.
     Propagating {
         /// p·n of the wave whose power flows along +n.
@@ -36,7 +36,7 @@ pub enum NormalComponent {
 impl NormalComponent {
     /// The components (forward, backward) in a medium that is known to carry such a wave, which by
     /// rounding at grazing incidence may seem evanescent: the two then coincide, but for a hair.
-    pub(crate) fn real_pair(self) -> (f64, f64) {
+    pub fn real_pair(self) -> (f64, f64) {
         match self {
             Self::Propagating { forward, backward } => (forward, backward),
             Self::Evanescent { re, im } => (re + im, re - im),
@@ -57,35 +57,19 @@ impl WaveSurface {
     }
 
     /// The unit vector of the Poynting vector of a wave with wave vector `p`.
-    #[must_use]
     pub fn ray_direction(&self, wave_vector: DVec3) -> DVec3 {
         self.ray(wave_vector).normalize()
     }
 
     /// Ap, along the ray of a wave with wave vector `p`.
-    pub(crate) fn ray(&self, wave_vector: DVec3) -> DVec3 {
+    pub fn ray(&self, wave_vector: DVec3) -> DVec3 {
         self.form * wave_vector
-    }
-
-    /// The wave vector along a given ray direction.
-    #[must_use]
-    pub fn wave_vector_along(&self, direction: DVec3) -> DVec3 {
-        let p = self.form.inverse() * direction;
-        let size = p.dot(self.form * p);
-        p * (self.constant / size).sqrt()
-    }
-
-    /// How far p·Ap is from c, relative to c.
-    #[must_use]
-    pub fn residual(&self, wave_vector: DVec3) -> f64 {
-        wave_vector.dot(self.form * wave_vector) / self.constant - 1.0
     }
 
     /// The normal components of the waves with the tangential part `tangential` (perpendicular to
     /// the unit vector `normal`).
     ///
     /// At exact grazing, where the two coincide, they are set apart by about 1e-15, which gives the limit.
-    #[must_use]
     pub fn normal_component(&self, tangential: DVec3, normal: DVec3) -> NormalComponent {
         match self.roots(tangential, normal) {
             Roots::Real { plus: forward, minus: backward, .. } => {
@@ -122,19 +106,5 @@ mod tests {
         };
         assert!((forward + 0.8).abs() < 1e-15 && (backward - 0.8).abs() < 1e-15);
         assert_eq!(surface.ray_direction(DVec3::new(-1.0, 0.0, 0.0)), DVec3::X);
-    }
-
-    #[test]
-    fn the_wave_vector_along_a_ray_has_that_ray() {
-        let m = DMat3::from_cols(
-            DVec3::new(2.0, 0.4, 0.0),
-            DVec3::new(0.4, 1.5, -0.3),
-            DVec3::new(0.0, -0.3, 0.9),
-        );
-        let surface = WaveSurface::new(m, m.determinant());
-        let direction = DVec3::new(0.6, -0.48, 0.64);
-        let p = surface.wave_vector_along(direction);
-        assert!(surface.residual(p).abs() < 1e-14);
-        assert!((surface.ray_direction(p) - direction).length() < 1e-14);
     }
 }

@@ -109,16 +109,14 @@ impl GridSpline {
 
     /// Bounds of the values within the grid: those of the coefficients, which differ little from the values where
     /// the grid is fine.
-    #[must_use]
-    pub fn bounds(&self) -> [f64; 2] {
+    pub(super) fn bounds(&self) -> [f64; 2] {
         let start = [f64::INFINITY, f64::NEG_INFINITY];
         self.coefficients.iter().fold(start, |[low, high], c| [low.min(*c), high.max(*c)])
     }
 
     /// Bounds of the values in those cells of the grid whose distances from the origin, the least and the largest (cm),
     /// `counts` accepts: those of the coefficients in Bernstein's form, which are near the values on coarse grids, too.
-    #[must_use]
-    pub fn bounds_within(&self, counts: impl Fn([f64; 2]) -> bool) -> [f64; 2] {
+    pub(super) fn bounds_within(&self, counts: impl Fn([f64; 2]) -> bool) -> [f64; 2] {
         let [mx, my] = self.count;
         let mut bounds = [f64::INFINITY, f64::NEG_INFINITY];
         for (i, j) in (0..my - 3).flat_map(|j| (0..mx - 3).map(move |i| (i, j))) {
@@ -143,8 +141,7 @@ impl GridSpline {
     }
 
     /// The distance between neighbouring samples along the side where it is smaller, cm.
-    #[must_use]
-    pub fn finest_spacing(&self) -> f64 {
+    pub(super) fn finest_spacing(&self) -> f64 {
         self.spacing.min_element()
     }
 }

@@ -12,7 +12,6 @@ mod strip_to_rhombus;
 
 pub use conformal::{ConformalMap, MapJet, Truncation};
 pub(crate) use conformal::{JetLanes, LaneMap};
-pub use faddeeva::{FaddeevaJet, faddeeva, faddeeva_jet};
 pub use flat::FlatMap;
 pub use gaussian::{GaussianMap, GaussianMapError};
 pub use grating::{GratingMap, GratingMapError};

@@ -181,8 +181,7 @@ impl QuasiConformalMap {
     }
 
     /// The height H_c of the virtual rectangle, cm.
-    #[must_use]
-    pub fn virtual_height(&self) -> f64 {
+    fn virtual_height(&self) -> f64 {
         self.solved.series.virtual_height
     }
 

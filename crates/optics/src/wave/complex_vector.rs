@@ -94,6 +94,12 @@ impl ComplexVector {
     }
 }
 
+/// The Poynting vector Re(E × H*) of a wave.
+#[must_use]
+pub fn poynting(electric: ComplexVector, magnetic: ComplexVector) -> DVec3 {
+    electric.re.cross(magnetic.re) + electric.im.cross(magnetic.im)
+}
+
 impl From<DVec3> for ComplexVector {
     fn from(re: DVec3) -> Self {
         Self { re, im: DVec3::ZERO }

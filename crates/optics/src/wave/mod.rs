@@ -40,14 +40,13 @@ mod complex_vector;
 mod frame;
 mod linear_system;
 mod number;
-mod plane_wave;
 mod polarization;
 mod stokes;
 
-pub use complex_vector::ComplexVector;
+pub use complex_vector::{ComplexVector, poynting};
 pub(crate) use frame::Frame;
 pub(crate) use linear_system::solve;
 pub(crate) use number::{Number, cross, dot};
-pub use plane_wave::{PlaneWave, poynting};
-pub use polarization::{transverse_basis, turn_transverse};
+pub use polarization::transverse_basis;
+pub(crate) use polarization::turn_transverse;
 pub use stokes::arriving_stokes;

@@ -31,11 +31,10 @@ pub fn transverse_basis(direction: DVec3, right: DVec3, fallback: DVec3) -> (DVe
 
 /// A field across the unit vector `from`, turned with the least rotation that takes `from` to the
 /// unit vector `to`: what refraction does to the parts along and across the plane of incidence.
-#[must_use]
-pub fn turn_transverse(field: ComplexVector, from: DVec3, to: DVec3) -> ComplexVector {
+pub(crate) fn turn_transverse(field: ComplexVector, from: DVec3, to: DVec3) -> ComplexVector {
     let cosine = from.dot(to);
     if cosine < -1.0 + 1e-12 {
-        // The turn by 180 degrees about any axis across the ray: its reversal.
+        // By 180 degrees about the field itself, as good an axis across the ray as any.
         return field;
     }
     // Rodrigues' formula with axis × angle = from × to.

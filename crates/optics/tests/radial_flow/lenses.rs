@@ -80,9 +80,6 @@ fn check(lens: CentralLens, index: impl Fn(f64) -> (f64, f64) + Copy, least: f64
             "{lens:?} {graze} {found:?} {expected:?}"
         );
         assert!((found.optical_path - expected.optical_path).abs() < tolerance * RADIUS);
-        // The optical path is stationary: no need for the end itself to agree so well.
-        assert_eq!(found.direction, found.wave_vector);
-        assert!(found.transport.x_axis.is_finite());
     }
 }
 

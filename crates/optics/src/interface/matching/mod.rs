@@ -321,12 +321,12 @@ impl<const N: usize> Scattered<'_, N> {
     }
 }
 
-/// The fluxes of modes of the given amplitudes; those that do not propagate have none.
-fn fluxes<T: Number, const N: usize>(
+/// The outgoing normal fluxes of modes of the given amplitudes; those that do not propagate have none.
+pub(super) fn fluxes<T: Number, const N: usize>(
     side: Side,
     modes: &[LocalMode<T>; 2],
     amplitudes: [&[Complex64; N]; 2],
-    absorbing: bool,
+    cross_terms: bool,
 ) -> Fluxes<N> {
     let [a, b] = modes;
     let mut flux: Fluxes<N> = std::array::from_fn(|mode| {
@@ -336,8 +336,8 @@ fn fluxes<T: Number, const N: usize>(
             [0.0; N]
         }
     });
-    if absorbing && a.propagating && b.propagating {
-        // The modes' fluxes have cross terms; each takes its part of them.
+    if cross_terms && a.propagating && b.propagating {
+        // As in absorbing media; each mode takes its part of them.
         let mutual: Complex64 = mutual_flux(a, b).into();
         let orientation = if side == Side::Reflected { -1.0 } else { 1.0 };
         for i in 0..N {

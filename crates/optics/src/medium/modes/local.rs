@@ -62,8 +62,8 @@ pub(crate) struct BothWays {
     pub backward: LocalModes,
 }
 
-/// Twice the mean of E × H* and its conjugate, along the normal: the flux of one field, or how far
-/// from orthogonal two are.
+/// The mean of E_a × H_b* and E_b* × H_a along the normal: the flux of one field, or how far from
+/// orthogonal two are.
 pub(crate) fn mutual_flux<T: Number>(a: &LocalMode<T>, b: &LocalMode<T>) -> T {
     let [ea, ha] = [a.electric, a.magnetic];
     let [eb, hb] = [b.electric, b.magnetic].map(|field| field.map(T::conjugate));

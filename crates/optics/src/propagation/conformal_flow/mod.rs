@@ -104,8 +104,6 @@ pub struct FlowEnd {
     pub transport: DMat3,
     /// The outward unit normal of the border; at the floor it points into the metal.
     pub normal: DVec3,
-    /// Evaluations of the map's derivatives it took.
-    pub evaluations: u32,
 }
 
 /// Why a ray could not be followed.
@@ -147,7 +145,6 @@ struct Arrival {
     begin: Point,
     end: Point,
     boundary: Boundary,
-    evaluations: u32,
 }
 
 /// One half of a conformal cloak cut to a box, and its mirror image under y -> -y.
@@ -337,7 +334,7 @@ impl ConformalFlow {
     }
 
     fn end(&self, start: &Foothold, arrival: &Arrival) -> FlowEnd {
-        let Arrival { course, begin, mut end, boundary, evaluations } = *arrival;
+        let Arrival { course, begin, mut end, boundary } = *arrival;
         let half = start.half;
         let mut position = DVec3::new(end.jet.f.re, end.jet.f.im, end.z);
         let inward = Complex64::i() * end.jet.f1 / end.jet.stretch();
@@ -387,7 +384,6 @@ impl ConformalFlow {
             optical_path: self.strength * self.strength * end.tau,
             transport,
             normal: half.mirrored(normal),
-            evaluations,
         }
     }
 }

@@ -22,17 +22,6 @@ pub(super) enum Pace {
     Full,
 }
 
-impl Pace {
-    /// Evaluations of the map.
-    pub fn evaluations(self) -> u32 {
-        match self {
-            Self::Departure | Self::Coast => 1,
-            Self::Short => 3,
-            Self::Full => order_eight::EVALUATIONS,
-        }
-    }
-}
-
 /// What four rays keep on their way.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rays {

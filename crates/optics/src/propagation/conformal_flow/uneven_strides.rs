@@ -32,7 +32,7 @@ pub(super) fn uneven_stride(
     length: &[f64; LANES],
     to: &mut Trials,
 ) {
-    let gauges = flow.gauges();
+    let gauges = &flow.gauges;
     match flow.map() {
         ConformalMap::Gaussian(map) => {
             side_by_side(Strides { map, unevenness, gauges, rays, pace, from, length, to });

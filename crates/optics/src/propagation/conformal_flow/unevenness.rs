@@ -6,7 +6,6 @@ use glam::DVec2;
 use num_complex::Complex64;
 
 use super::course::Demands;
-use super::crossing::Gauges;
 use super::points::Points;
 use super::strides::{Pace, Rays, Trials, stride};
 use super::uneven_strides::uneven_stride;
@@ -19,6 +18,8 @@ use crate::transformation::MapJet;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unevenness {
     square: GridSpline,
+    /// Of the square, where it counts.
+    bounds: [f64; 2],
     scale: f64,
 }
 
@@ -39,8 +40,8 @@ impl Unevenness {
     /// reach a few cells beyond the device, and resolve what varies in about four cells.
     #[must_use]
     pub fn new(square: GridSpline) -> Option<Self> {
-        let scale = CELLS_A_SCALE * square.finest_spacing();
-        (square.bounds()[0] > 0.0).then_some(Self { square, scale })
+        let bounds = square.bounds();
+        Self::bounded(square, bounds)
     }
 
     /// As [`Self::new`], where the square is positive in those cells of the grid whose distances from the z axis, the
@@ -48,13 +49,18 @@ impl Unevenness {
     /// back.
     #[must_use]
     pub fn within(square: GridSpline, counts: impl Fn([f64; 2]) -> bool) -> Option<Self> {
+        let bounds = square.bounds_within(counts);
+        Self::bounded(square, bounds)
+    }
+
+    fn bounded(square: GridSpline, bounds: [f64; 2]) -> Option<Self> {
         let scale = CELLS_A_SCALE * square.finest_spacing();
-        (square.bounds_within(counts)[0] > 0.0).then_some(Self { square, scale })
+        (bounds[0] > 0.0).then_some(Self { square, bounds, scale })
     }
 
     /// Bounds of the factor.
     pub(super) fn bounds(&self) -> [f64; 2] {
-        self.square.bounds().map(f64::sqrt)
+        self.bounds.map(f64::sqrt)
     }
 
     #[inline]
@@ -118,10 +124,5 @@ impl ConformalFlow {
             None => stride(&self.map, &self.gauges, rays, pace, from, length, to),
             Some(unevenness) => uneven_stride(self, unevenness, rays, pace, from, length, to),
         }
-    }
-
-    /// The map's border.
-    pub(super) fn gauges(&self) -> &Gauges {
-        &self.gauges
     }
 }

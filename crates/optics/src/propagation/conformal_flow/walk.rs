@@ -32,7 +32,6 @@ struct Walk {
     state: State,
     stride: f64,
     steps: u32,
-    evaluations: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +64,7 @@ impl Convoy {
         starts: &[Option<(Foothold, DVec3)>; LANES],
         tolerance: f64,
     ) -> Self {
-        let walk = Walk { state: State::Absent, stride: 0.0, steps: 0, evaluations: 0 };
+        let walk = Walk { state: State::Absent, stride: 0.0, steps: 0 };
         let demands = flow.demands(tolerance, false);
         let rays = Rays {
             p_z: [0.0; LANES],
@@ -159,7 +158,6 @@ impl Convoy {
             self.stride(flow, pace, &length);
             for (i, moves) in moves.into_iter().enumerate() {
                 if moves {
-                    self.walks[i].evaluations += pace.evaluations();
                     self.moved(flow, i);
                 }
             }
@@ -207,7 +205,6 @@ impl Convoy {
                 begin: self.begin.at(i),
                 end: self.here.at(i),
                 boundary,
-                evaluations: self.walks[i].evaluations + 1,
             }),
             State::Failed(error) => Err(error),
             _ => Err(FlowError::StepLimit),

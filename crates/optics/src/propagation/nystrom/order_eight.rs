@@ -32,9 +32,6 @@ pub(crate) struct Step<S: Simd, J, const Q: usize> {
     pub error: Lanes<S>,
 }
 
-/// Evaluations of the force in a step, in addition to the one at its start.
-pub(crate) const EVALUATIONS: u32 = 8;
-
 /// The largest and the smallest change of the step size from one step to the next.
 const FACTOR_RANGE: (f64, f64) = (0.2, 5.0);
 

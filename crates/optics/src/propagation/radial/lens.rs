@@ -207,7 +207,7 @@ mod tests {
             let r = 0.05 * f64::from(step);
             // The lens of Eaton: n² = 2/r - 1.
             assert!((eaton.index(r) / (4.0 / r - 1.0).sqrt() - 1.0).abs() < 1e-14, "{r}");
-            // The invisible sphere (Minano 2006): n = (Q - 1/(3Q))², Q³ = -1/x + (1/x² + 1/27)^½.
+            // The invisible sphere (Minano 2006): n = (Q - 1/(3Q))², Q³ = 1/x + (1/x² + 1/27)^½.
             let x = r / 2.0;
             let q = (1.0 / x + (1.0 / (x * x) + 1.0 / 27.0).sqrt()).cbrt();
             let n = (q - 1.0 / (3.0 * q)).powi(2);

@@ -112,7 +112,8 @@ impl RadialFlow {
     }
 
     /// Follows a ray from a point of the border, where it has the given wave vector and is the given
-    /// wave of the medium, to the next point of the border. A ray that moves outwards ends at once.
+    /// wave of the medium, to the next point of the border. It must run into the medium or along its
+    /// border.
     #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
         match self {

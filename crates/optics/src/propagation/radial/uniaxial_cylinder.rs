@@ -58,8 +58,7 @@ impl UniaxialCylinder {
     }
 
     /// Whether a wave comes to the core: the ordinary one of the radial axis.
-    #[must_use]
-    pub fn comes_to_core(&self, mode: ModeKind) -> bool {
+    pub(super) fn comes_to_core(&self, mode: ModeKind) -> bool {
         self.axis == OpticAxis::Radial && mode != ModeKind::Extraordinary
     }
 
