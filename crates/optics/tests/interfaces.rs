@@ -324,3 +324,40 @@ fn grazing_incidence_gives_the_limit() {
         assert!(waves[0].power[0] > 0.999_99, "{}", waves[0].power[0]);
     }
 }
+
+#[test]
+fn media_as_extreme_as_they_may_be_give_numbers() {
+    let ends = [1e-12, -1e-12, 0.3, -7.0, 1e12, -1e12];
+    let mut media = Vec::new();
+    for a in ends {
+        for b in ends {
+            media.extend([
+                Medium::isotropic(a, b),
+                Medium::uniaxial_electric(1.0, a, b, DVec3::new(0.3, 0.4, 0.5)),
+                Medium::new(DMat3::from_diagonal(DVec3::new(a, 2.0, b)), 1.5),
+                Medium::new(DMat3::from_diagonal(DVec3::new(2.0, 3.0, a)), b),
+                Medium::new(Complex64::new(a, 1e-3), Complex64::new(b, 1e-6)),
+            ]);
+        }
+    }
+    let media: Vec<Medium> = media.into_iter().map(Result::unwrap).collect();
+    for direction in [DVec3::X, DVec3::new(0.6, 0.64, 0.48), DVec3::new(1e-3, 0.7, 0.7).normalize()]
+    {
+        let wave = incident(&Medium::AIR, direction, [0.6, 0.0, 0.0, 0.8]);
+        for medium in &media {
+            let waves = split(&Medium::AIR, medium, &wave, DVec3::X);
+            let total: f64 = waves.iter().map(|wave| wave.power[0]).sum();
+            assert!((total - 1.0).abs() < 1e-9, "{total}: {waves:?} in {medium:?}");
+            for wave in &waves {
+                assert!(wave.direction.is_normalized(), "{wave:?} in {medium:?}");
+                assert!(
+                    wave.wave_vector.is_finite() && wave.electric[0].norm_squared().is_finite()
+                );
+            }
+        }
+    }
+    for beyond in [1e-13, -1e13, 0.0, f64::NAN, f64::INFINITY] {
+        assert!(Medium::isotropic(beyond, 1.0).is_err() && Medium::new(1.0, beyond).is_err());
+        assert!(Medium::new(DMat3::from_diagonal(DVec3::new(1.0, beyond, 1.0)), 1.0).is_err());
+    }
+}

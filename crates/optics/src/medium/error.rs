@@ -3,8 +3,8 @@
 /// Why a medium cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MediumError {
-    /// A number is NaN, infinite, or zero where it must not be.
-    #[error("{quantity} is {value}; it must be finite and not zero")]
+    /// A number is NaN, or too large or too small for fields to be computed.
+    #[error("{quantity} is {value:?}; its magnitude must be 1e-12 to 1e12")]
     Degenerate {
         /// What the number is.
         quantity: &'static str,
@@ -17,8 +17,11 @@ pub enum MediumError {
         /// Which tensor.
         quantity: &'static str,
     },
-    /// The tensor cannot be inverted, or nearly not.
-    #[error("the {quantity} tensor is singular: it must be finite and have an inverse")]
+    /// A principal value of the tensor is NaN, or too large or too small for fields to be computed.
+    #[error(
+        "the {quantity} tensor is singular, or too large or small: the magnitudes of its principal \
+         values must be 1e-12 to 1e12"
+    )]
     Singular {
         /// Which tensor.
         quantity: &'static str,

@@ -19,6 +19,7 @@ pub use error::MediumError;
 pub(crate) use modes::{BOTH_MODES, BothWays, LocalMode, Tangential, mutual_flux};
 pub use modes::{Heading, Mode, ModeKind};
 pub use principal_axes::principal_axes;
+use tensor::MAGNITUDES;
 pub use tensor::Tensor;
 pub(crate) use tensor::largest;
 pub(crate) use wave_surface::{NormalComponent, WaveSurface};
@@ -59,7 +60,7 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a tensor is not symmetric, not finite or singular, or would amplify light.
+    /// If a tensor is not symmetric, has principal values beyond 1e-12 to 1e12, or would amplify light.
     ///
     /// # Example
     ///
@@ -107,7 +108,7 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a number is not finite or is zero, or the axis has no direction.
+    /// If a number's magnitude is not 1e-12 to 1e12, or the axis has no direction.
     pub fn uniaxial_magnetic(
         permittivity: f64,
         ordinary: f64,
@@ -122,7 +123,7 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a number is not finite or is zero, or the axis has no direction.
+    /// If a number's magnitude is not 1e-12 to 1e12, or the axis has no direction.
     pub fn uniaxial_electric(
         permeability: f64,
         ordinary: f64,
@@ -169,7 +170,7 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a number is not finite or is zero.
+    /// If a number's magnitude is not 1e-12 to 1e12.
     pub fn isotropic(permittivity: f64, permeability: f64) -> Result<Self, MediumError> {
         not_degenerate("permittivity", permittivity)?;
         not_degenerate("permeability", permeability)?;
@@ -198,7 +199,7 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If the tensor is not symmetric, not finite, or singular.
+    /// If the tensor is not symmetric, or has principal values beyond 1e-12 to 1e12.
     pub fn impedance_matched(tensor: DMat3) -> Result<Self, MediumError> {
         Self::new(tensor, tensor)
     }
@@ -324,7 +325,7 @@ impl Medium {
 }
 
 fn not_degenerate(quantity: &'static str, value: f64) -> Result<(), MediumError> {
-    if !value.is_finite() || value == 0.0 {
+    if !MAGNITUDES.contains(&value.abs()) {
         return Err(MediumError::Degenerate { quantity, value });
     }
     Ok(())

@@ -5,6 +5,9 @@ use super::principal_axes::principal_axes;
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 
+/// How large and how small principal values may be: beyond, squares of fields that differ by as much are lost.
+pub(super) const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
+
 /// A relative permittivity or permeability: a symmetric tensor, complex if the medium absorbs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tensor {
@@ -36,10 +39,10 @@ impl Tensor {
 
     /// The tensor, made symmetric to the last bit, if it can be that of a medium.
     pub(super) fn checked(self, quantity: &'static str) -> Result<Self, MediumError> {
-        if !self.re.is_finite() || !self.im.is_finite() {
+        let size = self.size();
+        if !self.is_finite() || !MAGNITUDES.contains(&size) {
             return Err(MediumError::Singular { quantity });
         }
-        let size = self.size();
         let skew = largest(&(self.re - self.re.transpose()))
             .max(largest(&(self.im - self.im.transpose())));
         if skew > 1e-12 * size {
@@ -47,7 +50,9 @@ impl Tensor {
         }
         let symmetric = |m: DMat3| (m + m.transpose()) * 0.5;
         let tensor = Self { re: symmetric(self.re), im: symmetric(self.im) };
-        if tensor.determinant().norm() <= 1e-30 * size.powi(3) {
+        // The largest entry of the inverse is that of its largest principal value, but for rounding and a small factor.
+        let inverse = tensor.inverse();
+        if !inverse.is_finite() || inverse.size() > 2.0 * MAGNITUDES.end() {
             return Err(MediumError::Singular { quantity });
         }
         if tensor.im != DMat3::ZERO {
@@ -57,6 +62,10 @@ impl Tensor {
             }
         }
         Ok(tensor)
+    }
+
+    fn is_finite(&self) -> bool {
+        self.re.is_finite() && self.im.is_finite()
     }
 
     /// The largest magnitude of an entry.

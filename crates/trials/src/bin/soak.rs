@@ -59,6 +59,10 @@ struct Arguments {
     /// The record: a line of JSON for each parcel.
     #[arg(long, default_value = "soak.jsonl")]
     record: PathBuf,
+    /// The parcel to begin with: two programs with records of their own can share the work, and the lines of both be put
+    /// into one record.
+    #[arg(long, default_value_t = 0)]
+    first: u64,
     /// Ends after so many seconds, whatever has been done.
     #[arg(long)]
     seconds: Option<u64>,
@@ -91,7 +95,7 @@ fn soak(arguments: &Arguments) -> io::Result<bool> {
         let watch = Arc::new(Watch::new());
         watch.clone().begin(record.clone());
         let in_time = || arguments.seconds.is_none_or(|most| start.elapsed().as_secs() < most);
-        for number in (0..).filter(|number| !done.contains(number)) {
+        for number in (arguments.first..).filter(|number| !done.contains(number)) {
             if rays >= arguments.rays || !in_time() {
                 break;
             }
