@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["image_array", "is_image_array", "numbers", "tensors", "vectors"]
+__all__ = ["common_length", "image_array", "is_image_array", "numbers", "tensors", "vectors"]
 
 
 def numbers(name: str, value: Any, expected: str, *, allow_complex: bool = False) -> NDArray[Any]:
@@ -47,6 +47,15 @@ def tensors(name: str, value: Any) -> NDArray[np.complex128]:
     if array.ndim != 3 or array.shape[1:] != (3, 3):
         raise ValueError(f"{name} has the shape {array.shape}; expected {expected}")
     return array
+
+
+def common_length(lengths: dict[str, int]) -> int:
+    """The one length of arrays of which those with a single row stand for as many as there are."""
+    longest = max(lengths.values(), key=lambda length: (length != 1, length))
+    if any(length not in (1, longest) for length in lengths.values()):
+        listed = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        raise ValueError(f"the arrays differ in their rows: {listed}; expected as many in each, or one")
+    return longest
 
 
 def is_image_array(value: Any) -> bool:

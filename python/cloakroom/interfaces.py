@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _cloakroom
-from ._arrays import tensors, vectors
+from ._arrays import common_length, tensors, vectors
 from ._progress import Progress, told
-from .rays import _common_length
 
 __all__ = ["Interface", "Medium", "Modes", "interface"]
 
@@ -119,7 +118,7 @@ def interface(
     for name, medium in (("incident", near), ("transmitted", beyond)):
         if medium is not None:
             lengths[f"{name}.permittivity"], lengths[f"{name}.permeability"] = map(len, medium)
-    count = _common_length(lengths)
+    count = common_length(lengths)
     with told(progress, "solving") as tell:
         arrays = _cloakroom.interface(
             near,

@@ -118,7 +118,9 @@ def sweep(
     Raises
     ------
     TypeError, ValueError
-        If a key does not exist, a value does not fit, or there are none.
+        If a key does not exist, a value does not fit, or there are none; if the file's ending is another.
+    OSError
+        If the file cannot be written; this is told before the work where it can be.
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene is a {type(scene).__name__}; expected a Scene")
@@ -191,7 +193,10 @@ def flux(
     Raises
     ------
     TypeError, ValueError
-        If the scene has no device, the receiver is not behind the devices, or a number is out of its limits.
+        If the scene has no device, the receiver is not behind the devices, or a number is out of its limits; if the
+        file's ending is another.
+    OSError
+        If the file cannot be written; this is told before the work where it can be.
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene is a {type(scene).__name__}; expected a Scene")
@@ -213,6 +218,9 @@ def flux(
             raise ValueError(f"{name} is {count}; expected a whole number that fits into 32 bits")
     if not np.isfinite(tilt):
         raise ValueError(f"tilt is {tilt}; expected a finite angle in degrees")
+    file = None if path is None else os.fspath(path)
+    if file is not None and not file.lower().endswith(".npz"):
+        raise ValueError(f"path is {file!r}; expected the name of an .npz")
     with told(progress, "tracing") as tell:
         return _cloakroom.flux(
             scene._native,
@@ -220,7 +228,7 @@ def flux(
             float(tilt),
             sun,
             [int(count) for count in counts.values()],
-            None if path is None else os.fspath(path),
+            file,
             tell,
         )
 

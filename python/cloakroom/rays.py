@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _cloakroom
-from ._arrays import vectors
+from ._arrays import common_length, vectors
 from ._progress import Progress, told
 from .scenes import Scene
 
@@ -134,7 +134,7 @@ def trace(
     given = {"origins": start, "directions": along}
     if fields is not None:
         given["polarization"] = fields
-    count = _common_length({name: len(array) for name, array in given.items()})
+    count = common_length({name: len(array) for name, array in given.items()})
     spread = {name: np.broadcast_to(array, (count, 3)) for name, array in given.items()}
     with told(progress, "tracing") as tell:
         arrays = _cloakroom.trace(
@@ -147,12 +147,3 @@ def trace(
             tell,
         )
     return Traced(**arrays)
-
-
-def _common_length(lengths: dict[str, int]) -> int:
-    """The one length of arrays of which those with a single row stand for as many as there are."""
-    longest = max(lengths.values(), key=lambda length: (length != 1, length))
-    if any(length not in (1, longest) for length in lengths.values()):
-        listed = ", ".join(f"{name} {length}" for name, length in lengths.items())
-        raise ValueError(f"the arrays differ in their rows: {listed}; expected as many in each, or one")
-    return longest

@@ -52,18 +52,7 @@ pub fn export_table(
     supervised(py, None, |_| {
         let bench = scene.bench().map_err(|error| scene.located(&error))?;
         let segments = material::segments(scene.scene(), &bench, device).map_err(failure)?;
-        let text = match path.extension().and_then(|ending| ending.to_str()) {
-            Some("csv") => material::segments_csv(&segments),
-            Some("json") => material::segments_json(&segments).map_err(value_error)?,
-            _ => {
-                let path = path.display();
-                return Err(value_error(format!(
-                    "cannot tell the format of {path} by its ending; a table is a .csv or a .json"
-                )));
-            }
-        };
-        output::write_whole(&path, |out| out.write_all(text.as_bytes()))
-            .map_err(|error| output_error(&error))
+        material::write_segments(&segments, &path).map_err(|error| output_error(&error))
     })?
 }
 

@@ -8,8 +8,10 @@ use crate::supervision::supervised;
 use cloakroom::flux::{self as light, Direction, FluxError, Sampling};
 use cloakroom::measure::verification::{self, VerificationError};
 use cloakroom::measure::{
-    self, Plan, QualityError, Region, Sweep, TableFormat, View, quality as measured_quality,
+    self, Plan, QualityError, Region, Sweep, TableError, TableFormat, View,
+    quality as measured_quality,
 };
+use cloakroom::output;
 use cloakroom::photograph::ImageSource;
 use cloakroom::render::RenderError;
 use ndarray::{ArrayD, IxDyn};
@@ -17,7 +19,7 @@ use numpy::{IntoPyArray, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyFileNotFoundError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A picture as it may be handed over: the channels of one, an image, or the name of a file.
 fn view(object: &Bound<'_, PyAny>) -> PyResult<View> {
@@ -77,15 +79,9 @@ pub fn sweep(
     path: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<String> {
-    let format = path.as_ref().map(|path| {
-        TableFormat::of(path).ok_or_else(|| {
-            let path = path.display();
-            value_error(format!(
-                "cannot tell the format of {path} by its ending; use .csv, .npz, .svg or .png"
-            ))
-        })
-    });
-    let format = format.transpose()?;
+    let format = path.as_deref().map(TableFormat::of).transpose();
+    let format = format.map_err(|error| output_error(&error))?;
+    check_writable(path.as_deref())?;
     let sweeps: Vec<Sweep> =
         sweeps.into_iter().map(|(key, values)| Sweep { key, values }).collect();
     let table = supervised(py, progress.as_ref(), |watch| {
@@ -95,9 +91,17 @@ pub fn sweep(
     })??;
     if let (Some(path), Some(format)) = (&path, format) {
         let plot: Vec<String> = Vec::new();
-        table.write(format, &plot, path).map_err(value_error)?;
+        table.write(format, &plot, path).map_err(|error| match error {
+            TableError::Output(error) => output_error(&error),
+            error => value_error(error),
+        })?;
     }
     serde_json::to_string(&table.to_json()).map_err(value_error)
+}
+
+/// Says before long work that a file cannot be written.
+fn check_writable(path: Option<&Path>) -> PyResult<()> {
+    path.map_or(Ok(()), output::check_writable).map_err(|error| output_error(&error))
 }
 
 fn quality_error(error: QualityError) -> PyErr {
@@ -137,6 +141,7 @@ pub fn flux<'py>(
     path: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    check_writable(path.as_deref())?;
     let receiver = &scene.scene().receiver;
     let directions: Vec<Direction> = match sun {
         Some([latitude, declination]) => light::sun_day(receiver, latitude, declination, 0.5),

@@ -89,6 +89,8 @@ def test_bad_sweeps_are_told(cloak: Scene, tmp_path) -> None:
         assert message in str(raised.value)
     with pytest.raises(ValueError, match="cannot tell the format"):
         sweep(cloak, {"device.0.rotation": [1]}, tmp_path / "a.txt")
+    with pytest.raises(OSError, match="cannot write"):
+        sweep(cloak, {"device.0.rotation": [1]}, tmp_path / "none" / "a.csv")
     with pytest.raises(TypeError, match="scene is a str"):
         sweep("a", {})  # type: ignore[arg-type]
 
@@ -124,6 +126,8 @@ def test_bad_flux_is_told(cloak: Scene) -> None:
         ({"samples": 1}, ValueError, "samples"),
         ({"tilt": float("inf")}, ValueError, "tilt is inf"),
         ({"angles": [95]}, ValueError, "does not come from the front"),
+        ({"path": "a.csv"}, ValueError, "path is 'a.csv'; expected the name of an .npz"),
+        ({"path": "nowhere/a.npz"}, OSError, "cannot write nowhere/a.npz"),
     ]:
         with pytest.raises(error) as raised:
             flux(cloak, **arguments)

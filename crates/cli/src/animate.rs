@@ -30,7 +30,7 @@ pub fn run(arguments: &AnimateArguments, stop: &AtomicBool) -> Result<(), Failur
         format.check().map_err(Failure::from_error)?;
         output::check_writable(path).map_err(Failure::from_error)?;
     }
-    scene::use_threads(arguments.threads)?;
+    scene::use_threads(&arguments.threads)?;
     let mut projector = Projector::with_map_range(arguments.map_range);
     let scenes = scenes(arguments, &timeline, range.clone(), &mut projector)?;
     let folder = if format == FilmFormat::Frames { path.clone() } else { frames_beside(path) };

@@ -84,6 +84,14 @@ pub struct SceneArguments {
     pub overrides: Vec<String>,
 }
 
+/// How many threads work.
+#[derive(Args, Debug)]
+pub struct ThreadsArguments {
+    /// Number of threads; all cores if absent.
+    #[arg(long = "threads", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub count: Option<u16>,
+}
+
 /// Arguments of `render`.
 #[derive(Args, Debug)]
 pub struct RenderArguments {
@@ -100,9 +108,9 @@ pub struct RenderArguments {
     /// `merge` puts them together. Tiles are .npz or .png; even edges save work.
     #[arg(long, value_name = "LEFT,TOP,WIDTH,HEIGHT")]
     pub tile: Option<Tile>,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
+    /// How many threads work.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
 
 /// Arguments of `merge`.
@@ -147,9 +155,9 @@ pub struct AnimateArguments {
     /// The range of a map's colors (`picture.map`), in ns for times and as shares for powers.
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, value_parser = map_range)]
     pub map_range: Option<[f64; 2]>,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
+    /// How many threads work.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
 
 /// Arguments of `trace`.
@@ -164,9 +172,9 @@ pub struct TraceArguments {
     /// Prune branches below this share of the launched power [default: the scene's, else 1e-9].
     #[arg(long, value_name = "P")]
     pub min_power: Option<f64>,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
+    /// How many threads work.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
 
 /// Arguments of `pulses`.
@@ -230,9 +238,9 @@ pub struct PanelArguments {
     /// Samples per pixel.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub samples: u32,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
+    /// How many threads work.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
 
 /// Arguments of `view`.
@@ -249,14 +257,10 @@ pub struct ViewArguments {
     /// Do not open the browser; the address is printed.
     #[arg(long)]
     pub no_open: bool,
-    /// Number of threads that render; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
+    /// How many threads work.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
-
-/// A rectangle of a picture: left column, top row, width and height in pixels.
-#[derive(Clone, Copy, Debug)]
-pub struct Rectangle(pub [usize; 4]);
 
 /// Arguments of `devices`.
 #[derive(Args, Debug)]

@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// Compares two pictures.
 pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
-    scene::use_threads(arguments.threads)?;
+    scene::use_threads(&arguments.threads)?;
     let read = |path: &Path| View::read(path).map_err(Failure::from_error);
     let (first, second) = (read(&arguments.first)?, read(&arguments.second)?);
     let region = match (&arguments.mask, arguments.region) {
@@ -17,7 +17,7 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
             Some(Region::bright(&read(mask)?).map_err(|error| in_mask(mask, &error))?)
         }
         (None, Some(rectangle)) => {
-            Some(Region::rectangle(&first, rectangle.0).map_err(Failure::from_error)?)
+            Some(Region::rectangle(&first, rectangle).map_err(Failure::from_error)?)
         }
         (None, None) => None,
     };

@@ -12,7 +12,7 @@ use std::sync::atomic::AtomicBool;
 
 /// Writes the material of a device.
 pub fn run(arguments: &ExportArguments, stop: &AtomicBool) -> Result<(), Failure> {
-    scene::use_threads(arguments.threads)?;
+    scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene)?;
     let bench = render::bench(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
     if arguments.table {
@@ -51,21 +51,8 @@ fn grid(
 }
 
 fn table(arguments: &ExportArguments, loaded: &Loaded, bench: &Bench) -> Result<(), Failure> {
-    let path = &arguments.output;
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     let segments = material::segments(&loaded.scene, bench, arguments.device).map_err(failure)?;
-    let text = match ending.as_deref() {
-        Some("csv") => material::segments_csv(&segments),
-        Some("json") => material::segments_json(&segments).map_err(Failure::from_error)?,
-        _ => {
-            let message = format!(
-                "cannot tell the format of {} by its ending; a table is a .csv or a .json",
-                path.display()
-            );
-            return Err(Failure::Failed(message));
-        }
-    };
-    output::write_whole(path, |out| out.write_all(text.as_bytes())).map_err(Failure::from_error)
+    material::write_segments(&segments, &arguments.output).map_err(Failure::from_error)
 }
 
 fn failure(error: MaterialError) -> Failure {

@@ -18,7 +18,7 @@ use std::sync::atomic::AtomicBool;
 /// Makes panels and sheets.
 pub fn run(arguments: &FiguresArguments, stop: &AtomicBool) -> Result<(), Failure> {
     let chosen = paper::select(&arguments.only).map_err(Failure::Usage)?;
-    scene::use_threads(arguments.panels.threads)?;
+    scene::use_threads(&arguments.panels.threads)?;
     panels::make_folder(&arguments.out)?;
     let _busy = interruption::busy();
     let mut images = Images::default();

@@ -3,8 +3,9 @@
 use crate::arguments::FluxArguments;
 use crate::drawn::{self, DrawingFormat};
 use crate::report::{Failure, say};
-use crate::{interruption, progress, render, report, scene};
+use crate::{interruption, progress, quality, render, report, scene};
 use cloakroom::flux::{self, Direction, FluxError, FluxReport, Sampling};
+use cloakroom::measure::TableFormat;
 use cloakroom::output;
 use cloakroom::render::Supervision;
 use cloakroom::scene::Scene;
@@ -12,18 +13,14 @@ use std::fmt::Write;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// Pixels of a drawing's unit in a PNG.
-const PIXELS: f64 = 1.0;
-
 /// Measures the flux and writes every file asked for.
 pub fn run(arguments: &FluxArguments, stop: &AtomicBool) -> Result<(), Failure> {
+    let files = quality::formats(&arguments.outputs)?;
+    arguments.map.as_deref().map(drawn::format).transpose()?;
     for path in arguments.outputs.iter().chain(&arguments.map) {
-        if arguments.map.as_ref() == Some(path) || !is_data(path) {
-            drawn::format(path).map_err(|_| unknown(path))?;
-        }
         output::check_writable(path).map_err(Failure::from_error)?;
     }
-    scene::use_threads(arguments.threads)?;
+    scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene)?;
     let (directions, axis) = directions(arguments, &loaded.scene)?;
     let sampling =
@@ -42,8 +39,8 @@ pub fn run(arguments: &FluxArguments, stop: &AtomicBool) -> Result<(), Failure> 
     let mut rarities = cloakroom::trace::Rarities::default();
     measured.incidences.iter().for_each(|incidence| rarities += incidence.rarities);
     render::tell_rarities(&rarities);
-    for path in &arguments.outputs {
-        write(&measured, axis, path)?;
+    for (path, format) in files {
+        write(&measured, axis, format, path)?;
     }
     if let Some(path) = &arguments.map
         && let Some(map) = flux::flux_map(&measured, axis)
@@ -61,11 +58,6 @@ fn directions(
 ) -> Result<(Vec<Direction>, &'static str), Failure> {
     let receiver = &scene.receiver;
     if let Some([latitude, declination]) = arguments.sun {
-        if latitude.abs() > 90.0 || declination.abs() > 90.0 {
-            let message =
-                format!("--sun is {latitude},{declination}; both must be from -90 to 90 degrees");
-            return Err(Failure::Usage(message));
-        }
         let day = flux::sun_day(receiver, latitude, declination, 0.5);
         if day.is_empty() {
             return Err(Failure::Failed(
@@ -75,40 +67,27 @@ fn directions(
         return Ok((day, "Solar time (h)"));
     }
     let [from, to, step] = arguments.angles;
-    if !(step > 0.0 && to >= from && (to - from) / step < 10_000.0) {
-        let message = format!(
-            "--angles is {from}..{to}:{step}; the step must be above 0, the end not before the beginning"
-        );
-        return Err(Failure::Usage(message));
-    }
     let count = ((to - from) / step + 1e-9).floor() as u32;
     let angles: Vec<f64> = (0..=count).map(|k| from + f64::from(k) * step).collect();
     Ok((flux::across_range(receiver, &angles, arguments.tilt), "Angle of incidence (°)"))
 }
 
-/// Whether a file is one of data.
-fn is_data(path: &Path) -> bool {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-    matches!(ending.as_deref(), Some("csv" | "npz"))
-}
-
-fn unknown(path: &Path) -> Failure {
-    Failure::Failed(format!(
-        "cannot tell the format of {} by its ending; use .csv or .npz for data, .svg or .png for plots",
-        path.display()
-    ))
-}
-
-fn write(measured: &FluxReport, axis: &str, path: &Path) -> Result<(), Failure> {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-    match ending.as_deref() {
-        Some("npz") => flux::write_flux_npz(measured, path).map_err(Failure::from_error),
-        Some("csv") => {
+fn write(
+    measured: &FluxReport,
+    axis: &str,
+    format: TableFormat,
+    path: &Path,
+) -> Result<(), Failure> {
+    match format {
+        TableFormat::Npz => flux::write_flux_npz(measured, path).map_err(Failure::from_error),
+        TableFormat::Csv => {
             let text = flux::flux_csv(measured);
             output::write_whole(path, |out| out.write_all(text.as_bytes()))
                 .map_err(Failure::from_error)
         }
-        _ => save(&flux::flux_plot(measured, axis).draw(), "Flux on the receiver", measured, path),
+        TableFormat::Svg | TableFormat::Png => {
+            save(&flux::flux_plot(measured, axis).draw(), "Flux on the receiver", measured, path)
+        }
     }
 }
 
@@ -118,7 +97,7 @@ fn save(
     measured: &FluxReport,
     path: &Path,
 ) -> Result<(), Failure> {
-    let size = [drawing.size.x, drawing.size.y].map(|side| (side * PIXELS).round() as u32);
+    let size = [drawing.size.x, drawing.size.y].map(|side| side.round() as u32);
     if drawn::format(path)? == DrawingFormat::Png {
         say(&format!("{}: {} x {} pixels", path.display(), size[0], size[1]));
     }

@@ -17,7 +17,7 @@ const MAP: &str = "time_of_flight_difference";
 /// Makes the chosen pictures and maps, and the table if all are chosen.
 pub fn run(arguments: &GalleryArguments, stop: &AtomicBool) -> Result<(), Failure> {
     let chosen = gallery::select(&arguments.only).map_err(Failure::Usage)?;
-    scene::use_threads(arguments.panels.threads)?;
+    scene::use_threads(&arguments.panels.threads)?;
     panels::make_folder(&arguments.out)?;
     let _busy = interruption::busy();
     let (mut images, mut rows) = (Images::default(), Vec::new());

@@ -29,7 +29,7 @@ const PRINTED: [(&str, &str); 8] = [
 /// Measures every combination, writes every file asked for and prints the table.
 pub fn run(arguments: &QualityArguments, stop: &AtomicBool) -> Result<(), Failure> {
     let formats = formats(&arguments.outputs)?;
-    scene::use_threads(arguments.threads)?;
+    scene::use_threads(&arguments.threads)?;
     let sweeps: Vec<Sweep> = arguments
         .sweeps
         .iter()
@@ -75,15 +75,8 @@ fn failure(error: QualityError) -> Failure {
 }
 
 /// The files to write with their formats.
-fn formats(outputs: &[PathBuf]) -> Result<Vec<(&PathBuf, TableFormat)>, Failure> {
-    let format = |path| {
-        TableFormat::of(path).ok_or_else(|| {
-            Failure::Failed(format!(
-                "cannot tell the format of {} by its ending; use .csv, .npz, .svg or .png",
-                path.display()
-            ))
-        })
-    };
+pub fn formats(outputs: &[PathBuf]) -> Result<Vec<(&PathBuf, TableFormat)>, Failure> {
+    let format = |path| TableFormat::of(path).map_err(Failure::from_error);
     outputs.iter().map(|path| Ok((path, format(path)?))).collect()
 }
 

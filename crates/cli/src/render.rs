@@ -17,7 +17,7 @@ use std::sync::atomic::AtomicBool;
 /// Renders a scene and writes every file asked for.
 pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure> {
     let formats = formats(&arguments.outputs)?;
-    scene::use_threads(arguments.threads)?;
+    scene::use_threads(&arguments.threads)?;
     let data = formats.iter().any(|(_, format)| *format != Format::Png);
     let loaded =
         scene::load_with(&arguments.scene, channels(&arguments.channels, data)?.as_slice())?;
@@ -179,7 +179,7 @@ pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure
 pub fn tell_rarities(rarities: &Rarities) {
     if rarities.endless > 0 {
         say(&format!(
-            "note: {} branches of ray trees with more than 100000 surfaces were cut, the weakest first; their power is in `pruned`",
+            "note: {} branches of ray trees without end were cut, the weakest first; their power is in `pruned`",
             rarities.endless
         ));
     }

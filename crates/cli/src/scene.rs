@@ -1,6 +1,6 @@
 //! Scenes from files, and errors that point back into them.
 
-use crate::arguments::SceneArguments;
+use crate::arguments::{SceneArguments, ThreadsArguments};
 use crate::report::Failure;
 use cloakroom::render::StudioError;
 use cloakroom::scene_file::{self, Loaded};
@@ -22,8 +22,8 @@ pub fn located(loaded: &Loaded, error: &StudioError) -> Failure {
 }
 
 /// Lets the work use the given number of threads, or all cores.
-pub fn use_threads(threads: Option<u16>) -> Result<(), Failure> {
-    let threads = threads.map_or(0, usize::from);
+pub fn use_threads(threads: &ThreadsArguments) -> Result<(), Failure> {
+    let threads = threads.count.map_or(0, usize::from);
     cloakroom::threads::use_threads(threads)
         .map_err(|error| Failure::Failed(format!("cannot start {threads} threads: {error}")))
 }

@@ -11,7 +11,7 @@ use std::sync::atomic::AtomicBool;
 
 /// Traces the rays of a file through a scene.
 pub fn run(arguments: &TraceArguments, stop: &AtomicBool) -> Result<(), Failure> {
-    scene::use_threads(arguments.threads)?;
+    scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene)?;
     let bench = render::bench(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
     if let Some(p) = arguments.min_power.filter(|p| !(0.0..=1.0).contains(p)) {

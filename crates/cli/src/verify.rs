@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 
 /// Goes through the paper and prints what has been found.
 pub fn run(arguments: &VerifyArguments, stop: &AtomicBool) -> Result<(), Failure> {
-    scene::use_threads(arguments.threads)?;
+    scene::use_threads(&arguments.threads)?;
     let busy = interruption::busy();
     let bar = progress::bar(verification::steps(), "verifying");
     let findings = verify(&|| bar.inc(1), stop);

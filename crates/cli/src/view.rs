@@ -11,7 +11,7 @@ use std::sync::atomic::AtomicBool;
 
 /// Serves the page until Ctrl-C.
 pub fn run(arguments: &ViewArguments, stop: &'static AtomicBool) -> Result<(), Failure> {
-    scene::use_threads(arguments.threads)?;
+    scene::use_threads(&arguments.threads)?;
     let settings = settings(arguments)?;
     let _busy = interruption::busy();
     let mut told = Ok(());

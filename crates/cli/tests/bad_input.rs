@@ -223,14 +223,19 @@ fn overrides_are_pointed_at() {
 #[test]
 fn wrong_usage_is_another_status() {
     let desk = small("");
-    for arguments in [
-        &["render", "scene.toml"][..],
-        &["paint"],
-        &["figures", "--only", "6x"],
-        &["figures", "--size", "0x4"],
+    for (arguments, part) in [
+        (&["render", "scene.toml"][..], "--output"),
+        (&["paint"], "paint"),
+        (&["figures", "--only", "6x"], "6x"),
+        (&["figures", "--size", "0x4"], "WIDTHxHEIGHT"),
+        (&["flux", "scene.toml", "--sun", "91,0"], "LATITUDE,DECLINATION"),
+        (&["flux", "scene.toml", "--angles", "0..1:0.0001"], "at most 10000 angles"),
+        (&["render", "scene.toml", "-o", "out.png", "--threads", "0"], "--threads"),
     ] {
         let output = desk.cloakroom(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.contains(part), "{part:?} is not in {message:?}");
     }
 }
 
@@ -242,8 +247,7 @@ fn exports_that_cannot_be_made() {
     square.refuses_with(&export("0"), &["positive spacing"]);
     square.refuses_with(&export("4000000000x4000000000x4000000000"), &["MB of memory"]);
     square.refuses_with(&["export", "scene.toml", "-o", "out.png"], &[".npz, .vti or .csv"]);
-    square
-        .refuses_with(&["export", "scene.toml", "--table", "-o", "out.npz"], &[".csv or a .json"]);
+    square.refuses_with(&["export", "scene.toml", "--table", "-o", "out.npz"], &[".csv or .json"]);
     square.refuses_with(&["export", "scene.toml", "--device", "3", "-o", "out.npz"], &["device 3"]);
     square.refuses_with(
         &["export", "scene.toml", "--set", "device.0.show=bare", "-o", "out.npz"],
@@ -266,7 +270,7 @@ fn diagrams_and_fluxes_that_cannot_be_made() {
         &["flux", "scene.toml", "-o", "out.csv", "--set", "receiver.position=[5, 0, 0]"],
         &["device 0", "receiver"],
     );
-    square.refuses_with(&["flux", "scene.toml", "-o", "out.exr"], &[".csv or .npz"]);
+    square.refuses_with(&["flux", "scene.toml", "-o", "out.exr"], &[".csv, .npz"]);
     square.refuses_with(
         &["flux", "scene.toml", "--set", "receiver.normal=[0, 0, 0]"],
         &["normal is [0, 0, 0]"],

@@ -1,7 +1,7 @@
 //! The exported material against closed forms, and its files read back.
 
 use cloakroom::material::{
-    Frame, MaterialError, Region, Resolution, sample, segments, segments_csv, segments_json,
+    Frame, MaterialError, Region, Resolution, sample, segments, write_segments,
 };
 use cloakroom::output::{GridFile, GridValues, write_grid};
 use cloakroom::render::{Supervision, bench};
@@ -367,11 +367,16 @@ fn segments_have_the_axes_and_eigenvalues_of_the_paper() {
             let d = 14.1 / 2f64.sqrt();
             (x.abs() / d + y.abs() * 3f64.sqrt() / d - 1.0).abs() < 1e-12
         }));
-        let csv = segments_csv(&segments);
+        let folder = tempfile::tempdir().expect("a folder");
+        let written = |name: &str| {
+            let path = folder.path().join(name);
+            write_segments(&segments, &path).expect("written");
+            std::fs::read_to_string(path).expect("read")
+        };
+        let csv = written("a.csv");
         let widths: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
         assert_eq!(widths, [7 + 24 + 8; 6]);
-        let json = segments_json(&segments).expect("JSON");
-        let back: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        let back: serde_json::Value = serde_json::from_str(&written("a.JSON")).expect("JSON");
         assert_eq!(
             back[0]["permeability"]["values"][0],
             segments[0].permeability.expect("m").values[0]

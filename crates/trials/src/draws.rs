@@ -57,15 +57,6 @@ impl<'a> Draws<'a> {
         Self { source: Source::Seed(seed) }
     }
 
-    /// Whether bytes are left; a seed never ends.
-    #[must_use]
-    pub fn has_more(&self) -> bool {
-        match self.source {
-            Source::Bytes(bytes) => !bytes.is_empty(),
-            Source::Seed(_) => true,
-        }
-    }
-
     fn bytes<const N: usize>(&mut self) -> [u8; N] {
         let mut taken = [0; N];
         match &mut self.source {

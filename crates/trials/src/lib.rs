@@ -12,8 +12,8 @@ mod scenes;
 mod trials;
 
 pub use draws::Draws;
-pub use rays::{BALANCE, Fault, examine, launch, starts_in_air};
-pub use scenes::{scene, scene_of};
+pub use rays::{Fault, examine, launch, starts_in_air};
+pub use scenes::scene_of;
 pub use trials::{TRIALS, Trial};
 
 /// Runs the trial of a name.

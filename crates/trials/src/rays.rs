@@ -6,7 +6,7 @@ use glam::DVec3;
 use optics::wave::transverse_basis;
 
 /// How far the account of the power may be off, of what is launched.
-pub const BALANCE: f64 = 1e-9;
+pub(crate) const BALANCE: f64 = 1e-9;
 
 /// How far a leaf's direction may be from unit length, and |E|² from its power.
 const SOUND: f64 = 1e-9;

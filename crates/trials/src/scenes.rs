@@ -11,8 +11,7 @@ use toml::{Table, Value};
 const LOSS: f64 = 1e-6;
 
 /// A scene of one to three devices, as the tables of a scene file.
-#[must_use]
-pub fn scene(draws: &mut Draws<'_>) -> Table {
+pub(crate) fn scene(draws: &mut Draws<'_>) -> Table {
     let count = 1 + draws.below(8) / 3;
     let devices = (0..count).map(|_| {
         let entry = *draws.pick(CATALOGUE);
@@ -127,8 +126,7 @@ fn samples(draws: &mut Draws<'_>, limits: Limits) -> Value {
 }
 
 /// A permittivity or a permeability: scalar, diagonal or full; mostly lossless and definite.
-#[must_use]
-pub fn tensor(draws: &mut Draws<'_>) -> Value {
+pub(crate) fn tensor(draws: &mut Draws<'_>) -> Value {
     let pair = |re: f64, im: f64| Value::Array(vec![re.into(), im.into()]);
     let shape = draws.below(6);
     let mut lossy = draws.chance(60);

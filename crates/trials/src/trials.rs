@@ -38,7 +38,7 @@ pub static TRIALS: &[Trial] = &[
     Trial { name: "interfaces", run: interfaces, seeds: random_bytes },
     Trial { name: "images", run: images, seeds: image_files },
     Trial { name: "picture_files", run: picture_files, seeds: picture_bytes },
-    Trial { name: "page_messages", run: page_messages, seeds: page_texts },
+    Trial { name: "page_messages", run: page::say, seeds: page::messages },
     Trial { name: "physics", run: physics, seeds: random_bytes },
 ];
 
@@ -252,11 +252,6 @@ fn picture_files(bytes: &[u8]) {
     }
 }
 
-/// Messages of a page, one a line.
-fn page_messages(bytes: &[u8]) {
-    page::say(bytes);
-}
-
 /// Random rays through random devices.
 fn physics(bytes: &[u8]) {
     let mut draws = Draws::from_bytes(bytes);
@@ -360,10 +355,6 @@ fn picture_bytes() -> Vec<Vec<u8>> {
         std::fs::read(path).expect("read")
     };
     vec![file("a.npz"), file("a.png")]
-}
-
-fn page_texts() -> Vec<Vec<u8>> {
-    page::messages()
 }
 
 #[cfg(test)]

@@ -158,7 +158,7 @@ export function buildControls(device, kind, changed) {
     const setter = (name) => (value, moving) => {
       if (value === undefined) delete device[name];
       else device[name] = value;
-      changed(moving, name);
+      changed(moving);
     };
     const placement = ["length", ...(kind.core_can_be_open ? ["core"] : []), "position", "imperfection"];
     for (const name of [...kind.own_keys, ...placement]) {

@@ -74,7 +74,7 @@ export function watchKeys({ ready, play, rotate, show, split }) {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
     const at = event.target;
-    const typing = at instanceof HTMLInputElement && ["number", "text"].includes(at.type);
+    const typing = at instanceof HTMLInputElement && at.type === "number";
     if (typing || at instanceof HTMLSelectElement) return;
     const pressing = at instanceof HTMLButtonElement || at instanceof HTMLInputElement || at.tagName === "SUMMARY";
     const step = event.shiftKey ? 10 : 1;

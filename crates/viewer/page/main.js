@@ -218,7 +218,9 @@ function bring(file) {
     failed({ id: null, message: `a photograph may have ${hello.largest_photograph_bytes >> 20} MiB` });
     return;
   }
-  const name = file.name.replace(/^[.\-]+/, "").replaceAll(/[\\/:\p{Cc}]/gu, "_").slice(-60) || "photograph";
+  // The server takes plain names of 200 bytes: the end, with what kind of file it is.
+  const end = Array.from(file.name.replaceAll(/[\\/:\p{Cc}\p{Cs}]/gu, "_")).slice(-50).join("");
+  const name = end.replace(/^[.\-]+/, "") || "photograph";
   connection.photograph(name, file);
 }
 
@@ -313,7 +315,7 @@ watchDivider(state, () => {
   picture.draw(state);
 });
 
-watchPointer(state, { changed, follow: (at) => follow(at), resetCamera, say: (words) => ($("live").textContent = words) });
+watchPointer(state, { changed, follow, resetCamera, say: (words) => ($("live").textContent = words) });
 watchKeys({
   ready: () => hello !== null,
   play,

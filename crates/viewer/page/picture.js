@@ -13,7 +13,7 @@ const views = new Map();
 export const picture = {
   canvas,
 
-  // Takes a picture; `full` is the size of the finished one.
+  // Takes a picture of a view.
   show(caption, image, state) {
     let view = views.get(caption.view);
     if (!view) views.set(caption.view, (view = document.createElement("canvas")));

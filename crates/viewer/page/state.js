@@ -63,7 +63,8 @@ export class State {
       const binary = atob(fragment.replaceAll("-", "+").replaceAll("_", "/"));
       const bytes = Uint8Array.from(binary, (character) => character.charCodeAt(0));
       const said = JSON.parse(new TextDecoder().decode(bytes));
-      if (typeof said.scene !== "object" || said.scene === null) return false;
+      const table = (value) => typeof value === "object" && value !== null && !Array.isArray(value);
+      if (![said.scene, said.scene.camera ?? {}, ...(said.scene.device ?? [])].every(table)) return false;
       const number = (value, low, high, fallback) =>
         Number.isFinite(value) ? Math.min(high, Math.max(low, value)) : fallback;
       this.scene = said.scene;

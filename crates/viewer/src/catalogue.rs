@@ -20,14 +20,11 @@ pub(crate) fn greeting(opened: &Opened) -> Value {
         .filter_map(|exhibit| {
             let scene = tables(exhibit.scene).ok()?;
             let words = format!("{}. {}", exhibit.map, exhibit.reference);
-            Some(json!({
-                "name": exhibit.name, "title": exhibit.title, "words": words, "scene": scene,
-            }))
+            Some(json!({ "name": exhibit.name, "words": words, "scene": scene }))
         })
         .collect();
     json!({
         "hello": {
-            "version": env!("CARGO_PKG_VERSION"),
             "name": opened.name,
             "scene": opened.tables,
             "kinds": kinds,

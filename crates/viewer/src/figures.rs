@@ -88,7 +88,7 @@ pub(crate) fn figures(
 }
 
 fn likeness(figures: &Figures) -> Value {
-    json!({ "structural_similarity": figures.structural_similarity, "flip": figures.flip })
+    json!({ "structural_similarity": figures.structural_similarity })
 }
 
 /// The same scene in few pixels.

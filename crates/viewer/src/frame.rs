@@ -22,8 +22,6 @@ pub(crate) struct Caption {
     pub finished: bool,
     /// Whether this is the last of the views that are shown beside each other.
     pub last: bool,
-    /// How long it took to render, ms.
-    pub milliseconds: f64,
     /// The scale of a map.
     pub scale: Option<Scale>,
 }

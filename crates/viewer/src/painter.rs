@@ -258,7 +258,6 @@ impl Painter<'_> {
             min_power: scene.trace.min_power,
             finished: pass.finished,
             last,
-            milliseconds: time.as_secs_f64() * 1e3,
             scale,
         };
         self.outbox.send_bytes(encode(&caption, &image)).map_err(|_| PaintError::Gone)?;

@@ -84,7 +84,7 @@ fn answer(scene: &Scene, studio: &Studio<'_>, ray: &Ray) -> Value {
         list.pulses.truncate(MOST_PULSES);
         serde_json::to_value(list).ok()
     });
-    json!({ "id": ray.id, "pixel": pixel, "size": size, "lines": drawn, "pulses": list })
+    json!({ "id": ray.id, "pixel": pixel, "lines": drawn, "pulses": list })
 }
 
 /// A piece of the tree; a leaf ends on the photograph if it gets there.

@@ -15,20 +15,22 @@ const LEAST_POWER: f64 = 1e-7;
 /// Finest tolerance that a page may ask for, cm.
 const LEAST_TOLERANCE: f64 = 1e-9;
 
+/// Where a scene names its photograph.
+const PHOTOGRAPH: &str = "/photograph/image";
+
 /// What scenes from pages are called in messages.
 const NAME: &str = "scene";
 
-/// The scene that pages begin with, and the folder and the images that came with it.
+/// The scene that pages begin with, and the folder and the files that came with it.
 #[derive(Clone, Debug)]
 pub(crate) struct Opened {
     /// Its tables.
-    pub tables: SceneTables,
+    pub tables: Value,
     /// What it is called.
     pub name: String,
     folder: PathBuf,
-    images: Vec<ImageSource>,
-    /// The files that hold numbers on a grid.
-    grids: Vec<String>,
+    /// The files that it names.
+    files: Vec<PathBuf>,
 }
 
 impl Opened {
@@ -38,30 +40,19 @@ impl Opened {
     ///
     /// If its text cannot be read as TOML, which it has been read as before.
     pub fn new(loaded: &Loaded, name: &str, folder: &Path) -> Result<Self, String> {
-        let mut tables = tables(&loaded.scene.source)?;
-        let images = images(&loaded.scene);
-        // A file named in an override is relative to where the user is.
-        if let (ImageSource::File(path), Some(Value::Object(photograph))) =
-            (&loaded.scene.photograph.image, tables.get_mut("photograph"))
-            && photograph.get("image").and_then(Value::as_str).map(|text| folder.join(text))
-                != Some(path.clone())
-            && let Ok(path) = std::path::absolute(path)
-        {
-            photograph.insert("image".to_owned(), path.display().to_string().into());
+        let mut tables = Value::Object(tables(&loaded.scene.source)?);
+        let mut known = Vec::new();
+        for (place, path) in files(&loaded.scene) {
+            let absolute = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
+            // A file named in an override is relative to where the user is.
+            if let Some(entry) = tables.pointer_mut(&place)
+                && entry.as_str().is_some_and(|text| folder.join(text) != path)
+            {
+                *entry = absolute.display().to_string().into();
+            }
+            known.extend([path, absolute]);
         }
-        let images = images
-            .into_iter()
-            .flat_map(|source| match &source {
-                ImageSource::File(path) => {
-                    let absolute = std::path::absolute(path).map(ImageSource::File).ok();
-                    vec![Some(source), absolute]
-                }
-                ImageSource::BuiltIn(_) | ImageSource::Memory(_) => vec![Some(source)],
-            })
-            .flatten()
-            .collect();
-        let grids = grids(&loaded.scene).map(str::to_owned).collect();
-        Ok(Self { tables, name: name.to_owned(), folder: folder.to_owned(), images, grids })
+        Ok(Self { tables, name: name.to_owned(), folder: folder.to_owned(), files: known })
     }
 
     /// Where a photograph of that name would lie, were it a file of the scene's folder. Uploaded ones are hung up
@@ -86,22 +77,15 @@ impl Opened {
         // What the page has brought is the photograph and nothing else: on a body or around the scene a file of that
         // name would be looked for.
         let brought = uploaded == Some(&loaded.scene.photograph.image);
-        for (number, image) in images(&loaded.scene).into_iter().enumerate() {
-            let known = matches!(image, ImageSource::BuiltIn(_))
-                || self.images.contains(&image)
-                || (number == 0 && brought);
-            if !known {
-                return Err(
-                    "a page can show the images that came with the program or with the scene that \
-                            was opened, and a photograph dropped onto it; it can open no file"
-                        .to_owned(),
-                );
-            }
-        }
-        if grids(&loaded.scene).any(|file| !self.grids.iter().any(|known| known == file)) {
-            return Err("a page can take the grids of the scene that was opened, and rows of numbers; it can open no \
-                        file"
-                .to_owned());
+        let known = |(place, path): (String, PathBuf)| {
+            self.files.contains(&path) || (brought && place == PHOTOGRAPH)
+        };
+        if !files(&loaded.scene).into_iter().all(known) {
+            return Err(
+                "a page can show the images, and take the grids, that came with the program or with the scene that \
+                 was opened, and a photograph dropped onto it; it can open no file"
+                    .to_owned(),
+            );
         }
         let trace = &mut loaded.scene.trace;
         trace.min_power = trace.min_power.max(LEAST_POWER);
@@ -162,29 +146,27 @@ fn value_of(value: &Value) -> Result<toml::Value, String> {
     })
 }
 
-/// Every image that a scene shows, its photograph first.
-fn images(scene: &Scene) -> Vec<ImageSource> {
-    let mut images = vec![scene.photograph.image.clone()];
-    if let SurroundingsSettings::Image(image) = &scene.surroundings {
-        images.push(image.clone());
+/// Every file that a scene names, images and grids, and where its tables name it: a JSON pointer.
+fn files(scene: &Scene) -> Vec<(String, PathBuf)> {
+    let mut files = Vec::new();
+    if let ImageSource::File(path) = &scene.photograph.image {
+        files.push((PHOTOGRAPH.to_owned(), path.clone()));
     }
-    images.extend(scene.devices.iter().filter_map(body_image));
-    images
-}
-
-/// The files that a scene takes numbers on a grid from.
-fn grids(scene: &Scene) -> impl Iterator<Item = &str> {
-    let keys = |device: &'_ DeviceSettings| {
-        let keys = device.entry.keys.iter();
-        keys.filter(|key| matches!(key.kind, KeyKind::Samples { .. })).map(|key| key.name)
-    };
-    let named = move |device| keys(device).map(move |key| (device, key));
-    scene.devices.iter().flat_map(named).filter_map(|(device, key)| {
-        match device.values.samples(key) {
-            Some(Sampled::InFile(file)) => Some(file),
-            Some(Sampled::Here(_)) | None => None,
+    if let SurroundingsSettings::Image(ImageSource::File(path)) = &scene.surroundings {
+        files.push(("/surroundings/image".to_owned(), path.clone()));
+    }
+    for (number, device) in scene.devices.iter().enumerate() {
+        if let Some(ImageSource::File(path)) = body_image(device) {
+            files.push((format!("/device/{number}/surface/image"), path));
         }
-    })
+        let keys = device.entry.keys.iter();
+        for key in keys.filter(|key| matches!(key.kind, KeyKind::Samples { .. })) {
+            if let Some(Sampled::InFile(file)) = device.values.samples(key.name) {
+                files.push((format!("/device/{number}/{}", key.name), file.into()));
+            }
+        }
+    }
+    files
 }
 
 /// The image on an opaque body.

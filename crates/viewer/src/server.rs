@@ -133,15 +133,11 @@ pub fn serve(
         ready(&format!("http://127.0.0.1:{port}/"));
         let closing = server.clone();
         let end = async move {
-            while !stop.load(Ordering::Relaxed) {
-                tokio::time::sleep(LOOK).await;
-            }
+            stopped(stop).await;
             closing.closing.send_replace(());
         };
         let ended = async {
-            while !stop.load(Ordering::Relaxed) {
-                tokio::time::sleep(LOOK).await;
-            }
+            stopped(stop).await;
             tokio::time::sleep(PATIENCE).await;
         };
         tokio::select! {
@@ -151,6 +147,13 @@ pub fn serve(
     });
     runtime.shutdown_timeout(PATIENCE);
     served.map_err(ViewerError::Run)
+}
+
+/// Waits until the server is to end.
+async fn stopped(stop: &AtomicBool) {
+    while !stop.load(Ordering::Relaxed) {
+        tokio::time::sleep(LOOK).await;
+    }
 }
 
 /// Reads the images of the first scene while the browser opens.

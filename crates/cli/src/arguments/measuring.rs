@@ -1,7 +1,7 @@
 //! Arguments of the commands that measure, draw and export.
 
-use super::values::{angles, grid, point, range, rectangle, size};
-use super::{Rectangle, SceneArguments};
+use super::values::{angles, grid, point, rectangle, size, sun, view};
+use super::{SceneArguments, ThreadsArguments};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use cloakroom::material::Resolution;
@@ -22,7 +22,7 @@ pub struct FluxArguments {
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
     /// Angles of incidence in the plane across z, degrees.
-    #[arg(long, value_name = "FROM..TO:STEP", allow_hyphen_values = true, default_value = "-60..60:10", value_parser = range, conflicts_with = "sun")]
+    #[arg(long, value_name = "FROM..TO:STEP", allow_hyphen_values = true, default_value = "-60..60:10", value_parser = angles, conflicts_with = "sun")]
     pub angles: [f64; 3],
     /// Tilt the light towards z, degrees.
     #[arg(
@@ -35,7 +35,7 @@ pub struct FluxArguments {
     pub tilt: f64,
     /// The sun over a day instead, from that latitude and with that declination (degrees; 23.44 at midsummer): the
     /// receiver lies flat, z points north.
-    #[arg(long, value_name = "LATITUDE,DECLINATION", allow_hyphen_values = true, value_parser = angles)]
+    #[arg(long, value_name = "LATITUDE,DECLINATION", allow_hyphen_values = true, value_parser = sun)]
     pub sun: Option<[f64; 2]>,
     /// Rays in each of the independent samples.
     #[arg(long, value_name = "N", default_value_t = 4096)]
@@ -46,9 +46,9 @@ pub struct FluxArguments {
     /// Cells of the map across the receiver.
     #[arg(long, value_name = "N", default_value_t = 60)]
     pub cells: u32,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
+    /// How many threads work.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
 
 /// Arguments of `compare`.
@@ -63,13 +63,13 @@ pub struct CompareArguments {
     pub mask: Option<PathBuf>,
     /// Compare also this rectangle: left column, top row, width and height in pixels.
     #[arg(long, value_name = "X,Y,W,H", conflicts_with = "mask", value_parser = rectangle)]
-    pub region: Option<Rectangle>,
+    pub region: Option<[usize; 4]>,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
+    /// How many threads work.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
 
 /// Arguments of `quality`.
@@ -99,9 +99,9 @@ pub struct QualityArguments {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
+    /// How many threads work.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
 
 /// Arguments of `diagram`.
@@ -142,7 +142,7 @@ pub struct DiagramArguments {
     pub min_power: f64,
     /// Show space in parallel projection instead of the cross-section, seen from that azimuth and elevation, in
     /// degrees, as in 30,20.
-    #[arg(long, value_name = "AZIMUTH,ELEVATION", allow_hyphen_values = true, value_parser = angles)]
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", allow_hyphen_values = true, value_parser = view)]
     pub space: Option<[f64; 2]>,
     /// With --space: layers of rays one behind the other along z.
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -178,9 +178,9 @@ pub struct ExportArguments {
     /// the tensors, in the device's frame.
     #[arg(long, conflicts_with_all = ["grid", "frame"])]
     pub table: bool,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
+    /// How many threads work.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }
 
 /// Arguments of `verify`.
@@ -189,7 +189,7 @@ pub struct VerifyArguments {
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
-    /// Number of threads; all cores if absent.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    pub threads: Option<u16>,
+    /// How many threads work.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
 }

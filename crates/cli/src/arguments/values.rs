@@ -1,6 +1,5 @@
 //! Values on the command line, read.
 
-use super::Rectangle;
 use cloakroom::material::Resolution;
 
 /// Reads a point such as -30,0,0.
@@ -8,18 +7,33 @@ pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
     numbers(text).ok_or_else(|| "write X,Y,Z in cm, as in -30,0,0".to_owned())
 }
 
-/// Reads two angles such as 30,20.
-pub(super) fn angles(text: &str) -> Result<[f64; 2], String> {
+/// Reads from where space is seen, such as 30,20.
+pub(super) fn view(text: &str) -> Result<[f64; 2], String> {
     numbers(text).ok_or_else(|| "write AZIMUTH,ELEVATION in degrees, as in 30,20".to_owned())
 }
 
-/// Reads a range such as -60..60:5.
-pub(super) fn range(text: &str) -> Result<[f64; 3], String> {
+/// Reads where and when the sun is, such as 49,23.44.
+pub(super) fn sun(text: &str) -> Result<[f64; 2], String> {
+    numbers(text)
+        .filter(|[latitude, declination]| latitude.abs().max(declination.abs()) <= 90.0)
+        .ok_or_else(|| {
+            "write LATITUDE,DECLINATION, each from -90 to 90 degrees, as in 49,23.44".to_owned()
+        })
+}
+
+/// Reads angles such as -60..60:5.
+pub(super) fn angles(text: &str) -> Result<[f64; 3], String> {
     let parts = text.split_once("..").and_then(|(from, rest)| {
         let (to, step) = rest.split_once(':')?;
         numbers(&format!("{from},{to},{step}"))
     });
-    parts.ok_or_else(|| "write FROM..TO:STEP in degrees, as in -60..60:5".to_owned())
+    parts
+        .filter(|[from, to, step]| *step > 0.0 && to >= from && (to - from) / step < 10_000.0)
+        .ok_or_else(|| {
+            "write FROM..TO:STEP in degrees, as in -60..60:5, the step above 0, the end not before the beginning, \
+             at most 10000 angles"
+                .to_owned()
+        })
 }
 
 /// Reads the first and the last of some frames, such as 0..29.
@@ -68,9 +82,9 @@ pub(super) fn pixel(text: &str) -> Result<[u32; 2], String> {
 }
 
 /// Reads a rectangle such as 100,50,200,150.
-pub(super) fn rectangle(text: &str) -> Result<Rectangle, String> {
+pub(super) fn rectangle(text: &str) -> Result<[usize; 4], String> {
     let numbers: Option<Vec<usize>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
-    numbers.and_then(|numbers| numbers.try_into().ok()).map(Rectangle).ok_or_else(|| {
+    numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| {
         "write X,Y,W,H in pixels: left column, top row, width, height, as in 100,50,200,150"
             .to_owned()
     })

@@ -118,8 +118,7 @@ impl FilmFormat {
     ///
     /// A sentence for any other ending.
     pub fn of(path: &Path) -> Result<Self, String> {
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
+        match output::ending(path).as_deref() {
             _ if path.is_dir() => Ok(Self::Frames),
             Some("gif") => Ok(Self::Gif),
             Some("png" | "apng") => Ok(Self::Apng),

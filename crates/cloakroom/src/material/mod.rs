@@ -7,7 +7,7 @@ mod segments;
 
 pub use grid::{Frame, Grid, Resolution};
 pub use sampling::{Region, Sampled, sample};
-pub use segments::{Segment, segments, segments_csv, segments_json};
+pub use segments::{Segment, segments, write_segments};
 
 use crate::device::{Filling, Show};
 use crate::scene::Scene;

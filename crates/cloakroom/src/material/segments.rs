@@ -2,12 +2,14 @@
 
 use super::{MaterialError, chosen, without_material};
 use crate::device::{Cell, Prism};
+use crate::output::{OutputError, ending, write_whole};
 use crate::scene::Scene;
 use crate::trace::Bench;
 use glam::{DMat3, DVec2, DVec3};
 use optics::medium::principal_axes;
 use serde::Serialize;
 use std::fmt::Write;
+use std::path::Path;
 
 /// A piece of a device: a prism of one medium, or a piece of metal. All in the device's frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -107,19 +109,22 @@ pub fn segments(
     Ok(segments)
 }
 
-/// Segments as JSON: an array of [`Segment`]s.
+/// Writes segments as the ending of the file's name asks for. `.json`: an array of [`Segment`]s. `.csv`: a line each with
+/// `segment`, `filling`, `z_min_cm`, `z_max_cm`, the optic axis, principal values 1 to 3 of both tensors with their axes,
+/// and the corners; what a segment does not have is left empty.
 ///
 /// # Errors
 ///
-/// If a number is not finite.
-pub fn segments_json(segments: &[Segment]) -> Result<String, serde_json::Error> {
-    serde_json::to_string_pretty(segments)
+/// If the ending is another, or the file cannot be written.
+pub fn write_segments(segments: &[Segment], path: &Path) -> Result<(), OutputError> {
+    match ending(path).as_deref() {
+        Some("csv") => write_whole(path, |out| out.write_all(csv(segments).as_bytes())),
+        Some("json") => write_whole(path, |out| Ok(serde_json::to_writer_pretty(out, segments)?)),
+        _ => Err(OutputError::unknown_format(path, ".csv or .json")),
+    }
 }
 
-/// Segments as CSV, a line each: `segment`, `filling`, `z_min_cm`, `z_max_cm`, the optic axis, principal values
-/// 1 to 3 of both tensors with their axes, and the corners. What a segment does not have is left empty.
-#[must_use]
-pub fn segments_csv(segments: &[Segment]) -> String {
+fn csv(segments: &[Segment]) -> String {
     let most = segments.iter().map(|segment| segment.corners_cm.len()).max().unwrap_or(0);
     let mut text =
         "segment,filling,z_min_cm,z_max_cm,optic_axis_x,optic_axis_y,optic_axis_z".to_owned();

@@ -3,7 +3,7 @@
 use super::quality::{QualityTable, UnknownColumn, find_column};
 use super::sweep::combinations;
 use crate::illustration::{Curve, CurvePoint, Drawing, IllustrationError, Plot, PlotPanel};
-use crate::output::{OutputError, write_png, write_whole};
+use crate::output::{OutputError, ending, write_png, write_whole};
 use ndarray::ArrayView1;
 use ndarray_npy::NpzWriter;
 use std::io;
@@ -44,16 +44,18 @@ pub enum TableError {
 }
 
 impl TableFormat {
-    /// The format that the ending of a file's name asks for, if it is one.
-    #[must_use]
-    pub fn of(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
-        match ending.as_str() {
-            "csv" => Some(Self::Csv),
-            "npz" => Some(Self::Npz),
-            "svg" => Some(Self::Svg),
-            "png" => Some(Self::Png),
-            _ => None,
+    /// The format that the ending of a file's name asks for.
+    ///
+    /// # Errors
+    ///
+    /// [`OutputError::UnknownFormat`] for any other ending.
+    pub fn of(path: &Path) -> Result<Self, OutputError> {
+        match ending(path).as_deref() {
+            Some("csv") => Ok(Self::Csv),
+            Some("npz") => Ok(Self::Npz),
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err(OutputError::unknown_format(path, ".csv, .npz, .svg or .png")),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Data on a regular grid of cells, into files: NPZ, VTK image data and CSV.
 
-use super::{OutputError, WriteSeek, write_whole};
+use super::{OutputError, WriteSeek, ending, write_whole};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use ndarray::{ArrayView1, ArrayView3, ArrayView5};
 use ndarray_npy::NpzWriter;
@@ -58,14 +58,13 @@ impl GridFormat {
     ///
     /// # Errors
     ///
-    /// [`OutputError::UnknownGridFormat`] for any other ending.
+    /// [`OutputError::UnknownFormat`] for any other ending.
     pub fn of(path: &Path) -> Result<Self, OutputError> {
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
+        match ending(path).as_deref() {
             Some("npz") => Ok(Self::Npz),
             Some("vti") => Ok(Self::Vti),
             Some("csv") => Ok(Self::Csv),
-            _ => Err(OutputError::UnknownGridFormat { path: path.to_owned() }),
+            _ => Err(OutputError::unknown_format(path, ".npz, .vti or .csv")),
         }
     }
 }

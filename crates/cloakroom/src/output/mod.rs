@@ -34,20 +34,12 @@ pub enum OutputError {
         reason: String,
     },
     /// The ending of the file's name is not that of a format.
-    #[error(
-        "cannot tell the format of {} by its ending; use .png, .exr or .npz", path.display()
-    )]
+    #[error("cannot tell the format of {} by its ending; use {known}", path.display())]
     UnknownFormat {
         /// Which file.
         path: PathBuf,
-    },
-    /// The ending of the file's name is not that of a format of data on grids.
-    #[error(
-        "cannot tell the format of {} by its ending; use .npz, .vti or .csv", path.display()
-    )]
-    UnknownGridFormat {
-        /// Which file.
-        path: PathBuf,
+        /// The endings there are for what it is to hold.
+        known: &'static str,
     },
     /// The picture has no image.
     #[error("the picture has no channel `{name}`")]
@@ -68,6 +60,11 @@ impl OutputError {
             _ => innermost(error).to_string(),
         };
         Self::Write { path: path.to_owned(), reason }
+    }
+
+    /// For a file whose name has none of the endings `known`.
+    pub(crate) fn unknown_format(path: &Path, known: &'static str) -> Self {
+        Self::UnknownFormat { path: path.to_owned(), known }
     }
 
     fn with_reason(path: &Path, reason: &str) -> Self {
@@ -91,6 +88,11 @@ fn innermost(error: &io::Error) -> &io::Error {
     inner
 }
 
+/// The ending of a file's name in small letters.
+pub(crate) fn ending(path: &Path) -> Option<String> {
+    path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase())
+}
+
 /// A format of picture files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -109,12 +111,11 @@ impl Format {
     ///
     /// [`OutputError::UnknownFormat`] for any other ending.
     pub fn of(path: &Path) -> Result<Self, OutputError> {
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
+        match ending(path).as_deref() {
             Some("png") => Ok(Self::Png),
             Some("exr") => Ok(Self::Exr),
             Some("npz") => Ok(Self::Npz),
-            _ => Err(OutputError::UnknownFormat { path: path.to_owned() }),
+            _ => Err(OutputError::unknown_format(path, ".png, .exr or .npz")),
         }
     }
 }

@@ -53,6 +53,29 @@ fn a_page_can_name_no_other_file() {
 }
 
 #[test]
+fn files_named_in_overrides_are_those_of_the_user() {
+    let folder = Path::new("/home/user/scenes");
+    let text = "[[device]]\nkind = 'body'\n[[device]]\nkind = 'graded'\nindex = 'mine.npy'\n";
+    let changes = [
+        "photograph.image=a.png",
+        "surroundings.image=b.png",
+        "device.0.surface.image=c.png",
+        "device.1.index=d.npy",
+    ];
+    for number in 0..=changes.len() {
+        let overrides: Vec<String> = changes[..number].iter().map(|&text| text.into()).collect();
+        let loaded = scene_file::parse(text, "a", folder, &overrides).expect("a scene");
+        let opened = Opened::new(&loaded, "a", folder).expect("tables");
+        let read = opened.read(&object(opened.tables.clone()), None).expect("its own scene");
+        let absolute = |scene| {
+            let paths = files(scene).into_iter().map(|(_, path)| std::path::absolute(path));
+            paths.collect::<Result<Vec<_>, _>>().expect("paths")
+        };
+        assert_eq!(absolute(&read.scene), absolute(&loaded.scene));
+    }
+}
+
+#[test]
 fn scenes_survive_the_way_there_and_back() {
     for exhibit in cloakroom::gallery::EXHIBITS {
         let tables = tables(exhibit.scene).expect(exhibit.name);
