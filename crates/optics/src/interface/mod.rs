@@ -122,8 +122,8 @@ pub fn split<const N: usize>(
     waves
 }
 
-/// Splits a wave as [`split`] does, and adds to `waves` those that have at least `least_power` in one of the
-/// polarizations: others need not be worked out. The power of those that are left out so.
+/// Splits a wave as [`split`] does, and adds to `waves` all that have `least_power` or more in one of the
+/// polarizations: others need not be worked out, and may be left out. The power of those that are.
 pub fn split_down_to<const N: usize>(
     incident_medium: &Medium,
     transmitted_medium: &Medium,

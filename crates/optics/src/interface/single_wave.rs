@@ -8,8 +8,7 @@ use glam::DVec3;
 use num_complex::Complex64;
 
 /// Splits a wave at the interface of two lossless media in which both polarizations share one wave
-/// vector, given with their wave surfaces: adds the outgoing waves of at least `least_power` to `waves`; the
-/// power of the others.
+/// vector, given with their wave surfaces, as [`split_down_to`](super::split_down_to) does.
 pub(super) fn split_single_wave<const N: usize>(
     media: [(&Medium, &WaveSurface); 2],
     wave: &IncidentWave<N>,

@@ -3,12 +3,15 @@
 //! A map is conformal with these borders only if it is the quasi-conformal one, and by the maximum principle
 //! it is as near to it everywhere as its borders are.
 
+use std::sync::LazyLock;
+
 use super::*;
 use crate::transformation::ConformalMap;
 
 const CUT: Truncation = Truncation { x_min: -25.0, x_max: 25.0, y_max: 28.57 };
 
-fn maps() -> impl Iterator<Item = (QuasiConformalMap, Truncation)> {
+/// Solved once: the narrow bumps take seconds.
+static MAPS: LazyLock<[(QuasiConformalMap, Truncation); 6]> = LazyLock::new(|| {
     [
         (28.0, 4.25, CUT),
         (50.0, 4.25, CUT),
@@ -17,13 +20,12 @@ fn maps() -> impl Iterator<Item = (QuasiConformalMap, Truncation)> {
         (13.0, 1.0, Truncation::centred(60.0, 10.0)),
         (2.0, 0.2, Truncation::centred(4.0, 1.5)),
     ]
-    .into_iter()
     .map(|(w, h, cut)| (QuasiConformalMap::new(w, h, &cut).expect("a map"), cut))
-}
+});
 
 #[test]
 fn borders_go_to_borders() {
-    for (map, cut) in maps() {
+    for (map, cut) in MAPS.iter() {
         let (a, top) = (cut.x_max, map.virtual_height());
         let (mut floor, mut corner) = (0.0_f64, 0.0_f64);
         for k in 0..=10_007 {
@@ -43,7 +45,7 @@ fn borders_go_to_borders() {
 
 #[test]
 fn table_is_the_series_and_conformal() {
-    for (map, cut) in maps() {
+    for (map, cut) in MAPS.iter() {
         let (series, top) = (&map.solved.series, map.virtual_height());
         let tiny = 0.02 / series.highest_wave_number();
         let mut worst = [0.0_f64; 4];
@@ -86,8 +88,8 @@ fn has_the_numbers_of_li_and_pendry() {
 
 #[test]
 fn inverse_undoes_the_map() {
-    for (map, cut) in maps() {
-        let map = ConformalMap::from(map);
+    for (map, cut) in MAPS.iter() {
+        let map = ConformalMap::from(map.clone());
         for row in 0..=20 {
             for column in 0..=50 {
                 let x = cut.x_max * (f64::from(column) / 25.0 - 1.0);
@@ -103,7 +105,7 @@ fn inverse_undoes_the_map() {
 
 #[test]
 fn area_is_the_integral_of_the_height() {
-    let (map, _) = maps().next().expect("a map");
+    let (map, _) = &MAPS[0];
     let count = 10_000;
     let spacing = 9.0 / f64::from(count);
     let sum: f64 = (0..count).map(|k| map.bump.height_at((f64::from(k) + 0.5) * spacing)).sum();
