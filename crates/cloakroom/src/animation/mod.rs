@@ -191,7 +191,7 @@ impl Projector {
         studio: &Studio<'_>,
         supervision: &Supervision<'_>,
     ) -> Result<(RgbImage, Rarities), FilmError> {
-        let wanted = if scene.picture.map.is_some() { Wanted::Everything } else { Wanted::Image };
+        let wanted = Wanted::for_image(&scene.picture);
         let Rendered { picture, rarities } = render(studio, wanted, supervision)?;
         Ok((self.shown(scene, &picture)?, rarities))
     }
