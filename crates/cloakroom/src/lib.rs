@@ -16,6 +16,7 @@ pub mod examples;
 pub mod flux;
 pub mod gallery;
 pub mod illustration;
+pub mod input;
 pub mod interface_exchange;
 pub mod keys;
 pub mod material;
