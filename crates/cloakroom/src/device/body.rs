@@ -5,11 +5,9 @@
 
 use super::{Body, BodyShape, Entry, Fact, Filling, Hull, Request, Structure, Surface};
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
-use crate::photograph::ImageSource;
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::geometry::{Cylinder, Extent, Outline, Solid, Sphere};
-use std::path::Path;
 
 pub(super) static ENTRY: Entry = Entry {
     kind: "body",
@@ -75,7 +73,7 @@ static SURFACE_KEYS: &[Key] = &[
         name: "image",
         doc: "An image on it instead of a color: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to \
               the scene file.",
-        kind: KeyKind::Image,
+        kind: KeyKind::Image { default: None },
     },
 ];
 
@@ -145,16 +143,14 @@ fn filling(values: &Values) -> Result<Filling, KeyError> {
         let message = format!("a body with a surface of its own is opaque; it has no {key}");
         return Err(KeyError::at(key, message));
     }
-    let Some(image) = surface.optional_text("image") else {
+    let Some(image) = surface.optional_image("image") else {
         return Ok(Filling::Opaque(Surface::Color(surface.vector("color"))));
     };
     if surface.is_given("color") {
         let message = "color and image are both given; a surface takes one of them";
         return Err(KeyError::at("surface", message));
     }
-    let source = ImageSource::parse(image, Path::new(""))
-        .map_err(|error| KeyError::at("surface", error.to_string()))?;
-    Ok(Filling::Opaque(Surface::Image(source)))
+    Ok(Filling::Opaque(Surface::Image(image.clone())))
 }
 
 fn facts(values: &Values) -> Vec<Fact> {

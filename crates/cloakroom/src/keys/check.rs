@@ -3,7 +3,9 @@
 use super::nearest::nearest;
 use super::value::{Value, number_text, quoted};
 use super::{Key, KeyKind, Limits, Samples, Values, tensor};
+use crate::photograph::ImageSource;
 use optics::medium::Tensor;
+use std::path::Path;
 
 /// A value that fits its key.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +17,9 @@ pub(super) enum Fitted {
     Choices(Vec<&'static str>),
     Vector([f64; 3]),
     IntegerPair([i64; 2]),
-    Text(String),
+    Image(ImageSource),
+    /// The name of a file of samples.
+    File(String),
     Tensor(Tensor),
     Polygon(Vec<[f64; 2]>),
     Samples(Samples),
@@ -35,7 +39,8 @@ impl From<&Fitted> for Value {
             }
             Fitted::Vector(vector) => Value::from(*vector),
             Fitted::IntegerPair(pair) => Value::from(*pair),
-            Fitted::Text(text) => Value::from(text.as_str()),
+            Fitted::Image(image) => Value::from(image.to_string()),
+            Fitted::File(name) => Value::from(name.as_str()),
             Fitted::Tensor(tensor) => tensor::to_value(tensor),
             Fitted::Polygon(corners) => {
                 Value::List(corners.iter().map(|corner| Value::from(*corner)).collect())
@@ -89,8 +94,7 @@ impl Key {
             KeyKind::Choices { options } => format!("a list of words, each {}", words(options)),
             KeyKind::Vector { unit, .. } => format!("three numbers{}", in_brackets(unit)),
             KeyKind::IntegerPair { .. } => "two whole numbers".to_owned(),
-            KeyKind::Text { .. } => "a text".to_owned(),
-            KeyKind::Image => "the name of an image".to_owned(),
+            KeyKind::Image { .. } => "the name of an image".to_owned(),
             KeyKind::ChoiceOrNumber { options, unit } => {
                 let options = options.iter().map(|option| quoted(option, '"'));
                 let options = options.collect::<Vec<_>>().join(", ");
@@ -119,12 +123,9 @@ impl Key {
             KeyKind::Choices { .. } => Some(Fitted::Choices(Vec::new())),
             KeyKind::Vector { default, .. } => Some(Fitted::Vector(default)),
             KeyKind::IntegerPair { default, .. } => Some(Fitted::IntegerPair(default)),
-            KeyKind::Text { default } => default.map(|text| Fitted::Text(text.to_owned())),
+            KeyKind::Image { default } => default.and_then(|name| image(name).ok()),
             KeyKind::Tensor => Some(Fitted::Tensor(1.0.into())),
-            KeyKind::Image
-            | KeyKind::Polygon { .. }
-            | KeyKind::Samples { .. }
-            | KeyKind::Table { .. } => None,
+            KeyKind::Polygon { .. } | KeyKind::Samples { .. } | KeyKind::Table { .. } => None,
             KeyKind::Tables { .. } => Some(Fitted::Tables(Vec::new())),
             KeyKind::Choice { options } | KeyKind::ChoiceOrNumber { options, .. } => {
                 options.first().map(|option| Fitted::Choice(option))
@@ -175,13 +176,16 @@ impl Key {
                 }
                 Ok(Fitted::IntegerPair(integers))
             }
-            KeyKind::Samples { limits } if !matches!(value, Value::Text(_)) => {
-                self.samples(value, limits).map(Fitted::Samples)
+            KeyKind::Image { .. } | KeyKind::Samples { .. } if *value == Value::from("") => {
+                Err(format!("{} is empty", self.name))
             }
-            KeyKind::Text { .. } | KeyKind::Image | KeyKind::Samples { .. } => match value {
-                Value::Text(text) if text.is_empty() => Err(format!("{} is empty", self.name)),
-                Value::Text(text) => Ok(Fitted::Text(text.clone())),
+            KeyKind::Image { .. } => match value {
+                Value::Text(name) => image(name),
                 _ => Err(self.wrong_type(value)),
+            },
+            KeyKind::Samples { limits } => match value {
+                Value::Text(name) => Ok(Fitted::File(name.clone())),
+                _ => self.samples(value, limits).map(Fitted::Samples),
             },
             KeyKind::ChoiceOrNumber { options, unit } => match value.as_number() {
                 Some(number) => {
@@ -288,6 +292,12 @@ impl Key {
         let fitted = fitted.and_then(|items| <[T; N]>::try_from(items).ok());
         fitted.ok_or_else(|| self.wrong_type(value))
     }
+}
+
+/// The image of a name that is relative to no folder.
+fn image(name: &str) -> Result<Fitted, String> {
+    let source = ImageSource::parse(name, Path::new(""));
+    source.map(Fitted::Image).map_err(|error| error.to_string())
 }
 
 /// The option that a word is; else a hint which one may have been meant.
