@@ -12,6 +12,7 @@
 
 pub mod animation;
 pub mod device;
+mod direction;
 pub mod examples;
 pub mod flux;
 pub mod gallery;

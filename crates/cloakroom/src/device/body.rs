@@ -3,7 +3,7 @@
 //! Bodies may stand in one another: where some overlap, the one of the largest priority is there. So a rod in a
 //! glass of water is three bodies, and light goes from one into the other without any air between.
 
-use super::{Body, BodyShape, Entry, Fact, Filling, Hull, Request, Structure, Surface};
+use super::{Body, BodyShape, Entry, Fact, Filling, Hull, REACH, Request, Structure, Surface};
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use glam::DVec3;
 use num_complex::Complex64;
@@ -77,9 +77,6 @@ static SURFACE_KEYS: &[Key] = &[
     },
 ];
 
-/// How far an endless slab reaches when it is asked whether it is in another device's way, cm.
-const FAR: f64 = 1e5;
-
 fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
     super::refuse_other_views(request, "a body is no cloak")?;
     let shape = shape(values, request.length)?;
@@ -93,7 +90,7 @@ fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
         BodyShape::Ball(sphere) => Solid::ball(sphere.radius),
         BodyShape::Cylinder(cylinder) => Solid::cylinder(cylinder.radius, cylinder.extent),
         BodyShape::Box { half } => {
-            let near = half.min(DVec3::splat(FAR));
+            let near = half.min(DVec3::splat(REACH));
             let outline = Outline::rectangle(near.x, near.y);
             Solid::Prism { outline, extent: Extent { min: -half.z, max: half.z } }
         }

@@ -138,7 +138,7 @@ impl Key {
         match self.kind {
             KeyKind::Number { unit, limits, .. } => {
                 let number = value.as_number().ok_or_else(|| self.wrong_type(value))?;
-                self.limit(self.name, number, unit, limits)?;
+                limit(self.name, number, unit, limits)?;
                 Ok(Fitted::Number(number))
             }
             KeyKind::Integer { min, max, .. } => {
@@ -164,7 +164,7 @@ impl Key {
                 let numbers = self.list(value, Value::as_number)?;
                 for (number, axis) in numbers.iter().zip(["first", "second", "third"]) {
                     let name = format!("the {axis} component of {}", self.name);
-                    self.limit(&name, *number, unit, limits)?;
+                    limit(&name, *number, unit, limits)?;
                 }
                 Ok(Fitted::Vector(numbers))
             }
@@ -189,7 +189,7 @@ impl Key {
             },
             KeyKind::ChoiceOrNumber { options, unit } => match value.as_number() {
                 Some(number) => {
-                    self.limit(self.name, number, unit, Limits::Finite)?;
+                    limit(self.name, number, unit, Limits::Finite)?;
                     Ok(Fitted::Number(number))
                 }
                 None => self.choose(value, options).map(Fitted::Choice),
@@ -198,7 +198,7 @@ impl Key {
                 let tensor = tensor::from_value(value).ok_or_else(|| self.wrong_type(value))?;
                 for number in tensor::parts(&tensor) {
                     let name = format!("an entry of {}", self.name);
-                    self.limit(&name, number, "", Limits::Finite)?;
+                    limit(&name, number, "", Limits::Finite)?;
                 }
                 Ok(Fitted::Tensor(tensor))
             }
@@ -221,7 +221,7 @@ impl Key {
                 .map_err(|_| format!("a corner of {} is {item}; it must be [x, y]", self.name))?;
             for number in corner {
                 let name = format!("a coordinate of {}", self.name);
-                self.limit(&name, number, unit, Limits::Within(-FARTHEST, FARTHEST))?;
+                limit(&name, number, unit, Limits::Within(-FARTHEST, FARTHEST))?;
             }
             Ok(corner)
         };
@@ -234,7 +234,7 @@ impl Key {
             let name = format!("{}[{}][{}]", self.name, at[0], at[1]);
             let number =
                 item.as_number().ok_or_else(|| format!("{name} is {item}; it must be a number"))?;
-            self.limit(&name, number, "", limits)?;
+            limit(&name, number, "", limits)?;
             Ok(number)
         };
         let row = |(i, row): (usize, &Value)| -> Result<Vec<f64>, String> {
@@ -263,19 +263,6 @@ impl Key {
 
     fn wrong_type(&self, value: &Value) -> String {
         format!("{} is {value}; it must be {}", self.name, self.describe())
-    }
-
-    fn limit(&self, name: &str, number: f64, unit: &str, limits: Limits) -> Result<(), String> {
-        if limits.allow(number) {
-            return Ok(());
-        }
-        if !number.is_finite() {
-            let what = if number.is_nan() { "not a number (nan)" } else { "infinite" };
-            return Err(format!("{name} is {what}; numbers must be finite"));
-        }
-        let space = if unit.is_empty() { "" } else { " " };
-        let shown = number_text(number);
-        Err(format!("{name} is {shown}{space}{unit}; it must be {}", limits.describe()))
     }
 
     fn choose(&self, value: &Value, options: &[&'static str]) -> Result<&'static str, String> {
@@ -307,6 +294,19 @@ fn choose(value: &Value, options: &[&'static str]) -> Result<&'static str, Strin
         let meant = nearest(word, options.iter().copied());
         meant.map(|meant| format!("; did you mean {}?", quoted(meant, '"'))).unwrap_or_default()
     })
+}
+
+fn limit(name: &str, number: f64, unit: &str, limits: Limits) -> Result<(), String> {
+    if limits.allow(number) {
+        return Ok(());
+    }
+    if !number.is_finite() {
+        let what = if number.is_nan() { "not a number (nan)" } else { "infinite" };
+        return Err(format!("{name} is {what}; numbers must be finite"));
+    }
+    let space = if unit.is_empty() { "" } else { " " };
+    let shown = number_text(number);
+    Err(format!("{name} is {shown}{space}{unit}; it must be {}", limits.describe()))
 }
 
 fn limit_integer(name: &str, integer: i64, min: i64, max: i64) -> Result<(), String> {

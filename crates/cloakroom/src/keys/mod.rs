@@ -16,7 +16,7 @@ mod values;
 pub use nearest::{hint, nearest, unknown};
 pub use samples::{Samples, SamplesError};
 pub use value::Value;
-pub(crate) use value::{number_text, quoted};
+pub(crate) use value::{number_text, quoted, vector_text};
 pub use values::{ChoiceOrNumber, KeyError, Sampled, Values};
 
 /// One key of a table.

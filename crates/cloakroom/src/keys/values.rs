@@ -39,12 +39,16 @@ impl KeyError {
         KeyError { entry: Some((list, number)), ..self }
     }
 
-    /// Where the error is, below the table it is of: `side`, `prism.2.corners`; empty if it is nowhere in
-    /// particular.
+    /// Where the error is, of a table such as `device.0`: `device.0.side`, `device.0.prism.2.corners`; the table
+    /// itself if it is nowhere in particular.
     #[must_use]
-    pub fn path(&self) -> String {
+    pub fn path_in(&self, table: &str) -> String {
         let entry = self.entry.map(|(list, number)| format!("{list}.{number}"));
-        entry.as_deref().into_iter().chain(self.key).collect::<Vec<_>>().join(".")
+        [Some(table), entry.as_deref(), self.key]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join(".")
     }
 }
 

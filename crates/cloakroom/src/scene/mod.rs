@@ -222,7 +222,7 @@ impl Default for PhotographSettings {
 
 impl Default for SurroundingsSettings {
     fn default() -> Self {
-        SurroundingsSettings::Color([0.0; 3])
+        Self::from_values(&Values::defaults(SURROUNDINGS_KEYS)).expect("a color alone")
     }
 }
 
@@ -243,10 +243,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_default_scene_is_that_of_the_key_lists() {
+    fn the_default_scene_is_that_of_the_paper() {
         let scene = Scene::default();
-        let camera = CameraSettings::from_values(&Values::defaults(CAMERA_KEYS));
-        assert_eq!(camera.as_ref(), Ok(scene.camera.settings()));
+        let camera = CameraSettings {
+            position: DVec3::new(-100.0, 0.0, 0.0),
+            target: DVec3::new(50.0, 0.0, 0.0),
+            up: DVec3::Y,
+            projection: Projection::Perspective { field_of_view: 40.0 },
+            resolution: [1024, 768],
+            samples: 4,
+            adaptive: 0.0,
+            seed: 0,
+            polarizer: Polarizer::None,
+        };
+        assert_eq!(scene.camera.settings(), &camera);
+        assert_eq!((scene.receiver.position.x, scene.receiver.normal), (50.0, DVec3::NEG_X));
+        assert_eq!((scene.receiver.width, scene.receiver.length), (60.0, 60.0));
         assert_eq!(scene.photograph.image, ImageSource::BuiltIn("bookshelf"));
         assert_eq!((scene.photograph.x, scene.photograph.width), (50.0, None));
         assert_eq!(scene.surroundings, SurroundingsSettings::Color([0.0; 3]));

@@ -4,7 +4,7 @@ use crate::device::IMPERFECTION_KEYS;
 use crate::keys::{Key, KeyKind, Limits};
 
 /// Most pixels a side, and most samples a pixel.
-const MOST: i64 = 65_536;
+const MOST: i64 = super::camera::MOST as i64;
 
 /// The scalar channels a picture can show instead of what the camera sees.
 pub const SCALAR_CHANNELS: &[&str] = &[

@@ -13,8 +13,8 @@ use crate::scene::{
     PictureSettings, Receiver, Scene, SurroundingsSettings, TABLES, TraceSettings,
 };
 
-/// The list of devices.
-const DEVICES: &str = "device";
+/// The list of devices, the one list of tables a scene has.
+pub(super) const DEVICES: &str = "device";
 /// The key that says what a device is.
 const KIND: &str = "kind";
 
