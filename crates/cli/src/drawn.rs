@@ -16,8 +16,7 @@ pub enum DrawingFormat {
 
 /// The format that the ending of a file's name asks for.
 pub fn format(path: &Path) -> Result<DrawingFormat, Failure> {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-    match ending.as_deref() {
+    match output::ending(path).as_deref() {
         Some("svg") => Ok(DrawingFormat::Svg),
         Some("png") => Ok(DrawingFormat::Png),
         _ => Err(Failure::Failed(format!(

@@ -22,8 +22,7 @@ pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure
     let loaded =
         scene::load_with(&arguments.scene, channels(&arguments.channels, data)?.as_slice())?;
     let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
-    let wanted =
-        if data || loaded.scene.picture.map.is_some() { Wanted::Everything } else { Wanted::Image };
+    let wanted = if data { Wanted::Everything } else { Wanted::for_image(&loaded.scene.picture) };
     for path in &arguments.outputs {
         output::check_writable(path).map_err(Failure::from_error)?;
     }

@@ -37,10 +37,10 @@ impl Subject {
 
     /// What must be rendered of a view for it.
     fn wanted_of_view(&self) -> Wanted {
-        match (self.loaded.scene.picture.map, self.loaded.scene.camera.polarizer()) {
-            (Some(_), _) => Wanted::Everything,
-            (None, Polarizer::None) => Wanted::Image,
-            (None, _) => Wanted::Polarizers,
+        let own = Wanted::for_image(&self.loaded.scene.picture);
+        match self.loaded.scene.camera.polarizer() {
+            Polarizer::None => own,
+            _ => own.max(Wanted::Polarizers),
         }
     }
 
@@ -110,10 +110,8 @@ impl Views {
         {
             let text = &view.scene.source;
             if !self.pictures.iter().any(|(known, _)| known == text) {
-                let wanted = [Wanted::Everything, Wanted::Polarizers]
-                    .into_iter()
-                    .find(|wanted| sharing().any(|other| other.wanted_of_view() == *wanted))
-                    .unwrap_or(Wanted::Image);
+                let wanted =
+                    sharing().map(Subject::wanted_of_view).fold(Wanted::Image, Wanted::max);
                 self.pictures.push((text.clone(), render(view, wanted)?));
             }
             let shared = self.pictures.iter().find(|(known, _)| known == text);
@@ -121,8 +119,7 @@ impl Views {
                 return Ok(picture);
             }
         }
-        let is_map = subject.loaded.scene.picture.map.is_some();
-        render(&subject.loaded, if is_map { Wanted::Everything } else { Wanted::Image })
+        render(&subject.loaded, Wanted::for_image(&subject.loaded.scene.picture))
     }
 }
 

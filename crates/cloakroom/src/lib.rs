@@ -12,10 +12,12 @@
 
 pub mod animation;
 pub mod device;
+mod direction;
 pub mod examples;
 pub mod flux;
 pub mod gallery;
 pub mod illustration;
+pub mod input;
 pub mod interface_exchange;
 pub mod keys;
 pub mod material;

@@ -1,11 +1,12 @@
 //! Designs (i) and (ii): what must come out of their interfaces, and the reversal of paths.
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test may")]
 
-use cloakroom::scene_file;
+mod rays;
+
 use cloakroom::trace::{Bench, Launch, Leaf, Limits, Rarities, Tracer};
 use glam::{DMat3, DVec2, DVec3};
-use optics::wave::{ComplexVector, transverse_basis};
-use std::path::Path;
+use optics::wave::ComplexVector;
+use rays::launch;
 
 fn bench(material: &str) -> Bench {
     bench_of(material, 0.0)
@@ -17,15 +18,7 @@ fn bench_of(material: &str, rotation: f64) -> Bench {
         "[[device]]\nkind = \"square-cloak\"\nmaterial = \"{material}-uniaxial\"\n\
          rotation = {rotation:?}\n"
     );
-    let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-    cloakroom::render::bench(&loaded.scene).unwrap()
-}
-
-/// Horizontal and vertical polarization.
-fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
-    let direction = direction.normalize();
-    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
-    Launch { origin, direction, electric: [h.into(), v.into()] }
+    rays::bench(&text)
 }
 
 #[test]

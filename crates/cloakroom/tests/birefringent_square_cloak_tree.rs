@@ -11,8 +11,8 @@
 )]
 
 mod plain_tree;
+mod rays;
 
-use cloakroom::scene_file;
 use cloakroom::trace::{Bench, Launch, Leaf, Limits, Tracer};
 use glam::DVec3;
 use num_complex::Complex64;
@@ -20,7 +20,6 @@ use optics::wave::ComplexVector;
 use plain_tree::PlainLeaf;
 use plain_tree::cloak::{Cloak, Design};
 use plain_tree::waves::poynting;
-use std::path::Path;
 
 /// Horizontal, vertical and elliptic light.
 const POLARIZATIONS: usize = 3;
@@ -39,8 +38,7 @@ fn bench(material: &str, rounded: bool, rotation: f64, length: Option<f64>) -> B
     if let Some(length) = length {
         text += &format!("length = {length:?}\n");
     }
-    let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-    cloakroom::render::bench(&loaded.scene).unwrap()
+    rays::bench(&text)
 }
 
 /// `SplitMix64`.

@@ -4,10 +4,11 @@
 
 mod rays;
 
-use cloakroom::device::{CATALOGUE, FactValue};
+use cloakroom::device::{CATALOGUE, FactValue, entry};
 use cloakroom::keys::{KeyKind, Values};
-use cloakroom::render::StudioError;
-use cloakroom::trace::{Bench, Launch, Limits, Tracer};
+use cloakroom::render::{StudioError, bench};
+use cloakroom::scene::{DeviceSettings, Scene};
+use cloakroom::trace::{Bench, Launch, Limits, MOST_DEVICES, Tracer};
 use glam::DVec3;
 use rays::{launches_around, strongest, try_bench};
 
@@ -218,6 +219,15 @@ fn the_way_back_leads_home() {
         // Rays that meet an edge within rounding may go either way.
         assert!(off * 200 <= all, "{what}: {off} of {all} rays do not come home");
     }
+}
+
+#[test]
+fn more_devices_than_can_be_numbered_are_refused() {
+    let mirror = DeviceSettings::new(entry("mirror-detour").unwrap());
+    let scene = Scene { devices: vec![mirror; MOST_DEVICES + 1], ..Scene::default() };
+    let error = bench(&scene).unwrap_err();
+    assert!(matches!(error, StudioError::TooManyDevices { count: 65_536 }), "{error}");
+    assert_eq!(error.key(), "device.65535");
 }
 
 #[test]

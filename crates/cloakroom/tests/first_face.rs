@@ -2,16 +2,15 @@
 //! the square cloak's designs (i) and (ii).
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod pictures;
+
 use cloakroom::output::Picture;
-use cloakroom::render::{Studio, Supervision, Wanted, render};
-use cloakroom::scene_file;
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use pictures::picture;
 
 /// One pixel, seen at a horizontal angle (degrees) to the line of sight: its share in the extraordinary
 /// wave and its first-face reflectance.
 fn first_face(device: &str, azimuth: f64, polarizer: &str) -> [f64; 2] {
-    let picture = picture(device, azimuth, polarizer);
+    let picture = seen(device, azimuth, polarizer);
     ["extraordinary_share", "first_face_reflectance"].map(|name| {
         let samples = &picture.channel(name).unwrap().samples;
         assert_eq!(samples.len(), 1);
@@ -19,7 +18,7 @@ fn first_face(device: &str, azimuth: f64, polarizer: &str) -> [f64; 2] {
     })
 }
 
-fn picture(device: &str, azimuth: f64, polarizer: &str) -> Picture {
+fn seen(device: &str, azimuth: f64, polarizer: &str) -> Picture {
     let (sin, cos) = azimuth.to_radians().sin_cos();
     // Level, a little above the edge in front; the photograph is wide enough for the empty view.
     let text = format!(
@@ -29,11 +28,7 @@ fn picture(device: &str, azimuth: f64, polarizer: &str) -> Picture {
         -60.0 + cos,
         sin
     );
-    let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-    let studio = Studio::new(&loaded.scene).unwrap();
-    let stop = AtomicBool::new(false);
-    let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-    render(&studio, Wanted::Everything, &supervision).unwrap().picture
+    picture(&text)
 }
 
 fn cloak(material: &str) -> String {

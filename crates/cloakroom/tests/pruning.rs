@@ -2,10 +2,11 @@
 //! no difference to the image of another.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
-use cloakroom::render::{Studio, Supervision, Wanted, render};
-use cloakroom::scene_file;
+mod pictures;
+
+use cloakroom::render::Wanted;
+use pictures::{picture, rendered};
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 /// Mean and largest share of a pixel's power that is pruned, in percent.
 fn pruned(design: &str, rotation: &str, min_power: &str) -> [f64; 2] {
@@ -20,11 +21,7 @@ fn pruned(design: &str, rotation: &str, min_power: &str) -> [f64; 2] {
         "[camera]\nresolution = [128, 96]\nsamples = 1\n[trace]\nmin_power = {min_power}\n\
          [[device]]\n{device}\nrotation = {rotation}\n"
     );
-    let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-    let studio = Studio::new(&loaded.scene).unwrap();
-    let stop = AtomicBool::new(false);
-    let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-    let picture = render(&studio, Wanted::Everything, &supervision).unwrap().picture;
+    let picture = picture(&text);
     let samples = &picture.channel("pruned").unwrap().samples;
     let shares: Vec<f64> = (0..samples.len()).map(|i| 100.0 * samples.get(i)).collect();
     let mean = shares.iter().sum::<f64>() / shares.len() as f64;
@@ -63,11 +60,7 @@ fn images_through_polarizers_are_those_of_pictures_through_them_alone() {
                  [[device]]\nkind = \"square-cloak\"\nmaterial = \"{material}\"\n\
                  rotation = {rotation}\n"
             );
-            let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-            let studio = Studio::new(&loaded.scene).unwrap();
-            let stop = AtomicBool::new(false);
-            let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-            render(&studio, wanted, &supervision).unwrap().picture
+            rendered(Path::new(""), &text, wanted)
         };
         let both = seen("none", Wanted::Polarizers);
         assert_eq!(both.image_through(""), seen("none", Wanted::Image).image_through(""));

@@ -2,26 +2,23 @@
 //! time, against light traced forwards, and against textbook optics.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod pictures;
+mod rays;
+
 use cloakroom::output::Picture;
-use cloakroom::render::{Studio, Supervision, Wanted, render};
-use cloakroom::scene_file;
 use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::DVec3;
 use num_complex::Complex64;
-use optics::wave::{arriving_stokes, transverse_basis};
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use optics::wave::arriving_stokes;
+use pictures::picture;
+use rays::{bench, launch};
 
-fn picture(device: &str, polarizer: &str) -> Picture {
+fn seen(device: &str, polarizer: &str) -> Picture {
     let text = format!(
         "[camera]\nresolution = [64, 48]\nsamples = 1\npolarizer = {polarizer}\n\
          [picture]\nchannels = [\"stokes\"]\n{device}"
     );
-    let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-    let studio = Studio::new(&loaded.scene).unwrap();
-    let stop = AtomicBool::new(false);
-    let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-    render(&studio, Wanted::Everything, &supervision).unwrap().picture
+    picture(&text)
 }
 
 fn numbers(picture: &Picture, name: &str) -> Vec<f64> {
@@ -45,7 +42,7 @@ const TURNED: &str =
 
 #[test]
 fn every_polarizers_picture_follows_from_the_stokes_parameters() {
-    let unpolarized = picture(TURNED, "\"none\"");
+    let unpolarized = seen(TURNED, "\"none\"");
     let [s0, s1, s2, s3] = [0, 1, 2, 3].map(|k| stokes(&unpolarized, k));
     let (h, v) = (image(&unpolarized, "horizontal."), image(&unpolarized, "vertical."));
     let mut largest = [0.0f64; 4];
@@ -61,7 +58,7 @@ fn every_polarizers_picture_follows_from_the_stokes_parameters() {
     // There is something of each to get wrong.
     assert!(largest.iter().all(|s| *s > 0.01), "{largest:?}");
     for degrees in [30.0, 45.0, 100.0, -45.0] {
-        let through = picture(TURNED, &format!("{degrees:?}"));
+        let through = seen(TURNED, &format!("{degrees:?}"));
         let seen = image(&through, "");
         let turn = 2.0 * f64::to_radians(degrees);
         let (s0, s1, s2) = (stokes(&through, 0), stokes(&through, 1), stokes(&through, 2));
@@ -75,7 +72,7 @@ fn every_polarizers_picture_follows_from_the_stokes_parameters() {
 
 #[test]
 fn the_empty_view_is_unpolarized() {
-    let empty = picture("", "\"none\"");
+    let empty = seen("", "\"none\"");
     let light = image(&empty, "");
     for (s0, light) in stokes(&empty, 0).into_iter().zip(light) {
         assert!((s0 - light).abs() < 1e-6);
@@ -88,8 +85,7 @@ fn the_empty_view_is_unpolarized() {
 
 #[test]
 fn the_third_parameter_is_right_less_left_circular() {
-    let loaded = scene_file::parse(TURNED, "test", Path::new(""), &[]).unwrap();
-    let bench = cloakroom::render::bench(&loaded.scene).unwrap();
+    let bench = bench(TURNED);
     // Nothing pruned but what no launch carries, so that the trees are the same.
     let limits = Limits { min_power: 1e-7, tolerance: 1e-8 };
     let (mut tracer, mut circular) =
@@ -136,12 +132,6 @@ fn rays(count: u32) -> impl Iterator<Item = Launch<2>> {
     })
 }
 
-fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
-    let direction = direction.normalize();
-    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
-    Launch { origin, direction, electric: [h.into(), v.into()] }
-}
-
 /// Whether two leaves run along the same line, having taken the same optical path to it.
 fn coincide(a: &Leaf<2>, b: &Leaf<2>) -> bool {
     let between = b.position - a.position;
@@ -159,8 +149,7 @@ fn light_traced_forwards_arrives_as_rays_traced_backwards_say() {
         let text = format!(
             "[[device]]\nkind = \"square-cloak\"\nmaterial = \"{material}-uniaxial\"\nrotation = 20\n"
         );
-        let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-        let bench = cloakroom::render::bench(&loaded.scene).unwrap();
+        let bench = bench(&text);
         let limits = Limits { min_power: 1e-8, tolerance: 1e-8 };
         let (mut tracer, mut forwards) =
             (Tracer::<2>::new(&bench, limits), Tracer::<2>::new(&bench, limits));

@@ -94,7 +94,7 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
             });
             Value::Array(pair.map(Value::from).to_vec())
         }
-        KeyKind::Text { .. } | KeyKind::Image => {
+        KeyKind::Image { .. } => {
             (*draws.pick(&["builtin:bookshelf", "nowhere.png", "builtin:", "", "/"])).into()
         }
         KeyKind::ChoiceOrNumber { options, .. } => match draws.below(2) {

@@ -238,7 +238,7 @@ impl Painter<'_> {
             rows_done: if pass.coarse { &quiet } else { &rows_done },
             stop: &wish.stop,
         };
-        let wanted = if scene.picture.map.is_some() { Wanted::Everything } else { Wanted::Image };
+        let wanted = Wanted::for_image(&scene.picture);
         let picture = render(&studio, wanted, &supervision)?.picture;
         let (image, scale): (RgbImage, Option<Scale>) = match scene.picture.map {
             None => (to_srgb(&picture)?, None),

@@ -173,9 +173,7 @@ fn files(scene: &Scene) -> Vec<(String, PathBuf)> {
 fn body_image(device: &DeviceSettings) -> Option<ImageSource> {
     const SURFACE: &str = "surface";
     device.entry.keys.iter().find(|key| key.name == SURFACE)?;
-    let image = device.values.table(SURFACE)?.optional_text("image")?;
-    // It was relative to the scene's folder, and is not any more.
-    ImageSource::parse(image, Path::new("")).ok()
+    device.values.table(SURFACE)?.optional_image("image").cloned()
 }
 
 /// A scene whose devices are shown otherwise, those that can be; `None` if none can.

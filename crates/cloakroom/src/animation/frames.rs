@@ -1,7 +1,7 @@
 //! A folder of frames: PNG files, each of which says what it shows, so that work can be taken up again.
 
 use super::FilmError;
-use crate::output::{RgbImage, write_png};
+use crate::output::{RgbImage, png_texts, write_png};
 use std::fs;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -108,8 +108,7 @@ impl FrameFolder {
 fn carried(path: &Path) -> Option<Vec<(String, String)>> {
     let file = BufReader::new(fs::File::open(path).ok()?);
     let reader = png::Decoder::new(file).read_info().ok()?;
-    let texts = &reader.info().utf8_text;
-    texts.iter().map(|text| Some((text.keyword.to_lowercase(), text.get_text().ok()?))).collect()
+    png_texts(reader.info()).ok()
 }
 
 /// Whether two lists of metadata say the same.

@@ -14,7 +14,6 @@ mod webp_file;
 pub use frames::FrameFolder;
 pub use timeline::{MOST_FRAMES, Timeline, TimelineError};
 
-use crate::device::{Filling, Surface};
 use crate::illustration::{ColorScale, IllustrationError, ScalarMap};
 use crate::output::{self, OutputError, Picture, RgbImage};
 use crate::photograph::ImageSource;
@@ -191,7 +190,7 @@ impl Projector {
         studio: &Studio<'_>,
         supervision: &Supervision<'_>,
     ) -> Result<(RgbImage, Rarities), FilmError> {
-        let wanted = if scene.picture.map.is_some() { Wanted::Everything } else { Wanted::Image };
+        let wanted = Wanted::for_image(&scene.picture);
         let Rendered { picture, rarities } = render(studio, wanted, supervision)?;
         Ok((self.shown(scene, &picture)?, rarities))
     }
@@ -210,13 +209,7 @@ pub fn image_files(scene: &Scene, studio: &Studio<'_>) -> Vec<PathBuf> {
     if let SurroundingsSettings::Image(source) = &scene.surroundings {
         sources.push(source);
     }
-    for placed in studio.bench().devices() {
-        if let Some(body) = placed.structure.hull.body()
-            && let Filling::Opaque(Surface::Image(source)) = &body.filling
-        {
-            sources.push(source);
-        }
-    }
+    sources.extend(studio.bench().body_images());
     let file = |source: &ImageSource| match source {
         ImageSource::File(path) => Some(path.clone()),
         ImageSource::BuiltIn(_) | ImageSource::Memory(_) => None,
@@ -296,6 +289,12 @@ impl Size {
             Ok(frame)
         })
     }
+}
+
+/// How long a frame stays, in parts of a second, such that all together keep the rate.
+fn stay(number: usize, rate: u32, parts: f64) -> u32 {
+    let begins = |number: usize| (number as f64 * parts / f64::from(rate)).round();
+    (begins(number + 1) - begins(number)) as u32
 }
 
 /// What ends the writing of a file: an error of the film, or of the file.

@@ -76,6 +76,14 @@ fn open(path: &Path) -> BufReader<File> {
 }
 
 #[test]
+fn frames_keep_the_rate() {
+    for rate in [1, 7, 24, 25, 30, 60, 100] {
+        let all: u32 = (0..600).map(|number| stay(number, rate, 100.0)).sum();
+        assert!((f64::from(all) - 60_000.0 / f64::from(rate)).abs() <= 0.5, "{rate}: {all}");
+    }
+}
+
+#[test]
 fn animated_png_is_exact() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = film("a.apng", FilmFormat::Apng, 4, folder.path());

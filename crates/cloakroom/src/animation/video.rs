@@ -65,7 +65,7 @@ pub(super) fn write(
             FilmError::Ffmpeg { path: path.to_owned(), reason: error.to_string() }
         }
     })?;
-    let done = wait(&mut child, settings);
+    let done = wait(&mut child, path, settings);
     let said = child.stderr.take().map(|mut stderr| {
         let mut said = Vec::new();
         // What cannot be read is not said.
@@ -81,10 +81,10 @@ pub(super) fn write(
 }
 
 /// Waits for the end, or ends it; whether it has succeeded.
-fn wait(child: &mut Child, settings: &FilmSettings<'_>) -> Result<bool, FilmError> {
-    let failed = |error: std::io::Error| FilmError::Ffmpeg {
-        path: "a video".into(),
-        reason: error.to_string(),
+fn wait(child: &mut Child, path: &Path, settings: &FilmSettings<'_>) -> Result<bool, FilmError> {
+    let failed = |error: std::io::Error| {
+        let (path, reason) = (path.to_owned(), error.to_string());
+        FilmError::Ffmpeg { path, reason }
     };
     loop {
         let ended = child.try_wait().map_err(failed)?;

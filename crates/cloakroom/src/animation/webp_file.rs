@@ -1,6 +1,6 @@
 //! Animated WebP, lossless: the container (RFC 9649) around frames of the encoder.
 
-use super::{FilmError, FilmSettings, FrameFolder, Halt, Size, write_whole};
+use super::{FilmError, FilmSettings, FrameFolder, Halt, Size, stay, write_whole};
 use image_webp::{ColorType, EncodingError, WebPEncoder};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
@@ -36,7 +36,7 @@ pub(super) fn write(
                     error => Halt::File(io::Error::other(error.to_string())),
                 })?;
             let place = [short(0), short(0)].concat();
-            let delay = short(delay(number, settings.rate));
+            let delay = short(stay(number, settings.rate, 1000.0));
             // Each frame replaces the one before.
             const REPLACE: [u8; 1] = [1 << 1];
             let head = [place.as_slice(), &canvas, &delay, &REPLACE].concat();
@@ -52,12 +52,6 @@ pub(super) fn write(
         out.seek(SeekFrom::End(0))?;
         Ok(())
     })
-}
-
-/// Milliseconds that a frame stays, such that all together keep the rate.
-fn delay(number: usize, rate: u32) -> u32 {
-    let begins = |number: usize| (number as f64 * 1000.0 / f64::from(rate)).round();
-    (begins(number + 1) - begins(number)) as u32
 }
 
 /// A number in 24 bits.

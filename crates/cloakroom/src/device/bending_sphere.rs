@@ -1,6 +1,6 @@
 //! A sphere that turns every ray by one angle (Hannay & Haeusser, J. Mod. Opt. 40, 1437 (1993)).
 
-use super::round::{RADIUS_KEY, ball, no_length, no_metal};
+use super::round::{RADIUS_KEY, ball, lens_alone};
 use super::{Entry, Fact, Request, Structure};
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use optics::propagation::{CentralLens, RadialFlow};
@@ -31,8 +31,7 @@ fn lens(values: &Values) -> CentralLens {
 }
 
 fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
-    no_metal(request)?;
-    no_length(request)?;
+    lens_alone(request)?;
     Ok(ball(values.number("radius"), RadialFlow::Lens(lens(values))))
 }
 

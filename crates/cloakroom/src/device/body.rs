@@ -3,13 +3,11 @@
 //! Bodies may stand in one another: where some overlap, the one of the largest priority is there. So a rod in a
 //! glass of water is three bodies, and light goes from one into the other without any air between.
 
-use super::{Body, BodyShape, Entry, Fact, Filling, Hull, Request, Structure, Surface};
+use super::{Body, BodyShape, Entry, Fact, Filling, Hull, REACH, Request, Structure, Surface};
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
-use crate::photograph::ImageSource;
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::geometry::{Cylinder, Extent, Outline, Solid, Sphere};
-use std::path::Path;
 
 pub(super) static ENTRY: Entry = Entry {
     kind: "body",
@@ -75,12 +73,9 @@ static SURFACE_KEYS: &[Key] = &[
         name: "image",
         doc: "An image on it instead of a color: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to \
               the scene file.",
-        kind: KeyKind::Image,
+        kind: KeyKind::Image { default: None },
     },
 ];
-
-/// How far an endless slab reaches when it is asked whether it is in another device's way, cm.
-const FAR: f64 = 1e5;
 
 fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
     super::refuse_other_views(request, "a body is no cloak")?;
@@ -95,7 +90,7 @@ fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
         BodyShape::Ball(sphere) => Solid::ball(sphere.radius),
         BodyShape::Cylinder(cylinder) => Solid::cylinder(cylinder.radius, cylinder.extent),
         BodyShape::Box { half } => {
-            let near = half.min(DVec3::splat(FAR));
+            let near = half.min(DVec3::splat(REACH));
             let outline = Outline::rectangle(near.x, near.y);
             Solid::Prism { outline, extent: Extent { min: -half.z, max: half.z } }
         }
@@ -145,16 +140,14 @@ fn filling(values: &Values) -> Result<Filling, KeyError> {
         let message = format!("a body with a surface of its own is opaque; it has no {key}");
         return Err(KeyError::at(key, message));
     }
-    let Some(image) = surface.optional_text("image") else {
+    let Some(image) = surface.optional_image("image") else {
         return Ok(Filling::Opaque(Surface::Color(surface.vector("color"))));
     };
     if surface.is_given("color") {
         let message = "color and image are both given; a surface takes one of them";
         return Err(KeyError::at("surface", message));
     }
-    let source = ImageSource::parse(image, Path::new(""))
-        .map_err(|error| KeyError::at("surface", error.to_string()))?;
-    Ok(Filling::Opaque(Surface::Image(source)))
+    Ok(Filling::Opaque(Surface::Image(image.clone())))
 }
 
 fn facts(values: &Values) -> Vec<Fact> {

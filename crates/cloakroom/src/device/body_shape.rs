@@ -16,6 +16,17 @@ pub struct Body {
     pub priority: i64,
 }
 
+impl Body {
+    /// The image on it, if it is opaque and has one.
+    #[must_use]
+    pub fn image(&self) -> Option<&ImageSource> {
+        match &self.filling {
+            Filling::Opaque(Surface::Image(source)) => Some(source),
+            _ => None,
+        }
+    }
+}
+
 /// What fills a body.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a scene has few bodies, and they are met often")]

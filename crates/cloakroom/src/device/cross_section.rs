@@ -9,7 +9,7 @@ use optics::geometry::{Cylinder, Sphere};
 use optics::medium::Medium;
 use optics::propagation::Half;
 
-/// How far cells without an end are drawn, cm from the device's origin.
+/// How far what has no end is drawn, and is in the way of other devices, cm from the device's origin.
 pub const REACH: f64 = 1e5;
 
 /// Straight pieces that a curve is drawn with.

@@ -1,9 +1,9 @@
 //! The cylindrical cloak, impedance matched (Pendry, Schurig & Smith, Science 312, 1780 (2006); Schurig et
 //! al., Science 314, 977 (2006)) or of a uniaxial dielectric (after Cai et al., Nature Photon. 1, 224 (2007)).
 
-use super::round::{hollow_tube, metal_cylinder, radii, tube};
-use super::{Entry, Fact, FactValue, Request, Show, Structure};
-use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
+use super::round::{OUTER_KEY, hollow_tube, inner_key, metal_cylinder, radii, tube};
+use super::{Entry, Fact, Request, Show, Structure};
+use crate::keys::{Key, KeyError, KeyKind, Values};
 use glam::DVec3;
 use optics::geometry::Extent;
 use optics::propagation::{OpticAxis, RadialFlow, TransformedShell, UniaxialCylinder};
@@ -17,16 +17,8 @@ pub(super) static ENTRY: Entry = Entry {
               a uniaxial dielectric it guides vertically polarized light in the plane across it, \
               and reflects at its border. Pendry, Schurig & Smith 2006, Cai et al. 2007.",
     keys: &[
-        Key {
-            name: "inner",
-            doc: "Radius of the metal cylinder; below outer.",
-            kind: KeyKind::Number { default: Some(4.0), unit: "cm", limits: Limits::Positive },
-        },
-        Key {
-            name: "outer",
-            doc: "Radius of the cloak.",
-            kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::Positive },
-        },
+        inner_key("Radius of the metal cylinder; below outer."),
+        OUTER_KEY,
         Key {
             name: "material",
             doc: "What the shell is made of: eps = mu, or a uniaxial dielectric with its optic axis along \
@@ -75,16 +67,12 @@ fn facts(values: &Values) -> Vec<Fact> {
     let Ok((inner, outer)) = radii(values) else { return Vec::new() };
     let border = DVec3::X * outer;
     let area = Fact::number("cloaked_area_cm2", PI * inner * inner);
-    let principal = |name, tensor: &glam::DMat3| Fact {
-        name,
-        value: FactValue::Numbers(vec![tensor.x_axis.x, tensor.y_axis.y, tensor.z_axis.z]),
-    };
     match optic_axis(values) {
         None => {
             let tensor = RadialMap::new(inner, outer, Symmetry::Axis).tensor(border);
             vec![
                 area,
-                principal("border_tensor_principal_values", &tensor),
+                Fact::principal_values("border_tensor_principal_values", &tensor),
                 Fact::number("time_of_flight_difference_ns", 0.0),
             ]
         }
@@ -92,8 +80,8 @@ fn facts(values: &Values) -> Vec<Fact> {
             let shell = UniaxialCylinder::new(inner, outer, axis, Extent::ENDLESS);
             let mut facts = vec![area];
             if let Some(medium) = shell.medium(border) {
-                facts
-                    .push(principal("border_permittivity_principal_values", medium.permittivity()));
+                let name = "border_permittivity_principal_values";
+                facts.push(Fact::principal_values(name, medium.permittivity()));
             }
             let reflectance = (inner / (2.0 * outer - inner)).powi(2);
             facts.push(Fact::number("normal_reflectance_vertical", reflectance));

@@ -1,8 +1,8 @@
 //! The invisible sphere: every ray leaves it on its own line, late (Miñano, Opt. Express 14, 9627 (2006);
 //! made regular by transmutation, Tyc & Leonhardt, New J. Phys. 10, 115038 (2008)).
 
-use super::round::{RADIUS_KEY, ball, no_length, no_metal};
-use super::{Entry, Fact, FactValue, Request, Structure};
+use super::round::{RADIUS_KEY, ball, lens_alone};
+use super::{Entry, Fact, Request, Structure};
 use crate::keys::{Key, KeyError, KeyKind, Values};
 use optics::propagation::{CentralLens, RadialFlow, TransmutedSphere};
 use optics::wave::SPEED_OF_LIGHT;
@@ -29,8 +29,7 @@ pub(super) static ENTRY: Entry = Entry {
 };
 
 fn build(values: &Values, request: Request) -> Result<Structure, KeyError> {
-    no_metal(request)?;
-    no_length(request)?;
+    lens_alone(request)?;
     let radius = values.number("radius");
     Ok(ball(
         radius,
@@ -48,10 +47,10 @@ fn facts(values: &Values) -> Vec<Fact> {
         let ordinary = TransmutedSphere::ORDINARY_INDEX;
         return vec![
             Fact::number("ordinary_index", ordinary),
-            Fact {
-                name: "extraordinary_index_at_surface_and_centre",
-                value: FactValue::Numbers(vec![1.0, TransmutedSphere::CENTRAL_EXTRAORDINARY_INDEX]),
-            },
+            Fact::numbers(
+                "extraordinary_index_at_surface_and_centre",
+                [1.0, TransmutedSphere::CENTRAL_EXTRAORDINARY_INDEX],
+            ),
             Fact::number("normal_reflectance", ((ordinary - 1.0) / (ordinary + 1.0)).powi(2)),
             delay,
         ];

@@ -1,6 +1,6 @@
 //! The classical balls of graded index: the lenses of Eaton and Luneburg and Maxwell's fish-eye.
 
-use super::round::{RADIUS_KEY, ball, no_length, no_metal};
+use super::round::{RADIUS_KEY, ball, lens_alone};
 use super::{Entry, Fact, Request, Structure};
 use crate::keys::{Key, KeyError, Values};
 use optics::propagation::{CentralLens, RadialFlow};
@@ -72,7 +72,6 @@ fn fisheye(values: &Values) -> CentralLens {
 }
 
 fn build(lens: CentralLens, request: Request) -> Result<Structure, KeyError> {
-    no_metal(request)?;
-    no_length(request)?;
+    lens_alone(request)?;
     Ok(ball(lens.radius(), RadialFlow::Lens(lens)))
 }

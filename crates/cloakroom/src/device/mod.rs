@@ -37,6 +37,8 @@ pub use skin::Skin;
 pub use structure::{Beyond, Finish, Hull, SkinHit, Structure};
 
 use crate::keys::{Key, KeyError, KeyKind, Values};
+use glam::{DMat3, DVec2};
+use optics::geometry::{Extent, Outline, Solid, Wall};
 use optics::medium::Medium;
 
 /// What of a device is looked at.
@@ -105,6 +107,15 @@ impl Fact {
     fn number(name: &'static str, value: f64) -> Self {
         Self { name, value: FactValue::Number(value) }
     }
+
+    fn numbers(name: &'static str, values: impl Into<Vec<f64>>) -> Self {
+        Self { name, value: FactValue::Numbers(values.into()) }
+    }
+
+    /// The diagonal of a tensor in its principal axes.
+    fn principal_values(name: &'static str, tensor: &DMat3) -> Self {
+        Self::numbers(name, [tensor.x_axis.x, tensor.y_axis.y, tensor.z_axis.z])
+    }
 }
 
 /// Every kind of device the program knows.
@@ -169,13 +180,22 @@ fn refuse_other_views(request: Request, reason: &str) -> Result<(), KeyError> {
 
 /// A two-sided flat metal strip on the x axis, |x| <= `half_width` (cm): what a cloak that opens a
 /// strip should look like.
-fn flat_strip(half_width: f64, extent: optics::geometry::Extent) -> Structure {
-    use glam::DVec2;
-    use optics::geometry::{Outline, Solid, Wall};
+fn flat_strip(half_width: f64, extent: Extent) -> Structure {
     let ends = [DVec2::new(half_width, 0.0), DVec2::new(-half_width, 0.0)];
     Structure {
         cells: Vec::new(),
         skin: vec![Skin::Strip(Wall::new(ends[0], ends[1], extent))],
         hull: Hull::new(Solid::Nothing).with_thin_mirror(Outline::new(ends.to_vec()), extent),
     }
+}
+
+/// A device of a kind with some of its keys, for tests.
+#[cfg(test)]
+fn built(kind: &str, keys: &[(&str, crate::keys::Value)], request: Request) -> Structure {
+    let entry = entry(kind).expect("a kind");
+    let mut values = Values::defaults(entry.keys);
+    for (key, value) in keys {
+        values.set(key, value.clone()).expect("a key");
+    }
+    (entry.build)(&values, request).expect("a device")
 }

@@ -65,17 +65,11 @@ impl Cell {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::{Request, entry};
-    use crate::keys::{Value, Values};
+    use crate::device::{Request, built};
 
-    fn structure(kind: &str, keys: &[(&str, Value)], open_core: bool) -> Structure {
-        let entry = entry(kind).expect("a kind");
-        let mut values = Values::defaults(entry.keys);
-        for (key, value) in keys {
-            values.set(key, value.clone()).expect("a key");
-        }
+    fn structure(kind: &str, open_core: bool) -> Structure {
         let request = Request { open_core, length: Some(20.0), ..Request::default() };
-        (entry.build)(&values, request).expect("a device")
+        built(kind, &[], request)
     }
 
     #[test]
@@ -87,7 +81,7 @@ mod tests {
             ("cylinder-cloak", DVec3::new(0.0, -7.0, 3.0), DVec3::new(0.0, 3.9, -3.0)),
         ] {
             for open_core in [false, true] {
-                let device = structure(kind, &[], open_core);
+                let device = structure(kind, open_core);
                 let inside = if open_core { Occupant::HiddenAir } else { Occupant::Metal };
                 assert!(matches!(device.occupant(in_medium), Occupant::Medium(_)), "{kind}");
                 assert_eq!(device.occupant(hidden), inside, "{kind}");
@@ -100,7 +94,7 @@ mod tests {
 
     #[test]
     fn below_a_carpet_there_is_metal() {
-        let device = structure("gaussian-carpet", &[], false);
+        let device = structure("gaussian-carpet", false);
         assert_eq!(device.occupant(DVec3::new(0.0, 4.2, 0.0)), Occupant::Metal);
         assert!(matches!(device.occupant(DVec3::new(0.0, 4.3, 0.0)), Occupant::Medium(_)));
         assert_eq!(device.occupant(DVec3::new(0.0, -0.1, 0.0)), Occupant::Air);

@@ -1,6 +1,6 @@
 //! What balls and round cylinders have in common.
 
-use super::{Beyond, Cell, Hull, RadialCell, Request, Show, Skin, Structure};
+use super::{Beyond, Cell, Hull, RadialCell, Request, Skin, Structure};
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use optics::geometry::{Cylinder, Extent, Hole, Solid, Sphere};
 use optics::propagation::RadialFlow;
@@ -19,7 +19,20 @@ pub(super) const RADIUS_KEY: Key = Key {
     kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::Positive },
 };
 
-/// The keys `inner` and `outer` of a cloak.
+/// The key `inner` of a cloak.
+pub(super) const fn inner_key(doc: &'static str) -> Key {
+    let kind = KeyKind::Number { default: Some(4.0), unit: "cm", limits: Limits::Positive };
+    Key { name: "inner", doc, kind }
+}
+
+/// The key `outer` of a cloak.
+pub(super) const OUTER_KEY: Key = Key {
+    name: "outer",
+    doc: "Radius of the cloak.",
+    kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::Positive },
+};
+
+/// The radii of the keys `inner` and `outer`.
 pub(super) fn radii(values: &Values) -> Result<(f64, f64), KeyError> {
     let (inner, outer) = (values.number("inner"), values.number("outer"));
     let (least, most) = (THINNEST * outer, (1.0 - THINNEST) * outer);
@@ -41,16 +54,10 @@ pub(super) fn no_length(request: Request) -> Result<(), KeyError> {
     }
 }
 
-/// Refuses the views that a lens, which hides nothing, cannot have.
-pub(super) fn no_metal(request: Request) -> Result<(), KeyError> {
-    let (word, why) = match request.show {
-        Show::Cloak => return Ok(()),
-        Show::Bare => ("bare", "hides no metal"),
-        Show::Mirror => ("mirror", "imitates no mirror"),
-    };
-    let message =
-        format!("show is \"{word}\"; this device {why}, it can be shown as \"cloak\" only");
-    Err(KeyError::at("show", message))
+/// Refuses what a ball that hides nothing cannot have.
+pub(super) fn lens_alone(request: Request) -> Result<(), KeyError> {
+    super::refuse_other_views(request, "this ball hides no metal and imitates no mirror")?;
+    no_length(request)
 }
 
 /// A ball filled with a medium, solid or around a metal core that no light comes to.

@@ -1,8 +1,8 @@
 //! The spherical cloak (Pendry, Schurig & Smith, Science 312, 1780 (2006)).
 
-use super::round::{ball, hollow_ball, metal_ball, no_length, radii};
-use super::{Entry, Fact, FactValue, Request, Show, Structure};
-use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
+use super::round::{OUTER_KEY, ball, hollow_ball, inner_key, metal_ball, no_length, radii};
+use super::{Entry, Fact, Request, Show, Structure};
+use crate::keys::{KeyError, Values};
 use glam::DVec3;
 use optics::geometry::Extent;
 use optics::propagation::{RadialFlow, TransformedShell};
@@ -14,18 +14,7 @@ pub(super) static ENTRY: Entry = Entry {
     title: "Spherical cloak",
     summary: "Impedance-matched shell around a metal ball, perfect for every direction, polarization and \
               time of flight. Pendry, Schurig & Smith 2006.",
-    keys: &[
-        Key {
-            name: "inner",
-            doc: "Radius of the metal ball; below outer.",
-            kind: KeyKind::Number { default: Some(4.0), unit: "cm", limits: Limits::Positive },
-        },
-        Key {
-            name: "outer",
-            doc: "Radius of the cloak.",
-            kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::Positive },
-        },
-    ],
+    keys: &[inner_key("Radius of the metal ball; below outer."), OUTER_KEY],
     build,
     facts,
 };
@@ -51,10 +40,7 @@ fn facts(values: &Values) -> Vec<Fact> {
     let tensor = map.tensor(DVec3::X * outer);
     vec![
         Fact::number("cloaked_volume_cm3", 4.0 / 3.0 * PI * inner.powi(3)),
-        Fact {
-            name: "border_tensor_principal_values",
-            value: FactValue::Numbers(vec![tensor.x_axis.x, tensor.y_axis.y, tensor.z_axis.z]),
-        },
+        Fact::principal_values("border_tensor_principal_values", &tensor),
         Fact::number("time_of_flight_difference_ns", 0.0),
     ]
 }

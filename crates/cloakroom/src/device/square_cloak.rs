@@ -5,9 +5,7 @@
 //! each filled with one homogeneous medium. The map behind it is
 //! [`optics::transformation::StripToRhombus`].
 
-use super::{
-    Beyond, Cell, Entry, Face, Fact, FactValue, Finish, Hull, Prism, Request, Show, Skin, Structure,
-};
+use super::{Beyond, Cell, Entry, Face, Fact, Finish, Hull, Prism, Request, Show, Skin, Structure};
 use crate::keys::{Key, KeyError, KeyKind, Limits, Values};
 use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::{Cap, Extent, Outline, Plane, Solid, Wall};
@@ -254,14 +252,8 @@ fn facts(values: &Values) -> Vec<Fact> {
         Fact::number("cloaked_area_cm2", 2.0 * d * b),
         Fact::number("rhombus_side_cm", d.hypot(b)),
         Fact::number("mirror_width_cm", 2.0 * d),
-        Fact {
-            name: "permittivity_principal_values",
-            value: FactValue::Numbers(permittivity.to_array().to_vec()),
-        },
-        Fact {
-            name: "permeability_principal_values",
-            value: FactValue::Numbers(permeability.to_array().to_vec()),
-        },
+        Fact::numbers("permittivity_principal_values", permittivity.to_array()),
+        Fact::numbers("permeability_principal_values", permeability.to_array()),
         Fact::number("axis_u_angle_deg", recipe.angle),
     ]
 }

@@ -1,5 +1,6 @@
 //! Reading interfaces from JSON, with errors that name the place.
 
+use crate::direction::unit;
 use crate::keys::unknown;
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
@@ -79,10 +80,8 @@ impl InterfaceRequest {
         normal: DVec3,
         tangential: DVec3,
     ) -> Result<Self, InterfaceError> {
-        // Scaled first, so that no length is too large or too small.
-        let normal = (normal / normal.abs().max_element())
-            .try_normalize()
-            .ok_or_else(|| InterfaceError::at("normal", "the normal is zero"))?;
+        let normal =
+            unit(normal).ok_or_else(|| InterfaceError::at("normal", "the normal is zero"))?;
         let along = tangential.dot(normal);
         if along.abs() > TANGENTIAL {
             let problem = format!(

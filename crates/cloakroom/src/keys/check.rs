@@ -3,7 +3,9 @@
 use super::nearest::nearest;
 use super::value::{Value, number_text, quoted};
 use super::{Key, KeyKind, Limits, Samples, Values, tensor};
+use crate::photograph::ImageSource;
 use optics::medium::Tensor;
+use std::path::Path;
 
 /// A value that fits its key.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +17,9 @@ pub(super) enum Fitted {
     Choices(Vec<&'static str>),
     Vector([f64; 3]),
     IntegerPair([i64; 2]),
-    Text(String),
+    Image(ImageSource),
+    /// The name of a file of samples.
+    File(String),
     Tensor(Tensor),
     Polygon(Vec<[f64; 2]>),
     Samples(Samples),
@@ -35,7 +39,8 @@ impl From<&Fitted> for Value {
             }
             Fitted::Vector(vector) => Value::from(*vector),
             Fitted::IntegerPair(pair) => Value::from(*pair),
-            Fitted::Text(text) => Value::from(text.as_str()),
+            Fitted::Image(image) => Value::from(image.to_string()),
+            Fitted::File(name) => Value::from(name.as_str()),
             Fitted::Tensor(tensor) => tensor::to_value(tensor),
             Fitted::Polygon(corners) => {
                 Value::List(corners.iter().map(|corner| Value::from(*corner)).collect())
@@ -89,8 +94,7 @@ impl Key {
             KeyKind::Choices { options } => format!("a list of words, each {}", words(options)),
             KeyKind::Vector { unit, .. } => format!("three numbers{}", in_brackets(unit)),
             KeyKind::IntegerPair { .. } => "two whole numbers".to_owned(),
-            KeyKind::Text { .. } => "a text".to_owned(),
-            KeyKind::Image => "the name of an image".to_owned(),
+            KeyKind::Image { .. } => "the name of an image".to_owned(),
             KeyKind::ChoiceOrNumber { options, unit } => {
                 let options = options.iter().map(|option| quoted(option, '"'));
                 let options = options.collect::<Vec<_>>().join(", ");
@@ -119,12 +123,9 @@ impl Key {
             KeyKind::Choices { .. } => Some(Fitted::Choices(Vec::new())),
             KeyKind::Vector { default, .. } => Some(Fitted::Vector(default)),
             KeyKind::IntegerPair { default, .. } => Some(Fitted::IntegerPair(default)),
-            KeyKind::Text { default } => default.map(|text| Fitted::Text(text.to_owned())),
+            KeyKind::Image { default } => default.and_then(|name| image(name).ok()),
             KeyKind::Tensor => Some(Fitted::Tensor(1.0.into())),
-            KeyKind::Image
-            | KeyKind::Polygon { .. }
-            | KeyKind::Samples { .. }
-            | KeyKind::Table { .. } => None,
+            KeyKind::Polygon { .. } | KeyKind::Samples { .. } | KeyKind::Table { .. } => None,
             KeyKind::Tables { .. } => Some(Fitted::Tables(Vec::new())),
             KeyKind::Choice { options } | KeyKind::ChoiceOrNumber { options, .. } => {
                 options.first().map(|option| Fitted::Choice(option))
@@ -137,7 +138,7 @@ impl Key {
         match self.kind {
             KeyKind::Number { unit, limits, .. } => {
                 let number = value.as_number().ok_or_else(|| self.wrong_type(value))?;
-                self.limit(self.name, number, unit, limits)?;
+                limit(self.name, number, unit, limits)?;
                 Ok(Fitted::Number(number))
             }
             KeyKind::Integer { min, max, .. } => {
@@ -163,7 +164,7 @@ impl Key {
                 let numbers = self.list(value, Value::as_number)?;
                 for (number, axis) in numbers.iter().zip(["first", "second", "third"]) {
                     let name = format!("the {axis} component of {}", self.name);
-                    self.limit(&name, *number, unit, limits)?;
+                    limit(&name, *number, unit, limits)?;
                 }
                 Ok(Fitted::Vector(numbers))
             }
@@ -175,17 +176,20 @@ impl Key {
                 }
                 Ok(Fitted::IntegerPair(integers))
             }
-            KeyKind::Samples { limits } if !matches!(value, Value::Text(_)) => {
-                self.samples(value, limits).map(Fitted::Samples)
+            KeyKind::Image { .. } | KeyKind::Samples { .. } if *value == Value::from("") => {
+                Err(format!("{} is empty", self.name))
             }
-            KeyKind::Text { .. } | KeyKind::Image | KeyKind::Samples { .. } => match value {
-                Value::Text(text) if text.is_empty() => Err(format!("{} is empty", self.name)),
-                Value::Text(text) => Ok(Fitted::Text(text.clone())),
+            KeyKind::Image { .. } => match value {
+                Value::Text(name) => image(name),
                 _ => Err(self.wrong_type(value)),
+            },
+            KeyKind::Samples { limits } => match value {
+                Value::Text(name) => Ok(Fitted::File(name.clone())),
+                _ => self.samples(value, limits).map(Fitted::Samples),
             },
             KeyKind::ChoiceOrNumber { options, unit } => match value.as_number() {
                 Some(number) => {
-                    self.limit(self.name, number, unit, Limits::Finite)?;
+                    limit(self.name, number, unit, Limits::Finite)?;
                     Ok(Fitted::Number(number))
                 }
                 None => self.choose(value, options).map(Fitted::Choice),
@@ -194,7 +198,7 @@ impl Key {
                 let tensor = tensor::from_value(value).ok_or_else(|| self.wrong_type(value))?;
                 for number in tensor::parts(&tensor) {
                     let name = format!("an entry of {}", self.name);
-                    self.limit(&name, number, "", Limits::Finite)?;
+                    limit(&name, number, "", Limits::Finite)?;
                 }
                 Ok(Fitted::Tensor(tensor))
             }
@@ -217,7 +221,7 @@ impl Key {
                 .map_err(|_| format!("a corner of {} is {item}; it must be [x, y]", self.name))?;
             for number in corner {
                 let name = format!("a coordinate of {}", self.name);
-                self.limit(&name, number, unit, Limits::Within(-FARTHEST, FARTHEST))?;
+                limit(&name, number, unit, Limits::Within(-FARTHEST, FARTHEST))?;
             }
             Ok(corner)
         };
@@ -230,7 +234,7 @@ impl Key {
             let name = format!("{}[{}][{}]", self.name, at[0], at[1]);
             let number =
                 item.as_number().ok_or_else(|| format!("{name} is {item}; it must be a number"))?;
-            self.limit(&name, number, "", limits)?;
+            limit(&name, number, "", limits)?;
             Ok(number)
         };
         let row = |(i, row): (usize, &Value)| -> Result<Vec<f64>, String> {
@@ -261,19 +265,6 @@ impl Key {
         format!("{} is {value}; it must be {}", self.name, self.describe())
     }
 
-    fn limit(&self, name: &str, number: f64, unit: &str, limits: Limits) -> Result<(), String> {
-        if limits.allow(number) {
-            return Ok(());
-        }
-        if !number.is_finite() {
-            let what = if number.is_nan() { "not a number (nan)" } else { "infinite" };
-            return Err(format!("{name} is {what}; numbers must be finite"));
-        }
-        let space = if unit.is_empty() { "" } else { " " };
-        let shown = number_text(number);
-        Err(format!("{name} is {shown}{space}{unit}; it must be {}", limits.describe()))
-    }
-
     fn choose(&self, value: &Value, options: &[&'static str]) -> Result<&'static str, String> {
         choose(value, options).map_err(|hint| self.wrong_type(value) + &hint)
     }
@@ -290,6 +281,12 @@ impl Key {
     }
 }
 
+/// The image of a name that is relative to no folder.
+fn image(name: &str) -> Result<Fitted, String> {
+    let source = ImageSource::parse(name, Path::new(""));
+    source.map(Fitted::Image).map_err(|error| error.to_string())
+}
+
 /// The option that a word is; else a hint which one may have been meant.
 fn choose(value: &Value, options: &[&'static str]) -> Result<&'static str, String> {
     let Value::Text(word) = value else { return Err(String::new()) };
@@ -297,6 +294,19 @@ fn choose(value: &Value, options: &[&'static str]) -> Result<&'static str, Strin
         let meant = nearest(word, options.iter().copied());
         meant.map(|meant| format!("; did you mean {}?", quoted(meant, '"'))).unwrap_or_default()
     })
+}
+
+fn limit(name: &str, number: f64, unit: &str, limits: Limits) -> Result<(), String> {
+    if limits.allow(number) {
+        return Ok(());
+    }
+    if !number.is_finite() {
+        let what = if number.is_nan() { "not a number (nan)" } else { "infinite" };
+        return Err(format!("{name} is {what}; numbers must be finite"));
+    }
+    let space = if unit.is_empty() { "" } else { " " };
+    let shown = number_text(number);
+    Err(format!("{name} is {shown}{space}{unit}; it must be {}", limits.describe()))
 }
 
 fn limit_integer(name: &str, integer: i64, min: i64, max: i64) -> Result<(), String> {

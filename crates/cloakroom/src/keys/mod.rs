@@ -16,7 +16,7 @@ mod values;
 pub use nearest::{hint, nearest, unknown};
 pub use samples::{Samples, SamplesError};
 pub use value::Value;
-pub(crate) use value::{number_text, quoted};
+pub(crate) use value::{number_text, quoted, vector_text};
 pub use values::{ChoiceOrNumber, KeyError, Sampled, Values};
 
 /// One key of a table.
@@ -84,14 +84,12 @@ pub enum KeyKind {
         /// Largest allowed value of either.
         max: i64,
     },
-    /// A text, such as the name of a file.
-    Text {
+    /// An image: the name of a file, or of one that comes with the program. A scene file's reader takes names of
+    /// files relative to its folder.
+    Image {
         /// Used where the key is absent; `None` if absence itself means something.
         default: Option<&'static str>,
     },
-    /// An image: the name of a file, or of one that comes with the program; absence itself means something.
-    /// A scene file's reader makes names of files relative to its folder.
-    Image,
     /// One of a few words, or a number: a polarizer is `"none"`, `"horizontal"` or an angle.
     ChoiceOrNumber {
         /// The words; the first is the default.

@@ -1,6 +1,9 @@
 //! Tests of values held against keys.
 
 use super::*;
+use crate::photograph::ImageSource;
+
+const SHELF: &str = "builtin:bookshelf";
 
 static KEYS: &[Key] = &[
     Key {
@@ -49,8 +52,8 @@ static KEYS: &[Key] = &[
         doc: "A pair.",
         kind: KeyKind::IntegerPair { default: [4, 3], min: 1, max: 65536 },
     },
-    Key { name: "image", doc: "A text.", kind: KeyKind::Text { default: Some("builtin") } },
-    Key { name: "file", doc: "A text.", kind: KeyKind::Text { default: None } },
+    Key { name: "image", doc: "An image.", kind: KeyKind::Image { default: Some(SHELF) } },
+    Key { name: "sky", doc: "An image.", kind: KeyKind::Image { default: None } },
     Key {
         name: "polarizer",
         doc: "A word or an angle.",
@@ -80,8 +83,8 @@ fn absent_keys_have_their_defaults() {
     assert!(values.choices("channels").is_empty());
     assert_eq!(values.vector("color"), [0.0; 3]);
     assert_eq!(values.integer_pair("resolution"), [4, 3]);
-    assert_eq!(values.text("image"), "builtin");
-    assert_eq!(values.optional_text("file"), None);
+    assert_eq!(values.image("image").to_string(), SHELF);
+    assert_eq!(values.optional_image("sky"), None);
     assert_eq!(values.choice_or_number("polarizer"), ChoiceOrNumber::Choice("none"));
     assert!(KEYS.iter().all(|key| !values.is_given(key.name)));
 }
@@ -99,7 +102,7 @@ fn given_values_come_back() {
         ("color", Value::List(vec![1.0.into(), 0_i64.into(), 0.5.into()])),
         ("resolution", [640_i64, 480].into()),
         ("image", "a.png".into()),
-        ("file", "b.png".into()),
+        ("sky", "b.png".into()),
         ("polarizer", 30_i64.into()),
     ];
     for (name, value) in given {
@@ -114,8 +117,8 @@ fn given_values_come_back() {
     assert_eq!(values.choices("channels"), ["power"]);
     assert_eq!(values.vector("color"), [1.0, 0.0, 0.5]);
     assert_eq!(values.integer_pair("resolution"), [640, 480]);
-    assert_eq!(values.text("image"), "a.png");
-    assert_eq!(values.optional_text("file"), Some("b.png"));
+    assert_eq!(values.image("image"), &ImageSource::File("a.png".into()));
+    assert_eq!(values.optional_image("sky"), Some(&ImageSource::File("b.png".into())));
     assert_eq!(values.choice_or_number("polarizer"), ChoiceOrNumber::Number(30.0));
     // What `get` returns can be set again.
     let copy = values.clone();
@@ -143,6 +146,10 @@ fn a_refusal_names_quantity_value_unit_and_what_is_allowed() {
     );
     assert_eq!(refusal("image", ""), "image is empty");
     assert_eq!(
+        refusal("sky", "builtin:bookself"),
+        "there is no built-in image `builtin:bookself`; there is `builtin:bookshelf`"
+    );
+    assert_eq!(
         refusal("show", "bear"),
         r#"show is "bear"; it must be "cloak", "bare" or "mirror"; did you mean "bare"?"#
     );
@@ -160,7 +167,7 @@ fn a_refusal_names_quantity_value_unit_and_what_is_allowed() {
 fn a_wrong_type_is_refused_by_every_key() {
     assert_eq!(refusal("side", "big"), r#"side is "big"; it must be a number (cm)"#);
     assert_eq!(refusal("rounded", 1_i64), "rounded is 1; it must be true or false");
-    assert_eq!(refusal("image", 5_i64), "image is 5; it must be a text");
+    assert_eq!(refusal("image", 5_i64), "image is 5; it must be the name of an image");
     assert_eq!(refusal("color", [1.0, 2.0]), "color is [1, 2]; it must be three numbers");
     assert_eq!(refusal("color", Value::List(vec![])), "color is []; it must be three numbers");
     assert_eq!(

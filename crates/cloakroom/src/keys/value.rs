@@ -1,5 +1,6 @@
 //! Values as they are handed over, before they are held against a key.
 
+use glam::DVec3;
 use std::fmt;
 
 /// A value as a scene file, the command line or the Python package hands it over.
@@ -125,6 +126,12 @@ pub(crate) fn number_text(number: f64) -> String {
     } else {
         format!("{number}")
     }
+}
+
+/// A vector for people: `[1, 2, 3]`.
+pub(crate) fn vector_text(vector: DVec3) -> String {
+    let [x, y, z] = vector.to_array().map(number_text);
+    format!("[{x}, {y}, {z}]")
 }
 
 /// A text between quotes, control characters escaped, long ones cut short.

@@ -3,6 +3,7 @@
 use super::check::Fitted;
 use super::nearest::unknown;
 use super::{Key, KeyKind, Samples, Value};
+use crate::photograph::ImageSource;
 use optics::medium::Tensor;
 
 /// Why a table cannot be had: which key is impossible, and how.
@@ -38,12 +39,16 @@ impl KeyError {
         KeyError { entry: Some((list, number)), ..self }
     }
 
-    /// Where the error is, below the table it is of: `side`, `prism.2.corners`; empty if it is nowhere in
-    /// particular.
+    /// Where the error is, of a table such as `device.0`: `device.0.side`, `device.0.prism.2.corners`; the table
+    /// itself if it is nowhere in particular.
     #[must_use]
-    pub fn path(&self) -> String {
+    pub fn path_in(&self, table: &str) -> String {
         let entry = self.entry.map(|(list, number)| format!("{list}.{number}"));
-        entry.as_deref().into_iter().chain(self.key).collect::<Vec<_>>().join(".")
+        [Some(table), entry.as_deref(), self.key]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join(".")
     }
 }
 
@@ -121,17 +126,24 @@ impl Values {
         Ok(())
     }
 
+    /// Gives a key of the kind [`KeyKind::Image`] its image.
+    pub(crate) fn set_image(&mut self, name: &str, image: ImageSource) {
+        self.put(name, Fitted::Image(image));
+    }
+
     /// Gives a key of the kind [`KeyKind::Tables`] its tables, held against their keys before.
     pub(crate) fn set_tables(&mut self, name: &str, tables: Vec<Values>) {
-        if let Some(index) = self.keys.iter().position(|key| key.name == name) {
-            self.slots[index] = Slot { value: Some(Fitted::Tables(tables)), given: true };
-        }
+        self.put(name, Fitted::Tables(tables));
     }
 
     /// Gives a key of the kind [`KeyKind::Table`] its table, held against its keys before.
     pub(crate) fn set_table(&mut self, name: &str, table: Values) {
+        self.put(name, Fitted::Table(table));
+    }
+
+    fn put(&mut self, name: &str, value: Fitted) {
         if let Some(index) = self.keys.iter().position(|key| key.name == name) {
-            self.slots[index] = Slot { value: Some(Fitted::Table(table)), given: true };
+            self.slots[index] = Slot { value: Some(value), given: true };
         }
     }
 
@@ -238,20 +250,20 @@ impl Values {
         }
     }
 
-    /// A text that has a default.
-    pub fn text(&self, name: &str) -> &str {
+    /// An image that has a default.
+    pub fn image(&self, name: &str) -> &ImageSource {
         match (self.slot(name).0.kind, &self.slot(name).1.value) {
-            (KeyKind::Text { default: Some(_) }, Some(Fitted::Text(text))) => text,
-            _ => mistaken(name, "text with a default"),
+            (KeyKind::Image { default: Some(_) }, Some(Fitted::Image(image))) => image,
+            _ => mistaken(name, "image with a default"),
         }
     }
 
-    /// A text; `None` where it is absent and has no default.
-    pub fn optional_text(&self, name: &str) -> Option<&str> {
+    /// An image; `None` where it is absent and has no default.
+    pub fn optional_image(&self, name: &str) -> Option<&ImageSource> {
         match (self.slot(name).0.kind, &self.slot(name).1.value) {
-            (KeyKind::Text { .. } | KeyKind::Image, Some(Fitted::Text(text))) => Some(text),
-            (KeyKind::Text { .. } | KeyKind::Image, None) => None,
-            _ => mistaken(name, "text"),
+            (KeyKind::Image { .. }, Some(Fitted::Image(image))) => Some(image),
+            (KeyKind::Image { .. }, None) => None,
+            _ => mistaken(name, "image"),
         }
     }
 
@@ -278,7 +290,7 @@ impl Values {
             (KeyKind::Samples { .. }, Some(Fitted::Samples(samples))) => {
                 Some(Sampled::Here(samples))
             }
-            (KeyKind::Samples { .. }, Some(Fitted::Text(file))) => Some(Sampled::InFile(file)),
+            (KeyKind::Samples { .. }, Some(Fitted::File(name))) => Some(Sampled::InFile(name)),
             (KeyKind::Samples { .. }, None) => None,
             _ => mistaken(name, "grid of numbers"),
         }

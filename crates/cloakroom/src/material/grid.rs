@@ -66,9 +66,9 @@ impl Grid {
         let has_ends = |axis: usize| size[axis] < REACH;
         let longest = (0..3).filter(|axis| has_ends(*axis)).map(|axis| size[axis]);
         let longest = longest.reduce(f64::max).ok_or(MaterialError::Endless)?;
-        let resolution = match resolution {
-            Resolution::Default => Resolution::Spacing(longest / DEFAULT_CELLS),
-            given => given,
+        let side = match resolution {
+            Resolution::Spacing(side) => side,
+            _ => longest / DEFAULT_CELLS,
         };
         let (spacing, cells) = match resolution {
             Resolution::Cells(cells) => {
@@ -81,7 +81,7 @@ impl Grid {
                 let spacing = [0, 1, 2].map(|axis| if has_ends(axis) { side(axis) } else { least });
                 (DVec3::from(spacing), cells.map(f64::from))
             }
-            Resolution::Spacing(side) => {
+            Resolution::Spacing(_) | Resolution::Default => {
                 if !(side > 0.0 && side.is_finite()) {
                     return Err(MaterialError::EmptyGrid);
                 }
@@ -90,7 +90,6 @@ impl Grid {
                 let cells = [0, 1, 2].map(|axis| if has_ends(axis) { count(axis) } else { 1.0 });
                 (DVec3::splat(side), cells)
             }
-            Resolution::Default => return Err(MaterialError::EmptyGrid),
         };
         check_memory(cells)?;
         let middle = [0, 1, 2].map(|axis| {
@@ -123,8 +122,8 @@ impl Grid {
 
 /// Refuses a grid that would not fit into the memory that is free now.
 fn check_memory(cells: [f64; 3]) -> Result<(), MaterialError> {
-    /// Index, two tensors with their imaginary parts, and a copy in the order of a file.
-    const BYTES: f64 = 8.0 * (1.0 + 4.0 * 6.0 + 18.0);
+    /// A code, an index and two tensors with their imaginary parts: as they are sampled, and in arrays.
+    const BYTES: f64 = 2.0 * 8.0 * (2.0 + 4.0 * 6.0);
     let needed = cells.iter().product::<f64>() * BYTES;
     let available = crate::memory::available().map_or(f64::INFINITY, |bytes| bytes as f64);
     if needed > available || cells.iter().any(|count| *count > MOST_CELLS) {

@@ -6,7 +6,7 @@ mod sampling;
 mod segments;
 
 pub use grid::{Frame, Grid, Resolution};
-pub use sampling::{Region, Sampled, sample};
+pub use sampling::{Region, SymmetricTensor, sample};
 pub use segments::{Segment, segments, write_segments};
 
 use crate::device::{Filling, Show};

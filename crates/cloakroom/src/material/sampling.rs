@@ -31,7 +31,7 @@ impl Region {
 }
 
 /// A symmetric tensor: xx, yy, zz, xy, yz, xz.
-pub type Sampled = [f64; 6];
+pub type SymmetricTensor = [f64; 6];
 
 /// One cell.
 #[derive(Clone, Copy)]
@@ -39,8 +39,8 @@ struct Point {
     region: Region,
     index: f64,
     /// Permittivity and permeability.
-    real: [Sampled; 2],
-    imaginary: [Sampled; 2],
+    real: [SymmetricTensor; 2],
+    imaginary: [SymmetricTensor; 2],
 }
 
 /// The material of a device on a grid: arrays `region` (see [`Region`]), `index` (of an anisotropic medium the
@@ -126,7 +126,7 @@ fn point(placed: &Placed, frame: Frame, at: glam::DVec3) -> Point {
 
 fn arrays(points: &[Point]) -> Vec<GridArray> {
     let array = |name: &'static str, values: GridValues| GridArray { name, values };
-    let tensors = |of: &dyn Fn(&Point) -> Sampled| {
+    let tensors = |of: &dyn Fn(&Point) -> SymmetricTensor| {
         GridValues::SymmetricTensors(points.iter().map(of).collect())
     };
     let regions = points.iter().map(|point| point.region as u8).collect();

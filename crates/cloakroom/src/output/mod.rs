@@ -14,8 +14,8 @@ pub use arrays::{Arrays, write_arrays};
 pub use grid_file::{GridArray, GridFile, GridFormat, GridValues, write_grid};
 pub use image::RgbImage;
 pub use picture::{Channel, Picture, Samples};
-pub(crate) use png_file::encoder as png_encoder;
 pub use png_file::{encode_png, to_srgb, write_png, write_png_in_strips};
+pub(crate) use png_file::{encoder as png_encoder, texts as png_texts};
 pub use reading::{ReadError, read_npz, read_png};
 pub use whole_file::{WriteSeek, check_writable, write_whole};
 
@@ -89,7 +89,8 @@ fn innermost(error: &io::Error) -> &io::Error {
 }
 
 /// The ending of a file's name in small letters.
-pub(crate) fn ending(path: &Path) -> Option<String> {
+#[must_use]
+pub fn ending(path: &Path) -> Option<String> {
     path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase())
 }
 

@@ -1,6 +1,7 @@
 //! PNG: 8-bit sRGB.
 
 use super::{OutputError, Picture, RgbImage, Samples, write_whole};
+use crate::photograph::decode;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -49,12 +50,8 @@ const PARTS: usize = 4096;
 impl Codes {
     fn new() -> Self {
         let thresholds: [f64; 255] = std::array::from_fn(|n| {
-            let encoded = (n as f64 + 0.5) / 255.0;
-            if encoded <= 0.040_45 {
-                encoded / 12.92
-            } else {
-                ((encoded + 0.055) / 1.055).powf(2.4)
-            }
+            // Half-way between the two.
+            decode((n as f64 + 0.5) / 255.0)
         });
         let lowest = std::array::from_fn(|part| {
             let light = part as f64 / PARTS as f64;
@@ -153,6 +150,15 @@ pub(crate) fn encoder<'o>(
     Ok(encoder)
 }
 
+/// The text metadata of a PNG, under the names that they have here.
+pub(crate) fn texts(info: &png::Info<'_>) -> Result<Vec<(String, String)>, png::DecodingError> {
+    let text = |chunk: &png::text_metadata::ITXtChunk| {
+        let key = if chunk.keyword == "Software" { "software" } else { &chunk.keyword };
+        Ok((key.to_owned(), chunk.get_text()?))
+    };
+    info.utf8_text.iter().map(text).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::Channel;
@@ -204,13 +210,7 @@ mod tests {
     fn every_code_survives_the_way_there_and_back() {
         let codes = Codes::new();
         for n in 0..=255u8 {
-            let encoded = f64::from(n) / 255.0;
-            let linear = if encoded <= 0.040_45 {
-                encoded / 12.92
-            } else {
-                ((encoded + 0.055) / 1.055).powf(2.4)
-            };
-            assert_eq!(codes.nearest(linear), n);
+            assert_eq!(codes.nearest(decode(f64::from(n) / 255.0)), n);
         }
     }
 

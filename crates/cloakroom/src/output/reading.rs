@@ -1,6 +1,6 @@
 //! Pictures read back from files.
 
-use super::{Channel, Picture, RgbImage, Samples};
+use super::{Channel, Picture, RgbImage, Samples, png_texts};
 use ndarray::{Array, Array1, ArrayBase, Dimension, Ix2, Ix3, OwnedRepr};
 use ndarray_npy::{NpzReader, ReadNpzError, ReadableElement};
 use std::fs::File;
@@ -110,13 +110,7 @@ pub fn read_png(path: &Path) -> Result<(RgbImage, Vec<(String, String)>), ReadEr
     reader.next_frame(&mut pixels).map_err(|error| failed(error.to_string()))?;
     reader.finish().map_err(|error| failed(error.to_string()))?;
     let info = reader.info();
-    let text = |chunk: &png::text_metadata::ITXtChunk| {
-        let text = chunk.get_text().map_err(|error| failed(error.to_string()))?;
-        // As `write_png` has renamed it.
-        let key = if chunk.keyword == "Software" { "software" } else { &chunk.keyword };
-        Ok((key.to_owned(), text))
-    };
-    let metadata = info.utf8_text.iter().map(text).collect::<Result<_, _>>()?;
+    let metadata = png_texts(info).map_err(|error| failed(error.to_string()))?;
     let image = RgbImage::from_raw(info.width, info.height, pixels).ok_or_else(other)?;
     Ok((image, metadata))
 }

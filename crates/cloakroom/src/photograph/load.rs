@@ -10,6 +10,7 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Li
 
 use super::source::{ImageSource, LoadError};
 use super::{exr_limits, jpeg_markers, srgb};
+use crate::input::read_up_to;
 
 #[cfg(test)]
 mod tests;
@@ -153,6 +154,7 @@ fn read_bytes(source: &ImageSource) -> Result<Cow<'static, [u8]>, LoadError> {
     let failed = |reason: io::Error| match reason.kind() {
         io::ErrorKind::NotFound => LoadError::Missing { image: image() },
         io::ErrorKind::IsADirectory => LoadError::Folder { image: image() },
+        io::ErrorKind::FileTooLarge => LoadError::TooLarge { image: image() },
         _ => LoadError::Unreadable { image: image(), reason },
     };
     let mut file = File::open(path).map_err(failed)?;
@@ -168,10 +170,7 @@ fn read_bytes(source: &ImageSource) -> Result<Cow<'static, [u8]>, LoadError> {
     file.by_ref().take(16).read_to_end(&mut bytes).map_err(failed)?;
     format(source, &bytes)?;
     bytes.reserve(usize::try_from(metadata.len()).unwrap_or(0));
-    file.take(MAX_FILE + 1).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() as u64 > MAX_FILE {
-        return Err(LoadError::TooLarge { image: image() });
-    }
+    read_up_to(MAX_FILE, file, &mut bytes).map_err(failed)?;
     Ok(bytes.into())
 }
 

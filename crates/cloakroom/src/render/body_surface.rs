@@ -7,7 +7,7 @@
 
 use super::images::BodyImages;
 use crate::device::{BodyShape, Filling, Surface};
-use crate::photograph::{Equirectangular, ImageSource, LoadError, Pyramid};
+use crate::photograph::{Equirectangular, LoadError, Pyramid};
 use crate::trace::Placed;
 use glam::DVec3;
 use optics::geometry::{Cylinder, CylinderPart, Pose};
@@ -69,14 +69,6 @@ impl BodySurface {
                 Some(Self::Image(Box::new(Picture { pose: placed.pose, texture })))
             }
         })
-    }
-
-    /// The image on a device, if it is an opaque body with one.
-    pub fn image_on(placed: &Placed) -> Option<&ImageSource> {
-        match &placed.structure.hull.body()?.filling {
-            Filling::Opaque(Surface::Image(source)) => Some(source),
-            _ => None,
-        }
     }
 
     /// Linear light from a point of the surface. `steps` says, for the normal of the tangent plane there, how far

@@ -2,8 +2,8 @@
 
 use crate::scene::PictureSettings;
 
-/// What a picture is asked to hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What a picture is asked to hold, from little to much.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Wanted {
     /// The image through the camera's polarizer alone: `R`, `G`, `B`.
     Image,
@@ -12,6 +12,14 @@ pub enum Wanted {
     Polarizers,
     /// Every channel of [`Channel::ALWAYS`], and those of [`Channel::OPTIONAL`] that the scene asks for.
     Everything,
+}
+
+impl Wanted {
+    /// What the scene's image is made from: a map needs every channel.
+    #[must_use]
+    pub fn for_image(picture: &PictureSettings) -> Self {
+        if picture.map.is_some() { Self::Everything } else { Self::Image }
+    }
 }
 
 /// One channel of a picture.

@@ -31,47 +31,36 @@ const VERTICAL: [f64; 2] = [0.0, 1.0];
 impl Detection<1> {
     /// The image through a polarizer that passes these amplitudes along horizontal and vertical.
     pub fn image(amplitudes: [f64; 2]) -> Self {
-        Self {
-            launched: [amplitudes],
-            weights: [1.0],
-            separate: false,
-            alone: false,
-            times: true,
-            stokes: false,
-            first_face: false,
-        }
+        Self::of([amplitudes], [1.0])
     }
 }
 
 impl Detection<2> {
     /// No polarizer.
-    pub const UNPOLARIZED: Self = Self {
-        launched: [HORIZONTAL, VERTICAL],
-        weights: [0.5, 0.5],
-        separate: true,
-        alone: false,
-        times: true,
-        stokes: false,
-        first_face: false,
-    };
+    pub const UNPOLARIZED: Self = Self::of([HORIZONTAL, VERTICAL], [0.5, 0.5]);
 }
 
 impl Detection<3> {
     /// Horizontal, vertical, and what a polarizer passes that is neither of them alone.
     pub fn through(amplitudes: [f64; 2]) -> Self {
+        Self::of([HORIZONTAL, VERTICAL, amplitudes], [0.0, 0.0, 1.0])
+    }
+}
+
+impl<const N: usize> Detection<N> {
+    /// With times of flight; a single polarization is neither horizontal nor vertical.
+    const fn of(launched: [[f64; 2]; N], weights: [f64; N]) -> Self {
         Self {
-            launched: [HORIZONTAL, VERTICAL, amplitudes],
-            weights: [0.0, 0.0, 1.0],
-            separate: true,
+            launched,
+            weights,
+            separate: N > 1,
             alone: false,
             times: true,
             stokes: false,
             first_face: false,
         }
     }
-}
 
-impl<const N: usize> Detection<N> {
     /// Adds what the optional channels of a picture ask for; where the image alone is wanted, leaves out all
     /// but that.
     pub fn with_options(self, wanted: Wanted, picture: &PictureSettings) -> Self {

@@ -8,13 +8,7 @@ use crate::output::{Channel as FileChannel, Samples};
 pub(super) struct Film {
     width: usize,
     corner: [usize; 2],
-    planes: Vec<(Channel, Plane)>,
-}
-
-enum Plane {
-    Single(Vec<f32>),
-    Double(Vec<f64>),
-    Rgb(Vec<[f32; 3]>),
+    planes: Vec<(Channel, Samples)>,
 }
 
 /// A band of rows of every plane, to be exposed by one thread.
@@ -27,9 +21,9 @@ pub(super) struct Band<'f> {
 }
 
 enum BandPlane<'f> {
-    Single(&'f mut [f32]),
-    Double(&'f mut [f64]),
+    F32(&'f mut [f32]),
     Rgb(&'f mut [[f32; 3]]),
+    F64(&'f mut [f64]),
 }
 
 impl Film {
@@ -41,9 +35,9 @@ impl Film {
             .map(|channel| {
                 let size = width * height;
                 let plane = match channel.form() {
-                    Form::Single => Plane::Single(vec![0.0; size]),
-                    Form::Double => Plane::Double(vec![0.0; size]),
-                    Form::Rgb => Plane::Rgb(vec![[0.0; 3]; size]),
+                    Form::Single => Samples::F32(vec![0.0; size]),
+                    Form::Double => Samples::F64(vec![0.0; size]),
+                    Form::Rgb => Samples::Rgb(vec![[0.0; 3]; size]),
                 };
                 (*channel, plane)
             })
@@ -57,9 +51,9 @@ impl Film {
         for (channel, plane) in &mut self.planes {
             let size = self.width * rows;
             let pieces: Vec<BandPlane<'_>> = match plane {
-                Plane::Single(values) => values.chunks_mut(size).map(BandPlane::Single).collect(),
-                Plane::Double(values) => values.chunks_mut(size).map(BandPlane::Double).collect(),
-                Plane::Rgb(values) => values.chunks_mut(size).map(BandPlane::Rgb).collect(),
+                Samples::F32(values) => values.chunks_mut(size).map(BandPlane::F32).collect(),
+                Samples::Rgb(values) => values.chunks_mut(size).map(BandPlane::Rgb).collect(),
+                Samples::F64(values) => values.chunks_mut(size).map(BandPlane::F64).collect(),
             };
             for (index, piece) in pieces.into_iter().enumerate() {
                 if index == bands.len() {
@@ -79,14 +73,7 @@ impl Film {
     pub fn into_channels(self) -> Vec<FileChannel> {
         self.planes
             .into_iter()
-            .map(|(channel, plane)| FileChannel {
-                name: channel.name().to_owned(),
-                samples: match plane {
-                    Plane::Single(values) => Samples::F32(values),
-                    Plane::Double(values) => Samples::F64(values),
-                    Plane::Rgb(values) => Samples::Rgb(values),
-                },
-            })
+            .map(|(channel, samples)| FileChannel { name: channel.name().to_owned(), samples })
             .collect()
     }
 }
@@ -97,8 +84,8 @@ impl Band<'_> {
     pub fn set(&mut self, index: usize, value: impl Fn(Channel, usize) -> f64) {
         for (channel, plane) in &mut self.planes {
             match plane {
-                BandPlane::Single(values) => values[index] = value(*channel, 0) as f32,
-                BandPlane::Double(values) => values[index] = value(*channel, 0),
+                BandPlane::F32(values) => values[index] = value(*channel, 0) as f32,
+                BandPlane::F64(values) => values[index] = value(*channel, 0),
                 BandPlane::Rgb(values) => {
                     values[index] = std::array::from_fn(|color| value(*channel, color) as f32);
                 }
@@ -109,8 +96,8 @@ impl Band<'_> {
     /// How many pixels the band holds.
     pub fn len(&self) -> usize {
         self.planes.first().map_or(0, |(_, plane)| match plane {
-            BandPlane::Single(values) => values.len(),
-            BandPlane::Double(values) => values.len(),
+            BandPlane::F32(values) => values.len(),
+            BandPlane::F64(values) => values.len(),
             BandPlane::Rgb(values) => values.len(),
         })
     }

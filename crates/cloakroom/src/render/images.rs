@@ -31,36 +31,21 @@ pub(super) struct BodyImages {
 impl Images {
     /// Hangs an image up as the photograph of that name: scenes that name it show this, and no file is read.
     pub fn hang(&mut self, name: ImageSource, image: LinearImage) {
-        self.photograph = Some((name, Arc::new(Pyramid::new(image, Edges::Clamp))));
+        self.photograph = Some((name, Arc::new(flat(image))));
     }
 
     /// The photograph of a scene.
     pub(super) fn photograph(&mut self, scene: &Scene) -> Result<Arc<Pyramid>, StudioError> {
-        let source = &scene.photograph.image;
-        match &self.photograph {
-            Some((known, image)) if known == source => Ok(image.clone()),
-            _ => {
-                let image = photograph::load(source).map_err(StudioError::Photograph)?;
-                let image = Arc::new(Pyramid::new(image, Edges::Clamp));
-                self.photograph = Some((source.clone(), image.clone()));
-                Ok(image)
-            }
-        }
+        last(&mut self.photograph, &scene.photograph.image, flat).map_err(StudioError::Photograph)
     }
 
     /// The surroundings of a scene.
     pub(super) fn surroundings(&mut self, scene: &Scene) -> Result<Surroundings, StudioError> {
-        let source = match &scene.surroundings {
-            SurroundingsSettings::Color(color) => return Ok(Surroundings::Color(*color)),
-            SurroundingsSettings::Image(source) => source,
-        };
-        match &self.surroundings {
-            Some((known, image)) if known == source => Ok(Surroundings::Image(image.clone())),
-            _ => {
-                let image = photograph::load(source).map_err(StudioError::Surroundings)?;
-                let image = Arc::new(Equirectangular::new(image));
-                self.surroundings = Some((source.clone(), image.clone()));
-                Ok(Surroundings::Image(image))
+        match &scene.surroundings {
+            SurroundingsSettings::Color(color) => Ok(Surroundings::Color(*color)),
+            SurroundingsSettings::Image(source) => {
+                let image = last(&mut self.surroundings, source, Equirectangular::new);
+                image.map(Surroundings::Image).map_err(StudioError::Surroundings)
             }
         }
     }
@@ -74,7 +59,7 @@ impl Images {
 impl BodyImages {
     /// An image for flat faces, which ends at their edges.
     pub fn face(&mut self, source: &ImageSource) -> Result<Arc<Pyramid>, LoadError> {
-        known(&mut self.faces, source, |image| Pyramid::new(image, Edges::Clamp))
+        known(&mut self.faces, source, flat)
     }
 
     /// An image that goes once around the side of a cylinder.
@@ -95,6 +80,25 @@ impl BodyImages {
             self.balls.retain(|(name, _)| shown.contains(&name));
         }
     }
+}
+
+/// An image that ends at its edges.
+fn flat(image: LinearImage) -> Pyramid {
+    Pyramid::new(image, Edges::Clamp)
+}
+
+/// The image that was read last, if it is this one, or read now instead of it.
+fn last<T>(
+    last: &mut Option<(ImageSource, Arc<T>)>,
+    source: &ImageSource,
+    make: impl FnOnce(LinearImage) -> T,
+) -> Result<Arc<T>, LoadError> {
+    if let Some((_, image)) = last.as_ref().filter(|(name, _)| name == source) {
+        return Ok(image.clone());
+    }
+    let image = Arc::new(make(photograph::load(source)?));
+    *last = Some((source.clone(), image.clone()));
+    Ok(image)
 }
 
 /// An image among those that are known, or read now.

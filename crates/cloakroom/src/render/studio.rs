@@ -6,7 +6,7 @@ use crate::device::{Request, Show};
 use crate::keys::KeyError;
 use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
 use crate::scene::{Projection, Scene};
-use crate::trace::{Bench, Limits, MOST_BODIES, Placed, Screen};
+use crate::trace::{Bench, Limits, MOST_BODIES, MOST_DEVICES, Placed, Screen};
 use glam::DVec3;
 use optics::geometry::Pose;
 use std::sync::Arc;
@@ -53,6 +53,12 @@ pub enum StudioError {
         count: usize,
         /// The first that is too many, counted from 0 among all devices.
         device: usize,
+    },
+    /// There are too many devices.
+    #[error("there are {count} devices; a scene may have {MOST_DEVICES}")]
+    TooManyDevices {
+        /// How many there are.
+        count: usize,
     },
     /// The camera is inside a device.
     #[error("the camera stands inside device {device} (counted from 0); it must stand in air")]
@@ -101,15 +107,12 @@ impl StudioError {
     #[must_use]
     pub fn key(&self) -> String {
         match self {
-            Self::Device { device, error } => {
-                let path = error.path();
-                let dot = if path.is_empty() { "" } else { "." };
-                format!("device.{device}{dot}{path}")
-            }
+            Self::Device { device, error } => error.path_in(&format!("device.{device}")),
             Self::PhotographInside { device, .. } => format!("device.{device}"),
             Self::Overlap { second, .. } => format!("device.{second}"),
             Self::EqualPriority { second, .. } => format!("device.{second}.priority"),
             Self::TooManyBodies { device, .. } => format!("device.{device}"),
+            Self::TooManyDevices { .. } => format!("device.{MOST_DEVICES}"),
             Self::CameraInside { .. } => "camera.position".to_owned(),
             Self::NoCoveringWidth { .. } => "photograph.x".to_owned(),
             Self::Photograph(_) => "photograph.image".to_owned(),
@@ -126,6 +129,10 @@ impl StudioError {
 ///
 /// If a device is impossible or two overlap.
 pub fn bench(scene: &Scene) -> Result<Bench, StudioError> {
+    let count = scene.devices.len();
+    if count > MOST_DEVICES {
+        return Err(StudioError::TooManyDevices { count });
+    }
     let mut placed = Vec::new();
     for (index, device) in scene.devices.iter().enumerate() {
         let request =
@@ -233,8 +240,7 @@ impl<'s> Studio<'s> {
         };
         let body_surfaces =
             bench.devices().iter().enumerate().map(surface).collect::<Result<_, _>>()?;
-        let shown: Vec<_> = bench.devices().iter().filter_map(BodySurface::image_on).collect();
-        images.bodies().keep(&shown);
+        images.bodies().keep(&bench.body_images().collect::<Vec<_>>());
         Ok(Self { scene, bench, limits: limits(scene), screen, image, surroundings, body_surfaces })
     }
 

@@ -112,8 +112,8 @@ fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
 /// Why tiles cannot be put together.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MergeError {
-    /// A file is no tile.
-    #[error("{name} is not a tile of a picture: its metadata do not say which")]
+    /// A file is no tile, or not the one that it says.
+    #[error("{name} is not a tile of a picture: its metadata do not say which, or of another size")]
     NoTile {
         /// What the tile is called.
         name: String,
@@ -159,16 +159,18 @@ pub type Piece<T> = (String, Metadata, T);
 /// Which tiles pieces are, the resolution of their picture, and its metadata.
 type Layout = (Vec<Tile>, [u32; 2], Metadata);
 
-/// Finds the places of pieces of one picture, which they cover.
-fn layout<T>(pieces: &[Piece<T>]) -> Result<Layout, MergeError> {
+/// Finds the places of pieces of one picture, which they cover; `size` is a piece's in pixels.
+fn layout<T>(pieces: &[Piece<T>], size: impl Fn(&T) -> [usize; 2]) -> Result<Layout, MergeError> {
     let mut tiles: Vec<Tile> = Vec::new();
     let mut picture: Option<([u32; 2], Metadata)> = None;
-    for (name, metadata, _) in pieces {
+    for (name, metadata, pixels) in pieces {
         let say = |key: &str| Some(metadata.iter().find(|(known, _)| known == key)?.1.as_str());
         let place = || {
             let resolution: [u32; 2] = numbers(say(RESOLUTION)?)?;
             let tile: Tile = say(TILE)?.parse().ok()?;
-            Some((tile.check(resolution).ok()?, resolution))
+            // Before memory is taken for what the metadata say.
+            let of_size = size(pixels) == [tile.width, tile.height].map(|side| side as usize);
+            Some((tile.check(resolution).ok().filter(|_| of_size)?, resolution))
         };
         let (tile, resolution) =
             place().ok_or_else(|| MergeError::NoTile { name: name.clone() })?;
@@ -207,8 +209,8 @@ fn layout<T>(pieces: &[Piece<T>]) -> Result<Layout, MergeError> {
 ///
 /// If they are not tiles of one picture, overlap, or do not cover it.
 pub fn merge(pieces: &[Piece<Picture>]) -> Result<Picture, MergeError> {
-    let (tiles, [width, height], metadata) = layout(pieces)?;
-    let [width, height] = [width, height].map(|side| side as usize);
+    let (tiles, size, metadata) = layout(pieces, |piece| [piece.width, piece.height])?;
+    let [width, height] = size.map(|side| side as usize);
     let size = width * height;
     let blank = |channel: &Channel| Channel {
         name: channel.name.clone(),
@@ -225,8 +227,7 @@ pub fn merge(pieces: &[Piece<Picture>]) -> Result<Picture, MergeError> {
             second: name.clone(),
             what: "channels".to_owned(),
         };
-        let of_size = [piece.width, piece.height] == [tile.width, tile.height].map(|s| s as usize);
-        if piece.channels.len() != channels.len() || !of_size {
+        if piece.channels.len() != channels.len() {
             return Err(differ());
         }
         for (channel, part) in channels.iter_mut().zip(&piece.channels) {
@@ -248,14 +249,10 @@ pub fn merge(pieces: &[Piece<Picture>]) -> Result<Picture, MergeError> {
 ///
 /// As [`merge`].
 pub fn merge_images(pieces: &[Piece<RgbImage>]) -> Result<(RgbImage, Metadata), MergeError> {
-    let (tiles, [width, height], metadata) = layout(pieces)?;
+    let size = |piece: &RgbImage| [piece.width(), piece.height()].map(|side| side as usize);
+    let (tiles, [width, height], metadata) = layout(pieces, size)?;
     let mut whole = RgbImage::new(width, height);
-    for ((name, _, piece), tile) in pieces.iter().zip(&tiles) {
-        if piece.dimensions() != (tile.width, tile.height) {
-            let (first, second) = (pieces[0].0.clone(), name.clone());
-            let what = "sizes".to_owned();
-            return Err(MergeError::OfDifferentPictures { first, second, what });
-        }
+    for ((_, _, piece), tile) in pieces.iter().zip(&tiles) {
         let (whole, _) = whole.as_chunks_mut::<3>();
         tile.place(whole, width as usize, piece.as_raw().as_chunks::<3>().0);
     }

@@ -3,14 +3,15 @@
 use glam::DVec3;
 use optics::wave::transverse_basis;
 
-use super::Polarizer;
-use crate::keys::{KeyError, Values, number_text};
+use super::{CAMERA_KEYS, Polarizer};
+use crate::direction::unit;
+use crate::keys::{KeyError, Values, number_text, vector_text};
 
 #[cfg(test)]
 mod tests;
 
 /// Most pixels a side, and most samples a pixel.
-const MOST: u32 = 65_536;
+pub(super) const MOST: u32 = 65_536;
 
 /// The sine of the angle between `up` and the line of sight below which they count as parallel.
 const PARALLEL: f64 = 1e-9;
@@ -77,7 +78,7 @@ pub struct Camera {
 }
 
 impl CameraSettings {
-    /// The settings in a table of [`CAMERA_KEYS`](super::CAMERA_KEYS).
+    /// The settings in a table of [`CAMERA_KEYS`].
     ///
     /// # Errors
     ///
@@ -123,17 +124,7 @@ impl CameraSettings {
 /// The camera of the paper: at x = -100 cm, looking along +x, 40 degrees wide.
 impl Default for CameraSettings {
     fn default() -> Self {
-        CameraSettings {
-            position: DVec3::new(-100.0, 0.0, 0.0),
-            target: DVec3::new(50.0, 0.0, 0.0),
-            up: DVec3::Y,
-            projection: Projection::Perspective { field_of_view: 40.0 },
-            resolution: [1024, 768],
-            samples: 4,
-            adaptive: 0.0,
-            seed: 0,
-            polarizer: Polarizer::None,
-        }
+        Self::from_values(&Values::defaults(CAMERA_KEYS)).expect("defaults go together")
     }
 }
 
@@ -149,7 +140,7 @@ impl Camera {
             [("position", settings.position), ("target", settings.target), ("up", settings.up)]
         {
             if !vector.is_finite() {
-                let message = format!("{key} is {}; numbers must be finite", text(vector));
+                let message = format!("{key} is {}; numbers must be finite", vector_text(vector));
                 return Err(KeyError::at(key, message));
             }
         }
@@ -161,7 +152,7 @@ impl Camera {
         let Some(forward) = unit(view) else {
             let message = format!(
                 "position and target are both {} cm; the camera has no line of sight",
-                text(settings.position)
+                vector_text(settings.position)
             );
             return Err(KeyError::at("target", message));
         };
@@ -173,7 +164,7 @@ impl Camera {
         if right.length() < PARALLEL {
             let message = format!(
                 "up is {}, along the line of sight; it must point across it",
-                text(settings.up)
+                vector_text(settings.up)
             );
             return Err(KeyError::at("up", message));
         }
@@ -337,19 +328,4 @@ impl Default for Camera {
     fn default() -> Self {
         Camera::new(CameraSettings::default()).expect("the default camera is valid")
     }
-}
-
-/// A vector of any length, however large or small, made a unit vector; `None` for zero.
-fn unit(vector: DVec3) -> Option<DVec3> {
-    let largest = vector.abs().max_element();
-    if largest == 0.0 {
-        return None;
-    }
-    // Division in two steps: the inverse of a denormal number is infinite.
-    Some((vector / largest).normalize())
-}
-
-fn text(vector: DVec3) -> String {
-    let [x, y, z] = vector.to_array().map(number_text);
-    format!("[{x}, {y}, {z}]")
 }

@@ -8,16 +8,14 @@ mod polarizer;
 mod receiver;
 mod tables;
 
-use std::path::Path;
-
 use glam::DVec3;
 
 pub use camera::{Camera, CameraRay, CameraSettings, Projection};
 pub use polarizer::Polarizer;
 pub use receiver::Receiver;
 pub use tables::{
-    CAMERA_KEYS, DEFAULT_PHOTOGRAPH, LIGHT_KEYS, OPTIONAL_CHANNELS, PHOTOGRAPH_KEYS, PICTURE_KEYS,
-    PLACEMENT_KEYS, RECEIVER_KEYS, SCALAR_CHANNELS, SURROUNDINGS_KEYS, TABLES, TRACE_KEYS,
+    CAMERA_KEYS, LIGHT_KEYS, OPTIONAL_CHANNELS, PHOTOGRAPH_KEYS, PICTURE_KEYS, PLACEMENT_KEYS,
+    RECEIVER_KEYS, SCALAR_CHANNELS, SURROUNDINGS_KEYS, TABLES, TRACE_KEYS,
 };
 
 pub use crate::device::Show;
@@ -127,36 +125,30 @@ impl Light {
 }
 
 impl PhotographSettings {
-    /// The settings in a table of [`PHOTOGRAPH_KEYS`]; the name of a file is taken relative to
-    /// `folder`.
-    ///
-    /// # Errors
-    ///
-    /// If there is no such builtin image.
-    pub fn from_values(values: &Values, folder: &Path) -> Result<Self, KeyError> {
-        Ok(PhotographSettings {
-            image: image_source(values.text("image"), folder)?,
+    /// The settings in a table of [`PHOTOGRAPH_KEYS`].
+    pub fn from_values(values: &Values) -> Self {
+        PhotographSettings {
+            image: values.image("image").clone(),
             x: values.number("x"),
             width: values.optional_number("width"),
-        })
+        }
     }
 }
 
 impl SurroundingsSettings {
-    /// The settings in a table of [`SURROUNDINGS_KEYS`]; the name of a file is taken relative to
-    /// `folder`.
+    /// The settings in a table of [`SURROUNDINGS_KEYS`].
     ///
     /// # Errors
     ///
-    /// If both a color and an image are given, or there is no such builtin image.
-    pub fn from_values(values: &Values, folder: &Path) -> Result<Self, KeyError> {
-        match values.optional_text("image") {
+    /// If both a color and an image are given.
+    pub fn from_values(values: &Values) -> Result<Self, KeyError> {
+        match values.optional_image("image") {
             None => Ok(SurroundingsSettings::Color(values.vector("color"))),
             Some(_) if values.is_given("color") => {
                 let message = "color and image are both given; the surroundings take one of them";
                 Err(KeyError::at("image", message))
             }
-            Some(image) => Ok(SurroundingsSettings::Image(image_source(image, folder)?)),
+            Some(image) => Ok(SurroundingsSettings::Image(image.clone())),
         }
     }
 }
@@ -224,14 +216,13 @@ impl Default for Light {
 
 impl Default for PhotographSettings {
     fn default() -> Self {
-        let values = Values::defaults(PHOTOGRAPH_KEYS);
-        Self::from_values(&values, Path::new("")).expect("the default photograph is builtin")
+        PhotographSettings::from_values(&Values::defaults(PHOTOGRAPH_KEYS))
     }
 }
 
 impl Default for SurroundingsSettings {
     fn default() -> Self {
-        SurroundingsSettings::Color([0.0; 3])
+        Self::from_values(&Values::defaults(SURROUNDINGS_KEYS)).expect("a color alone")
     }
 }
 
@@ -247,20 +238,27 @@ impl Default for PictureSettings {
     }
 }
 
-/// What the key `image` of a table means.
-fn image_source(image: &str, folder: &Path) -> Result<ImageSource, KeyError> {
-    ImageSource::parse(image, folder).map_err(|error| KeyError::at("image", error.to_string()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn the_default_scene_is_that_of_the_key_lists() {
+    fn the_default_scene_is_that_of_the_paper() {
         let scene = Scene::default();
-        let camera = CameraSettings::from_values(&Values::defaults(CAMERA_KEYS));
-        assert_eq!(camera.as_ref(), Ok(scene.camera.settings()));
+        let camera = CameraSettings {
+            position: DVec3::new(-100.0, 0.0, 0.0),
+            target: DVec3::new(50.0, 0.0, 0.0),
+            up: DVec3::Y,
+            projection: Projection::Perspective { field_of_view: 40.0 },
+            resolution: [1024, 768],
+            samples: 4,
+            adaptive: 0.0,
+            seed: 0,
+            polarizer: Polarizer::None,
+        };
+        assert_eq!(scene.camera.settings(), &camera);
+        assert_eq!((scene.receiver.position.x, scene.receiver.normal), (50.0, DVec3::NEG_X));
+        assert_eq!((scene.receiver.width, scene.receiver.length), (60.0, 60.0));
         assert_eq!(scene.photograph.image, ImageSource::BuiltIn("bookshelf"));
         assert_eq!((scene.photograph.x, scene.photograph.width), (50.0, None));
         assert_eq!(scene.surroundings, SurroundingsSettings::Color([0.0; 3]));
@@ -288,18 +286,5 @@ mod tests {
         assert_eq!(key(&both), Err(Some("field_of_view")));
         let width = key(&[orthographic, ("width", 50.0.into())]);
         assert_eq!(width, Ok(Projection::Orthographic { width: 50.0 }));
-    }
-
-    #[test]
-    fn images_are_files_unless_they_are_builtin() {
-        let image = |image: &str| {
-            let mut values = Values::defaults(PHOTOGRAPH_KEYS);
-            values.set("image", image).expect("a text");
-            PhotographSettings::from_values(&values, Path::new("scenes")).map(|p| p.image)
-        };
-        assert_eq!(image("me.png"), Ok(ImageSource::File("scenes/me.png".into())));
-        assert_eq!(image("/me.png"), Ok(ImageSource::File("/me.png".into())));
-        assert_eq!(image("builtin:bookshelf"), Ok(ImageSource::BuiltIn("bookshelf")));
-        assert_eq!(image("builtin:bookself").map_err(|error| error.key), Err(Some("image")));
     }
 }

@@ -1,6 +1,8 @@
 //! The plane that light is received on.
 
-use crate::keys::{KeyError, Values, number_text};
+use super::RECEIVER_KEYS;
+use crate::direction::unit;
+use crate::keys::{KeyError, Values, vector_text};
 use glam::{DVec2, DVec3};
 
 /// A rectangle on which light is received, from the side that its normal points to.
@@ -17,17 +19,15 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// The settings in a table of [`RECEIVER_KEYS`](super::RECEIVER_KEYS).
+    /// The settings in a table of [`RECEIVER_KEYS`].
     ///
     /// # Errors
     ///
     /// If the normal is zero.
     pub fn from_values(values: &Values) -> Result<Self, KeyError> {
         let normal = DVec3::from_array(values.vector("normal"));
-        let largest = normal.abs().max_element();
-        let Some(unit) = (normal / largest).try_normalize() else {
-            let [x, y, z] = normal.to_array().map(number_text);
-            let message = format!("normal is [{x}, {y}, {z}]; it must be a direction");
+        let Some(unit) = unit(normal) else {
+            let message = format!("normal is {}; it must be a direction", vector_text(normal));
             return Err(KeyError::at("normal", message));
         };
         Ok(Self {
@@ -61,11 +61,6 @@ impl Receiver {
 
 impl Default for Receiver {
     fn default() -> Self {
-        Self {
-            position: DVec3::new(50.0, 0.0, 0.0),
-            normal: DVec3::NEG_X,
-            width: 60.0,
-            length: 60.0,
-        }
+        Self::from_values(&Values::defaults(RECEIVER_KEYS)).expect("its normal is no zero")
     }
 }

@@ -4,10 +4,7 @@ use crate::device::IMPERFECTION_KEYS;
 use crate::keys::{Key, KeyKind, Limits};
 
 /// Most pixels a side, and most samples a pixel.
-const MOST: i64 = 65_536;
-
-/// What the photograph is unless the scene says otherwise.
-pub const DEFAULT_PHOTOGRAPH: &str = "builtin:bookshelf";
+const MOST: i64 = super::camera::MOST as i64;
 
 /// The scalar channels a picture can show instead of what the camera sees.
 pub const SCALAR_CHANNELS: &[&str] = &[
@@ -103,7 +100,7 @@ pub static PHOTOGRAPH_KEYS: &[Key] = &[
         name: "image",
         doc: "What hangs there: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to the \
               scene file.",
-        kind: KeyKind::Text { default: Some(DEFAULT_PHOTOGRAPH) },
+        kind: KeyKind::Image { default: Some("builtin:bookshelf") },
     },
     Key {
         name: "x",
@@ -129,7 +126,7 @@ pub static SURROUNDINGS_KEYS: &[Key] = &[
         name: "image",
         doc: "An equirectangular image of the surroundings instead of a color, relative to the \
               scene file.",
-        kind: KeyKind::Text { default: None },
+        kind: KeyKind::Image { default: None },
     },
 ];
 

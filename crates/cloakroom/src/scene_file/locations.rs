@@ -55,9 +55,7 @@ impl Locations {
 
     /// An error of a table such as `device.1`, at the key the error names.
     pub fn key_error(&self, table: &str, error: &KeyError) -> SceneFileError {
-        let path = error.path();
-        let path = if path.is_empty() { table.to_owned() } else { format!("{table}.{path}") };
-        self.error_at(&path, &error.message)
+        self.error_at(&error.path_in(table), &error.message)
     }
 
     pub(super) fn error(&self, origin: &Origin, message: impl Into<String>) -> SceneFileError {

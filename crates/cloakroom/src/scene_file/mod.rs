@@ -14,13 +14,14 @@ mod tests;
 mod tree;
 
 use std::fs::File;
-use std::io::{ErrorKind, Read};
+use std::io::ErrorKind;
 use std::path::Path;
 
 pub use error::SceneFileError;
 pub use locations::Locations;
 pub use schema::schema;
 
+use crate::input::read_up_to;
 use crate::scene::Scene;
 
 /// Longer files are no scenes.
@@ -73,6 +74,7 @@ fn read_text(path: &Path, name: &str) -> Result<String, SceneFileError> {
             ErrorKind::NotFound => "there is no such file".to_owned(),
             ErrorKind::IsADirectory => "this is a folder, not a scene file".to_owned(),
             ErrorKind::PermissionDenied => "reading it is not permitted".to_owned(),
+            ErrorKind::FileTooLarge => format!("{error}; no scene is"),
             _ => format!("it cannot be read: {error}"),
         })
     };
@@ -80,16 +82,12 @@ fn read_text(path: &Path, name: &str) -> Result<String, SceneFileError> {
         return Err(unreadable(ErrorKind::IsADirectory.into()));
     }
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(unreadable)?;
-    file.take(LONGEST_FILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > LONGEST_FILE {
-        return Err(fail(format!("it is longer than {} MiB; no scene is", LONGEST_FILE >> 20)));
-    }
+    let read = File::open(path).and_then(|file| read_up_to(LONGEST_FILE, file, &mut bytes));
+    read.map_err(unreadable)?;
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
-        let message = "the file is not UTF-8 text".to_owned();
-        let mut error = fail(message);
+        let mut error = fail("the file is not UTF-8 text".to_owned());
         error.line = u32::try_from(line).ok();
         error
     })

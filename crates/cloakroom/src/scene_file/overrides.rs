@@ -1,14 +1,12 @@
 //! Overrides: `camera.samples=16` sets one key of a scene.
 
 use super::error::SceneFileError;
+use super::read::DEVICES;
 use super::tree::{Item, Node, Origin, Table, parse_value};
 use crate::keys::quoted;
 
 /// The deepest key there is; anything deeper is refused before a tree of it is built.
 const DEEPEST: usize = 16;
-
-/// The list of devices, the one list of tables a scene has.
-const DEVICES: &str = "device";
 
 /// Applies overrides to a scene, in order.
 pub(super) fn apply(

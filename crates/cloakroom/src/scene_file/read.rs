@@ -13,8 +13,8 @@ use crate::scene::{
     PictureSettings, Receiver, Scene, SurroundingsSettings, TABLES, TraceSettings,
 };
 
-/// The list of devices.
-const DEVICES: &str = "device";
+/// The list of devices, the one list of tables a scene has.
+pub(super) const DEVICES: &str = "device";
 /// The key that says what a device is.
 const KIND: &str = "kind";
 
@@ -42,29 +42,18 @@ pub(super) fn read(
         let place = format!(" in [{name}]");
         fill(&mut values, table, &[], &place, locations, base_folder)?;
         let [values] = values;
-        let folder = |key: &str| folder_of(table, key, base_folder);
-        let stored = store(&mut scene, name, &values, &folder);
-        stored.map_err(|error| locations.key_error(name, &error))?;
+        store(&mut scene, name, &values).map_err(|error| locations.key_error(name, &error))?;
     }
     Ok(scene)
 }
 
 /// Puts the values of a table where they belong.
-fn store<'a>(
-    scene: &mut Scene,
-    table: &str,
-    values: &Values,
-    folder: &dyn Fn(&str) -> &'a Path,
-) -> Result<(), KeyError> {
+fn store(scene: &mut Scene, table: &str, values: &Values) -> Result<(), KeyError> {
     match table {
         "camera" => scene.camera = Camera::new(CameraSettings::from_values(values)?)?,
         "light" => scene.light = Light::from_values(values),
-        "photograph" => {
-            scene.photograph = PhotographSettings::from_values(values, folder("image"))?;
-        }
-        "surroundings" => {
-            scene.surroundings = SurroundingsSettings::from_values(values, folder("image"))?;
-        }
+        "photograph" => scene.photograph = PhotographSettings::from_values(values),
+        "surroundings" => scene.surroundings = SurroundingsSettings::from_values(values)?,
         "trace" => scene.trace = TraceSettings::from_values(values),
         "picture" => scene.picture = PictureSettings::from_values(values),
         "receiver" => scene.receiver = Receiver::from_values(values)?,
@@ -170,11 +159,13 @@ fn fill(
         }
         let value = entry.node.item.to_value();
         let set = match value {
-            Ok(Value::Text(name)) if matches!(key.kind, KeyKind::Image) && !name.is_empty() => {
+            Ok(Value::Text(name))
+                if matches!(key.kind, KeyKind::Image { .. }) && !name.is_empty() =>
+            {
                 let source = ImageSource::parse(&name, folder_of(table, key.name, base_folder));
-                source.map_err(|error| error.to_string()).and_then(|source| {
-                    list.set(key.name, source.to_string()).map_err(|error| error.message)
-                })
+                source
+                    .map(|source| list.set_image(key.name, source))
+                    .map_err(|error| error.to_string())
             }
             Ok(Value::Text(name))
                 if matches!(key.kind, KeyKind::Samples { .. }) && !name.is_empty() =>

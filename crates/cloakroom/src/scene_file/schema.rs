@@ -110,7 +110,7 @@ fn property(key: &Key) -> Value {
         }
         KeyKind::Vector { unit, limits, .. } => (list(number(limits), 3), unit),
         KeyKind::IntegerPair { min, max, .. } => (list(integer(min, max), 2), ""),
-        KeyKind::Text { .. } | KeyKind::Image => (json!({ "type": "string", "minLength": 1 }), ""),
+        KeyKind::Image { .. } => (json!({ "type": "string", "minLength": 1 }), ""),
         KeyKind::ChoiceOrNumber { options, unit } => {
             (json!({ "anyOf": [{ "enum": options }, { "type": "number" }] }), unit)
         }

@@ -4,8 +4,12 @@ use super::bodies::Bodies;
 use super::branch::Left;
 use super::interfaces::Interfaces;
 use crate::device::{Cell, SkinHit, Structure};
+use crate::photograph::ImageSource;
 use glam::DVec3;
 use optics::geometry::{Pose, Solid};
+
+/// The most devices a scene may have: they are numbered in 16 bits.
+pub const MOST_DEVICES: usize = u16::MAX as usize;
 
 /// A device at its place.
 #[derive(Clone, Debug)]
@@ -80,7 +84,7 @@ impl Default for Bench {
 pub(super) const TOUCHING: f64 = 1e-9;
 
 impl Bench {
-    /// The bench with the given devices, which must not overlap: see [`Bench::overlap`].
+    /// The bench with the given devices, [`MOST_DEVICES`] at most, which must not overlap: see [`Bench::overlap`].
     #[must_use]
     pub fn new(devices: Vec<Placed>) -> Self {
         let bodies = Bodies::of(&devices);
@@ -124,6 +128,11 @@ impl Bench {
         &self.bodies
     }
 
+    /// The images on opaque bodies.
+    pub fn body_images(&self) -> impl Iterator<Item = &ImageSource> {
+        self.devices.iter().filter_map(|device| device.structure.hull.body()?.image())
+    }
+
     /// The first two devices that overlap, if any do. Bodies may, unless their priorities are equal.
     #[must_use]
     pub fn overlap(&self) -> Option<(usize, usize)> {
@@ -138,7 +147,6 @@ impl Bench {
         };
         let meet = |a: &Solid, b: &Solid| a.overlaps(b, TOUCHING) || coincide(a, b);
         pairs
-            .into_iter()
             .filter(|&(i, j)| !may_overlap(i, j))
             .find(|&(i, j)| solids[i].iter().any(|a| solids[j].iter().any(|b| meet(a, b))))
     }

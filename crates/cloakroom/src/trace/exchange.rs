@@ -1,6 +1,7 @@
 //! Rays in, leaves out, as JSON: the form of `cloakroom trace`.
 
 use super::{Bench, Launch, LeafTable, Limits};
+use crate::direction::unit;
 use glam::DVec3;
 use optics::wave::{ComplexVector, transverse_basis};
 use serde::{Deserialize, Serialize};
@@ -103,11 +104,7 @@ impl RayRequest {
         if !origin.is_finite() || !direction.is_finite() {
             return Err("origin and direction must be finite numbers".to_owned());
         }
-        let largest = direction.abs().max_element();
-        if largest == 0.0 {
-            return Err("the direction is zero".to_owned());
-        }
-        let direction = (direction / largest).normalize();
+        let direction = unit(direction).ok_or("the direction is zero")?;
         let (horizontal, vertical) = transverse_basis(direction, DVec3::Z, DVec3::X);
         let electric = match self.polarization {
             Polarization::Horizontal => horizontal.into(),

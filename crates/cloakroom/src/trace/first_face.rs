@@ -1,13 +1,12 @@
 //! The first surface that a ray meets, looked at on its own.
 
 use super::bodies::{Around, Bodies, Inside};
-use super::branch::Left;
+use super::branch::{Branch, Left};
+use super::surfaces::entered;
 use super::{Launch, Tracer, Witness};
 use crate::device::{Beyond, Finish};
-use glam::DVec3;
-use optics::interface::{IncidentWave, OutgoingWave, Side, split, transmit_antireflection};
+use optics::interface::{OutgoingWave, Side, split, transmit_antireflection};
 use optics::medium::{Medium, ModeKind};
-use optics::wave::ComplexVector;
 
 /// What becomes of a ray's power at the first surface that it meets, for each launched polarization.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,53 +41,36 @@ impl<const N: usize, W: Witness<N>> Tracer<'_, N, W> {
     /// `None` if it meets none before the screen. The ray must start in air.
     #[must_use]
     pub fn first_face(&self, launch: &Launch<N>) -> Option<FirstFace<N>> {
-        let (mut position, mut left) = (launch.origin, None);
+        let (mut branch, mut left) = (Branch::launched(launch), None);
         loop {
-            let hit = self.surface_ahead(position, launch.direction, left);
-            let power = launch.electric.map(ComplexVector::norm_squared);
+            let hit = self.surface_ahead(branch.position, branch.direction, left);
             let mut face =
                 FirstFace { reflected: [0.0; N], ordinary: [0.0; N], extraordinary: [0.0; N] };
             let distance = hit.map(|(_, hit)| hit.distance);
-            if let Some(crossing) = self.body_ahead(position, launch.direction, distance) {
+            if let Some(crossing) = self.body_ahead(branch.position, branch.direction, distance) {
                 let bodies = self.bench.bodies();
                 let beyond = bodies.inside(Bodies::beyond(Around::default(), &crossing));
                 if let Inside::Medium(medium, _) = beyond {
-                    let wave = IncidentWave {
-                        wave_vector: launch.direction,
-                        attenuation: DVec3::ZERO,
-                        direction: launch.direction,
-                        electric: launch.electric,
-                        power,
-                    };
-                    face.add(&split(&Medium::AIR, medium, &wave, crossing.onward));
+                    face.add(&split(&Medium::AIR, medium, &branch.incident(), crossing.onward));
                 }
                 return Some(face);
             }
             let (device_index, hit) = hit?;
-            position += launch.direction * hit.distance;
+            branch.position += branch.direction * hit.distance;
             match hit.beyond {
                 // A thin sheet of air: nothing there.
                 Beyond::Air => {
                     left = Some(Left { device: device_index, surface: Some(hit.skin) });
                     continue;
                 }
-                Beyond::Conductor => face.reflected = power,
+                Beyond::Conductor => face.reflected = branch.power,
                 Beyond::Cell(cell) | Beyond::Seam(cell) => {
                     let device = &self.bench.devices()[usize::from(device_index)];
-                    let pose = &device.pose;
-                    let (cell, entry) = (self.cell(device, cell), pose.to_local(position));
-                    let foothold = cell.enter(entry)?.foothold;
-                    let mut local = None;
-                    let beyond = cell.medium(entry, foothold.as_ref(), &mut local)?;
-                    let direction = pose.vector_to_local(launch.direction);
-                    let wave = IncidentWave {
-                        wave_vector: direction,
-                        attenuation: DVec3::ZERO,
-                        direction,
-                        electric: launch.electric.map(|field| pose.field_to_local(field)),
-                        power,
-                    };
-                    let into = -hit.outward;
+                    branch.enter_frame(&device.pose);
+                    let mut graded = None;
+                    let cell = self.cell(device, cell);
+                    let (_, beyond) = entered(cell, branch.position, &mut graded)?;
+                    let (wave, into) = (branch.incident(), -hit.outward);
                     let waves = match hit.finish {
                         Finish::Bare => split(&Medium::AIR, beyond, &wave, into),
                         Finish::Antireflection => {

@@ -20,7 +20,7 @@ mod surfaces;
 mod tracer;
 mod witness;
 
-pub use bench::{Bench, Placed};
+pub use bench::{Bench, MOST_DEVICES, Placed};
 pub use bodies::MOST_BODIES;
 pub use exchange::{LeafReport, Polarization, RayError, RayReport, RayRequest, trace_rays};
 pub use first_face::FirstFace;

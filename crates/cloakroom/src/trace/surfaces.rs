@@ -267,7 +267,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
 }
 
 /// What a ray finds that enters a cell, and the medium there.
-fn entered<'m>(
+pub(super) fn entered<'m>(
     cell: &'m Cell,
     position: DVec3,
     graded: &'m mut Option<Medium>,
@@ -278,7 +278,7 @@ fn entered<'m>(
 }
 
 /// Tells the branches at one surface apart in the fingerprint of the path.
-pub(super) fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
+fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
     let side = match wave.side {
         Side::Reflected => 1,
         Side::Transmitted => 2,

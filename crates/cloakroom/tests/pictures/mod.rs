@@ -7,13 +7,18 @@ use cloakroom::scene_file;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// The picture of a scene whose files are in a folder, with all channels.
-pub fn picture_in(folder: &Path, scene: &str) -> Picture {
+/// The picture of a scene whose files are in a folder, with the channels that are wanted.
+pub fn rendered(folder: &Path, scene: &str, wanted: Wanted) -> Picture {
     let loaded = scene_file::parse(scene, "test", folder, &[]).unwrap();
     let studio = Studio::new(&loaded.scene).unwrap();
     let stop = AtomicBool::new(false);
     let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-    render(&studio, Wanted::Everything, &supervision).unwrap().picture
+    render(&studio, wanted, &supervision).unwrap().picture
+}
+
+/// The picture of a scene whose files are in a folder, with all channels.
+pub fn picture_in(folder: &Path, scene: &str) -> Picture {
+    rendered(folder, scene, Wanted::Everything)
 }
 
 /// The picture of a scene without files, with all channels.

@@ -1,11 +1,8 @@
-use super::super::{Request, Show, entry};
+use super::super::{Request, Show};
 use super::*;
-use crate::keys::Values;
 
 fn built(kind: &str, show: Show, length: Option<f64>) -> Structure {
-    let entry = entry(kind).expect("a device");
-    let values = Values::defaults(entry.keys);
-    (entry.build)(&values, Request { show, length, open_core: false }).expect("a structure")
+    super::super::built(kind, &[], Request { show, length, open_core: false })
 }
 
 fn area(contour: &Contour) -> f64 {

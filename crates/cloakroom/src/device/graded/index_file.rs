@@ -1,10 +1,10 @@
 //! An index on a grid, from a file.
 
+use crate::input::read_up_to;
 use crate::keys::Samples;
 use ndarray::{ArrayView2, Axis};
 use ndarray_npy::{ViewElement, ViewNpyError, ViewNpyExt};
 use std::fs::File;
-use std::io::Read;
 
 /// Longer files are no index of a device.
 const LONGEST: u64 = 256 << 20;
@@ -17,11 +17,8 @@ const LONGEST: u64 = 256 << 20;
 pub(super) fn read(path: &str) -> Result<Samples, String> {
     let failed = |reason: String| format!("cannot read {path}: {reason}");
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(|error| failed(error.to_string()))?;
-    file.take(LONGEST + 1).read_to_end(&mut bytes).map_err(|error| failed(error.to_string()))?;
-    if bytes.len() as u64 > LONGEST {
-        return Err(failed(format!("it is longer than {} MiB", LONGEST >> 20)));
-    }
+    let read = File::open(path).and_then(|file| read_up_to(LONGEST, file, &mut bytes));
+    read.map_err(|error| failed(error.to_string()))?;
     let rows = match rows::<f64>(&bytes) {
         Err(ViewNpyError::WrongDescriptor(_)) => rows::<f32>(&bytes),
         rows => rows,

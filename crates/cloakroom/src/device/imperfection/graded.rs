@@ -46,10 +46,12 @@ pub(super) fn apply(
         return Err(KeyError::at(TABLE, message));
     }
     let finest = |spacing: f64, needed: bool| if needed { spacing } else { f64::INFINITY };
-    let spacing = finest(imperfection.resolution / SAMPLES_A_RESOLUTION, limited)
-        .min(finest(imperfection.correlation / SAMPLES_A_CORRELATION, imperfection.is_random()));
+    let for_limits = finest(imperfection.resolution / SAMPLES_A_RESOLUTION, limited);
+    let for_errors =
+        finest(imperfection.correlation / SAMPLES_A_CORRELATION, imperfection.is_random());
+    let spacing = for_limits.min(for_errors);
     let grid = Grid::over(cell, spacing).ok_or_else(|| {
-        let key = if finest(imperfection.resolution / SAMPLES_A_RESOLUTION, limited) <= spacing {
+        let key = if for_limits <= for_errors {
             "imperfection.resolution"
         } else {
             "imperfection.correlation"
@@ -129,10 +131,10 @@ impl Grid {
 
     /// Smooths by a Gaussian of a standard deviation in samples, along x and then along y.
     fn smooth(&self, values: &mut [[f64; 2]], width: f64) {
-        let reach = (REACH * width).ceil() as usize;
+        let [nx, ny] = self.count;
+        let reach = ((REACH * width).ceil() as usize).min(nx.max(ny));
         let kernel: Vec<f64> =
             (0..=reach).map(|k| (-0.5 * (k as f64 / width).powi(2)).exp()).collect();
-        let [nx, ny] = self.count;
         let line = |line: &[[f64; 2]]| -> Vec<[f64; 2]> {
             let n = line.len();
             (0..n)
@@ -214,6 +216,16 @@ mod tests {
             let expected = (-0.5 * (distance / correlation).powi(2)).exp();
             let found = mean(a, b);
             assert!((found - expected).abs() < error, "{distance}: {found} {expected}");
+        }
+    }
+
+    #[test]
+    fn what_is_much_wider_than_the_device_smooths_to_the_mean() {
+        let grid = Grid { corner: DVec2::ZERO, spacing: 1.0, count: [3, 4] };
+        for width in [1e9, 1e300] {
+            let mut values: Vec<[f64; 2]> = (0..12).map(|k| [f64::from(k), 1.0]).collect();
+            grid.smooth(&mut values, width);
+            assert!(values.iter().all(|value| *value == [66.0, 12.0]), "{values:?}");
         }
     }
 

@@ -1,17 +1,13 @@
 //! What is made of homogeneous devices.
 
 use super::*;
-use crate::device::{Request, entry};
+use crate::device::{Request, built};
+use crate::keys::Value;
 use glam::DMat3;
 use optics::medium::{Medium, principal_axes};
 
-fn structure(kind: &str, keys: &[(&str, &str)]) -> Structure {
-    let entry = entry(kind).expect("a kind");
-    let mut values = Values::defaults(entry.keys);
-    for (key, value) in keys {
-        values.set(key, *value).expect("a key");
-    }
-    (entry.build)(&values, Request::default()).expect("a device")
+fn structure(kind: &str, keys: &[(&str, Value)]) -> Structure {
+    built(kind, keys, Request::default())
 }
 
 fn perfect() -> Imperfection {
@@ -29,7 +25,7 @@ fn media(structure: &Structure) -> Vec<Medium> {
 #[test]
 fn without_imperfections_nothing_changes() {
     for material in ["impedance-matched", "positive-uniaxial", "negative-uniaxial"] {
-        let design = structure("square-cloak", &[("material", material)]);
+        let design = structure("square-cloak", &[("material", material.into())]);
         let made = perfect().apply(design.clone(), 0).expect("made");
         assert_eq!(media(&made), media(&design));
     }
@@ -37,7 +33,7 @@ fn without_imperfections_nothing_changes() {
 
 #[test]
 fn each_value_has_its_own_error_and_equal_ones_stay_equal() {
-    let design = structure("square-cloak", &[("material", "positive-uniaxial")]);
+    let design = structure("square-cloak", &[("material", "positive-uniaxial".into())]);
     let imperfection = Imperfection { error: 0.01, seed: 3, ..perfect() };
     let made = media(&imperfection.apply(design.clone(), 0).expect("made"));
     for (medium, design) in made.iter().zip(media(&design)) {
@@ -116,11 +112,8 @@ fn loss_is_that_of_each_component_but_not_of_vacuum() {
             assert!(tensor.im.abs_diff_eq(tensor.re * 1e-3, 1e-17));
         }
     }
-    let glass = structure("body", &[]);
-    let mut values = Values::defaults(entry("body").expect("a kind").keys);
-    values.set("permittivity", 2.25).expect("a key");
-    let body = (entry("body").expect("a kind").build)(&values, Request::default());
-    let made = lossy.apply(body.expect("a body"), 0).expect("made");
+    let body = structure("body", &[("permittivity", 2.25.into())]);
+    let made = lossy.apply(body, 0).expect("made");
     let Some(Filling::Medium { medium, .. }) = made.hull.body().map(|body| &body.filling) else {
         panic!("a body");
     };
@@ -128,7 +121,7 @@ fn loss_is_that_of_each_component_but_not_of_vacuum() {
     assert!(permittivity.im.abs_diff_eq(DMat3::from_diagonal(glam::DVec3::splat(2.25e-3)), 1e-15));
     assert_eq!(permeability.im, DMat3::ZERO);
     // A body of vacuum stays one.
-    let made = lossy.apply(glass, 0).expect("made");
+    let made = lossy.apply(structure("body", &[]), 0).expect("made");
     assert!(
         !matches!(made.hull.body().map(|b| &b.filling), Some(Filling::Medium { medium, .. }) if medium.absorbs())
     );
@@ -137,16 +130,19 @@ fn loss_is_that_of_each_component_but_not_of_vacuum() {
 #[test]
 fn what_cannot_be_is_refused_by_its_key() {
     let refused = |imperfection: Imperfection, kind: &str| {
-        imperfection.apply(structure(kind, &[]), 0).expect_err("must be refused").path()
+        imperfection
+            .apply(structure(kind, &[]), 0)
+            .expect_err("must be refused")
+            .path_in("device.0")
     };
     let upside_down = Imperfection { minimum: Some(2.0), maximum: Some(1.0), ..perfect() };
-    assert_eq!(refused(upside_down, "square-cloak"), "imperfection.minimum");
+    assert_eq!(refused(upside_down, "square-cloak"), "device.0.imperfection.minimum");
     assert_eq!(
         refused(Imperfection { levels: 1, ..perfect() }, "square-cloak"),
-        "imperfection.levels"
+        "device.0.imperfection.levels"
     );
-    assert_eq!(refused(perfect(), "mirror-detour"), "imperfection");
-    assert_eq!(refused(perfect(), "eaton-lens"), "imperfection");
+    assert_eq!(refused(perfect(), "mirror-detour"), "device.0.imperfection");
+    assert_eq!(refused(perfect(), "eaton-lens"), "device.0.imperfection");
     let nothing = Imperfection { minimum: Some(0.0), maximum: Some(0.0), ..perfect() };
-    assert_eq!(refused(nothing, "square-cloak"), "imperfection");
+    assert_eq!(refused(nothing, "square-cloak"), "device.0.imperfection");
 }

@@ -77,10 +77,26 @@ fn what_is_not_one_picture_is_refused() {
     assert!(refused(&other).contains("channels differ"));
     other[1].1.clear();
     assert!(refused(&other).contains("not a tile"));
-    other[1].1 = tiles[2].1.clone();
+    other[1] = tiles[2].clone();
     other[1].1.retain(|(key, _)| key != RESOLUTION);
     other[1].1.push((RESOLUTION.to_owned(), "38,23".to_owned()));
     assert!(refused(&other).contains("resolutions differ"));
+}
+
+#[test]
+fn a_tile_is_as_large_as_it_says_or_none() {
+    let metadata = || {
+        let all = format!("{0},{0}", u32::MAX);
+        [(TILE, format!("0,0,{all}")), (RESOLUTION, all)]
+            .map(|(key, text)| (key.to_owned(), text))
+            .to_vec()
+    };
+    let small = Channel { name: "R".to_owned(), samples: Samples::F32(vec![0.0; 4]) };
+    let picture = Picture { width: 2, height: 2, channels: vec![small], metadata: metadata() };
+    let merged = merge(&[("a".to_owned(), metadata(), picture)]);
+    assert_eq!(merged, Err(MergeError::NoTile { name: "a".to_owned() }));
+    let merged = merge_images(&[("a".to_owned(), metadata(), RgbImage::new(2, 2))]);
+    assert_eq!(merged, Err(MergeError::NoTile { name: "a".to_owned() }));
 }
 
 #[test]
