@@ -3,6 +3,7 @@
 use crate::device::{Occupant, REACH, Request, Show};
 use crate::render::bench;
 use crate::scene::{DeviceSettings, Scene};
+use crate::trace::Placed;
 use glam::DVec3;
 
 /// What a scene should look like: its cloaks as the flat mirrors that they imitate, and nothing in the place of
@@ -48,17 +49,23 @@ fn hidden(scene: &Scene) -> Vec<bool> {
         return Vec::new();
     }
     let Ok(bench) = bench(scene) else { return Vec::new() };
-    let is_hidden = |at: DVec3| {
-        let mut around = bench.devices().iter();
-        around.any(|placed| {
-            placed.structure.occupant(placed.pose.to_local(at)) == Occupant::HiddenAir
-        })
-    };
     let reach = DVec3::splat(REACH);
-    let bounds = bench.devices().iter().map(|placed| placed.structure.hull.bounds(&placed.pose));
-    let middles =
-        bounds.map(|ends| ends.map(|[low, high]| (low.max(-reach) + high.min(reach)) / 2.0));
-    middles.map(|middle| middle.is_some_and(is_hidden)).collect()
+    let ends = |placed: &Placed| {
+        let [low, high] = placed.structure.hull.bounds(&placed.pose)?;
+        Some([low.max(-reach), high.min(reach)])
+    };
+    // Of two cores one in the other, the smaller box is in the larger; in the plane, for both may be endless along z.
+    let holds = |around: &Placed, [low, high]: [DVec3; 2]| {
+        let [from, to] = ends(around)?.map(DVec3::truncate);
+        let is_smaller = (low.truncate().cmpgt(from) & high.truncate().cmplt(to)).all();
+        let middle = around.structure.occupant(around.pose.to_local((low + high) / 2.0));
+        (is_smaller && middle == Occupant::HiddenAir).then_some(())
+    };
+    let is_hidden = |placed: &Placed| {
+        let mut around = bench.devices().iter();
+        ends(placed).is_some_and(|ends| around.any(|around| holds(around, ends).is_some()))
+    };
+    bench.devices().iter().map(is_hidden).collect()
 }
 
 #[cfg(test)]
@@ -74,7 +81,8 @@ mod tests {
         let lens = "[[device]]\nkind = 'luneburg-lens'\nposition = [0, 50, 0]\n";
         let rod = "[[device]]\nkind = 'body'\nshape = 'cylinder'\nradius = 1\npermittivity = 2\n";
         let square = "[[device]]\nkind = 'square-cloak'\ncore = 'open'\n";
-        let bare = bare(&scene(&format!("{lens}{rod}{square}"))).expect("a cloak");
+        let small = "[[device]]\nkind = 'cylinder-cloak'\ncore = 'open'\ninner = 1.5\nouter = 3\n";
+        let bare = bare(&scene(&format!("{lens}{rod}{small}{square}"))).expect("a cloak");
         let shown: Vec<_> = bare.devices.iter().map(|d| (d.entry.kind, d.show)).collect();
         assert_eq!(shown, [("luneburg-lens", Show::Cloak), ("square-cloak", Show::Bare)]);
         assert!(bench(&bare).is_ok());

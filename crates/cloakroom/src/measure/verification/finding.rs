@@ -84,6 +84,18 @@ impl Finding {
         Self { place, statement, computed, verdict, remark: "" }
     }
 
+    /// A finding that is a number, against the one that is printed with so many decimals.
+    pub(super) fn number(
+        place: &'static str,
+        statement: &'static str,
+        computed: f64,
+        (printed, decimals, unit): (f64, usize, &str),
+    ) -> Self {
+        let text = format!("{computed:.decimals$}{unit}");
+        let verdict = Verdict::number(computed, printed, decimals as i32);
+        Self::new(place, statement, text, verdict)
+    }
+
     /// The finding with a word why.
     pub(super) fn because(self, remark: &'static str) -> Self {
         Self { remark, ..self }
