@@ -1,9 +1,7 @@
 //! Numbers for what a page shows: power, times of flight, and likeness to what should be seen.
 
-use crate::scenes::shown_as;
-use cloakroom::device::Show;
 use cloakroom::measure::{
-    Figures, FlightFigures, MeasureError, Region, View, compare, empty, ideal, survey,
+    Figures, FlightFigures, MeasureError, Region, View, bare, compare, empty, ideal, survey,
 };
 use cloakroom::output::Picture;
 use cloakroom::render::{Images, RenderError, Studio, StudioError, Supervision, Wanted, render};
@@ -47,7 +45,7 @@ pub(crate) fn figures(
     let shown = picture(&scene)?;
     let nothing = View::of(&picture(&empty(&scene))?)?;
     let wanted = View::of(&picture(&wanted_scene)?)?;
-    let bare = match shown_as(&scene, Show::Bare) {
+    let bare = match bare(&scene) {
         Some(bare) => Some(View::of(&picture(&bare)?)?),
         None => None,
     };
@@ -62,14 +60,9 @@ pub(crate) fn figures(
     };
     let mean = |name: &str| {
         let (region, samples) = (silhouette.as_ref()?, &shown.channel(name)?.samples);
-        let sum: f64 = region.indices().map(|i| samples.get(i)).sum();
-        Some(sum / region.pixels() as f64)
+        Some(region.mean(|i| samples.get(i)))
     };
-    let flight = silhouette.as_ref().and_then(|region| {
-        let (times, differences) =
-            (view.time_of_flight.as_ref()?, view.time_of_flight_difference.as_ref()?);
-        FlightFigures::of(region.indices().map(|i| (differences[i], times[i] - differences[i])))
-    });
+    let flight = silhouette.as_ref().and_then(|region| FlightFigures::delays(&view, region));
     Ok(json!({
         "width_pixels": view.width,
         "height_pixels": view.height,

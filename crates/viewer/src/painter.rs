@@ -7,10 +7,8 @@ use crate::figures::{FiguresError, figures, resized};
 use crate::frame::{Caption, Scale, encode};
 use crate::pace::{Pace, Pass};
 use crate::protocol::{Beside, Look, error};
-use crate::scenes::shown_as;
-use cloakroom::device::Show;
 use cloakroom::illustration::{IllustrationError, Quantity, ScalarMap};
-use cloakroom::measure::{empty, ideal};
+use cloakroom::measure::{bare, empty, ideal};
 use cloakroom::output::{OutputError, RgbImage, to_srgb};
 use cloakroom::render::{Images, RenderError, Studio, StudioError, Supervision, Wanted, render};
 use cloakroom::scene::{DeviceSettings, Scene};
@@ -183,7 +181,7 @@ impl Painter<'_> {
         self.client.show(Shown { scene: full, images: images.clone() });
         let beside = match look.beside {
             Beside::Nothing => None,
-            Beside::Bare => shown_as(scene, Show::Bare).map(|scene| ("bare", scene)),
+            Beside::Bare => bare(scene).map(|scene| ("bare", scene)),
             Beside::Empty => Some(("empty", empty(scene))),
             Beside::Mirror => Some(("mirror", ideal(scene))),
         };

@@ -1,7 +1,6 @@
 //! Scenes from pages: JSON tables in, a scene out, and no way to a file that the user has not opened.
 
 use crate::protocol::SceneTables;
-use cloakroom::device::Show;
 use cloakroom::keys::{KeyKind, Sampled};
 use cloakroom::photograph::ImageSource;
 use cloakroom::scene::{DeviceSettings, Scene, SurroundingsSettings};
@@ -174,21 +173,6 @@ fn body_image(device: &DeviceSettings) -> Option<ImageSource> {
     const SURFACE: &str = "surface";
     device.entry.keys.iter().find(|key| key.name == SURFACE)?;
     device.values.table(SURFACE)?.optional_image("image").cloned()
-}
-
-/// A scene whose devices are shown otherwise, those that can be; `None` if none can.
-pub(crate) fn shown_as(scene: &Scene, show: Show) -> Option<Scene> {
-    let mut shown = scene.clone();
-    let mut changed = false;
-    for device in &mut shown.devices {
-        let open_core = device.open_core && show == Show::Cloak;
-        let request = cloakroom::device::Request { show, open_core, length: device.length };
-        if (device.entry.build)(&device.values, request).is_ok() {
-            (device.show, device.open_core) = (show, open_core);
-            changed = true;
-        }
-    }
-    changed.then_some(shown)
 }
 
 /// A file's name without folders, as a photograph may have.

@@ -113,8 +113,9 @@ impl Launcher {
             [self.rays, 1]
         } else {
             // Cells about as long as wide.
-            let columns = (f64::from(self.rays) * size[0] / size[1]).sqrt().ceil().max(1.0);
-            [columns as u32, (f64::from(self.rays) / columns).ceil().max(1.0) as u32]
+            let rays = f64::from(self.rays);
+            let columns = (rays * size[0] / size[1]).sqrt().ceil().clamp(1.0, rays);
+            [columns as u32, (rays / columns).ceil() as u32]
         };
         // Far enough before everything.
         let back = range(axis)[0] - 1.0;

@@ -14,10 +14,10 @@ pub use files::{flux_arrays, flux_csv, write_flux_npz};
 pub use pictures::{flux_map, flux_plot};
 pub use result::{Convergence, FluxReport, Gain, Incidence, STANDS, Stand, Total};
 
-use crate::device::Show;
+use crate::measure;
 use crate::render::{StudioError, Supervision, bench, limits, metadata};
 use crate::scene::Scene;
-use crate::trace::{Bench, Limits, Tracer};
+use crate::trace::{Bench, Tracer};
 use launch::Launcher;
 use rayon::prelude::*;
 use result::Tally;
@@ -81,7 +81,9 @@ pub enum FluxError {
     #[error("there is no direction that light comes to the receiver from")]
     NoDirection,
     /// A direction does not come from the front.
-    #[error("light at {degrees} degrees does not come from the front of the receiver")]
+    #[error(
+        "light at {degrees} degrees to the normal does not come from the front of the receiver; it must be less than 90"
+    )]
     FromBehind {
         /// The angle to the normal, degrees.
         degrees: f64,
@@ -160,19 +162,14 @@ fn check(sampling: Sampling) -> Result<(), FluxError> {
     Ok(())
 }
 
-/// The scene without devices, with bare metal, and as it is. Bodies have no bare view: they stay.
+/// The scene without devices, with bare metal ([`measure::bare`]), and as it is.
 fn benches(scene: &Scene) -> Result<[Bench; 3], FluxError> {
     if scene.devices.is_empty() {
         return Err(FluxError::NoDevice);
     }
-    let mut nothing = scene.clone();
-    nothing.devices.clear();
-    let mut bare = scene.clone();
-    for device in bare.devices.iter_mut().filter(|device| device.entry.kind != "body") {
-        device.show = Show::Bare;
-        device.open_core = false;
-    }
-    Ok([bench(&nothing)?, bench(&bare)?, bench(scene)?])
+    let cloaked = bench(scene)?;
+    let bare = measure::bare(scene).map_or_else(|| Ok(cloaked.clone()), |bare| bench(&bare))?;
+    Ok([bench(&measure::empty(scene))?, bare, cloaked])
 }
 
 /// Traces all samples of one direction.
@@ -184,7 +181,7 @@ fn tally(
     sampling: Sampling,
     supervision: &Supervision<'_>,
 ) -> Result<Vec<Tally>, FluxError> {
-    let limits: Limits = limits(scene);
+    let limits = limits(scene);
     let field = launcher.field(direction);
     (0..sampling.samples)
         .into_par_iter()

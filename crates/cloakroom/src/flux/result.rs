@@ -94,7 +94,8 @@ pub struct Incidence {
     pub degrees: f64,
     /// For each of [`STANDS`]: in horizontal, in vertical and in unpolarized light.
     pub totals: [[Total; 3]; 3],
-    /// In horizontal, in vertical and in unpolarized light; `None` where bare metal makes no shadow.
+    /// In horizontal, in vertical and in unpolarized light; `None` where bare metal makes no shadow, or in one sample
+    /// alone.
     pub gains: [Option<Gain>; 3],
     /// For each of [`STANDS`]: the irradiance of each cell, across first, in unpolarized light.
     pub maps: [Vec<f64>; 3],
@@ -168,7 +169,7 @@ impl Total {
         // The edges of the receiver cut two strata of a row: whether their rays come down on it is chance, p(1 - p) of
         // a ray, which is 1/6 on average. A few samples may all fall alike.
         let edges = 2.0 / 6.0 * share * share;
-        let variance = (square / (count - 1.0).max(1.0)).max(edges);
+        let variance = (square / (count - 1.0)).max(edges);
         Self { mean, error: (variance / count).sqrt() }
     }
 }
@@ -176,19 +177,20 @@ impl Total {
 /// A shadow less than this share of the light is none.
 const NO_SHADOW: f64 = 1e-9;
 
-/// The share of the shadow that is given back, with its jackknife error.
-fn given_back(nothing: &[f64], bare: &[f64], cloaked: &[f64]) -> Option<Gain> {
+/// The share of the shadow that is given back, with its jackknife error; none if there is no shadow, or but for one
+/// sample none.
+pub(super) fn given_back(nothing: &[f64], bare: &[f64], cloaked: &[f64]) -> Option<Gain> {
     let count = nothing.len() as f64;
     let [n, b, c] = [nothing, bare, cloaked].map(|samples| samples.iter().sum::<f64>());
-    let ratio = |n: f64, b: f64, c: f64| 100.0 * (c - b) / (n - b);
-    if (n - b).abs() <= NO_SHADOW * n.abs() {
-        return None;
-    }
+    let ratio = |n: f64, b: f64, c: f64| {
+        let shadow = n - b;
+        (shadow.abs() > NO_SHADOW * n.abs()).then(|| 100.0 * (c - b) / shadow)
+    };
     let without = |i: usize| ratio(n - nothing[i], b - bare[i], c - cloaked[i]);
-    let parts: Vec<f64> = (0..nothing.len()).map(without).collect();
+    let parts: Vec<f64> = (0..nothing.len()).map(without).collect::<Option<_>>()?;
     let mean = parts.iter().sum::<f64>() / count;
     let square: f64 = parts.iter().map(|part| (part - mean).powi(2)).sum();
-    Some(Gain { percent: ratio(n, b, c), error: (square * (count - 1.0) / count).sqrt() })
+    Some(Gain { percent: ratio(n, b, c)?, error: (square * (count - 1.0) / count).sqrt() })
 }
 
 /// The irradiance of each cell: a cell's share of the receiver is one over their number.

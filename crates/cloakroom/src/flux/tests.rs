@@ -1,3 +1,4 @@
+use super::result::given_back;
 use super::*;
 use crate::scene_file;
 use std::path::Path;
@@ -57,9 +58,7 @@ fn bare_metal_takes_its_shadow_and_the_cloak_gives_it_back() {
     let report = measured(&format!("{RECEIVER}{SQUARE}"), &[0.0], 0.0, FEW).expect("a report");
     let incidence = &report.incidences[0];
     let height = 2.0 * 14.1 / 2f64.sqrt() / 3f64.sqrt();
-    // Rays reflected at 30 degrees from the axis are turned by 60: they leave beside the receiver.
-    let reach = 30.0 * 60f64.to_radians().tan();
-    assert!(reach > 25.0);
+    // Rays reflected at 30 degrees from the axis are turned by 60: they leave beside the receiver, 30 tan 60° > 25.
     agrees(incidence.totals[Stand::Bare as usize][2], 1.0 - height / 50.0, "bare");
     agrees(incidence.totals[Stand::Cloaked as usize][2], 1.0, "cloaked");
     for gain in incidence.gains {
@@ -71,6 +70,36 @@ fn bare_metal_takes_its_shadow_and_the_cloak_gives_it_back() {
     // In the shadow nothing arrives.
     let middle = incidence.maps[Stand::Bare as usize][20];
     assert_eq!(middle, 0.0);
+}
+
+#[test]
+fn what_has_no_bare_view_stays_and_what_is_in_a_core_goes() {
+    let ball = "[[device]]\nkind = \"body\"\nshape = \"sphere\"\nradius = 3\nsurface = {}\n";
+    let square = format!("{SQUARE}length = 30\n");
+    let total = |text: &str, stand: Stand| {
+        let report = measured(&format!("{RECEIVER}{text}"), &[0.0], 0.0, FEW).expect("a report");
+        report.incidences[0].totals[stand as usize]
+    };
+    let open = total(&format!("{square}core = \"open\"\n{ball}"), Stand::Bare);
+    assert_eq!(open, total(&square, Stand::Bare));
+    let lens = "[[device]]\nkind = \"luneburg-lens\"\n";
+    assert_eq!(total(lens, Stand::Bare), total(lens, Stand::Cloaked));
+}
+
+#[test]
+fn a_shadow_in_one_sample_alone_has_no_error() {
+    assert_eq!(given_back(&[1.0, 1.0], &[1.0, 0.5], &[1.0, 1.0]), None);
+    let gain = given_back(&[1.0, 1.0], &[0.6, 0.5], &[1.0, 0.9]).expect("a shadow");
+    // 100 · 0.8/0.9, and 100 and 80 without one of them.
+    assert!((gain.percent - 800.0 / 9.0).abs() < 1e-12 && (gain.error - 10.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_narrow_receiver_takes_no_more_rays_than_it_is_told() {
+    let text = "[receiver]\nposition = [30, 0, 0]\nwidth = 50\nlength = 0.001\n[[device]]\nkind = \"body\"\n\
+                shape = \"sphere\"\nradius = 0.0001\n";
+    let report = measured(text, &[0.0], 0.0, FEW).expect("a report");
+    assert!(report.incidences[0].convergence[0].rays <= 2 * 2048 + 2, "{report:?}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::IllustrationError;
 use super::color_scale::ColorScale;
 use super::drawing::{Drawing, Shape, Words};
 use super::quantity::{Dimension, Quantity};
-use super::setting::{INK, TEXT, THIN, draw_color_bar};
+use super::setting::{INK, TEXT, THIN, corners, draw_color_bar};
 use super::ticks::axis;
 use crate::output::RgbImage;
 use glam::{DAffine2, DVec2};
@@ -73,11 +73,9 @@ impl HeatMap {
                     height: rows,
                 });
             }
-            let size = DVec2::new(width, PANEL);
             let place = DAffine2::from_cols(DVec2::X * width, DVec2::Y * PANEL, corner);
             drawing.add("heat-map", Shape::Image { image, place });
-            let frame = [(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)];
-            let frame = frame.map(|at| corner + DVec2::from(at) * size).to_vec();
+            let frame = corners([corner, DVec2::new(width, PANEL)]);
             drawing.add("frame", Shape::Area(vec![frame])).stroked(INK, THIN);
             let title = Words::new(panel.title.clone(), corner - DVec2::Y * 0.8 * TEXT, TEXT);
             drawing.add("title", Shape::Words(title.anchored(0.0))).filled(INK);
@@ -89,7 +87,7 @@ impl HeatMap {
         let height = drawing.size.y - TITLE - AXIS;
         let at = DVec2::new(SHEET - RIGHT + TEXT, TITLE + 0.1 * height);
         let quantity = number(&self.quantity);
-        draw_color_bar(&mut drawing, &colors, &quantity, [at, DVec2::new(RIGHT, 0.8 * height)]);
+        draw_color_bar(&mut drawing, &colors, &quantity, (at, 0.8 * height));
         Ok(drawing)
     }
 

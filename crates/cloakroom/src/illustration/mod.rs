@@ -21,7 +21,6 @@ pub use color_scale::ColorScale;
 pub use diagram::{Diagram, DiagramError, DiagramSettings, Projected, Source, diagram};
 pub use drawing::{Drawing, Element, Face, Ink, Shape, Stroke, Words};
 pub use heat_map::{HeatMap, HeatMapPanel};
-pub use lettering::{Lettering, Weight};
 pub use plot::{Curve, CurvePoint, Plot, PlotPanel};
 pub use quantity::{Dimension, Quantity, Unit};
 pub use scalar_map::{ScalarMap, scalar_map};

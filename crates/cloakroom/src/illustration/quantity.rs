@@ -109,6 +109,16 @@ pub(super) fn power_of_ten(exponent: i32) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(f64::INFINITY)
 }
 
+/// A number with so many decimals at most.
+pub(super) fn short(number: f64, decimals: usize) -> String {
+    let digits = format!("{number:.decimals$}");
+    let short = match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.'),
+        false => &digits,
+    };
+    if short == "-0" { "0".to_owned() } else { short.to_owned() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -155,6 +165,19 @@ mod tests {
         assert_eq!(number.title, "horizontal.R x");
         assert_eq!(number.unit(0.4).label("a"), "a");
         assert_eq!(number.unit(5e6).symbol, "1e6");
+    }
+
+    #[test]
+    fn short_numbers_keep_their_sign() {
+        for (number, decimals, expected) in [
+            (-0.5, 6, "-0.5"),
+            (-0.001, 2, "0"),
+            (-0.0, 0, "0"),
+            (200.0, 0, "200"),
+            (2.5, 3, "2.5"),
+        ] {
+            assert_eq!(short(number, decimals), expected);
+        }
     }
 
     #[test]

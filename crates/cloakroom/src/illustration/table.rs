@@ -162,7 +162,6 @@ impl Grid {
         let mut heights = vec![0; count];
         for (i, (row, block)) in rows.iter().zip(blocks).enumerate() {
             let words: u32 = block.iter().map(|line| TEXT + line.gap).sum();
-            // The labels of a colour bar reach a little beyond it.
             let pictures = row.pictures.iter().map(TablePicture::height).max().unwrap_or(0);
             heights[i % count] = heights[i % count].max(words).max(pictures);
         }

@@ -1,6 +1,6 @@
 //! Round numbers along a range, and how they are labelled.
 
-use super::quantity::{Quantity, exponent, power_of_ten};
+use super::quantity::{Quantity, exponent, power_of_ten, short};
 
 /// The ticks of an axis and the label that says what they count.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,13 +118,7 @@ impl Step {
 
 /// A number with six significant digits.
 fn significant(number: f64) -> String {
-    let decimals = usize::try_from(5 - exponent(number)).unwrap_or(0).min(12);
-    let digits = format!("{number:.decimals$}");
-    if digits.contains('.') {
-        digits.trim_end_matches('0').trim_end_matches('.').replace("-0", "0")
-    } else {
-        digits
-    }
+    short(number, usize::try_from(5 - exponent(number)).unwrap_or(0).min(12))
 }
 
 /// A text with true minus signs before and between its numbers.
@@ -191,6 +185,7 @@ mod tests {
         assert_eq!(labels("pruned", -0.0, -0.0).1, ["0"]);
         assert_eq!(labels("time_of_flight", 3.123_456_789, 3.123_456_789).1, ["3.12346"]);
         assert_eq!(labels("time_of_flight", -0.5, -0.5).1, ["−500"]);
+        assert_eq!(labels("other", -0.5, -0.5).1, ["−0.5"]);
         let nothing = axis(&Quantity::of_channel("pruned"), None, 7);
         assert_eq!(nothing.ticks[0].label, "no data");
     }

@@ -5,7 +5,7 @@ use crate::keys::unknown;
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 use optics::medium::{Medium, Tensor};
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 /// How large the normal part of a tangential wave vector may be.
 const TANGENTIAL: f64 = 1e-9;
@@ -111,14 +111,10 @@ fn fields<'a, const N: usize>(
     }
     let mut values = [&Value::Null; N];
     for (slot, key) in values.iter_mut().zip(keys) {
-        *slot = present(object, key)
+        *slot = (object.get(key))
             .ok_or_else(|| InterfaceError::at(place, format!("`{key}` is missing")))?;
     }
     Ok(values)
-}
-
-fn present<'a>(object: &'a Map<String, Value>, key: &str) -> Option<&'a Value> {
-    object.get(key)
 }
 
 fn medium(value: &Value, place: &str) -> Result<Medium, InterfaceError> {

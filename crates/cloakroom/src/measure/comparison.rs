@@ -50,7 +50,7 @@ pub struct FlightFigures {
     pub pixels: usize,
     /// The largest difference, of either sign, ns.
     pub maximum_ns: f64,
-    /// The same over the time of flight there, which is the largest such share.
+    /// The largest share, of either sign, that a difference is of the time of flight in its pixel.
     pub maximum_relative: f64,
     /// The mean, ns.
     pub mean_ns: f64,
@@ -59,10 +59,17 @@ pub struct FlightFigures {
 }
 
 impl FlightFigures {
+    /// How late a view is against the empty one over a region; `None` where it has no times.
+    #[must_use]
+    pub fn delays(view: &View, region: &Region) -> Option<Self> {
+        let times = view.time_of_flight.as_ref()?;
+        let differences = view.time_of_flight_difference.as_ref()?;
+        Self::of(region.indices().map(|i| (differences[i], times[i] - differences[i])))
+    }
+
     /// The figures of differences and the times of flight that they are to be held against, ns; what is not
     /// finite is left out, and `None` is what remains of nothing.
-    #[must_use]
-    pub fn of(pairs: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
+    fn of(pairs: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
         let pairs: Vec<(f64, f64)> =
             pairs.filter(|(difference, flight)| difference.is_finite() && *flight > 0.0).collect();
         let pixels = pairs.len();
@@ -104,40 +111,23 @@ pub fn compare(a: &View, b: &View, region: Option<&Region>) -> Result<Comparison
     })
 }
 
-/// Compares two views over a region alone.
-///
-/// # Errors
-///
-/// As [`compare`].
-pub fn compare_in(a: &View, b: &View, region: &Region) -> Result<Figures, MeasureError> {
-    let size = [a.width, a.height];
-    if let Some(second) =
-        [[b.width, b.height], region.size()].into_iter().find(|other| *other != size)
-    {
-        return Err(MeasureError::SizesDiffer { first: size, second });
-    }
-    figures(a, b, region, &flip(a, b, DEFAULT_PIXELS_PER_DEGREE))
-}
-
 fn figures(
     a: &View,
     b: &View,
     region: &Region,
     differences: &[f64],
 ) -> Result<Figures, MeasureError> {
-    let count = region.pixels() as f64;
-    let mean = |value: &dyn Fn(usize) -> f64| region.indices().map(value).sum::<f64>() / count;
     let planes = |k: usize| (&a.light[k], &b.light[k]);
     let channels = [planes(0), planes(1), planes(2)];
     let flights = a.time_of_flight.as_ref().zip(b.time_of_flight.as_ref());
-    let delivered = |view: &View| view.delivered.as_ref().map(|power| mean(&|i| power[i]));
+    let delivered = |view: &View| view.delivered.as_ref().map(|power| region.mean(|i| power[i]));
     Ok(Figures {
         pixels: region.pixels(),
         correlation: channels.map(|(a, b)| correlation(a, b, region)),
         correlation_maximum: best_shift(a, b, region)?,
-        rms_difference: channels.map(|(a, b)| mean(&|i| (a[i] - b[i]).powi(2)).sqrt()),
+        rms_difference: channels.map(|(a, b)| region.mean(|i| (a[i] - b[i]).powi(2)).sqrt()),
         structural_similarity: structural_similarity(a, b, region),
-        flip: mean(&|i| differences[i]),
+        flip: region.mean(|i| differences[i]),
         time_of_flight_difference: flights
             .and_then(|(a, b)| FlightFigures::of(region.indices().map(|i| (b[i] - a[i], a[i])))),
         delivered: [delivered(a), delivered(b)],
@@ -203,7 +193,6 @@ pub(super) mod tests {
         assert!(comparison.picture.flip > 0.0 && comparison.picture.rms_difference[0] > 0.0);
         let part = comparison.region.expect("a region");
         assert_eq!((part.pixels, part.flip, part.rms_difference), (1040, 0.0, [0.0; 3]));
-        assert_eq!(compare_in(&a, &b, &right).expect("one size"), part);
     }
 
     #[test]

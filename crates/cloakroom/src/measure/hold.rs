@@ -18,7 +18,7 @@ pub struct Hold {
 }
 
 /// Why a fact cannot be held.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HoldError {
     /// It is not written as it should be.
     #[error("--hold {text}: write device.N.KEY=FACT, as in device.0.w=cloaked_area_cm2")]
@@ -34,7 +34,7 @@ pub enum HoldError {
         /// The device asked for.
         device: usize,
     },
-    /// The key is not a number that could be scaled.
+    /// The device has no such key, or it is not a number that could be scaled.
     #[error("--hold {key}: {problem}")]
     Key {
         /// The key.
@@ -62,8 +62,8 @@ pub enum HoldError {
     },
     /// No value of the key will do.
     #[error(
-        "--hold {key}: no value from {} to {} keeps {fact} at {}{}", number_text(range[0].0),
-        number_text(range[1].0), number_text(target.0), at(.settings)
+        "--hold {key}: no value from {} to {} keeps {fact} at {}{}", number_text(range[0]),
+        number_text(range[1]), number_text(*target), at(.settings)
     )]
     NoSolution {
         /// The key.
@@ -71,25 +71,13 @@ pub enum HoldError {
         /// The fact.
         fact: String,
         /// What it should be.
-        target: Bits,
+        target: f64,
         /// The values that were tried.
-        range: [Bits; 2],
+        range: [f64; 2],
         /// The swept settings.
         settings: Vec<String>,
     },
 }
-
-/// A number in an error: equal to itself.
-#[derive(Clone, Copy, Debug)]
-pub struct Bits(pub f64);
-
-impl PartialEq for Bits {
-    fn eq(&self, other: &Self) -> bool {
-        self.0.to_bits() == other.0.to_bits()
-    }
-}
-
-impl Eq for Bits {}
 
 fn at(settings: &[String]) -> String {
     if settings.is_empty() { String::new() } else { format!(" with {}", settings.join(", ")) }
@@ -177,8 +165,8 @@ impl Hold {
         let none = || HoldError::NoSolution {
             key: self.key.clone(),
             fact: self.fact.clone(),
-            target: Bits(target),
-            range: [-1, 1].map(|side| Bits(value(side * OCTAVES * TRIALS_AN_OCTAVE))),
+            target,
+            range: [-1, 1].map(|side| value(side * OCTAVES * TRIALS_AN_OCTAVE)),
             settings: settings.to_vec(),
         };
         let mut bracket = None;

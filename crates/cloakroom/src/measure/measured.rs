@@ -50,20 +50,14 @@ impl Measured {
         };
         let power = |(name, _)| {
             let samples = &shown.channel(name)?.samples;
-            let sum: f64 = region.indices().map(|i| samples.get(i)).sum();
-            Some(sum / region.pixels() as f64)
+            Some(region.mean(|i| samples.get(i)))
         };
-        let times = view.time_of_flight.as_ref().zip(view.time_of_flight_difference.as_ref());
-        let flight = times.and_then(|(times, differences)| {
-            let pair = |i: usize| (differences[i], times[i] - differences[i]);
-            FlightFigures::of(region.indices().map(pair))
-        });
         Ok(Self {
             silhouette_share: Some(share),
             likeness,
             rays: Some(rays),
             powers: POWERS.map(power),
-            flight,
+            flight: FlightFigures::delays(view, &region),
         })
     }
 

@@ -10,6 +10,7 @@
 
 mod comparison;
 mod correlation;
+mod counterparts;
 mod flip;
 mod hold;
 mod measured;
@@ -25,13 +26,14 @@ mod sweep;
 pub mod verification;
 mod view;
 
-pub use comparison::{Comparison, Figures, FlightFigures, Shifted, compare, compare_in};
+pub use comparison::{Comparison, Figures, FlightFigures, Shifted, compare};
 pub use correlation::{BestShift, best_shift, correlation};
+pub use counterparts::{bare, empty, ideal};
 pub use flip::{DEFAULT_PIXELS_PER_DEGREE, flip};
 pub use hold::{Hold, HoldError};
 pub use measured::columns;
 pub use plan::Plan;
-pub use quality::{Column, QualityError, QualityTable, Row, UnknownColumn, empty, ideal, quality};
+pub use quality::{Column, QualityError, QualityTable, Row, UnknownColumn, quality};
 pub use quality_files::{STANDARD_PLOT, TableError, TableFormat};
 pub use region::Region;
 pub use structural_similarity::structural_similarity;

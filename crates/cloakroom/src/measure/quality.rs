@@ -5,8 +5,7 @@ use super::measured::Measured;
 use super::plan::{Combination, drawn};
 use super::statistics::Statistics;
 use super::sweep::{Sweep, SweepError};
-use super::{MeasureError, Plan, View, survey};
-use crate::device::{Request, Show};
+use super::{MeasureError, Plan, View, empty, ideal, survey};
 use crate::keys::hint;
 use crate::render::{RenderError, Studio, StudioError, Supervision, Wanted, render};
 use crate::scene::Scene;
@@ -73,9 +72,9 @@ pub struct Column {
 pub struct Row {
     /// The value of each swept key, as it is written.
     pub settings: Vec<String>,
-    /// A number for each column, the mean over the draws; NaN where there is none, as without a silhouette.
+    /// A number for each column, the mean over the draws that have one; NaN where none has, as without a silhouette.
     pub numbers: Vec<f64>,
-    /// The standard error of each mean; 0 where there is one draw, for nothing is random then.
+    /// The standard error of each mean; 0 for one draw, NaN where only one of several has a number.
     pub standard_errors: Vec<f64>,
 }
 
@@ -116,26 +115,6 @@ pub(super) fn located(loaded: &Loaded, error: &StudioError) -> QualityError {
     QualityError::Scene(Box::new(loaded.locations.error_at(&error.key(), error.to_string())))
 }
 
-/// What a scene should look like: its cloaks as the flat mirrors that they imitate, and nothing in the place of
-/// other devices.
-#[must_use]
-pub fn ideal(scene: &Scene) -> Scene {
-    let mut ideal = scene.clone();
-    ideal.devices.retain_mut(|device| {
-        let request = Request { show: Show::Mirror, open_core: false, length: device.length };
-        device.show = Show::Mirror;
-        device.open_core = false;
-        (device.entry.build)(&device.values, request).is_ok_and(|built| !built.skin.is_empty())
-    });
-    ideal
-}
-
-/// A scene without its devices.
-#[must_use]
-pub fn empty(scene: &Scene) -> Scene {
-    Scene { devices: Vec::new(), ..scene.clone() }
-}
-
 /// Whether the empty views of two scenes are the same.
 fn same_view(one: &Scene, other: &Scene) -> bool {
     one.camera == other.camera
@@ -160,7 +139,6 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
     let mut last_empty: Option<(Scene, View)> = None;
     for Combination { settings, held, loaded } in &plan.scenes {
         let scene = &loaded.scene;
-        let done = |rows| (supervision.rows_done)(rows);
         let mut picture = |studio: &Studio<'_>| {
             let rendered = render(studio, Wanted::Everything, supervision)?;
             rarities += rendered.rarities;
@@ -168,7 +146,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
         };
         let empty = match last_empty.take() {
             Some((known, view)) if same_view(&known, scene) => {
-                done(u64::from(scene.camera.resolution()[1]));
+                (supervision.rows_done)(u64::from(scene.camera.resolution()[1]));
                 view
             }
             _ => View::of(&picture(&studio(&empty(scene), loaded)?)?)?,
@@ -176,7 +154,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
         let wanted_scene = ideal(scene);
         let wanted_studio = studio(&wanted_scene, loaded)?;
         let wanted = if wanted_scene.devices.is_empty() {
-            done(u64::from(scene.camera.resolution()[1]));
+            (supervision.rows_done)(u64::from(scene.camera.resolution()[1]));
             empty.clone()
         } else {
             View::of(&picture(&wanted_studio)?)?

@@ -13,7 +13,7 @@ use std::path::Path;
 pub const STANDARD_PLOT: [&str; 3] =
     ["ideal_silhouette_correlation", "displacement_rms_cm", "delivered"];
 
-/// Pixels of a plot's raster in one unit of its drawing: 600 a inch.
+/// Pixels of a plot's raster in one unit of its drawing: 600 an inch.
 const PIXELS_PER_UNIT: f64 = 600.0 / 508.0;
 
 /// A format of files of a table.
@@ -25,7 +25,7 @@ pub enum TableFormat {
     Npz,
     /// A plot as lines.
     Svg,
-    /// A plot as pixels, 600 a inch at the width of a column.
+    /// A plot as pixels, 600 an inch at the width of a column.
     Png,
 }
 

@@ -14,7 +14,7 @@ impl Region {
     ///
     /// # Errors
     ///
-    /// If there are none, or the mask is no rectangle of that width.
+    /// [`MeasureError::EmptyRegion`] if there are none, or the mask is no rectangle of that width.
     pub fn new(width: usize, mask: Vec<bool>) -> Result<Self, MeasureError> {
         if !mask.len().is_multiple_of(width) || mask.is_empty() || !mask.contains(&true) {
             return Err(MeasureError::EmptyRegion);
@@ -81,6 +81,12 @@ impl Region {
     #[must_use]
     pub fn pixels(&self) -> usize {
         self.indices().count()
+    }
+
+    /// The mean over them of a number that each has.
+    #[must_use]
+    pub fn mean(&self, value: impl Fn(usize) -> f64) -> f64 {
+        self.indices().map(value).sum::<f64>() / self.pixels() as f64
     }
 
     /// Their share of the picture.

@@ -3,6 +3,7 @@
 /// Sums over draws of a list of numbers, by Welford's method (Technometrics 4, 419 (1962)).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Statistics {
+    draws: u32,
     sums: Vec<Sum>,
 }
 
@@ -16,6 +17,7 @@ struct Sum {
 impl Statistics {
     /// Adds a draw; numbers that are not finite do not count.
     pub fn add(&mut self, numbers: &[f64]) {
+        self.draws += 1;
         self.sums.resize(numbers.len(), Sum::default());
         for (sum, number) in self.sums.iter_mut().zip(numbers) {
             if number.is_finite() {
@@ -33,11 +35,11 @@ impl Statistics {
     }
 
     /// The standard errors of the means: the sample's standard deviation over the root of the number; 0 for one
-    /// number.
+    /// draw, NaN where only one of several, or none, counts.
     pub fn standard_errors(&self) -> impl Iterator<Item = f64> {
         self.sums.iter().map(|sum| match sum.count {
-            0.0 => f64::NAN,
-            1.0 => 0.0,
+            1.0 if self.draws == 1 => 0.0,
+            0.0 | 1.0 => f64::NAN,
             count => (sum.squares / (count - 1.0) / count).sqrt(),
         })
     }
@@ -61,7 +63,11 @@ mod tests {
         // Variances 13 and 21 of three.
         assert!((errors[0] - (13.0_f64 / 3.0).sqrt()).abs() < 1e-15);
         assert!((errors[1] - 7f64.sqrt()).abs() < 1e-12);
-        assert_eq!(errors[2], 0.0);
+        // One number of three draws does not know its error.
+        assert!(errors[2].is_nan());
+        let mut single = Statistics::default();
+        single.add(&[2.0]);
+        assert!(single.standard_errors().eq([0.0]));
         let mut nothing = Statistics::default();
         nothing.add(&[f64::NAN]);
         assert!(nothing.means().chain(nothing.standard_errors()).all(f64::is_nan));

@@ -22,15 +22,11 @@ pub fn structural_similarity(a: &View, b: &View, region: &Region) -> f64 {
     let (mean_a, mean_b) = (blur(&a), blur(&b));
     let (aa, bb, ab) = (product(&a, &a), product(&b, &b), product(&a, &b));
     let [c1, c2] = K.map(|k| k * k);
-    let sum: f64 = region
-        .indices()
-        .map(|i| {
-            let (ma, mb) = (mean_a[i], mean_b[i]);
-            let (va, vb, cov) = (aa[i] - ma * ma, bb[i] - mb * mb, ab[i] - ma * mb);
-            (2.0 * ma * mb + c1) * (2.0 * cov + c2) / ((ma * ma + mb * mb + c1) * (va + vb + c2))
-        })
-        .sum();
-    sum / region.pixels() as f64
+    region.mean(|i| {
+        let (ma, mb) = (mean_a[i], mean_b[i]);
+        let (va, vb, cov) = (aa[i] - ma * ma, bb[i] - mb * mb, ab[i] - ma * mb);
+        (2.0 * ma * mb + c1) * (2.0 * cov + c2) / ((ma * ma + mb * mb + c1) * (va + vb + c2))
+    })
 }
 
 /// The luminance of each pixel, encoded as sRGB, from 0 to 1.

@@ -5,6 +5,9 @@ use crate::keys::quoted;
 /// Most pictures that one set of sweeps may ask for.
 const MOST: usize = 100_000;
 
+/// Numbers of a range are written with no more decimals: enough for any.
+const MOST_DECIMALS: usize = 400;
+
 /// One key of a scene and the values it takes, one after the other.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Sweep {
@@ -98,7 +101,7 @@ fn steps(start: &str, end: &str, step: &str) -> Result<Vec<String>, String> {
         return Err(format!("the range has more than {MOST} values"));
     }
     let decimals = |text: &str| text.split_once('.').map_or(0, |(_, digits)| digits.len());
-    let decimals = decimals(start).max(decimals(step));
+    let decimals = decimals(start).max(decimals(step)).min(MOST_DECIMALS);
     let plain = ![start, step].iter().any(|text| text.contains(['e', 'E']));
     Ok((0..=count as usize)
         .map(|i| {
@@ -173,6 +176,8 @@ mod tests {
         assert_eq!(values("a = 2 .. -1 : -1.5"), ["2.0", "0.5", "-1.0"]);
         assert_eq!(values("a=3..3:1"), ["3"]);
         assert_eq!(values("a=1e-4..3e-4:1e-4").len(), 3);
+        // More digits than a format takes.
+        assert_eq!(values(&format!("a=0..1:0.5{}", "0".repeat(70_000))).len(), 3);
     }
 
     #[test]

@@ -94,20 +94,6 @@ fn scenes_survive_the_way_there_and_back() {
 }
 
 #[test]
-fn devices_are_shown_otherwise_where_they_can_be() {
-    let scene = |kind: &str| {
-        let text =
-            format!("[[device]]\nkind = '{kind}'\ncore = 'open'\n[[device]]\nkind = 'body'\n");
-        let text = if kind == "luneburg-lens" { text.replace("core = 'open'", "") } else { text };
-        scene_file::parse(&text, "a", Path::new(""), &[]).expect("a scene").scene
-    };
-    let bare = shown_as(&scene("square-cloak"), Show::Bare).expect("a cloak");
-    assert_eq!(bare.devices[0].show, Show::Bare);
-    assert!(!bare.devices[0].open_core && bare.devices[1].show == Show::Cloak);
-    assert!(shown_as(&scene("luneburg-lens"), Show::Mirror).is_none());
-}
-
-#[test]
 fn names_of_photographs_are_plain() {
     for name in ["holiday.jpg", "Foto vom Urlaub (3).PNG", "ü"] {
         assert!(is_plain_name(name), "{name}");

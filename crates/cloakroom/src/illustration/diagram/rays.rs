@@ -1,7 +1,7 @@
 //! Rays and wavefronts.
 
 use super::super::drawing::{Drawing, Ink, Shape};
-use super::super::setting::{PAPER, arrow_head};
+use super::super::setting::{HEAD, INK, PAPER, arrow_head};
 use crate::device::Occupant;
 use crate::trace::{Bench, Line};
 use glam::{DVec2, DVec3};
@@ -11,12 +11,10 @@ use optics::propagation::PathPoint;
 const RAY: Ink = Ink::new([192, 32, 0]);
 /// The width of a ray of all the power.
 const WIDEST: f64 = 2.4;
-/// The length of an arrow's head.
-const HEAD: f64 = 11.0;
 /// The colour and the width of wavefronts.
-pub(super) const FRONT: Ink = Ink::new([24, 24, 24]).faint(0.75);
+pub(super) const FRONT: Ink = INK.faint(0.75);
 pub(super) const FRONT_WIDTH: f64 = 1.1;
-/// The colour and width of the light rim of rays on dark ground.
+/// The light rim of rays on dark ground.
 const RIM: Ink = PAPER.faint(0.55);
 
 /// The stroke of a ray of some power: width and opacity fall with it.

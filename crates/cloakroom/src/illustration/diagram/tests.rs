@@ -11,7 +11,7 @@ fn drawn(text: &str, settings: &DiagramSettings) -> Result<Diagram, DiagramError
     diagram(&scene(text), settings, &AtomicBool::new(false))
 }
 
-/// The y of the fronts' points behind a device, front by front, and their x.
+/// The points of the wavefronts on the sheet, front by front.
 fn fronts(drawing: &Drawing) -> Vec<Vec<DVec2>> {
     let line = |element: &super::super::drawing::Element| match &element.shape {
         super::super::drawing::Shape::Line(points) => points.clone(),
@@ -84,7 +84,6 @@ fn every_device_can_be_drawn_in_every_way() {
         ] {
             let settings =
                 DiagramSettings { projected, source, rays: 3, ..DiagramSettings::default() };
-            // The camera may stand below a carpet.
             let drawing = drawn(&text, &settings).expect("drawn").drawing;
             let rays = drawing.of_class("ray").count();
             assert!(rays >= 3, "{} {source:?}: {rays}", entry.kind);

@@ -1,7 +1,9 @@
 //! What part of space a diagram shows, and how.
 
 use super::super::drawing::{Drawing, Face, Shape, Words};
-use super::super::setting::{Devices, INK, PAPER, TEXT, View, draw_axes};
+use super::super::setting::{
+    AXES, BAR, Devices, INK, MARGIN, PAPER, TEXT, THIN, View, corners, draw_axes,
+};
 use super::{DiagramSettings, Source, rays};
 use crate::device::REACH;
 use crate::trace::Bench;
@@ -21,10 +23,6 @@ pub enum Projected {
     },
 }
 
-/// The room for a colour bar, units of the sheet.
-const BAR: f64 = 5.2 * TEXT;
-/// The margin of the sheet.
-const MARGIN: f64 = 14.0;
 /// The row with the key.
 const KEY: f64 = 1.8 * TEXT;
 
@@ -129,8 +127,8 @@ pub(super) fn draw_around(
     let sheet = drawing.size;
     let height = 0.7 * sheet.y;
     let at = DVec2::new(sheet.x - MARGIN - BAR + 0.6 * TEXT, 0.5 * (sheet.y - KEY - height));
-    devices.draw_bar(drawing, [at, DVec2::new(BAR, height)]);
-    draw_axes(drawing, DVec2::new(sheet.x - 4.2 * TEXT - MARGIN, sheet.y - 4.2 * TEXT - 4.0));
+    devices.draw_bar(drawing, (at, height));
+    draw_axes(drawing, sheet - AXES - DVec2::new(MARGIN, 4.0));
     draw_key(drawing, settings);
 }
 
@@ -207,13 +205,7 @@ impl SpaceView {
 
     /// The corners of the part of the sheet that it fills.
     pub fn frame(&self) -> Vec<DVec2> {
-        let lower = self.sheet.y - KEY;
-        vec![
-            DVec2::ZERO,
-            DVec2::new(0.0, lower),
-            DVec2::new(self.sheet.x, lower),
-            DVec2::new(self.sheet.x, 0.0),
-        ]
+        corners([DVec2::ZERO, self.sheet - DVec2::Y * KEY])
     }
 
     /// Draws the directions of x, y and z.
@@ -224,7 +216,7 @@ impl SpaceView {
         for (name, axis) in [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)] {
             let along = DVec2::new(axis.dot(self.right), -axis.dot(self.up));
             let tip = origin + 1.9 * TEXT * along;
-            drawing.add("coordinate", Shape::Line(vec![origin, tip])).stroked(INK, 1.5);
+            drawing.add("coordinate", Shape::Line(vec![origin, tip])).stroked(INK, THIN);
             let beside = tip + 0.55 * TEXT * along.normalize_or(DVec2::Y);
             let words = Words::of_runs(vec![(Face::Italic, name.to_owned())], beside, 0.8 * TEXT);
             drawing.add("coordinate-name", Shape::Words(words)).filled(INK);

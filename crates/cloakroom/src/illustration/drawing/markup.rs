@@ -1,5 +1,6 @@
 //! Drawings as SVG.
 
+use super::super::quantity::short;
 use super::typeface::Piece;
 use super::{Drawing, Element, Ink, Shape, Words};
 use crate::output::RgbImage;
@@ -27,8 +28,7 @@ impl Drawing {
             .set("preserveAspectRatio", "none")
             .add(Title::new(description));
         for (key, text) in metadata {
-            let entry = svg::node::element::Element::new("desc");
-            let mut entry: svg::node::element::Element = entry;
+            let mut entry = svg::node::element::Element::new("desc");
             entry.assign("class", key.as_str());
             entry.append(svg::node::Text::new(text.clone()));
             document = document.add(entry);
@@ -112,9 +112,7 @@ fn hex(ink: Ink) -> String {
 
 /// A number with as many decimals as matter: a thousandth of a unit.
 fn number(value: f64) -> String {
-    let digits = format!("{value:.3}");
-    let short = digits.trim_end_matches('0').trim_end_matches('.');
-    if short == "-0" { "0".to_owned() } else { short.to_owned() }
+    short(value, 3)
 }
 
 fn point(p: DVec2) -> String {

@@ -3,13 +3,14 @@
 mod sheet;
 
 use super::drawing::{Drawing, Ink, Shape, Words};
+use super::quantity::short;
+use super::setting::INK;
 use glam::DVec2;
 use plotters::prelude::{
     ChartBuilder, DrawingArea, IntoDrawingArea, IntoFont, IntoTextStyle, LineSeries, PathElement,
     RGBColor, Rectangle, ShapeStyle, TextStyle,
 };
 use sheet::Sheet;
-use std::convert::Infallible;
 use std::ops::Range;
 
 /// Curves over one common axis.
@@ -37,8 +38,7 @@ pub struct PlotPanel {
 pub struct Curve {
     /// What it is of; for the key, if there is more than one.
     pub label: String,
-    /// Its points from left to right, as [x, y], and how far they may be off to either side; a curve is
-    /// interrupted where a point is not finite.
+    /// Its points from left to right; it is interrupted where one is not finite.
     pub points: Vec<CurvePoint>,
 }
 
@@ -78,7 +78,7 @@ const COLORS: [[u8; 3]; 7] = [
     [86, 180, 233],
 ];
 
-const BLACK: RGBColor = RGBColor(24, 24, 24);
+const BLACK: RGBColor = RGBColor(INK.rgb[0], INK.rgb[1], INK.rgb[2]);
 
 impl Plot {
     /// The plot as a drawing; its units are twentieths of a millimetre.
@@ -119,7 +119,7 @@ impl Plot {
             drawing.add("key", Shape::Line(ends)).stroked(color(i), 0.3 * MM * size_of(i));
             mark(&mut drawing, i, at);
             let words = Words::new(*label, at + DVec2::X * 4.5 * MM, TYPE * MM).anchored(0.0);
-            drawing.add("key-words", Shape::Words(words)).filled(ink(BLACK));
+            drawing.add("key-words", Shape::Words(words)).filled(INK);
         }
         drawing
     }
@@ -184,7 +184,7 @@ impl Plot {
         let frame = [(across.start, along.start), (across.end, along.end)];
         chart.plotting_area().draw(&Rectangle::new(frame, thin))?;
         for (i, curve) in panel.curves.iter().enumerate() {
-            let [red, green, blue] = COLORS[i % COLORS.len()];
+            let [red, green, blue] = color(i).rgb;
             let color = RGBColor(red, green, blue);
             let stroke_width = (0.3 * MM * size_of(i)).round() as u32;
             let style = ShapeStyle { color: color.into(), filled: false, stroke_width };
@@ -205,15 +205,8 @@ impl Plot {
     }
 }
 
-/// The library's error of a sheet that never fails.
-const _: fn(Infallible) = |never| match never {};
-
-fn ink(color: RGBColor) -> Ink {
-    Ink { rgb: [color.0, color.1, color.2], opacity: 1.0 }
-}
-
 fn color(curve: usize) -> Ink {
-    Ink { rgb: COLORS[curve % COLORS.len()], opacity: 1.0 }
+    Ink::new(COLORS[curve % COLORS.len()])
 }
 
 /// How large marks and how thick lines of a curve are: later ones are smaller, so that of curves that lie on each other all
@@ -270,12 +263,7 @@ fn number(value: f64, range: &Range<f64>) -> String {
         let digits = digits.trim_end_matches('0').trim_end_matches('.');
         if value == 0.0 { "0".to_owned() } else { format!("{digits}e{exponent}") }
     } else {
-        let decimals = (2.0 - width.log10().floor()).clamp(0.0, 12.0) as usize;
-        let text = format!("{value:.decimals$}");
-        match text.contains('.') {
-            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-            false => text,
-        }
+        short(value, (2.0 - width.log10().floor()).clamp(0.0, 12.0) as usize)
     };
     text.replace('-', "\u{2212}")
 }

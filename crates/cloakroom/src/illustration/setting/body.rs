@@ -4,7 +4,7 @@ use super::super::drawing::{Drawing, Ink, Shape};
 use super::device;
 use super::index_map::on_sheet;
 use super::medium_axes::MediumAxes;
-use super::subject::{Subject, bounds};
+use super::subject::{Subject, bounds, lattice};
 use super::view::View;
 use super::{INK, OPAQUE, PAPER, TEXT, THIN};
 use crate::device::{Body, Contour, Filling};
@@ -62,13 +62,9 @@ pub(super) fn draw_medium(
     // The middle of what is free, or nearly so.
     let Some([low, high]) = bounds(outline.points.iter().copied()) else { return };
     const STEPS: u32 = 24;
-    let lattice = (0..STEPS * STEPS).map(|k| {
-        let share = DVec2::new(f64::from(k % STEPS), f64::from(k / STEPS)) + 0.5;
-        low + (high - low) * share / f64::from(STEPS)
-    });
     let is_free = |world: DVec2| before.iter().all(|(other, _)| !other.surrounds(world));
     let widest = std::iter::once((low + high) / 2.0)
-        .chain(lattice)
+        .chain(lattice([low, high], STEPS))
         .filter(|point| outline.surrounds(*point))
         .map(|point| subject.pose.point_to_world(point))
         .filter(|world| is_free(*world))

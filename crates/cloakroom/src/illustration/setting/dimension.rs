@@ -5,7 +5,7 @@ use super::{INK, TEXT, THIN, write};
 use glam::DVec2;
 
 /// The length of an arrow head.
-const HEAD: f64 = 11.0;
+pub(in crate::illustration) const HEAD: f64 = 11.0;
 
 /// Draws a dimension line beside the line from `a` to `b` (both on the sheet), shifted by `shift`, with
 /// its label beyond it on a ground of that colour.

@@ -5,7 +5,7 @@ use super::super::drawing::{Drawing, Ink, Shape, Words};
 use super::super::quantity::{Dimension, Quantity};
 use super::super::ticks::axis;
 use super::medium_axes::MediumAxes;
-use super::subject::{Subject, bounds};
+use super::subject::{Subject, bounds, lattice};
 use super::view::{View, corners};
 use super::{INK, TEXT, THIN};
 use crate::device::Region;
@@ -14,7 +14,7 @@ use glam::{DAffine2, DVec2};
 use optics::geometry::Pose;
 
 /// The width of the colours of the bar.
-const BAR: f64 = 22.0;
+const COLORS: f64 = 22.0;
 
 /// The colours of all graded media of a scene.
 pub(super) struct IndexScale {
@@ -33,14 +33,8 @@ impl IndexScale {
             // The extremes may lie on the border.
             let border = region.border.iter().flat_map(|contour| contour.points.iter().copied());
             let Some([low, high]) = bounds(border.clone()) else { continue };
-            let lattice = (0..STEPS * STEPS).map(|k| {
-                let share = DVec2::new(f64::from(k % STEPS), f64::from(k / STEPS)) + 0.5;
-                low + (high - low) * share / f64::from(STEPS)
-            });
-            for medium in border
-                .chain(lattice.filter(|p| region.holds(*p)))
-                .filter_map(|p| region.cell.medium_at(p))
-            {
+            let inside = lattice([low, high], STEPS).filter(|p| region.holds(*p));
+            for medium in border.chain(inside).filter_map(|p| region.cell.medium_at(p)) {
                 isotropic &= MediumAxes::of(&medium).is_none();
                 numbers.push(medium.mean_index());
             }
@@ -99,7 +93,7 @@ impl IndexScale {
     }
 
     /// Draws the colour bar with its top left corner at a point, as high as told.
-    pub fn draw_bar(&self, drawing: &mut Drawing, place: [DVec2; 2]) {
+    pub fn draw_bar(&self, drawing: &mut Drawing, place: (DVec2, f64)) {
         draw_color_bar(drawing, &self.colors, &self.quantity, place);
     }
 }
@@ -109,13 +103,13 @@ pub(in crate::illustration) fn draw_color_bar(
     drawing: &mut Drawing,
     colors: &ColorScale,
     quantity: &Quantity,
-    [at, size]: [DVec2; 2],
+    (at, height): (DVec2, f64),
 ) {
     let steps = 128;
     let image = RgbImage::from_fn(1, steps, |_, row| {
         colors.color_at(1.0 - (f64::from(row) + 0.5) / f64::from(steps))
     });
-    let (width, height) = (BAR, size.y);
+    let width = COLORS;
     let place = DAffine2::from_cols(DVec2::X * width, DVec2::Y * height, at);
     let frame = corners([at, DVec2::new(width, height)]);
     drawing.add("color-bar", Shape::Image { image, place }).within(vec![frame.clone()]);

@@ -4,16 +4,12 @@ use super::super::drawing::{Drawing, Shape};
 use super::stage::{AXES, DISTANCES, EYE, Stage};
 use super::subject::{Subject, bounds};
 use super::view::{View, corners};
-use super::{GRAY, TEXT, THIN};
+use super::{BAR, GRAY, MARGIN, TEXT, THIN};
 use glam::DVec2;
 use optics::geometry::Outline;
 
 /// Devices drawn smaller than this share of the sheet's shorter side are drawn once more, magnified.
 const SMALL: f64 = 0.28;
-/// The margin of the sheet.
-const MARGIN: f64 = 14.0;
-/// The room that a colour bar takes.
-const BAR: f64 = 5.2 * TEXT;
 /// The least width of the key to a magnified device.
 const LEGEND: f64 = 14.5 * TEXT;
 /// The room around a magnified device for its dimensions.
@@ -35,8 +31,8 @@ pub(super) struct Layout {
     pub view: View,
     /// Devices once more, magnified.
     pub insets: Vec<Inset>,
-    /// The colour bar, if there is one: top left corner and size.
-    pub bar: Option<[DVec2; 2]>,
+    /// The colour bar, if there is one: top left corner and height.
+    pub bar: Option<(DVec2, f64)>,
     /// The top left corner of the axes of coordinates.
     pub axes: DVec2,
 }
@@ -78,7 +74,7 @@ impl Layout {
         }
         let [top, size] = layout.view.window;
         let bar_at = DVec2::new(sheet.x - MARGIN - BAR + 0.6 * TEXT, top.y + 0.08 * size.y);
-        layout.bar = (bar > 0.0).then_some([bar_at, DVec2::new(bar, 0.84 * size.y)]);
+        layout.bar = (bar > 0.0).then_some((bar_at, 0.84 * size.y));
         layout.place_axes(stage, subjects);
         layout
     }

@@ -12,12 +12,14 @@ mod stage;
 mod subject;
 mod view;
 
-pub(super) use dimension::arrow_head;
+pub(super) use dimension::{HEAD, arrow_head};
 pub(super) use index_map::draw_color_bar;
-pub(super) use stage::draw_axes;
+pub(super) use stage::{AXES, draw_axes};
 pub use view::View;
+pub(super) use view::corners;
 
 use super::drawing::{Drawing, Ink, Shape, Words};
+use super::quantity::short;
 use crate::render::{Studio, StudioError, metadata};
 use crate::scene::Scene;
 use crate::trace::Bench;
@@ -40,6 +42,10 @@ pub struct Setting {
 
 /// The size of lettering. All lengths are for a sheet as large as 1024 x 768.
 pub(super) const TEXT: f64 = 24.0;
+/// The margin of the sheet.
+pub(super) const MARGIN: f64 = 14.0;
+/// The room that a colour bar takes.
+pub(super) const BAR: f64 = 5.2 * TEXT;
 /// The width of thin lines.
 pub(super) const THIN: f64 = 1.5;
 /// The width of the lines that matter.
@@ -136,8 +142,8 @@ impl<'s> Devices<'s> {
         draw_shapes(drawing, view, &shown, self.scale.as_ref());
     }
 
-    /// Draws the bar of the colours at a place: its top left corner and size.
-    pub fn draw_bar(&self, drawing: &mut Drawing, place: [DVec2; 2]) {
+    /// Draws the bar of the colours with its top left corner at a point, as high as told.
+    pub fn draw_bar(&self, drawing: &mut Drawing, place: (DVec2, f64)) {
         if let Some(scale) = &self.scale {
             scale.draw_bar(drawing, place);
         }
@@ -198,9 +204,7 @@ fn centimetres(length: f64) -> String {
 
 /// A number with two decimals at most.
 fn rounded(number: f64) -> String {
-    let digits = format!("{number:.2}");
-    let short = digits.trim_end_matches('0').trim_end_matches('.');
-    if short == "-0" { "0".to_owned() } else { short.replace('-', "\u{2212}") }
+    short(number, 2).replace('-', "\u{2212}")
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ pub(super) const EYE: f64 = 36.0;
 /// The room that the row of distances needs above the view.
 pub(super) const DISTANCES: f64 = 3.4 * TEXT;
 /// The room that the axes of coordinates need.
-pub(super) const AXES: DVec2 = DVec2::new(4.2 * TEXT, 4.2 * TEXT);
+pub(in crate::illustration) const AXES: DVec2 = DVec2::new(4.2 * TEXT, 4.2 * TEXT);
 
 /// Camera and photograph in the xy-plane, cm.
 pub(super) struct Stage {
@@ -252,7 +252,7 @@ pub(in crate::illustration) fn draw_axes(drawing: &mut Drawing, corner: DVec2) {
         let tip = origin + length * direction;
         let shaft = vec![origin + 7.0 * direction, tip - 8.0 * direction];
         drawing.add("coordinate", Shape::Line(shaft)).stroked(INK, THIN);
-        drawing.add("head", dimension::arrow_head(tip, -direction, 11.0)).filled(INK);
+        drawing.add("head", dimension::arrow_head(tip, -direction, dimension::HEAD)).filled(INK);
         name_axis(drawing, name, tip + 0.55 * TEXT * direction, INK);
     }
     // z comes out of the page.

@@ -78,6 +78,14 @@ impl<'s> Subject<'s> {
     }
 }
 
+/// The middles of the cells of a box, `steps` either way.
+pub(super) fn lattice([low, high]: [DVec2; 2], steps: u32) -> impl Iterator<Item = DVec2> {
+    (0..steps * steps).map(move |k| {
+        let share = DVec2::new(f64::from(k % steps), f64::from(k / steps)) + 0.5;
+        low + (high - low) * share / f64::from(steps)
+    })
+}
+
 /// Least and greatest x and y.
 pub(super) fn bounds(points: impl IntoIterator<Item = DVec2>) -> Option<[DVec2; 2]> {
     points.into_iter().fold(None, |known, p| {

@@ -59,7 +59,7 @@ impl View {
 }
 
 /// The corners of a rectangle of the sheet (top left corner and size), counterclockwise as seen.
-pub(super) fn corners([from, size]: [DVec2; 2]) -> Vec<DVec2> {
+pub(in crate::illustration) fn corners([from, size]: [DVec2; 2]) -> Vec<DVec2> {
     let to = from + size;
     vec![from, DVec2::new(from.x, to.y), to, DVec2::new(to.x, from.y)]
 }

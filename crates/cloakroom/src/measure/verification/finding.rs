@@ -84,6 +84,18 @@ impl Finding {
         Self { place, statement, computed, verdict, remark: "" }
     }
 
+    /// A finding that is a number, against the one that is printed with so many decimals.
+    pub(super) fn number(
+        place: &'static str,
+        statement: &'static str,
+        computed: f64,
+        (printed, decimals, unit): (f64, usize, &str),
+    ) -> Self {
+        let text = format!("{computed:.decimals$}{unit}");
+        let verdict = Verdict::number(computed, printed, decimals as i32);
+        Self::new(place, statement, text, verdict)
+    }
+
     /// The finding with a word why.
     pub(super) fn because(self, remark: &'static str) -> Self {
         Self { remark, ..self }
@@ -115,7 +127,8 @@ pub fn markdown(findings: &[Finding]) -> String {
          from the scenes of the paper, and a test keeps the two in step. No number is adjusted to agree.\n\n\
          A number *agrees* if it does to the digits that are printed, or keeps the limit that is stated; it agrees *in order\n\
          of magnitude* within a factor of 3. A judgement without a number (good, formidable) agrees if the comparison behind\n\
-         it comes out: nearer to what should be seen than bare metal is, or than the design that it is held against.\n\
+         it comes out: nearer to what should be seen than bare metal is, or than the design that it is held against; a\n\
+         reflection is significant from 1 % of the light on, and absent below.\n\
          Which comparison stands for a judgement, and over which part of the picture, is our choice; the numbers let\n\
          everyone choose another.\n\n\
          Pictures are of 160 x 120 pixels with one ray each, `min_power` 1e-4. A correlation is the zero-mean normalized one\n\

@@ -1,14 +1,12 @@
 //! Section 1 and 2: the trivial cloak, the setting and the materials.
 
-use super::VerificationError;
 use super::finding::{DOUBLE, Finding, Verdict, below, percent};
 use super::laboratory::{DESIGNS, GAUSSIAN, Laboratory, Rays, fact, principal_values, square};
+use super::{Findings, VerificationError};
 use glam::DVec3;
 use optics::interface::{IncidentWave, Side, split};
 use optics::medium::Medium;
 use optics::wave::SPEED_OF_LIGHT;
-
-type Findings = Result<Vec<Finding>, VerificationError>;
 
 pub(super) fn introduction(laboratory: &Laboratory<'_>) -> Findings {
     let bench = laboratory.bench("[[device]]\nkind = \"mirror-detour\"\n")?;
@@ -49,42 +47,38 @@ pub(super) fn introduction(laboratory: &Laboratory<'_>) -> Findings {
 
 pub(super) fn setting(_: &Laboratory<'_>) -> Findings {
     let cloak = square(DESIGNS[2]);
-    let side = fact(&cloak, "rhombus_side_cm")?;
-    let angle = fact(&cloak, "axis_u_angle_deg")?.abs();
-    let area = fact(&cloak, "cloaked_area_cm2")?;
-    let gaussian_area = fact(GAUSSIAN, "cloaked_area_cm2")?;
-    let mirror = fact(&cloak, "mirror_width_cm")?;
+    let of = |name| fact(&cloak, name);
     Ok(vec![
-        Finding::new(
+        Finding::number(
             "Fig. 1",
             "A square of side 14.1 cm holds a rhombus of side 11.51 cm",
-            format!("{side:.2} cm"),
-            Verdict::number(side, 11.51, 2),
+            of("rhombus_side_cm")?,
+            (11.51, 2, " cm"),
         ),
-        Finding::new(
+        Finding::number(
             "Fig. 1",
             "The axes of the segments are turned by 33.54 degrees",
-            format!("{angle:.2} degrees"),
-            Verdict::number(angle, 33.54, 2),
+            of("axis_u_angle_deg")?.abs(),
+            (33.54, 2, " degrees"),
         ),
-        Finding::new(
+        Finding::number(
             "Fig. 1",
             "The region cloaked by (i)-(iii) has 114.83 cm²",
-            format!("{area:.2} cm²"),
-            Verdict::number(area, 114.83, 2),
+            of("cloaked_area_cm2")?,
+            (114.83, 2, " cm²"),
         )
         .because("The side of 14.1 cm is rounded: 14.103 cm has this area."),
-        Finding::new(
+        Finding::number(
             "Fig. 1",
             "The region cloaked by (iv) has 114.83 cm²",
-            format!("{gaussian_area:.2} cm²"),
-            Verdict::number(gaussian_area, 114.83, 2),
+            fact(GAUSSIAN, "cloaked_area_cm2")?,
+            (114.83, 2, " cm²"),
         ),
-        Finding::new(
+        Finding::number(
             "3",
             "Turned, (i)-(iii) look like a flat mirror 19.94 cm wide",
-            format!("{mirror:.2} cm"),
-            Verdict::number(mirror, 19.94, 2),
+            of("mirror_width_cm")?,
+            (19.94, 2, " cm"),
         ),
     ])
 }

@@ -1,12 +1,13 @@
 //! Scenes of the paper, made and measured.
 
 use super::VerificationError;
+use crate::device::FactValue;
 use crate::measure::{Region, Survey, View, correlation, survey};
 use crate::output::Picture;
 use crate::render::{Studio, Supervision, Wanted, bench, render};
 use crate::scene::Scene;
-use crate::scene_file::{self};
-use crate::trace::{Bench, Launch, Leaf, Limits, Outcome, Tracer};
+use crate::scene_file;
+use crate::trace::{Bench, Launch, Leaf, Leg, Limits, Outcome, Tracer};
 use glam::DVec3;
 use optics::wave::transverse_basis;
 use std::path::Path;
@@ -116,40 +117,48 @@ pub(super) fn largest_difference(a: &View, b: &View) -> f64 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Mean and largest of the numbers of a channel that are there.
-pub(super) fn statistics(picture: &Picture, channel: &str) -> Result<[f64; 2], VerificationError> {
+/// The numbers of a channel that are there, one at least.
+pub(super) fn numbers(picture: &Picture, channel: &str) -> Result<Vec<f64>, VerificationError> {
     let samples = picture
         .channel(channel)
         .map(|channel| &channel.samples)
         .ok_or_else(|| VerificationError::Missing(format!("the channel {channel}")))?;
-    let numbers = || (0..samples.len()).map(|i| samples.get(i)).filter(|n| n.is_finite());
-    let count = numbers().count();
-    if count == 0 {
+    let all = (0..samples.len()).map(|i| samples.get(i));
+    let numbers: Vec<f64> = all.filter(|number| number.is_finite()).collect();
+    if numbers.is_empty() {
         return Err(VerificationError::Missing(format!("a number in {channel}")));
     }
-    let largest = numbers().map(f64::abs).fold(0.0, f64::max);
-    Ok([numbers().sum::<f64>() / count as f64, largest])
+    Ok(numbers)
 }
 
-/// A fact of a device in a scene, by its name.
-pub(super) fn fact(device: &str, name: &str) -> Result<f64, VerificationError> {
+/// The mean and the largest size of the numbers of a channel that are there.
+pub(super) fn statistics(picture: &Picture, channel: &str) -> Result<[f64; 2], VerificationError> {
+    let numbers = numbers(picture, channel)?;
+    let largest = numbers.iter().copied().map(f64::abs).fold(0.0, f64::max);
+    Ok([numbers.iter().sum::<f64>() / numbers.len() as f64, largest])
+}
+
+/// A fact of the device of a scene, by its name.
+fn fact_value(device: &str, name: &str) -> Result<FactValue, VerificationError> {
     let scene = Laboratory::scene(device, "none")?;
     let device = scene.devices.first();
     let facts = device.map(|device| (device.entry.facts)(&device.values)).unwrap_or_default();
     let found = facts.into_iter().find(|fact| fact.name == name);
-    match found.map(|fact| fact.value) {
-        Some(crate::device::FactValue::Number(number)) => Ok(number),
+    found.map(|fact| fact.value).ok_or_else(|| VerificationError::Missing(name.to_owned()))
+}
+
+/// A fact that is a number.
+pub(super) fn fact(device: &str, name: &str) -> Result<f64, VerificationError> {
+    match fact_value(device, name)? {
+        FactValue::Number(number) => Ok(number),
         _ => Err(VerificationError::Missing(name.to_owned())),
     }
 }
 
 /// The principal values of a tensor among the facts of a device.
 pub(super) fn principal_values(device: &str, name: &str) -> Result<Vec<f64>, VerificationError> {
-    let scene = Laboratory::scene(device, "none")?;
-    let device = scene.devices.first();
-    let facts = device.map(|device| (device.entry.facts)(&device.values)).unwrap_or_default();
-    match facts.into_iter().find(|fact| fact.name == name).map(|fact| fact.value) {
-        Some(crate::device::FactValue::Numbers(numbers)) => Ok(numbers),
+    match fact_value(device, name)? {
+        FactValue::Numbers(numbers) => Ok(numbers),
         _ => Err(VerificationError::Missing(name.to_owned())),
     }
 }
@@ -165,9 +174,7 @@ impl<'b> Rays<'b> {
     }
 
     pub fn trace(&mut self, origin: DVec3, direction: DVec3) -> (&[Leaf<2>], &Outcome<2>) {
-        let direction = direction.normalize();
-        let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
-        self.tracer.trace(&Launch { origin, direction, electric: [h.into(), v.into()] })
+        self.tracer.trace(&launch(origin, direction))
     }
 
     /// The shares of horizontal and vertical light that go on along the ray's own line, as if nothing were there,
@@ -187,6 +194,41 @@ impl<'b> Rays<'b> {
         });
         on.fold([0.0; 2], |sum, leaf| [sum[0] + leaf.power[0], sum[1] + leaf.power[1]])
     }
+}
+
+/// A ray, horizontal and vertical at once.
+fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
+    let direction = direction.normalize();
+    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
+    Launch { origin, direction, electric: [h.into(), v.into()] }
+}
+
+/// The strongest leaf of a ray's vertical light, and how often its way is reflected within a segment: where two legs on
+/// end lie in one. The device must stand in the frame of the scene.
+pub(super) fn reflected_inside(
+    bench: &Bench,
+    origin: DVec3,
+    direction: DVec3,
+) -> Option<(Leaf<2>, usize)> {
+    let limits = Limits { min_power: 1e-6, tolerance: 1e-8 };
+    let mut tracer = Tracer::new(bench, limits).watched(Vec::new());
+    let (leaves, _) = tracer.trace(&launch(origin, direction));
+    let main = *leaves.iter().max_by(|a, b| a.power[1].total_cmp(&b.power[1]))?;
+    let legs: &Vec<Leg<2>> = tracer.witness();
+    let (mut at, mut path) = (main.position, main.optical_path);
+    let mut way = Vec::new();
+    // Back from the leaf, along what ends where the next leg starts.
+    let ends = |leg: &&Leg<2>, at: DVec3, path: f64| {
+        let end = leg.path.last().map(|end| (end.position, leg.optical_path + end.optical_path));
+        end.is_some_and(|(place, sum)| place.distance(at) < 1e-9 && (sum - path).abs() < 1e-9)
+            && leg.optical_path < path - 1e-9
+    };
+    while let Some(leg) = legs.iter().find(|leg| ends(leg, at, path)) {
+        way.push(leg.inside);
+        (at, path) = (leg.path[0].position, leg.optical_path);
+    }
+    let reflected = way.windows(2).filter(|pair| pair[0].is_some() && pair[0] == pair[1]);
+    Some((main, reflected.count()))
 }
 
 /// A direction of view: degrees to the right and upwards.

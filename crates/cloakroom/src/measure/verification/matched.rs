@@ -1,12 +1,10 @@
 //! Section 3, design (iii).
 
-use super::VerificationError;
+use super::Findings;
 use super::finding::{DOUBLE, Finding, SINGLE, Verdict, below};
 use super::laboratory::{
     CAMERA, DESIGNS, Laboratory, Rays, gaze, largest_difference, square, statistics,
 };
-
-type Findings = Result<Vec<Finding>, VerificationError>;
 
 /// Yoctoseconds in a nanosecond.
 const YOCTOSECONDS: f64 = 1e15;

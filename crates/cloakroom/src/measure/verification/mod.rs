@@ -53,7 +53,8 @@ impl From<RenderError> for VerificationError {
 }
 
 /// What is found out in one go.
-type Check = fn(&Laboratory<'_>) -> Result<Vec<Finding>, VerificationError>;
+type Findings = Result<Vec<Finding>, VerificationError>;
+type Check = fn(&Laboratory<'_>) -> Findings;
 
 /// All checks, in the order of the paper.
 const CHECKS: &[Check] = &[
@@ -87,7 +88,7 @@ pub fn steps() -> u64 {
 /// # Errors
 ///
 /// If the work was stopped, or a picture could not be made.
-pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Result<Vec<Finding>, VerificationError> {
+pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Findings {
     let laboratory = Laboratory { stop };
     let mut findings = Vec::new();
     for check in CHECKS {

@@ -1,0 +1,91 @@
+//! The scenes that a scene is held against.
+
+use crate::device::{Occupant, REACH, Request, Show};
+use crate::render::bench;
+use crate::scene::{DeviceSettings, Scene};
+use crate::trace::Placed;
+use glam::DVec3;
+
+/// What a scene should look like: its cloaks as the flat mirrors that they imitate, and nothing in the place of
+/// other devices.
+#[must_use]
+pub fn ideal(scene: &Scene) -> Scene {
+    let mut ideal = scene.clone();
+    ideal.devices.retain_mut(|device| show_as(device, Show::Mirror) == Some(true));
+    ideal
+}
+
+/// A scene without its devices.
+#[must_use]
+pub fn empty(scene: &Scene) -> Scene {
+    Scene { devices: Vec::new(), ..scene.clone() }
+}
+
+/// A scene with the bare metal of its cloaks: `None` if none has any, as bodies and lenses, which stay, have not. What
+/// stands in an open core, which is metal then, is gone.
+#[must_use]
+pub fn bare(scene: &Scene) -> Option<Scene> {
+    let mut bare = scene.clone();
+    let mut changed = false;
+    for device in &mut bare.devices {
+        changed |= show_as(device, Show::Bare).is_some();
+    }
+    let mut hidden = hidden(scene).into_iter();
+    bare.devices.retain(|_| hidden.next() != Some(true));
+    changed.then_some(bare)
+}
+
+/// Shows a device otherwise, if it can be, and says whether anything is there to be seen then.
+fn show_as(device: &mut DeviceSettings, show: Show) -> Option<bool> {
+    let request = Request { show, open_core: false, length: device.length };
+    let built = (device.entry.build)(&device.values, request).ok()?;
+    (device.show, device.open_core) = (show, false);
+    Some(!built.skin.is_empty())
+}
+
+/// Whether each device stands in the open core of another; nothing where there is no such core.
+fn hidden(scene: &Scene) -> Vec<bool> {
+    if !scene.devices.iter().any(|device| device.open_core) {
+        return Vec::new();
+    }
+    let Ok(bench) = bench(scene) else { return Vec::new() };
+    let reach = DVec3::splat(REACH);
+    let ends = |placed: &Placed| {
+        let [low, high] = placed.structure.hull.bounds(&placed.pose)?;
+        Some([low.max(-reach), high.min(reach)])
+    };
+    // Of two cores one in the other, the smaller box is in the larger; in the plane, for both may be endless along z.
+    let holds = |around: &Placed, [low, high]: [DVec3; 2]| {
+        let [from, to] = ends(around)?.map(DVec3::truncate);
+        let is_smaller = (low.truncate().cmpgt(from) & high.truncate().cmplt(to)).all();
+        let middle = around.structure.occupant(around.pose.to_local((low + high) / 2.0));
+        (is_smaller && middle == Occupant::HiddenAir).then_some(())
+    };
+    let is_hidden = |placed: &Placed| {
+        let mut around = bench.devices().iter();
+        ends(placed).is_some_and(|ends| around.any(|around| holds(around, ends).is_some()))
+    };
+    bench.devices().iter().map(is_hidden).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene_file;
+    use std::path::Path;
+
+    #[test]
+    fn bare_metal_has_no_core() {
+        let scene =
+            |text: &str| scene_file::parse(text, "a", Path::new(""), &[]).expect("a scene").scene;
+        let lens = "[[device]]\nkind = 'luneburg-lens'\nposition = [0, 50, 0]\n";
+        let rod = "[[device]]\nkind = 'body'\nshape = 'cylinder'\nradius = 1\npermittivity = 2\n";
+        let square = "[[device]]\nkind = 'square-cloak'\ncore = 'open'\n";
+        let small = "[[device]]\nkind = 'cylinder-cloak'\ncore = 'open'\ninner = 1.5\nouter = 3\n";
+        let bare = bare(&scene(&format!("{lens}{rod}{small}{square}"))).expect("a cloak");
+        let shown: Vec<_> = bare.devices.iter().map(|d| (d.entry.kind, d.show)).collect();
+        assert_eq!(shown, [("luneburg-lens", Show::Cloak), ("square-cloak", Show::Bare)]);
+        assert!(bench(&bare).is_ok());
+        assert!(super::bare(&scene(&format!("{lens}{rod}"))).is_none());
+    }
+}
