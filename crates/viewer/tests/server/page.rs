@@ -34,7 +34,7 @@ impl Server {
             let ready = |address: &str| sender.send(address.to_owned()).unwrap();
             serve(&settings, ready, stop).unwrap();
         });
-        let address = receiver.recv_timeout(Duration::from_secs(20)).unwrap();
+        let address = receiver.recv_timeout(Duration::from_secs(60)).unwrap();
         let port = address.trim_start_matches("http://127.0.0.1:").trim_end_matches('/');
         Self { port: port.parse().unwrap(), stop, thread: Some(thread) }
     }
