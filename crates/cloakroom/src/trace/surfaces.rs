@@ -57,7 +57,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         branch.enter_frame(&device.pose);
         let event = u64::from(device_index) << 32 | u64::from(hit.skin) << 2;
         let Some(cell_index) = cell_index else {
-            let waves = reflect_at_conductor(&Medium::AIR, &branch.incident(), into);
+            let waves = self.reflect(&Medium::AIR, branch, into);
             return self.go_on(branch, &waves, event, |branch, _| {
                 branch.leave_frame(&device.pose, left);
             });
@@ -145,7 +145,7 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         let interface = self.bench.interfaces(device_index).exit(cell_index, passage.face);
         match passage.beyond {
             Beyond::Conductor => {
-                let waves = reflect_at_conductor(medium, &branch.incident(), passage.outward);
+                let waves = self.reflect(medium, branch, passage.outward);
                 self.go_on(branch, &waves, event, |_, _| ())
             }
             Beyond::Seam(next) => {
@@ -193,6 +193,16 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
                 })
             }
         }
+    }
+
+    /// The waves that metal sends back. Where it sends none, for a surface has no normal that numbers can hold, light is
+    /// lost.
+    fn reflect(&mut self, medium: &Medium, branch: &Branch<N>, into: DVec3) -> OutgoingWaves<N> {
+        let waves = reflect_at_conductor(medium, &branch.incident(), into);
+        if waves.is_empty() {
+            self.lose(branch.power);
+        }
+        waves
     }
 
     /// Lets the waves that leave a surface go on, each put into its place: the last one as the branch itself,
