@@ -13,6 +13,18 @@ fn scene(text: &str) -> Result<Loaded, String> {
     scene_file::parse(&text, "soak", Path::new(""), &[]).map_err(|error| error.to_string())
 }
 
+/// Looks at the tree of a ray.
+fn sound(keys: &str, origin: DVec3, direction: DVec3, tolerance: f64) {
+    let loaded = scene(keys).unwrap();
+    let bench = render::bench(&loaded.scene).unwrap();
+    let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-4, tolerance });
+    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
+    let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
+    let (leaves, outcome) = tracer.trace(&launch);
+    assert!(trials::examine(leaves, outcome).is_ok(), "{keys}: {leaves:?} {outcome:?}");
+    assert!(outcome.rarities.lost > 0);
+}
+
 /// A carpet so small that its outline has no normals in double precision: metal was met that sent nothing back.
 #[test]
 fn light_that_metal_without_a_normal_swallows_counts_as_lost() {
@@ -28,14 +40,24 @@ fn light_that_metal_without_a_normal_swallows_counts_as_lost() {
             DVec3::new(0.4711625681443822, 0.882046390151669, 0.0),
         ),
     ] {
-        let loaded = scene(keys).unwrap();
-        let bench = render::bench(&loaded.scene).unwrap();
-        let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-4, tolerance: 3e-4 });
-        let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
-        let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
-        let (leaves, outcome) = tracer.trace(&launch);
-        assert!(trials::examine(leaves, outcome).is_ok(), "{keys}: {leaves:?} {outcome:?}");
+        sound(keys, origin, direction, 3e-4);
     }
+}
+
+/// At an interface of an indefinite medium the waves that leave are no numbers: the light counts as lost.
+#[test]
+fn waves_that_are_no_numbers_count_as_lost() {
+    let prisms = "kind = \"prisms\"\nrotation = 0.30833858620102117\n\
+        [[device.prism]]\ncorners = [[10.785691898779323, -7.645163415135461], [10.0, -2.083400603584786], \
+        [7.208506828911087, -2.2994805842921853], [2.2205757401597053, -6.0], [6.0, -8.793901199562285], \
+        [3.952491679608414, -13.0], [10.789049074511201, -11.628383425259797]]\n\
+        permittivity = [[-13309.27594767034, 0.0, 0.0], [0.0, 1.5, 0.0], [0.0, 0.0, 0.3932181403195679]]\n\
+        [[device.prism]]\ncorners = [[7.0, 5.0], [5.0, 8.0], [2.800660136634953, 5.3614352432478265], \
+        [-3.8679020308049123, 7.519743237573129], [-2.9044891109001147, 2.6893283514490163], \
+        [4.0, -2.1921230391605127], [7.534515494848552, -2.0]]\npermeability = -1.8148269154005803\n";
+    let origin = DVec3::new(-38.30529692037659, -22.446144844193572, 19.30201199522524);
+    let direction = DVec3::new(0.862741895361695, 0.43807378577538286, -0.2525228310552024);
+    sound(prisms, origin, direction, 1.95e-9);
 }
 
 /// A permeability of 2e-38 made fields that are no numbers.

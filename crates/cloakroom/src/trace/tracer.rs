@@ -4,7 +4,7 @@ use super::branch::{Branch, Place};
 use super::{Bench, Leaf, Outcome, Screen, Witness};
 use crate::device::{InnerRay, Passage};
 use glam::DVec3;
-use optics::interface::OutgoingWave;
+use optics::interface::OutgoingWaves;
 use optics::wave::ComplexVector;
 
 /// A ray to launch in air, with `N` polarizations at once.
@@ -195,15 +195,22 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
     pub(super) fn check_account(
         &mut self,
         branch: &Branch<N>,
-        waves: &[OutgoingWave<N>],
+        waves: &mut OutgoingWaves<N>,
         weak: [f64; N],
     ) {
+        let rest: [f64; N] = std::array::from_fn(|i| {
+            branch.power[i] - waves.iter().map(|wave| wave.power[i]).sum::<f64>() - weak[i]
+        });
+        if rest.iter().any(|rest| !rest.is_finite()) {
+            waves.clear();
+            self.lose(branch.power);
+            return;
+        }
         let mut lost = false;
         for (i, power) in branch.power.iter().enumerate() {
             self.outcome.pruned[i] += weak[i];
-            let rest = power - waves.iter().map(|wave| wave.power[i]).sum::<f64>() - weak[i];
-            if rest.abs() > LEAK * power {
-                self.outcome.pruned[i] += rest;
+            if rest[i].abs() > LEAK * power {
+                self.outcome.pruned[i] += rest[i];
                 lost = true;
             }
         }
