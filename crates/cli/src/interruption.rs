@@ -1,18 +1,25 @@
 //! Ctrl-C: a flag that long work looks at.
 
 use crate::report::Failure;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 static STOP: AtomicBool = AtomicBool::new(false);
 static BUSY: AtomicBool = AtomicBool::new(false);
+static FIRST: OnceLock<Instant> = OnceLock::new();
+
+/// Another one within this time is the same: programs like `timeout` ask a process, and then the group that it is in.
+const AT_ONCE: Duration = Duration::from_millis(500);
 
 /// Watches for Ctrl-C and for being asked to end. During work that looks at the flag, the first one
 /// stops it cleanly, and another one, for the impatient, ends the process at once; at any other time,
 /// as while input is awaited, the first one does.
 pub fn watch() -> Result<&'static AtomicBool, Failure> {
     ctrlc::set_handler(|| {
-        let asked_before = STOP.swap(true, Ordering::SeqCst);
-        if asked_before || !BUSY.load(Ordering::SeqCst) {
+        STOP.store(true, Ordering::SeqCst);
+        let is_impatient = FIRST.get_or_init(Instant::now).elapsed() > AT_ONCE;
+        if is_impatient || !BUSY.load(Ordering::SeqCst) {
             std::process::exit(130);
         }
     })

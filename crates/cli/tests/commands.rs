@@ -359,14 +359,18 @@ fn ctrl_c_leaves_nothing() {
         .arg(paper("8c"))
         .args(["--set", "camera.samples=4096", "-o"])
         .arg(&out)
-        .stderr(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
         .spawn()
         .unwrap();
     std::thread::sleep(std::time::Duration::from_millis(700));
     assert!(child.try_wait().unwrap().is_none(), "it ended before it could be interrupted");
     let id = child.id().to_string();
-    assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    // Twice at once, as `timeout` does it: that is not impatience.
+    let kill = format!("kill -TERM {id}; kill -TERM {id}");
+    assert!(std::process::Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    let ended = child.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(130));
+    assert_eq!(String::from_utf8(ended.stderr).unwrap(), "interrupted\n");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
