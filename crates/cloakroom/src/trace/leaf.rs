@@ -53,7 +53,8 @@ impl<const N: usize> Default for Outcome<N> {
 /// Rare events, counted so that they do not pass unseen. Their power counts as pruned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rarities {
-    /// Branches cut because a tree met more surfaces than can be followed; the weakest go first.
+    /// Branches cut because a tree met more surfaces than can be followed, the weakest first; and those that run
+    /// into an edge and never get there.
     pub endless: u64,
     /// Branches that could not be followed through a cell.
     pub lost: u64,

@@ -9,6 +9,10 @@ use optics::interface::{
 };
 use optics::medium::{Medium, ModeKind};
 
+/// The square of the largest wave vector that is followed, a thousand times the largest index of refraction. Light
+/// that runs into a corner of a hyperbolic medium gets there: each face makes it shorter, and it never comes out.
+const SHORTEST_WAVE: f64 = 1e30;
+
 impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
     /// Whether a ray in air runs on through air to the screen, or for ever.
     #[must_use]
@@ -258,6 +262,11 @@ impl<'a, const N: usize, W: Witness<N>> Tracer<'a, N, W> {
         finish: Finish,
         waves: &mut OutgoingWaves<N>,
     ) {
+        if branch.wave_vector.length_squared() > SHORTEST_WAVE {
+            self.outcome.rarities.endless += 1;
+            self.prune(branch.power);
+            return;
+        }
         let wave = branch.incident();
         let mut weak = [0.0; N];
         match finish {

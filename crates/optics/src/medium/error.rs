@@ -26,6 +26,17 @@ pub enum MediumError {
         /// Which tensor.
         quantity: &'static str,
     },
+    /// Waves are so short that directions in air cannot be told from theirs.
+    #[error(
+        "the largest principal values of permittivity and permeability are {permittivity:?} and {permeability:?}; \
+         their product, the square of an index of refraction, must be at most 1e12"
+    )]
+    TooDense {
+        /// The largest magnitude of a principal value of the permittivity, or nearly so.
+        permittivity: f64,
+        /// The same of the permeability.
+        permeability: f64,
+    },
     /// The imaginary part of the tensor would amplify light.
     #[error(
         "the imaginary part of the {quantity} has the negative principal value {value}; media with \
@@ -51,7 +62,7 @@ impl MediumError {
             | Self::NotSymmetric { quantity }
             | Self::Singular { quantity }
             | Self::Gain { quantity, .. } => Some(quantity),
-            Self::NoAxis => None,
+            Self::TooDense { .. } | Self::NoAxis => None,
         }
     }
 }

@@ -60,7 +60,8 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a tensor is not symmetric, has principal values beyond 1e-12 to 1e12, or would amplify light.
+    /// If a tensor is not symmetric, has principal values beyond 1e-12 to 1e12, or would amplify light; or if
+    /// the index of refraction could be above a million.
     ///
     /// # Example
     ///
@@ -82,6 +83,7 @@ impl Medium {
     ) -> Result<Self, MediumError> {
         let permittivity = permittivity.into().checked("permittivity")?;
         let permeability = permeability.into().checked("permeability")?;
+        not_too_dense(permittivity.size(), permeability.size())?;
         let class = Class::of(&permittivity, &permeability);
         Ok(Self::of_class(&permittivity, &permeability, class))
     }
@@ -108,7 +110,8 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a number's magnitude is not 1e-12 to 1e12, or the axis has no direction.
+    /// If a number's magnitude is not 1e-12 to 1e12, the index of refraction would be above a million, or the axis
+    /// has no direction.
     pub fn uniaxial_magnetic(
         permittivity: f64,
         ordinary: f64,
@@ -123,7 +126,8 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a number's magnitude is not 1e-12 to 1e12, or the axis has no direction.
+    /// If a number's magnitude is not 1e-12 to 1e12, the index of refraction would be above a million, or the axis
+    /// has no direction.
     pub fn uniaxial_electric(
         permeability: f64,
         ordinary: f64,
@@ -148,6 +152,10 @@ impl Medium {
         for (quantity, value) in names.into_iter().zip([scalar, ordinary, extraordinary]) {
             not_degenerate(quantity, value)?;
         }
+        let largest = ordinary.abs().max(extraordinary.abs());
+        let [permittivity, permeability] =
+            if electric { [largest, scalar] } else { [scalar, largest] };
+        not_too_dense(permittivity, permeability)?;
         let axis = axis.try_normalize().ok_or(MediumError::NoAxis)?;
         if ordinary == extraordinary {
             return if electric {
@@ -170,10 +178,11 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a number's magnitude is not 1e-12 to 1e12.
+    /// If a number's magnitude is not 1e-12 to 1e12, or the index of refraction would be above a million.
     pub fn isotropic(permittivity: f64, permeability: f64) -> Result<Self, MediumError> {
         not_degenerate("permittivity", permittivity)?;
         not_degenerate("permeability", permeability)?;
+        not_too_dense(permittivity, permeability)?;
         Ok(Self::isotropic_unchecked(permittivity, permeability))
     }
 
@@ -199,7 +208,7 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If the tensor is not symmetric, or has principal values beyond 1e-12 to 1e12.
+    /// If the tensor is not symmetric, or has principal values beyond 1e-12 to 1e6.
     pub fn impedance_matched(tensor: DMat3) -> Result<Self, MediumError> {
         Self::new(tensor, tensor)
     }
@@ -327,6 +336,15 @@ impl Medium {
 fn not_degenerate(quantity: &'static str, value: f64) -> Result<(), MediumError> {
     if !MAGNITUDES.contains(&value.abs()) {
         return Err(MediumError::Degenerate { quantity, value });
+    }
+    Ok(())
+}
+
+/// The wave vector's part along a surface, that of light in air, is lost in rounding beside a wave vector too large.
+fn not_too_dense(permittivity: f64, permeability: f64) -> Result<(), MediumError> {
+    let [permittivity, permeability] = [permittivity.abs(), permeability.abs()];
+    if permittivity * permeability > *MAGNITUDES.end() {
+        return Err(MediumError::TooDense { permittivity, permeability });
     }
     Ok(())
 }

@@ -27,12 +27,12 @@ pub static IMPERFECTION_KEYS: &[Key] = &[
         name: "minimum",
         doc: "The least value that can be made, of the index of a graded medium or of a principal value; smaller ones \
               become this one.",
-        kind: KeyKind::Number { default: None, unit: "", limits: Limits::Finite },
+        kind: KeyKind::Number { default: None, unit: "", limits: Limits::Within(-1e6, 1e6) },
     },
     Key {
         name: "maximum",
         doc: "The largest value that can be made; larger ones become this one.",
-        kind: KeyKind::Number { default: None, unit: "", limits: Limits::Finite },
+        kind: KeyKind::Number { default: None, unit: "", limits: Limits::Within(-1e6, 1e6) },
     },
     Key {
         name: "levels",
