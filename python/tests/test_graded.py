@@ -115,7 +115,7 @@ def test_a_core_hides_the_pole_of_a_formula() -> None:
         ({"index": lambda x, y: 1.0, "spacing": 0}, ValueError, "spacing is 0 cm"),
         ({"index": lambda x, y: 1.0, "spacing": "wide"}, TypeError, "spacing is a str"),
         ({"index": lambda x, y: 1.0, "spacing": 1e-5}, ValueError, "samples is too large"),
-        ({"index": lambda x, y: 1.0, "width": -1}, ValueError, "width is -1 cm; it must be above 0"),
+        ({"index": lambda x, y: 1.0, "width": -1}, ValueError, "width is -1 cm; it must be from 1e-6 to 1000000"),
         ({"index": 1.5}, ValueError, "index has the shape ()"),
     ],
 )

@@ -65,7 +65,7 @@ def test_numpy_and_complex_numbers_are_numbers() -> None:
     ("kind", "keys", "error", "message"),
     [
         ("SquareCloak", {"sidee": 1}, TypeError, "unknown key `sidee` in a square-cloak; did you mean `side`?"),
-        ("SquareCloak", {"side": -3}, ValueError, "side is -3 cm; it must be above 0"),
+        ("SquareCloak", {"side": -3}, ValueError, "side is -3 cm; it must be from 1e-6 to 1000000"),
         ("SquareCloak", {"side": math.nan}, ValueError, "side is not a number (nan); numbers must be finite"),
         ("SquareCloak", {"side": "wide"}, ValueError, 'side is "wide"; it must be a number (cm)'),
         ("SquareCloak", {"material": "glas"}, ValueError, "material is"),

@@ -18,6 +18,9 @@ enum Source<'a> {
     Seed(u64),
 }
 
+/// Limits that are farther apart say only what is possible, not what is likely.
+const WIDE: f64 = 1e4;
+
 /// Values at which something may change.
 const SPECIAL: [f64; 22] = [
     0.0,
@@ -117,14 +120,14 @@ impl<'a> Draws<'a> {
     pub fn number(&mut self, usual: f64, limits: Limits) -> f64 {
         let (low, high) = match limits {
             Limits::Between(low, high) | Limits::Within(low, high) => (low, high),
-            Limits::Positive | Limits::NonNegative => (0.0, f64::INFINITY),
+            Limits::Positive => (0.0, f64::INFINITY),
             Limits::Finite => (f64::NEG_INFINITY, f64::INFINITY),
         };
         let size = if usual == 0.0 { 1.0 } else { usual };
         let number = match self.below(16) {
             0..3 => usual,
             3..10 => size * self.between(-2.0, 2.0).exp2(),
-            10..12 if low.is_finite() && high.is_finite() => self.between(low, high),
+            10..12 if high - low < WIDE => self.between(low, high),
             10..12 => size * self.between(-4.0, 4.0),
             12 | 13 => size * 10f64.powf(self.between(-6.0, 6.0)) * *self.pick(&[1.0, -1.0]),
             14 => *self.pick(&SPECIAL),

@@ -135,7 +135,7 @@ pub(crate) fn tensor(draws: &mut Draws<'_>) -> Value {
         draws.number(1.5, Limits::Finite) * sign
     };
     let loss = |draws: &mut Draws<'_>| {
-        if lossy { draws.number(LOSS, Limits::NonNegative) } else { 0.0 }
+        if lossy { draws.number(LOSS, Limits::Within(0.0, f64::MAX)) } else { 0.0 }
     };
     match shape {
         0 | 1 => principal(draws).into(),

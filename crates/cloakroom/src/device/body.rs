@@ -26,17 +26,17 @@ pub(super) static ENTRY: Entry = Entry {
         Key {
             name: "thickness",
             doc: "Thickness of a slab, along x.",
-            kind: KeyKind::Number { default: Some(5.0), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(5.0), unit: "cm", limits: Limits::LENGTH },
         },
         Key {
             name: "size",
             doc: "Size of a box along x, y and z.",
-            kind: KeyKind::Vector { default: [10.0; 3], unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Vector { default: [10.0; 3], unit: "cm", limits: Limits::LENGTH },
         },
         Key {
             name: "radius",
             doc: "Radius of a sphere or cylinder.",
-            kind: KeyKind::Number { default: Some(5.0), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(5.0), unit: "cm", limits: Limits::LENGTH },
         },
         super::PERMITTIVITY_KEY,
         super::PERMEABILITY_KEY,

@@ -16,7 +16,7 @@ use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 pub(super) const W_KEY: Key = Key {
     name: "w",
     doc: "Width parameter of the map.",
-    kind: KeyKind::Number { default: Some(10.02), unit: "cm", limits: Limits::Positive },
+    kind: KeyKind::Number { default: Some(10.02), unit: "cm", limits: Limits::LENGTH },
 };
 
 /// The key `h` of a Gaussian map.
@@ -24,7 +24,7 @@ pub(super) const fn h_key(doc: &'static str) -> Key {
     Key {
         name: "h",
         doc,
-        kind: KeyKind::Number { default: Some(4.25), unit: "cm", limits: Limits::Positive },
+        kind: KeyKind::Number { default: Some(4.25), unit: "cm", limits: Limits::LENGTH },
     }
 }
 
@@ -39,7 +39,7 @@ pub(super) const fn width_key(default: f64) -> Key {
     Key {
         name: "width",
         doc: "Size of the device along x.",
-        kind: KeyKind::Number { default: Some(default), unit: "cm", limits: Limits::Positive },
+        kind: KeyKind::Number { default: Some(default), unit: "cm", limits: Limits::LENGTH },
     }
 }
 
@@ -47,14 +47,14 @@ pub(super) const fn width_key(default: f64) -> Key {
 pub(super) const HEIGHT_KEY: Key = Key {
     name: "height",
     doc: "Height of the device above the floor's level; above the bump.",
-    kind: KeyKind::Number { default: Some(28.57), unit: "cm", limits: Limits::Positive },
+    kind: KeyKind::Number { default: Some(28.57), unit: "cm", limits: Limits::LENGTH },
 };
 
 /// The key `floor` of a carpet.
 pub(super) const FLOOR_KEY: Key = Key {
     name: "floor",
     doc: "Whole width along x of the mirror floor that the device stands on; 0 for none.",
-    kind: KeyKind::Number { default: Some(400.0), unit: "cm", limits: Limits::NonNegative },
+    kind: KeyKind::Number { default: Some(400.0), unit: "cm", limits: Limits::LENGTH_OR_ZERO },
 };
 
 /// The rectangle a carpet is cut to, whose metal rises to `peak`.

@@ -27,12 +27,12 @@ pub(super) static ENTRY: Entry = Entry {
         Key {
             name: "width",
             doc: "Size of the cut along x.",
-            kind: KeyKind::Number { default: Some(50.0), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(50.0), unit: "cm", limits: Limits::LENGTH },
         },
         Key {
             name: "height",
             doc: "Size of the cut along y; above twice h.",
-            kind: KeyKind::Number { default: Some(57.14), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(57.14), unit: "cm", limits: Limits::LENGTH },
         },
         Key {
             name: "fresnel",

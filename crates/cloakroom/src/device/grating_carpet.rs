@@ -17,12 +17,12 @@ pub(super) static ENTRY: Entry = Entry {
         Key {
             name: "h",
             doc: "How far the metal swings above and below the floor's level; below period/(2 pi).",
-            kind: KeyKind::Number { default: Some(1.5), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(1.5), unit: "cm", limits: Limits::LENGTH },
         },
         Key {
             name: "period",
             doc: "Period of the grating along x; at most the width.",
-            kind: KeyKind::Number { default: Some(20.0), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(20.0), unit: "cm", limits: Limits::LENGTH },
         },
         carpet::width_key(60.0),
         carpet::HEIGHT_KEY,

@@ -21,12 +21,12 @@ pub(super) static ENTRY: Entry = Entry {
         Key {
             name: "offset",
             doc: "By how much light is led aside; rays within it of the axis are led around.",
-            kind: KeyKind::Number { default: Some(8.0), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(8.0), unit: "cm", limits: Limits::LENGTH },
         },
         Key {
             name: "half_length",
             doc: "Half the size along x; `offset` at least.",
-            kind: KeyKind::Number { default: Some(20.0), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(20.0), unit: "cm", limits: Limits::LENGTH },
         },
     ],
     build,

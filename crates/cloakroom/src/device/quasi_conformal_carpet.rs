@@ -17,12 +17,12 @@ pub(super) static ENTRY: Entry = Entry {
         Key {
             name: "h",
             doc: "Height of the metal bump.",
-            kind: KeyKind::Number { default: Some(4.25), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(4.25), unit: "cm", limits: Limits::LENGTH },
         },
         Key {
             name: "w",
             doc: "Whole width of the bump; at most that of the device.",
-            kind: KeyKind::Number { default: Some(28.0), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(28.0), unit: "cm", limits: Limits::LENGTH },
         },
         carpet::width_key(50.0),
         carpet::HEIGHT_KEY,

@@ -16,12 +16,12 @@ const THINNEST: f64 = 0.001;
 pub(super) const RADIUS_KEY: Key = Key {
     name: "radius",
     doc: "Radius of the ball.",
-    kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::Positive },
+    kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::LENGTH },
 };
 
 /// The key `inner` of a cloak.
 pub(super) const fn inner_key(doc: &'static str) -> Key {
-    let kind = KeyKind::Number { default: Some(4.0), unit: "cm", limits: Limits::Positive };
+    let kind = KeyKind::Number { default: Some(4.0), unit: "cm", limits: Limits::LENGTH };
     Key { name: "inner", doc, kind }
 }
 
@@ -29,7 +29,7 @@ pub(super) const fn inner_key(doc: &'static str) -> Key {
 pub(super) const OUTER_KEY: Key = Key {
     name: "outer",
     doc: "Radius of the cloak.",
-    kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::Positive },
+    kind: KeyKind::Number { default: Some(10.0), unit: "cm", limits: Limits::LENGTH },
 };
 
 /// The radii of the keys `inner` and `outer`.

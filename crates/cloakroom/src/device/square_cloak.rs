@@ -30,7 +30,7 @@ pub(super) static ENTRY: Entry = Entry {
         Key {
             name: "side",
             doc: "Side of the square.",
-            kind: KeyKind::Number { default: Some(14.1), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(14.1), unit: "cm", limits: Limits::LENGTH },
         },
         Key {
             name: "kappa",

@@ -61,7 +61,6 @@ impl Limits {
             && match *self {
                 Limits::Finite => true,
                 Limits::Positive => number > 0.0,
-                Limits::NonNegative => number >= 0.0,
                 Limits::Between(low, high) => number > low && number < high,
                 Limits::Within(low, high) => number >= low && number <= high,
             }
@@ -72,7 +71,6 @@ impl Limits {
         match *self {
             Limits::Finite => "a finite number".to_owned(),
             Limits::Positive => "above 0".to_owned(),
-            Limits::NonNegative => "0 or above".to_owned(),
             Limits::Between(low, high) => {
                 format!("above {} and below {}", number_text(low), number_text(high))
             }
@@ -209,8 +207,6 @@ impl Key {
     }
 
     fn polygon(&self, value: &Value, unit: &str) -> Result<Vec<[f64; 2]>, String> {
-        /// Beyond, areas lose all digits.
-        const FARTHEST: f64 = 1e6;
         let Value::List(items) = value else { return Err(self.wrong_type(value)) };
         if items.len() < 3 {
             return Err(self.wrong_type(value));
@@ -221,7 +217,7 @@ impl Key {
                 .map_err(|_| format!("a corner of {} is {item}; it must be [x, y]", self.name))?;
             for number in corner {
                 let name = format!("a coordinate of {}", self.name);
-                limit(&name, number, unit, Limits::Within(-FARTHEST, FARTHEST))?;
+                limit(&name, number, unit, Limits::COORDINATE)?;
             }
             Ok(corner)
         };

@@ -129,10 +129,24 @@ pub enum Limits {
     Finite,
     /// Above zero.
     Positive,
-    /// Zero or above.
-    NonNegative,
     /// Above the first and below the second.
     Between(f64, f64),
     /// From the first to the second, both allowed.
     Within(f64, f64),
+}
+
+impl Limits {
+    /// Of a length in cm, 10 nm to 10 km: beyond, what is far and what is near share no digits.
+    pub const LENGTH: Self = Self::Within(1e-6, Self::FARTHEST);
+
+    /// Of a length in cm that may be none.
+    pub const LENGTH_OR_ZERO: Self = Self::Within(0.0, Self::FARTHEST);
+
+    /// Of a coordinate in cm.
+    pub const COORDINATE: Self = Self::Within(-Self::FARTHEST, Self::FARTHEST);
+
+    /// Of an angle in degrees, a few thousand turns either way.
+    pub const ANGLE: Self = Self::Within(-1e6, 1e6);
+
+    const FARTHEST: f64 = 1e6;
 }

@@ -9,7 +9,7 @@ static KEYS: &[Key] = &[
     Key {
         name: "side",
         doc: "Length of a side.",
-        kind: KeyKind::Number { default: Some(14.1), unit: "cm", limits: Limits::Positive },
+        kind: KeyKind::Number { default: Some(14.1), unit: "cm", limits: Limits::LENGTH },
     },
     Key {
         name: "length",
@@ -45,7 +45,7 @@ static KEYS: &[Key] = &[
     Key {
         name: "color",
         doc: "A vector.",
-        kind: KeyKind::Vector { default: [0.0; 3], unit: "", limits: Limits::NonNegative },
+        kind: KeyKind::Vector { default: [0.0; 3], unit: "", limits: Limits::Within(0.0, 255.0) },
     },
     Key {
         name: "resolution",
@@ -131,14 +131,16 @@ fn given_values_come_back() {
 
 #[test]
 fn a_refusal_names_quantity_value_unit_and_what_is_allowed() {
-    assert_eq!(refusal("side", -3.0), "side is -3 cm; it must be above 0");
+    assert_eq!(refusal("side", -3.0), "side is -3 cm; it must be from 1e-6 to 1000000");
+    assert_eq!(refusal("side", 1e308), "side is 1e308 cm; it must be from 1e-6 to 1000000");
+    assert_eq!(refusal("length", 0.0), "length is 0 cm; it must be above 0");
     assert_eq!(refusal("kappa", 1.0), "kappa is 1; it must be above 0 and below 1");
     assert_eq!(refusal("samples", 0_i64), "samples is 0; it must be from 1 to 65536");
     assert_eq!(refusal("samples", 1.5), "samples is 1.5; it must be a whole number");
     assert_eq!(refusal("seed", -1_i64), "seed is -1; it must be 0 or above");
     assert_eq!(
         refusal("color", [0.0, -1.0, 0.0]),
-        "the second component of color is -1; it must be 0 or above"
+        "the second component of color is -1; it must be from 0 to 255"
     );
     assert_eq!(
         refusal("resolution", [1024_i64, 100_000]),
@@ -194,7 +196,11 @@ fn numbers_must_be_finite() {
 #[test]
 fn limits_include_their_ends_where_they_say_so() {
     assert!(!Limits::Positive.allow(0.0) && Limits::Positive.allow(f64::MIN_POSITIVE));
-    assert!(Limits::NonNegative.allow(0.0) && !Limits::NonNegative.allow(-1e-300));
+    assert!(Limits::LENGTH_OR_ZERO.allow(0.0) && !Limits::LENGTH_OR_ZERO.allow(-1e-300));
+    assert!(
+        Limits::LENGTH.allow(1e-6) && !Limits::LENGTH.allow(9e-7) && !Limits::LENGTH.allow(2e6)
+    );
+    assert!(Limits::COORDINATE.allow(-1e6) && !Limits::COORDINATE.allow(-2e6));
     assert!(!Limits::Between(0.0, 1.0).allow(0.0) && !Limits::Between(0.0, 1.0).allow(1.0));
     assert!(Limits::Within(0.0, 1.0).allow(0.0) && Limits::Within(0.0, 1.0).allow(1.0));
     assert!(!Limits::Finite.allow(f64::NAN) && !Limits::Finite.allow(f64::INFINITY));

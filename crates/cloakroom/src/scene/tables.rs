@@ -27,12 +27,12 @@ pub static CAMERA_KEYS: &[Key] = &[
     Key {
         name: "position",
         doc: "Where the camera stands.",
-        kind: vector([-100.0, 0.0, 0.0], "cm", Limits::Finite),
+        kind: vector([-100.0, 0.0, 0.0], "cm", Limits::COORDINATE),
     },
     Key {
         name: "target",
         doc: "The point in the middle of the picture.",
-        kind: vector([50.0, 0.0, 0.0], "cm", Limits::Finite),
+        kind: vector([50.0, 0.0, 0.0], "cm", Limits::COORDINATE),
     },
     Key {
         name: "up",
@@ -52,7 +52,7 @@ pub static CAMERA_KEYS: &[Key] = &[
     Key {
         name: "width",
         doc: "Width of the view of an orthographic camera, which needs it.",
-        kind: KeyKind::Number { default: None, unit: "cm", limits: Limits::Positive },
+        kind: KeyKind::Number { default: None, unit: "cm", limits: Limits::LENGTH },
     },
     Key {
         name: "resolution",
@@ -91,7 +91,7 @@ pub static CAMERA_KEYS: &[Key] = &[
 pub static LIGHT_KEYS: &[Key] = &[Key {
     name: "wavelength_nm",
     doc: "Wavelength in vacuum; used by absorption only.",
-    kind: number(550.0, "nm", Limits::Positive),
+    kind: number(550.0, "nm", Limits::Within(1e-3, 1e12)),
 }];
 
 /// `[photograph]`.
@@ -105,13 +105,13 @@ pub static PHOTOGRAPH_KEYS: &[Key] = &[
     Key {
         name: "x",
         doc: "The plane of constant x it hangs in.",
-        kind: number(50.0, "cm", Limits::Finite),
+        kind: number(50.0, "cm", Limits::COORDINATE),
     },
     Key {
         name: "width",
         doc: "Its width; the height follows from the image. By default 110 cm for the builtin \
               photograph, for others the smallest that covers the camera's view.",
-        kind: KeyKind::Number { default: None, unit: "cm", limits: Limits::Positive },
+        kind: KeyKind::Number { default: None, unit: "cm", limits: Limits::LENGTH },
     },
 ];
 
@@ -181,17 +181,17 @@ pub static PLACEMENT_KEYS: &[Key] = &[
     Key {
         name: "rotation",
         doc: "Turns the device about its own axis, counterclockwise seen from +z.",
-        kind: number(0.0, "degrees", Limits::Finite),
+        kind: number(0.0, "degrees", Limits::ANGLE),
     },
     Key {
         name: "position",
         doc: "Where the device's own origin lies.",
-        kind: vector([0.0, 0.0, 0.0], "cm", Limits::Finite),
+        kind: vector([0.0, 0.0, 0.0], "cm", Limits::COORDINATE),
     },
     Key {
         name: "length",
         doc: "Whole length along the device's z axis; endless where it is absent.",
-        kind: KeyKind::Number { default: None, unit: "cm", limits: Limits::Positive },
+        kind: KeyKind::Number { default: None, unit: "cm", limits: Limits::LENGTH },
     },
     Key {
         name: "imperfection",
@@ -205,7 +205,7 @@ pub static RECEIVER_KEYS: &[Key] = &[
     Key {
         name: "position",
         doc: "The middle of the rectangle on which light is received.",
-        kind: vector([50.0, 0.0, 0.0], "cm", Limits::Finite),
+        kind: vector([50.0, 0.0, 0.0], "cm", Limits::COORDINATE),
     },
     Key {
         name: "normal",
@@ -215,12 +215,12 @@ pub static RECEIVER_KEYS: &[Key] = &[
     Key {
         name: "width",
         doc: "Its size across the z axis.",
-        kind: number(60.0, "cm", Limits::Positive),
+        kind: number(60.0, "cm", Limits::LENGTH),
     },
     Key {
         name: "length",
         doc: "Its size along the z axis; of no matter where all devices are endless along z.",
-        kind: number(60.0, "cm", Limits::Positive),
+        kind: number(60.0, "cm", Limits::LENGTH),
     },
 ];
 

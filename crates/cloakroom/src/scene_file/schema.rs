@@ -147,7 +147,6 @@ fn number(limits: Limits) -> Value {
     match limits {
         Limits::Finite => json!({ "type": "number" }),
         Limits::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
-        Limits::NonNegative => json!({ "type": "number", "minimum": 0 }),
         Limits::Between(low, high) => {
             json!({ "type": "number", "exclusiveMinimum": low, "exclusiveMaximum": high })
         }

@@ -40,18 +40,22 @@ pub(super) static ENTRY: Entry = Entry {
         Key {
             name: "width",
             doc: "Size of the grid along x, from its first sample to its last.",
-            kind: KeyKind::Number { default: Some(40.0), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(40.0), unit: "cm", limits: Limits::LENGTH },
         },
         Key {
             name: "height",
             doc: "Size of the grid along y, from its first sample to its last.",
-            kind: KeyKind::Number { default: Some(40.0), unit: "cm", limits: Limits::Positive },
+            kind: KeyKind::Number { default: Some(40.0), unit: "cm", limits: Limits::LENGTH },
         },
         Key {
             name: "inner",
             doc: "Radius of a metal cylinder along z in the middle, which the medium surrounds; 0 for none. The \
                   samples within go on smoothly for about ten steps of the grid; what they are beyond does not matter.",
-            kind: KeyKind::Number { default: Some(0.0), unit: "cm", limits: Limits::NonNegative },
+            kind: KeyKind::Number {
+                default: Some(0.0),
+                unit: "cm",
+                limits: Limits::LENGTH_OR_ZERO,
+            },
         },
     ],
     build,

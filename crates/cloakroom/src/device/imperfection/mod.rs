@@ -21,7 +21,7 @@ pub static IMPERFECTION_KEYS: &[Key] = &[
     Key {
         name: "correlation",
         doc: "The length l over which the error of a graded index is correlated, as exp(-r^2/(2 l^2)).",
-        kind: KeyKind::Number { default: Some(2.0), unit: "cm", limits: Limits::Positive },
+        kind: KeyKind::Number { default: Some(2.0), unit: "cm", limits: Limits::LENGTH },
     },
     Key {
         name: "minimum",
@@ -43,7 +43,7 @@ pub static IMPERFECTION_KEYS: &[Key] = &[
     Key {
         name: "resolution",
         doc: "The standard deviation of the Gaussian that smooths what a range and levels make of a graded index.",
-        kind: KeyKind::Number { default: Some(0.5), unit: "cm", limits: Limits::Positive },
+        kind: KeyKind::Number { default: Some(0.5), unit: "cm", limits: Limits::LENGTH },
     },
     Key {
         name: "loss_tangent",

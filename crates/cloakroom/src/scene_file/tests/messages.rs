@@ -65,7 +65,7 @@ fn unknown_words_are_answered_with_known_ones() {
 fn values_that_do_not_fit_are_named_with_what_would() {
     let device = "[[device]]\nkind = 'square-cloak'\n";
     for (text, expected) in [
-        (format!("{device}side = -3"), "3:8: side is -3 cm; it must be above 0"),
+        (format!("{device}side = -3"), "3:8: side is -3 cm; it must be from 1e-6 to 1000000"),
         (format!("{device}side = nan"), "3:8: side is not a number (nan); numbers must be finite"),
         (format!("{device}side = 1e999"), "3:8: side is infinite; numbers must be finite"),
         (format!("{device}side = '14 cm'"), "3:8: side is \"14 cm\"; it must be a number (cm)"),
@@ -166,7 +166,7 @@ fn overrides_point_at_themselves() {
             "device.first.rotation=5",
             "`first` is not a number; the entries of device are counted from 0: device.0",
         ),
-        (two, "device.0.side=0", "side is 0 cm; it must be above 0"),
+        (two, "device.0.side=0", "side is 0 cm; it must be from 1e-6 to 1000000"),
         (two, "device.0=5", "device is 5; each device is a table of its own: [[device]]"),
         (
             "[camera]\nsamples = 4",
