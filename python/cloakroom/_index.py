@@ -67,11 +67,12 @@ def _sampled(
         raise ValueError(f"spacing is {spacing} cm: a grid of {counts[0]} x {counts[1]} samples is too large")
     x, y = np.meshgrid(*(np.linspace(-side / 2, side / 2, count) for side, count in zip(size, counts)), indexing="ij")
     # What an index is deep within a core does not matter; formulas often have a pole there.
-    radius = np.hypot(x, y)
-    least = inner - _INTO_CORE * spacing
-    if least > 0:
-        x = np.where(radius > 0, x, least)
-        radius = np.where(radius > 0, radius, least)
+    if inner > 0:
+        radius = np.hypot(x, y)
+        least = inner - _INTO_CORE * spacing
+        middle = least if least > 0 else inner / 2
+        x = np.where(radius > 0, x, middle)
+        radius = np.where(radius > 0, radius, middle)
         out = np.maximum(1.0, least / radius)
         x, y = x * out, y * out
     values = np.asarray(index(x, y))

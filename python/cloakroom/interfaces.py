@@ -62,9 +62,9 @@ class Interface:
     #: Shares of the incident normal flux: (N, 4, 2), or (N, 2, 2) for metal. Rows are the outgoing modes (reflected 1,
     #: 2, transmitted 1, 2), columns the incident ones; NaN for evanescent incident modes.
     power: NDArray[np.float64]
-    #: The sum of the reflected shares for each incident mode; (N, 2).
+    #: The sum of the reflected shares for each incident mode; (N, 2), NaN for evanescent ones.
     total_reflected: NDArray[np.float64]
-    #: The sum of the transmitted shares for each incident mode; (N, 2).
+    #: The sum of the transmitted shares for each incident mode; (N, 2), NaN for evanescent ones.
     total_transmitted: NDArray[np.float64]
 
 

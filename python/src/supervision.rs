@@ -138,14 +138,13 @@ fn pool() -> PyResult<Arc<ThreadPool>> {
 
 /// Lets work use so many threads from now on; 0 stands for all cores.
 #[pyfunction]
-pub fn set_threads(count: usize) -> PyResult<()> {
-    if count > MOST_THREADS {
-        return Err(PyValueError::new_err(format!(
-            "count is {count}; it must be from 0 to {MOST_THREADS}"
-        )));
-    }
+pub fn set_threads(count: i64) -> PyResult<()> {
+    let threads = usize::try_from(count).ok().filter(|threads| *threads <= MOST_THREADS);
+    let threads = threads.ok_or_else(|| {
+        PyValueError::new_err(format!("count is {count}; it must be from 0 to {MOST_THREADS}"))
+    })?;
     let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
-    known.threads = count;
+    known.threads = threads;
     if known.process == std::process::id() {
         known.pool = None;
     }

@@ -46,6 +46,9 @@ fn copy(chosen: &[Example], folder: &Path) -> Result<(), Failure> {
             }
         }
     }
+    if missing.is_empty() {
+        say(&format!("{}: they are all there", folder.display()));
+    }
     for (path, example) in missing {
         if let Some(parent) = path.parent() {
             make_folder(parent)?;

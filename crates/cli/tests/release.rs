@@ -68,6 +68,9 @@ fn example_scenes_are_listed_copied_and_never_written_over() {
     copy("shop-window").success().stdout("");
     let scene = out.join("shop-window.toml");
     cloakroom().arg("check").arg(&scene).assert().success();
+    let again = copy("shop-window").success();
+    let words = String::from_utf8_lossy(&again.get_output().stderr).into_owned();
+    assert!(words.contains("they are all there"), "{words}");
     // Those that are there stay, untouched or not.
     copy("flux,shop-window").success();
     fs::write(&scene, "# mine\n").unwrap();

@@ -21,17 +21,19 @@ pub(super) fn sun(text: &str) -> Result<[f64; 2], String> {
         })
 }
 
-/// Reads angles such as -60..60:5.
+/// Reads angles such as -60..60:5, or a single one: first, last and step.
 pub(super) fn angles(text: &str) -> Result<[f64; 3], String> {
     let parts = text.split_once("..").and_then(|(from, rest)| {
         let (to, step) = rest.split_once(':')?;
         numbers(&format!("{from},{to},{step}"))
     });
+    let single = || numbers(text).map(|[angle]| [angle, angle, 1.0]);
     parts
+        .or_else(single)
         .filter(|[from, to, step]| *step > 0.0 && to >= from && (to - from) / step < 10_000.0)
         .ok_or_else(|| {
             "write FROM..TO:STEP in degrees, as in -60..60:5, the step above 0, the end not before the beginning, \
-             at most 10000 angles"
+             at most 10000 angles, or a single angle"
                 .to_owned()
         })
 }
@@ -96,5 +98,19 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     match sides {
         Some((Ok(w), Ok(h))) if (1..=65536).contains(&w) && (1..=65536).contains(&h) => Ok([w, h]),
         _ => Err("write WIDTHxHEIGHT in pixels, each from 1 to 65536, as in 1024x768".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::angles;
+
+    #[test]
+    fn angles_are_a_range_or_a_single_one() {
+        assert_eq!(angles("-60..60:5"), Ok([-60.0, 60.0, 5.0]));
+        assert_eq!(angles("-30.5"), Ok([-30.5, -30.5, 1.0]));
+        for wrong in ["", "a", "1,2", "0..9", "9..0:1", "0..9:0", "0..9:-1", "nan", "0..inf:1"] {
+            assert!(angles(wrong).is_err(), "{wrong}");
+        }
     }
 }

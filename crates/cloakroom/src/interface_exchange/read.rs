@@ -72,8 +72,8 @@ impl InterfaceRequest {
     ///
     /// # Errors
     ///
-    /// If the normal is zero, or the tangential vector is not tangential or too long; the error's place is `normal` or
-    /// `tangential`.
+    /// If the normal is zero, or the tangential vector is not finite, not tangential or too long; the error's place is
+    /// `normal` or `tangential`.
     pub fn new(
         incident: Medium,
         transmitted: Option<Medium>,
@@ -82,6 +82,9 @@ impl InterfaceRequest {
     ) -> Result<Self, InterfaceError> {
         let normal =
             unit(normal).ok_or_else(|| InterfaceError::at("normal", "the normal is zero"))?;
+        if !tangential.is_finite() {
+            return Err(InterfaceError::at("tangential", "a component is no finite number"));
+        }
         let along = tangential.dot(normal);
         if along.abs() > TANGENTIAL {
             let problem = format!(
