@@ -81,6 +81,19 @@ fn regressions(name: &str) -> Vec<PathBuf> {
 }
 
 #[test]
+fn every_trial_has_a_target_of_its_own() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz");
+    let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+    for Trial { name, .. } in TRIALS {
+        assert!(manifest.contains(&format!("path = \"fuzz_targets/{name}.rs\"")), "{name}");
+        let target = fs::read_to_string(folder.join("fuzz_targets").join(format!("{name}.rs")));
+        assert!(target.unwrap().contains(&format!("trials::run(\"{name}\", bytes)")), "{name}");
+    }
+    assert_eq!(manifest.matches("[[bin]]").count(), TRIALS.len());
+    assert_eq!(fs::read_dir(folder.join("fuzz_targets")).unwrap().count(), TRIALS.len());
+}
+
+#[test]
 fn what_once_found_a_fault_finds_none() {
     for trial in TRIALS {
         for path in regressions(trial.name) {
