@@ -259,7 +259,7 @@ fn physics(bytes: &[u8]) {
     let Ok(loaded) = scene_file::parse(&text, "a.toml", nowhere(), &[]) else { return };
     let Ok(bench) = render::bench(&loaded.scene) else { return };
     let count = 4 + draws.below(MOST_RAYS - 3);
-    let reach = draws.number(15.0, cloakroom::keys::Limits::Within(1e-3, 1e4));
+    let reach = 10f64.powf(draws.between(-3.0, 4.0));
     let launches: Vec<Launch<2>> = (0..count).map(|_| rays::launch(&mut draws, reach)).collect();
     trace(&bench, render::limits(&loaded.scene), &launches);
 }
