@@ -10,6 +10,9 @@ use serde_json::Value;
 /// How large the normal part of a tangential wave vector may be.
 const TANGENTIAL: f64 = 1e-9;
 
+/// How long a tangential wave vector may be: a thousand times the largest index of refraction.
+const LONGEST: f64 = 1e9;
+
 /// An interface to be solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InterfaceRequest {
@@ -85,15 +88,19 @@ impl InterfaceRequest {
         if !tangential.is_finite() {
             return Err(InterfaceError::at("tangential", "a component is no finite number"));
         }
+        if tangential.length() > LONGEST {
+            let problem = format!(
+                "the vector is {:e} long; at most {LONGEST:e} is allowed",
+                tangential.length()
+            );
+            return Err(InterfaceError::at("tangential", problem));
+        }
         let along = tangential.dot(normal);
         if along.abs() > TANGENTIAL {
             let problem = format!(
                 "the normal part is {along:e}; at most {TANGENTIAL:e} is allowed in a tangential vector"
             );
             return Err(InterfaceError::at("tangential", problem));
-        }
-        if !tangential.length_squared().is_finite() {
-            return Err(InterfaceError::at("tangential", "the vector is too long"));
         }
         Ok(Self { incident, transmitted, normal, tangential: tangential - normal * along })
     }
