@@ -167,7 +167,8 @@ impl<const N: usize> Scattered<'_, N> {
         let mode = match arriving {
             [a, b] => {
                 let (to_a, to_b) = (distance(a), distance(b));
-                if to_a.max(to_b) < near {
+                // At grazing incidence the wave is both as far from either.
+                if to_a.max(to_b) < f64::MAX && (to_a - to_b).abs() < near {
                     let parts = self.parts(a, b);
                     return [(a, parts.map(|[in_a, _]| in_a)), (b, parts.map(|[_, in_b]| in_b))]
                         .into();

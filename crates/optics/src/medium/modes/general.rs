@@ -78,11 +78,32 @@ fn bounded<T: Number>(tensor: [[T; 3]; 3]) -> T {
     }
 }
 
+/// A wave that runs along the surface is, both ways, the limit of waves that hardly cross it: by so much their
+/// tangential wave vectors differ from its own.
+const SHIFTS: [f64; 8] = [-1e-14, 1e-14, -1e-12, 1e-12, -1e-10, 1e-10, -1e-8, 1e-8];
+
+/// The modes of a lossless medium.
+struct Lossless {
+    modes: BothWays,
+    /// How many propagate.
+    propagating: usize,
+    /// Whether one does along the surface: two roots are one there, and have one vector.
+    along_the_surface: bool,
+}
+
 impl Medium {
     /// The modes of a lossless medium without a closed form.
     pub(super) fn general_modes(&self, frame: &Frame, along: f64, known: Option<f64>) -> BothWays {
         let tensors = [&self.permittivity, &self.permeability].map(|t| frame.tensor(t));
-        Berreman::new(tensors[0], tensors[1], [along, 0.0]).lossless_modes(known)
+        let at = |along| Berreman::new(tensors[0], tensors[1], [along, 0.0]).lossless_modes(known);
+        let exactly = at(along);
+        if !exactly.along_the_surface {
+            return exactly.modes;
+        }
+        let mut near = SHIFTS.iter().map(|shift| at(along * (1.0 + shift)));
+        near.find(|near| !near.along_the_surface && near.propagating == exactly.propagating)
+            .unwrap_or(exactly)
+            .modes
     }
 }
 
@@ -124,7 +145,7 @@ impl Berreman<f64> {
         })
     }
 
-    fn lossless_modes(&self, known: Option<f64>) -> BothWays {
+    fn lossless_modes(&self, known: Option<f64>) -> Lossless {
         let mut pairs = self.eigenpairs();
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         let mut sorted = Sorted::default();
@@ -132,6 +153,7 @@ impl Berreman<f64> {
         pairs.sort_by(|(a, _), (b, _)| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
         let mut decaying: ArrayVec<Eigenpair, 4> = ArrayVec::new();
         let mut real: ArrayVec<(f64, [f64; 4]), 4> = ArrayVec::new();
+        let mut along_the_surface = false;
         for (q, field) in pairs {
             // A double real root may come out as a pair of conjugates a rounding error apart, and at
             // grazing incidence half the digits apart.
@@ -141,6 +163,7 @@ impl Berreman<f64> {
             } else if q.im == 0.0 {
                 real.push((q.re, real_part(field)));
             } else if q.im > 0.0 {
+                along_the_surface |= q.im > DOUBLE * size;
                 // Both parts of the vector: the conjugate root has the same.
                 let turned = parts_across(field);
                 real.push((q.re, turned.map(|c| c.re)));
@@ -150,17 +173,22 @@ impl Berreman<f64> {
         real.sort_by(|a, b| a.0.total_cmp(&b.0));
         for i in 1..real.len() {
             let (q, first) = real[i - 1];
-            if real[i].0 - q < DOUBLE * size
-                && let Some(second) = eigenvector_across(&self.matrix, q, Some(first))
-            {
-                real[i].1 = second;
+            if real[i].0 - q >= DOUBLE * size {
+                continue;
             }
+            match eigenvector_across(&self.matrix, q, Some(first)) {
+                Some(second) => real[i].1 = second,
+                None => along_the_surface = true,
+            }
+            // Of three, two have one vector.
+            along_the_surface |= i > 1 && real[i].0 - real[i - 2].0 < DOUBLE * size;
         }
+        let propagating = real.len();
         let matrix = self.matrix.map(|row| row.map(Complex64::from));
         separate_double_roots(&matrix, &mut decaying, size);
         sorted.real.extend(real.into_iter().map(|(q, field)| self.mode(q, field)));
         sorted.evanescent.extend(decaying.into_iter().map(|(q, field)| self.mode(q, field)));
-        sorted.into_modes(size)
+        Lossless { modes: sorted.into_modes(size), propagating, along_the_surface }
     }
 }
 
