@@ -10,8 +10,8 @@ use serde_json::Value;
 /// How large the normal part of a tangential wave vector may be.
 const TANGENTIAL: f64 = 1e-9;
 
-/// How long a tangential wave vector may be: a thousand times the largest index of refraction.
-const LONGEST: f64 = 1e9;
+/// How long a tangential wave vector may be: as long as in a medium of the largest index of refraction.
+const LONGEST: f64 = 1e6;
 
 /// An interface to be solved.
 #[derive(Clone, Debug, PartialEq)]
