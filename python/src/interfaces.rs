@@ -79,7 +79,7 @@ pub fn interface<'py>(
             vector(&normals, index),
             vector(&tangentials, index),
         );
-        Ok(request.map_err(|error| error.to_string())?.solve())
+        request.and_then(|request| request.solve()).map_err(|error| error.to_string())
     };
     let reports = supervised(py, progress.as_ref(), |watch| {
         watch.begin(count as u64);

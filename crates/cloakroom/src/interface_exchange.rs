@@ -11,6 +11,9 @@ use optics::medium::Mode;
 use optics::wave::ComplexVector;
 use serde::Serialize;
 
+/// How far waves may be from solving Maxwell's equations, relative to their terms.
+const RESIDUAL: f64 = 1e-6;
+
 /// A complex vector as three pairs [re, im].
 type Components = [[f64; 2]; 3];
 
@@ -66,14 +69,19 @@ impl From<&Mode> for ModeReport {
 
 impl InterfaceRequest {
     /// Solves the interface.
-    #[must_use]
-    pub fn solve(&self) -> InterfaceReport {
+    ///
+    /// # Errors
+    ///
+    /// If double precision does not reach: principal values that differ by many powers of ten, and a long tangential
+    /// wave vector.
+    pub fn solve(&self) -> Result<InterfaceReport, InterfaceError> {
         let scattering = Scattering::new(
             &self.incident,
             self.transmitted.as_ref(),
             self.tangential,
             self.normal,
         );
+        self.check(&scattering)?;
         let rows = if self.transmitted.is_some() { 4 } else { 2 };
         let share = |row: usize| scattering.power.map(|column| column.map(|shares| shares[row]));
         let sum = |first: usize| {
@@ -81,14 +89,36 @@ impl InterfaceRequest {
         };
         let report = |modes: &[Mode; 2]| [(&modes[0]).into(), (&modes[1]).into()];
         let transmitted = scattering.transmitted.iter().flatten();
-        InterfaceReport {
+        Ok(InterfaceReport {
             incident: report(&scattering.incident),
             reflected: report(&scattering.reflected),
             transmitted: transmitted.map(ModeReport::from).collect(),
             power: (0..rows).map(share).collect(),
             total_reflected: sum(0),
             total_transmitted: sum(2),
+        })
+    }
+
+    /// Whether the waves solve Maxwell's equations, and their powers add up.
+    fn check(&self, scattering: &Scattering) -> Result<(), InterfaceError> {
+        let Scattering { incident, reflected, transmitted, power, .. } = scattering;
+        let here = incident.iter().chain(reflected).map(|mode| self.incident.residual(mode));
+        let beyond = self.transmitted.iter().zip(transmitted);
+        let beyond =
+            beyond.flat_map(|(medium, modes)| modes.iter().map(|mode| medium.residual(mode)));
+        let solved = here.chain(beyond).all(|residual| residual < RESIDUAL);
+        let adds_up = |shares: &[f64; 4]| {
+            let sum: f64 = shares.iter().sum();
+            sum.is_finite() && (self.incident.absorbs() || (sum - 1.0).abs() < RESIDUAL)
+        };
+        if solved && power.iter().flatten().all(adds_up) {
+            return Ok(());
         }
+        Err(InterfaceError::whole(
+            "the waves cannot be computed in double precision; principal values that differ by less, or a shorter \
+             tangential wave vector, would do"
+                .to_owned(),
+        ))
     }
 }
 
@@ -107,12 +137,14 @@ pub fn solve_interfaces(text: &str) -> Result<serde_json::Value, InterfaceError>
                 .iter()
                 .enumerate()
                 .map(|(index, item)| {
-                    InterfaceRequest::read(item, &format!("[{index}]")).map(|r| r.solve())
+                    let place = format!("[{index}]");
+                    let solved = InterfaceRequest::read(item, &place)?.solve();
+                    solved.map_err(|error| InterfaceError { place, ..error })
                 })
                 .collect::<Result<Vec<_>, _>>()?;
             serde_json::to_value(reports)
         }
-        item => serde_json::to_value(InterfaceRequest::read(item, "")?.solve()),
+        item => serde_json::to_value(InterfaceRequest::read(item, "")?.solve()?),
     };
     answer.map_err(|error| InterfaceError::whole(error.to_string()))
 }

@@ -24,7 +24,7 @@ impl Medium {
             Class::Uniaxial(medium) => uniaxial(&(*medium).into(), frame, k),
             Class::Matched(_) | Class::General => {
                 let (permittivity, permeability) = self.tensors();
-                Berreman::complex(frame, &permittivity, &permeability, k).complex_modes()
+                Berreman::modes_of(frame, &permittivity, &permeability, k)
             }
         };
         BothWays {

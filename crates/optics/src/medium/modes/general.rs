@@ -3,7 +3,7 @@
 use super::absorbing::forwardness;
 use super::double_root::{eigenvector_across, is_eigenvector};
 use super::local::mutual_flux;
-use super::refinement::Maxwell;
+use super::refinement::{Maxwell, best};
 use super::{BothWays, LocalMode, LocalModes, ModeKind};
 use crate::medium::{Medium, Tensor};
 use crate::wave::{Frame, Number, dot};
@@ -25,12 +25,18 @@ pub(super) struct Berreman<T> {
 type Eigenpair = (Complex64, [Complex64; 4]);
 
 impl<T: Number> Berreman<T> {
-    fn new(permittivity: [[T; 3]; 3], permeability: [[T; 3]; 3], [k1, k2]: [T; 2]) -> Self {
+    /// Of tensors whose normal-normal entries are taken for `least` of the largest entry where they are smaller.
+    fn new(
+        permittivity: [[T; 3]; 3],
+        permeability: [[T; 3]; 3],
+        [k1, k2]: [T; 2],
+        least: f64,
+    ) -> Self {
         let maxwell = Maxwell { permittivity, permeability, tangential: [k1, k2] };
         let zero = T::from(0.0);
         let (e, m) = (permittivity, permeability);
         // The normal components of p × E = µH and p × H = -εE hold no q.
-        let (e_scale, h_scale) = (bounded(e), bounded(m));
+        let (e_scale, h_scale) = (bounded(e, least), bounded(m, least));
         let normal_e = [-e[2][0], -e[2][1], k2, -k1].map(|c| c * e_scale);
         let normal_h = [-k2, k1, -m[2][0], -m[2][1]].map(|c| c * h_scale);
         let columns: [[T; 4]; 4] = std::array::from_fn(|j| {
@@ -46,6 +52,19 @@ impl<T: Number> Berreman<T> {
         });
         let matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
         Self { maxwell, matrix, lift: [normal_e, normal_h] }
+    }
+
+    /// How far the worst of some modes is from solving Maxwell's equations.
+    fn residual<'m>(&self, modes: impl Iterator<Item = &'m LocalMode<Complex64>>) -> f64
+    where
+        Maxwell<Complex64>: From<Maxwell<T>>,
+    {
+        let maxwell = Maxwell::<Complex64>::from(self.maxwell);
+        let residual = modes.map(|mode| {
+            let size = mode.norm_squared().sqrt();
+            maxwell.residual_size(&mode.scaled(size.recip()))
+        });
+        residual.fold(0.0, |worst, one| if one.is_nan() { f64::INFINITY } else { one.max(worst) })
     }
 
     /// The mode of an eigenpair, made better where the eigenvalues differ much in size.
@@ -68,13 +87,13 @@ impl<T: Number> Berreman<T> {
 }
 
 /// The reciprocal of the normal-normal entry, which an indefinite tensor may have zero.
-fn bounded<T: Number>(tensor: [[T; 3]; 3]) -> T {
+fn bounded<T: Number>(tensor: [[T; 3]; 3], least: f64) -> T {
     let size = tensor.iter().flatten().map(|c| c.magnitude_squared()).fold(0.0, f64::max);
     let entry = tensor[2][2];
-    if entry.magnitude_squared() > 1e-28 * size {
+    if entry.magnitude_squared() > least * least * size {
         T::from(1.0) / entry
     } else {
-        T::from(1e14 / size.sqrt())
+        T::from((least * size.sqrt()).recip())
     }
 }
 
@@ -95,7 +114,16 @@ impl Medium {
     /// The modes of a lossless medium without a closed form.
     pub(super) fn general_modes(&self, frame: &Frame, along: f64, known: Option<f64>) -> BothWays {
         let tensors = [&self.permittivity, &self.permeability].map(|t| frame.tensor(t));
-        let at = |along| Berreman::new(tensors[0], tensors[1], [along, 0.0]).lossless_modes(known);
+        let at = |along| {
+            best(|least| {
+                let problem = Berreman::new(tensors[0], tensors[1], [along, 0.0], least);
+                let found = problem.lossless_modes(known);
+                let BothWays { forward, backward } = &found.modes;
+                let residual =
+                    problem.residual(forward.complex().iter().chain(&backward.complex()));
+                (found, residual)
+            })
+        };
         let exactly = at(along);
         if !exactly.along_the_surface {
             return exactly.modes;
@@ -108,21 +136,27 @@ impl Medium {
 }
 
 impl Berreman<Complex64> {
-    pub fn complex(
+    /// The pairs (forward, backward) of a medium that may absorb, of any size.
+    pub fn modes_of(
         frame: &Frame,
         permittivity: &Tensor,
         permeability: &Tensor,
         k: [Complex64; 2],
-    ) -> Self {
+    ) -> [[LocalMode<Complex64>; 2]; 2] {
         let in_frame = |tensor: &Tensor| {
             let (re, im) = (frame.tensor(&tensor.re), frame.tensor(&tensor.im));
             std::array::from_fn(|i| std::array::from_fn(|j| Complex64::new(re[i][j], im[i][j])))
         };
-        Self::new(in_frame(permittivity), in_frame(permeability), k)
+        let (permittivity, permeability) = (in_frame(permittivity), in_frame(permeability));
+        best(|least| {
+            let problem = Self::new(permittivity, permeability, k, least);
+            let modes = problem.complex_modes();
+            let residual = problem.residual(modes.as_flattened().iter());
+            (modes, residual)
+        })
     }
 
-    /// The pairs (forward, backward), of any size.
-    pub fn complex_modes(&self) -> [[LocalMode<Complex64>; 2]; 2] {
+    fn complex_modes(&self) -> [[LocalMode<Complex64>; 2]; 2] {
         let matrix = Mat::from_fn(4, 4, |i, j| self.matrix[i][j]);
         let pairs =
             matrix.eigen().map_or_else(|_| FALLBACK, |eigen| pairs_of(&eigen, &self.matrix));

@@ -19,6 +19,21 @@ pub(super) struct Maxwell<T> {
 /// Residuals below this, relative to the terms of the equations, are rounding.
 const ROUNDING: f64 = 4e-15;
 
+/// Modes that solve Maxwell's equations to this are not sought again.
+const SOLVED: f64 = 1e-10;
+
+/// The modes that `of` finds, and how far they are from solving Maxwell's equations, given the least normal-normal entries.
+/// Beside the reciprocal of a small one, all else in Berreman's matrix loses digits: then the entry is taken for
+/// larger than it is, and Newton's method mends that.
+pub(super) fn best<M>(of: impl Fn(f64) -> (M, f64)) -> M {
+    let (modes, residual) = of(1e-14);
+    if residual < SOLVED {
+        return modes;
+    }
+    let (others, smaller) = of(1e-7);
+    if smaller < residual { others } else { modes }
+}
+
 impl From<Maxwell<f64>> for Maxwell<Complex64> {
     fn from(real: Maxwell<f64>) -> Self {
         let complex = |tensor: [[f64; 3]; 3]| tensor.map(|row| row.map(Complex64::from));
@@ -64,7 +79,7 @@ impl<T: Number> Maxwell<T> {
     }
 
     /// The residual of a mode with |E|² + |H|² = 1, relative to the terms it is made of.
-    fn residual_size(&self, mode: &LocalMode<T>) -> f64 {
+    pub fn residual_size(&self, mode: &LocalMode<T>) -> f64 {
         let square = |v: &[T]| v.iter().map(|c| c.magnitude_squared()).sum::<f64>();
         let terms = square(&self.tangential)
             + mode.q.magnitude_squared()

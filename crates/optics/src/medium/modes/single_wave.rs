@@ -48,7 +48,11 @@ impl SingleWave {
             Roots::Real { plus, minus, .. } => {
                 let q = if forward { plus } else { minus };
                 let modes = self.pair(q);
-                LocalModes::Real(modes.map(|mode| mode.scaled(mode.flux().abs().sqrt().recip())))
+                // Where the surface has no normal-normal entry, the flux may be lost in rounding.
+                LocalModes::Real(modes.map(|mode| {
+                    let flux = mode.flux().abs().max(1e-18 * mode.norm_squared());
+                    mode.scaled(flux.sqrt().recip())
+                }))
             }
             Roots::Complex { re, im, .. } => {
                 let q = Complex64::new(re, if forward { im } else { -im });
