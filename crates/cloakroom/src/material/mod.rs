@@ -41,7 +41,9 @@ pub enum MaterialError {
         reason: &'static str,
     },
     /// The device has no homogeneous segments.
-    #[error("device {device}, {kind}, has no homogeneous segments: its medium is graded")]
+    #[error(
+        "device {device}, {kind}, has no homogeneous segments to list: it is a single body, or its medium is graded"
+    )]
     NoSegments {
         /// Which device, counted from 0.
         device: usize,

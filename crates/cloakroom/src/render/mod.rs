@@ -33,6 +33,7 @@ use pixel::{Pixel, Pulses};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// Rows in a band; even, so that bands hold whole blocks of 2 x 2 pixels.
 const BAND_ROWS: usize = 4;
@@ -194,23 +195,28 @@ fn expose_film<const N: usize>(
 }
 
 /// How long rendering the image will take on the threads there are, in seconds: a few thousand rays, spread
-/// over the picture, are traced and timed.
+/// over the picture, are traced and timed, or as many as two seconds or a block of four pixels take.
 #[must_use]
 pub fn estimated_seconds(studio: &Studio<'_>) -> f64 {
     const GRID: [u32; 2] = [64, 48];
+    const LONGEST: Duration = Duration::from_secs(2);
+    // A prime above the number of blocks: its multiples visit them all, here and there in the picture.
+    const STRIDE: u32 = 7919;
     let camera = &studio.scene.camera;
     let [width, height] = camera.resolution();
     let [columns, rows] = [GRID[0].min(width), GRID[1].min(height)];
     let detection = Detection::UNPOLARIZED.with_options(Wanted::Image, &studio.scene.picture);
     let mut exposer = Exposer::new(studio, &detection);
-    let start = std::time::Instant::now();
-    for row in 0..rows {
-        for column in 0..columns {
-            let corner = [column * width / columns, row * height / rows].map(|i| i as usize);
-            exposer.expose_block(corner, 0, &mut [Pixel::default(); 4]);
-        }
+    let start = Instant::now();
+    let mut blocks = 0;
+    while blocks < columns * rows && (blocks == 0 || start.elapsed() < LONGEST) {
+        let block = (blocks + 1) * STRIDE % (columns * rows);
+        let [column, row] = [block % columns, block / columns];
+        let corner = [column * width / columns, row * height / rows].map(|i| i as usize);
+        exposer.expose_block(corner, 0, &mut [Pixel::default(); 4]);
+        blocks += 1;
     }
-    let traced = f64::from(4 * columns * rows);
+    let traced = f64::from(4 * blocks);
     let all = f64::from(width) * f64::from(height) * f64::from(camera.samples());
     start.elapsed().as_secs_f64() * all / traced / rayon::current_num_threads() as f64
 }
