@@ -88,11 +88,9 @@ impl InterfaceRequest {
         if !tangential.is_finite() {
             return Err(InterfaceError::at("tangential", "a component is no finite number"));
         }
-        if tangential.length() > LONGEST {
-            let problem = format!(
-                "the vector is {:e} long; at most {LONGEST:e} is allowed",
-                tangential.length()
-            );
+        let length = tangential.length();
+        if length > LONGEST {
+            let problem = format!("the vector is {length:e} long; at most {LONGEST:e} is allowed");
             return Err(InterfaceError::at("tangential", problem));
         }
         let along = tangential.dot(normal);
