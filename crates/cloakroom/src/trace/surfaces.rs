@@ -9,7 +9,7 @@ use optics::interface::{
 };
 use optics::medium::{Medium, ModeKind};
 
-/// The square of the largest wave vector that is followed, a thousand times the largest index of refraction. Light
+/// The square of the largest wave vector that is followed, a billion times the largest index of refraction. Light
 /// that runs into a corner of a hyperbolic medium gets there: each face makes it shorter, and it never comes out.
 const SHORTEST_WAVE: f64 = 1e30;
 
