@@ -25,7 +25,6 @@ __all__ = [
     "srgb",
     "sweep",
     "threads",
-    "to_toml",
     "toml_literal",
     "trace",
     "verify",
@@ -57,7 +56,20 @@ class Scene:
         surroundings: Image | None = None,
     ) -> Scene: ...
     @staticmethod
+    def of_tables(
+        tables: dict[str, Any],
+        folder: str,
+        photograph: Image | None = None,
+        surroundings: Image | None = None,
+    ) -> Scene: ...
+    @staticmethod
     def load(path: str) -> Scene: ...
+    def replaced(
+        self,
+        overrides: Sequence[str],
+        photograph: Image | None = None,
+        surroundings: Image | None = None,
+    ) -> Scene: ...
     @property
     def text(self) -> str: ...
     @property
@@ -78,7 +90,6 @@ class Scene:
 
 def schema() -> str: ...
 def fit(table: str, entries: dict[str, Any]) -> dict[str, Any]: ...
-def to_toml(tables: dict[str, dict[str, Any]], devices: Sequence[dict[str, Any]]) -> str: ...
 def toml_literal(name: str, value: object) -> str: ...
 def render(
     scene: Scene, image_only: bool, tile: Sequence[int] | None = None, progress: _Tell = None

@@ -19,6 +19,7 @@ SPACING: dict[str, Any] = {
     "exclusiveMinimum": 0,
     "description": "Distance between the samples of an index that is a function, made a little smaller to fit; 1/160 "
     "of the longer side where it is absent. Unit: cm.",
+    "x-unit": "cm",
 }
 
 #: Within a core, a function is asked for no more than these steps of the grid.

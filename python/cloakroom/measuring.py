@@ -105,7 +105,7 @@ def sweep(
     keys : mapping of str to sequence
         The values that each key takes, as `Scene.replace` takes it: ``{"device.0.rotation": range(0, 91, 5)}``.
     path : path, optional
-        A file for the table (``.csv``, ``.npz``) or a plot (``.svg``, ``.png``).
+        A file for the table (``.csv``, ``.npz``) or a plot (``.svg``, ``.pdf``, ``.png``).
     progress : bool or callable, default False
         ``True`` for a line on standard error, or a function that is called with the steps done and all steps.
 

@@ -159,10 +159,12 @@ class Picture(Mapping[str, NDArray[Any]]):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the picture as the ending asks for: ``.png`` (8-bit sRGB), ``.exr`` or ``.npz`` (all channels).
 
+        With ``picture.map`` in the scene, a ``.png`` is the map, and ``.svg`` or ``.pdf`` are the map drawn for print.
+
         Raises
         ------
         ValueError
-            If the ending is another, or a channel is missing or of a wrong shape.
+            If the ending is another or needs a map, or a channel is missing or of a wrong shape.
         TypeError
             If a channel is not an array of floats.
         OSError

@@ -75,11 +75,13 @@ class Scene:
             "picture": _table("picture", picture),
             "receiver": _table("receiver", receiver),
         }
-        given = {name: table.given() for name, table in tables.items() if table.given()}
-        text = _cloakroom.to_toml(given, [_device(i, device) for i, device in enumerate(_listed(devices))])
+        given: dict[str, Any] = {name: table.given() for name, table in tables.items() if table.given()}
+        listed = [_device(i, device) for i, device in enumerate(_listed(devices))]
+        if listed:
+            given["device"] = listed
         self._images = (tables["photograph"]._image, tables["surroundings"]._image)
         self._overrides: list[str] = []
-        self._native = _cloakroom.Scene(text, "scene", os.getcwd(), False, [], *self._images)
+        self._native = _cloakroom.Scene.of_tables(given, os.getcwd(), *self._images)
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Scene:
@@ -140,7 +142,7 @@ class Scene:
         scene = object.__new__(Scene)
         scene._images = (images[0], images[1])
         scene._overrides = [*self._overrides, *added]
-        scene._native = self._read(scene._overrides, scene._images)
+        scene._native = self._native.replaced(scene._overrides, *scene._images)
         return scene
 
     @staticmethod
@@ -153,10 +155,6 @@ class Scene:
         # The working folder may be another one when the scene is sent to another process.
         file = os.fspath(value) if isinstance(value, (str, os.PathLike)) else value
         return os.path.abspath(file) if isinstance(file, str) and file and ":" not in file else file
-
-    def _read(self, overrides: list[str], images: tuple[_cloakroom.Image | None, ...]) -> _cloakroom.Scene:
-        native = self._native
-        return _cloakroom.Scene(native.text, native.name, native.folder, native.is_file, overrides, *images)
 
     @property
     def toml(self) -> str:

@@ -33,6 +33,7 @@ class SquareCloak(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         kappa: float | None = ...,
@@ -44,6 +45,8 @@ class SquareCloak(Device):
         show: Literal["cloak", "bare", "mirror"] | None = ...,
         side: float | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -69,6 +72,7 @@ class DoubleGaussianCloak(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         fresnel: bool | None = ...,
         h: float | None = ...,
@@ -82,6 +86,8 @@ class DoubleGaussianCloak(Device):
         w: float | None = ...,
         width: float | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -111,6 +117,7 @@ class CylinderCloak(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
@@ -121,6 +128,8 @@ class CylinderCloak(Device):
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -144,6 +153,7 @@ class SphereCloak(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
@@ -153,6 +163,8 @@ class SphereCloak(Device):
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -174,6 +186,7 @@ class InvisibleSphere(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
@@ -183,6 +196,8 @@ class InvisibleSphere(Device):
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -205,6 +220,7 @@ class BendingSphere(Device):
         self,
         *,
         angle: float | None = ...,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
@@ -215,6 +231,8 @@ class BendingSphere(Device):
     ) -> None: ...
     @property
     def angle(self) -> float: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -234,6 +252,7 @@ class EatonLens(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
@@ -242,6 +261,8 @@ class EatonLens(Device):
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -261,6 +282,7 @@ class LuneburgLens(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
@@ -269,6 +291,8 @@ class LuneburgLens(Device):
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -288,6 +312,7 @@ class FisheyeLens(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
@@ -296,6 +321,8 @@ class FisheyeLens(Device):
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -315,6 +342,7 @@ class MirrorDetour(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         half_length: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
@@ -324,6 +352,8 @@ class MirrorDetour(Device):
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -345,6 +375,7 @@ class Prisms(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
@@ -353,6 +384,8 @@ class Prisms(Device):
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -372,6 +405,7 @@ class Graded(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
@@ -382,9 +416,11 @@ class Graded(Device):
         rotation: float | None = ...,
         shape: Literal["rectangle", "circle"] | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
-        width: float | None = ...,
         spacing: float | None = ...,
+        width: float | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -412,6 +448,7 @@ class Body(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         group_index: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
@@ -428,6 +465,8 @@ class Body(Device):
         surface: Mapping[str, Any] | None = ...,
         thickness: float | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -463,6 +502,7 @@ class GaussianCarpet(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
@@ -475,6 +515,8 @@ class GaussianCarpet(Device):
         w: float | None = ...,
         width: float | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -502,6 +544,7 @@ class GratingCarpet(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
@@ -514,6 +557,8 @@ class GratingCarpet(Device):
         show: Literal["cloak", "bare", "mirror"] | None = ...,
         width: float | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -541,6 +586,7 @@ class QuasiConformalCarpet(Device):
     def __init__(
         self,
         *,
+        axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
@@ -553,6 +599,8 @@ class QuasiConformalCarpet(Device):
         w: float | None = ...,
         width: float | None = ...,
     ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -629,11 +677,20 @@ class Photograph(Table):
         self,
         *,
         image: _Image | None = ...,
+        normal: ArrayLike | None = ...,
+        position: ArrayLike | None = ...,
+        up: ArrayLike | None = ...,
         width: float | None = ...,
         x: float | None = ...,
     ) -> None: ...
     @property
     def image(self) -> str: ...
+    @property
+    def normal(self) -> list[Any]: ...
+    @property
+    def position(self) -> list[Any]: ...
+    @property
+    def up(self) -> list[Any]: ...
     @property
     def width(self) -> float | None: ...
     @property

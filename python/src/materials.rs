@@ -32,10 +32,18 @@ pub fn export_grid(
         (None, None) => Resolution::Default,
     };
     supervised(py, progress.as_ref(), |watch| {
-        let bench = scene.bench().map_err(|error| scene.located(&error))?;
+        let assembly = scene.assembly().map_err(|error| scene.located(&error))?;
         let begun = |rows| watch.begin(rows);
         let sampled = watch.supervise(|supervision| {
-            material::sample(scene.scene(), &bench, device, frame, resolution, &begun, supervision)
+            material::sample(
+                scene.scene(),
+                &assembly,
+                device,
+                frame,
+                resolution,
+                &begun,
+                supervision,
+            )
         });
         output::write_grid(&sampled.map_err(failure)?, &path).map_err(|error| output_error(&error))
     })?
@@ -50,8 +58,8 @@ pub fn export_table(
     device: Option<usize>,
 ) -> PyResult<()> {
     supervised(py, None, |_| {
-        let bench = scene.bench().map_err(|error| scene.located(&error))?;
-        let segments = material::segments(scene.scene(), &bench, device).map_err(failure)?;
+        let assembly = scene.assembly().map_err(|error| scene.located(&error))?;
+        let segments = material::segments(scene.scene(), &assembly, device).map_err(failure)?;
         material::write_segments(&segments, &path).map_err(|error| output_error(&error))
     })?
 }

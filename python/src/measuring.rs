@@ -6,14 +6,14 @@ use crate::pictures::picture_of;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
 use cloakroom::flux::{self as light, Direction, FluxError, Sampling};
-use cloakroom::measure::verification::{self, VerificationError};
 use cloakroom::measure::{
-    self, Plan, QualityError, Region, Sweep, TableError, TableFormat, View,
-    quality as measured_quality,
+    self, Plan, QualityError, Region, Sweep, View, quality as measured_quality,
 };
 use cloakroom::output;
 use cloakroom::photograph::ImageSource;
 use cloakroom::render::RenderError;
+use cloakroom_figures::verification::{self, VerificationError};
+use cloakroom_figures::{STANDARD_PLOT, TableError, TableFormat, write_table};
 use ndarray::{ArrayD, IxDyn};
 use numpy::{IntoPyArray, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyFileNotFoundError, PyTypeError};
@@ -90,8 +90,8 @@ pub fn sweep(
         watch.supervise(|supervision| measured_quality(&plan, supervision)).map_err(quality_error)
     })??;
     if let (Some(path), Some(format)) = (&path, format) {
-        let plot: Vec<String> = Vec::new();
-        table.write(format, &plot, path).map_err(|error| match error {
+        let plot = STANDARD_PLOT.map(str::to_owned);
+        write_table(&table, format, &plot, path).map_err(|error| match error {
             TableError::Output(error) => output_error(&error),
             error => value_error(error),
         })?;

@@ -3,10 +3,10 @@
 use crate::errors::{output_error, render_error, value_error};
 use crate::scenes::Scene;
 use crate::supervision::supervised;
-use cloakroom::illustration::scalar_map;
-use cloakroom::output::{self, Channel, Format, Picture, RgbImage, Samples};
+use cloakroom::output::{self, Channel, Picture, RgbImage, Samples};
 use cloakroom::render as rendering;
-use cloakroom::render::{Studio, Tile, Wanted};
+use cloakroom::render::{ChannelSet, PreparedScene, Tile};
+use cloakroom_figures::{IllustrationError, PictureFormat, scalar_map, write_picture};
 use ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyFileNotFoundError, PyTypeError};
@@ -36,9 +36,9 @@ pub fn render<'py>(
         Tile { left, top, width, height }.check(scene.scene().camera.resolution())
     });
     let tile = tile.transpose().map_err(value_error)?;
-    let wanted = if image_only { Wanted::Image } else { Wanted::Everything };
+    let wanted = if image_only { ChannelSet::Image } else { ChannelSet::Everything };
     let rendered = supervised(py, progress.as_ref(), |watch| {
-        let studio = Studio::new(scene.scene()).map_err(|error| scene.located(&error))?;
+        let studio = PreparedScene::new(scene.scene()).map_err(|error| scene.located(&error))?;
         watch.begin(tile.map_or(studio.rows(), |tile| tile.height.into()));
         watch
             .supervise(|supervision| match tile {
@@ -47,9 +47,9 @@ pub fn render<'py>(
             })
             .map_err(|error| render_error(&error))
     })??;
-    let rarities = (rendered.rarities.endless, rendered.rarities.lost);
+    let stats = (rendered.stats.endless, rendered.stats.lost);
     let (channels, metadata) = arrays(py, rendered.picture)?;
-    Ok((channels, metadata, rarities))
+    Ok((channels, metadata, stats))
 }
 
 /// The channels of a picture as arrays, and its metadata. The memory of each channel goes to numpy as it is.
@@ -112,15 +112,14 @@ pub fn save(
     metadata: Vec<(String, String)>,
     map: (Option<String>, bool),
 ) -> PyResult<()> {
-    let format = Format::of(&path).map_err(|error| output_error(&error))?;
+    let format = PictureFormat::of(&path).map_err(|error| output_error(&error))?;
     let picture = picture_of(channels, metadata)?;
     supervised(py, None, |_| {
-        if format == Format::Png {
-            let image = shown(&picture, &map)?;
-            return output::write_png(&image, &picture.metadata, &path)
-                .map_err(|error| output_error(&error));
-        }
-        output::write(&picture, &path).map_err(|error| output_error(&error))
+        let map = (map.0.as_deref(), map.1);
+        write_picture(&picture, map, format, &path).map_err(|error| match error {
+            IllustrationError::Output(error) => output_error(&error),
+            error => value_error(error),
+        })
     })?
 }
 

@@ -3,8 +3,8 @@
 use crate::errors::{stopped, value_error};
 use crate::scenes::Scene;
 use crate::supervision::supervised;
+use cloakroom::ray_exchange::{Polarization, RayError, RayRequest, leaf_table};
 use cloakroom::render::ray_limits;
-use cloakroom::trace::{LeafTable, Polarization, RayError, RayRequest};
 use ndarray::{Array2, ArrayView2, Axis};
 use num_complex::Complex64;
 use numpy::{IntoPyArray, PyReadonlyArray2};
@@ -53,10 +53,10 @@ pub fn trace<'py>(
         RayRequest { origin: row(&origins), direction: row(&directions), polarization }
     };
     let table = supervised(py, progress.as_ref(), |watch| {
-        let bench = scene.bench().map_err(|error| scene.located(&error))?;
+        let assembly = scene.assembly().map_err(|error| scene.located(&error))?;
         watch.begin(count as u64);
         let done = |rays| watch.advance(rays);
-        LeafTable::trace(&bench, limits, count, &ray, &done, watch.stop()).map_err(ray_error)
+        leaf_table(&assembly, limits, count, &ray, &done, watch.stop()).map_err(ray_error)
     })??;
     let arrays = PyDict::new(py);
     arrays.set_item("ray", table.ray.into_pyarray(py))?;
@@ -77,7 +77,7 @@ fn triples<T>(rows: Vec<[T; 3]>) -> PyResult<Array2<T>> {
 
 fn ray_error(error: RayError) -> PyErr {
     match error {
-        RayError::Stopped => stopped(),
+        RayError::Stopped(_) => stopped(),
         RayError::TooMany { .. } => PyMemoryError::new_err(error.to_string()),
         RayError::Ray { .. } => value_error(error),
     }

@@ -3,32 +3,62 @@
 use crate::errors::{scene_error, value_error};
 use crate::images::Image;
 use crate::supervision::supervised;
+use crate::values::value_of;
+use cloakroom::assembly::Assembly;
+use cloakroom::keys::Value;
 use cloakroom::photograph::ImageSource;
-use cloakroom::render::{StudioError, bench};
-use cloakroom::scene::{self, SurroundingsSettings};
+use cloakroom::render::{PreparedSceneError, assembly};
+use cloakroom::scene;
 use cloakroom::scene_file::{self, Loaded, SceneFileError};
-use cloakroom::trace::Bench;
 use pyo3::exceptions::PyFileNotFoundError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-/// A scene that has been read: the text of a scene file, the folder that its files are relative to, overrides such as
-/// `camera.samples=16`, and images that are arrays.
+/// A scene that has been read, with overrides such as `camera.samples=16` and images that are arrays.
 #[pyclass(frozen, module = "cloakroom._cloakroom")]
 #[derive(Debug)]
 pub struct Scene {
-    text: String,
-    /// What messages call it: the file it comes from.
-    name: String,
-    folder: PathBuf,
-    /// Whether it comes from a file, so that messages may point into it.
-    is_file: bool,
+    written: Arc<Written>,
     overrides: Vec<String>,
     arrays: Arrays,
     loaded: Loaded,
     /// The devices, built when they are first needed.
-    bench: OnceLock<Arc<Bench>>,
+    assembly: OnceLock<Arc<Assembly>>,
+}
+
+/// What a scene is read from.
+#[derive(Debug)]
+struct Written {
+    content: Content,
+    /// What messages call it: the file it comes from.
+    name: String,
+    /// The folder that its files are relative to.
+    folder: PathBuf,
+    /// Whether it comes from a file, so that messages may point into it.
+    is_file: bool,
+}
+
+/// The text of a scene file, or its tables.
+#[derive(Debug)]
+enum Content {
+    Text(String),
+    Tables(Value),
+}
+
+impl Written {
+    fn read(&self, overrides: &[String], arrays: &Arrays) -> Result<Loaded, SceneFileError> {
+        let Self { name, folder, .. } = self;
+        let mut loaded = match &self.content {
+            Content::Text(text) => scene_file::parse(text, name, folder, overrides)?,
+            Content::Tables(tables) => {
+                scene_file::assemble(tables.clone(), name, folder, overrides)?
+            }
+        };
+        arrays.hang(folder, &mut loaded.scene);
+        Ok(loaded)
+    }
 }
 
 /// Images that are arrays, in the places of their names.
@@ -39,28 +69,31 @@ struct Arrays {
 }
 
 impl Arrays {
+    fn new(photograph: Option<&Image>, surroundings: Option<&Image>) -> Self {
+        let source = |image: Option<&Image>| image.map(|image| image.source.clone());
+        Self { photograph: source(photograph), surroundings: source(surroundings) }
+    }
+
     /// Puts them where a scene names them; an override may name a file instead.
     fn hang(&self, folder: &Path, scene: &mut scene::Scene) {
-        let stands = |image: &ImageSource, source: &ImageSource| {
-            let name = source.to_string();
-            [folder.join(&name), name.into()].map(ImageSource::File).contains(image)
+        let hang = |array: &Option<ImageSource>, image: &mut ImageSource| {
+            if let Some(source) = array {
+                let name = source.to_string();
+                if [folder.join(&name), name.into()].map(ImageSource::File).contains(image) {
+                    *image = source.clone();
+                }
+            }
         };
-        if let Some(source) = &self.photograph
-            && stands(&scene.photograph.image, source)
-        {
-            scene.photograph.image = source.clone();
-        }
-        if let Some(source) = &self.surroundings
-            && let SurroundingsSettings::Image(image) = &scene.surroundings
-            && stands(image, source)
-        {
-            scene.surroundings = SurroundingsSettings::Image(source.clone());
+        hang(&self.photograph, &mut scene.photograph.image);
+        if let Some(image) = &mut scene.surroundings.image {
+            hang(&self.surroundings, image);
         }
     }
 }
 
 #[pymethods]
 impl Scene {
+    /// The scene of a text.
     #[new]
     #[pyo3(signature = (text, name, folder, is_file, overrides, photograph=None, surroundings=None))]
     fn new(
@@ -72,14 +105,23 @@ impl Scene {
         photograph: Option<&Image>,
         surroundings: Option<&Image>,
     ) -> PyResult<Self> {
-        let loaded = scene_file::parse(&text, &name, &folder, &overrides)
-            .map_err(|error| scene_error(&error, is_file))?;
-        let source = |image: Option<&Image>| image.map(|image| image.source.clone());
-        let arrays = Arrays { photograph: source(photograph), surroundings: source(surroundings) };
-        let mut scene =
-            Self { text, name, folder, is_file, overrides, arrays, loaded, bench: OnceLock::new() };
-        scene.arrays.hang(&scene.folder, &mut scene.loaded.scene);
-        Ok(scene)
+        let written = Written { content: Content::Text(text), name, folder, is_file };
+        Self::read(Arc::new(written), overrides, Arrays::new(photograph, surroundings))
+    }
+
+    /// The scene of tables by their names, devices in the list `device`.
+    #[staticmethod]
+    #[pyo3(signature = (tables, folder, photograph=None, surroundings=None))]
+    fn of_tables(
+        tables: &Bound<'_, PyDict>,
+        folder: PathBuf,
+        photograph: Option<&Image>,
+        surroundings: Option<&Image>,
+    ) -> PyResult<Self> {
+        let name = "scene".to_owned();
+        let content = Content::Tables(value_of(&name, tables)?);
+        let written = Written { content, name, folder, is_file: false };
+        Self::read(Arc::new(written), Vec::new(), Arrays::new(photograph, surroundings))
     }
 
     /// Reads a scene file.
@@ -92,41 +134,53 @@ impl Scene {
                 PyFileNotFoundError::new_err(error.to_string())
             }
         })?;
-        let folder = path.parent().map(PathBuf::from).unwrap_or_default();
-        Ok(Self {
-            text: loaded.scene.source.clone(),
+        let written = Written {
+            content: Content::Text(loaded.scene.source.clone()),
             name: path.display().to_string(),
-            folder,
+            folder: path.parent().map(PathBuf::from).unwrap_or_default(),
             is_file: true,
-            overrides: Vec::new(),
-            arrays: Arrays::default(),
-            loaded,
-            bench: OnceLock::new(),
-        })
+        };
+        let (written, arrays) = (Arc::new(written), Arrays::default());
+        Ok(Self { written, overrides: Vec::new(), arrays, loaded, assembly: OnceLock::new() })
+    }
+
+    /// The same scene with other overrides and images.
+    #[pyo3(signature = (overrides, photograph=None, surroundings=None))]
+    fn replaced(
+        &self,
+        overrides: Vec<String>,
+        photograph: Option<&Image>,
+        surroundings: Option<&Image>,
+    ) -> PyResult<Self> {
+        let arrays = Arrays::new(photograph, surroundings);
+        Self::read(Arc::clone(&self.written), overrides, arrays)
     }
 
     /// The text of the scene file, without overrides.
     #[getter]
-    fn text(&self) -> &str {
-        &self.text
+    fn text(&self) -> String {
+        match &self.written.content {
+            Content::Text(text) => text.clone(),
+            Content::Tables(tables) => scene_file::text(tables),
+        }
     }
 
     /// What messages call it.
     #[getter]
     fn name(&self) -> &str {
-        &self.name
+        &self.written.name
     }
 
     /// The folder that its files are relative to.
     #[getter]
     fn folder(&self) -> &Path {
-        &self.folder
+        &self.written.folder
     }
 
     /// Whether it comes from a file.
     #[getter]
     fn is_file(&self) -> bool {
-        self.is_file
+        self.written.is_file
     }
 
     /// The scene as TOML, overrides applied.
@@ -144,31 +198,37 @@ impl Scene {
     /// The kinds of its devices.
     #[getter]
     fn kinds(&self) -> Vec<&'static str> {
-        self.scene().devices.iter().map(|device| device.entry.kind).collect()
+        self.scene().devices.iter().map(|device| device.kind()).collect()
     }
 
     /// What a PNG shows instead of what the camera sees, and whether with a bar of its colors.
     #[getter]
     fn map(&self) -> (Option<&'static str>, bool) {
-        (self.scene().picture.map, self.scene().picture.color_bar)
+        (self.scene().picture.map.name(), self.scene().picture.color_bar)
     }
 
     /// Builds the devices, and the rest of what a picture needs.
     fn check(&self, py: Python<'_>) -> PyResult<()> {
-        supervised(py, None, |_| cloakroom::render::Studio::new(self.scene()).map(drop))?
+        supervised(py, None, |_| cloakroom::render::PreparedScene::new(self.scene()).map(drop))?
             .map_err(|error| self.located(&error))
     }
 }
 
 impl Scene {
+    fn read(written: Arc<Written>, overrides: Vec<String>, arrays: Arrays) -> PyResult<Self> {
+        let loaded = written.read(&overrides, &arrays);
+        let loaded = loaded.map_err(|error| scene_error(&error, written.is_file))?;
+        Ok(Self { written, overrides, arrays, loaded, assembly: OnceLock::new() })
+    }
+
     /// The scene.
     pub fn scene(&self) -> &scene::Scene {
         &self.loaded.scene
     }
 
     /// An error of the built scene, at its place.
-    pub fn located(&self, error: &StudioError) -> PyErr {
-        if self.is_file {
+    pub fn located(&self, error: &PreparedSceneError) -> PyErr {
+        if self.written.is_file {
             let located = self.loaded.locations.error_at(&error.key(), error.to_string());
             return scene_error(&located, true);
         }
@@ -177,18 +237,15 @@ impl Scene {
 
     /// The same scene read again, with further overrides.
     pub fn reload(&self, further: &[String]) -> Result<Loaded, SceneFileError> {
-        let overrides = [&self.overrides, further].concat();
-        let mut loaded = scene_file::parse(&self.text, &self.name, &self.folder, &overrides)?;
-        self.arrays.hang(&self.folder, &mut loaded.scene);
-        Ok(loaded)
+        self.written.read(&[&self.overrides, further].concat(), &self.arrays)
     }
 
     /// Its devices, built.
-    pub fn bench(&self) -> Result<Arc<Bench>, StudioError> {
-        if let Some(bench) = self.bench.get() {
-            return Ok(Arc::clone(bench));
+    pub fn assembly(&self) -> Result<Arc<Assembly>, PreparedSceneError> {
+        if let Some(assembly) = self.assembly.get() {
+            return Ok(Arc::clone(assembly));
         }
-        let built = Arc::new(bench(self.scene())?);
-        Ok(Arc::clone(self.bench.get_or_init(|| built)))
+        let built = Arc::new(assembly(self.scene())?);
+        Ok(Arc::clone(self.assembly.get_or_init(|| built)))
     }
 }

@@ -93,7 +93,7 @@ pub fn object_of<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyA
         Value::Number(number) => number.into_pyobject(py)?.into_any(),
         Value::Integer(integer) => integer.into_pyobject(py)?.into_any(),
         Value::Flag(flag) => PyBool::new(py, *flag).to_owned().into_any(),
-        Value::Text(text) => PyString::new(py, text).into_any(),
+        Value::Text(text) | Value::Date(text) => PyString::new(py, text).into_any(),
         Value::List(items) => {
             let items =
                 items.iter().map(|item| object_of(py, item)).collect::<PyResult<Vec<_>>>()?;

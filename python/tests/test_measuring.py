@@ -65,6 +65,11 @@ def test_sweeps_are_grids(command, tmp_path) -> None:
     told: list[tuple[int, int]] = []
     table = sweep(scene, keys, tmp_path / "table.csv", progress=lambda *steps: told.append(steps))
     assert told[-1][0] == told[-1][1] > 0 and (tmp_path / "table.csv").exists()
+    sweep(scene, {"device.0.rotation": [0, 10]}, tmp_path / "plot.svg")
+    sweep(scene, {"device.0.rotation": [0, 10]}, tmp_path / "plot.pdf")
+    assert "Rotation (°)" in (tmp_path / "plot.svg").read_text()
+    assert "RMS displacement" in (tmp_path / "plot.svg").read_text()
+    assert (tmp_path / "plot.pdf").read_bytes().startswith(b"%PDF")
     assert table["device.0.rotation"].tolist() == [[0, 0], [10, 10], [20, 20]]
     assert table["camera.polarizer"][1].tolist() == ["horizontal", "vertical"]
     (tmp_path / "scene.toml").write_text(scene.toml)

@@ -63,6 +63,16 @@ def test_maps_are_images(cloak: Scene) -> None:
     assert not np.array_equal(picture.image, Picture(picture, picture.metadata).image)
 
 
+def test_maps_are_drawn_for_print(cloak: Scene, tmp_path: Path) -> None:
+    picture = cloak.replace({"picture.map": "delivered"}).render()
+    picture.save(tmp_path / "map.svg")
+    picture.save(tmp_path / "map.pdf")
+    assert "power delivered (%)" in (tmp_path / "map.svg").read_text()
+    assert (tmp_path / "map.pdf").read_bytes().startswith(b"%PDF")
+    with pytest.raises(ValueError, match="none.pdf would be a map"):
+        cloak.render().save(tmp_path / "none.pdf")
+
+
 def test_photographs_may_be_arrays(random: np.random.Generator, tmp_path: Path) -> None:
     """An array, in whatever order it lies in memory, is what the same file is."""
     image = pytest.importorskip("PIL.Image", reason="writes the file to compare with")
@@ -90,6 +100,20 @@ def test_floats_are_linear_light() -> None:
     np.testing.assert_allclose(color.linear[0, 0], [0.1, 0.2, 0.3], rtol=1e-6)
     sky = Scene(camera=camera, surroundings=np.full((2, 4, 3), 0.5), photograph={"x": -500}).render()
     np.testing.assert_allclose(sky.linear, 0.5, rtol=1e-6)
+
+
+def test_devices_and_photographs_in_any_pose() -> None:
+    camera = Camera(resolution=[24, 18], samples=1)
+    upright = Scene(camera=camera, devices=SquareCloak(), photograph=Photograph(x=40)).render()
+    photograph = Photograph(position=[40, 0, 0], normal=(-2, 0, 0), up=np.array([0, 5, 0]))
+    cloak = SquareCloak(axis=np.array([0, 0, 3]))
+    assert cloak.axis == [0, 0, 3] and SquareCloak().axis == [0, 0, 1]
+    same = Scene(camera=camera, devices=cloak, photograph=photograph).render()
+    np.testing.assert_array_equal(same.linear, upright.linear)
+    tilted = Scene(camera=camera, devices=SquareCloak(axis=[0, 1, 0]), photograph=photograph).render()
+    assert not np.array_equal(tilted.linear, upright.linear)
+    with pytest.raises(ValueError, match="axis is .0, 0, 0.; it must be a direction"):
+        Scene(devices=SquareCloak(axis=[0, 0, 0])).render()
 
 
 def test_scenes_can_be_sent_to_other_processes(cloak: Scene, tmp_path: Path, monkeypatch) -> None:

@@ -6,13 +6,14 @@ use crate::progress;
 use crate::render::tell_rarities;
 use crate::report::{Failure, say};
 use crate::scene;
-use cloakroom::animation::{
-    FilmError, FilmFormat, FilmSettings, FrameFolder, Projector, Timeline, image_files, write_film,
-};
 use cloakroom::output;
 use cloakroom::render::{RenderError, Supervision};
 use cloakroom::scene_file::{self, Loaded};
-use cloakroom::trace::Rarities;
+use cloakroom::timeline::Timeline;
+use cloakroom::trace::TraceStats;
+use cloakroom_figures::film::{
+    FilmError, FilmFormat, FilmSettings, FrameFolder, Projector, write_film,
+};
 use std::ffi::OsString;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -81,7 +82,7 @@ fn scenes(
         let loaded =
             scene_file::load(&arguments.scene.scene, &overrides).map_err(Failure::from_error)?;
         projector.studio(&loaded.scene).map_err(|error| scene::located(&loaded, &error))?;
-        if loaded.scene.picture.map.is_some() && arguments.map_range.is_none() {
+        if loaded.scene.picture.map.name().is_some() && arguments.map_range.is_none() {
             return Err(Failure::Failed(
                 "a film of a map needs one scale for all frames; give --map-range LOW,HIGH, in ns for times \
                  and as shares for powers"
@@ -110,19 +111,20 @@ fn render(
     let rows = scenes.first().map_or(0, |first| u64::from(first.scene.camera.resolution()[1]));
     let bar = progress::bar(rows * scenes.len() as u64, "rendering");
     let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
-    let (mut rarities, mut skipped) = (Rarities::default(), 0);
+    let (mut stats, mut skipped) = (TraceStats::default(), 0);
     let all = || {
         for (loaded, frame) in scenes.iter().zip(range) {
             let scene = &loaded.scene;
             let studio = projector.studio(scene).map_err(|error| scene::located(loaded, &error))?;
             let metadata = projector.metadata(scene);
-            if frames.is_finished(frame, &metadata, &image_files(scene, &studio)) {
+            let files: Vec<_> = scene.files().into_iter().map(|(_, file)| file).collect();
+            if frames.is_finished(frame, &metadata, &files) {
                 skipped += 1;
                 bar.inc(rows);
                 continue;
             }
             let (image, rare) = projector.frame(scene, &studio, &supervision).map_err(failure)?;
-            rarities += rare;
+            stats += rare;
             frames.write(frame, &image, &metadata).map_err(failure)?;
         }
         Ok(())
@@ -130,7 +132,7 @@ fn render(
     let rendered = all();
     bar.finish_and_clear();
     rendered?;
-    tell_rarities(&rarities);
+    tell_rarities(&stats);
     if skipped > 0 {
         say(&format!("{skipped} of {} frames were there already", scenes.len()));
     }

@@ -98,7 +98,8 @@ pub struct RenderArguments {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// A file to write; its ending decides: .png, .exr or .npz. May be given several times.
+    /// A file to write; its ending decides: .png, .exr or .npz, for a map (picture.map) also .svg or .pdf. May be given
+    /// several times.
     #[arg(short, long = "output", value_name = "FILE", required = true)]
     pub outputs: Vec<PathBuf>,
     /// More channels for .exr and .npz files, as in stokes,first_face_reflectance (`picture.channels`).

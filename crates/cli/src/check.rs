@@ -4,22 +4,21 @@ use crate::arguments::SceneArguments;
 use crate::devices::fact_lines;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::render::{Studio, estimated_seconds};
-use cloakroom::scene::Show;
+use cloakroom::render::{PreparedScene, estimated_seconds};
 use cloakroom::threads;
 use std::fmt::Write;
 
 /// Validates a scene and prints facts about it.
 pub fn run(arguments: &SceneArguments) -> Result<(), Failure> {
     let loaded = scene::load(arguments)?;
-    let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let studio = PreparedScene::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
     let mut text = String::new();
     describe(&studio, &loaded.scene, &mut text).map_err(Failure::from_error)?;
     report::print(&text)
 }
 
 fn describe(
-    studio: &Studio<'_>,
+    studio: &PreparedScene<'_>,
     scene: &cloakroom::scene::Scene,
     text: &mut String,
 ) -> std::fmt::Result {
@@ -35,21 +34,14 @@ fn describe(
     )?;
     writeln!(
         text,
-        "photograph   {}, {photo_width:.2} x {photo_height:.2} cm at x = {} cm",
-        scene.photograph.image, scene.photograph.x
+        "photograph   {}, {photo_width:.2} x {photo_height:.2} cm at {}",
+        scene.photograph.image,
+        scene.photograph.place()
     )?;
     for (index, device) in scene.devices.iter().enumerate() {
-        let show = match device.show {
-            Show::Cloak => "cloak",
-            Show::Bare => "bare",
-            Show::Mirror => "mirror",
-        };
-        writeln!(
-            text,
-            "device {index}     {}, shown as {show}, rotation {} degrees",
-            device.entry.kind, device.rotation
-        )?;
-        for line in fact_lines(device.entry, &device.values) {
+        let show = device.placement.show.word();
+        writeln!(text, "device {index}     {}, shown as {show}, {}", device.kind(), device.turn())?;
+        for line in fact_lines(device.facts()) {
             writeln!(text, "             {line}")?;
         }
     }

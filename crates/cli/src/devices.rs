@@ -2,8 +2,9 @@
 
 use crate::arguments::DevicesArguments;
 use crate::report::{self, Failure};
-use cloakroom::device::{CATALOGUE, Entry, FactValue};
-use cloakroom::keys::{Key, KeyKind, Values};
+use cloakroom::device::{CATALOGUE, Entry, Fact, FactValue};
+use cloakroom::json::json as value_json;
+use cloakroom::keys::{Key, KeyKind};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -26,7 +27,7 @@ fn as_json(entry: &Entry) -> Value {
     object.insert("title".into(), json!(entry.title));
     object.insert("summary".into(), json!(entry.summary));
     object.insert("keys".into(), keys_as_json(entry.keys));
-    for fact in (entry.facts)(&Values::defaults(entry.keys)) {
+    for fact in (entry.device)().facts() {
         let value = match fact.value {
             FactValue::Number(number) => json!(number),
             FactValue::Numbers(numbers) => json!(numbers),
@@ -38,7 +39,7 @@ fn as_json(entry: &Entry) -> Value {
 
 fn keys_as_json(keys: &[Key]) -> Value {
     let key = |key: &Key| {
-        let mut object = json!({ "name": key.name, "doc": key.doc, "allowed": key.describe(), "default": key.default_value().map(Value::from) });
+        let mut object = json!({ "name": key.name, "doc": key.doc, "allowed": key.describe(), "default": key.default_value().map(value_json) });
         if let KeyKind::Table { keys } | KeyKind::Tables { keys } = key.kind {
             object["keys"] = keys_as_json(keys);
         }
@@ -63,15 +64,15 @@ fn describe(entry: &Entry, text: &mut String) -> std::fmt::Result {
     writeln!(text, "{}\n  {}\n", entry.kind, entry.summary)?;
     describe_keys(entry.keys, "", text)?;
     writeln!(text)?;
-    for line in fact_lines(entry, &Values::defaults(entry.keys)) {
+    for line in fact_lines((entry.device)().facts()) {
         writeln!(text, "  {line}")?;
     }
     writeln!(text)
 }
 
 /// The computed facts of a device, a line each.
-pub fn fact_lines(entry: &Entry, values: &Values) -> Vec<String> {
-    (entry.facts)(values)
+pub fn fact_lines(facts: Vec<Fact>) -> Vec<String> {
+    facts
         .into_iter()
         .map(|fact| {
             let value = match fact.value {

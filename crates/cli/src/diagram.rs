@@ -2,18 +2,21 @@
 
 use crate::arguments::DiagramArguments;
 use crate::report::Failure;
-use crate::{drawn, interruption, scene};
-use cloakroom::illustration::{
-    self, Diagram, DiagramError, DiagramSettings, Projected, Setting, Source,
-};
+use crate::{interruption, scene};
 use cloakroom::output;
 use cloakroom::scene_file::Loaded;
+use cloakroom_figures::{
+    Diagram, DiagramError, DiagramSettings, DrawingFormat, Projected, Setting, Source,
+};
 use std::sync::atomic::AtomicBool;
 
 /// Draws a scene and writes every file asked for.
 pub fn run(arguments: &DiagramArguments, stop: &AtomicBool) -> Result<(), Failure> {
+    let formats: Vec<DrawingFormat> = (arguments.outputs.iter())
+        .map(|path| DrawingFormat::of(path))
+        .collect::<Result<_, _>>()
+        .map_err(Failure::from_error)?;
     for path in &arguments.outputs {
-        drawn::format(path)?;
         output::check_writable(path).map_err(Failure::from_error)?;
     }
     let loaded = scene::load(&arguments.scene)?;
@@ -26,16 +29,18 @@ pub fn run(arguments: &DiagramArguments, stop: &AtomicBool) -> Result<(), Failur
         settings.resolution = [width, height];
         scene.camera = cloakroom::scene::Camera::new(settings).map_err(Failure::from_error)?;
         let Setting { drawing, metadata, .. } =
-            illustration::setting(&scene).map_err(|e| scene::located(&loaded, &e))?;
+            cloakroom_figures::setting(&scene).map_err(|e| scene::located(&loaded, &e))?;
         (drawing, metadata, "Setting")
     } else {
         let Diagram { drawing, metadata } =
-            illustration::diagram(&loaded.scene, &settings(arguments), stop)
+            cloakroom_figures::diagram(&loaded.scene, &settings(arguments), stop)
                 .map_err(|error| failure(&loaded, error))?;
         (drawing, metadata, "Ray diagram")
     };
-    for path in &arguments.outputs {
-        drawn::write(&drawing, title, &metadata, arguments.size, path)?;
+    for (path, format) in arguments.outputs.iter().zip(formats) {
+        drawing
+            .write(format, title, &metadata, arguments.size, path)
+            .map_err(Failure::from_error)?;
     }
     Ok(())
 }

@@ -3,29 +3,29 @@
 use crate::arguments::ExportArguments;
 use crate::report::Failure;
 use crate::{interruption, progress, scene};
+use cloakroom::assembly::Assembly;
 use cloakroom::material::{self, Frame, MaterialError, Resolution};
 use cloakroom::output::{self, GridFormat};
 use cloakroom::render::{self, Supervision};
 use cloakroom::scene_file::Loaded;
-use cloakroom::trace::Bench;
 use std::sync::atomic::AtomicBool;
 
 /// Writes the material of a device.
 pub fn run(arguments: &ExportArguments, stop: &AtomicBool) -> Result<(), Failure> {
     scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene)?;
-    let bench = render::bench(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let assembly = render::assembly(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
     if arguments.table {
-        table(arguments, &loaded, &bench)
+        table(arguments, &loaded, &assembly)
     } else {
-        grid(arguments, &loaded, &bench, stop)
+        grid(arguments, &loaded, &assembly, stop)
     }
 }
 
 fn grid(
     arguments: &ExportArguments,
     loaded: &Loaded,
-    bench: &Bench,
+    assembly: &Assembly,
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
     GridFormat::of(&arguments.output).map_err(Failure::from_error)?;
@@ -38,7 +38,7 @@ fn grid(
     let begun = |rows| bar.set_length(rows);
     let sampled = material::sample(
         &loaded.scene,
-        bench,
+        assembly,
         arguments.device,
         frame,
         resolution,
@@ -50,8 +50,9 @@ fn grid(
     output::write_grid(&sampled, &arguments.output).map_err(Failure::from_error)
 }
 
-fn table(arguments: &ExportArguments, loaded: &Loaded, bench: &Bench) -> Result<(), Failure> {
-    let segments = material::segments(&loaded.scene, bench, arguments.device).map_err(failure)?;
+fn table(arguments: &ExportArguments, loaded: &Loaded, assembly: &Assembly) -> Result<(), Failure> {
+    let segments =
+        material::segments(&loaded.scene, assembly, arguments.device).map_err(failure)?;
     material::write_segments(&segments, &arguments.output).map_err(Failure::from_error)
 }
 

@@ -2,16 +2,16 @@
 
 use crate::arguments::FiguresArguments;
 use crate::interruption;
-use crate::panels::{self, merge, write_png};
+use crate::panels::{self, merge, write_drawing, write_png};
 use crate::render::rgb;
-use crate::report::{Failure, say};
+use crate::report::Failure;
 use crate::scene;
 use crate::views::{Subject, Views};
-use cloakroom::illustration::{self, ColorBar, ScalarMap, Setting, SheetPanel, sheet};
-use cloakroom::output::{self, RgbImage};
-use cloakroom::paper::{self, Figure, Panel, Shows};
+use cloakroom::output::RgbImage;
 use cloakroom::render::Images;
 use cloakroom::scene_file::Loaded;
+use cloakroom_figures::paper::{self, Figure, Panel, Shows};
+use cloakroom_figures::{ColorBar, ScalarMap, Setting, SheetPanel, sheet};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -54,8 +54,10 @@ fn make(
     }
     if chosen.len() == figure.panels.len() {
         let title = format!("Figure {}. {}", figure.number, figure.title);
-        let path = arguments.out.join(format!("fig{}.png", figure.number));
-        write_png(&sheet(&title, &on_sheet), &metadata, &path)?;
+        let drawing = sheet(&title, &on_sheet);
+        let files =
+            ["png", "pdf"].map(|ending| file(&figure.number.to_string(), ending, arguments));
+        write_drawing(&drawing, &title, &metadata, drawing.pixels(), &files)?;
     }
     Ok(())
 }
@@ -78,28 +80,27 @@ fn rendered(
     let picture = views.picture(index, images, stop)?;
     let Subject { panel, loaded, .. } = &views.subjects[index];
     let image = rgb(&loaded.scene, &picture)?;
-    let bar = match loaded.scene.picture.map {
+    let bar = match loaded.scene.picture.map.name() {
         Some(channel) => Some(ScalarMap::new(&picture, channel).map_err(Failure::from_error)?.bar),
         None => None,
     };
-    write_png(&image, &picture.metadata, &file(panel, "png", arguments))?;
+    write_png(&image, &picture.metadata, &file(panel.name, "png", arguments))?;
     Ok(Shown { image, bar, metadata: picture.metadata })
 }
 
 /// Draws the setting of a panel and writes it, in pixels and as lines.
 fn drawn(panel: &Panel, loaded: &Loaded, arguments: &FiguresArguments) -> Result<Shown, Failure> {
     let Setting { drawing, metadata, .. } =
-        illustration::setting(&loaded.scene).map_err(|e| scene::located(loaded, &e))?;
-    let image = drawing.to_image(arguments.panels.size).map_err(Failure::from_error)?;
-    let svg = drawing.to_svg(arguments.panels.size, panel.caption, &metadata);
-    write_png(&image, &metadata, &file(panel, "png", arguments))?;
-    let path = file(panel, "svg", arguments);
-    output::write_whole(&path, |out| out.write_all(svg.as_bytes())).map_err(Failure::from_error)?;
-    say(&format!("{}", path.display()));
+        cloakroom_figures::setting(&loaded.scene).map_err(|e| scene::located(loaded, &e))?;
+    let size = arguments.panels.size;
+    let image = drawing.to_image(size).map_err(Failure::from_error)?;
+    write_png(&image, &metadata, &file(panel.name, "png", arguments))?;
+    let files = ["svg", "pdf"].map(|ending| file(panel.name, ending, arguments));
+    write_drawing(&drawing, panel.caption, &metadata, size, &files)?;
     Ok(Shown { image, bar: None, metadata })
 }
 
-/// The file of a panel.
-fn file(panel: &Panel, ending: &str, arguments: &FiguresArguments) -> PathBuf {
-    arguments.out.join(format!("fig{}.{ending}", panel.name))
+/// The file of a panel or of a sheet.
+fn file(name: &str, ending: &str, arguments: &FiguresArguments) -> PathBuf {
+    arguments.out.join(format!("fig{name}.{ending}"))
 }

@@ -1,14 +1,13 @@
 //! `cloakroom flux`: the light that comes through to a receiver.
 
 use crate::arguments::FluxArguments;
-use crate::drawn::{self, DrawingFormat};
 use crate::report::{Failure, say};
 use crate::{interruption, progress, quality, render, report, scene};
 use cloakroom::flux::{self, Direction, FluxError, FluxReport, Sampling};
-use cloakroom::measure::TableFormat;
-use cloakroom::output;
+use cloakroom::output::{self, OutputError};
 use cloakroom::render::Supervision;
 use cloakroom::scene::Scene;
+use cloakroom_figures::{Drawing, DrawingFormat, TableFormat, flux_map, flux_plot};
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -16,7 +15,8 @@ use std::sync::atomic::AtomicBool;
 /// Measures the flux and writes every file asked for.
 pub fn run(arguments: &FluxArguments, stop: &AtomicBool) -> Result<(), Failure> {
     let files = quality::formats(&arguments.outputs)?;
-    arguments.map.as_deref().map(drawn::format).transpose()?;
+    let map = arguments.map.as_deref().map(|path| Ok((path, DrawingFormat::of(path)?)));
+    let map = map.transpose().map_err(|error: OutputError| Failure::from_error(error))?;
     for path in arguments.outputs.iter().chain(&arguments.map) {
         output::check_writable(path).map_err(Failure::from_error)?;
     }
@@ -36,17 +36,17 @@ pub fn run(arguments: &FluxArguments, stop: &AtomicBool) -> Result<(), Failure> 
         FluxError::Stopped => Failure::Interrupted,
         other => Failure::from_error(other),
     })?;
-    let mut rarities = cloakroom::trace::Rarities::default();
-    measured.incidences.iter().for_each(|incidence| rarities += incidence.rarities);
-    render::tell_rarities(&rarities);
+    let mut stats = cloakroom::trace::TraceStats::default();
+    measured.incidences.iter().for_each(|incidence| stats += incidence.stats);
+    render::tell_rarities(&stats);
     for (path, format) in files {
         write(&measured, axis, format, path)?;
     }
-    if let Some(path) = &arguments.map
-        && let Some(map) = flux::flux_map(&measured, axis)
+    if let Some((path, format)) = map
+        && let Some(map) = flux_map(&measured, axis)
     {
         let drawing = map.draw().map_err(Failure::from_error)?;
-        save(&drawing, "Irradiance of the receiver", &measured, path)?;
+        save(&drawing, "Irradiance of the receiver", &measured, (path, format))?;
     }
     report::print(&table(&measured, axis))
 }
@@ -85,23 +85,24 @@ fn write(
             output::write_whole(path, |out| out.write_all(text.as_bytes()))
                 .map_err(Failure::from_error)
         }
-        TableFormat::Svg | TableFormat::Png => {
-            save(&flux::flux_plot(measured, axis).draw(), "Flux on the receiver", measured, path)
+        TableFormat::Plot(format) => {
+            let drawing = flux_plot(measured, axis).draw();
+            save(&drawing, "Flux on the receiver", measured, (path, format))
         }
     }
 }
 
 fn save(
-    drawing: &cloakroom::illustration::Drawing,
+    drawing: &Drawing,
     title: &str,
     measured: &FluxReport,
-    path: &Path,
+    (path, format): (&Path, DrawingFormat),
 ) -> Result<(), Failure> {
-    let size = [drawing.size.x, drawing.size.y].map(|side| side.round() as u32);
-    if drawn::format(path)? == DrawingFormat::Png {
+    let size = drawing.pixels();
+    if format == DrawingFormat::Png {
         say(&format!("{}: {} x {} pixels", path.display(), size[0], size[1]));
     }
-    drawn::write(drawing, title, &measured.metadata, size, path)
+    drawing.write(format, title, &measured.metadata, size, path).map_err(Failure::from_error)
 }
 
 /// The totals and their convergence in words.

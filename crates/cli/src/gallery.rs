@@ -2,13 +2,13 @@
 
 use crate::arguments::GalleryArguments;
 use crate::interruption;
-use crate::panels::{self, merge, write_png};
+use crate::panels::{self, merge, write_drawing, write_png};
 use crate::render::{picture, rgb, tell_rarities};
 use crate::report::Failure;
 use crate::scene;
-use cloakroom::gallery::{self, EXHIBITS, Exhibit};
-use cloakroom::illustration::{ScalarMap, TablePicture, TableRow, table};
-use cloakroom::render::{Images, Rendered, Studio, Wanted};
+use cloakroom::render::{ChannelSet, Images, PreparedScene, Rendered};
+use cloakroom_figures::gallery::{self, EXHIBITS, Exhibit};
+use cloakroom_figures::{ScalarMap, TablePicture, TableRow, table};
 use std::sync::atomic::AtomicBool;
 
 /// The channel whose map stands beside the picture.
@@ -26,8 +26,9 @@ pub fn run(arguments: &GalleryArguments, stop: &AtomicBool) -> Result<(), Failur
         rows.push(make(exhibit, arguments, &mut images, &mut metadata, stop)?);
     }
     if chosen.len() == EXHIBITS.len() {
-        let path = arguments.out.join("gallery.png");
-        write_png(&table(gallery::TITLE, &rows), &metadata, &path)?;
+        let drawing = table(gallery::TITLE, &rows);
+        let files = ["gallery.png", "gallery.pdf"].map(|name| arguments.out.join(name));
+        write_drawing(&drawing, gallery::TITLE, &metadata, drawing.pixels(), &files)?;
     }
     Ok(())
 }
@@ -41,15 +42,18 @@ fn make(
     stop: &AtomicBool,
 ) -> Result<TableRow, Failure> {
     let loaded = panels::load(exhibit.scene, exhibit.name, &arguments.panels, &[])?;
-    let studio = Studio::with_images(&loaded.scene, images)
+    let studio = PreparedScene::with_images(&loaded.scene, images)
         .map_err(|error| scene::located(&loaded, &error))?;
-    let Rendered { picture, rarities } = picture(&studio, Wanted::Everything, exhibit.name, stop)?;
-    tell_rarities(&rarities);
+    let Rendered { picture, stats } = picture(&studio, ChannelSet::Everything, exhibit.name, stop)?;
+    tell_rarities(&stats);
     let image = rgb(&loaded.scene, &picture)?;
     let map = ScalarMap::new(&picture, MAP).map_err(Failure::from_error)?;
-    let file = |ending: &str| arguments.out.join(format!("{}{ending}.png", exhibit.name));
-    write_png(&image, &picture.metadata, &file(""))?;
-    write_png(&map.with_color_bar(), &picture.metadata, &file("-time-of-flight"))?;
+    let file = |ending: &str| arguments.out.join(format!("{}{ending}", exhibit.name));
+    write_png(&image, &picture.metadata, &file(".png"))?;
+    let drawing = map.draw(true);
+    let files = ["-time-of-flight.png", "-time-of-flight.pdf"].map(file);
+    let title = format!("{}: {}", exhibit.title, map.bar.quantity.title);
+    write_drawing(&drawing, &title, &picture.metadata, drawing.pixels(), &files)?;
     merge(metadata, &picture.metadata);
     Ok(TableRow {
         title: exhibit.title.to_owned(),

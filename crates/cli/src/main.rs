@@ -9,7 +9,6 @@ mod check;
 mod compare;
 mod devices;
 mod diagram;
-mod drawn;
 mod export;
 mod figures;
 mod flux;

@@ -4,7 +4,8 @@ use crate::arguments::PanelArguments;
 use crate::report::{Failure, say};
 use cloakroom::output::{self, RgbImage};
 use cloakroom::scene_file::{self, Loaded};
-use std::path::Path;
+use cloakroom_figures::{Drawing, DrawingFormat};
+use std::path::{Path, PathBuf};
 
 /// Makes the folder for the files.
 pub fn make_folder(folder: &Path) -> Result<(), Failure> {
@@ -43,6 +44,22 @@ pub fn write_png(
 ) -> Result<(), Failure> {
     output::write_png(image, metadata, path).map_err(Failure::from_error)?;
     say(&format!("{}", path.display()));
+    Ok(())
+}
+
+/// Writes a drawing as each of some files, and says so; a PNG has so many pixels.
+pub fn write_drawing(
+    drawing: &Drawing,
+    title: &str,
+    metadata: &[(String, String)],
+    pixels: [u32; 2],
+    files: &[PathBuf],
+) -> Result<(), Failure> {
+    for path in files {
+        let format = DrawingFormat::of(path).map_err(Failure::from_error)?;
+        drawing.write(format, title, metadata, pixels, path).map_err(Failure::from_error)?;
+        say(&format!("{}", path.display()));
+    }
     Ok(())
 }
 

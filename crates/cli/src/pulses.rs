@@ -3,13 +3,13 @@
 use crate::arguments::PulsesArguments;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::render::{self, PulseList, Studio};
+use cloakroom::render::{self, PreparedScene, PulseList};
 use std::fmt::Write;
 
 /// Lists the pulses of a pixel.
 pub fn run(arguments: &PulsesArguments) -> Result<(), Failure> {
     let loaded = scene::load(&arguments.scene)?;
-    let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let studio = PreparedScene::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
     let list = render::pulses(&studio, arguments.pixel)
         .map_err(|error| Failure::Usage(format!("--pixel: {error}")))?;
     if arguments.json {

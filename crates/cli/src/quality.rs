@@ -6,10 +6,11 @@ use crate::progress;
 use crate::render::tell_rarities;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::measure::{Hold, Plan, QualityError, QualityTable, Sweep, TableFormat, quality};
+use cloakroom::measure::{Constraint, Plan, QualityError, QualityTable, Sweep, quality};
 use cloakroom::output;
 use cloakroom::render::{RenderError, Supervision};
 use cloakroom::scene_file;
+use cloakroom_figures::{TableFormat, write_table};
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -39,10 +40,10 @@ pub fn run(arguments: &QualityArguments, stop: &AtomicBool) -> Result<(), Failur
     let load = |further: &[String]| {
         scene_file::load(&arguments.scene.scene, &[&arguments.scene.overrides, further].concat())
     };
-    let holds: Vec<Hold> = arguments
+    let holds: Vec<Constraint> = arguments
         .holds
         .iter()
-        .map(|text| Hold::parse(text))
+        .map(|text| Constraint::parse(text))
         .collect::<Result<_, _>>()
         .map_err(Failure::from_error)?;
     let plan = Plan::holding(sweeps, holds, load).map_err(failure)?;
@@ -57,9 +58,9 @@ pub fn run(arguments: &QualityArguments, stop: &AtomicBool) -> Result<(), Failur
     let table = quality(&plan, &supervision);
     bar.finish_and_clear();
     let table = table.map_err(failure)?;
-    tell_rarities(&table.rarities);
+    tell_rarities(&table.stats);
     for (path, format) in formats {
-        table.write(format, &arguments.plot, path).map_err(Failure::from_error)?;
+        write_table(&table, format, &arguments.plot, path).map_err(Failure::from_error)?;
     }
     if arguments.json {
         return report::print_json(&table.to_json());
@@ -116,7 +117,7 @@ fn text(table: &QualityTable) -> Result<String, std::fmt::Error> {
         }
         for (name, title) in &printed {
             let shown = table.column(name).map_or_else(
-                || "-".to_owned(),
+                |_| "-".to_owned(),
                 |index| number(row.numbers[index], row.standard_errors[index]),
             );
             write!(text, "{shown:>width$}", width = column(title))?;

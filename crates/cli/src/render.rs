@@ -5,11 +5,13 @@ use crate::interruption;
 use crate::progress;
 use crate::report::{Failure, say};
 use crate::scene;
-use cloakroom::illustration::scalar_map;
 use cloakroom::output::{self, Format, Picture};
-use cloakroom::render::{self, RenderError, Rendered, Studio, Supervision, Tile, Wanted};
+use cloakroom::render::{
+    self, ChannelSet, PreparedScene, RenderError, Rendered, Supervision, Tile,
+};
 use cloakroom::scene::Scene;
-use cloakroom::trace::Rarities;
+use cloakroom::trace::TraceStats;
+use cloakroom_figures::{IllustrationError, PictureFormat, scalar_map, write_picture};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -18,12 +20,17 @@ use std::sync::atomic::AtomicBool;
 pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure> {
     let formats = formats(&arguments.outputs)?;
     scene::use_threads(&arguments.threads)?;
-    let data = formats.iter().any(|(_, format)| *format != Format::Png);
+    let data = formats.iter().any(|(_, format)| !format.is_shown());
     let loaded =
         scene::load_with(&arguments.scene, channels(&arguments.channels, data)?.as_slice())?;
-    let studio = Studio::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
-    let wanted = if data { Wanted::Everything } else { Wanted::for_image(&loaded.scene.picture) };
-    for path in &arguments.outputs {
+    let studio = PreparedScene::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let wanted =
+        if data { ChannelSet::Everything } else { ChannelSet::for_image(&loaded.scene.picture) };
+    for (path, format) in &formats {
+        if matches!(format, PictureFormat::Map(_)) && loaded.scene.picture.map.name().is_none() {
+            let path = (*path).clone();
+            return Err(Failure::from_error(IllustrationError::NoMap { path }));
+        }
         output::check_writable(path).map_err(Failure::from_error)?;
     }
     let _busy = interruption::busy();
@@ -31,33 +38,34 @@ pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure
         let tile = check_tile(tile, &loaded.scene, &formats)?;
         return in_tile(&studio, wanted, tile, &formats, stop);
     }
-    if let [(path, Format::Png)] = formats[..]
-        && loaded.scene.picture.map.is_none()
+    if let [(path, PictureFormat::Pixels(Format::Png))] = formats[..]
+        && loaded.scene.picture.map.name().is_none()
         && render::strips(&studio).nth(1).is_some()
     {
         return in_strips(&studio, &loaded.scene, path, stop);
     }
-    let Rendered { picture, rarities } = picture(&studio, wanted, "rendering", stop)?;
-    tell_rarities(&rarities);
+    let Rendered { picture, stats } = picture(&studio, wanted, "rendering", stop)?;
+    tell_rarities(&stats);
+    let shown = &loaded.scene.picture;
     for (path, format) in formats {
-        if format == Format::Png {
-            output::write_png(&rgb(&loaded.scene, &picture)?, &picture.metadata, path)
-        } else {
-            output::write(&picture, path)
-        }
-        .map_err(Failure::from_error)?;
+        write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)
+            .map_err(Failure::from_error)?;
     }
     Ok(())
 }
 
 /// The tile, if the picture has one there and its files can be tiles.
-fn check_tile(tile: Tile, scene: &Scene, formats: &[(&PathBuf, Format)]) -> Result<Tile, Failure> {
+fn check_tile(
+    tile: Tile,
+    scene: &Scene,
+    formats: &[(&PathBuf, PictureFormat)],
+) -> Result<Tile, Failure> {
     for (path, format) in formats {
-        if *format == Format::Exr {
+        if matches!(format, PictureFormat::Pixels(Format::Exr) | PictureFormat::Map(_)) {
             let path = path.display();
             return Err(Failure::Failed(format!("{path}: a tile is a .npz or a .png")));
         }
-        if *format == Format::Png && scene.picture.map.is_some() {
+        if format.is_shown() && scene.picture.map.name().is_some() {
             return Err(Failure::Failed(format!(
                 "{}: the scale of a map is that of the whole picture; write tiles of it as .npz",
                 path.display()
@@ -69,18 +77,18 @@ fn check_tile(tile: Tile, scene: &Scene, formats: &[(&PathBuf, Format)]) -> Resu
 
 /// Renders a tile and writes its files.
 fn in_tile(
-    studio: &Studio<'_>,
-    wanted: Wanted,
+    studio: &PreparedScene<'_>,
+    wanted: ChannelSet,
     tile: Tile,
-    formats: &[(&PathBuf, Format)],
+    formats: &[(&PathBuf, PictureFormat)],
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
     let bar = progress::bar(tile.height.into(), "rendering");
     let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
     let rendered = render::render_tile(studio, wanted, tile, &supervision);
     bar.finish_and_clear();
-    let Rendered { picture, rarities } = rendered.map_err(failed)?;
-    tell_rarities(&rarities);
+    let Rendered { picture, stats } = rendered.map_err(failed)?;
+    tell_rarities(&stats);
     for (path, _) in formats {
         output::write(&picture, path).map_err(Failure::from_error)?;
     }
@@ -89,19 +97,19 @@ fn in_tile(
 
 /// Renders a large image strip by strip into its file.
 fn in_strips(
-    studio: &Studio<'_>,
+    studio: &PreparedScene<'_>,
     scene: &Scene,
     path: &Path,
     stop: &AtomicBool,
 ) -> Result<(), Failure> {
     let bar = progress::bar(studio.rows(), "rendering");
     let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
-    let (mut rarities, mut failure) = (Rarities::default(), None);
+    let (mut stats, mut failure) = (TraceStats::default(), None);
     let images = render::strips(studio).map(|rows| {
-        let strip = render::render_rows(studio, Wanted::Image, rows, &supervision)
+        let strip = render::render_rows(studio, ChannelSet::Image, rows, &supervision)
             .map_err(failed)
             .and_then(|strip| {
-                rarities += strip.rarities;
+                stats += strip.stats;
                 output::to_srgb(&strip.picture).map_err(Failure::from_error)
             });
         strip.map_err(|error| {
@@ -120,7 +128,7 @@ fn in_strips(
         return Err(failure);
     }
     written.map_err(Failure::from_error)?;
-    tell_rarities(&rarities);
+    tell_rarities(&stats);
     Ok(())
 }
 
@@ -139,14 +147,15 @@ fn channels(names: &[String], data: bool) -> Result<Option<String>, Failure> {
 }
 
 /// The files to write with their formats.
-fn formats(outputs: &[PathBuf]) -> Result<Vec<(&PathBuf, Format)>, Failure> {
-    outputs.iter().map(|path| Ok((path, Format::of(path).map_err(Failure::from_error)?))).collect()
+fn formats(outputs: &[PathBuf]) -> Result<Vec<(&PathBuf, PictureFormat)>, Failure> {
+    let format = |path| PictureFormat::of(path).map_err(Failure::from_error);
+    outputs.iter().map(|path| Ok((path, format(path)?))).collect()
 }
 
 /// Renders with a progress bar.
 pub fn picture(
-    studio: &Studio<'_>,
-    wanted: Wanted,
+    studio: &PreparedScene<'_>,
+    wanted: ChannelSet,
     what: &str,
     stop: &AtomicBool,
 ) -> Result<Rendered, Failure> {
@@ -166,7 +175,7 @@ fn failed(error: RenderError) -> Failure {
 
 /// What a PNG of the scene shows: the image, or the map of one channel.
 pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure> {
-    match scene.picture.map {
+    match scene.picture.map.name() {
         None => output::to_srgb(picture).map_err(Failure::from_error),
         Some(channel) => {
             scalar_map(picture, channel, scene.picture.color_bar).map_err(Failure::from_error)
@@ -175,17 +184,17 @@ pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure
 }
 
 /// Says what was rare, if anything was.
-pub fn tell_rarities(rarities: &Rarities) {
-    if rarities.endless > 0 {
+pub fn tell_rarities(stats: &TraceStats) {
+    if stats.endless > 0 {
         say(&format!(
             "note: {} branches of ray trees without end were cut, the weakest first; their power is in `pruned`",
-            rarities.endless
+            stats.endless
         ));
     }
-    if rarities.lost > 0 {
+    if stats.lost > 0 {
         say(&format!(
             "note: {} branches could not be followed through a device; their power is in `pruned`",
-            rarities.lost
+            stats.lost
         ));
     }
 }

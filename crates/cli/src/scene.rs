@@ -2,7 +2,7 @@
 
 use crate::arguments::{SceneArguments, ThreadsArguments};
 use crate::report::Failure;
-use cloakroom::render::StudioError;
+use cloakroom::render::PreparedSceneError;
 use cloakroom::scene_file::{self, Loaded};
 
 /// Reads a scene with its overrides.
@@ -17,7 +17,7 @@ pub fn load_with(arguments: &SceneArguments, further: &[String]) -> Result<Loade
 }
 
 /// An error of a scene that could be read but not built, at its place in the file.
-pub fn located(loaded: &Loaded, error: &StudioError) -> Failure {
+pub fn located(loaded: &Loaded, error: &PreparedSceneError) -> Failure {
     Failure::from_error(loaded.locations.error_at(&error.key(), error.to_string()))
 }
 

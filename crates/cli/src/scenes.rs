@@ -3,8 +3,8 @@
 use crate::arguments::ScenesArguments;
 use crate::panels::make_folder;
 use crate::report::{self, Failure, say};
-use cloakroom::examples::{self, Example};
 use cloakroom::output::write_whole;
+use cloakroom_figures::examples::{self, Example};
 use serde_json::{Value, json};
 use std::fs;
 use std::io::ErrorKind;

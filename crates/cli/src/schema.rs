@@ -4,7 +4,7 @@ use crate::arguments::SchemaArguments;
 use crate::report::{self, Failure};
 use cloakroom::device::CATALOGUE;
 use cloakroom::keys::{Key, KeyKind, Limits};
-use cloakroom::scene::{PLACEMENT_KEYS, TABLES};
+use cloakroom::scene::{Placement, TABLES};
 use cloakroom::scene_file;
 use std::fmt::{self, Write};
 
@@ -33,7 +33,7 @@ fn write_reference(text: &mut String) -> fmt::Result {
     }
     writeln!(text, "## `[[device]]`\n")?;
     writeln!(text, "Every device takes these keys beside its `kind` and the keys of its kind.\n")?;
-    write_table(PLACEMENT_KEYS, text)?;
+    write_table(Placement::KEYS, text)?;
     for entry in CATALOGUE {
         writeln!(text, "## `kind = \"{}\"`\n\n{}\n", entry.kind, entry.summary)?;
         if !entry.keys.is_empty() {
@@ -65,22 +65,13 @@ fn write_rows(keys: &[Key], prefix: &str, text: &mut String) -> fmt::Result {
 
 /// What values a key takes, with its limits.
 fn allowed(key: &Key) -> String {
-    let limits = match key.kind {
-        KeyKind::Number { limits, .. } | KeyKind::Vector { limits, .. } => match limits {
-            Limits::Finite => String::new(),
-            limits => limits.describe(),
-        },
-        KeyKind::Integer { min, max, .. } | KeyKind::IntegerPair { min, max, .. } => {
-            let max = if max == i64::MAX { String::new() } else { format!(" to {max}") };
-            format!("from {min}{max}")
-        }
+    match (key.kind, key.limits) {
         // The rows that follow name the keys.
-        KeyKind::Table { .. } => return "a table".to_owned(),
-        KeyKind::Tables { .. } => return "a list of tables".to_owned(),
-        _ => String::new(),
-    };
-    let allowed = key.describe();
-    if limits.is_empty() { allowed } else { format!("{allowed}, {limits}") }
+        (KeyKind::Table { .. }, _) => "a table".to_owned(),
+        (KeyKind::Tables { .. }, _) => "a list of tables".to_owned(),
+        (_, Limits::Finite) => key.describe(),
+        (_, limits) => format!("{}, {}", key.describe(), limits.describe()),
+    }
 }
 
 fn default(key: &Key) -> String {

@@ -5,15 +5,15 @@ use crate::input;
 use crate::interruption;
 use crate::report::{self, Failure};
 use crate::scene;
+use cloakroom::ray_exchange::{RayError, RayRequest, trace_rays};
 use cloakroom::render;
-use cloakroom::trace::{RayError, RayRequest, trace_rays};
 use std::sync::atomic::AtomicBool;
 
 /// Traces the rays of a file through a scene.
 pub fn run(arguments: &TraceArguments, stop: &AtomicBool) -> Result<(), Failure> {
     scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene)?;
-    let bench = render::bench(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let assembly = render::assembly(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
     if let Some(p) = arguments.min_power.filter(|p| !(0.0..=1.0).contains(p)) {
         return Err(Failure::Usage(format!("--min-power is {p}; it must be from 0 to 1")));
     }
@@ -21,8 +21,8 @@ pub fn run(arguments: &TraceArguments, stop: &AtomicBool) -> Result<(), Failure>
     let (text, name) = input::read(&arguments.rays)?;
     let rays = parse_rays(&text, &name)?;
     let busy = interruption::busy();
-    let reports = trace_rays(&bench, limits, &rays, stop).map_err(|error| match error {
-        RayError::Stopped => Failure::Interrupted,
+    let reports = trace_rays(&assembly, limits, &rays, stop).map_err(|error| match error {
+        RayError::Stopped(_) => Failure::Interrupted,
         error => Failure::Failed(format!("{name}: {error}")),
     })?;
     drop(busy);

@@ -5,7 +5,7 @@ use crate::interruption;
 use crate::progress;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::measure::verification::{self, VerificationError, markdown, verify};
+use cloakroom_figures::verification::{self, VerificationError, markdown, verify};
 use std::sync::atomic::AtomicBool;
 
 /// Goes through the paper and prints what has been found.

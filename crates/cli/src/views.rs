@@ -7,10 +7,10 @@ use crate::render::{picture, tell_rarities};
 use crate::report::Failure;
 use crate::scene;
 use cloakroom::output::Picture;
-use cloakroom::paper::{Panel, Shows};
-use cloakroom::render::{Images, Rendered, Studio, Wanted, metadata};
+use cloakroom::render::{ChannelSet, Images, PreparedScene, Rendered, metadata};
 use cloakroom::scene::Polarizer;
 use cloakroom::scene_file::Loaded;
+use cloakroom_figures::paper::{Panel, Shows};
 use std::sync::atomic::AtomicBool;
 
 /// A panel and its scene.
@@ -36,11 +36,11 @@ impl Subject {
     }
 
     /// What must be rendered of a view for it.
-    fn wanted_of_view(&self) -> Wanted {
-        let own = Wanted::for_image(&self.loaded.scene.picture);
+    fn wanted_of_view(&self) -> ChannelSet {
+        let own = ChannelSet::for_image(&self.loaded.scene.picture);
         match self.loaded.scene.camera.polarizer() {
             Polarizer::None => own,
-            _ => own.max(Wanted::Polarizers),
+            _ => own.max(ChannelSet::Polarizers),
         }
     }
 
@@ -51,7 +51,7 @@ impl Subject {
     /// Its own picture out of that of its view.
     fn of_view(&self, view: &Picture) -> Option<Picture> {
         let polarizer = self.loaded.scene.camera.polarizer();
-        let own = match (self.loaded.scene.picture.map, polarizer) {
+        let own = match (self.loaded.scene.picture.map.name(), polarizer) {
             (Some(_), _) => view.clone(),
             (None, Polarizer::None) => view.image_through("")?,
             (None, _) => view.image_through(&polarizer.to_string())?,
@@ -65,12 +65,13 @@ impl Views {
     pub fn new(panels: &[&'static Panel], arguments: &FiguresArguments) -> Result<Self, Failure> {
         let mut subjects = (panels.iter().map(|panel| Subject::new(panel, arguments)))
             .collect::<Result<Vec<_>, _>>()?;
-        let map = subjects.iter().find_map(|subject| subject.loaded.scene.picture.map);
+        let map = subjects.iter().find_map(|subject| subject.loaded.scene.picture.map.name());
         let map_override = map.map(|map| format!("picture.map={map}"));
         let overrides: Vec<&str> =
             std::iter::once("camera.polarizer=none").chain(map_override.as_deref()).collect();
         for Subject { panel, loaded, view } in &mut subjects {
-            let (own_map, polarizer) = (loaded.scene.picture.map, loaded.scene.camera.polarizer());
+            let (own_map, polarizer) =
+                (loaded.scene.picture.map.name(), loaded.scene.camera.polarizer());
             let shares = match polarizer {
                 Polarizer::None => own_map.is_none() || own_map == map,
                 Polarizer::Horizontal | Polarizer::Vertical => map.is_none(),
@@ -98,10 +99,10 @@ impl Views {
         let subject = &self.subjects[index];
         let what = format!("figure {}", subject.panel.name);
         let mut render = |loaded: &Loaded, wanted| {
-            let studio = Studio::with_images(&loaded.scene, images)
+            let studio = PreparedScene::with_images(&loaded.scene, images)
                 .map_err(|error| scene::located(loaded, &error))?;
-            let Rendered { picture, rarities } = picture(&studio, wanted, &what, stop)?;
-            tell_rarities(&rarities);
+            let Rendered { picture, stats } = picture(&studio, wanted, &what, stop)?;
+            tell_rarities(&stats);
             Ok(picture)
         };
         let sharing = || self.subjects.iter().filter(|s| s.view_text() == subject.view_text());
@@ -111,7 +112,7 @@ impl Views {
             let text = &view.scene.source;
             if !self.pictures.iter().any(|(known, _)| known == text) {
                 let wanted =
-                    sharing().map(Subject::wanted_of_view).fold(Wanted::Image, Wanted::max);
+                    sharing().map(Subject::wanted_of_view).fold(ChannelSet::Image, ChannelSet::max);
                 self.pictures.push((text.clone(), render(view, wanted)?));
             }
             let shared = self.pictures.iter().find(|(known, _)| known == text);
@@ -119,7 +120,7 @@ impl Views {
                 return Ok(picture);
             }
         }
-        render(&subject.loaded, Wanted::for_image(&subject.loaded.scene.picture))
+        render(&subject.loaded, ChannelSet::for_image(&subject.loaded.scene.picture))
     }
 }
 

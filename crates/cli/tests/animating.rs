@@ -1,10 +1,7 @@
 //! `cloakroom animate`: films and frames, work taken up again, work that is shared.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-#[expect(dead_code, reason = "of use to others")]
-mod running;
-
-use running::cloakroom;
+use crate::running::cloakroom;
 use std::fs;
 use std::path::Path;
 

@@ -1,9 +1,7 @@
 //! The commands at work: what they print and write.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod running;
-
-use running::{cloakroom, json, paper, stdout};
+use crate::running::{cloakroom, json, paper, stdout};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -281,8 +279,10 @@ fn the_gallery_has_a_picture_and_a_map_of_each_exhibit() {
         .collect();
     names.sort();
     let expected = [
+        "eaton-lens-time-of-flight.pdf",
         "eaton-lens-time-of-flight.png",
         "eaton-lens.png",
+        "square-cloak-time-of-flight.pdf",
         "square-cloak-time-of-flight.png",
         "square-cloak.png",
     ];
@@ -328,7 +328,9 @@ fn the_setting_is_drawn() {
         let svg = fs::read_to_string(plain.join(format!("{panel}.svg"))).unwrap();
         assert!(svg.contains(&format!("aria-label=\"{label}\"")) && svg.contains("[[device]]"));
     }
-    assert!(plain.join("fig1.png").is_file());
+    for name in ["fig1.png", "fig1.pdf", "fig1a.pdf"] {
+        assert!(plain.join(name).is_file(), "{name}");
+    }
     // The photograph in the drawing is the one that is looked at.
     let other = figures("other", &["--photo", red.to_str().unwrap()]);
     let reds = |folder: &Path| {
@@ -347,6 +349,24 @@ fn a_map_has_a_colour_bar() {
     assert!(map.width() > 360 && map.height() >= 240);
     let plain = pixels(folder.path(), "8d", &["picture.color_bar=false"]);
     assert_eq!(plain.dimensions(), (320, 240));
+}
+
+#[test]
+fn a_map_is_drawn_for_print() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = ["a.svg", "a.pdf"].map(|name| folder.path().join(name));
+    let render = |more: &[&str]| {
+        let mut command = cloakroom();
+        command.arg("render").arg(paper("6c")).args(["--set", "camera.resolution=[32,24]"]);
+        command.args(["--set", "camera.samples=1"]).args(more);
+        files.iter().for_each(|file| _ = command.arg("-o").arg(file));
+        command.assert()
+    };
+    let refused = render(&[]).failure().get_output().stderr.clone();
+    assert!(String::from_utf8(refused).unwrap().contains("a.svg would be a map"));
+    render(&["--set", "picture.map=delivered"]).success();
+    assert!(fs::read_to_string(&files[0]).unwrap().contains("power delivered (%)"));
+    assert!(fs::read(&files[1]).unwrap().starts_with(b"%PDF"));
 }
 
 #[cfg(unix)]

@@ -1,7 +1,7 @@
 //! What happens to others' machines: processes killed at any moment, folders that cannot be written, little memory,
 //! clocks that jump. No damaged file under a final name, and work begun again ends with the same bytes.
 #![cfg(unix)]
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};

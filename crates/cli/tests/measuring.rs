@@ -1,9 +1,7 @@
 //! Pictures compared and devices measured: what the commands print and write.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod running;
-
-use running::{cloakroom, json, paper, stdout};
+use crate::running::{cloakroom, json, paper, stdout};
 use std::fs;
 
 #[test]
@@ -39,7 +37,7 @@ fn pictures_are_compared() {
 #[test]
 fn quality_is_tabulated_and_plotted() {
     let folder = tempfile::tempdir().unwrap();
-    let files = ["a.csv", "a.npz", "a.svg", "a.png"].map(|name| folder.path().join(name));
+    let files = ["a.csv", "a.npz", "a.svg", "a.pdf", "a.png"].map(|name| folder.path().join(name));
     let mut command = cloakroom();
     command.arg("quality").arg(paper("6c"));
     command.args(["--set", "camera.resolution=[32,24]", "--set", "camera.samples=1"]);

@@ -1,10 +1,7 @@
 //! What the program carries along: its version, example scenes, completions and manual pages.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-#[expect(dead_code, reason = "other tests use the rest")]
-mod running;
-
-use running::{cloakroom, json, stdout};
+use crate::running::{cloakroom, json, stdout};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -1,15 +1,16 @@
 //! Rays through every device of the catalogue, one at a time, as `cloakroom trace` follows them; a new
 //! device, and each word that one of its keys takes, is here by itself.
 //!
-//! `cargo bench -p cloakroom --bench devices`; items are rays. What a device's error is for, `trace.tolerance`,
+//! `cargo assembly -p cloakroom --bench devices`; items are rays. What a device's error is for, `trace.tolerance`,
 //! is the default, 1e-6 cm; branches are followed down to the default share of the power, too. In `surfaces` items are
 //! what they meet.
 
-use cloakroom::device::{CATALOGUE, Cell, InnerRay, Prism};
+use cloakroom::assembly::Assembly;
+use cloakroom::device::{CATALOGUE, InnerRay, Region};
 use cloakroom::keys::KeyKind;
 use cloakroom::scene::Scene;
 use cloakroom::scene_file;
-use cloakroom::trace::{Bench, FourTracers, Launch, Leg, Limits, Tracer, Witness};
+use cloakroom::trace::{FourTracers, Launch, Limits, PathRecorder, PathSegment, Tracer};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use glam::DVec3;
@@ -64,12 +65,12 @@ fn scene(name: &str) -> Scene {
     loaded.expect("a sound scene").scene
 }
 
-fn bench(scene: &Scene) -> Bench {
-    cloakroom::render::bench(scene).expect("a sound device")
+fn assembly(scene: &Scene) -> Assembly {
+    cloakroom::render::assembly(scene).expect("a sound device")
 }
 
 fn limits(scene: &Scene) -> Limits {
-    Limits { min_power: scene.trace.min_power, tolerance: scene.trace.tolerance }
+    Limits { min_power: scene.trace.min_power.value, tolerance: scene.trace.tolerance }
 }
 
 /// Rays of a camera 100 cm before the device, or above the floor of a carpet, in blocks of 2 x 2 neighbours
@@ -98,8 +99,8 @@ fn launches(name: &str) -> Vec<Launch<2>> {
 #[divan::bench(args = devices())]
 fn one_ray(bencher: Bencher, name: &str) {
     let scene = scene(name);
-    let (bench, launches) = (bench(&scene), launches(name));
-    let mut tracer = Tracer::new(&bench, limits(&scene));
+    let (assembly, launches) = (assembly(&scene), launches(name));
+    let mut tracer = Tracer::new(&assembly, limits(&scene));
     bencher.counter(ItemsCount::new(RAYS)).bench_local(|| {
         for launch in black_box(&launches) {
             black_box(tracer.trace(launch));
@@ -110,8 +111,8 @@ fn one_ray(bencher: Bencher, name: &str) {
 /// Counts the surfaces that a tree meets.
 struct Surfaces(u64);
 
-impl Witness<2> for Surfaces {
-    fn saw(&mut self, _: impl FnOnce() -> Leg<2>) {
+impl PathRecorder<2> for Surfaces {
+    fn record(&mut self, _: impl FnOnce() -> PathSegment<2>) {
         self.0 += 1;
     }
 }
@@ -120,13 +121,13 @@ impl Witness<2> for Surfaces {
 #[divan::bench(args = devices())]
 fn surfaces(bencher: Bencher, name: &str) {
     let scene = scene(name);
-    let (bench, launches) = (bench(&scene), launches(name));
-    let mut watched = Tracer::new(&bench, limits(&scene)).watched(Surfaces(0));
+    let (assembly, launches) = (assembly(&scene), launches(name));
+    let mut watched = Tracer::new(&assembly, limits(&scene)).watched(Surfaces(0));
     for launch in &launches {
         watched.trace(launch);
     }
-    let count = watched.witness().0;
-    let mut tracer = Tracer::new(&bench, limits(&scene));
+    let count = watched.recorder().0;
+    let mut tracer = Tracer::new(&assembly, limits(&scene));
     bencher.counter(ItemsCount::new(count)).bench_local(|| {
         for launch in black_box(&launches) {
             black_box(tracer.trace(launch));
@@ -138,8 +139,8 @@ fn surfaces(bencher: Bencher, name: &str) {
 #[divan::bench(args = devices())]
 fn four_rays(bencher: Bencher, name: &str) {
     let scene = scene(name);
-    let (bench, launches) = (bench(&scene), launches(name));
-    let mut tracers = FourTracers::new(&Tracer::new(&bench, limits(&scene)));
+    let (assembly, launches) = (assembly(&scene), launches(name));
+    let mut tracers = FourTracers::new(&Tracer::new(&assembly, limits(&scene)));
     bencher.counter(ItemsCount::new(RAYS)).bench_local(|| {
         for four in black_box(&launches).as_chunks().0 {
             tracers.trace(black_box(four));
@@ -150,14 +151,14 @@ fn four_rays(bencher: Bencher, name: &str) {
 /// The way through a homogeneous prism, a segment of the square cloak; items are legs.
 #[divan::bench]
 fn prism(bencher: Bencher) {
-    let bench = bench(&scene("square-cloak"));
-    let cells = bench.devices().iter().flat_map(|device| &device.structure.cells);
+    let assembly = assembly(&scene("square-cloak"));
+    let regions = assembly.devices().iter().flat_map(|device| &device.structure.regions);
     // The middle of one of the four triangles.
-    let (cell, inside) = cells
-        .flat_map(|cell| [(1, 1), (-1, 1), (1, -1), (-1, -1)].map(|signs| (cell, signs)))
-        .map(|(cell, (x, y))| (cell, DVec3::new(3.3 * f64::from(x), 5.2 * f64::from(y), 0.0)))
-        .find(|(cell, point)| match cell {
-            Cell::Prism(Prism { faces, .. }) => (faces.iter())
+    let (region, inside) = regions
+        .flat_map(|region| [(1, 1), (-1, 1), (1, -1), (-1, -1)].map(|signs| (region, signs)))
+        .map(|(region, (x, y))| (region, DVec3::new(3.3 * f64::from(x), 5.2 * f64::from(y), 0.0)))
+        .find(|(region, point)| match region {
+            Region::Homogeneous(region) => (region.faces().iter())
                 .all(|face| face.plane.normal.dot(face.plane.project(*point) - point) > 0.0),
             _ => false,
         })
@@ -167,12 +168,12 @@ fn prism(bencher: Bencher) {
             let angle = std::f64::consts::TAU * f64::from(n) / f64::from(RAYS);
             let direction = DVec3::new(angle.cos(), angle.sin(), 0.1).normalize();
             let (wave_vector, mode) = (direction, ModeKind::Shared);
-            InnerRay { position: inside, wave_vector, direction, mode, foothold: None }
+            InnerRay { position: inside, wave_vector, direction, mode, virtual_point: None }
         })
         .collect();
     bencher.counter(ItemsCount::new(RAYS)).bench(|| {
         for ray in black_box(&rays) {
-            black_box(cell.advance(ray, 1e-6));
+            black_box(region.advance(ray, 1e-6));
         }
     });
 }

@@ -1,9 +1,9 @@
 //! Whole frames at 256 x 256 pixels, 1 sample each, and what comes before the first pixel.
 //!
-//! `cargo bench -p cloakroom --bench frames`; items are pixels.
+//! `cargo assembly -p cloakroom --bench frames`; items are pixels.
 
 use cloakroom::photograph::{self, Edges, Pyramid};
-use cloakroom::render::{Studio, Supervision, Wanted, render};
+use cloakroom::render::{ChannelSet, PreparedScene, Supervision, render};
 use cloakroom::scene::Scene;
 use cloakroom::scene_file;
 use divan::Bencher;
@@ -38,16 +38,16 @@ fn scene(name: &str, resolution: u32) -> Scene {
     scene_file::parse(&text, name, Path::new(""), &[]).expect("a sound scene").scene
 }
 
-fn picture(studio: &Studio<'_>) {
+fn picture(studio: &PreparedScene<'_>) {
     let stop = AtomicBool::new(false);
     let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-    divan::black_box(render(studio, Wanted::Image, &supervision).expect("a picture"));
+    divan::black_box(render(studio, ChannelSet::Image, &supervision).expect("a picture"));
 }
 
 #[divan::bench(args = SCENES.map(|(name, ..)| name))]
 fn frame(bencher: Bencher, name: &str) {
     let scene = scene(name, 256);
-    let studio = Studio::new(&scene).expect("a sound scene");
+    let studio = PreparedScene::new(&scene).expect("a sound scene");
     bencher.counter(ItemsCount::new(256u32 * 256)).bench(|| picture(&studio));
 }
 
@@ -56,7 +56,7 @@ fn frame(bencher: Bencher, name: &str) {
 fn start_up(bencher: Bencher, name: &str) {
     bencher.bench(|| {
         let scene = scene(name, 64);
-        picture(&Studio::new(&scene).expect("a sound scene"));
+        picture(&PreparedScene::new(&scene).expect("a sound scene"));
     });
 }
 

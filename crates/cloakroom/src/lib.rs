@@ -10,25 +10,22 @@
 //! Lengths are in cm, angles in degrees, times in ns, unless a name says otherwise; axes and signs
 //! are those of [`optics::wave`].
 
-pub mod animation;
-pub mod device;
-mod direction;
-pub mod examples;
 pub mod flux;
-pub mod gallery;
-pub mod illustration;
+mod index_file;
 pub mod input;
 pub mod interface_exchange;
-pub mod keys;
+pub mod json;
 pub mod material;
 pub mod measure;
-mod memory;
+pub mod memory;
 pub mod output;
-pub mod paper;
 pub mod photograph;
+pub mod ray_exchange;
 pub mod render;
 pub mod scene;
 pub mod scene_file;
-mod split_mix;
 pub mod threads;
-pub mod trace;
+pub mod timeline;
+
+use cloakroom_trace::split_mix;
+pub use cloakroom_trace::{assembly, device, keys, walk as trace};

@@ -3,7 +3,7 @@
 /// Memory that this process can take without swapping, in bytes: what the system has, what is left of its control group
 /// (a container, a job of a cluster), and of its own limit (`ulimit -v`); `None` where the system does not say.
 #[must_use]
-pub(crate) fn available() -> Option<u64> {
+pub fn available() -> Option<u64> {
     of_what_is_read(&|path| std::fs::read_to_string(path).ok())
 }
 

@@ -1,10 +1,8 @@
 //! Samples where the picture has edges, on request.
 #![allow(clippy::unwrap_used)]
 
-mod pictures;
-
+use crate::pictures::{difference, png};
 use cloakroom::output::RgbImage;
-use pictures::{difference, png};
 
 /// A coloured ball before the photograph.
 fn scene(samples: u32, adaptive: f64) -> String {

@@ -1,16 +1,16 @@
 //! One suite that every device of the catalogue must pass, whatever it is: the account of the power,
 //! the way back, no numbers that are none, and its bare and mirror views.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod rays;
-
+use crate::long::count;
+use crate::rays::{launches_around, strongest, try_bench};
+use cloakroom::assembly::{Assembly, MOST_DEVICES};
 use cloakroom::device::{CATALOGUE, FactValue, entry};
-use cloakroom::keys::{KeyKind, Values};
-use cloakroom::render::{StudioError, bench};
+use cloakroom::keys::{KeyKind, Value};
+use cloakroom::render::{PreparedSceneError, assembly};
 use cloakroom::scene::{DeviceSettings, Scene};
-use cloakroom::trace::{Bench, Launch, Limits, MOST_DEVICES, Tracer};
+use cloakroom::trace::{Launch, Limits, Tracer};
 use glam::DVec3;
-use rays::{launches_around, strongest, try_bench};
 
 /// What a kind needs to be something: its tables or media, of indices so low that boxes cannot trap light.
 const MORE: &[(&str, &str)] = &[
@@ -56,7 +56,7 @@ const OPEN_CORES: &[(&str, &str)] = &[
 
 /// Every device in every view, endless and short, at a few rotations and places, in each of the words
 /// that its keys take, with a description.
-fn benches() -> Vec<(String, Bench)> {
+fn benches() -> Vec<(String, Assembly)> {
     let mut benches = Vec::new();
     for entry in CATALOGUE {
         let mut variants = vec![String::new()];
@@ -64,7 +64,8 @@ fn benches() -> Vec<(String, Bench)> {
             match key.kind {
                 KeyKind::Choice { options } => variants
                     .extend(options[1..].iter().map(|word| format!("{} = \"{word}\"\n", key.name))),
-                KeyKind::Flag { default } => {
+                KeyKind::Flag => {
+                    let default = key.default_value() == Some(Value::Flag(true));
                     variants.push(format!("{} = {}\n", key.name, !default));
                 }
                 _ => {}
@@ -85,23 +86,23 @@ fn benches() -> Vec<(String, Bench)> {
                     }
                     let tables = MORE.iter().filter(|(kind, _)| *kind == entry.kind);
                     text.extend(tables.map(|(_, tables)| *tables));
-                    let bench = match try_bench(&text) {
-                        Ok(bench) => bench,
+                    let assembly = match try_bench(&text) {
+                        Ok(assembly) => assembly,
                         // What is no cloak has no other views.
-                        Err(StudioError::Device { error, .. })
+                        Err(PreparedSceneError::Device { error, .. })
                             if matches!(error.key, Some("show" | "core")) && show != "cloak" =>
                         {
                             break;
                         }
                         // A box or a ball has no length of its own.
-                        Err(StudioError::Device { error, .. })
+                        Err(PreparedSceneError::Device { error, .. })
                             if error.key == Some("length") && length.is_some() =>
                         {
                             continue;
                         }
                         Err(error) => panic!("{text}{error}"),
                     };
-                    benches.push((text, bench));
+                    benches.push((text, assembly));
                     if show != "cloak" {
                         // Metal and mirrors know nothing of the cloak's material.
                         break;
@@ -135,20 +136,16 @@ fn may_trap_light(device: &str) -> bool {
 
 #[test]
 fn power_is_accounted_for() {
-    for (what, bench) in benches() {
+    for (what, assembly) in benches() {
         // The deep trees of birefringent devices have thousands of branches.
-        let deep = if is_birefringent(&what) { (1e-8, 100) } else { (1e-9, 1000) };
-        for (min_power, rays) in [(1e-4, 2000), deep] {
-            let mut tracer = Tracer::new(&bench, Limits { min_power, tolerance: 1e-6 });
+        let deep =
+            if is_birefringent(&what) { (1e-8, count(8, 100)) } else { (1e-9, count(60, 1000)) };
+        for (min_power, rays) in [(1e-4, count(120, 2000)), deep] {
+            let mut tracer = Tracer::new(&assembly, Limits { min_power, tolerance: 1e-6 });
             for launch in launches(rays) {
                 let (leaves, outcome) = tracer.trace(&launch);
-                for i in 0..2 {
-                    let sum: f64 = leaves.iter().map(|leaf| leaf.power[i]).sum();
-                    let total = sum + outcome.absorbed[i] + outcome.pruned[i];
-                    assert!((total - 1.0).abs() < 1e-12, "{what}{launch:?}: {total}");
-                }
-                assert_eq!(outcome.rarities.lost, 0, "{what}{launch:?}");
-                assert!(outcome.rarities.endless == 0 || may_trap_light(&what), "{what}{launch:?}");
+                outcome.assert_balanced(leaves, 1e-12, &(&what, launch));
+                assert!(outcome.stats.endless == 0 || may_trap_light(&what), "{what}{launch:?}");
             }
         }
     }
@@ -156,9 +153,10 @@ fn power_is_accounted_for() {
 
 #[test]
 fn leaves_are_sound_waves_in_air() {
-    for (what, bench) in benches() {
-        let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-9, tolerance: 1e-6 });
-        for launch in launches(if is_birefringent(&what) { 100 } else { 500 }) {
+    for (what, assembly) in benches() {
+        let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-9, tolerance: 1e-6 });
+        for launch in launches(if is_birefringent(&what) { count(8, 100) } else { count(40, 500) })
+        {
             let (leaves, _) = tracer.trace(&launch);
             assert!(!leaves.is_empty(), "{what}{launch:?}");
             for leaf in leaves {
@@ -181,10 +179,10 @@ fn leaves_are_sound_waves_in_air() {
 /// The strongest leaf, sent back where it came from, comes out where the ray started.
 #[test]
 fn the_way_back_leads_home() {
-    for (what, bench) in benches() {
-        let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-3, tolerance: 1e-9 });
+    for (what, assembly) in benches() {
+        let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-3, tolerance: 1e-9 });
         let (mut off, mut all) = (0, 0);
-        for launch in launches(600) {
+        for launch in launches(count(120, 600)) {
             // From beyond the widest floor: on its way home a ray must not meet it after the start.
             let launch = Launch { origin: launch.origin - 400.0 * launch.direction, ..launch };
             let (leaves, _) = tracer.trace(&launch);
@@ -225,15 +223,15 @@ fn the_way_back_leads_home() {
 fn more_devices_than_can_be_numbered_are_refused() {
     let mirror = DeviceSettings::new(entry("mirror-detour").unwrap());
     let scene = Scene { devices: vec![mirror; MOST_DEVICES + 1], ..Scene::default() };
-    let error = bench(&scene).unwrap_err();
-    assert!(matches!(error, StudioError::TooManyDevices { count: 65_536 }), "{error}");
+    let error = assembly(&scene).unwrap_err();
+    assert!(matches!(error, PreparedSceneError::TooManyDevices { count: 65_536 }), "{error}");
     assert_eq!(error.key(), "device.65535");
 }
 
 #[test]
 fn facts_are_finite_and_named_with_units() {
     for entry in CATALOGUE {
-        let facts = (entry.facts)(&Values::defaults(entry.keys));
+        let facts = (entry.device)().facts();
         assert!(!facts.is_empty(), "{}", entry.kind);
         for fact in facts {
             let finite = match &fact.value {

@@ -1,14 +1,13 @@
 //! Design (iv) against a slow integration of the paper's own equation of motion in physical space, with
 //! Snell's law at the cut and the law of reflection at the metal.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod equation_of_motion;
-mod rays;
-
-use cloakroom::trace::{Bench, Launch, Leaf, Limits, Tracer};
-use equation_of_motion::{Expected, GradedHalf, gaussian, refract};
+use crate::equation_of_motion::{Expected, GradedHalf, gaussian, refract};
+use crate::long::count;
+use crate::rays::{self, launch, spread, strongest};
+use cloakroom::assembly::Assembly;
+use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::{DMat3, DVec3};
-use rays::{launch, spread, strongest};
 use std::f64::consts::PI;
 
 /// Half the cut along x and y.
@@ -48,8 +47,8 @@ fn reference(upper: &GradedHalf, origin: DVec3, direction: DVec3) -> Option<Expe
     Some(Expected { position: flip(end.position), direction: flip(end.direction), ..end })
 }
 
-fn bench(extra: &str) -> Bench {
-    rays::bench(&format!("[[device]]\nkind = \"double-gaussian-cloak\"\n{extra}\n"))
+fn assembly(extra: &str) -> Assembly {
+    rays::assembly(&format!("[[device]]\nkind = \"double-gaussian-cloak\"\n{extra}\n"))
 }
 
 #[test]
@@ -62,13 +61,14 @@ fn rays_agree_with_the_equation_of_motion() {
         [(0.0, DVec3::ZERO), (17.0, DVec3::new(3.0, -1.0, 2.0)), (75.0, DVec3::ZERO)]
     {
         let [x, y, z] = position.to_array();
-        let bench = bench(&format!("rotation = {rotation:?}\nposition = [{x:?}, {y:?}, {z:?}]"));
+        let assembly =
+            assembly(&format!("rotation = {rotation:?}\nposition = [{x:?}, {y:?}, {z:?}]"));
         let trace = |launch: &Launch<2>, tolerance: f64| {
-            let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-3, tolerance });
+            let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-3, tolerance });
             strongest(tracer.trace(launch).0)
         };
         let turn = DMat3::from_rotation_z(f64::to_radians(rotation));
-        for n in 1..=180 {
+        for n in 1..=count(45, 180) {
             let angle = 2.0 * PI * spread(n, 0);
             let origin = position
                 + DVec3::new(70.0 * angle.cos(), 70.0 * angle.sin(), 60.0 * (spread(n, 1) - 0.5));
@@ -97,14 +97,17 @@ fn rays_agree_with_the_equation_of_motion() {
             mirrored += u32::from(expected.mirrored);
         }
     }
-    assert!(compared > 250 && mirrored > 60, "{compared} compared, {mirrored} mirrored");
+    assert!(
+        compared > count(60, 250) && mirrored > count(15, 60),
+        "{compared} compared, {mirrored} mirrored"
+    );
     assert!(beyond_default * 1000 <= compared, "{beyond_default} of {compared}");
 }
 
 #[test]
 fn light_on_the_axis_is_late_by_68_picoseconds() {
-    let bench = bench("");
-    let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-3, tolerance: 1e-8 });
+    let assembly = assembly("");
+    let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-3, tolerance: 1e-8 });
     // The last hair above the axis, where the metal's blunt ends are passed.
     let leaf = strongest(tracer.trace(&launch(DVec3::new(-100.0, 0.05, 0.0), DVec3::X)).0);
     let late = (leaf.optical_path - (leaf.position.x + 100.0)) / C;
@@ -113,8 +116,8 @@ fn light_on_the_axis_is_late_by_68_picoseconds() {
 
 #[test]
 fn light_in_the_default_view_is_late_by_less_than_a_tenth_of_a_nanosecond() {
-    let bench = bench("");
-    let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-3, tolerance: 1e-6 });
+    let assembly = assembly("");
+    let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-3, tolerance: 1e-6 });
     let mut seen = 0;
     let mut largest: f64 = 0.0;
     for row in 0..60 {
@@ -140,8 +143,8 @@ fn light_in_the_default_view_is_late_by_less_than_a_tenth_of_a_nanosecond() {
 }
 
 /// Power reflected by the first face for a ray from the camera of the paper.
-fn first_reflection(bench: &Bench, direction: DVec3) -> [f64; 2] {
-    let mut tracer = Tracer::new(bench, Limits { min_power: 1e-9, tolerance: 1e-6 });
+fn first_reflection(assembly: &Assembly, direction: DVec3) -> [f64; 2] {
+    let mut tracer = Tracer::new(assembly, Limits { min_power: 1e-9, tolerance: 1e-6 });
     let launch = launch(DVec3::new(-100.0, 0.0, 0.0), direction.normalize());
     let (leaves, _) = tracer.trace(&launch);
     // It leaves where it has come in, having met nothing else.
@@ -158,13 +161,13 @@ fn the_front_face_reflects_little() {
     // Fresnel's formulas with the index at the cut: up to 0.06 % near the middle, 0.12 % a polarization
     // up to a rotation of 20 degrees.
     for rotation in [0, 5, 10, 20] {
-        let bench = bench(&format!("rotation = {rotation}"));
+        let assembly = assembly(&format!("rotation = {rotation}"));
         let (mut largest, mut middle): (f64, f64) = (0.0, 0.0);
-        for n in 1..=3000 {
+        for n in 1..=count(600, 3000) {
             let direction =
                 DVec3::new(1.0, 0.54 * (spread(n, 0) - 0.5), 0.72 * (spread(n, 1) - 0.5));
             // The front face alone, not the sides that the turned box shows, nor the metal's blunt ends.
-            let [h, v] = first_reflection(&bench, direction);
+            let [h, v] = first_reflection(&assembly, direction);
             let turn = DMat3::from_rotation_z(-f64::from(rotation).to_radians());
             let (eye, d) = (turn * DVec3::new(-100.0, 0.0, 0.0), turn * direction);
             let y = eye.y + d.y / d.x * (-25.0 - eye.x);
@@ -184,8 +187,8 @@ fn the_front_face_reflects_little() {
 
 #[test]
 fn a_coating_against_reflection_loses_nothing() {
-    let bench = bench("fresnel = false");
-    let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-9, tolerance: 1e-6 });
+    let assembly = assembly("fresnel = false");
+    let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-9, tolerance: 1e-6 });
     for n in 1..=500 {
         let direction = DVec3::new(1.0, 0.5 * (spread(n, 0) - 0.5), 0.7 * (spread(n, 1) - 0.5));
         let launch = launch(DVec3::new(-100.0, 0.0, 0.0), direction.normalize());
@@ -197,8 +200,8 @@ fn a_coating_against_reflection_loses_nothing() {
 
 #[test]
 fn rays_in_the_plane_of_the_strip_get_the_limit() {
-    let bench = bench("");
-    let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-6, tolerance: 1e-6 });
+    let assembly = assembly("");
+    let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-6, tolerance: 1e-6 });
     // Head-on at the blunt end: straight back.
     let leaf = strongest(tracer.trace(&launch(DVec3::new(-100.0, 0.0, 0.0), DVec3::X)).0);
     assert_eq!((leaf.direction, leaf.position.x), (-DVec3::X, -25.0));

@@ -1,11 +1,9 @@
 //! The optional channels about the first surface that a camera ray meets, against the checked numbers of
 //! the square cloak's designs (i) and (ii).
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod pictures;
-
+use crate::pictures::picture;
 use cloakroom::output::Picture;
-use pictures::picture;
 
 /// One pixel, seen at a horizontal angle (degrees) to the line of sight: its share in the extraordinary
 /// wave and its first-face reflectance.

@@ -1,9 +1,10 @@
 //! Stokes parameters against the Fresnel formulas of textbooks, worked forwards by hand: a glass prism
 //! that polarizes by refraction and retards by total reflection, a face at Brewster's angle, and metal.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use cloakroom::device::{Beyond, Cell, Face, Finish, Hull, Prism, Skin, Structure};
-use cloakroom::trace::{Bench, Launch, Leaf, Limits, Placed, Tracer};
+use cloakroom::assembly::{Assembly, Placed};
+use cloakroom::device::{Face, FarSide, HomogeneousRegion, Hull, Region, Structure, Surface};
+use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::{DVec2, DVec3};
 use num_complex::Complex64;
 use optics::geometry::{Extent, Outline, Plane, Pose, Wall};
@@ -13,40 +14,36 @@ use optics::wave::{arriving_stokes, transverse_basis};
 const INDEX: f64 = 1.5;
 
 /// A right-angled prism with its legs along x and y, of glass or metal.
-fn prism(glass: bool) -> Bench {
+fn prism(glass: bool) -> Assembly {
     let corners = [DVec2::ZERO, DVec2::new(10.0, 0.0), DVec2::new(0.0, 10.0)];
-    let beyond = if glass { Beyond::Cell(0) } else { Beyond::Conductor };
+    let far = if glass { FarSide::Region(0) } else { FarSide::Conductor };
     let sides = [0, 1, 2].map(|i| (corners[i], corners[(i + 1) % 3]));
-    let skin = sides
-        .map(|(from, to)| Skin::Wall {
-            wall: Wall::new(from, to, Extent::ENDLESS),
-            beyond,
-            finish: Finish::Bare,
-        })
-        .to_vec();
+    let surfaces =
+        sides.map(|(from, to)| Surface::wall(Wall::new(from, to, Extent::ENDLESS), far)).to_vec();
     let faces = sides
         .map(|(from, to)| {
             let normal = -(to - from).perp().normalize().extend(0.0);
             let plane = Plane { normal, offset: normal.dot(from.extend(0.0)) };
-            Face::new(plane, Beyond::Air)
+            Face::new(plane, FarSide::Outside)
         })
         .to_vec();
-    let cells = if glass {
-        vec![Cell::Prism(Prism { medium: Medium::dielectric(INDEX), faces })]
+    let regions = if glass {
+        let medium = Medium::dielectric(INDEX);
+        vec![Region::Homogeneous(HomogeneousRegion::between(medium, faces))]
     } else {
         Vec::new()
     };
     let hull = Hull::prism(Outline::new(corners.to_vec()), Extent::ENDLESS);
-    let structure = Structure { cells, skin, hull };
-    Bench::new(vec![Placed { pose: Pose::new(DVec3::ZERO, 0.0), structure }])
+    let structure = Structure { regions, surfaces, hull };
+    Assembly::new(vec![Placed { pose: Pose::new(DVec3::ZERO, 0.0), structure }])
 }
 
 /// The ray from the camera through `through` along `direction`, and its strongest leaf.
-fn strongest(bench: &Bench, through: DVec3, direction: DVec3) -> (Launch<2>, Leaf<2>) {
+fn strongest(assembly: &Assembly, through: DVec3, direction: DVec3) -> (Launch<2>, Leaf<2>) {
     let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
     let origin = through - direction * 30.0;
     let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
-    let mut tracer = Tracer::new(bench, Limits { min_power: 1e-6, tolerance: 1e-9 });
+    let mut tracer = Tracer::new(assembly, Limits { min_power: 1e-6, tolerance: 1e-9 });
     let (leaves, _) = tracer.trace(&launch);
     let power = |leaf: &&Leaf<2>| leaf.power[0] + leaf.power[1];
     let leaf = *leaves.iter().max_by(|a, b| power(a).total_cmp(&power(b))).unwrap();
@@ -102,11 +99,11 @@ impl Light {
 
 #[test]
 fn a_prism_polarizes_and_retards_as_textbooks_say() {
-    let bench = prism(true);
+    let assembly = prism(true);
     let (mut circular, mut diagonal) = (0.0f64, 0.0f64);
     for (y, z) in [(0.1, 0.5), (-0.2, 0.7), (0.15, -0.9), (-0.1, -0.4), (0.0, 1.1)] {
         let direction = DVec3::new(1.0, y, z).normalize();
-        let (launch, leaf) = strongest(&bench, DVec3::new(0.0, 5.0, 0.0), direction);
+        let (launch, leaf) = strongest(&assembly, DVec3::new(0.0, 5.0, 0.0), direction);
         // Forwards: in by the leg along x, totally reflected by the hypotenuse, out by the other leg.
         let mut sums = [0.0; 4];
         let entering = -leaf.direction;
@@ -146,7 +143,7 @@ fn a_prism_polarizes_and_retards_as_textbooks_say() {
 
 #[test]
 fn glass_at_brewsters_angle_polarizes_along_its_face() {
-    let bench = prism(true);
+    let assembly = prism(true);
     let normal = DVec3::new(1.0, 1.0, 0.0).normalize();
     let brewster = INDEX.atan();
     for turn in [0.0f64, 20.0, 50.0, -35.0, -70.0] {
@@ -155,7 +152,7 @@ fn glass_at_brewsters_angle_polarizes_along_its_face() {
         let (sin, cos) = turn.to_radians().sin_cos();
         let across = in_plane * cos + DVec3::Z * sin;
         let direction = across * brewster.sin() - normal * brewster.cos();
-        let mut tracer = Tracer::<2>::new(&bench, Limits { min_power: 1e-6, tolerance: 1e-9 });
+        let mut tracer = Tracer::<2>::new(&assembly, Limits { min_power: 1e-6, tolerance: 1e-9 });
         let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
         let origin = DVec3::new(5.0, 5.0, 0.0) - direction * 30.0;
         let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
@@ -182,8 +179,8 @@ fn glass_at_brewsters_angle_polarizes_along_its_face() {
 
 #[test]
 fn metal_leaves_unpolarized_light_unpolarized() {
-    let bench = prism(false);
-    let (_, leaf) = strongest(&bench, DVec3::new(5.0, 5.0, 0.0), DVec3::new(-0.8, 0.0, 0.6));
+    let assembly = prism(false);
+    let (_, leaf) = strongest(&assembly, DVec3::new(5.0, 5.0, 0.0), DVec3::new(-0.8, 0.0, 0.6));
     let stokes = stokes(&leaf);
     assert!((stokes[0] - 1.0).abs() < 1e-14 && stokes[1..].iter().all(|s| s.abs() < 1e-14));
 }

@@ -1,15 +1,13 @@
 //! A graded index of one's own, as a scene has it, against rays known in closed form.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod rays;
-
-use cloakroom::render::StudioError;
+use crate::rays::{self, strongest, try_bench};
+use cloakroom::render::PreparedSceneError;
 use cloakroom::scene_file;
 use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::{DVec2, DVec3};
 use ndarray::Array2;
 use ndarray_npy::WriteNpyExt;
-use rays::{strongest, try_bench};
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
@@ -31,8 +29,8 @@ fn device(index: impl Fn(DVec2) -> f64, size: f64, steps: usize, keys: &str) -> 
 }
 
 fn leaf(text: &str, origin: DVec3, direction: DVec3) -> Leaf<2> {
-    let bench = try_bench(text).unwrap();
-    let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-3, tolerance: 1e-10 });
+    let assembly = try_bench(text).unwrap();
+    let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-3, tolerance: 1e-10 });
     let across = direction.cross(DVec3::Z).normalize();
     let electric = [across.into(), direction.cross(across).into()];
     let (leaves, _) = tracer.trace(&Launch { origin, direction, electric });
@@ -79,7 +77,7 @@ fn the_border_refracts_and_reflects_as_the_index_asks_for() {
     for launch in rays::launches_around(200, [40.0, 30.0], DVec3::splat(5.0)) {
         let (expected, _) = glass.trace(&launch);
         let (found, outcome) = graded.trace(&launch);
-        assert_eq!(outcome.rarities.lost, 0);
+        assert_eq!(outcome.stats.lost, 0);
         let strong = |leaf: &&Leaf<2>| leaf.power[0] + leaf.power[1] > 1e-6;
         for leaf in expected.iter().filter(strong) {
             let same = found.iter().any(|other| {
@@ -108,10 +106,10 @@ fn a_file_holds_what_rows_do() {
     array.write_npy(std::fs::File::create(folder.path().join("n.npy")).unwrap()).unwrap();
     let text = "[[device]]\nkind = \"graded\"\nwidth = 10\nheight = 10\nindex = \"n.npy\"\n";
     let scene = scene_file::parse(text, "a", folder.path(), &[]).unwrap().scene;
-    let bench = cloakroom::render::bench(&scene).unwrap();
+    let assembly = cloakroom::render::assembly(&scene).unwrap();
     let launch = rays::launches_around(1, [30.0, 20.0], DVec3::splat(2.0)).next().unwrap();
     let limits = Limits { min_power: 1e-6, tolerance: 1e-6 };
-    let found = Tracer::new(&bench, limits).trace(&launch).0.to_vec();
+    let found = Tracer::new(&assembly, limits).trace(&launch).0.to_vec();
     let other = try_bench(&rows).unwrap();
     assert_eq!(found, Tracer::new(&other, limits).trace(&launch).0.to_vec());
 }
@@ -122,8 +120,8 @@ fn what_is_no_index_is_refused() {
         let text = format!("[[device]]\nkind = \"graded\"\n{keys}");
         let message = match scene_file::parse(&text, "a", Path::new(""), &[]) {
             Err(error) => error.to_string(),
-            Ok(loaded) => match cloakroom::render::bench(&loaded.scene) {
-                Err(StudioError::Device { error, .. }) => error.to_string(),
+            Ok(loaded) => match cloakroom::render::assembly(&loaded.scene) {
+                Err(PreparedSceneError::Device { error, .. }) => error.to_string(),
                 other => panic!("{keys}: {other:?}"),
             },
         };

@@ -4,7 +4,7 @@ use cloakroom::material::{
     Frame, MaterialError, Region, Resolution, sample, segments, write_segments,
 };
 use cloakroom::output::{GridFile, GridValues, write_grid};
-use cloakroom::render::{Supervision, bench};
+use cloakroom::render::{Supervision, assembly};
 use cloakroom::scene_file;
 use ndarray::{Array1, Array3, Array5};
 use ndarray_npy::NpzReader;
@@ -14,10 +14,10 @@ use std::sync::atomic::AtomicBool;
 
 fn sampled(scene: &str, frame: Frame, resolution: Resolution) -> Result<GridFile, MaterialError> {
     let scene = scene_file::parse(scene, "scene", Path::new(""), &[]).expect("a scene").scene;
-    let bench = bench(&scene).expect("a bench");
+    let assembly = assembly(&scene).expect("a bench");
     let stop = AtomicBool::new(false);
     let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-    sample(&scene, &bench, None, frame, resolution, &|_| {}, &supervision)
+    sample(&scene, &assembly, None, frame, resolution, &|_| {}, &supervision)
 }
 
 fn cells(scene: &str, frame: Frame, cells: [u32; 3]) -> GridFile {
@@ -340,7 +340,7 @@ fn what_cannot_be_given_is_said() {
 
 fn table(scene: &str) -> Result<Vec<cloakroom::material::Segment>, MaterialError> {
     let scene = scene_file::parse(scene, "scene", Path::new(""), &[]).expect("a scene").scene;
-    segments(&scene, &bench(&scene).expect("a bench"), None)
+    segments(&scene, &assembly(&scene).expect("a bench"), None)
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! The detour of plane mirrors against what plane mirrors do: what meets all four of its mirrors is moved
 //! by twice the offset against its way along x, and late by as much.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use cloakroom::assembly::Assembly;
 use cloakroom::scene_file;
-use cloakroom::trace::{Bench, Launch, Leaf, Limits, Tracer};
+use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::{DVec2, DVec3};
 use optics::wave::transverse_basis;
 use std::path::Path;
@@ -11,20 +12,20 @@ use std::path::Path;
 const OFFSET: f64 = 6.5;
 const HALF_LENGTH: f64 = 17.0;
 
-fn bench() -> Bench {
+fn assembly() -> Assembly {
     let text = format!(
         "[[device]]\nkind = \"mirror-detour\"\noffset = {OFFSET}\nhalf_length = {HALF_LENGTH}\n"
     );
     let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-    cloakroom::render::bench(&loaded.scene).unwrap()
+    cloakroom::render::assembly(&loaded.scene).unwrap()
 }
 
 /// Traces a ray; mirrors split nothing, so there is one leaf.
-fn leaf(bench: &Bench, origin: DVec3, direction: DVec3) -> Leaf<2> {
+fn leaf(assembly: &Assembly, origin: DVec3, direction: DVec3) -> Leaf<2> {
     let direction = direction.normalize();
     let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
     let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
-    let mut tracer = Tracer::new(bench, Limits { min_power: 1e-9, tolerance: 1e-9 });
+    let mut tracer = Tracer::new(assembly, Limits { min_power: 1e-9, tolerance: 1e-9 });
     let (leaves, outcome) = tracer.trace(&launch);
     assert_eq!((leaves.len(), outcome.pruned), (1, [0.0; 2]));
     leaves[0]
@@ -54,13 +55,13 @@ fn by_mirror_images(
 
 #[test]
 fn rays_along_x_are_led_around_the_midst() {
-    let bench = bench();
+    let assembly = assembly();
     for step in -99..100 {
         let y = OFFSET * f64::from(step) / 100.0;
         if step == 0 {
             continue;
         }
-        let leaf = leaf(&bench, DVec3::new(-50.0, y, 3.0), DVec3::X);
+        let leaf = leaf(&assembly, DVec3::new(-50.0, y, 3.0), DVec3::X);
         assert!((leaf.direction - DVec3::X).length() < 1e-14);
         assert!((leaf.position.y - y).abs() < 1e-12 && leaf.position.z == 3.0);
         let straight = leaf.position.x + 50.0;
@@ -70,19 +71,19 @@ fn rays_along_x_are_led_around_the_midst() {
 
 #[test]
 fn rays_beside_the_midst_meet_the_backs_of_the_outer_mirrors() {
-    let bench = bench();
+    let assembly = assembly();
     for step in 1..100 {
         let y = OFFSET * (1.0 + f64::from(step) / 100.0);
-        let leaf = leaf(&bench, DVec3::new(-50.0, -y, 3.0), DVec3::X);
+        let leaf = leaf(&assembly, DVec3::new(-50.0, -y, 3.0), DVec3::X);
         assert!((leaf.direction + DVec3::Y).length() < 1e-14);
-        let missed = self::leaf(&bench, DVec3::new(-50.0, y + OFFSET, 3.0), DVec3::X);
+        let missed = self::leaf(&assembly, DVec3::new(-50.0, y + OFFSET, 3.0), DVec3::X);
         assert!(!missed.met_device);
     }
 }
 
 #[test]
 fn slanted_rays_that_meet_all_four_mirrors_are_moved_and_late() {
-    let bench = bench();
+    let assembly = assembly();
     let (s, l) = (OFFSET, HALF_LENGTH);
     let upper = [
         [(-l, 0.0), (s - l, s)],
@@ -103,7 +104,7 @@ fn slanted_rays_that_meet_all_four_mirrors_are_moved_and_late() {
             continue;
         };
         // Slanted rays may meet another mirror on their way.
-        let leaf = leaf(&bench, origin, direction);
+        let leaf = leaf(&assembly, origin, direction);
         if (leaf.position - end).length() > 1e-9 {
             continue;
         }
@@ -128,7 +129,7 @@ fn the_midst_is_free_and_the_mirrors_are_not() {
              position = [{x}, {y}, 0]\n"
         );
         let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-        cloakroom::render::bench(&loaded.scene).map(|_| ())
+        cloakroom::render::assembly(&loaded.scene).map(|_| ())
     };
     assert!(devices(0.0, 0.0).is_ok());
     assert!(devices(0.0, 12.0).is_ok());
@@ -145,7 +146,7 @@ fn other_views_and_crossing_mirrors_are_refused() {
     ] {
         let text = format!("[[device]]\nkind = \"mirror-detour\"\n{keys}\n");
         let loaded = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap();
-        let error = cloakroom::render::bench(&loaded.scene).unwrap_err();
+        let error = cloakroom::render::assembly(&loaded.scene).unwrap_err();
         assert!(error.to_string().contains(words), "{error}");
         assert!(error.key().starts_with("device.0."), "{}", error.key());
     }

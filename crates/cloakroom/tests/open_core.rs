@@ -1,16 +1,13 @@
 //! Cloaks with an open core: what is in it, how light gets out of it, and what may stand in it.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod equation_of_motion;
-mod pictures;
-mod rays;
-
-use cloakroom::render::StudioError;
-use cloakroom::trace::{Bench, Launch, Leaf, Limits, Outcome, Rarities, Tracer};
-use equation_of_motion::{GradedHalf, fresnel, gaussian, refract};
+use crate::equation_of_motion::{GradedHalf, fresnel, gaussian, refract};
+use crate::pictures::{difference, png};
+use crate::rays::{self, Numbers, assembly, launch, launches_around, spread, strongest, try_bench};
+use cloakroom::assembly::Assembly;
+use cloakroom::render::PreparedSceneError;
+use cloakroom::trace::{Launch, Leaf, Limits, Outcome, TraceStats, Tracer};
 use glam::DVec3;
-use pictures::{difference, png};
-use rays::{Numbers, bench, launch, launches_around, spread, strongest, try_bench};
 
 const LIMITS: Limits = Limits { min_power: 1e-9, tolerance: 1e-9 };
 
@@ -28,14 +25,10 @@ fn with_ball(kind: &str, radius: f64, position: DVec3) -> String {
     open(kind, "") + &ball
 }
 
-fn trace(bench: &Bench, launch: &Launch<2>) -> (Vec<Leaf<2>>, Outcome<2>) {
-    let mut tracer = Tracer::new(bench, LIMITS);
+fn trace(assembly: &Assembly, launch: &Launch<2>) -> (Vec<Leaf<2>>, Outcome<2>) {
+    let mut tracer = Tracer::new(assembly, LIMITS);
     let (leaves, outcome) = tracer.trace(launch);
-    for i in 0..2 {
-        let sum: f64 = leaves.iter().map(|leaf| leaf.power[i]).sum();
-        let total = sum + outcome.absorbed[i] + outcome.pruned[i];
-        assert!((total - 1.0).abs() < 1e-12, "{launch:?} {total}");
-    }
+    outcome.assert_balanced(leaves, 1e-12, launch);
     (leaves.to_vec(), *outcome)
 }
 
@@ -43,7 +36,7 @@ fn trace(bench: &Bench, launch: &Launch<2>) -> (Vec<Leaf<2>>, Outcome<2>) {
 fn what_stands_in_a_perfect_cloak_is_not_seen() {
     let mut numbers = Numbers(7);
     for kind in ["cylinder-cloak", "sphere-cloak"] {
-        let full = bench(&with_ball(kind, 3.9, DVec3::ZERO));
+        let full = assembly(&with_ball(kind, 3.9, DVec3::ZERO));
         let mut met = 0;
         for _ in 0..400 {
             let direction = numbers.direction();
@@ -54,11 +47,11 @@ fn what_stands_in_a_perfect_cloak_is_not_seen() {
                 continue;
             }
             let (leaves, outcome) = trace(&full, &ray);
-            assert_eq!((leaves.len(), outcome.rarities), (1, Rarities::default()), "{ray:?}");
+            assert_eq!((leaves.len(), outcome.stats), (1, TraceStats::default()), "{ray:?}");
             let leaf = leaves[0];
             let along = (leaf.position - ray.origin).dot(ray.direction);
             let beside = leaf.position - ray.origin - ray.direction * along;
-            assert!(leaf.body.is_none() && leaf.direction.distance(ray.direction) < 1e-10);
+            assert!(leaf.body().is_none() && leaf.direction.distance(ray.direction) < 1e-10);
             assert!(beside.length() < 1e-9 && (leaf.optical_path - along).abs() < 1e-9);
             met += usize::from(leaf.met_device);
         }
@@ -87,9 +80,9 @@ fn pictures_of_full_perfect_cloaks_are_empty_views() {
 fn light_in_a_perfect_cloak_stays_there() {
     let middle = DVec3::new(-2.0, 0.5, 0.0);
     for (kind, across) in [("cylinder-cloak", true), ("sphere-cloak", false)] {
-        let full = bench(&with_ball(kind, 1.0, middle));
+        let full = assembly(&with_ball(kind, 1.0, middle));
         let start = DVec3::new(2.5, 0.5, 0.3);
-        assert_eq!(full.holder(start), None);
+        assert_eq!(full.device_containing(start), None);
         let mut compared = 0;
         for n in 1..=300 {
             // Towards a point of the border from which the way leads to the ball.
@@ -105,9 +98,9 @@ fn light_in_a_perfect_cloak_stays_there() {
                 continue;
             }
             let (leaves, outcome) = trace(&full, &launch(start, direction));
-            assert_eq!((leaves.len(), outcome.rarities), (1, Rarities::default()), "{kind} {n}");
+            assert_eq!((leaves.len(), outcome.stats), (1, TraceStats::default()), "{kind} {n}");
             let leaf = leaves[0];
-            assert_eq!(leaf.body, Some(1), "{kind} {at} {leaf:?}");
+            assert_eq!(leaf.body(), Some(1), "{kind} {at} {leaf:?}");
             assert!(leaf.direction.distance(on) < 1e-12 && leaf.power[0] > 1.0 - 1e-12, "{leaf:?}");
             compared += 1;
         }
@@ -116,8 +109,8 @@ fn light_in_a_perfect_cloak_stays_there() {
         for start in [DVec3::new(2.5, 0.0, 0.0), DVec3::new(2.0, -0.2, 0.0)] {
             let (leaves, outcome) = trace(&full, &launch(start, start));
             let back: f64 = leaves.iter().map(|leaf| leaf.power[0]).sum();
-            assert!(leaves.iter().all(|leaf| leaf.body == Some(1)), "{kind} {leaves:?}");
-            assert!(back > 1.0 - 1e-7 && outcome.rarities == Rarities::default(), "{kind} {back}");
+            assert!(leaves.iter().all(|leaf| leaf.body() == Some(1)), "{kind} {leaves:?}");
+            assert!(back > 1.0 - 1e-7 && outcome.stats == TraceStats::default(), "{kind} {back}");
             assert!(leaves[0].direction.distance(-start.normalize()) < 1e-12);
         }
     }
@@ -129,13 +122,13 @@ fn light_in_a_perfect_cloak_stays_there() {
 fn the_ordinary_wave_of_a_radial_axis_passes_the_core() {
     let (a, b): (f64, f64) = (4.0, 10.0);
     let k = b / (b - a);
-    let bench = bench(&open("cylinder-cloak", "material = \"radial-uniaxial\""));
+    let assembly = assembly(&open("cylinder-cloak", "material = \"radial-uniaxial\""));
     let mut passed = 0;
     for n in 1..=200 {
         // The impact parameter; inside the shell that over k, in the core as outside again.
         let impact = 6.0 * (spread(n, 0) - 0.5);
         let ray = launch(DVec3::new(-50.0, impact, 0.0), DVec3::X);
-        let (leaves, _) = trace(&bench, &ray);
+        let (leaves, _) = trace(&assembly, &ray);
         let chord = |radius: f64, h: f64| (radius * radius - h * h).sqrt();
         let turned = 2.0
             * ((impact / b).asin() - (impact / (k * b)).asin() + (impact / (k * a)).asin()
@@ -184,7 +177,7 @@ fn to_border(half: &GradedHalf, ray: &Launch<2>) -> Option<(f64, DVec3, f64)> {
 #[test]
 fn light_leaves_the_core_of_the_double_gaussian_cloak_by_snells_law() {
     let half = upper_half();
-    let bench = bench(&open("double-gaussian-cloak", ""));
+    let assembly = assembly(&open("double-gaussian-cloak", ""));
     let (mut compared, mut inside) = (0, 0);
     for n in 1..=250 {
         let origin = DVec3::new(
@@ -195,9 +188,9 @@ fn light_leaves_the_core_of_the_double_gaussian_cloak_by_snells_law() {
         let angle = std::f64::consts::TAU * spread(n, 3);
         let slope = 1.6 * (spread(n, 4) - 0.5);
         let ray = launch(origin, DVec3::new(angle.cos(), angle.sin(), slope));
-        assert_eq!(bench.holder(origin), None);
-        let (leaves, outcome) = trace(&bench, &ray);
-        assert_eq!(outcome.rarities, Rarities::default(), "{ray:?}");
+        assert_eq!(assembly.device_containing(origin), None);
+        let (leaves, outcome) = trace(&assembly, &ray);
+        assert_eq!(outcome.stats, TraceStats::default(), "{ray:?}");
         let Some((distance, at, side)) = to_border(&half, &ray) else { continue };
         let flip = |v: DVec3| v * DVec3::new(1.0, side, 1.0);
         let up = half.floor_normal(at);
@@ -233,7 +226,7 @@ fn light_leaves_the_core_of_the_double_gaussian_cloak_by_snells_law() {
                 field.conj() * whole.powf(-0.5)
             }),
         };
-        let (leaves, _) = trace(&bench, &back);
+        let (leaves, _) = trace(&assembly, &back);
         inside += u32::from(leaves.iter().any(|home| {
             // On from where the ray has started, through the other border of the core.
             home.optical_path > leaf.optical_path + 10.0
@@ -245,12 +238,12 @@ fn light_leaves_the_core_of_the_double_gaussian_cloak_by_snells_law() {
 /// A ray through the whole cloak and its core comes back along the same path with the same power.
 #[test]
 fn paths_through_the_core_are_reciprocal() {
-    let bench = bench(&open("double-gaussian-cloak", "rotation = 20"));
-    let metal = rays::bench("[[device]]\nkind = \"double-gaussian-cloak\"\nrotation = 20\n");
+    let assembly = assembly(&open("double-gaussian-cloak", "rotation = 20"));
+    let metal = rays::assembly("[[device]]\nkind = \"double-gaussian-cloak\"\nrotation = 20\n");
     let mut through = 0;
     for ray in launches_around(200, [70.0, 40.0], DVec3::new(10.0, 6.0, 20.0)) {
-        let (leaves, outcome) = trace(&bench, &ray);
-        assert_eq!(outcome.rarities.lost, 0);
+        let (leaves, outcome) = trace(&assembly, &ray);
+        assert_eq!(outcome.stats.lost, 0);
         let leaf = strongest(&leaves);
         if leaf.power[0] < 0.5 || leaf.power[1] < 0.5 {
             continue;
@@ -261,7 +254,7 @@ fn paths_through_the_core_are_reciprocal() {
             direction: -leaf.direction,
             electric: [field.conj() * field.norm_squared().powf(-0.5)],
         };
-        let mut tracer = Tracer::new(&bench, LIMITS);
+        let mut tracer = Tracer::new(&assembly, LIMITS);
         let (home, _) = tracer.trace(&back);
         let home = home.iter().max_by(|a, b| a.power[0].total_cmp(&b.power[0])).unwrap();
         let to_start = ray.origin - home.position;
@@ -309,13 +302,13 @@ fn bodies_may_stand_in_the_core_and_nowhere_else() {
             assert!(try_bench(&scene(fits)).is_ok(), "{kind} {fits}");
             let error = try_bench(&scene(too_large)).unwrap_err();
             assert!(
-                matches!(error, StudioError::Overlap { first: 0, second: 1 }),
+                matches!(error, PreparedSceneError::Overlap { first: 0, second: 1 }),
                 "{kind} {too_large} {error}"
             );
         }
         // With its metal nothing fits in.
         let full = format!("[[device]]\nkind = \"{kind}\"\n{}", body(fits));
-        assert!(matches!(try_bench(&full), Err(StudioError::Overlap { .. })), "{kind}");
+        assert!(matches!(try_bench(&full), Err(PreparedSceneError::Overlap { .. })), "{kind}");
     }
     // Cloaks in a cloak.
     let inner = "[[device]]\nkind = \"cylinder-cloak\"\ninner = 1\nouter = 3.9\n";
@@ -330,13 +323,13 @@ fn nothing_is_before_the_core_of_a_short_cloak() {
         ("cylinder-cloak", DVec3::new(1.0, 2.0, 30.0), DVec3::new(5.0, 2.0, 30.0)),
         ("double-gaussian-cloak", DVec3::new(1.0, 2.0, 30.0), DVec3::new(5.0, 6.0, 30.0)),
     ] {
-        let bench = bench(&open(kind, "length = 20"));
-        let (leaves, _) = trace(&bench, &launch(inside, DVec3::NEG_Z));
+        let assembly = assembly(&open(kind, "length = 20"));
+        let (leaves, _) = trace(&assembly, &launch(inside, DVec3::NEG_Z));
         assert!(leaves.len() == 1 && !leaves[0].met_device, "{kind} {leaves:?}");
-        assert!(trace(&bench, &launch(beside, DVec3::NEG_Z)).0[0].met_device, "{kind}");
+        assert!(trace(&assembly, &launch(beside, DVec3::NEG_Z)).0[0].met_device, "{kind}");
         // In through the end, and on to the border within.
         let slanted = launch(inside, DVec3::new(0.0, 0.3, -1.0));
-        let (leaves, _) = trace(&bench, &slanted);
+        let (leaves, _) = trace(&assembly, &slanted);
         assert!(leaves.iter().all(|leaf| leaf.met_device && leaf.position.is_finite()), "{kind}");
     }
 }

@@ -1,15 +1,13 @@
 //! Images on opaque bodies, seen by an orthographic camera: each face gives the image back, and the round ones
 //! show it where the map says.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod pictures;
-
+use crate::pictures::picture_in;
 use cloakroom::output::Picture;
 use cloakroom::photograph::decode;
-use cloakroom::render::{Images, Studio};
+use cloakroom::render::{Images, PreparedScene};
 use cloakroom::scene_file;
 use image::{Rgb, RgbImage};
-use pictures::picture_in;
 use std::path::Path;
 
 /// Pixels of a block of one color, and how many blocks the image has.
@@ -195,7 +193,7 @@ fn what_cannot_be_is_refused_at_its_place() {
         let error = match scene_file::parse(&text, "test", folder.path(), &[]) {
             Err(error) => error.to_string(),
             Ok(loaded) => {
-                let error = Studio::new(&loaded.scene).unwrap_err();
+                let error = PreparedScene::new(&loaded.scene).unwrap_err();
                 loaded.locations.error_at(&error.key(), error.to_string()).to_string()
             }
         };
@@ -223,12 +221,12 @@ fn images_are_read_once_and_kept_while_they_are_shown() {
     let (ramp, blocks) = (scene("ramp.png"), scene("blocks.png"));
     let empty = scene_file::parse("", "a", folder.path(), &[]).unwrap().scene;
     let mut images = Images::default();
-    Studio::with_images(&ramp, &mut images).unwrap();
+    PreparedScene::with_images(&ramp, &mut images).unwrap();
     std::fs::remove_file(folder.path().join("ramp.png")).unwrap();
-    assert!(Studio::new(&ramp).is_err());
-    Studio::with_images(&ramp, &mut images).unwrap();
-    Studio::with_images(&empty, &mut images).unwrap();
-    Studio::with_images(&ramp, &mut images).unwrap();
-    Studio::with_images(&blocks, &mut images).unwrap();
-    assert!(Studio::with_images(&ramp, &mut images).is_err());
+    assert!(PreparedScene::new(&ramp).is_err());
+    PreparedScene::with_images(&ramp, &mut images).unwrap();
+    PreparedScene::with_images(&empty, &mut images).unwrap();
+    PreparedScene::with_images(&ramp, &mut images).unwrap();
+    PreparedScene::with_images(&blocks, &mut images).unwrap();
+    assert!(PreparedScene::with_images(&ramp, &mut images).is_err());
 }

@@ -1,11 +1,9 @@
 //! The table of what pruning costs in `docs/polarization.md` is true, and what is followed for one polarization makes
 //! no difference to the image of another.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod pictures;
-
-use cloakroom::render::Wanted;
-use pictures::{picture, rendered};
+use crate::pictures::{picture, rendered};
+use cloakroom::render::ChannelSet;
 use std::path::Path;
 
 /// Mean and largest share of a pixel's power that is pruned, in percent.
@@ -62,10 +60,10 @@ fn images_through_polarizers_are_those_of_pictures_through_them_alone() {
             );
             rendered(Path::new(""), &text, wanted)
         };
-        let both = seen("none", Wanted::Polarizers);
-        assert_eq!(both.image_through(""), seen("none", Wanted::Image).image_through(""));
+        let both = seen("none", ChannelSet::Polarizers);
+        assert_eq!(both.image_through(""), seen("none", ChannelSet::Image).image_through(""));
         for polarizer in ["horizontal", "vertical"] {
-            let alone = seen(polarizer, Wanted::Image).image_through("");
+            let alone = seen(polarizer, ChannelSet::Image).image_through("");
             assert_eq!(both.image_through(polarizer), alone, "{material} {polarizer}");
         }
     }

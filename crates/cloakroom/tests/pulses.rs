@@ -1,7 +1,7 @@
 //! The pulses of a pixel against the picture's channels.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use cloakroom::render::{PulseList, Studio, Supervision, Wanted, pulses, render};
+use cloakroom::render::{ChannelSet, PreparedScene, PulseList, Supervision, pulses, render};
 use cloakroom::scene_file;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -30,10 +30,10 @@ fn lists_of_pulses_are_what_the_channels_sum_up() {
         for polarizer in ["\"none\"", "30"] {
             let loaded =
                 scene_file::parse(&text(device, polarizer), "test", Path::new(""), &[]).unwrap();
-            let studio = Studio::new(&loaded.scene).unwrap();
+            let studio = PreparedScene::new(&loaded.scene).unwrap();
             let stop = AtomicBool::new(false);
             let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-            let picture = render(&studio, Wanted::Everything, &supervision).unwrap().picture;
+            let picture = render(&studio, ChannelSet::Everything, &supervision).unwrap().picture;
             let mut most = 0;
             for row in 0..SIZE[1] {
                 for column in 0..SIZE[0] {
@@ -93,7 +93,7 @@ fn compare(list: &PulseList, channel: impl Fn(&str) -> f64) {
 #[test]
 fn the_empty_view_has_one_pulse_on_time() {
     let loaded = scene_file::parse(&text("", "\"none\""), "test", Path::new(""), &[]).unwrap();
-    let studio = Studio::new(&loaded.scene).unwrap();
+    let studio = PreparedScene::new(&loaded.scene).unwrap();
     let list = pulses(&studio, [3, 4]).unwrap();
     let [pulse] = list.pulses.as_slice() else { panic!("{list:?}") };
     assert_eq!((pulse.power, pulse.delay_ns), (1.0, Some(0.0)));

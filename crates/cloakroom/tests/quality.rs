@@ -1,7 +1,7 @@
 //! Tables of cloaking quality, against scenes whose figures are known.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use cloakroom::measure::{Hold, Plan, QualityError, QualityTable, Sweep, quality};
+use cloakroom::measure::{Constraint, Plan, QualityError, QualityTable, Sweep, quality};
 use cloakroom::render::{RenderError, Supervision};
 use cloakroom::scene_file;
 use std::path::Path;
@@ -206,7 +206,7 @@ fn a_held_fact_stays_while_keys_are_swept() {
     let scene = "[camera]\nresolution = [8, 6]\nsamples = 1\n[[device]]\nkind = \"double-gaussian-cloak\"\n";
     let held = |hold: &str, sweep: &str| {
         let (sweeps, holds) =
-            (vec![Sweep::parse(sweep).unwrap()], vec![Hold::parse(hold).unwrap()]);
+            (vec![Sweep::parse(sweep).unwrap()], vec![Constraint::parse(hold).unwrap()]);
         Plan::holding(sweeps, holds, |more| scene_file::parse(scene, "test", Path::new(""), more))
     };
     let plan = held("device.0.w=cloaked_area_cm2", "device.0.h=3,4.25").unwrap();

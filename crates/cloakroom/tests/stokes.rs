@@ -1,17 +1,14 @@
 //! The polarization of the light that arrives, from rays traced backwards: against polarizers one at a
 //! time, against light traced forwards, and against textbook optics.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod pictures;
-mod rays;
-
+use crate::pictures::picture;
+use crate::rays::{assembly, launch};
 use cloakroom::output::Picture;
 use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::wave::arriving_stokes;
-use pictures::picture;
-use rays::{bench, launch};
 
 fn seen(device: &str, polarizer: &str) -> Picture {
     let text = format!(
@@ -85,11 +82,11 @@ fn the_empty_view_is_unpolarized() {
 
 #[test]
 fn the_third_parameter_is_right_less_left_circular() {
-    let bench = bench(TURNED);
+    let assembly = assembly(TURNED);
     // Nothing pruned but what no launch carries, so that the trees are the same.
     let limits = Limits { min_power: 1e-7, tolerance: 1e-8 };
     let (mut tracer, mut circular) =
-        (Tracer::<2>::new(&bench, limits), Tracer::<2>::new(&bench, limits));
+        (Tracer::<2>::new(&assembly, limits), Tracer::<2>::new(&assembly, limits));
     let mut largest: f64 = 0.0;
     for launch in rays(60) {
         let [h, v] = launch.electric;
@@ -149,10 +146,10 @@ fn light_traced_forwards_arrives_as_rays_traced_backwards_say() {
         let text = format!(
             "[[device]]\nkind = \"square-cloak\"\nmaterial = \"{material}-uniaxial\"\nrotation = 20\n"
         );
-        let bench = bench(&text);
+        let assembly = assembly(&text);
         let limits = Limits { min_power: 1e-8, tolerance: 1e-8 };
         let (mut tracer, mut forwards) =
-            (Tracer::<2>::new(&bench, limits), Tracer::<2>::new(&bench, limits));
+            (Tracer::<2>::new(&assembly, limits), Tracer::<2>::new(&assembly, limits));
         let (mut compared, mut circular) = (0, 0.0f64);
         for ray in rays(40) {
             let leaves = tracer.trace(&ray).0.to_vec();

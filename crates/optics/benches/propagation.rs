@@ -9,8 +9,8 @@ use num_complex::Complex64;
 use optics::geometry::Extent;
 use optics::medium::ModeKind;
 use optics::propagation::{
-    CentralLens, ConformalFlow, Foothold, Half, OpticAxis, RadialFlow, TransformedShell,
-    TransmutedSphere, UniaxialCylinder,
+    CentralLens, ConformalFlow, Half, OpticAxis, RadialFlow, TransformedShell, TransmutedSphere,
+    UniaxialCylinder, VirtualPoint,
 };
 use optics::transformation::{
     ConformalMap, GaussianMap, GratingMap, QuasiConformalMap, RadialMap, Symmetry, Truncation,
@@ -52,17 +52,17 @@ fn flow(name: &str) -> ConformalFlow {
 
 /// Rays just inside the face at the least x, up to 20 degrees off the axis, neighbours being alike as
 /// those of a camera are.
-fn conformal_starts(flow: &ConformalFlow) -> Vec<(Foothold, DVec3)> {
+fn conformal_starts(flow: &ConformalFlow) -> Vec<(VirtualPoint, DVec3)> {
     let start = |n: u32| {
         // Four neighbours, and then elsewhere.
         let (block, member) = (n / 4, f64::from(n % 4));
         let across = |k| 0.34 * (2.0 * spread(block, k) - 1.0) + 1e-3 * member;
         let height = 3.0 + 23.0 * spread(block, 2) + 0.05 * member;
         let at = DVec3::new(flow.cut().x_min, height, 0.0);
-        let foothold = flow.foothold(Half::Upper, at).expect("a point of the border");
+        let virtual_point = flow.virtual_point(Half::Upper, at).expect("a point of the border");
         let [p_y, p_z] = [across(0), across(1)];
-        let forward = (foothold.index.powi(2) - p_y * p_y - p_z * p_z).sqrt();
-        (foothold, DVec3::new(forward, p_y, p_z))
+        let forward = (virtual_point.index.powi(2) - p_y * p_y - p_z * p_z).sqrt();
+        (virtual_point, DVec3::new(forward, p_y, p_z))
     };
     (0..LEGS).map(start).collect()
 }
@@ -72,8 +72,9 @@ fn conformal_flow_one(bencher: Bencher, map: &str) {
     let flow = flow(map);
     let starts = conformal_starts(&flow);
     bencher.counter(ItemsCount::new(LEGS)).bench(|| {
-        for (foothold, wave_vector) in black_box(&starts) {
-            black_box(flow.advance_from(foothold, *wave_vector, TOLERANCE)).expect("a way out");
+        for (virtual_point, wave_vector) in black_box(&starts) {
+            black_box(flow.advance_from(virtual_point, *wave_vector, TOLERANCE))
+                .expect("a way out");
         }
     });
 }
@@ -94,8 +95,8 @@ fn conformal_flow_four(bencher: Bencher, map: &str) {
 fn conformal_flow_in_plane(bencher: Bencher, map: &str) {
     let flow = flow(map);
     let mut starts = conformal_starts(&flow);
-    for (foothold, p) in &mut starts {
-        *p = DVec3::new((foothold.index.powi(2) - p.y * p.y).sqrt(), p.y, 0.0);
+    for (virtual_point, p) in &mut starts {
+        *p = DVec3::new((virtual_point.index.powi(2) - p.y * p.y).sqrt(), p.y, 0.0);
     }
     bencher.counter(ItemsCount::new(LEGS)).bench(|| {
         for four in black_box(&starts).chunks_exact(4) {
@@ -106,12 +107,13 @@ fn conformal_flow_in_plane(bencher: Bencher, map: &str) {
 
 /// Finding the virtual point where a ray enters.
 #[divan::bench(args = MAPS)]
-fn foothold(bencher: Bencher, map: &str) {
+fn virtual_point(bencher: Bencher, map: &str) {
     let flow = flow(map);
     let starts = conformal_starts(&flow);
     bencher.counter(ItemsCount::new(LEGS)).bench(|| {
-        for (foothold, _) in black_box(&starts) {
-            black_box(flow.foothold(Half::Upper, foothold.position)).expect("a point inside");
+        for (virtual_point, _) in black_box(&starts) {
+            black_box(flow.virtual_point(Half::Upper, virtual_point.position))
+                .expect("a point inside");
         }
     });
 }
@@ -120,8 +122,10 @@ fn foothold(bencher: Bencher, map: &str) {
 #[divan::bench(args = MAPS)]
 fn map_jet(bencher: Bencher, map: &str) {
     let flow = flow(map);
-    let points: Vec<Complex64> =
-        conformal_starts(&flow).iter().map(|(foothold, _)| foothold.virtual_position).collect();
+    let points: Vec<Complex64> = conformal_starts(&flow)
+        .iter()
+        .map(|(virtual_point, _)| virtual_point.virtual_position)
+        .collect();
     bencher.counter(ItemsCount::new(LEGS)).bench(|| {
         for zeta in black_box(&points) {
             black_box(flow.map().jet(*zeta));

@@ -1,27 +1,25 @@
 //! Birefringent media: limits and symmetries.
-#![expect(
+#![allow(
     clippy::print_stdout,
     clippy::unwrap_used,
     clippy::cast_precision_loss,
     clippy::expect_used,
     reason = "a test may"
 )]
-#![expect(
+#![allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    dead_code,
     reason = "shared with the other tests"
 )]
 
-mod random_media;
-
+use crate::long::count;
+use crate::random_media::{KINDS, Random, medium};
 use glam::{DMat3, DVec3};
 use optics::interface::{
     IncidentWave, OutgoingWave, OutgoingWaves, Scattering, Side, reflect_at_conductor, split,
 };
 use optics::medium::{Heading, Medium, Mode, ModeKind};
 use optics::wave::ComplexVector;
-use random_media::{KINDS, Random, medium};
 
 /// The two tensors exchanged.
 fn dual(medium: &Medium) -> Medium {
@@ -45,7 +43,7 @@ fn as_incident(mode: &Mode) -> IncidentWave<2> {
 #[test]
 fn exchanging_the_tensors_changes_no_power_except_o_for_e() {
     let mut random = Random(3);
-    for _ in 0..5_000 {
+    for _ in 0..count(1_000, 5_000) {
         let (from, to) =
             (medium(random.below(10), &mut random), medium(random.below(10), &mut random));
         let normal = random.direction();
@@ -68,7 +66,7 @@ fn the_way_back_has_the_same_amplitude() {
     let mut random = Random(4);
     let mut worst: f64 = 0.0;
     let mut pairs = 0;
-    for _ in 0..5_000 {
+    for _ in 0..count(1_000, 5_000) {
         let (from, to) =
             (medium(random.below(10), &mut random), medium(random.below(10), &mut random));
         let normal = random.direction();
@@ -104,7 +102,7 @@ fn the_way_back_has_the_same_amplitude() {
 #[test]
 fn split_is_the_scattering_of_its_mode() {
     let mut random = Random(5);
-    for _ in 0..40_000 {
+    for _ in 0..count(4_000, 40_000) {
         let from = medium(random.below(10), &mut random);
         let beyond = random.below(KINDS.len() + 1);
         let to = (beyond < KINDS.len()).then(|| medium(beyond, &mut random));

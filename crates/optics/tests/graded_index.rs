@@ -1,10 +1,10 @@
 //! An index given on a grid, against media whose rays are known in closed form.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::{DVec2, DVec3};
 use num_complex::Complex64;
 use optics::geometry::Extent;
-use optics::propagation::{Boundary, ConformalFlow, FlowEnd, GridSpline, Half, Unevenness};
+use optics::propagation::{Boundary, ConformalFlow, FlowEnd, GridSpline, Half, IndexPerturbation};
 use optics::transformation::{ConformalMap, FlatMap, Truncation};
 use std::f64::consts::TAU;
 
@@ -22,7 +22,7 @@ fn flow(square: impl Fn(DVec2) -> f64, steps: usize, extent: Extent, core: f64) 
     let spline = GridSpline::new(-HALF, spacing, count, &samples).unwrap();
     let cut = Truncation { x_min: -HALF.x, x_max: HALF.x, y_max: HALF.y };
     let map = ConformalMap::from(FlatMap::new(-HALF.y, 4.0));
-    let unevenness = Unevenness::within(spline, |[_, high]| high > core).unwrap();
+    let unevenness = IndexPerturbation::within(spline, |[_, high]| high > core).unwrap();
     ConformalFlow::new(map, cut, extent, 1.0).with_unevenness(unevenness)
 }
 
@@ -143,7 +143,7 @@ fn flat_ends_round_borders_and_round_cores_are_met_where_they_are() {
     let map = ConformalMap::from(FlatMap::new(-12.0, 4.0));
     let disc = ConformalFlow::new(map, cut, Extent::ENDLESS, 1.0)
         .between(None, Some(rim))
-        .with_unevenness(Unevenness::new(spline).unwrap());
+        .with_unevenness(IndexPerturbation::new(spline).unwrap());
     for k in 0..200 {
         let [a, b, c] = spread(k);
         let inward = DVec2::from_angle(TAU * a);
@@ -159,8 +159,8 @@ fn flat_ends_round_borders_and_round_cores_are_met_where_they_are() {
         assert!((end.optical_path - path).abs() < 1e-8);
         assert!((end.normal - at.with_z(0.0) / rim).length() < 1e-9);
     }
-    assert!(disc.foothold(Half::Upper, DVec3::new(6.0, 6.0, 0.0)).is_err());
-    assert!(cored.foothold(Half::Upper, DVec3::new(1.0, 2.0, 0.0)).is_err());
+    assert!(disc.virtual_point(Half::Upper, DVec3::new(6.0, 6.0, 0.0)).is_err());
+    assert!(cored.virtual_point(Half::Upper, DVec3::new(1.0, 2.0, 0.0)).is_err());
 }
 
 #[test]

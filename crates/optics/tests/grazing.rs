@@ -1,5 +1,5 @@
 //! Waves that run along the surface: the limit of waves that hardly cross it.
-#![expect(clippy::unwrap_used, reason = "a test may")]
+#![allow(clippy::unwrap_used, reason = "a test may")]
 
 use glam::{DMat3, DVec3};
 use optics::interface::{IncidentWave, Scattering, Side, split};

@@ -1,6 +1,6 @@
 //! Indefinite media that are cut such that a tensor has no normal-normal entry: one wave vector has no bounds, and the other
 //! waves are as exact as elsewhere.
-#![expect(clippy::unwrap_used, reason = "a test may")]
+#![allow(clippy::unwrap_used, reason = "a test may")]
 
 use glam::{DMat3, DVec3};
 use optics::interface::Scattering;

@@ -1,7 +1,8 @@
 //! Invariants of every interface over random pairs of media and random waves: energy, Maxwell's
 //! equations, continuity of the tangential fields, and limits from textbooks.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::long::count;
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 use optics::interface::{
@@ -74,7 +75,7 @@ fn jones() -> impl Strategy<Value = [f64; 4]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(20_000))]
+    #![proptest_config(ProptestConfig::with_cases(count(500, 20_000)))]
 
     #[test]
     fn energy_maxwell_and_continuity(
@@ -186,7 +187,7 @@ fn mapped(medium: &Medium, normal: DVec3, shift: DVec3) -> Medium {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(5_000))]
+    #![proptest_config(ProptestConfig::with_cases(count(300, 5_000)))]
 
     #[test]
     fn a_map_that_keeps_the_interface_reflects_nothing(

@@ -151,10 +151,10 @@ fn rays_above_a_bump() {
             [[12.0, 0.0, 0.0], [3.0, -0.05, 0.3], [6.0, -0.3, 0.0], [5.0, -0.2, -0.5]]
         {
             let start = half.mirrored(DVec3::new(-25.0, y, 1.0));
-            let foothold = flow.foothold(half, start).expect("inside");
-            let p = half.mirrored(DVec3::new(1.0, up, aside).normalize() * foothold.index);
-            let end = flow.advance_from(&foothold, p, 1e-8).expect("an end");
-            let path = flow.path(&foothold, p, 1e-8).expect("a path");
+            let virtual_point = flow.virtual_point(half, start).expect("inside");
+            let p = half.mirrored(DVec3::new(1.0, up, aside).normalize() * virtual_point.index);
+            let end = flow.advance_from(&virtual_point, p, 1e-8).expect("an end");
+            let path = flow.path(&virtual_point, p, 1e-8).expect("a path");
             check_ends(&path, start, end.at.position, end.optical_path, "bump");
             assert!(path.len() > 20, "{}", path.len());
             let off = worst_piece(&path, |at| flow.index(half, at).expect("an index"));

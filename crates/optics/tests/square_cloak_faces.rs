@@ -1,6 +1,6 @@
 //! The checked numbers of the square cloak's designs (i) and (ii) (Halimeh & Wegener, Opt. Express 21,
 //! 9457 (2013)) at one interface.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::{DMat3, DVec2, DVec3};
 use optics::interface::{IncidentWave, OutgoingWave, Side, split};

@@ -120,6 +120,7 @@ impl<'a> Draws<'a> {
     pub fn number(&mut self, usual: f64, limits: Limits) -> f64 {
         let (low, high) = match limits {
             Limits::Between(low, high) | Limits::Within(low, high) => (low, high),
+            Limits::Whole(low, high) => (low as f64, high as f64),
             Limits::Positive => (0.0, f64::INFINITY),
             Limits::Finite => (f64::NEG_INFINITY, f64::INFINITY),
         };

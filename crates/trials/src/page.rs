@@ -120,7 +120,7 @@ fn connect() -> WebSocket<TcpStream> {
 
 /// Messages to begin with.
 pub(crate) fn messages() -> Vec<Vec<u8>> {
-    let looks = cloakroom::gallery::EXHIBITS.iter().map(|exhibit| {
+    let looks = cloakroom_figures::gallery::EXHIBITS.iter().map(|exhibit| {
         let table: toml::Table = toml::from_str(exhibit.scene).expect("a scene");
         let scene = serde_json::to_value(table).expect("tables");
         let beside = ["nothing", "bare", "empty", "mirror"][exhibit.name.len() % 4];

@@ -1,7 +1,8 @@
 //! Random rays, and what must hold for the tree of each.
 
 use crate::draws::Draws;
-use cloakroom::trace::{Bench, Launch, Leaf, Outcome};
+use cloakroom::assembly::Assembly;
+use cloakroom::trace::{Launch, Leaf, Outcome};
 use glam::DVec3;
 use optics::wave::transverse_basis;
 
@@ -18,8 +19,10 @@ pub enum Fault {
     NotFinite,
     /// A leaf is no wave in air.
     Unsound,
-    /// What comes out is not what went in; this much is missing.
+    /// What comes out is not what went in, by this share of it.
     Unbalanced(f64),
+    /// The account adds up, but so many branches could not be followed.
+    Lost(u64),
 }
 
 /// A ray towards a place within `reach` (cm) of the origin, as a rule; some run along an axis, through the very
@@ -49,8 +52,8 @@ pub fn launch(draws: &mut Draws<'_>, reach: f64) -> Launch<2> {
 
 /// Whether a ray starts in air.
 #[must_use]
-pub fn starts_in_air(bench: &Bench, launch: &Launch<2>) -> bool {
-    bench.holder(launch.origin).is_none()
+pub fn starts_in_air(assembly: &Assembly, launch: &Launch<2>) -> bool {
+    assembly.device_containing(launch.origin).is_none()
 }
 
 /// Looks at the tree of a ray: how far the account of its power is off.
@@ -59,7 +62,6 @@ pub fn starts_in_air(bench: &Bench, launch: &Launch<2>) -> bool {
 ///
 /// What is wrong with it.
 pub fn examine<const N: usize>(leaves: &[Leaf<N>], outcome: &Outcome<N>) -> Result<f64, Fault> {
-    let mut off: f64 = 0.0;
     for leaf in leaves {
         let finite = leaf.position.is_finite()
             && leaf.direction.is_finite()
@@ -79,18 +81,11 @@ pub fn examine<const N: usize>(leaves: &[Leaf<N>], outcome: &Outcome<N>) -> Resu
             return Err(Fault::Unsound);
         }
     }
-    for i in 0..N {
-        let account: f64 = leaves.iter().map(|leaf| leaf.power[i]).sum::<f64>()
-            + outcome.absorbed[i]
-            + outcome.pruned[i];
-        let missing = 1.0 - account;
-        if missing.is_nan() {
-            return Err(Fault::NotFinite);
-        }
-        if missing.abs() > BALANCE {
-            return Err(Fault::Unbalanced(missing));
-        }
-        off = off.max(missing.abs());
+    let off = outcome.imbalance(leaves);
+    match outcome.stats.lost {
+        _ if off == f64::INFINITY => Err(Fault::NotFinite),
+        _ if off > BALANCE => Err(Fault::Unbalanced(off)),
+        0 => Ok(off),
+        lost => Err(Fault::Lost(lost)),
     }
-    Ok(off)
 }

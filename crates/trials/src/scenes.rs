@@ -3,7 +3,7 @@
 use crate::draws::Draws;
 use cloakroom::device::{CATALOGUE, Entry};
 use cloakroom::keys::{Key, KeyKind, Limits};
-use cloakroom::scene::{PLACEMENT_KEYS, TABLES};
+use cloakroom::scene::{Placement, TABLES};
 use std::f64::consts::TAU;
 use toml::{Table, Value};
 
@@ -45,7 +45,7 @@ fn tolerance(draws: &mut Draws<'_>) -> f64 {
 /// The table of a device of a kind.
 fn device(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
     let mut device = table(draws, entry.keys, 100);
-    device.extend(table(draws, PLACEMENT_KEYS, 50));
+    device.extend(table(draws, Placement::KEYS, 50));
     device.insert("kind".to_owned(), entry.kind.into());
     device
 }
@@ -54,10 +54,8 @@ fn device(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
 fn table(draws: &mut Draws<'_>, keys: &'static [Key], share: u8) -> Table {
     let mut table = Table::new();
     for key in keys {
-        let needed = matches!(
-            key.kind,
-            KeyKind::Tables { .. } | KeyKind::Polygon { .. } | KeyKind::Samples { .. }
-        );
+        let needed =
+            matches!(key.kind, KeyKind::Tables { .. } | KeyKind::Polygon | KeyKind::Samples);
         if needed || draws.chance(share) {
             table.insert(key.name.to_owned(), value(draws, key));
         }
@@ -67,43 +65,54 @@ fn table(draws: &mut Draws<'_>, keys: &'static [Key], share: u8) -> Table {
 
 /// A value of a key, allowed as a rule.
 fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
+    use cloakroom::keys::Value as Default;
+    let limits = key.limits;
+    let (min, max) = match limits {
+        Limits::Whole(min, max) => (min, max),
+        _ => (i64::MIN, i64::MAX),
+    };
+    let default = key.default_value();
+    let usual = |value: &Default| value.as_number().unwrap_or(1.5);
+    let usual_integer = |value: &Default| value.as_integer().unwrap_or(0);
+    let number = default.as_ref().map_or(1.5, usual);
+    let integer = default.as_ref().map_or(0, usual_integer);
+    let items = default.as_ref().and_then(Default::as_list).unwrap_or_default();
     match key.kind {
-        KeyKind::Number { default, limits, .. } => {
-            draws.number(default.unwrap_or(1.5), limits).into()
-        }
-        KeyKind::Integer { default, min, max } => match draws.below(4) {
-            0 => default,
+        KeyKind::Number => draws.number(number, limits).into(),
+        KeyKind::Integer => match draws.below(4) {
+            0 => integer,
             1 => draws.integer().clamp(min, max),
-            2 => (default + draws.below(5) as i64).clamp(min, max),
+            2 => (integer + draws.below(5) as i64).clamp(min, max),
             _ => draws.integer(),
         }
         .into(),
-        KeyKind::Flag { .. } => draws.chance(128).into(),
+        KeyKind::Flag => draws.chance(128).into(),
         KeyKind::Choice { options } => (*draws.pick(options)).into(),
         KeyKind::Choices { options } => {
             let count = draws.below(options.len() + 1);
             (0..count).map(|_| Value::from(*draws.pick(options))).collect::<Vec<_>>().into()
         }
-        KeyKind::Vector { default, limits, .. } => {
-            let components = default.map(|usual| draws.number(usual, limits).into());
-            Value::Array(components.to_vec())
+        KeyKind::Vector => {
+            let component = |item| Value::from(draws.number(usual(item), limits));
+            Value::Array(items.iter().map(component).collect())
         }
-        KeyKind::IntegerPair { default, min, max } => {
-            let pair = default.map(|usual| {
-                if draws.chance(60) { draws.integer() } else { usual.min(40).clamp(min, max) }
-            });
-            Value::Array(pair.map(Value::from).to_vec())
+        KeyKind::IntegerPair => {
+            let number = |item| {
+                let small = usual_integer(item).min(40).clamp(min, max);
+                Value::from(if draws.chance(60) { draws.integer() } else { small })
+            };
+            Value::Array(items.iter().map(number).collect())
         }
-        KeyKind::Image { .. } => {
+        KeyKind::Image => {
             (*draws.pick(&["builtin:bookshelf", "nowhere.png", "builtin:", "", "/"])).into()
         }
-        KeyKind::ChoiceOrNumber { options, .. } => match draws.below(2) {
+        KeyKind::ChoiceOrNumber { options } => match draws.below(2) {
             0 => (*draws.pick(options)).into(),
             _ => draws.number(30.0, Limits::Finite).into(),
         },
         KeyKind::Tensor => tensor(draws),
-        KeyKind::Polygon { .. } => polygon(draws),
-        KeyKind::Samples { limits } => samples(draws, limits),
+        KeyKind::Polygon => polygon(draws),
+        KeyKind::Samples => samples(draws, limits),
         KeyKind::Table { keys } => Value::Table(table(draws, keys, 128)),
         KeyKind::Tables { keys } => {
             let count = 1 + draws.below(4);

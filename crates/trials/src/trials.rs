@@ -2,13 +2,15 @@
 
 use crate::draws::Draws;
 use crate::{page, rays, scenes};
-use cloakroom::gallery::EXHIBITS;
+use cloakroom::assembly::Assembly;
 use cloakroom::interface_exchange::{InterfaceRequest, solve_interfaces};
 use cloakroom::output::{read_npz, read_png};
 use cloakroom::photograph::{Edges, ImageSource, Pyramid, Texels, load_bytes};
+use cloakroom::ray_exchange::{RayRequest, trace_rays};
 use cloakroom::render;
 use cloakroom::scene_file::{self, Loaded};
-use cloakroom::trace::{Bench, FourTracers, Launch, Limits, RayRequest, Tracer, trace_rays};
+use cloakroom::trace::{FourTracers, Launch, Limits, Tracer};
+use cloakroom_figures::gallery::EXHIBITS;
 use glam::DVec3;
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use optics::interface::Scattering;
@@ -77,8 +79,8 @@ fn scene_file(bytes: &[u8]) {
 
 /// Builds the devices of a scene and sends a few rays of its camera.
 fn look_at(loaded: &Loaded) {
-    let bench = match render::bench(&loaded.scene) {
-        Ok(bench) => bench,
+    let assembly = match render::assembly(&loaded.scene) {
+        Ok(assembly) => assembly,
         Err(error) => {
             let told = loaded.locations.error_at(&error.key(), error.to_string());
             assert!(!told.to_string().is_empty());
@@ -94,16 +96,16 @@ fn look_at(loaded: &Loaded) {
         let (origin, direction) = (ray.origin, ray.direction);
         launches.push(Launch { origin, direction, electric: [h.into(), v.into()] });
     }
-    trace(&bench, render::limits(&loaded.scene), &launches);
+    trace(&assembly, render::limits(&loaded.scene), &launches);
 }
 
 /// Traces rays singly and four at a time: what must hold holds, and both ways agree to the last bit.
-fn trace(bench: &Bench, limits: Limits, launches: &[Launch<2>]) {
+fn trace(assembly: &Assembly, limits: Limits, launches: &[Launch<2>]) {
     let limits = least(limits);
-    let mut tracer = Tracer::new(bench, limits);
+    let mut tracer = Tracer::new(assembly, limits);
     let mut four = FourTracers::new(&tracer);
     let launches: Vec<Launch<2>> =
-        launches.iter().filter(|launch| rays::starts_in_air(bench, launch)).copied().collect();
+        launches.iter().filter(|launch| rays::starts_in_air(assembly, launch)).copied().collect();
     for launch in &launches {
         let (leaves, outcome) = tracer.trace(launch);
         if let Err(fault) = rays::examine(leaves, outcome) {
@@ -121,10 +123,10 @@ fn trace(bench: &Bench, limits: Limits, launches: &[Launch<2>]) {
 }
 
 /// Scenes that rays of `trace_json` are sent through: one of each kind of passage.
-static BENCHES: LazyLock<Vec<Bench>> = LazyLock::new(|| {
+static BENCHES: LazyLock<Vec<Assembly>> = LazyLock::new(|| {
     let benches = EXHIBITS.iter().filter_map(|exhibit| {
         let loaded = scene_file::parse(exhibit.scene, exhibit.name, nowhere(), &[]).ok()?;
-        render::bench(&loaded.scene).ok()
+        render::assembly(&loaded.scene).ok()
     });
     benches.collect()
 });
@@ -132,11 +134,11 @@ static BENCHES: LazyLock<Vec<Bench>> = LazyLock::new(|| {
 /// The rays of `cloakroom trace`, through one of the scenes of the gallery: the first byte says which.
 fn trace_json(bytes: &[u8]) {
     let Some((first, text)) = bytes.split_first() else { return };
-    let bench = &BENCHES[usize::from(*first) % BENCHES.len()];
+    let assembly = &BENCHES[usize::from(*first) % BENCHES.len()];
     let Ok(mut requests) = serde_json::from_slice::<Vec<RayRequest>>(text) else { return };
     requests.truncate(MOST_RAYS);
     let limits = Limits { min_power: 1e-4, tolerance: 1e-6 };
-    match trace_rays(bench, limits, &requests, &AtomicBool::new(false)) {
+    match trace_rays(assembly, limits, &requests, &AtomicBool::new(false)) {
         Err(error) => assert!(!error.to_string().is_empty()),
         Ok(reports) => {
             assert_eq!(reports.len(), requests.len());
@@ -261,11 +263,11 @@ fn physics(bytes: &[u8]) {
     let mut draws = Draws::from_bytes(bytes);
     let text = scenes::scene(&mut draws).to_string();
     let Ok(loaded) = scene_file::parse(&text, "a.toml", nowhere(), &[]) else { return };
-    let Ok(bench) = render::bench(&loaded.scene) else { return };
+    let Ok(assembly) = render::assembly(&loaded.scene) else { return };
     let count = 4 + draws.below(MOST_RAYS - 3);
     let reach = 10f64.powf(draws.between(-3.0, 4.0));
     let launches: Vec<Launch<2>> = (0..count).map(|_| rays::launch(&mut draws, reach)).collect();
-    trace(&bench, render::limits(&loaded.scene), &launches);
+    trace(&assembly, render::limits(&loaded.scene), &launches);
 }
 
 fn scene_texts() -> Vec<Vec<u8>> {
@@ -341,10 +343,10 @@ fn picture_bytes() -> Vec<Vec<u8>> {
     let scene = "[camera]\nresolution = [6, 4]\nsamples = 1\n[[device]]\nkind = 'square-cloak'\n";
     let Ok(loaded) = scene_file::parse(scene, "a.toml", nowhere(), &[]) else { return Vec::new() };
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let studio = render::Studio::new(&loaded.scene).expect("a studio");
+    let studio = render::PreparedScene::new(&loaded.scene).expect("a studio");
     let stop = AtomicBool::new(false);
     let supervision = render::Supervision { rows_done: &|_| {}, stop: &stop };
-    let rendered = render::render(&studio, render::Wanted::Everything, &supervision);
+    let rendered = render::render(&studio, render::ChannelSet::Everything, &supervision);
     let picture = rendered.expect("a picture").picture;
     let file = |name: &str| {
         let path = folder.path().join(name);

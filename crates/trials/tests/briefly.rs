@@ -1,6 +1,7 @@
 //! Every trial for a moment: its seeds, changed at random but the same each time, and what once found a fault.
-#![expect(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "a test may")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "a test may")]
 
+use crate::long;
 use std::fs;
 use std::path::{Path, PathBuf};
 use trials::{Draws, TRIALS, Trial};
@@ -9,9 +10,9 @@ use trials::{Draws, TRIALS, Trial};
 fn count(trial: &Trial) -> u64 {
     match trial.name {
         // A connection and a picture each.
-        "page_messages" => 60,
-        "scene_file" | "physics" => 400,
-        _ => 3000,
+        "page_messages" => long::count(10, 60),
+        "scene_file" | "physics" => long::count(60, 400),
+        _ => long::count(500, 3000),
     }
 }
 

@@ -1,9 +1,9 @@
 //! What the soak has found: devices and rays whose power was lost track of, or was no number.
-#![expect(clippy::unwrap_used, reason = "a test may")]
+#![allow(clippy::unwrap_used, reason = "a test may")]
 
 use cloakroom::render;
 use cloakroom::scene_file::{self, Loaded};
-use cloakroom::trace::{Launch, Limits, Rarities, Tracer};
+use cloakroom::trace::{Launch, Limits, TraceStats, Tracer};
 use glam::DVec3;
 use optics::wave::transverse_basis;
 use std::path::Path;
@@ -14,15 +14,15 @@ fn scene(text: &str) -> Result<Loaded, String> {
 }
 
 /// Looks at the tree of a ray; what in it is rare.
-fn sound(keys: &str, origin: DVec3, direction: DVec3, tolerance: f64) -> Rarities {
+fn sound(keys: &str, origin: DVec3, direction: DVec3, tolerance: f64) -> TraceStats {
     let loaded = scene(keys).unwrap();
-    let bench = render::bench(&loaded.scene).unwrap();
-    let mut tracer = Tracer::new(&bench, Limits { min_power: 1e-4, tolerance });
+    let assembly = render::assembly(&loaded.scene).unwrap();
+    let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-4, tolerance });
     let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
     let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
     let (leaves, outcome) = tracer.trace(&launch);
     assert!(trials::examine(leaves, outcome).is_ok(), "{keys}: {leaves:?} {outcome:?}");
-    outcome.rarities
+    outcome.stats
 }
 
 /// Devices so small that surfaces have no normals in double precision lost light.
@@ -55,15 +55,15 @@ fn light_that_runs_into_a_corner_of_a_hyperbolic_medium_ends() {
         [4.0, -2.1921230391605127], [7.534515494848552, -2.0]]\npermeability = -1.8148269154005803\n";
     let origin = DVec3::new(-38.30529692037659, -22.446144844193572, 19.30201199522524);
     let direction = DVec3::new(0.862741895361695, 0.43807378577538286, -0.2525228310552024);
-    let rarities = sound(prisms, origin, direction, 1.95e-9);
-    assert!(matches!(rarities, Rarities { endless: 1.., lost: 0 }), "{rarities:?}");
+    let stats = sound(prisms, origin, direction, 1.95e-9);
+    assert!(matches!(stats, TraceStats { endless: 1.., lost: 0 }), "{stats:?}");
 }
 
 /// A permeability of 2e-38 made fields that are no numbers.
 #[test]
 fn media_whose_fields_are_no_numbers_are_refused() {
     let prism = "kind = \"prisms\"\n[[device.prism]]\ncorners = [[3, -6], [0, 9], [-3, -6]]\npermeability = -2e-38\n";
-    let refused = scene(prism).map(|loaded| render::bench(&loaded.scene).map(|_| ()));
+    let refused = scene(prism).map(|loaded| render::assembly(&loaded.scene).map(|_| ()));
     let message = match refused {
         Err(message) => message,
         Ok(made) => made.unwrap_err().to_string(),
@@ -79,7 +79,7 @@ fn media_too_dense_for_directions_in_air_are_refused() {
             "kind = \"square-cloak\"\nmaterial = \"negative-uniaxial\"\n[device.imperfection]\nminimum = {minimum:?}\n"
         );
         scene(&text)
-            .map(|loaded| render::bench(&loaded.scene).map(|_| ()).map_err(|e| e.to_string()))
+            .map(|loaded| render::assembly(&loaded.scene).map(|_| ()).map_err(|e| e.to_string()))
     };
     assert_eq!(cloak(1e6), Ok(Ok(())));
     let message = cloak(1e9).unwrap_err();

@@ -2,7 +2,6 @@
 
 const keys = document.getElementById("keys");
 
-const UNIT = / Unit: ([^.]+)\.$/;
 const words = (name) => name.replaceAll("_", " ");
 
 // The range of a slider: the limits of the key where it has two, else around its default.
@@ -75,11 +74,11 @@ function control(name, schema, value, set) {
 
 // The rows of a key: one, or one a component of a vector, or a group for a table.
 function rowsOf(name, schema, value, set) {
-  const doc = schema.description ?? "";
   if (schema.type === "object") return [group(name, schema, value, set)];
   if (schema.type === "array" && schema.maxItems === 3 && schema.items.type === "number") {
     const components = name === "color" ? ["red", "green", "blue"] : ["x", "y", "z"];
     const all = [...(value ?? schema.default)];
+    const limits = { color: { maximum: 1 }, axis: { minimum: -1, maximum: 1 } }[name];
     return components.map((component, i) => {
       const one = { ...schema.items, default: schema.default[i] };
       const setOne = (value, moving) => {
@@ -87,11 +86,11 @@ function rowsOf(name, schema, value, set) {
         set([...all], moving);
       };
       const called = `${name} ${component}`;
-      return row(called, doc, number(called, name === "color" ? { ...one, maximum: 1 } : one, all[i], setOne));
+      return row(called, schema, number(called, { ...one, ...limits }, all[i], setOne));
     });
   }
   const controls = control(name, schema, value, set);
-  return controls ? [row(name, doc, controls)] : [];
+  return controls ? [row(name, schema, controls)] : [];
 }
 
 // The keys of a table in a table.
@@ -121,12 +120,13 @@ function group(name, schema, value, set) {
 
 let rowsMade = 0;
 
-function row(name, doc, controls) {
+function row(name, schema, controls) {
   const line = document.createElement("div");
   line.className = "key";
-  line.title = doc.replace(UNIT, "");
+  const unit = schema["x-unit"];
+  // The label says the unit.
+  line.title = (schema.description ?? "").replace(` Unit: ${unit}.`, "");
   const label = document.createElement(controls.length === 1 ? "label" : "span");
-  const unit = doc.match(UNIT)?.[1];
   label.append(words(name));
   if (unit) {
     const small = document.createElement("span");
@@ -160,7 +160,7 @@ export function buildControls(device, kind, changed) {
       else device[name] = value;
       changed(moving);
     };
-    const placement = ["length", ...(kind.core_can_be_open ? ["core"] : []), "position", "imperfection"];
+    const placement = ["length", ...(kind.core_can_be_open ? ["core"] : []), "position", "axis", "imperfection"];
     for (const name of [...kind.own_keys, ...placement]) {
       if (kind.keys[name]) rows.push(...rowsOf(name, kind.keys[name], device[name], setter(name)));
     }

@@ -39,7 +39,8 @@ export const sectionView = {
     section = newer;
     const drawn = [];
     for (const device of section.devices) {
-      if (device.body) {
+      // What is seen from the side is an outline and nothing else.
+      if (device.body || device.regions.length + device.metal.length === 0) {
         const area = element("path", { d: paths(device.outlines), class: "cell" });
         if (Array.isArray(device.body)) area.style.fill = `rgb(${device.body.map(code).join(" ")})`;
         else if (device.body === "image") area.classList.add("metal");
@@ -55,8 +56,7 @@ export const sectionView = {
         drawn.push(element("path", { d: path(metal.points, metal.closed), class: kind }));
       }
     }
-    const { x, half_height: half } = section.photograph;
-    drawn.push(element("path", { d: `M${x} ${-half}V${half}`, class: "photo" }));
+    drawn.push(element("path", { d: path(section.photograph, false), class: "photo" }));
     const [eyeX, eyeY] = section.camera.position;
     if (!section.camera.parallel) {
       for (const [[fromX, fromY], [dx, dy]] of section.camera.edges) {
@@ -74,9 +74,8 @@ export const sectionView = {
     if (!section) return;
     const near = section.devices.flatMap((device) => [...device.outlines, ...device.metal.map((m) => m.points)]);
     const points = near.flat().filter(([x, y]) => Math.abs(x) < 150 && Math.abs(y) < 150);
-    const { x, half_height: half } = section.photograph;
     if (sectionView.whole || points.length === 0) {
-      points.push([x, half], [x, -half]);
+      points.push(...section.photograph);
       if (Math.hypot(...section.camera.position) < 1000) points.push(section.camera.position);
     }
     const range = (i) => [Math.min(...points.map((p) => p[i])), Math.max(...points.map((p) => p[i]))];

@@ -3,9 +3,8 @@
 use crate::protocol::LARGEST_PHOTOGRAPH;
 use crate::scenes::{Opened, tables};
 use cloakroom::device::{CATALOGUE, Entry, Request, Show};
-use cloakroom::gallery::EXHIBITS;
-use cloakroom::keys::Values;
 use cloakroom::scene_file;
+use cloakroom_figures::gallery::EXHIBITS;
 use serde_json::{Map, Value, json};
 
 /// The greeting of the server.
@@ -40,7 +39,7 @@ pub(crate) fn greeting(opened: &Opened) -> Value {
 fn kind(entry: &Entry, schema: &Value) -> Value {
     let built = |show, open_core| {
         let request = Request { show, open_core, length: None };
-        (entry.build)(&Values::defaults(entry.keys), request).ok()
+        (entry.device)().build(request).ok()
     };
     let shows: Vec<&str> = [("cloak", Show::Cloak), ("bare", Show::Bare), ("mirror", Show::Mirror)]
         .into_iter()

@@ -3,7 +3,7 @@
 use crate::painter::{self, Shown, Wish};
 use crate::protocol::{LARGEST_PHOTOGRAPH, Message, error};
 use crate::ray_tree;
-use crate::scenes::{is_plain_name, text};
+use crate::scenes::is_plain_name;
 use crate::seen::Seen;
 use crate::server::Server;
 use crate::slot::Slot;
@@ -276,9 +276,8 @@ impl Session<'_> {
                 let uploaded = self.client.uploaded();
                 let source = uploaded.as_ref().map(|uploaded| &uploaded.source);
                 let read = self.client.server.opened.read(&save.scene, source);
-                let text = read.and_then(|_| text(&save.scene));
-                let answer = match text {
-                    Ok(text) => json!({ "saved": { "text": text } }),
+                let answer = match read {
+                    Ok(loaded) => json!({ "saved": { "text": loaded.scene.source } }),
                     Err(problem) => error(None, &problem),
                 };
                 self.outbox.answer(&answer).await

@@ -1,18 +1,19 @@
 //! The cross-section of a scene in the plane z = 0, for the page to draw.
 
-use cloakroom::device::{Contour, Filling, Surface};
-use cloakroom::render::Studio;
-use cloakroom::scene::{Projection, Scene};
-use cloakroom::trace::Placed;
+use cloakroom::assembly::Placed;
+use cloakroom::device::Contour;
+use cloakroom::render::PreparedScene;
+use cloakroom::scene::{Appearance, DeviceSettings, Projection, Scene};
 use serde_json::{Value, json};
 
 /// Coordinates beyond this are drawn no better, cm.
 const FAR: f64 = 1e4;
 
 /// The shapes of all devices, the photograph and the camera, in world coordinates, cm.
-pub(crate) fn cross_section(scene: &Scene, studio: &Studio<'_>) -> Value {
-    let devices: Vec<Value> = studio.bench().devices().iter().map(device).collect();
-    let [_, height] = studio.photograph_size();
+pub(crate) fn cross_section(scene: &Scene, studio: &PreparedScene<'_>) -> Value {
+    let devices = scene.devices.iter().zip(studio.assembly().devices());
+    let devices: Vec<Value> = devices.map(|(settings, placed)| device(settings, placed)).collect();
+    let photograph = studio.screen().middle_line().map(|end| point(end.x, end.y));
     let camera = &scene.camera;
     let [width_px, height_px] = camera.resolution().map(f64::from);
     let ray = |y: f64| {
@@ -21,22 +22,22 @@ pub(crate) fn cross_section(scene: &Scene, studio: &Studio<'_>) -> Value {
     };
     json!({
         "devices": devices,
-        "photograph": { "x": scene.photograph.x, "half_height": round(height / 2.0) },
+        "photograph": photograph,
         "camera": {
             "position": point(camera.position().x, camera.position().y),
             "edges": [ray(0.0), ray(height_px)],
-            "parallel": matches!(camera.settings().projection, Projection::Orthographic { .. }),
+            "parallel": matches!(camera.settings().projection, Projection::Orthographic),
         },
     })
 }
 
-fn device(placed: &Placed) -> Value {
-    let section = placed.structure.cross_section();
+fn device(settings: &DeviceSettings, placed: &Placed) -> Value {
+    let (section, pose) = placed.structure.drawn_at(&placed.pose);
     let points = |contour: &Contour| -> Vec<[f64; 2]> {
         contour
             .points
             .iter()
-            .map(|at| placed.pose.point_to_world(*at))
+            .map(|at| pose.point_to_world(*at))
             .map(|at| point(at.x, at.y))
             .collect()
     };
@@ -44,17 +45,17 @@ fn device(placed: &Placed) -> Value {
     let regions: Vec<Value> = section
         .regions
         .iter()
-        .map(|region| json!({ "border": all(&region.border), "graded": region.cell.is_graded() }))
+        .map(|region| json!({ "border": all(&region.border), "graded": region.region.is_graded() }))
         .collect();
     let metal: Vec<Value> = section
         .metal
         .iter()
         .map(|contour| json!({ "points": points(contour), "closed": contour.closed }))
         .collect();
-    let body = section.body.map(|body| match &body.filling {
-        Filling::Medium { .. } => json!("medium"),
-        Filling::Opaque(Surface::Color(color)) => json!(color),
-        Filling::Opaque(Surface::Image(_)) => json!("image"),
+    let body = section.body.map(|_| match settings.appearance() {
+        None => json!("medium"),
+        Some(Appearance::Color(color)) => json!(color),
+        Some(Appearance::Image(_)) => json!("image"),
     });
     json!({ "regions": regions, "metal": metal, "outlines": all(&section.outlines), "body": body })
 }

@@ -4,7 +4,9 @@ use cloakroom::measure::{
     Figures, FlightFigures, MeasureError, Region, View, bare, compare, empty, ideal, survey,
 };
 use cloakroom::output::Picture;
-use cloakroom::render::{Images, RenderError, Studio, StudioError, Supervision, Wanted, render};
+use cloakroom::render::{
+    ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Supervision, render,
+};
 use cloakroom::scene::{Camera, CameraSettings, Scene};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
@@ -17,7 +19,7 @@ const WIDTH: u32 = 160;
 pub(crate) enum FiguresError {
     /// A view cannot be set up.
     #[error(transparent)]
-    Studio(#[from] StudioError),
+    PreparedScene(#[from] PreparedSceneError),
     /// A view cannot be rendered.
     #[error(transparent)]
     Render(#[from] RenderError),
@@ -38,8 +40,8 @@ pub(crate) fn figures(
     let supervision = Supervision { rows_done: &|_| {}, stop };
     let scene = small(scene);
     let mut picture = |scene: &Scene| -> Result<Picture, FiguresError> {
-        let studio = Studio::with_images(scene, images)?;
-        Ok(render(&studio, Wanted::Everything, &supervision)?.picture)
+        let studio = PreparedScene::with_images(scene, images)?;
+        Ok(render(&studio, ChannelSet::Everything, &supervision)?.picture)
     };
     let wanted_scene = ideal(&scene);
     let shown = picture(&scene)?;
@@ -50,7 +52,8 @@ pub(crate) fn figures(
         None => None,
     };
     let view = View::of(&shown)?;
-    let [studio, ideal] = [&scene, &wanted_scene].map(|scene| Studio::with_images(scene, images));
+    let [studio, ideal] =
+        [&scene, &wanted_scene].map(|scene| PreparedScene::with_images(scene, images));
     let rays =
         survey(&studio?, &ideal?, &scene.camera, &|_| {}, stop).ok_or(RenderError::Stopped)?;
     let silhouette = Region::new(view.width, rays.silhouette.clone()).ok();

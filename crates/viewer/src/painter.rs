@@ -7,11 +7,13 @@ use crate::figures::{FiguresError, figures, resized};
 use crate::frame::{Caption, Scale, encode};
 use crate::pace::{Pace, Pass};
 use crate::protocol::{Beside, Look, error};
-use cloakroom::illustration::{IllustrationError, Quantity, ScalarMap};
 use cloakroom::measure::{bare, empty, ideal};
 use cloakroom::output::{OutputError, RgbImage, to_srgb};
-use cloakroom::render::{Images, RenderError, Studio, StudioError, Supervision, Wanted, render};
-use cloakroom::scene::{DeviceSettings, Scene};
+use cloakroom::render::{
+    ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Supervision, render,
+};
+use cloakroom::scene::{DeviceSettings, Placement, Scene};
+use cloakroom_figures::{IllustrationError, Quantity, ScalarMap};
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -52,7 +54,7 @@ enum PaintError {
     Scene(String),
     /// It cannot be built.
     #[error(transparent)]
-    Studio(#[from] StudioError),
+    PreparedScene(#[from] PreparedSceneError),
     /// It cannot be rendered.
     #[error(transparent)]
     Render(#[from] RenderError),
@@ -83,7 +85,7 @@ impl PaintError {
     /// The key of the scene that it is about.
     fn key(&self) -> Option<String> {
         match self {
-            Self::Studio(error) => Some(error.key()),
+            Self::PreparedScene(error) => Some(error.key()),
             _ => None,
         }
     }
@@ -171,7 +173,7 @@ impl Painter<'_> {
         let look = &wish.look;
         let full = resized(scene, look.size, 1);
         {
-            let studio = Studio::with_images(&full, images)?;
+            let studio = PreparedScene::with_images(&full, images)?;
             let section = cross_section(&full, &studio);
             if section != self.section {
                 self.say(&json!({ "section": section }))?;
@@ -224,11 +226,11 @@ impl Painter<'_> {
     ) -> Result<Duration, PaintError> {
         let mut scene = resized(scene, pass.size, pass.samples);
         if pass.coarse {
-            scene.trace.min_power = scene.trace.min_power.max(COARSE_POWER);
+            scene.trace.min_power.value = scene.trace.min_power.value.max(COARSE_POWER);
             scene.trace.tolerance = scene.trace.tolerance.max(COARSE_TOLERANCE);
         }
         let start = Instant::now();
-        let studio = Studio::with_images(&scene, images)?;
+        let studio = PreparedScene::with_images(&scene, images)?;
         let progress = Progress::new(self.outbox, wish.look.id, pass.samples, studio.rows());
         let rows_done = |rows| progress.add(rows);
         let quiet = |_| {};
@@ -236,9 +238,9 @@ impl Painter<'_> {
             rows_done: if pass.coarse { &quiet } else { &rows_done },
             stop: &wish.stop,
         };
-        let wanted = Wanted::for_image(&scene.picture);
+        let wanted = ChannelSet::for_image(&scene.picture);
         let picture = render(&studio, wanted, &supervision)?.picture;
-        let (image, scale): (RgbImage, Option<Scale>) = match scene.picture.map {
+        let (image, scale): (RgbImage, Option<Scale>) = match scene.picture.map.name() {
             None => (to_srgb(&picture)?, None),
             Some(channel) => {
                 let map = ScalarMap::new(&picture, channel)?;
@@ -253,7 +255,7 @@ impl Painter<'_> {
             width: pass.size[0],
             height: pass.size[1],
             samples: pass.samples,
-            min_power: scene.trace.min_power,
+            min_power: scene.trace.min_power.value,
             finished: pass.finished,
             last,
             scale,
@@ -270,12 +272,9 @@ impl Painter<'_> {
 /// Whether devices differ in nothing but how they stand.
 fn are_alike(some: &[DeviceSettings], others: &[DeviceSettings]) -> bool {
     let alike = |(one, other): (&DeviceSettings, &DeviceSettings)| {
-        one.entry.kind == other.entry.kind
-            && one.values == other.values
-            && one.show == other.show
-            && one.open_core == other.open_core
-            && one.length == other.length
-            && one.imperfection == other.imperfection
+        let Placement { rotation, axis, position, .. } = other.placement;
+        let placement = Placement { rotation, axis, position, ..one.placement.clone() };
+        one.device == other.device && placement == other.placement
     };
     some.len() == others.len() && some.iter().zip(others).all(alike)
 }

@@ -5,7 +5,7 @@ use crate::cross_section::point;
 use crate::painter::Shown;
 use crate::protocol::Ray;
 use crate::slot::Slot;
-use cloakroom::render::{Images, Studio, pulses};
+use cloakroom::render::{Images, PreparedScene, pulses};
 use cloakroom::scene::Scene;
 use cloakroom::trace::{Launch, Limits, Line, lines};
 use serde_json::{Value, json};
@@ -33,7 +33,7 @@ pub(crate) fn follow(slot: &Slot<Wish>, outbox: &Outbox) {
     while let Some((first, shown)) = next.take() {
         images.clone_from(&shown.images);
         // The devices are built once for all points of one picture.
-        let Ok(studio) = Studio::with_images(&shown.scene, &mut images) else {
+        let Ok(studio) = PreparedScene::with_images(&shown.scene, &mut images) else {
             next = slot.take();
             continue;
         };
@@ -52,7 +52,7 @@ pub(crate) fn follow(slot: &Slot<Wish>, outbox: &Outbox) {
     }
 }
 
-fn answer(scene: &Scene, studio: &Studio<'_>, ray: &Ray) -> Value {
+fn answer(scene: &Scene, studio: &PreparedScene<'_>, ray: &Ray) -> Value {
     let camera = &scene.camera;
     let size = camera.resolution();
     let pixel: [u32; 2] = std::array::from_fn(|i| {
@@ -70,11 +70,11 @@ fn answer(scene: &Scene, studio: &Studio<'_>, ray: &Ray) -> Value {
     let mut tree = match camera.polarizer().amplitudes() {
         None => {
             let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
-            lines(studio.bench(), limits, &launch, [0.5, 0.5], REACH)
+            lines(studio.assembly(), limits, &launch, [0.5, 0.5], REACH)
         }
         Some([a, b]) => {
             let launch = Launch { origin, direction, electric: [(h * a + v * b).into()] };
-            lines(studio.bench(), limits, &launch, [1.0], REACH)
+            lines(studio.assembly(), limits, &launch, [1.0], REACH)
         }
     };
     tree.sort_by(|a, b| b.power.total_cmp(&a.power));
@@ -88,13 +88,13 @@ fn answer(scene: &Scene, studio: &Studio<'_>, ray: &Ray) -> Value {
 }
 
 /// A piece of the tree; a leaf ends on the photograph if it gets there.
-fn drawn(line: &Line, studio: &Studio<'_>) -> Value {
+fn drawn(line: &Line, studio: &PreparedScene<'_>) -> Value {
     let mut points: Vec<[f64; 2]> =
         line.points.iter().map(|at| point(at.position.x, at.position.y)).collect();
     let mut lands = false;
     if let (true, [from, to]) = (line.leaves, &line.points[..]) {
         let direction = (to.position - from.position).normalize_or_zero();
-        if let Some(distance) = studio.screen().hit(from.position, direction) {
+        if let Some(distance) = studio.screen().hit(from.position, direction, 0.0) {
             let end = from.position + direction * distance;
             points[1] = point(end.x, end.y);
             lands = true;

@@ -1,9 +1,8 @@
 //! Scenes from pages: JSON tables in, a scene out, and no way to a file that the user has not opened.
 
 use crate::protocol::SceneTables;
-use cloakroom::keys::{KeyKind, Sampled};
+use cloakroom::json;
 use cloakroom::photograph::ImageSource;
-use cloakroom::scene::{DeviceSettings, Scene, SurroundingsSettings};
 use cloakroom::scene_file::{self, Loaded};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -15,7 +14,7 @@ const LEAST_POWER: f64 = 1e-7;
 const LEAST_TOLERANCE: f64 = 1e-9;
 
 /// Where a scene names its photograph.
-const PHOTOGRAPH: &str = "/photograph/image";
+const PHOTOGRAPH: &str = "photograph.image";
 
 /// What scenes from pages are called in messages.
 const NAME: &str = "scene";
@@ -41,10 +40,10 @@ impl Opened {
     pub fn new(loaded: &Loaded, name: &str, folder: &Path) -> Result<Self, String> {
         let mut tables = Value::Object(tables(&loaded.scene.source)?);
         let mut known = Vec::new();
-        for (place, path) in files(&loaded.scene) {
+        for (place, path) in loaded.scene.files() {
             let absolute = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
             // A file named in an override is relative to where the user is.
-            if let Some(entry) = tables.pointer_mut(&place)
+            if let Some(entry) = tables.pointer_mut(&format!("/{}", place.replace('.', "/")))
                 && entry.as_str().is_some_and(|text| folder.join(text) != path)
             {
                 *entry = absolute.display().to_string().into();
@@ -70,8 +69,8 @@ impl Opened {
         scene: &SceneTables,
         uploaded: Option<&ImageSource>,
     ) -> Result<Loaded, String> {
-        let text = text(scene)?;
-        let mut loaded = scene_file::parse(&text, NAME, &self.folder, &[])
+        let tables = json::value(&Value::Object(scene.clone()))?;
+        let mut loaded = scene_file::assemble(tables, NAME, &self.folder, &[])
             .map_err(|error| error.message.clone())?;
         // What the page has brought is the photograph and nothing else: on a body or around the scene a file of that
         // name would be looked for.
@@ -79,7 +78,7 @@ impl Opened {
         let known = |(place, path): (String, PathBuf)| {
             self.files.contains(&path) || (brought && place == PHOTOGRAPH)
         };
-        if !files(&loaded.scene).into_iter().all(known) {
+        if !loaded.scene.files().into_iter().all(known) {
             return Err(
                 "a page can show the images, and take the grids, that came with the program or with the scene that \
                  was opened, and a photograph dropped onto it; it can open no file"
@@ -87,7 +86,7 @@ impl Opened {
             );
         }
         let trace = &mut loaded.scene.trace;
-        trace.min_power = trace.min_power.max(LEAST_POWER);
+        trace.min_power.value = trace.min_power.value.max(LEAST_POWER);
         trace.tolerance = trace.tolerance.max(LEAST_TOLERANCE);
         Ok(loaded)
     }
@@ -99,80 +98,11 @@ impl Opened {
 ///
 /// If it is no TOML.
 pub(crate) fn tables(source: &str) -> Result<SceneTables, String> {
-    let table: toml::Table = toml::from_str(source).map_err(|error| error.to_string())?;
-    match serde_json::to_value(table) {
-        Ok(Value::Object(tables)) => Ok(tables),
-        Ok(_) => Err("a scene is a table".to_owned()),
-        Err(error) => Err(error.to_string()),
+    let tables = scene_file::tables(source, NAME).map_err(|error| error.message.clone())?;
+    match json::json(tables) {
+        Value::Object(tables) => Ok(tables),
+        _ => Err("a scene is a table".to_owned()),
     }
-}
-
-/// The text of a scene file.
-///
-/// # Errors
-///
-/// If the JSON says what TOML cannot.
-pub(crate) fn text(scene: &SceneTables) -> Result<String, String> {
-    let mut table = toml::Table::new();
-    for (key, value) in scene {
-        table.insert(key.clone(), value_of(value)?);
-    }
-    toml::to_string_pretty(&table).map_err(|error| error.to_string())
-}
-
-fn value_of(value: &Value) -> Result<toml::Value, String> {
-    Ok(match value {
-        Value::Null => {
-            return Err("null stands for nothing in a scene; leave the key out".to_owned());
-        }
-        Value::Bool(flag) => (*flag).into(),
-        Value::Number(number) => match (number.as_i64(), number.as_f64()) {
-            (Some(integer), _) => integer.into(),
-            (None, Some(float)) => float.into(),
-            (None, None) => return Err(format!("{number} is no number of a scene")),
-        },
-        Value::String(text) => text.as_str().into(),
-        Value::Array(items) => {
-            toml::Value::Array(items.iter().map(value_of).collect::<Result<_, _>>()?)
-        }
-        Value::Object(entries) => {
-            let mut table = toml::Table::new();
-            for (key, value) in entries {
-                table.insert(key.clone(), value_of(value)?);
-            }
-            table.into()
-        }
-    })
-}
-
-/// Every file that a scene names, images and grids, and where its tables name it: a JSON pointer.
-fn files(scene: &Scene) -> Vec<(String, PathBuf)> {
-    let mut files = Vec::new();
-    if let ImageSource::File(path) = &scene.photograph.image {
-        files.push((PHOTOGRAPH.to_owned(), path.clone()));
-    }
-    if let SurroundingsSettings::Image(ImageSource::File(path)) = &scene.surroundings {
-        files.push(("/surroundings/image".to_owned(), path.clone()));
-    }
-    for (number, device) in scene.devices.iter().enumerate() {
-        if let Some(ImageSource::File(path)) = body_image(device) {
-            files.push((format!("/device/{number}/surface/image"), path));
-        }
-        let keys = device.entry.keys.iter();
-        for key in keys.filter(|key| matches!(key.kind, KeyKind::Samples { .. })) {
-            if let Some(Sampled::InFile(file)) = device.values.samples(key.name) {
-                files.push((format!("/device/{number}/{}", key.name), file.into()));
-            }
-        }
-    }
-    files
-}
-
-/// The image on an opaque body.
-fn body_image(device: &DeviceSettings) -> Option<ImageSource> {
-    const SURFACE: &str = "surface";
-    device.entry.keys.iter().find(|key| key.name == SURFACE)?;
-    device.values.table(SURFACE)?.optional_image("image").cloned()
 }
 
 /// A file's name without folders, as a photograph may have.

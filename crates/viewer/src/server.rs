@@ -14,7 +14,7 @@ use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use axum::serve::ListenerExt;
-use cloakroom::render::{Images, Studio};
+use cloakroom::render::{Images, PreparedScene};
 use cloakroom::scene::Scene;
 use cloakroom::scene_file::Loaded;
 use std::path::PathBuf;
@@ -162,7 +162,7 @@ fn read_images(scene: &Scene, server: &Arc<Server>) {
     std::thread::spawn(move || {
         let mut images = server.images.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         // The page is told what is wrong with the scene, if anything is.
-        let _ = Studio::with_images(&scene, &mut images);
+        let _ = PreparedScene::with_images(&scene, &mut images);
     });
 }
 

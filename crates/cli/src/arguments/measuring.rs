@@ -5,7 +5,7 @@ use super::{SceneArguments, ThreadsArguments};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use cloakroom::material::Resolution;
-use cloakroom::measure::STANDARD_PLOT;
+use cloakroom_figures::STANDARD_PLOT;
 use std::path::PathBuf;
 
 /// Arguments of `flux`.
@@ -14,11 +14,11 @@ pub struct FluxArguments {
     /// The scene; its [receiver] is the plane.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// A file to write: data as .csv or .npz, a plot over the directions as .svg or .png. May be given several
+    /// A file to write: data as .csv or .npz, a plot over the directions as .svg, .pdf or .png. May be given several
     /// times; the totals are printed.
     #[arg(short, long = "output", value_name = "FILE")]
     pub outputs: Vec<PathBuf>,
-    /// A file for a map of the receiver, .svg or .png.
+    /// A file for a map of the receiver, .svg, .pdf or .png.
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
     /// Angles of incidence in the plane across z, degrees.
@@ -90,7 +90,7 @@ pub struct QualityArguments {
     /// figures are means, with their standard errors.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub draws: u32,
-    /// A file to write; its ending decides: .csv, .npz, or .svg and .png for a plot. May be given several times.
+    /// A file to write; its ending decides: .csv, .npz, or .svg, .pdf and .png for a plot. May be given several times.
     #[arg(short, long = "output", value_name = "FILE")]
     pub outputs: Vec<PathBuf>,
     /// What a plot shows, as in ideal_picture_flip,delivered: names of the table's columns, a panel each.
@@ -110,7 +110,7 @@ pub struct DiagramArguments {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// A file to write, .svg or .png. May be given several times.
+    /// A file to write, .svg, .pdf or .png. May be given several times.
     #[arg(short, long = "output", value_name = "FILE", required = true)]
     pub outputs: Vec<PathBuf>,
     /// How many rays.

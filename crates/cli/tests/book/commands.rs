@@ -1,6 +1,6 @@
 //! Every command of the book and the README is run, at reduced size, in a folder of its own; every scene is checked.
 
-use crate::page::{Page, pages};
+use super::page::{Page, pages};
 use crate::running::{cloakroom, paper};
 use std::env;
 use std::fs::{self, Permissions};
@@ -24,7 +24,7 @@ const SMALLER: [(&str, &str); 9] = [
 /// How commands begin that are not run here, and where they are.
 const ELSEWHERE: [(&str, &str); 14] = [
     ("cargo test", "runs this test"),
-    ("cargo bench", ".ci/run"),
+    ("cargo bench", ".ci/long"),
     ("cargo install", "installs into the home folder; by hand"),
     ("CC_x86_64_unknown_linux_musl=cc", "by hand, a static program"),
     ("rustup target add", "by hand, a static program"),

@@ -1,6 +1,6 @@
 //! Links lead somewhere.
 
-use crate::page::{pages, root};
+use super::page::{pages, root};
 
 #[test]
 fn links_lead_somewhere() {
@@ -27,7 +27,7 @@ fn links_lead_somewhere() {
             if page.path.starts_with("docs/") && !target.starts_with("docs/") {
                 broken.push(format!("{}: {link} leaves the book", page.path));
             }
-            let there = |page: &&crate::page::Page| page.path == target;
+            let there = |page: &&super::page::Page| page.path == target;
             if !anchor.is_empty()
                 && !pages.iter().find(there).is_some_and(|p| p.anchors.iter().any(|a| a == anchor))
             {

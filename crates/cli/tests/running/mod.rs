@@ -1,4 +1,5 @@
 //! Running the command, and reading what it prints.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use assert_cmd::Command;
 use serde_json::Value;

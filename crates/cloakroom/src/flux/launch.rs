@@ -1,10 +1,11 @@
 //! The grid of rays, and the cells that they come down on.
 
 use super::{Direction, FluxError, Sampling};
+use crate::assembly::Assembly;
 use crate::device::REACH;
 use crate::scene::{Receiver, Scene};
 use crate::split_mix::{STEP, mix};
-use crate::trace::{Bench, Launch};
+use crate::trace::Launch;
 use glam::{DVec2, DVec3};
 use optics::wave::transverse_basis;
 
@@ -20,16 +21,19 @@ pub(super) struct Launcher {
 }
 
 impl Launcher {
-    pub fn new(scene: &Scene, bench: &Bench, sampling: Sampling) -> Result<Self, FluxError> {
-        let receiver = scene.receiver;
+    pub fn new(scene: &Scene, assembly: &Assembly, sampling: Sampling) -> Result<Self, FluxError> {
+        let receiver = scene.receiver.clone();
         let mut corners = Vec::new();
         let mut endless = Vec::new();
-        for (device, placed) in bench.devices().iter().enumerate() {
+        for (device, placed) in assembly.devices().iter().enumerate() {
             let Some([low, high]) = placed.structure.hull.bounds(&placed.pose) else {
                 // Nothing in the way.
                 endless.push(true);
                 continue;
             };
+            if !(high - low).truncate().is_finite() {
+                return Err(FluxError::EndlessAskew { device });
+            }
             let is_endless = high.z - low.z > REACH;
             endless.push(is_endless);
             if is_endless && receiver.normal.z != 0.0 {

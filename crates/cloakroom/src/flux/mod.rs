@@ -6,18 +6,17 @@
 mod directions;
 mod files;
 mod launch;
-mod pictures;
 mod result;
 
 pub use directions::{Direction, across_range, sun_day};
 pub use files::{flux_arrays, flux_csv, write_flux_npz};
-pub use pictures::{flux_map, flux_plot};
 pub use result::{Convergence, FluxReport, Gain, Incidence, STANDS, Stand, Total};
 
+use crate::assembly::Assembly;
 use crate::measure;
-use crate::render::{StudioError, Supervision, bench, limits, metadata};
+use crate::render::{PreparedSceneError, Supervision, assembly, limits, metadata};
 use crate::scene::Scene;
-use crate::trace::{Bench, Tracer};
+use crate::trace::Tracer;
 use launch::Launcher;
 use rayon::prelude::*;
 use result::Tally;
@@ -45,7 +44,7 @@ impl Default for Sampling {
 pub enum FluxError {
     /// The scene is impossible.
     #[error(transparent)]
-    Scene(#[from] StudioError),
+    Scene(#[from] PreparedSceneError),
     /// There is nothing in the way of the light.
     #[error("the scene has no device; there is nothing to compare")]
     NoDevice,
@@ -66,6 +65,14 @@ pub enum FluxError {
          `length`, or the receiver a normal with z = 0"
     )]
     EndlessAcross {
+        /// Which device, counted from 0.
+        device: usize,
+    },
+    /// A device without an end is not upright.
+    #[error(
+        "device {device} (counted from 0) is endless along its axis, which is not that of z; give it a `length`"
+    )]
+    EndlessAskew {
         /// Which device, counted from 0.
         device: usize,
     },
@@ -133,8 +140,8 @@ pub fn flux(
             return Err(FluxError::FromBehind { degrees });
         }
         let mut tallies = Vec::new();
-        for bench in &benches {
-            tallies.push(tally(scene, bench, &launcher, *direction, sampling, supervision)?);
+        for assembly in &benches {
+            tallies.push(tally(scene, assembly, &launcher, *direction, sampling, supervision)?);
             (supervision.rows_done)(1);
         }
         let field = launcher.field(*direction);
@@ -163,19 +170,19 @@ fn check(sampling: Sampling) -> Result<(), FluxError> {
 }
 
 /// The scene without devices, with bare metal ([`measure::bare`]), and as it is.
-fn benches(scene: &Scene) -> Result<[Bench; 3], FluxError> {
+fn benches(scene: &Scene) -> Result<[Assembly; 3], FluxError> {
     if scene.devices.is_empty() {
         return Err(FluxError::NoDevice);
     }
-    let cloaked = bench(scene)?;
-    let bare = measure::bare(scene).map_or_else(|| Ok(cloaked.clone()), |bare| bench(&bare))?;
-    Ok([bench(&measure::empty(scene))?, bare, cloaked])
+    let cloaked = assembly(scene)?;
+    let bare = measure::bare(scene).map_or_else(|| Ok(cloaked.clone()), |bare| assembly(&bare))?;
+    Ok([assembly(&measure::empty(scene))?, bare, cloaked])
 }
 
 /// Traces all samples of one direction.
 fn tally(
     scene: &Scene,
-    bench: &Bench,
+    assembly: &Assembly,
     launcher: &Launcher,
     direction: Direction,
     sampling: Sampling,
@@ -186,7 +193,7 @@ fn tally(
     (0..sampling.samples)
         .into_par_iter()
         .map(|sample| {
-            let mut tracer = Tracer::<2>::new(bench, limits);
+            let mut tracer = Tracer::<2>::new(assembly, limits);
             let mut tally = Tally::new(launcher.cells());
             for number in 0..field.count() {
                 if number % 256 == 0 && supervision.stop.load(Ordering::Relaxed) {
@@ -194,8 +201,8 @@ fn tally(
                 }
                 let launch = field.launch(sample, number, scene.camera.seed());
                 let (leaves, outcome) = tracer.trace(&launch);
-                tally.rarities += outcome.rarities;
-                for leaf in leaves.iter().filter(|leaf| leaf.body.is_none()) {
+                tally.stats += outcome.stats;
+                for leaf in leaves.iter().filter(|leaf| leaf.body().is_none()) {
                     if let Some(cell) = launcher.cell(leaf.position, leaf.direction) {
                         tally.add(cell, leaf.power.map(|power| power * field.share()));
                     }

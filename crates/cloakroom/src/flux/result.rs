@@ -1,7 +1,7 @@
 //! What a measurement of flux has found.
 
 use super::Direction;
-use crate::trace::Rarities;
+use crate::trace::TraceStats;
 
 /// What stands in the way of the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,12 +33,12 @@ impl Stand {
 #[derive(Clone, Debug)]
 pub(super) struct Tally {
     cells: Vec<[f64; 2]>,
-    pub rarities: Rarities,
+    pub stats: TraceStats,
 }
 
 impl Tally {
     pub fn new([wide, long]: [usize; 2]) -> Self {
-        Self { cells: vec![[0.0; 2]; wide * long], rarities: Rarities::default() }
+        Self { cells: vec![[0.0; 2]; wide * long], stats: TraceStats::default() }
     }
 
     pub fn add(&mut self, cell: usize, power: [f64; 2]) {
@@ -102,7 +102,7 @@ pub struct Incidence {
     /// With more and more samples.
     pub convergence: Vec<Convergence>,
     /// Rare events in all samples.
-    pub rarities: Rarities,
+    pub stats: TraceStats,
 }
 
 /// What a measurement of flux has found.
@@ -152,8 +152,8 @@ impl Incidence {
                     gain: gain(2, most),
                 })
                 .collect(),
-            rarities: tallies.iter().flatten().fold(Rarities::default(), |mut sum, tally| {
-                sum += tally.rarities;
+            stats: tallies.iter().flatten().fold(TraceStats::default(), |mut sum, tally| {
+                sum += tally.stats;
                 sum
             }),
         }

@@ -1,10 +1,10 @@
 //! Reading interfaces from JSON, with errors that name the place.
 
-use crate::direction::unit;
 use crate::keys::unknown;
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 use optics::medium::{Medium, Tensor};
+use optics::wave::unit;
 use serde_json::Value;
 
 /// How large the normal part of a tangential wave vector may be.

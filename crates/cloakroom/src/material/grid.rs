@@ -1,8 +1,8 @@
 //! Regular grids of cells around a device.
 
 use super::MaterialError;
+use crate::assembly::Placed;
 use crate::device::REACH;
-use crate::trace::Placed;
 use glam::DVec3;
 use optics::geometry::Pose;
 

@@ -9,9 +9,9 @@ pub use grid::{Frame, Grid, Resolution};
 pub use sampling::{Region, SymmetricTensor, sample};
 pub use segments::{Segment, segments, write_segments};
 
-use crate::device::{Filling, Show};
+use crate::assembly::{Assembly, Placed};
+use crate::device::Show;
 use crate::scene::Scene;
-use crate::trace::{Bench, Placed};
 
 /// Why the material of a device cannot be given.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -75,14 +75,14 @@ pub enum MaterialError {
 }
 
 /// The device that is meant: that of the number, or the only one there is.
-fn chosen(bench: &Bench, device: Option<usize>) -> Result<(usize, &Placed), MaterialError> {
-    let count = bench.devices().len();
+fn chosen(assembly: &Assembly, device: Option<usize>) -> Result<(usize, &Placed), MaterialError> {
+    let count = assembly.devices().len();
     let index = match device {
         Some(device) => device,
         None if count > 1 => return Err(MaterialError::WhichDevice { count }),
         None => 0,
     };
-    let placed = bench.devices().get(index);
+    let placed = assembly.devices().get(index);
     placed.map(|placed| (index, placed)).ok_or(MaterialError::NoDevice { device: index, count })
 }
 
@@ -90,15 +90,12 @@ fn chosen(bench: &Bench, device: Option<usize>) -> Result<(usize, &Placed), Mate
 fn without_material(scene: &Scene, device: usize, placed: &Placed) -> Option<MaterialError> {
     let structure = &placed.structure;
     let settings = &scene.devices[device];
-    let reason = match (settings.show, structure.hull.body()) {
-        (Show::Bare, _) => "is shown as bare metal",
-        (Show::Mirror, _) => "is shown as the mirror it imitates",
-        (Show::Cloak, Some(body)) => match body.filling {
-            Filling::Medium { .. } => return None,
-            Filling::Opaque(_) => "is opaque",
-        },
-        (Show::Cloak, None) if structure.cells.is_empty() => "is made of metal alone",
-        (Show::Cloak, None) => return None,
+    let reason = match settings.placement.show {
+        Show::Bare => "is shown as bare metal",
+        Show::Mirror => "is shown as the mirror it imitates",
+        Show::Cloak if structure.is_opaque() => "is opaque",
+        Show::Cloak if structure.regions.is_empty() => "is made of metal alone",
+        Show::Cloak => return None,
     };
-    Some(MaterialError::NoMaterial { device, kind: settings.entry.kind, reason })
+    Some(MaterialError::NoMaterial { device, kind: settings.kind(), reason })
 }

@@ -1,11 +1,11 @@
 //! The material of a device on a grid.
 
 use super::{Frame, Grid, MaterialError, Resolution, chosen, without_material};
-use crate::device::Occupant;
+use crate::assembly::{Assembly, Placed};
+use crate::device::MaterialAt;
 use crate::output::{GridArray, GridFile, GridValues};
 use crate::render::{Supervision, metadata};
 use crate::scene::Scene;
-use crate::trace::{Bench, Placed};
 use glam::DMat3;
 use optics::medium::Tensor;
 use rayon::prelude::*;
@@ -55,14 +55,14 @@ struct Point {
 /// stopped.
 pub fn sample(
     scene: &Scene,
-    bench: &Bench,
+    assembly: &Assembly,
     device: Option<usize>,
     frame: Frame,
     resolution: Resolution,
     begun: &dyn Fn(u64),
     supervision: &Supervision<'_>,
 ) -> Result<GridFile, MaterialError> {
-    let (device, placed) = chosen(bench, device)?;
+    let (device, placed) = chosen(assembly, device)?;
     if let Some(error) = without_material(scene, device, placed) {
         return Err(error);
     }
@@ -97,7 +97,7 @@ fn point(placed: &Placed, frame: Frame, at: glam::DVec3) -> Point {
         Frame::Device => at,
         Frame::World => placed.pose.to_local(at),
     };
-    let occupant = placed.structure.occupant(local);
+    let occupant = placed.structure.material_at(local);
     let empty = |region, value: f64| Point {
         region,
         index: value,
@@ -105,10 +105,10 @@ fn point(placed: &Placed, frame: Frame, at: glam::DVec3) -> Point {
         imaginary: [[0.0 * value; 6]; 2],
     };
     let medium = match occupant {
-        Occupant::Air => return empty(Region::Air, 1.0),
-        Occupant::HiddenAir => return empty(Region::Hidden, 1.0),
-        Occupant::Metal | Occupant::Opaque => return empty(Region::Metal, f64::NAN),
-        Occupant::Medium(medium) => medium,
+        MaterialAt::Air => return empty(Region::Air, 1.0),
+        MaterialAt::HiddenAir => return empty(Region::Hidden, 1.0),
+        MaterialAt::Metal | MaterialAt::Opaque => return empty(Region::Metal, f64::NAN),
+        MaterialAt::Medium(medium) => medium,
     };
     let (permittivity, permeability) = medium.tensors();
     let tensors = [permittivity, permeability].map(|tensor| match frame {

@@ -1,10 +1,10 @@
 //! The homogeneous segments of a device as a table: corners, axes, tensors.
 
 use super::{MaterialError, chosen, without_material};
-use crate::device::{Cell, Prism};
+use crate::assembly::Assembly;
+use crate::device::{HomogeneousRegion, Region};
 use crate::output::{OutputError, ending, write_whole};
 use crate::scene::Scene;
-use crate::trace::Bench;
 use glam::{DMat3, DVec2, DVec3};
 use optics::medium::principal_axes;
 use serde::Serialize;
@@ -65,19 +65,21 @@ fn towards_x(axis: DVec3) -> [f64; 3] {
 /// If there is no such device, or it has no segments.
 pub fn segments(
     scene: &Scene,
-    bench: &Bench,
+    assembly: &Assembly,
     device: Option<usize>,
 ) -> Result<Vec<Segment>, MaterialError> {
-    let (device, placed) = chosen(bench, device)?;
+    let (device, placed) = chosen(assembly, device)?;
     if let Some(error) = without_material(scene, device, placed) {
         return Err(error);
     }
     let structure = &placed.structure;
     let section = structure.cross_section();
-    let z_cm = scene.devices[device].length.map(|length| [-length / 2.0, length / 2.0]);
+    let z_cm = scene.devices[device].placement.length.map(|length| [-length / 2.0, length / 2.0]);
     let corners = |points: Vec<DVec2>| points.into_iter().map(|p| (p + 0.0).to_array()).collect();
     let of_medium = section.regions.iter().filter_map(|region| {
-        let Cell::Prism(Prism { medium, .. }) = region.cell else { return None };
+        let Region::Homogeneous(HomogeneousRegion { medium, .. }) = region.region else {
+            return None;
+        };
         Some(Segment {
             segment: 0,
             filling: "medium",
@@ -90,7 +92,7 @@ pub fn segments(
     });
     let mut segments: Vec<Segment> = of_medium.collect();
     if segments.is_empty() {
-        let kind = scene.devices[device].entry.kind;
+        let kind = scene.devices[device].kind();
         return Err(MaterialError::NoSegments { device, kind });
     }
     let metal = section.metal.iter().filter(|contour| contour.closed);

@@ -1,10 +1,11 @@
 //! The scenes that a scene is held against.
 
-use crate::device::{Occupant, REACH, Request, Show};
-use crate::render::bench;
-use crate::scene::{DeviceSettings, Scene};
-use crate::trace::Placed;
+use crate::assembly::Placed;
+use crate::device::{MaterialAt, REACH, Show};
+use crate::render::assembly;
+use crate::scene::{Core, DeviceSettings, Scene};
 use glam::DVec3;
+use optics::geometry::Pose;
 
 /// What a scene should look like: its cloaks as the flat mirrors that they imitate, and nothing in the place of
 /// other devices.
@@ -37,35 +38,36 @@ pub fn bare(scene: &Scene) -> Option<Scene> {
 
 /// Shows a device otherwise, if it can be, and says whether anything is there to be seen then.
 fn show_as(device: &mut DeviceSettings, show: Show) -> Option<bool> {
-    let request = Request { show, open_core: false, length: device.length };
-    let built = (device.entry.build)(&device.values, request).ok()?;
-    (device.show, device.open_core) = (show, false);
-    Some(!built.skin.is_empty())
+    let mut filled = device.clone();
+    (filled.placement.core, filled.placement.show) = (Core::Metal, show);
+    let built = filled.built(show).ok()?;
+    *device = filled;
+    Some(!built.surfaces.is_empty())
 }
 
 /// Whether each device stands in the open core of another; nothing where there is no such core.
 fn hidden(scene: &Scene) -> Vec<bool> {
-    if !scene.devices.iter().any(|device| device.open_core) {
+    if !scene.devices.iter().any(|device| device.has_open_core()) {
         return Vec::new();
     }
-    let Ok(bench) = bench(scene) else { return Vec::new() };
+    let Ok(assembly) = assembly(scene) else { return Vec::new() };
     let reach = DVec3::splat(REACH);
-    let ends = |placed: &Placed| {
-        let [low, high] = placed.structure.hull.bounds(&placed.pose)?;
+    let ends = |placed: &Placed, frame: &Pose| {
+        let [low, high] = placed.structure.hull.bounds(&frame.inverse().after(&placed.pose))?;
         Some([low.max(-reach), high.min(reach)])
     };
-    // Of two cores one in the other, the smaller box is in the larger; in the plane, for both may be endless along z.
-    let holds = |around: &Placed, [low, high]: [DVec3; 2]| {
-        let [from, to] = ends(around)?.map(DVec3::truncate);
+    // Of two cores one in the other, the smaller box is in the larger; across the axis, for both may be endless
+    // along it.
+    let holds = |around: &Placed, placed: &Placed| {
+        let [from, to] = ends(around, &around.pose)?.map(DVec3::truncate);
+        let [low, high] = ends(placed, &around.pose)?;
         let is_smaller = (low.truncate().cmpgt(from) & high.truncate().cmplt(to)).all();
-        let middle = around.structure.occupant(around.pose.to_local((low + high) / 2.0));
-        (is_smaller && middle == Occupant::HiddenAir).then_some(())
+        let middle = around.structure.material_at((low + high) / 2.0);
+        (is_smaller && middle == MaterialAt::HiddenAir).then_some(())
     };
-    let is_hidden = |placed: &Placed| {
-        let mut around = bench.devices().iter();
-        ends(placed).is_some_and(|ends| around.any(|around| holds(around, ends).is_some()))
-    };
-    bench.devices().iter().map(is_hidden).collect()
+    let is_hidden =
+        |placed: &Placed| assembly.devices().iter().any(|around| holds(around, placed).is_some());
+    assembly.devices().iter().map(is_hidden).collect()
 }
 
 #[cfg(test)]
@@ -83,9 +85,9 @@ mod tests {
         let square = "[[device]]\nkind = 'square-cloak'\ncore = 'open'\n";
         let small = "[[device]]\nkind = 'cylinder-cloak'\ncore = 'open'\ninner = 1.5\nouter = 3\n";
         let bare = bare(&scene(&format!("{lens}{rod}{small}{square}"))).expect("a cloak");
-        let shown: Vec<_> = bare.devices.iter().map(|d| (d.entry.kind, d.show)).collect();
+        let shown: Vec<_> = bare.devices.iter().map(|d| (d.kind(), d.placement.show)).collect();
         assert_eq!(shown, [("luneburg-lens", Show::Cloak), ("square-cloak", Show::Bare)]);
-        assert!(bench(&bare).is_ok());
+        assert!(assembly(&bare).is_ok());
         assert!(super::bare(&scene(&format!("{lens}{rod}"))).is_none());
     }
 }

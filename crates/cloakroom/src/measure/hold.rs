@@ -1,13 +1,13 @@
 //! A key that is chosen so that a computed fact of its device stays what it is: designs at equal hidden area.
 
-use crate::device::{FactValue, Request};
+use crate::device::{FactValue, Show};
 use crate::keys::{hint, number_text, quoted};
 use crate::scene::{DeviceSettings, Scene};
 
 /// A key of a device that follows the swept ones, so that a computed fact of the device stays what it is in the
 /// scene as given.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct Hold {
+pub struct Constraint {
     /// The key, as in `device.0.w`.
     pub key: String,
     /// The fact, as in `cloaked_area_cm2`.
@@ -19,7 +19,7 @@ pub struct Hold {
 
 /// Why a fact cannot be held.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum HoldError {
+pub enum ConstraintError {
     /// It is not written as it should be.
     #[error("--hold {text}: write device.N.KEY=FACT, as in device.0.w=cloaked_area_cm2")]
     Unreadable {
@@ -87,13 +87,13 @@ fn at(settings: &[String]) -> String {
 const TRIALS_AN_OCTAVE: i32 = 8;
 const OCTAVES: i32 = 6;
 
-impl Hold {
+impl Constraint {
     /// Reads `device.N.KEY=FACT`.
     ///
     /// # Errors
     ///
     /// If it is written otherwise.
-    pub fn parse(text: &str) -> Result<Self, HoldError> {
+    pub fn parse(text: &str) -> Result<Self, ConstraintError> {
         let read = || {
             let (key, fact) = text.split_once('=')?;
             let (key, fact) = (key.trim(), fact.trim());
@@ -102,7 +102,7 @@ impl Hold {
             Some(Self { key: key.to_owned(), fact: fact.to_owned(), device: number.parse().ok()? })
                 .filter(|_| sound)
         };
-        read().ok_or_else(|| HoldError::Unreadable { text: text.to_owned() })
+        read().ok_or_else(|| ConstraintError::Unreadable { text: text.to_owned() })
     }
 
     /// The name of the key in its device.
@@ -110,22 +110,22 @@ impl Hold {
         self.key.rsplit('.').next().unwrap_or(&self.key)
     }
 
-    fn device<'s>(&self, scene: &'s Scene) -> Result<&'s DeviceSettings, HoldError> {
-        let missing = || HoldError::NoDevice { key: self.key.clone(), device: self.device };
+    fn device<'s>(&self, scene: &'s Scene) -> Result<&'s DeviceSettings, ConstraintError> {
+        let missing = || ConstraintError::NoDevice { key: self.key.clone(), device: self.device };
         scene.devices.get(self.device).ok_or_else(missing)
     }
 
     /// The fact as it is in a scene.
-    pub(super) fn target(&self, scene: &Scene) -> Result<f64, HoldError> {
+    pub(super) fn target(&self, scene: &Scene) -> Result<f64, ConstraintError> {
         let device = self.device(scene)?;
         self.start(device)?;
         fact(device, &self.fact).ok_or_else(|| {
-            let facts = (device.entry.facts)(&device.values);
+            let facts = device.facts();
             let numbers = facts.iter().filter(|fact| matches!(fact.value, FactValue::Number(_)));
             let known: Vec<&str> = numbers.map(|fact| fact.name).collect();
-            HoldError::NoFact {
+            ConstraintError::NoFact {
                 key: self.key.clone(),
-                kind: device.entry.kind,
+                kind: device.kind(),
                 fact: self.fact.clone(),
                 hint: hint(&self.fact, &known, "known ones"),
             }
@@ -133,16 +133,16 @@ impl Hold {
     }
 
     /// The value of the key from which the search starts.
-    fn start(&self, device: &DeviceSettings) -> Result<f64, HoldError> {
-        let refuse = |problem: String| HoldError::Key { key: self.key.clone(), problem };
-        let keys = device.entry.keys;
+    fn start(&self, device: &DeviceSettings) -> Result<f64, ConstraintError> {
+        let refuse = |problem: String| ConstraintError::Key { key: self.key.clone(), problem };
+        let keys = device.device.table().keys();
         if !keys.iter().any(|key| key.name == self.name()) {
             let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
             let hint = hint(self.name(), &known, "its keys");
-            let kind = device.entry.kind;
+            let kind = device.kind();
             return Err(refuse(format!("a {kind} has no key {}{hint}", quoted(self.name(), '`'))));
         }
-        let number = device.values.get(self.name()).and_then(|value| value.as_number());
+        let number = device.device.table().get(self.name()).and_then(|value| value.as_number());
         number
             .filter(|number| *number > 0.0)
             .ok_or_else(|| refuse("the key must be a number above 0 in the scene".to_owned()))
@@ -154,15 +154,15 @@ impl Hold {
         scene: &Scene,
         target: f64,
         settings: &[String],
-    ) -> Result<f64, HoldError> {
+    ) -> Result<f64, ConstraintError> {
         let mut device = self.device(scene)?.clone();
         let start = self.start(&device)?;
         let mut excess = |value: f64| {
-            device.values.set(self.name(), value).ok()?;
+            device.device.table_mut().set(self.name(), value.into()).ok()?;
             fact(&device, &self.fact).map(|fact| fact - target)
         };
         let value = |k: i32| start * 2f64.powf(f64::from(k) / f64::from(TRIALS_AN_OCTAVE));
-        let none = || HoldError::NoSolution {
+        let none = || ConstraintError::NoSolution {
             key: self.key.clone(),
             fact: self.fact.clone(),
             target,
@@ -202,9 +202,8 @@ impl Hold {
 
 /// A computed number of a device, if it can be built.
 fn fact(device: &DeviceSettings, name: &str) -> Option<f64> {
-    let request = Request { length: device.length, ..Request::default() };
-    (device.entry.build)(&device.values, request).ok()?;
-    (device.entry.facts)(&device.values).into_iter().find_map(|fact| match fact.value {
+    device.built(Show::Cloak).ok()?;
+    device.facts().into_iter().find_map(|fact| match fact.value {
         FactValue::Number(number) if fact.name == name => Some(number),
         _ => None,
     })
@@ -222,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_thinner_higher_bump_hides_the_same_area() {
-        let hold = Hold::parse("device.0.w=cloaked_area_cm2").expect("a hold");
+        let hold = Constraint::parse("device.0.w=cloaked_area_cm2").expect("a hold");
         let base = scene("[[device]]\nkind = \"double-gaussian-cloak\"\n");
         let target = hold.target(&base).expect("a fact");
         for h in [2.0, 4.25, 6.0, 8.0] {
@@ -232,7 +231,7 @@ mod tests {
             let found = hold.solve(&other, target, &[]);
             // Beyond h/w = 0.886 there is no such map.
             if h / exact > 0.886 {
-                assert!(matches!(found, Err(HoldError::NoSolution { .. })), "{found:?}");
+                assert!(matches!(found, Err(ConstraintError::NoSolution { .. })), "{found:?}");
             } else {
                 let found = found.expect("a width");
                 assert!((found - exact).abs() < 1e-12, "h = {h}: {found} {exact}");
@@ -245,18 +244,18 @@ mod tests {
     #[test]
     fn what_cannot_be_held_is_refused() {
         for text in ["w=a", "device.0.w", "device.x.w=a", "device.0.=a", "device.0.w="] {
-            assert!(Hold::parse(text).is_err_and(|e| e.to_string().contains(text)), "{text}");
+            assert!(Constraint::parse(text).is_err_and(|e| e.to_string().contains(text)), "{text}");
         }
         let base = scene("[[device]]\nkind = \"square-cloak\"\n");
         let message = |text: &str| {
-            let hold = Hold::parse(text).expect(text);
+            let hold = Constraint::parse(text).expect(text);
             hold.target(&base).expect_err(text).to_string()
         };
         assert!(message("device.1.side=a").contains("no device 1"));
         assert!(message("device.0.sid=a").contains("did you mean `side`"));
         assert!(message("device.0.rounded=a").contains("number above 0"));
         assert!(message("device.0.side=cloaked_area").contains("did you mean `cloaked_area_cm2`"));
-        let hold = Hold::parse("device.0.kappa=mirror_width_cm").expect("a hold");
+        let hold = Constraint::parse("device.0.kappa=mirror_width_cm").expect("a hold");
         let message = hold.solve(&base, 25.0, &["device.0.side=9".to_owned()]);
         let message = message.expect_err("it does not depend on it").to_string();
         assert!(message.contains("keeps mirror_width_cm at 25 with device.0.side=9"), "{message}");

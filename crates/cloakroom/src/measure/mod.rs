@@ -1,12 +1,11 @@
 //! Numbers for what pictures show: how alike two views are, how well a device does over a range of its
-//! settings, and what of the paper's statements comes out here.
+//! settings.
 //!
 //! - [`View`] is a picture to be measured, from memory or a file; [`Region`] a part of it.
 //! - [`compare`] holds two views against each other: correlation, structural similarity, FLIP, times of
 //!   flight, power.
 //! - [`survey`](survey()) asks the rays themselves: where they land, against where they should.
 //! - [`quality`](quality()) does both for every combination of swept keys ([`Sweep`]).
-//! - [`verification`] goes through the paper, statement by statement.
 
 mod comparison;
 mod correlation;
@@ -23,18 +22,17 @@ mod statistics;
 mod structural_similarity;
 mod survey;
 mod sweep;
-pub mod verification;
 mod view;
 
 pub use comparison::{Comparison, Figures, FlightFigures, Shifted, compare};
 pub use correlation::{BestShift, best_shift, correlation};
 pub use counterparts::{bare, empty, ideal};
 pub use flip::{DEFAULT_PIXELS_PER_DEGREE, flip};
-pub use hold::{Hold, HoldError};
+pub use hold::{Constraint, ConstraintError};
 pub use measured::columns;
 pub use plan::Plan;
 pub use quality::{Column, QualityError, QualityTable, Row, UnknownColumn, quality};
-pub use quality_files::{STANDARD_PLOT, TableError, TableFormat};
+pub use quality_files::name_and_unit;
 pub use region::Region;
 pub use structural_similarity::structural_similarity;
 pub use survey::{CLOAKED_WITHIN_CM, Survey, survey};

@@ -1,12 +1,12 @@
 //! What is to be measured, read and checked before the work.
 
-use super::hold::Hold;
+use super::hold::Constraint;
 use super::quality::{QualityError, UnknownColumn, find_column, located};
 use super::quality_files::name_and_unit;
 use super::sweep::{Sweep, combinations};
-use super::{Column, HoldError, SweepError, columns};
+use super::{Column, ConstraintError, SweepError, columns};
 use crate::device::Imperfection;
-use crate::render::bench;
+use crate::render::assembly;
 use crate::scene::Scene;
 use crate::scene_file::{Loaded, SceneFileError};
 
@@ -14,7 +14,7 @@ use crate::scene_file::{Loaded, SceneFileError};
 #[derive(Debug)]
 pub struct Plan {
     pub(super) sweeps: Vec<Sweep>,
-    pub(super) holds: Vec<Hold>,
+    pub(super) holds: Vec<Constraint>,
     pub(super) scenes: Vec<Combination>,
     pub(super) draws: u32,
 }
@@ -51,15 +51,15 @@ impl Plan {
     /// As [`Self::new`], and if a fact cannot be held.
     pub fn holding(
         sweeps: Vec<Sweep>,
-        holds: Vec<Hold>,
+        holds: Vec<Constraint>,
         load: impl Fn(&[String]) -> Result<Loaded, SceneFileError>,
     ) -> Result<Self, QualityError> {
         let load = |overrides: &[String]| {
             load(overrides).map_err(|error| QualityError::Scene(Box::new(error)))
         };
-        let both = |hold: &&Hold| sweeps.iter().any(|sweep| sweep.key == hold.key);
+        let both = |hold: &&Constraint| sweeps.iter().any(|sweep| sweep.key == hold.key);
         if let Some(hold) = holds.iter().find(both) {
-            return Err(HoldError::Swept { key: hold.key.clone() }.into());
+            return Err(ConstraintError::Swept { key: hold.key.clone() }.into());
         }
         for (i, hold) in holds.iter().enumerate() {
             if holds[..i].iter().any(|other| other.key == hold.key) {
@@ -87,7 +87,7 @@ impl Plan {
                 held.push(value);
                 loaded = load(&overrides)?;
             }
-            bench(&loaded.scene).map_err(|error| located(&loaded, &error))?;
+            assembly(&loaded.scene).map_err(|error| located(&loaded, &error))?;
             Ok(Combination { settings, held, loaded })
         };
         let scenes = chosen.into_iter().map(scene);
@@ -158,15 +158,16 @@ const FIXED_PICTURES: u64 = 2;
 const PICTURES_A_DRAW: u64 = 2;
 
 fn is_random(scene: &Scene) -> bool {
-    let imperfections = scene.devices.iter().filter_map(|device| device.imperfection.as_ref());
+    let imperfections =
+        scene.devices.iter().filter_map(|device| device.placement.imperfection.as_ref());
     imperfections.into_iter().any(Imperfection::is_random)
 }
 
 /// A scene with that draw of its devices' random errors.
 pub(super) fn drawn(scene: &Scene, draw: u32) -> Scene {
     let mut scene = scene.clone();
-    for imperfection in scene.devices.iter_mut().filter_map(|device| device.imperfection.as_mut()) {
-        imperfection.draw = draw;
+    for device in &mut scene.devices {
+        device.draw = draw;
     }
     scene
 }

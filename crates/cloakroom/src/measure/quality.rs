@@ -1,16 +1,18 @@
 //! How well the devices of a scene do what they are for, over a range of settings.
 
-use super::hold::HoldError;
+use super::hold::ConstraintError;
 use super::measured::Measured;
 use super::plan::{Combination, drawn};
 use super::statistics::Statistics;
 use super::sweep::{Sweep, SweepError};
 use super::{MeasureError, Plan, View, empty, ideal, survey};
 use crate::keys::hint;
-use crate::render::{RenderError, Studio, StudioError, Supervision, Wanted, render};
+use crate::render::{
+    ChannelSet, PreparedScene, PreparedSceneError, RenderError, Supervision, render,
+};
 use crate::scene::Scene;
 use crate::scene_file::{Loaded, SceneFileError};
-use crate::trace::Rarities;
+use crate::trace::TraceStats;
 
 /// Why there is no table.
 #[derive(Debug, thiserror::Error)]
@@ -29,7 +31,7 @@ pub enum QualityError {
     Measure(#[from] MeasureError),
     /// A fact of a device cannot be held.
     #[error("{0}")]
-    Hold(#[from] HoldError),
+    Constraint(#[from] ConstraintError),
     /// There are draws of something that is not random.
     #[error(
         "--draws {draws}: nothing in the scene is random; give a device an error, as in \
@@ -90,16 +92,19 @@ pub struct QualityTable {
     /// How many draws of the devices' random errors the numbers are means of.
     pub draws: u32,
     /// Rare events over all rays of the pictures.
-    pub rarities: Rarities,
+    pub stats: TraceStats,
     /// The metadata of the first picture.
     pub metadata: Vec<(String, String)>,
 }
 
 impl QualityTable {
     /// The place of a column, by its name.
-    #[must_use]
-    pub fn column(&self, name: &str) -> Option<usize> {
-        self.columns.iter().position(|column| column.name == name)
+    ///
+    /// # Errors
+    ///
+    /// If there is no such column.
+    pub fn column(&self, name: &str) -> Result<usize, UnknownColumn> {
+        find_column(&self.columns, name)
     }
 }
 
@@ -111,7 +116,7 @@ pub(super) fn find_column(columns: &[Column], name: &str) -> Result<usize, Unkno
     })
 }
 
-pub(super) fn located(loaded: &Loaded, error: &StudioError) -> QualityError {
+pub(super) fn located(loaded: &Loaded, error: &PreparedSceneError) -> QualityError {
     QualityError::Scene(Box::new(loaded.locations.error_at(&error.key(), error.to_string())))
 }
 
@@ -122,8 +127,8 @@ fn same_view(one: &Scene, other: &Scene) -> bool {
         && one.surroundings == other.surroundings
 }
 
-fn studio<'s>(scene: &'s Scene, loaded: &Loaded) -> Result<Studio<'s>, QualityError> {
-    Studio::new(scene).map_err(|error| located(loaded, &error))
+fn studio<'s>(scene: &'s Scene, loaded: &Loaded) -> Result<PreparedScene<'s>, QualityError> {
+    PreparedScene::new(scene).map_err(|error| located(loaded, &error))
 }
 
 /// Renders the scene of every combination, its ideal and its empty view, and measures them; where the scene is random,
@@ -133,15 +138,15 @@ fn studio<'s>(scene: &'s Scene, loaded: &Loaded) -> Result<Studio<'s>, QualityEr
 ///
 /// If a picture cannot be made or measured, or the work was stopped.
 pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTable, QualityError> {
-    let mut rarities = Rarities::default();
+    let mut stats = TraceStats::default();
     let mut rows = Vec::new();
     let mut metadata = Vec::new();
     let mut last_empty: Option<(Scene, View)> = None;
     for Combination { settings, held, loaded } in &plan.scenes {
         let scene = &loaded.scene;
-        let mut picture = |studio: &Studio<'_>| {
-            let rendered = render(studio, Wanted::Everything, supervision)?;
-            rarities += rendered.rarities;
+        let mut picture = |studio: &PreparedScene<'_>| {
+            let rendered = render(studio, ChannelSet::Everything, supervision)?;
+            stats += rendered.stats;
             Ok::<_, QualityError>(rendered.picture)
         };
         let empty = match last_empty.take() {
@@ -183,5 +188,5 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
         last_empty = Some((scene.clone(), empty));
     }
     let (sweeps, columns) = (plan.sweeps.clone(), plan.columns());
-    Ok(QualityTable { sweeps, columns, rows, draws: plan.draws, rarities, metadata })
+    Ok(QualityTable { sweeps, columns, rows, draws: plan.draws, stats, metadata })
 }

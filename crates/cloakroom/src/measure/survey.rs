@@ -1,8 +1,9 @@
 //! What the rays themselves tell of a cloak: where they land on the photograph, against where they should.
 
-use crate::render::Studio;
+use crate::assembly::Screen;
+use crate::render::PreparedScene;
 use crate::scene::Camera;
-use crate::trace::{Launch, Leaf, Outcome, Screen, Tracer};
+use crate::trace::{Launch, Leaf, Outcome, Tracer};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -48,8 +49,8 @@ struct Sight {
 /// rows finished since the last call.
 #[must_use]
 pub fn survey(
-    studio: &Studio<'_>,
-    ideal: &Studio<'_>,
+    studio: &PreparedScene<'_>,
+    ideal: &PreparedScene<'_>,
     camera: &Camera,
     rows_done: &(dyn Fn(u64) + Sync),
     stop: &AtomicBool,
@@ -61,16 +62,16 @@ pub fn survey(
 }
 
 fn launched<const N: usize>(
-    studio: &Studio<'_>,
-    ideal: &Studio<'_>,
+    studio: &PreparedScene<'_>,
+    ideal: &PreparedScene<'_>,
     camera: &Camera,
     amplitudes: [[f64; 2]; N],
     rows_done: &(dyn Fn(u64) + Sync),
     stop: &AtomicBool,
 ) -> Option<Survey> {
     let [width, height] = camera.resolution();
-    fn tracer<'b, const N: usize>(studio: &'b Studio<'_>) -> Tracer<'b, N> {
-        Tracer::new(studio.bench(), studio.limits()).with_screen(studio.screen())
+    fn tracer<'b, const N: usize>(studio: &'b PreparedScene<'_>) -> Tracer<'b, N> {
+        Tracer::new(studio.assembly(), studio.limits()).with_screen(studio.screen())
     }
     let rows: Option<Vec<Vec<Sight>>> = (0..height)
         .into_par_iter()
@@ -109,7 +110,7 @@ fn strongest<const N: usize>(leaves: &[Leaf<N>]) -> Option<&Leaf<N>> {
 }
 
 fn landing<const N: usize>(screen: &Screen, leaf: &Leaf<N>) -> Option<glam::DVec3> {
-    let distance = screen.hit(leaf.position, leaf.direction).filter(|_| leaf.body.is_none())?;
+    let distance = leaf.distance_to(screen)?;
     Some(leaf.position + leaf.direction * distance)
 }
 

@@ -15,7 +15,7 @@ pub use grid_file::{GridArray, GridFile, GridFormat, GridValues, write_grid};
 pub use image::RgbImage;
 pub use picture::{Channel, Picture, Samples};
 pub use png_file::{encode_png, to_srgb, write_png, write_png_in_strips};
-pub(crate) use png_file::{encoder as png_encoder, texts as png_texts};
+pub use png_file::{encoder as png_encoder, texts as png_texts};
 pub use reading::{ReadError, read_npz, read_png};
 pub use whole_file::{WriteSeek, check_writable, write_whole};
 
@@ -63,7 +63,7 @@ impl OutputError {
     }
 
     /// For a file whose name has none of the endings `known`.
-    pub(crate) fn unknown_format(path: &Path, known: &'static str) -> Self {
+    pub fn unknown_format(path: &Path, known: &'static str) -> Self {
         Self::UnknownFormat { path: path.to_owned(), known }
     }
 

@@ -132,7 +132,7 @@ fn header<'o>(
 }
 
 /// An encoder of 8-bit sRGB with text metadata.
-pub(crate) fn encoder<'o>(
+pub fn encoder<'o>(
     (width, height): (u32, u32),
     metadata: &[(String, String)],
     out: &'o mut dyn super::WriteSeek,
@@ -151,7 +151,7 @@ pub(crate) fn encoder<'o>(
 }
 
 /// The text metadata of a PNG, under the names that they have here.
-pub(crate) fn texts(info: &png::Info<'_>) -> Result<Vec<(String, String)>, png::DecodingError> {
+pub fn texts(info: &png::Info<'_>) -> Result<Vec<(String, String)>, png::DecodingError> {
     let text = |chunk: &png::text_metadata::ITXtChunk| {
         let key = if chunk.keyword == "Software" { "software" } else { &chunk.keyword };
         Ok((key.to_owned(), chunk.get_text()?))

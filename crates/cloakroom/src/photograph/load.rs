@@ -144,7 +144,7 @@ fn read_bytes(source: &ImageSource) -> Result<Cow<'static, [u8]>, LoadError> {
         ImageSource::BuiltIn(name) => {
             return ImageSource::built_in(name)
                 .map(Cow::Borrowed)
-                .ok_or_else(|| LoadError::UnknownBuiltIn { name: (*name).to_owned() });
+                .ok_or_else(|| LoadError::Missing { image: source.clone() });
         }
         ImageSource::File(path) => path,
         // It has no file: `load` and `dimensions` look at it itself.

@@ -4,13 +4,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::keys::BUILT_IN_PREFIX;
+
 use super::load::{LinearImage, MAX_MEMORY, MAX_PIXELS};
 
-/// The images that come with the program, by name.
+/// The images that come with the program, by name: those of [`BUILT_IN_IMAGES`](crate::keys::BUILT_IN_IMAGES).
 const BUILT_IN: [(&str, &[u8]); 1] = [("bookshelf", include_bytes!("../../assets/bookshelf.jpg"))];
-
-/// What a built-in image's name begins with.
-const BUILT_IN_PREFIX: &str = "builtin:";
 
 /// Where an image comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,21 +23,9 @@ pub enum ImageSource {
 }
 
 impl ImageSource {
-    /// What a scene's `image = "..."` means: `builtin:NAME`, or a file, relative to `folder`.
-    ///
-    /// # Errors
-    ///
-    /// [`LoadError::UnknownBuiltIn`] for a built-in name that does not exist. Files are looked at
-    /// only by [`super::load()`] and [`super::dimensions`].
-    pub fn parse(text: &str, folder: &Path) -> Result<Self, LoadError> {
-        let Some(name) = text.strip_prefix(BUILT_IN_PREFIX) else {
-            return Ok(Self::File(folder.join(text)));
-        };
-        BUILT_IN
-            .iter()
-            .find(|(known, _)| *known == name)
-            .map(|(known, _)| Self::BuiltIn(known))
-            .ok_or_else(|| LoadError::UnknownBuiltIn { name: name.to_owned() })
+    /// The bytes of a built-in image.
+    pub(super) fn built_in(name: &str) -> Option<&'static [u8]> {
+        BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, bytes)| *bytes)
     }
 
     /// An image that is in memory already.
@@ -55,14 +42,13 @@ impl ImageSource {
         Ok(source)
     }
 
-    /// The bytes of a built-in image.
-    pub(super) fn built_in(name: &str) -> Option<&'static [u8]> {
-        BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, bytes)| *bytes)
-    }
-
-    /// The images that come with the program, as written in a scene: `builtin:NAME`.
-    pub fn built_in_names() -> impl Iterator<Item = String> {
-        BUILT_IN.iter().map(|(name, _)| format!("{BUILT_IN_PREFIX}{name}"))
+    /// The image that a key of a scene names.
+    #[must_use]
+    pub fn named(name: &Path) -> Self {
+        let text = name.to_string_lossy();
+        let built_in = text.strip_prefix(BUILT_IN_PREFIX);
+        let built_in = built_in.and_then(|name| BUILT_IN.iter().find(|(known, _)| *known == name));
+        built_in.map_or_else(|| Self::File(name.to_owned()), |(known, _)| Self::BuiltIn(known))
     }
 }
 
@@ -79,15 +65,6 @@ impl std::fmt::Display for ImageSource {
 /// Why an image cannot be used. Each message names the image.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
-    /// No built-in image has this name.
-    #[error(
-        "there is no built-in image `{BUILT_IN_PREFIX}{name}`; there is {}",
-        ImageSource::built_in_names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
-    )]
-    UnknownBuiltIn {
-        /// The name asked for, without `builtin:`.
-        name: String,
-    },
     /// There is no such file.
     #[error("there is no image file {image}")]
     Missing {

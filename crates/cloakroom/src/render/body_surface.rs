@@ -6,9 +6,10 @@
 //! its middle column is on the side of -x, and its top row at the pole +y of a ball, at the end +z of a cylinder.
 
 use super::images::BodyImages;
-use crate::device::{BodyShape, Filling, Surface};
+use crate::assembly::Placed;
+use crate::device::Convex;
 use crate::photograph::{Equirectangular, LoadError, Pyramid};
-use crate::trace::Placed;
+use crate::scene::{Appearance, DeviceSettings};
 use glam::DVec3;
 use optics::geometry::{Cylinder, CylinderPart, Pose};
 use std::f64::consts::TAU;
@@ -53,22 +54,27 @@ impl BodySurface {
     /// # Errors
     ///
     /// If its image cannot be read.
-    pub fn of(placed: &Placed, images: &mut BodyImages) -> Result<Option<Self>, LoadError> {
-        let Some(body) = placed.structure.hull.body() else { return Ok(None) };
-        Ok(match &body.filling {
-            Filling::Medium { .. } => None,
-            Filling::Opaque(Surface::Color(color)) => Some(Self::Color(*color)),
-            Filling::Opaque(Surface::Image(source)) => {
+    pub fn of(
+        device: &DeviceSettings,
+        placed: &Placed,
+        images: &mut BodyImages,
+    ) -> Result<Option<Self>, LoadError> {
+        let (Some(body), Some(appearance)) = (placed.structure.hull.body(), device.appearance())
+        else {
+            return Ok(None);
+        };
+        Ok(Some(match appearance {
+            Appearance::Color(color) => Self::Color(color),
+            Appearance::Image(source) => {
+                let source = &source;
                 let texture = match body.shape {
-                    BodyShape::Ball(_) => Texture::Ball(images.ball(source)?),
-                    BodyShape::Cylinder(cylinder) => {
-                        Texture::Cylinder(cylinder, images.side(source)?)
-                    }
-                    BodyShape::Box { half } => Texture::Box(half, images.face(source)?),
+                    Convex::Ball(_) => Texture::Ball(images.ball(source)?),
+                    Convex::Cylinder(cylinder) => Texture::Cylinder(cylinder, images.side(source)?),
+                    Convex::Box { half } => Texture::Box(half, images.face(source)?),
                 };
-                Some(Self::Image(Box::new(Picture { pose: placed.pose, texture })))
+                Self::Image(Box::new(Picture { pose: placed.pose, texture }))
             }
-        })
+        }))
     }
 
     /// Linear light from a point of the surface. `steps` says, for the normal of the tangent plane there, how far

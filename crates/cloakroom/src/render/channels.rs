@@ -4,7 +4,7 @@ use crate::scene::PictureSettings;
 
 /// What a picture is asked to hold, from little to much.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Wanted {
+pub enum ChannelSet {
     /// The image through the camera's polarizer alone: `R`, `G`, `B`.
     Image,
     /// That and the images through a horizontal and a vertical polarizer, `horizontal.R` to `vertical.B`, as pictures
@@ -14,11 +14,11 @@ pub enum Wanted {
     Everything,
 }
 
-impl Wanted {
+impl ChannelSet {
     /// What the scene's image is made from: a map needs every channel.
     #[must_use]
     pub fn for_image(picture: &PictureSettings) -> Self {
-        if picture.map.is_some() { Self::Everything } else { Self::Image }
+        if picture.map.name().is_some() { Self::Everything } else { Self::Image }
     }
 }
 
@@ -125,11 +125,11 @@ impl Channel {
 
     /// The channels of a picture that is to hold `wanted`.
     #[must_use]
-    pub fn of(wanted: Wanted, picture: &PictureSettings) -> Vec<Self> {
+    pub fn of(wanted: ChannelSet, picture: &PictureSettings) -> Vec<Self> {
         match wanted {
-            Wanted::Image => Self::ALWAYS[..3].to_vec(),
-            Wanted::Polarizers => Self::ALWAYS[..9].to_vec(),
-            Wanted::Everything => {
+            ChannelSet::Image => Self::ALWAYS[..3].to_vec(),
+            ChannelSet::Polarizers => Self::ALWAYS[..9].to_vec(),
+            ChannelSet::Everything => {
                 let asked = Self::OPTIONAL.iter().filter(|c| picture.asks_for(c.keyword()));
                 Self::ALWAYS.iter().chain(asked).copied().collect()
             }
@@ -171,18 +171,20 @@ impl Form {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::OPTIONAL_CHANNELS;
+    use crate::keys::Table;
+    use crate::scene::{MapChannel, OPTIONAL_CHANNELS};
 
     #[test]
     fn optional_channels_come_only_when_asked_for() {
         let names = |wanted, channels: &[&'static str], map| {
-            let settings =
-                PictureSettings { channels: channels.to_vec(), map, ..PictureSettings::default() };
+            let mut settings = PictureSettings { map, ..PictureSettings::default() };
+            let channels = channels.iter().map(|&word| word.into()).collect();
+            settings.set("channels", crate::keys::Value::List(channels)).expect("known");
             Channel::of(wanted, &settings).into_iter().map(Channel::name).collect::<Vec<_>>()
         };
-        assert_eq!(names(Wanted::Everything, &[], None).len(), 16);
+        assert_eq!(names(ChannelSet::Everything, &[], MapChannel::None).len(), 16);
         assert_eq!(
-            names(Wanted::Polarizers, &["stokes"], None)[3..],
+            names(ChannelSet::Polarizers, &["stokes"], MapChannel::None)[3..],
             [
                 "horizontal.R",
                 "horizontal.G",
@@ -192,16 +194,16 @@ mod tests {
                 "vertical.B",
             ]
         );
-        assert_eq!(names(Wanted::Image, OPTIONAL_CHANNELS, None), ["R", "G", "B"]);
+        assert_eq!(names(ChannelSet::Image, OPTIONAL_CHANNELS, MapChannel::None), ["R", "G", "B"]);
         let stokes = ["stokes.S0", "stokes.S1", "stokes.S2", "stokes.S3"];
-        assert_eq!(names(Wanted::Everything, &["stokes"], None)[16..], stokes);
-        let shown = names(Wanted::Everything, &[], Some("extraordinary_share"));
+        assert_eq!(names(ChannelSet::Everything, &["stokes"], MapChannel::None)[16..], stokes);
+        let shown = names(ChannelSet::Everything, &[], MapChannel::ExtraordinaryShare);
         assert_eq!(shown[16..], ["extraordinary_share"]);
         // Every word asks for something, and every channel has its word.
         for word in OPTIONAL_CHANNELS {
-            assert!(names(Wanted::Everything, &[word], None).len() > 16, "{word}");
+            assert!(names(ChannelSet::Everything, &[word], MapChannel::None).len() > 16, "{word}");
         }
-        let all = names(Wanted::Everything, OPTIONAL_CHANNELS, None);
+        let all = names(ChannelSet::Everything, OPTIONAL_CHANNELS, MapChannel::None);
         assert_eq!(all.len(), Channel::ALWAYS.len() + Channel::OPTIONAL.len());
     }
 }

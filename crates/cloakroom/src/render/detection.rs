@@ -1,6 +1,6 @@
 //! Which polarizations are launched for a picture, and what each counts for.
 
-use super::Wanted;
+use super::ChannelSet;
 use crate::scene::{Camera, CameraRay, PictureSettings};
 use crate::trace::Launch;
 
@@ -63,13 +63,13 @@ impl<const N: usize> Detection<N> {
 
     /// Adds what the optional channels of a picture ask for; where the image alone is wanted, leaves out all
     /// but that.
-    pub fn with_options(self, wanted: Wanted, picture: &PictureSettings) -> Self {
-        let everything = wanted == Wanted::Everything;
+    pub fn with_options(self, wanted: ChannelSet, picture: &PictureSettings) -> Self {
+        let everything = wanted == ChannelSet::Everything;
         let asked = |channel| everything && picture.asks_for(channel);
         Self {
-            separate: self.separate && wanted != Wanted::Image,
+            separate: self.separate && wanted != ChannelSet::Image,
             times: everything,
-            alone: wanted == Wanted::Polarizers,
+            alone: wanted == ChannelSet::Polarizers,
             stokes: self.separate && asked("stokes"),
             first_face: asked("extraordinary_share") || asked("first_face_reflectance"),
             ..self

@@ -2,7 +2,7 @@
 
 use super::detection::Detection;
 use super::pixel::{Pixel, Pulses};
-use super::studio::{Studio, Surroundings};
+use super::studio::{PreparedScene, Surroundings};
 use crate::scene::CameraRay;
 use crate::trace::{FirstFace, Leaf, Outcome};
 use glam::{DQuat, DVec3};
@@ -21,7 +21,7 @@ pub(super) struct Traced<'t, const N: usize> {
 /// Adds to a pixel what one camera ray sees. `across` and `down` are its neighbours one pixel away
 /// along the picture's axes; `spacing` is the spacing of samples in pixels.
 pub(super) fn expose<const N: usize>(
-    studio: &Studio<'_>,
+    studio: &PreparedScene<'_>,
     detection: &Detection<N>,
     [here, across, down]: [&Traced<'_, N>; 3],
     spacing: f64,
@@ -33,8 +33,8 @@ pub(super) fn expose<const N: usize>(
     pixel.pruned += detection.detected(&here.outcome.pruned);
     for leaf in here.leaves {
         let power = detection.detected(&leaf.power);
-        let screen = studio.screen.hit(leaf.position, leaf.direction);
-        match (leaf.body, screen) {
+        let screen = leaf.distance_to(&studio.screen);
+        match (leaf.body(), screen) {
             (Some(_), _) => pixel.absorbed += power,
             (None, Some(distance)) => {
                 pixel.delivered += power;
@@ -51,7 +51,7 @@ pub(super) fn expose<const N: usize>(
         add(&mut pixel.image, power, light);
         if detection.separate {
             for (i, sum) in [&mut pixel.horizontal, &mut pixel.vertical].into_iter().enumerate() {
-                let is_in = |leaf: &Leaf<N>| leaf.alone[i] || !detection.alone;
+                let is_in = |leaf: &Leaf<N>| leaf.survives_alone[i] || !detection.alone;
                 if is_in(leaf) {
                     let same = among_all.iter().all(|n| n.twin().is_none_or(is_in));
                     let light = if same {
@@ -85,7 +85,7 @@ pub(super) fn expose<const N: usize>(
 /// photograph; whether they do. The same as [`expose`] with those rays as leaves, but for what is worked
 /// out once for the block.
 pub(super) fn expose_unhindered<const N: usize>(
-    studio: &Studio<'_>,
+    studio: &PreparedScene<'_>,
     detection: &Detection<N>,
     rays: &[CameraRay; 4],
     spacing: f64,
@@ -94,7 +94,7 @@ pub(super) fn expose_unhindered<const N: usize>(
     let screen = &studio.screen;
     let mut places = [[0.0; 2]; 4];
     for (place, ray) in places.iter_mut().zip(rays) {
-        let Some(distance) = screen.hit(ray.origin, ray.direction) else { return false };
+        let Some(distance) = screen.hit(ray.origin, ray.direction, 0.0) else { return false };
         let point = ray.origin + ray.direction * distance;
         *place = screen.image_position(point, ray.direction);
     }
@@ -120,8 +120,8 @@ pub(super) fn time_of_flight<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f
 }
 
 /// Time of flight (ns) of a camera ray in the empty scene, if it meets the photograph.
-pub(super) fn empty_time_of_flight(studio: &Studio<'_>, ray: &CameraRay) -> Option<f64> {
-    studio.screen.hit(ray.origin, ray.direction).map(|distance| distance / SPEED_OF_LIGHT)
+pub(super) fn empty_time_of_flight(studio: &PreparedScene<'_>, ray: &CameraRay) -> Option<f64> {
+    studio.screen.hit(ray.origin, ray.direction, 0.0).map(|distance| distance / SPEED_OF_LIGHT)
 }
 
 fn add(sum: &mut [f64; 3], power: f64, light: [f64; 3]) {
@@ -163,7 +163,7 @@ impl<const N: usize> Neighbour<'_, N> {
     /// The leaf of the neighbouring camera ray that has taken the same way, if there is one.
     fn twin(&self) -> Option<&Leaf<N>> {
         let mut leaves = (self.neighbour.leaves.iter())
-            .filter(|leaf| self.alone.is_none_or(|polarization| leaf.alone[polarization]));
+            .filter(|leaf| self.alone.is_none_or(|polarization| leaf.survives_alone[polarization]));
         leaves.clone().find(|twin| twin.path == self.leaf.path).or_else(|| {
             // Light that enters by another face of a cloak may leave as if nothing had happened.
             let moved = self.moved();
@@ -211,13 +211,13 @@ fn footprint<const N: usize>(
 
 /// The light of a leaf, which meets the photograph at the distance `screen` (cm), if it does.
 fn light<const N: usize>(
-    studio: &Studio<'_>,
+    studio: &PreparedScene<'_>,
     leaf: &Leaf<N>,
     screen: Option<f64>,
     beside: &[Neighbour<'_, N>; 2],
     spacing: f64,
 ) -> [f64; 3] {
-    match (leaf.body, screen) {
+    match (leaf.body(), screen) {
         (Some(body), _) => body_light(studio, body, leaf, beside, spacing),
         (None, Some(distance)) => photograph_light(studio, leaf, distance, beside, spacing),
         (None, None) => surroundings_light(studio, leaf, beside, spacing),
@@ -225,7 +225,7 @@ fn light<const N: usize>(
 }
 
 fn photograph_light<const N: usize>(
-    studio: &Studio<'_>,
+    studio: &PreparedScene<'_>,
     leaf: &Leaf<N>,
     distance: f64,
     beside: &[Neighbour<'_, N>; 2],
@@ -237,7 +237,7 @@ fn photograph_light<const N: usize>(
     };
     let here = at(&Line { origin: leaf.position, direction: leaf.direction }, distance);
     let place = |line: &Line| {
-        let t = (screen.x - line.origin.x) / line.direction.x;
+        let t = screen.distance_along(line.origin, line.direction);
         t.is_finite().then(|| at(line, t))
     };
     let [dx, dy] = footprint(place, here, beside).map(|step| step.map(|change| change * spacing));
@@ -245,7 +245,7 @@ fn photograph_light<const N: usize>(
 }
 
 fn surroundings_light<const N: usize>(
-    studio: &Studio<'_>,
+    studio: &PreparedScene<'_>,
     leaf: &Leaf<N>,
     beside: &[Neighbour<'_, N>; 2],
     spacing: f64,
@@ -263,7 +263,7 @@ fn surroundings_light<const N: usize>(
 }
 
 fn body_light<const N: usize>(
-    studio: &Studio<'_>,
+    studio: &PreparedScene<'_>,
     body: u16,
     leaf: &Leaf<N>,
     beside: &[Neighbour<'_, N>; 2],

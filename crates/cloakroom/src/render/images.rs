@@ -1,11 +1,11 @@
 //! Images that have been read, kept for the next scene that shows them.
 
-use super::StudioError;
+use super::PreparedSceneError;
 use super::studio::Surroundings;
 use crate::photograph::{
     self, Edges, Equirectangular, ImageSource, LinearImage, LoadError, Pyramid,
 };
-use crate::scene::{Scene, SurroundingsSettings};
+use crate::scene::Scene;
 use std::sync::Arc;
 
 /// Images by their names.
@@ -35,17 +35,21 @@ impl Images {
     }
 
     /// The photograph of a scene.
-    pub(super) fn photograph(&mut self, scene: &Scene) -> Result<Arc<Pyramid>, StudioError> {
-        last(&mut self.photograph, &scene.photograph.image, flat).map_err(StudioError::Photograph)
+    pub(super) fn photograph(&mut self, scene: &Scene) -> Result<Arc<Pyramid>, PreparedSceneError> {
+        last(&mut self.photograph, &scene.photograph.image, flat)
+            .map_err(PreparedSceneError::Photograph)
     }
 
     /// The surroundings of a scene.
-    pub(super) fn surroundings(&mut self, scene: &Scene) -> Result<Surroundings, StudioError> {
-        match &scene.surroundings {
-            SurroundingsSettings::Color(color) => Ok(Surroundings::Color(*color)),
-            SurroundingsSettings::Image(source) => {
+    pub(super) fn surroundings(
+        &mut self,
+        scene: &Scene,
+    ) -> Result<Surroundings, PreparedSceneError> {
+        match &scene.surroundings.image {
+            None => Ok(Surroundings::Color(scene.surroundings.color.value)),
+            Some(source) => {
                 let image = last(&mut self.surroundings, source, Equirectangular::new);
-                image.map(Surroundings::Image).map_err(StudioError::Surroundings)
+                image.map(Surroundings::Image).map_err(PreparedSceneError::Surroundings)
             }
         }
     }
@@ -73,11 +77,11 @@ impl BodyImages {
     }
 
     /// Forgets all images but these, unless there are none: the next scene may show them again.
-    pub fn keep(&mut self, shown: &[&ImageSource]) {
+    pub fn keep(&mut self, shown: &[ImageSource]) {
         if !shown.is_empty() {
-            self.faces.retain(|(name, _)| shown.contains(&name));
-            self.sides.retain(|(name, _)| shown.contains(&name));
-            self.balls.retain(|(name, _)| shown.contains(&name));
+            self.faces.retain(|(name, _)| shown.contains(name));
+            self.sides.retain(|(name, _)| shown.contains(name));
+            self.balls.retain(|(name, _)| shown.contains(name));
         }
     }
 }

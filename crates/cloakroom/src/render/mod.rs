@@ -16,15 +16,15 @@ mod sampling;
 mod studio;
 mod tile;
 
-pub use channels::{Channel, Form, Wanted};
+pub use channels::{Channel, ChannelSet, Form};
 pub use images::Images;
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
-pub use studio::{Studio, StudioError, bench, limits, ray_limits};
+pub use studio::{PreparedScene, PreparedSceneError, assembly, limits, ray_limits};
 pub use tile::{MergeError, Tile, TileError, merge, merge_images};
 
 use crate::output::Picture;
 use crate::scene::Scene;
-use crate::trace::{FourTracers, Rarities, Tracer};
+use crate::trace::{FourTracers, TraceStats, Tracer};
 use contrast::{Contrast, first_look};
 use detection::Detection;
 use exposure::{Traced, expose, expose_unhindered};
@@ -76,7 +76,7 @@ pub struct Rendered {
     /// The picture.
     pub picture: Picture,
     /// Rare events over all rays.
-    pub rarities: Rarities,
+    pub stats: TraceStats,
 }
 
 /// Renders a scene.
@@ -85,8 +85,8 @@ pub struct Rendered {
 ///
 /// If the picture would not fit into memory, or the work was stopped.
 pub fn render(
-    studio: &Studio<'_>,
-    wanted: Wanted,
+    studio: &PreparedScene<'_>,
+    wanted: ChannelSet,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
     render_rows(studio, wanted, 0..studio.rows() as usize, supervision)
@@ -97,7 +97,7 @@ const STRIP_PIXELS: usize = 1 << 22;
 
 /// The rows of a picture in strips of equal height, from top to bottom: what is rendered strip by strip needs
 /// no more memory than one of them.
-pub fn strips(studio: &Studio<'_>) -> impl Iterator<Item = Range<usize>> + use<> {
+pub fn strips(studio: &PreparedScene<'_>) -> impl Iterator<Item = Range<usize>> + use<> {
     let [width, height] = studio.scene.camera.resolution().map(|size| size as usize);
     let rows = (STRIP_PIXELS / width / BAND_ROWS).max(1) * BAND_ROWS;
     (0..height).step_by(rows).map(move |first| first..height.min(first + rows))
@@ -109,8 +109,8 @@ pub fn strips(studio: &Studio<'_>) -> impl Iterator<Item = Range<usize>> + use<>
 ///
 /// If they would not fit into memory, or the work was stopped.
 pub fn render_rows(
-    studio: &Studio<'_>,
-    wanted: Wanted,
+    studio: &PreparedScene<'_>,
+    wanted: ChannelSet,
     rows: Range<usize>,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
@@ -131,8 +131,8 @@ pub fn render_rows(
 ///
 /// If the tile is not [checked](Tile::check) against the picture's resolution.
 pub fn render_tile(
-    studio: &Studio<'_>,
-    wanted: Wanted,
+    studio: &PreparedScene<'_>,
+    wanted: ChannelSet,
     tile: Tile,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
@@ -144,25 +144,25 @@ pub fn render_tile(
 }
 
 fn expose_tile(
-    studio: &Studio<'_>,
-    wanted: Wanted,
+    studio: &PreparedScene<'_>,
+    wanted: ChannelSet,
     tile: Tile,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
     match (wanted, studio.scene.camera.polarizer().amplitudes()) {
         (_, None) => expose_film(studio, wanted, tile, supervision, Detection::UNPOLARIZED),
-        (Wanted::Image, Some(amplitudes)) => {
+        (ChannelSet::Image, Some(amplitudes)) => {
             expose_film(studio, wanted, tile, supervision, Detection::image(amplitudes))
         }
-        (Wanted::Polarizers | Wanted::Everything, Some(amplitudes)) => {
+        (ChannelSet::Polarizers | ChannelSet::Everything, Some(amplitudes)) => {
             expose_film(studio, wanted, tile, supervision, Detection::through(amplitudes))
         }
     }
 }
 
 fn expose_film<const N: usize>(
-    studio: &Studio<'_>,
-    wanted: Wanted,
+    studio: &PreparedScene<'_>,
+    wanted: ChannelSet,
     tile: Tile,
     supervision: &Supervision<'_>,
     detection: Detection<N>,
@@ -173,31 +173,31 @@ fn expose_film<const N: usize>(
     let detection = detection.with_options(wanted, settings);
     let channels = Channel::of(wanted, settings);
     let mut film = Film::new(tile, &channels);
-    let rarities = film
+    let stats = film
         .bands(BAND_ROWS)
         .into_par_iter()
         .map_init(
             || Exposer::new(studio, &detection),
             |exposer, mut band| {
-                let rarities =
+                let stats =
                     exposer.expose_band(&mut band, supervision.stop).ok_or(RenderError::Stopped)?;
                 (supervision.rows_done)((band.len() / width) as u64);
-                Ok(rarities)
+                Ok(stats)
             },
         )
-        .try_reduce(Rarities::default, |mut a, b| {
+        .try_reduce(TraceStats::default, |mut a, b| {
             a += b;
             Ok(a)
         })?;
     let picture =
         Picture { width, height, channels: film.into_channels(), metadata: metadata(studio.scene) };
-    Ok(Rendered { picture, rarities })
+    Ok(Rendered { picture, stats })
 }
 
 /// How long rendering the image will take on the threads there are, in seconds: a few thousand rays, spread
 /// over the picture, are traced and timed, or as many as two seconds or a block of four pixels take.
 #[must_use]
-pub fn estimated_seconds(studio: &Studio<'_>) -> f64 {
+pub fn estimated_seconds(studio: &PreparedScene<'_>) -> f64 {
     const GRID: [u32; 2] = [64, 48];
     const LONGEST: Duration = Duration::from_secs(2);
     // A prime above the number of blocks: its multiples visit them all, here and there in the picture.
@@ -205,7 +205,7 @@ pub fn estimated_seconds(studio: &Studio<'_>) -> f64 {
     let camera = &studio.scene.camera;
     let [width, height] = camera.resolution();
     let [columns, rows] = [GRID[0].min(width), GRID[1].min(height)];
-    let detection = Detection::UNPOLARIZED.with_options(Wanted::Image, &studio.scene.picture);
+    let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &studio.scene.picture);
     let mut exposer = Exposer::new(studio, &detection);
     let start = Instant::now();
     let mut blocks = 0;
@@ -235,7 +235,11 @@ pub fn metadata(scene: &Scene) -> Vec<(String, String)> {
 }
 
 /// Refuses a tile of a picture that would not fit into the memory that is free now.
-fn check_memory(studio: &Studio<'_>, wanted: Wanted, tile: Tile) -> Result<(), RenderError> {
+fn check_memory(
+    studio: &PreparedScene<'_>,
+    wanted: ChannelSet,
+    tile: Tile,
+) -> Result<(), RenderError> {
     let Tile { width, height, .. } = tile;
     let channels = Channel::of(wanted, &studio.scene.picture);
     let bytes: u64 = channels.iter().map(|channel| channel.form().bytes()).sum();
@@ -254,32 +258,32 @@ fn check_memory(studio: &Studio<'_>, wanted: Wanted, tile: Tile) -> Result<(), R
 
 /// One thread's tracers and memory.
 struct Exposer<'a, const N: usize> {
-    studio: &'a Studio<'a>,
+    studio: &'a PreparedScene<'a>,
     detection: &'a Detection<N>,
     tracers: FourTracers<'a, N>,
     pulses: Pulses,
 }
 
 impl<'a, const N: usize> Exposer<'a, N> {
-    fn new(studio: &'a Studio<'a>, detection: &'a Detection<N>) -> Self {
+    fn new(studio: &'a PreparedScene<'a>, detection: &'a Detection<N>) -> Self {
         Self {
             studio,
             detection,
             tracers: FourTracers::new(
-                &Tracer::new(&studio.bench, studio.limits).with_screen(studio.screen),
+                &Tracer::new(&studio.assembly, studio.limits).with_screen(studio.screen),
             ),
             pulses: Vec::new(),
         }
     }
 
     /// Exposes a band, 2 x 2 pixels at a time; `None` if it was stopped.
-    fn expose_band(&mut self, band: &mut Band<'_>, stop: &AtomicBool) -> Option<Rarities> {
+    fn expose_band(&mut self, band: &mut Band<'_>, stop: &AtomicBool) -> Option<TraceStats> {
         let camera = &self.studio.scene.camera;
         let (width, [first_column, first_row]) = (band.width, band.corner);
         let rows = band.len() / width;
         let samples = camera.samples();
         let look = if camera.adaptive() > 0.0 { first_look(samples) } else { 0 };
-        let mut rarities = Rarities::default();
+        let mut stats = TraceStats::default();
         // Blocks are those of the whole picture, and may reach beyond the band.
         for top in ((first_row & !1)..first_row + rows).step_by(2) {
             for left in ((first_column & !1)..first_column + width).step_by(2) {
@@ -291,7 +295,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
                         return None;
                     }
                     let before = (taken < look).then_some(pixels);
-                    rarities += self.expose_block([left, top], taken, &mut pixels);
+                    stats += self.expose_block([left, top], taken, &mut pixels);
                     taken += 1;
                     if let Some(before) = before {
                         contrast.add(&before, &pixels);
@@ -314,7 +318,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
                 }
             }
         }
-        Some(rarities)
+        Some(stats)
     }
 
     /// Traces one sample of each pixel of a block and adds what they see.
@@ -323,7 +327,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
         [column, row]: [usize; 2],
         sample: u32,
         pixels: &mut [Pixel; 4],
-    ) -> Rarities {
+    ) -> TraceStats {
         let camera = &self.studio.scene.camera;
         let samples = camera.samples();
         let block = [column as u32 / 2, row as u32 / 2];
@@ -332,20 +336,20 @@ impl<'a, const N: usize> Exposer<'a, N> {
             camera.ray((column + i % 2) as f64 + offset[0], (row + i / 2) as f64 + offset[1])
         });
         let spacing = 1.0 / f64::from(samples).sqrt();
-        let mut rarities = Rarities::default();
+        let mut stats = TraceStats::default();
         let any = &self.tracers.each()[0];
         if self.detection.images_alone()
             && rays.iter().all(|ray| any.meets_nothing(ray.origin, ray.direction))
             && expose_unhindered(self.studio, self.detection, &rays, spacing, pixels)
         {
-            return rarities;
+            return stats;
         }
         let launches = rays.each_ref().map(|ray| self.detection.launch(camera, ray));
         self.tracers.trace(&launches);
         let block: [Traced<'_, N>; 4] = std::array::from_fn(|i| {
             let tracer = &self.tracers.each()[i];
             let (leaves, outcome) = tracer.traced();
-            rarities += outcome.rarities;
+            stats += outcome.stats;
             let first_face =
                 if self.detection.first_face { tracer.first_face(&launches[i]) } else { None };
             Traced { ray: rays[i], leaves, outcome, first_face }
@@ -354,6 +358,6 @@ impl<'a, const N: usize> Exposer<'a, N> {
             let rays = [&block[i], &block[i ^ 1], &block[i ^ 2]];
             expose(self.studio, self.detection, rays, spacing, pixel, &mut self.pulses);
         }
-        rarities
+        stats
     }
 }

@@ -3,7 +3,7 @@
 use super::detection::Detection;
 use super::exposure::{empty_time_of_flight, time_of_flight};
 use super::pixel::Pixel;
-use super::{Channel, Studio};
+use super::{Channel, PreparedScene};
 use crate::trace::Tracer;
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
@@ -90,7 +90,10 @@ pub enum PulseError {
 /// # Errors
 ///
 /// If the picture has no such pixel.
-pub fn pulses(studio: &Studio<'_>, [column, row]: [u32; 2]) -> Result<PulseList, PulseError> {
+pub fn pulses(
+    studio: &PreparedScene<'_>,
+    [column, row]: [u32; 2],
+) -> Result<PulseList, PulseError> {
     let camera = &studio.scene.camera;
     let [width, height] = camera.resolution();
     if column >= width || row >= height {
@@ -104,29 +107,29 @@ pub fn pulses(studio: &Studio<'_>, [column, row]: [u32; 2]) -> Result<PulseList,
 }
 
 fn list<const N: usize>(
-    studio: &Studio<'_>,
+    studio: &PreparedScene<'_>,
     pixel: [u32; 2],
     detection: &Detection<N>,
 ) -> PulseList {
     let camera = &studio.scene.camera;
     let [x, y] = pixel.map(|i| f64::from(i) + 0.5);
     let ray = camera.ray(x, y);
-    let mut tracer = Tracer::new(&studio.bench, studio.limits).with_screen(studio.screen);
+    let mut tracer = Tracer::new(&studio.assembly, studio.limits).with_screen(studio.screen);
     let (leaves, outcome) = tracer.trace(&detection.launch(camera, &ray));
     let (mut arrivals, mut escaped) = (Vec::new(), 0.0);
     let mut ended = 0.0;
     for leaf in leaves {
         let power = detection.detected(&leaf.power);
-        if leaf.body.is_some() {
+        if leaf.body().is_some() {
             ended += power;
             continue;
         }
-        match studio.screen.hit(leaf.position, leaf.direction) {
+        match leaf.distance_to(&studio.screen) {
             Some(distance) if power > 0.0 => arrivals.push(Arrival {
                 time: time_of_flight(leaf, distance),
                 power,
                 // On the plane to the last digit.
-                position: (leaf.position + leaf.direction * distance).with_x(studio.screen.x),
+                position: studio.screen.foot(leaf.position + leaf.direction * distance),
             }),
             Some(_) => {}
             None => escaped += power,

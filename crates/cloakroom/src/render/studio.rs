@@ -2,13 +2,11 @@
 
 use super::Images;
 use super::body_surface::BodySurface;
-use crate::device::{Request, Show};
+use crate::assembly::{Assembly, MOST_DEVICES, Placed, Screen};
 use crate::keys::KeyError;
 use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
 use crate::scene::{Projection, Scene};
-use crate::trace::{Bench, Limits, MOST_BODIES, MOST_DEVICES, Placed, Screen};
-use glam::DVec3;
-use optics::geometry::Pose;
+use crate::trace::Limits;
 use std::sync::Arc;
 
 /// Width of the builtin photograph, cm.
@@ -16,7 +14,7 @@ const BUILTIN_WIDTH: f64 = 110.0;
 
 /// Why a scene cannot be looked at.
 #[derive(Debug, thiserror::Error)]
-pub enum StudioError {
+pub enum PreparedSceneError {
     /// A device cannot be built.
     #[error("{error}")]
     Device {
@@ -46,46 +44,44 @@ pub enum StudioError {
         /// The other.
         second: usize,
     },
-    /// There are too many bodies.
-    #[error("there are {count} bodies; a scene may have {MOST_BODIES}")]
-    TooManyBodies {
-        /// How many there are.
-        count: usize,
-        /// The first that is too many, counted from 0 among all devices.
-        device: usize,
-    },
     /// There are too many devices.
     #[error("there are {count} devices; a scene may have {MOST_DEVICES}")]
     TooManyDevices {
         /// How many there are.
         count: usize,
     },
-    /// The camera is inside a device.
-    #[error("the camera stands inside device {device} (counted from 0); it must stand in air")]
+    /// The camera is where there is no light.
+    #[error(
+        "the camera stands inside device {device} (counted from 0), in metal or an opaque body; it must stand in air or \
+         in a medium"
+    )]
     CameraInside {
         /// Which device, counted from 0.
         device: usize,
     },
     /// A device cuts through the photograph.
     #[error(
-        "device {device} (counted from 0) cuts through the photograph in the plane x = {x} cm; \
+        "device {device} (counted from 0) cuts through the photograph in the plane {plane}; \
          move one of them"
     )]
     PhotographInside {
         /// Which device, counted from 0.
         device: usize,
-        /// Where the photograph is, cm.
-        x: f64,
+        /// The plane of the photograph in words.
+        plane: String,
     },
     /// The photograph needs a width.
     #[error(
-        "the camera's view does not end on the photograph's plane x = {x} cm, so the photograph \
+        "the camera's view does not end on the photograph's plane {plane}, so the photograph \
          cannot be made to cover it; give its `width`"
     )]
     NoCoveringWidth {
-        /// Where the photograph is, cm.
-        x: f64,
+        /// The plane of the photograph in words.
+        plane: String,
     },
+    /// The photograph cannot hang like that.
+    #[error("{0}")]
+    PhotographPlace(#[source] KeyError),
     /// The photograph cannot be read.
     #[error("{0}")]
     Photograph(#[source] LoadError),
@@ -102,7 +98,7 @@ pub enum StudioError {
     },
 }
 
-impl StudioError {
+impl PreparedSceneError {
     /// The key of the scene file that the error is about, such as `device.0.side`.
     #[must_use]
     pub fn key(&self) -> String {
@@ -111,10 +107,10 @@ impl StudioError {
             Self::PhotographInside { device, .. } => format!("device.{device}"),
             Self::Overlap { second, .. } => format!("device.{second}"),
             Self::EqualPriority { second, .. } => format!("device.{second}.priority"),
-            Self::TooManyBodies { device, .. } => format!("device.{device}"),
             Self::TooManyDevices { .. } => format!("device.{MOST_DEVICES}"),
             Self::CameraInside { .. } => "camera.position".to_owned(),
             Self::NoCoveringWidth { .. } => "photograph.x".to_owned(),
+            Self::PhotographPlace(error) => error.path_in("photograph"),
             Self::Photograph(_) => "photograph.image".to_owned(),
             Self::Surroundings(_) => "surroundings.image".to_owned(),
             Self::Surface { device, .. } => format!("device.{device}.surface.image"),
@@ -128,51 +124,33 @@ impl StudioError {
 /// # Errors
 ///
 /// If a device is impossible or two overlap.
-pub fn bench(scene: &Scene) -> Result<Bench, StudioError> {
+pub fn assembly(scene: &Scene) -> Result<Assembly, PreparedSceneError> {
     let count = scene.devices.len();
     if count > MOST_DEVICES {
-        return Err(StudioError::TooManyDevices { count });
+        return Err(PreparedSceneError::TooManyDevices { count });
     }
     let mut placed = Vec::new();
     for (index, device) in scene.devices.iter().enumerate() {
-        let request =
-            Request { show: device.show, open_core: device.open_core, length: device.length };
-        let structure = (device.entry.build)(&device.values, request)
-            .and_then(|structure| {
-                if device.open_core && !structure.hull.has_open_core() {
-                    let kind = device.entry.kind;
-                    let message = format!("{kind} with these keys has no core that could be open");
-                    return Err(KeyError::at("core", message));
-                }
-                match &device.imperfection {
-                    Some(imperfection) if device.show == Show::Cloak => {
-                        imperfection.apply(structure, index)
-                    }
-                    _ => Ok(structure),
-                }
-            })
-            .map_err(|error| StudioError::Device { device: index, error })?;
-        placed.push(Placed { pose: Pose::new(device.position, device.rotation), structure });
+        let wrong = |error| PreparedSceneError::Device { device: index, error };
+        let pose = device.pose().map_err(wrong)?;
+        let structure = device.structure(index).map_err(wrong)?;
+        placed.push(Placed { pose, structure });
     }
-    let bench = Bench::new(placed).with_wavelength(scene.light.wavelength_nm);
-    let is_body = |index: usize| bench.devices()[index].structure.hull.body().is_some();
-    let bodies: Vec<usize> = (0..bench.devices().len()).filter(|i| is_body(*i)).collect();
-    if let Some(&device) = bodies.get(MOST_BODIES) {
-        return Err(StudioError::TooManyBodies { count: bodies.len(), device });
-    }
-    match bench.overlap() {
+    let assembly = Assembly::new(placed).with_wavelength(scene.light.wavelength_nm);
+    let is_body = |index: usize| assembly.devices()[index].structure.hull.body().is_some();
+    match assembly.overlap() {
         Some((first, second)) if is_body(first) && is_body(second) => {
-            Err(StudioError::EqualPriority { first, second })
+            Err(PreparedSceneError::EqualPriority { first, second })
         }
-        Some((first, second)) => Err(StudioError::Overlap { first, second }),
-        None => Ok(bench),
+        Some((first, second)) => Err(PreparedSceneError::Overlap { first, second }),
+        None => Ok(assembly),
     }
 }
 
 /// The limits that a scene's `[trace]` table sets.
 #[must_use]
 pub fn limits(scene: &Scene) -> Limits {
-    Limits { min_power: scene.trace.min_power, tolerance: scene.trace.tolerance }
+    Limits { min_power: scene.trace.min_power.value, tolerance: scene.trace.tolerance }
 }
 
 /// The threshold of given rays where nothing else is said.
@@ -182,7 +160,7 @@ const RAY_MIN_POWER: f64 = 1e-9;
 #[must_use]
 pub fn ray_limits(scene: &Scene, min_power: Option<f64>) -> Limits {
     let settings = &scene.trace;
-    let written = settings.min_power_given.then_some(settings.min_power);
+    let written = Some(settings.min_power.value).filter(|_| settings.min_power.given);
     let min_power = min_power.or(written).unwrap_or(RAY_MIN_POWER);
     Limits { min_power, tolerance: settings.tolerance }
 }
@@ -196,9 +174,9 @@ pub(super) enum Surroundings {
 
 /// A scene ready to be rendered.
 #[derive(Clone, Debug)]
-pub struct Studio<'s> {
+pub struct PreparedScene<'s> {
     pub(super) scene: &'s Scene,
-    pub(super) bench: Bench,
+    pub(super) assembly: Assembly,
     pub(super) limits: Limits,
     pub(super) screen: Screen,
     pub(super) image: Arc<Pyramid>,
@@ -207,13 +185,13 @@ pub struct Studio<'s> {
     body_surfaces: Vec<Option<BodySurface>>,
 }
 
-impl<'s> Studio<'s> {
+impl<'s> PreparedScene<'s> {
     /// Reads the images and builds the devices of a scene.
     ///
     /// # Errors
     ///
     /// If an image cannot be read, a device is impossible, or something stands in something else.
-    pub fn new(scene: &'s Scene) -> Result<Self, StudioError> {
+    pub fn new(scene: &'s Scene) -> Result<Self, PreparedSceneError> {
         Self::with_images(scene, &mut Images::default())
     }
 
@@ -221,27 +199,38 @@ impl<'s> Studio<'s> {
     ///
     /// # Errors
     ///
-    /// As [`Studio::new`].
-    pub fn with_images(scene: &'s Scene, images: &mut Images) -> Result<Self, StudioError> {
-        let bench = bench(scene)?;
-        if let Some(device) = camera_inside(scene, &bench) {
-            return Err(StudioError::CameraInside { device });
+    /// As [`PreparedScene::new`].
+    pub fn with_images(scene: &'s Scene, images: &mut Images) -> Result<Self, PreparedSceneError> {
+        let assembly = assembly(scene)?;
+        if let Some(device) = camera_inside(scene, &assembly) {
+            return Err(PreparedSceneError::CameraInside { device });
         }
         let image = images.photograph(scene)?;
         let aspect = image.width() as f64 / image.height() as f64;
         let screen = screen(scene, aspect)?;
-        if let Some(device) = screen.cut_by(&bench) {
-            return Err(StudioError::PhotographInside { device, x: screen.x });
+        if let Some(device) = screen.cut_by(&assembly) {
+            return Err(PreparedSceneError::PhotographInside {
+                device,
+                plane: scene.photograph.plane(),
+            });
         }
         let surroundings = images.surroundings(scene)?;
         let surface = |(device, placed): (usize, &Placed)| {
-            BodySurface::of(placed, images.bodies())
-                .map_err(|error| StudioError::Surface { device, error })
+            BodySurface::of(&scene.devices[device], placed, images.bodies())
+                .map_err(|error| PreparedSceneError::Surface { device, error })
         };
         let body_surfaces =
-            bench.devices().iter().enumerate().map(surface).collect::<Result<_, _>>()?;
-        images.bodies().keep(&bench.body_images().collect::<Vec<_>>());
-        Ok(Self { scene, bench, limits: limits(scene), screen, image, surroundings, body_surfaces })
+            assembly.devices().iter().enumerate().map(surface).collect::<Result<_, _>>()?;
+        images.bodies().keep(&scene.body_images().collect::<Vec<_>>());
+        Ok(Self {
+            scene,
+            assembly,
+            limits: limits(scene),
+            screen,
+            image,
+            surroundings,
+            body_surfaces,
+        })
     }
 
     /// The surface of an opaque body.
@@ -281,44 +270,39 @@ impl<'s> Studio<'s> {
 
     /// The devices at their places.
     #[must_use]
-    pub fn bench(&self) -> &Bench {
-        &self.bench
+    pub fn assembly(&self) -> &Assembly {
+        &self.assembly
     }
 }
 
-/// The device that a camera ray would start in. The rays of an orthographic camera start side by
+/// The device in whose metal, or opaque inside, a camera ray would start. The rays of an orthographic camera start side by
 /// side: every pixel is looked at.
-fn camera_inside(scene: &Scene, bench: &Bench) -> Option<usize> {
+fn camera_inside(scene: &Scene, assembly: &Assembly) -> Option<usize> {
     let camera = &scene.camera;
+    let forward = camera.forward();
+    let inside = |origin: glam::DVec3| assembly.region_around(origin, forward).err();
     match camera.settings().projection {
-        Projection::Perspective { .. } => bench.holder(camera.position()),
-        Projection::Orthographic { .. } => {
+        Projection::Perspective => inside(camera.position()),
+        Projection::Orthographic => {
             let [width, height] = camera.resolution();
             (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).find_map(|(x, y)| {
-                bench.holder(camera.ray(f64::from(x) + 0.5, f64::from(y) + 0.5).origin)
+                inside(camera.ray(f64::from(x) + 0.5, f64::from(y) + 0.5).origin)
             })
         }
     }
 }
 
 /// The photograph's rectangle, for an image of the given aspect (width over height).
-fn screen(scene: &Scene, aspect: f64) -> Result<Screen, StudioError> {
-    let x = scene.photograph.x;
-    let width = match scene.photograph.width {
+fn screen(scene: &Scene, aspect: f64) -> Result<Screen, PreparedSceneError> {
+    let settings = &scene.photograph;
+    let pose = settings.pose().map_err(PreparedSceneError::PhotographPlace)?;
+    let width = match settings.width {
         Some(width) => width,
-        None if matches!(scene.photograph.image, photograph::ImageSource::BuiltIn(_)) => {
-            BUILTIN_WIDTH
-        }
-        None => scene.camera.covering_width(x, aspect).ok_or(StudioError::NoCoveringWidth { x })?,
+        None if matches!(settings.image, photograph::ImageSource::BuiltIn(_)) => BUILTIN_WIDTH,
+        None => scene
+            .camera
+            .covering_width(&pose, aspect)
+            .ok_or_else(|| PreparedSceneError::NoCoveringWidth { plane: settings.plane() })?,
     };
-    Ok(Screen { x, half_width: width / 2.0, half_height: width / aspect / 2.0 })
-}
-
-impl Screen {
-    /// Image coordinates (u, v) of a point of the plane for a ray that looks along `direction`:
-    /// upright and unmirrored from either side.
-    pub(super) fn image_position(&self, point: DVec3, direction: DVec3) -> [f64; 2] {
-        let z = point.z * direction.x.signum();
-        [0.5 + z / (2.0 * self.half_width), 0.5 - point.y / (2.0 * self.half_height)]
-    }
+    Ok(Screen { pose, half_width: width / 2.0, half_height: width / aspect / 2.0 })
 }

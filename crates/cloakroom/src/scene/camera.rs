@@ -3,57 +3,17 @@
 use glam::DVec3;
 use optics::wave::transverse_basis;
 
-use super::{CAMERA_KEYS, Polarizer};
-use crate::direction::unit;
-use crate::keys::{KeyError, Values, number_text, vector_text};
+use super::{CameraSettings, Polarizer, Projection};
+use crate::keys::{KeyError, Table, vector_text};
+use cloakroom_trace::key;
+use optics::geometry::Pose;
+use optics::wave::unit;
 
 #[cfg(test)]
 mod tests;
 
-/// Most pixels a side, and most samples a pixel.
-pub(super) const MOST: u32 = 65_536;
-
 /// The sine of the angle between `up` and the line of sight below which they count as parallel.
-const PARALLEL: f64 = 1e-9;
-
-/// How rays leave the camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Projection {
-    /// From one point.
-    Perspective {
-        /// Horizontal field of view in degrees, above 0 and below 180.
-        field_of_view: f64,
-    },
-    /// Side by side, all in the direction of the line of sight.
-    Orthographic {
-        /// Width of the view in cm, above 0.
-        width: f64,
-    },
-}
-
-/// What a camera is made from, not validated yet.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CameraSettings {
-    /// Where it stands, in cm.
-    pub position: DVec3,
-    /// The point in the middle of the picture, in cm.
-    pub target: DVec3,
-    /// The direction that is up in the picture; any length, not along the line of sight.
-    pub up: DVec3,
-    /// How rays leave it.
-    pub projection: Projection,
-    /// Width and height of the picture in pixels, 1 to 65536 each.
-    pub resolution: [u32; 2],
-    /// Rays per pixel, 1 to 65536.
-    pub samples: u32,
-    /// Blocks of 2 x 2 pixels whose first samples (a quarter, at least 4) differ by no more than so many 8-bit
-    /// steps get no others; 0 for none.
-    pub adaptive: f64,
-    /// Chooses where in its pixel each sample lies.
-    pub seed: u64,
-    /// The polarizer before the lens.
-    pub polarizer: Polarizer,
-}
+pub(super) const PARALLEL: f64 = 1e-9;
 
 /// A ray as it leaves the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,53 +38,33 @@ pub struct Camera {
 }
 
 impl CameraSettings {
-    /// The settings in a table of [`CAMERA_KEYS`].
+    /// Width of the view: cm for an orthographic camera, else at distance 1 along the line of sight.
     ///
     /// # Errors
     ///
     /// If the size of the view is given in the terms of the other projection, or an orthographic
     /// camera has no width.
-    pub fn from_values(values: &Values) -> Result<Self, KeyError> {
+    fn view_width(&self) -> Result<f64, KeyError> {
         let refuse = |key, belongs, instead| {
             let message = format!("{key} belongs to {belongs} cameras; give {instead} instead");
             Err(KeyError::at(key, message))
         };
-        let projection = match values.choice("projection") {
-            "orthographic" if values.is_given("field_of_view") => {
-                return refuse("field_of_view", "perspective", "width");
+        match (self.projection, self.width) {
+            (Projection::Orthographic, _) if self.field_of_view.given => {
+                refuse(key!(Self.field_of_view), "perspective", key!(Self.width))
             }
-            "orthographic" => match values.optional_number("width") {
-                Some(width) => Projection::Orthographic { width },
-                None => {
-                    let message = "an orthographic camera needs width, the width of its view (cm)";
-                    return Err(KeyError::at("projection", message));
-                }
-            },
-            _ if values.is_given("width") => {
-                return refuse("width", "orthographic", "field_of_view");
+            (Projection::Orthographic, Some(width)) => Ok(width),
+            (Projection::Orthographic, None) => {
+                let message = "an orthographic camera needs width, the width of its view (cm)";
+                Err(KeyError::at(key!(Self.projection), message))
             }
-            _ => Projection::Perspective { field_of_view: values.number("field_of_view") },
-        };
-        // The keys' limits lie inside the targets' ranges; the clamps only say so.
-        let within = |integer: i64| integer.clamp(0, i64::from(u32::MAX)) as u32;
-        Ok(CameraSettings {
-            position: DVec3::from_array(values.vector("position")),
-            target: DVec3::from_array(values.vector("target")),
-            up: DVec3::from_array(values.vector("up")),
-            projection,
-            resolution: values.integer_pair("resolution").map(within),
-            samples: within(values.integer("samples")),
-            adaptive: values.number("adaptive"),
-            seed: values.integer("seed").unsigned_abs(),
-            polarizer: Polarizer::from_value(values.choice_or_number("polarizer"))?,
-        })
-    }
-}
-
-/// The camera of the paper: at x = -100 cm, looking along +x, 40 degrees wide.
-impl Default for CameraSettings {
-    fn default() -> Self {
-        Self::from_values(&Values::defaults(CAMERA_KEYS)).expect("defaults go together")
+            (Projection::Perspective, Some(_)) => {
+                refuse(key!(Self.width), "orthographic", key!(Self.field_of_view))
+            }
+            (Projection::Perspective, None) => {
+                Ok(2.0 * (0.5 * self.field_of_view.value.to_radians()).tan())
+            }
+        }
     }
 }
 
@@ -133,32 +73,22 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// If the camera looks at its own position, `up` lies along the line of sight, or a setting is
-    /// not finite or outside its range; the error names the key of `[camera]`.
+    /// If a setting is outside its limits, the size of the view is given in the terms of the other projection, the
+    /// camera looks at its own position, or `up` lies along the line of sight; the error names the key of `[camera]`.
     pub fn new(settings: CameraSettings) -> Result<Self, KeyError> {
-        for (key, vector) in
-            [("position", settings.position), ("target", settings.target), ("up", settings.up)]
-        {
-            if !vector.is_finite() {
-                let message = format!("{key} is {}; numbers must be finite", vector_text(vector));
-                return Err(KeyError::at(key, message));
-            }
-        }
+        settings.check()?;
+        let view_width = settings.view_width()?;
         let view = settings.target - settings.position;
-        if !view.is_finite() {
-            let message = "position and target are too far apart";
-            return Err(KeyError::at("target", message));
-        }
         let Some(forward) = unit(view) else {
             let message = format!(
                 "position and target are both {} cm; the camera has no line of sight",
                 vector_text(settings.position)
             );
-            return Err(KeyError::at("target", message));
+            return Err(KeyError::at(key!(CameraSettings.target), message));
         };
         let Some(up) = unit(settings.up) else {
             let message = "up is [0, 0, 0]; it must be a direction";
-            return Err(KeyError::at("up", message));
+            return Err(KeyError::at(key!(CameraSettings.up), message));
         };
         let right = forward.cross(up);
         if right.length() < PARALLEL {
@@ -166,50 +96,12 @@ impl Camera {
                 "up is {}, along the line of sight; it must point across it",
                 vector_text(settings.up)
             );
-            return Err(KeyError::at("up", message));
+            return Err(KeyError::at(key!(CameraSettings.up), message));
         }
         // Where up is nearly parallel, the product is not yet perpendicular to the last digit.
         let right = right.normalize().reject_from_normalized(forward).normalize();
 
         let [width, height] = settings.resolution;
-        if [width, height].iter().any(|side| !(1..=MOST).contains(side)) {
-            let message =
-                format!("resolution is [{width}, {height}]; each must be from 1 to {MOST}");
-            return Err(KeyError::at("resolution", message));
-        }
-        if !(1..=MOST).contains(&settings.samples) {
-            let message = format!("samples is {}; it must be from 1 to {MOST}", settings.samples);
-            return Err(KeyError::at("samples", message));
-        }
-        if !(0.0..=255.0).contains(&settings.adaptive) {
-            let message = format!(
-                "adaptive is {} 8-bit steps; it must be from 0 to 255",
-                number_text(settings.adaptive)
-            );
-            return Err(KeyError::at("adaptive", message));
-        }
-        if let Polarizer::Angle(degrees) = settings.polarizer {
-            Polarizer::at_angle(degrees)?;
-        }
-        let view_width = match settings.projection {
-            Projection::Perspective { field_of_view } => {
-                if !(field_of_view > 0.0 && field_of_view < 180.0) {
-                    let message = format!(
-                        "field_of_view is {} degrees; it must be above 0 and below 180",
-                        number_text(field_of_view)
-                    );
-                    return Err(KeyError::at("field_of_view", message));
-                }
-                2.0 * (0.5 * field_of_view.to_radians()).tan()
-            }
-            Projection::Orthographic { width } => {
-                if !(width > 0.0 && width.is_finite()) {
-                    let message = format!("width is {} cm; it must be above 0", number_text(width));
-                    return Err(KeyError::at("width", message));
-                }
-                width
-            }
-        };
         Ok(Camera {
             forward,
             right,
@@ -275,11 +167,11 @@ impl Camera {
     pub fn ray(&self, px: f64, py: f64) -> CameraRay {
         let offset = self.offset(px, py);
         match self.settings.projection {
-            Projection::Perspective { .. } => CameraRay {
+            Projection::Perspective => CameraRay {
                 origin: self.settings.position,
                 direction: (self.forward + offset).normalize(),
             },
-            Projection::Orthographic { .. } => {
+            Projection::Orthographic => {
                 CameraRay { origin: self.settings.position + offset, direction: self.forward }
             }
         }
@@ -292,21 +184,24 @@ impl Camera {
         transverse_basis(direction.normalize(), self.right, self.forward)
     }
 
-    /// The smallest width, in cm, of a photograph centred on (`plane_x`, 0, 0) in the plane of
-    /// constant x that covers the whole view; `None` if a corner ray misses the plane.
+    /// The smallest width, in cm, of a photograph that covers the whole view; `None` if a corner ray misses its
+    /// plane.
     ///
-    /// `image_aspect` is the photograph's width over its height.
-    pub fn covering_width(&self, plane_x: f64, image_aspect: f64) -> Option<f64> {
+    /// The photograph is centred on the origin of `place`, whose y is up and whose z is across;
+    /// `image_aspect` is its width over its height.
+    pub fn covering_width(&self, place: &Pose, image_aspect: f64) -> Option<f64> {
         let [width, height] = self.settings.resolution.map(f64::from);
         let mut half = 0.0_f64;
         // Where the corners hit, all the view does: what a camera sees of a plane is convex.
         for (px, py) in [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)] {
             let ray = self.ray(px, py);
-            let distance = (plane_x - ray.origin.x) / ray.direction.x;
+            let (origin, direction) =
+                (place.to_local(ray.origin), place.vector_to_local(ray.direction));
+            let distance = -origin.x / direction.x;
             if !(distance > 0.0 && distance.is_finite()) {
                 return None;
             }
-            let hit = ray.origin + distance * ray.direction;
+            let hit = origin + distance * direction;
             half = half.max(hit.z.abs()).max(hit.y.abs() * image_aspect);
         }
         let width = 2.0 * half;

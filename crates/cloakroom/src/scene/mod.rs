@@ -8,20 +8,25 @@ mod polarizer;
 mod receiver;
 mod tables;
 
-use glam::DVec3;
+use camera::PARALLEL;
+use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
+use optics::geometry::Pose;
+use optics::wave::unit;
 
-pub use camera::{Camera, CameraRay, CameraSettings, Projection};
+pub use camera::{Camera, CameraRay};
 pub use polarizer::Polarizer;
-pub use receiver::Receiver;
 pub use tables::{
-    CAMERA_KEYS, LIGHT_KEYS, OPTIONAL_CHANNELS, PHOTOGRAPH_KEYS, PICTURE_KEYS, PLACEMENT_KEYS,
-    RECEIVER_KEYS, SCALAR_CHANNELS, SURROUNDINGS_KEYS, TABLES, TRACE_KEYS,
+    CameraSettings, Core, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel,
+    PhotographSettings, PictureSettings, Placement, Projection, Receiver, SCALAR_CHANNELS,
+    SurroundingsSettings, TABLES, TraceSettings,
 };
 
 pub use crate::device::Show;
-use crate::device::{Entry, Imperfection};
-use crate::keys::{KeyError, Values};
+use crate::device::{AnyDevice, Entry, Fact, Request, Structure};
+use crate::keys::{Field, KeyError, KeyKind, Table, Value, VisitFile, vector_text};
 use crate::photograph::ImageSource;
+use cloakroom_trace::key;
+use std::path::{Path, PathBuf};
 
 /// Everything a picture depends on.
 #[derive(Clone, Debug, Default)]
@@ -46,245 +51,281 @@ pub struct Scene {
     pub source: String,
 }
 
-/// The light that fills the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Light {
-    /// Wavelength in vacuum, in nm.
-    pub wavelength_nm: f64,
-}
-
-/// The photograph: a plane of constant x.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PhotographSettings {
-    /// What hangs there.
-    pub image: ImageSource,
-    /// The plane it hangs in, in cm.
-    pub x: f64,
-    /// Its width in cm; `None`: 110 for the builtin one, for others as wide as the camera's view
-    /// ([`Camera::covering_width`]).
-    pub width: Option<f64>,
-}
-
-/// What rays see that hit nothing.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SurroundingsSettings {
-    /// The same everywhere: linear red, green and blue.
-    Color([f64; 3]),
-    /// An equirectangular image.
-    Image(ImageSource),
-}
-
-/// How rays are followed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TraceSettings {
-    /// Branches weaker than this share of the camera ray are pruned.
-    pub min_power: f64,
-    /// Whether the scene says so, rather than leaving it at the default.
-    pub min_power_given: bool,
-    /// Largest error of position and optical path on leaving a device, in cm.
-    pub tolerance: f64,
-}
-
-/// What a picture shows and holds.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PictureSettings {
-    /// Those of [`OPTIONAL_CHANNELS`] that EXR and NPZ files hold.
-    pub channels: Vec<&'static str>,
-    /// What a PNG shows: one of [`SCALAR_CHANNELS`] in false colors; `None`: what the camera sees.
-    pub map: Option<&'static str>,
-    /// Whether the scale of a map is drawn beside it.
-    pub color_bar: bool,
-}
-
 /// One device of a scene.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DeviceSettings {
-    /// Its kind.
-    pub entry: &'static Entry,
-    /// The values of its kind's own keys.
-    pub values: Values,
-    /// What of it is shown.
-    pub show: Show,
-    /// Whether its hidden region is air instead of metal.
-    pub open_core: bool,
-    /// Degrees about its own axis, counterclockwise seen from +z.
-    pub rotation: f64,
-    /// Where its origin lies, in cm.
-    pub position: DVec3,
-    /// Whole length along its z axis in cm; `None`: endless.
-    pub length: Option<f64>,
-    /// How what is made of it differs from its design.
-    pub imperfection: Option<Imperfection>,
+    /// What it is.
+    pub device: AnyDevice,
+    /// What of it is shown, and where it stands.
+    pub placement: Placement,
+    /// Which of many draws of its random imperfections it is: 0 in a scene.
+    pub draw: u32,
 }
 
-impl Light {
-    /// The settings in a table of [`LIGHT_KEYS`].
-    pub fn from_values(values: &Values) -> Self {
-        Light { wavelength_nm: values.number("wavelength_nm") }
+impl Scene {
+    /// The images on opaque bodies.
+    pub fn body_images(&self) -> impl Iterator<Item = ImageSource> {
+        self.devices.iter().filter_map(|device| match device.appearance()? {
+            Appearance::Image(source) => Some(source),
+            Appearance::Color(_) => None,
+        })
+    }
+
+    /// Every file that the scene names, with the path of the key that names it.
+    #[must_use]
+    pub fn files(&self) -> Vec<(String, PathBuf)> {
+        let mut files = Vec::new();
+        let mut visit =
+            |path: &str, file: &mut PathBuf| files.push((path.to_owned(), file.clone()));
+        self.photograph.clone().visit_files("photograph", &mut visit);
+        self.surroundings.clone().visit_files("surroundings", &mut visit);
+        for (number, device) in self.devices.iter().enumerate() {
+            let path = format!("device.{number}");
+            device.device.clone().table_mut().visit_files(&path, &mut visit);
+        }
+        files
     }
 }
 
+/// What an opaque body shows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Appearance {
+    /// Linear red, green and blue that it sends out everywhere.
+    Color([f64; 3]),
+    /// An image, laid on its shape.
+    Image(ImageSource),
+}
+
 impl PhotographSettings {
-    /// The settings in a table of [`PHOTOGRAPH_KEYS`].
-    pub fn from_values(values: &Values) -> Self {
-        PhotographSettings {
-            image: values.image("image").clone(),
-            x: values.number("x"),
-            width: values.optional_number("width"),
+    /// Where it hangs: its middle is the origin, x the way one looks straight at its front, y up, and z to the
+    /// right.
+    ///
+    /// # Errors
+    ///
+    /// If both `x` and `position` are given, the normal or `up` is zero, or they are parallel.
+    pub fn pose(&self) -> Result<Pose, KeyError> {
+        if self.position.given && self.x.given {
+            let message = "x and position are both given; x is short for position = [x, 0, 0]";
+            return Err(KeyError::at(key!(Self.position), message));
         }
+        let front = direction(key!(Self.normal), self.normal)?;
+        let upward = direction(key!(Self.up), self.up)?;
+        let across = upward.cross(front);
+        if across.length() < PARALLEL {
+            let message = format!(
+                "up is {}, along the normal; it must point across it",
+                vector_text(self.up)
+            );
+            return Err(KeyError::at(key!(Self.up), message));
+        }
+        // Where the two are nearly parallel, the product is not yet perpendicular to the last digit.
+        let across = across.normalize().reject_from_normalized(front).normalize();
+        let rotation = DMat3::from_cols(-front, front.cross(across), across);
+        Ok(Pose::from_rotation(self.middle(), rotation))
+    }
+
+    fn middle(&self) -> DVec3 {
+        if self.position.given { self.position.value } else { DVec3::X * self.x.value }
+    }
+
+    /// Its middle, and the direction that it faces, in words; the plane alone where that is one of constant x with
+    /// its middle on the x axis, which is all that most scenes say.
+    fn words(&self) -> Result<String, [String; 2]> {
+        let (middle, normal) = (self.middle(), unit(self.normal).unwrap_or_default());
+        if middle.yz() == DVec2::ZERO && normal.yz() == DVec2::ZERO {
+            return Ok(format!("x = {} cm", middle.x));
+        }
+        Err([middle, normal].map(vector_text))
+    }
+
+    /// Where it is, in words: "x = 50 cm".
+    #[must_use]
+    pub fn place(&self) -> String {
+        self.words().unwrap_or_else(|[middle, normal]| format!("{middle} cm, facing {normal}"))
+    }
+
+    /// Its plane in words: "x = 50 cm".
+    #[must_use]
+    pub fn plane(&self) -> String {
+        self.words()
+            .unwrap_or_else(|[middle, normal]| format!("through {middle} cm across {normal}"))
     }
 }
 
 impl SurroundingsSettings {
-    /// The settings in a table of [`SURROUNDINGS_KEYS`].
+    /// Refuses both a color and an image.
     ///
     /// # Errors
     ///
-    /// If both a color and an image are given.
-    pub fn from_values(values: &Values) -> Result<Self, KeyError> {
-        match values.optional_image("image") {
-            None => Ok(SurroundingsSettings::Color(values.vector("color"))),
-            Some(_) if values.is_given("color") => {
-                let message = "color and image are both given; the surroundings take one of them";
-                Err(KeyError::at("image", message))
-            }
-            Some(image) => Ok(SurroundingsSettings::Image(image.clone())),
+    /// If both are given.
+    pub fn consistent(self) -> Result<Self, KeyError> {
+        if self.color.given && self.image.is_some() {
+            let message = "color and image are both given; the surroundings take one of them";
+            return Err(KeyError::at(key!(Self.image), message));
         }
-    }
-}
-
-impl TraceSettings {
-    /// The settings in a table of [`TRACE_KEYS`].
-    pub fn from_values(values: &Values) -> Self {
-        TraceSettings {
-            min_power: values.number("min_power"),
-            min_power_given: values.is_given("min_power"),
-            tolerance: values.number("tolerance"),
-        }
+        Ok(self)
     }
 }
 
 impl PictureSettings {
-    /// The settings in a table of [`PICTURE_KEYS`].
-    pub fn from_values(values: &Values) -> Self {
-        let map = values.choice("map");
-        PictureSettings {
-            channels: values.choices("channels").to_vec(),
-            map: SCALAR_CHANNELS.iter().find(|&&channel| channel == map).copied(),
-            color_bar: values.flag("color_bar"),
-        }
-    }
-
     /// Whether one of [`OPTIONAL_CHANNELS`] is asked for, to be held or to be shown.
     #[must_use]
     pub fn asks_for(&self, channel: &str) -> bool {
-        self.channels.contains(&channel) || self.map == Some(channel)
+        self.channels.iter().any(|held| held.word() == channel) || self.map.name() == Some(channel)
     }
 }
 
 impl DeviceSettings {
-    /// A device of a kind, with the values of the kind's own keys and of [`PLACEMENT_KEYS`].
-    pub fn from_values(entry: &'static Entry, values: Values, placement: &Values) -> Self {
-        DeviceSettings {
-            entry,
-            values,
-            show: match placement.choice("show") {
-                "bare" => Show::Bare,
-                "mirror" => Show::Mirror,
-                _ => Show::Cloak,
-            },
-            open_core: placement.choice("core") == "open",
-            rotation: placement.number("rotation"),
-            position: DVec3::from_array(placement.vector("position")),
-            length: placement.optional_number("length"),
-            imperfection: placement.table("imperfection").map(Imperfection::from_values),
+    /// The word for its kind.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        self.device.kind()
+    }
+
+    /// What an opaque body shows; `None` for other devices.
+    #[must_use]
+    pub fn appearance(&self) -> Option<Appearance> {
+        let AnyDevice::SolidBody(body) = &self.device else { return None };
+        let surface = body.surface.as_ref()?;
+        Some(match &surface.image {
+            Some(image) => Appearance::Image(ImageSource::named(image)),
+            None => Appearance::Color(surface.color.value),
+        })
+    }
+
+    /// Whether its hidden region is air instead of metal.
+    #[must_use]
+    pub fn has_open_core(&self) -> bool {
+        self.placement.core == Core::Open
+    }
+
+    /// The structure that is shown, imperfections included; `number` is the device's in its scene.
+    ///
+    /// # Errors
+    ///
+    /// If keys do not go together, or a file of an index cannot be read.
+    pub fn structure(&self, number: usize) -> Result<Structure, KeyError> {
+        let Placement { show, imperfection, .. } = &self.placement;
+        let structure = self.built(*show)?;
+        if self.has_open_core() && !structure.hull.has_open_core() {
+            let message = format!("{} with these keys has no core that could be open", self.kind());
+            return Err(KeyError::at(key!(Placement.core), message));
+        }
+        match imperfection {
+            Some(imperfection) if *show == Show::Cloak => {
+                imperfection.apply(structure, (number, self.draw))
+            }
+            _ => Ok(structure),
         }
     }
 
+    /// The structure of one view of the device as it is designed.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::structure`].
+    pub fn built(&self, show: Show) -> Result<Structure, KeyError> {
+        let (open_core, length) = (self.has_open_core(), self.placement.length);
+        crate::index_file::with_files_read(&self.device)?.build(Request { show, open_core, length })
+    }
+
+    /// What can be said of the device in numbers: see [`Device::facts`](crate::device::Device::facts).
+    #[must_use]
+    pub fn facts(&self) -> Vec<Fact> {
+        let device = crate::index_file::with_files_read(&self.device);
+        device.map(|device| device.facts()).unwrap_or_default()
+    }
+
     /// A device of a kind with everything at its default.
-    pub fn new(entry: &'static Entry) -> Self {
-        let placement = Values::defaults(PLACEMENT_KEYS);
-        DeviceSettings::from_values(entry, Values::defaults(entry.keys), &placement)
+    pub fn new(entry: &Entry) -> Self {
+        Self { device: (entry.device)(), placement: Placement::default(), draw: 0 }
+    }
+
+    /// How it is turned, in words: "rotation 10 degrees".
+    #[must_use]
+    pub fn turn(&self) -> String {
+        let rotation = format!("rotation {} degrees", self.placement.rotation);
+        if unit(self.placement.axis) == Some(DVec3::Z) {
+            rotation
+        } else {
+            format!("{rotation}, axis along {}", vector_text(self.placement.axis))
+        }
+    }
+
+    /// Where it stands and how it is turned.
+    ///
+    /// # Errors
+    ///
+    /// If its axis is zero.
+    pub fn pose(&self) -> Result<Pose, KeyError> {
+        let Placement { position, rotation, axis, .. } = self.placement;
+        direction(key!(Placement.axis), axis)?;
+        Ok(Pose::with_axis(position, rotation, axis))
     }
 }
 
-impl Default for Light {
-    fn default() -> Self {
-        Light::from_values(&Values::defaults(LIGHT_KEYS))
-    }
+/// The unit vector along the one of a key.
+fn direction(key: &'static str, vector: DVec3) -> Result<DVec3, KeyError> {
+    unit(vector).ok_or_else(|| {
+        KeyError::at(key, format!("{key} is {}; it must be a direction", vector_text(vector)))
+    })
 }
 
-impl Default for PhotographSettings {
-    fn default() -> Self {
-        PhotographSettings::from_values(&Values::defaults(PHOTOGRAPH_KEYS))
-    }
-}
+/// An image by its name.
+impl Field for ImageSource {
+    const KIND: KeyKind = KeyKind::Image;
 
-impl Default for SurroundingsSettings {
-    fn default() -> Self {
-        Self::from_values(&Values::defaults(SURROUNDINGS_KEYS)).expect("a color alone")
+    fn from_value(value: &Value) -> Option<Self> {
+        value.as_text().map(|name| Self::named(Path::new(name)))
     }
-}
 
-impl Default for TraceSettings {
-    fn default() -> Self {
-        TraceSettings::from_values(&Values::defaults(TRACE_KEYS))
+    fn value(&self) -> Option<Value> {
+        Some(self.to_string().into())
     }
-}
 
-impl Default for PictureSettings {
-    fn default() -> Self {
-        PictureSettings::from_values(&Values::defaults(PICTURE_KEYS))
+    fn show_files(&mut self, path: &str, visit: &mut VisitFile<'_>) {
+        if let Self::File(file) = self {
+            visit(path, file);
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::keys::Given;
+    use glam::DVec3;
 
     #[test]
     fn the_default_scene_is_that_of_the_paper() {
         let scene = Scene::default();
-        let camera = CameraSettings {
-            position: DVec3::new(-100.0, 0.0, 0.0),
-            target: DVec3::new(50.0, 0.0, 0.0),
-            up: DVec3::Y,
-            projection: Projection::Perspective { field_of_view: 40.0 },
-            resolution: [1024, 768],
-            samples: 4,
-            adaptive: 0.0,
-            seed: 0,
-            polarizer: Polarizer::None,
-        };
-        assert_eq!(scene.camera.settings(), &camera);
+        assert_eq!(scene.camera.settings(), &CameraSettings::default());
+        assert_eq!((scene.camera.position().x, scene.camera.forward()), (-100.0, DVec3::X));
+        assert_eq!((scene.camera.resolution(), scene.camera.samples()), ([1024, 768], 4));
         assert_eq!((scene.receiver.position.x, scene.receiver.normal), (50.0, DVec3::NEG_X));
         assert_eq!((scene.receiver.width, scene.receiver.length), (60.0, 60.0));
         assert_eq!(scene.photograph.image, ImageSource::BuiltIn("bookshelf"));
-        assert_eq!((scene.photograph.x, scene.photograph.width), (50.0, None));
-        assert_eq!(scene.surroundings, SurroundingsSettings::Color([0.0; 3]));
-        assert_eq!((scene.trace.min_power, scene.trace.min_power_given), (1e-4, false));
+        assert_eq!(scene.photograph.pose(), Ok(Pose::new(DVec3::X * 50.0, 0.0)));
+        assert_eq!(scene.photograph.width, None);
+        assert_eq!(scene.surroundings, SurroundingsSettings::default());
+        assert_eq!(scene.trace.min_power, Given::by_default(1e-4));
         assert_eq!(scene.trace.tolerance, 1e-6);
         assert_eq!(scene.light.wavelength_nm, 550.0);
-        let picture = PictureSettings { channels: Vec::new(), map: None, color_bar: true };
-        assert_eq!(scene.picture, picture);
+        assert_eq!((scene.picture.map.name(), scene.picture.color_bar), (None, true));
         assert!(scene.devices.is_empty());
     }
 
     #[test]
     fn the_view_is_sized_in_the_terms_of_its_projection() {
-        let key = |pairs: &[(&str, crate::keys::Value)]| {
-            let mut values = Values::defaults(CAMERA_KEYS);
-            for (name, value) in pairs {
-                values.set(name, value.clone()).expect(name);
-            }
-            CameraSettings::from_values(&values).map(|s| s.projection).map_err(|e| e.key)
-        };
-        let orthographic = ("projection", "orthographic".into());
-        assert_eq!(key(&[("width", 50.0.into())]), Err(Some("width")));
-        assert_eq!(key(std::slice::from_ref(&orthographic)), Err(Some("projection")));
-        let both = [orthographic.clone(), ("field_of_view", 40.0.into()), ("width", 50.0.into())];
-        assert_eq!(key(&both), Err(Some("field_of_view")));
-        let width = key(&[orthographic, ("width", 50.0.into())]);
-        assert_eq!(width, Ok(Projection::Orthographic { width: 50.0 }));
+        use Projection::Orthographic;
+        let refusal = |settings: CameraSettings| Camera::new(settings).map(drop).map_err(|e| e.key);
+        let camera = CameraSettings::default;
+        assert_eq!(refusal(CameraSettings { width: Some(50.0), ..camera() }), Err(Some("width")));
+        let orthographic = || CameraSettings { projection: Orthographic, ..camera() };
+        assert_eq!(refusal(orthographic()), Err(Some("projection")));
+        let wide = || CameraSettings { width: Some(50.0), ..orthographic() };
+        let both = CameraSettings { field_of_view: 40.0.into(), ..wide() };
+        assert_eq!(refusal(both), Err(Some("field_of_view")));
+        assert_eq!(refusal(wide()), Ok(()));
     }
 }

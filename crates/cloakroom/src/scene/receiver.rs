@@ -1,41 +1,18 @@
 //! The plane that light is received on.
 
-use super::RECEIVER_KEYS;
-use crate::direction::unit;
-use crate::keys::{KeyError, Values, vector_text};
+use super::{Receiver, direction};
+use crate::keys::KeyError;
+use cloakroom_trace::key;
 use glam::{DVec2, DVec3};
 
-/// A rectangle on which light is received, from the side that its normal points to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Receiver {
-    /// Its middle, cm.
-    pub position: DVec3,
-    /// The unit normal, towards the light.
-    pub normal: DVec3,
-    /// Its size across z, cm.
-    pub width: f64,
-    /// Its size along z, cm.
-    pub length: f64,
-}
-
 impl Receiver {
-    /// The settings in a table of [`RECEIVER_KEYS`].
+    /// The same receiver with a normal of length 1.
     ///
     /// # Errors
     ///
     /// If the normal is zero.
-    pub fn from_values(values: &Values) -> Result<Self, KeyError> {
-        let normal = DVec3::from_array(values.vector("normal"));
-        let Some(unit) = unit(normal) else {
-            let message = format!("normal is {}; it must be a direction", vector_text(normal));
-            return Err(KeyError::at("normal", message));
-        };
-        Ok(Self {
-            position: DVec3::from_array(values.vector("position")),
-            normal: unit,
-            width: values.number("width"),
-            length: values.number("length"),
-        })
+    pub fn normalized(self) -> Result<Self, KeyError> {
+        Ok(Self { normal: direction(key!(Self.normal), self.normal)?, ..self })
     }
 
     /// The unit vectors along its width and its length; the second one is z if the rectangle is along z.
@@ -56,11 +33,5 @@ impl Receiver {
         let at = origin + direction * (above / toward) - self.position;
         let [across, along] = self.axes();
         Some(DVec2::new(at.dot(across), at.dot(along)))
-    }
-}
-
-impl Default for Receiver {
-    fn default() -> Self {
-        Self::from_values(&Values::defaults(RECEIVER_KEYS)).expect("its normal is no zero")
     }
 }

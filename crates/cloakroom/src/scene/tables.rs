@@ -1,278 +1,248 @@
-//! The keys of every table of a scene file but a device's own.
+//! The tables of a scene file but a device's own.
 
-use crate::device::IMPERFECTION_KEYS;
-use crate::keys::{Key, KeyKind, Limits};
+use super::Polarizer;
+use crate::device::{Imperfection, Show};
+use crate::keys::{Given, Key, Limits};
+use crate::photograph::ImageSource;
+use cloakroom_trace::{choice, table};
+use glam::DVec3;
 
 /// Most pixels a side, and most samples a pixel.
-const MOST: i64 = super::camera::MOST as i64;
+const MOST: i64 = 65_536;
 
 /// The scalar channels a picture can show instead of what the camera sees.
-pub const SCALAR_CHANNELS: &[&str] = &[
-    "time_of_flight",
-    "time_of_flight_spread",
-    "time_of_flight_difference",
-    "delivered",
-    "escaped",
-    "absorbed",
-    "pruned",
-    "extraordinary_share",
-    "first_face_reflectance",
-];
+pub const SCALAR_CHANNELS: &[&str] = MapChannel::WORDS.split_at(1).1;
 
 /// The channels that files hold only if a scene lists them.
-pub const OPTIONAL_CHANNELS: &[&str] = &["stokes", "extraordinary_share", "first_face_reflectance"];
+pub const OPTIONAL_CHANNELS: &[&str] = OptionalChannel::WORDS;
 
-/// `[camera]`.
-pub static CAMERA_KEYS: &[Key] = &[
-    Key {
-        name: "position",
-        doc: "Where the camera stands.",
-        kind: vector([-100.0, 0.0, 0.0], "cm", Limits::COORDINATE),
-    },
-    Key {
-        name: "target",
-        doc: "The point in the middle of the picture.",
-        kind: vector([50.0, 0.0, 0.0], "cm", Limits::COORDINATE),
-    },
-    Key {
-        name: "up",
-        doc: "The direction that is up in the picture; it need not be perpendicular to the view.",
-        kind: vector([0.0, 1.0, 0.0], "", Limits::Finite),
-    },
-    Key {
-        name: "projection",
-        doc: "Whether rays leave from one point or side by side.",
-        kind: KeyKind::Choice { options: &["perspective", "orthographic"] },
-    },
-    Key {
-        name: "field_of_view",
-        doc: "Horizontal field of view of a perspective camera.",
-        kind: number(40.0, "degrees", Limits::Between(0.0, 180.0)),
-    },
-    Key {
-        name: "width",
-        doc: "Width of the view of an orthographic camera, which needs it.",
-        kind: KeyKind::Number { default: None, unit: "cm", limits: Limits::LENGTH },
-    },
-    Key {
-        name: "resolution",
-        doc: "Width and height of the picture in pixels.",
-        kind: KeyKind::IntegerPair { default: [1024, 768], min: 1, max: MOST },
-    },
-    Key {
-        name: "samples",
-        doc: "Camera rays per pixel.",
-        kind: KeyKind::Integer { default: 4, min: 1, max: MOST },
-    },
-    Key {
-        name: "adaptive",
-        doc: "Spends samples where the picture has edges: blocks of 2 x 2 pixels whose first samples (a \
-              quarter of them, at least 4) differ by no more than so many 8-bit steps get no others. 0: all \
-              pixels get all samples.",
-        kind: number(0.0, "8-bit steps", Limits::Within(0.0, 255.0)),
-    },
-    Key {
-        name: "seed",
-        doc: "Chooses where in its pixel each sample lies.",
-        kind: KeyKind::Integer { default: 0, min: 0, max: i64::MAX },
-    },
-    Key {
-        name: "polarizer",
-        doc: "The polarizer before the lens; an angle is counted from horizontal, \
-              counterclockwise as the camera sees it.",
-        kind: KeyKind::ChoiceOrNumber {
-            options: &["none", "horizontal", "vertical"],
-            unit: "degrees",
-        },
-    },
-];
+choice! {
+    /// How rays leave the camera.
+    pub enum Projection {
+        /// From one point.
+        Perspective = "perspective",
+        /// Side by side, all in the direction of the line of sight.
+        Orthographic = "orthographic",
+    }
+}
 
-/// `[light]`.
-pub static LIGHT_KEYS: &[Key] = &[Key {
-    name: "wavelength_nm",
-    doc: "Wavelength in vacuum; used by absorption only.",
-    kind: number(550.0, "nm", Limits::Within(1e-3, 1e12)),
-}];
+table! {
+    /// What a camera is made from, not validated yet. By default it is that of the paper: at x = -100 cm, looking along
+    /// +x, 40 degrees wide.
+    pub struct CameraSettings {
+        /// Where the camera stands.
+        position: DVec3 = DVec3::new(-100.0, 0.0, 0.0), "cm", in Limits::COORDINATE,
+        /// The point in the middle of the picture.
+        target: DVec3 = DVec3::new(50.0, 0.0, 0.0), "cm", in Limits::COORDINATE,
+        /// The direction that is up in the picture; it need not be perpendicular to the view.
+        up: DVec3 = DVec3::Y,
+        /// Whether rays leave from one point or side by side.
+        projection: Projection,
+        /// Horizontal field of view of a perspective camera.
+        field_of_view: Given<f64> = Given::by_default(40.0), "degrees", in Limits::Between(0.0, 180.0),
+        /// Width of the view of an orthographic camera, which needs it.
+        width: Option<f64>, "cm", in Limits::LENGTH,
+        /// Width and height of the picture in pixels.
+        resolution: [u32; 2] = [1024, 768], in Limits::Whole(1, MOST),
+        /// Camera rays per pixel.
+        samples: u32 = 4, in Limits::Whole(1, MOST),
+        /// Spends samples where the picture has edges: blocks of 2 x 2 pixels whose first samples (a quarter of them, at
+        /// least 4) differ by no more than so many 8-bit steps get no others. 0: all pixels get all samples.
+        adaptive: f64, "8-bit steps", in Limits::Within(0.0, 255.0),
+        /// Chooses where in its pixel each sample lies.
+        seed: u64, in Limits::SEED,
+        /// The polarizer before the lens; an angle is counted from horizontal, counterclockwise as the camera sees it.
+        polarizer: Polarizer, "degrees",
+    }
+}
 
-/// `[photograph]`.
-pub static PHOTOGRAPH_KEYS: &[Key] = &[
-    Key {
-        name: "image",
-        doc: "What hangs there: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to the \
-              scene file.",
-        kind: KeyKind::Image { default: Some("builtin:bookshelf") },
-    },
-    Key {
-        name: "x",
-        doc: "The plane of constant x it hangs in.",
-        kind: number(50.0, "cm", Limits::COORDINATE),
-    },
-    Key {
-        name: "width",
-        doc: "Its width; the height follows from the image. By default 110 cm for the builtin \
-              photograph, for others the smallest that covers the camera's view.",
-        kind: KeyKind::Number { default: None, unit: "cm", limits: Limits::LENGTH },
-    },
-];
+table! {
+    /// The light that fills the scene.
+    pub struct Light {
+        /// Wavelength in vacuum; used by absorption only.
+        wavelength_nm: f64 = 550.0, "nm", in Limits::Within(1e-3, 1e12),
+    }
+}
 
-/// `[surroundings]`.
-pub static SURROUNDINGS_KEYS: &[Key] = &[
-    Key {
-        name: "color",
-        doc: "Linear red, green and blue seen by rays that hit nothing.",
-        kind: vector([0.0, 0.0, 0.0], "", Limits::Within(0.0, 1e30)),
-    },
-    Key {
-        name: "image",
-        doc: "An equirectangular image of the surroundings instead of a color, relative to the \
-              scene file.",
-        kind: KeyKind::Image { default: None },
-    },
-];
+table! {
+    /// The photograph: a rectangle with two sides.
+    pub struct PhotographSettings {
+        /// What hangs there: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to the scene file.
+        image: ImageSource = ImageSource::BuiltIn("bookshelf"),
+        /// Short for `position = [x, 0, 0]`.
+        x: Given<f64> = Given::by_default(50.0), "cm", in Limits::COORDINATE,
+        /// Its middle; not together with `x`.
+        position: Given<DVec3> = Given::by_default(DVec3::new(50.0, 0.0, 0.0)), "cm", in Limits::COORDINATE,
+        /// The direction that it faces, of any length. It has two sides: who looks straight at either sees it upright
+        /// and unmirrored.
+        normal: DVec3 = DVec3::NEG_X,
+        /// The direction that is up in it; it need not be perpendicular to the normal.
+        up: DVec3 = DVec3::Y,
+        /// Its width; the height follows from the image. By default 110 cm for the builtin photograph, for others the
+        /// smallest that covers the camera's view.
+        width: Option<f64>, "cm", in Limits::LENGTH,
+    }
+}
 
-/// `[trace]`.
-pub static TRACE_KEYS: &[Key] = &[
-    Key {
-        name: "min_power",
-        doc: "Branches of a ray weaker than this share of it are not followed but counted as \
-              pruned.",
-        kind: number(1e-4, "", Limits::Within(0.0, 1.0)),
-    },
-    Key {
-        name: "tolerance",
-        doc: "Largest error of position and optical path on leaving a device.",
-        kind: number(1e-6, "cm", Limits::Positive),
-    },
-];
+table! {
+    /// What rays see that hit nothing: a color or an image.
+    pub struct SurroundingsSettings {
+        /// Linear red, green and blue seen by rays that hit nothing.
+        color: Given<[f64; 3]> = Given::by_default([0.0; 3]), in Limits::Within(0.0, 1e30),
+        /// An equirectangular image of the surroundings instead of a color, relative to the scene file.
+        image: Option<ImageSource>,
+    }
+}
 
-/// `[picture]`.
-pub static PICTURE_KEYS: &[Key] = &[
-    Key {
-        name: "channels",
-        doc: "Channels that EXR and NPZ files hold beside those they always do; `stokes` stands \
-              for `stokes.S0` to `stokes.S3`.",
-        kind: KeyKind::Choices { options: OPTIONAL_CHANNELS },
-    },
-    Key {
-        name: "map",
-        doc: "A channel that a PNG shows in false colors instead of what the camera sees.",
-        kind: KeyKind::Choice { options: &MAP_OPTIONS },
-    },
-    Key {
-        name: "color_bar",
-        doc: "Whether the scale of a map is drawn beside it.",
-        kind: KeyKind::Flag { default: true },
-    },
-];
+table! {
+    /// How rays are followed.
+    pub struct TraceSettings {
+        /// Branches of a ray weaker than this share of it are not followed but counted as pruned.
+        min_power: Given<f64> = Given::by_default(1e-4), in Limits::Within(0.0, 1.0),
+        /// Largest error of position and optical path on leaving a device.
+        tolerance: f64 = 1e-6, "cm", in Limits::Positive,
+    }
+}
 
-/// What every `[[device]]` takes beside its `kind` and its kind's own keys.
-pub static PLACEMENT_KEYS: &[Key] = &[
-    Key {
-        name: "show",
-        doc: "The cloak, the bare metal alone, or the mirror it should look like.",
-        kind: KeyKind::Choice { options: &["cloak", "bare", "mirror"] },
-    },
-    Key {
-        name: "core",
-        doc: "What fills the hidden region of a free-space cloak: metal, or air in which bodies may stand. \
-              A carpet needs its mirror.",
-        kind: KeyKind::Choice { options: &["metal", "open"] },
-    },
-    Key {
-        name: "rotation",
-        doc: "Turns the device about its own axis, counterclockwise seen from +z.",
-        kind: number(0.0, "degrees", Limits::ANGLE),
-    },
-    Key {
-        name: "position",
-        doc: "Where the device's own origin lies.",
-        kind: vector([0.0, 0.0, 0.0], "cm", Limits::COORDINATE),
-    },
-    Key {
-        name: "length",
-        doc: "Whole length along the device's z axis; endless where it is absent.",
-        kind: KeyKind::Number { default: None, unit: "cm", limits: Limits::LENGTH },
-    },
-    Key {
-        name: "imperfection",
-        doc: "How what is made of it differs from its design: random errors, levels, a limited range, loss.",
-        kind: KeyKind::Table { keys: IMPERFECTION_KEYS },
-    },
-];
+choice! {
+    /// A channel that files hold only if a scene lists it.
+    pub enum OptionalChannel {
+        /// The Stokes parameters.
+        Stokes = "stokes",
+        /// The share of power that has been an extraordinary wave.
+        ExtraordinaryShare = "extraordinary_share",
+        /// The share of power that the first face reflects.
+        FirstFaceReflectance = "first_face_reflectance",
+    }
+}
 
-/// `[receiver]`.
-pub static RECEIVER_KEYS: &[Key] = &[
-    Key {
-        name: "position",
-        doc: "The middle of the rectangle on which light is received.",
-        kind: vector([50.0, 0.0, 0.0], "cm", Limits::COORDINATE),
-    },
-    Key {
-        name: "normal",
-        doc: "The direction that it faces, of any length: light is received from there.",
-        kind: vector([-1.0, 0.0, 0.0], "", Limits::Finite),
-    },
-    Key {
-        name: "width",
-        doc: "Its size across the z axis.",
-        kind: number(60.0, "cm", Limits::LENGTH),
-    },
-    Key {
-        name: "length",
-        doc: "Its size along the z axis; of no matter where all devices are endless along z.",
-        kind: number(60.0, "cm", Limits::LENGTH),
-    },
-];
+choice! {
+    /// What a PNG shows.
+    pub enum MapChannel {
+        /// What the camera sees.
+        None = "none",
+        /// How long light is on its way.
+        TimeOfFlight = "time_of_flight",
+        /// How far the times of the ways of a pixel spread.
+        TimeOfFlightSpread = "time_of_flight_spread",
+        /// How much longer light is on its way than without devices.
+        TimeOfFlightDifference = "time_of_flight_difference",
+        /// The share of power that comes from the photograph.
+        Delivered = "delivered",
+        /// The share of power that comes from the surroundings.
+        Escaped = "escaped",
+        /// The share of power that is absorbed.
+        Absorbed = "absorbed",
+        /// The share of power that was not followed.
+        Pruned = "pruned",
+        /// The share of power that has been an extraordinary wave.
+        ExtraordinaryShare = "extraordinary_share",
+        /// The share of power that the first face reflects.
+        FirstFaceReflectance = "first_face_reflectance",
+    }
+}
+
+impl MapChannel {
+    /// Its name, one of [`SCALAR_CHANNELS`]; `None` for what the camera sees.
+    #[must_use]
+    pub fn name(self) -> Option<&'static str> {
+        (self != Self::None).then_some(self.word())
+    }
+}
+
+table! {
+    /// What a picture shows and holds.
+    pub struct PictureSettings {
+        /// Channels that EXR and NPZ files hold beside those they always do; `stokes` stands for `stokes.S0` to
+        /// `stokes.S3`.
+        channels: Vec<OptionalChannel>,
+        /// A channel that a PNG shows in false colors instead of what the camera sees.
+        map: MapChannel,
+        /// Whether the scale of a map is drawn beside it.
+        color_bar: bool = true,
+    }
+}
+
+choice! {
+    /// What fills the hidden region of a cloak.
+    pub enum Core {
+        /// Metal, which reflects.
+        Metal = "metal",
+        /// Air, in which bodies may stand.
+        Open = "open",
+    }
+}
+
+table! {
+    /// What every device takes beside its `kind` and its kind's own keys.
+    pub struct Placement {
+        /// The cloak, the bare metal alone, or the mirror it should look like.
+        show: Show,
+        /// What fills the hidden region of a free-space cloak: metal, or air in which bodies may stand. A carpet needs
+        /// its mirror.
+        core: Core,
+        /// Turns the device about its own z axis, counterclockwise seen from the end that the axis points to.
+        rotation: f64, "degrees", in Limits::ANGLE,
+        /// Where the device's own z axis points, of any length: the shortest turn of z to it, after `rotation`; to -z by
+        /// 180 degrees about x.
+        axis: DVec3 = DVec3::Z,
+        /// Where the device's own origin lies.
+        position: DVec3, "cm", in Limits::COORDINATE,
+        /// Whole length along the device's z axis; endless where it is absent.
+        length: Option<f64>, "cm", in Limits::LENGTH,
+        /// How what is made of it differs from its design: random errors, levels, a limited range, loss.
+        imperfection: Option<Imperfection>,
+    }
+}
+
+table! {
+    /// A rectangle on which light is received, from the side that its normal points to.
+    pub struct Receiver {
+        /// The middle of the rectangle on which light is received.
+        position: DVec3 = DVec3::new(50.0, 0.0, 0.0), "cm", in Limits::COORDINATE,
+        /// The direction that it faces, of any length: light is received from there.
+        normal: DVec3 = DVec3::NEG_X,
+        /// Its size across the z axis.
+        width: f64 = 60.0, "cm", in Limits::LENGTH,
+        /// Its size along the z axis; of no matter where all devices are endless along z.
+        length: f64 = 60.0, "cm", in Limits::LENGTH,
+    }
+}
 
 /// The tables that stand at most once in a scene, in the order in which they are documented.
 pub static TABLES: &[(&str, &[Key])] = &[
-    ("camera", CAMERA_KEYS),
-    ("light", LIGHT_KEYS),
-    ("photograph", PHOTOGRAPH_KEYS),
-    ("surroundings", SURROUNDINGS_KEYS),
-    ("trace", TRACE_KEYS),
-    ("picture", PICTURE_KEYS),
-    ("receiver", RECEIVER_KEYS),
+    ("camera", CameraSettings::KEYS),
+    ("light", Light::KEYS),
+    ("photograph", PhotographSettings::KEYS),
+    ("surroundings", SurroundingsSettings::KEYS),
+    ("trace", TraceSettings::KEYS),
+    ("picture", PictureSettings::KEYS),
+    ("receiver", Receiver::KEYS),
 ];
-
-/// "none", then every scalar channel.
-static MAP_OPTIONS: [&str; 1 + SCALAR_CHANNELS.len()] = {
-    let mut options = ["none"; 1 + SCALAR_CHANNELS.len()];
-    let mut i = 0;
-    while i < SCALAR_CHANNELS.len() {
-        options[i + 1] = SCALAR_CHANNELS[i];
-        i += 1;
-    }
-    options
-};
-
-const fn number(default: f64, unit: &'static str, limits: Limits) -> KeyKind {
-    KeyKind::Number { default: Some(default), unit, limits }
-}
-
-const fn vector(default: [f64; 3], unit: &'static str, limits: Limits) -> KeyKind {
-    KeyKind::Vector { default, unit, limits }
-}
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::keys::Values;
+    use crate::device::{CATALOGUE, Request};
+    use cloakroom_trace::key;
 
     #[test]
     fn every_default_is_allowed_and_every_name_is_there_once() {
-        let tables = TABLES.iter().copied().chain([("device", PLACEMENT_KEYS)]);
-        for (table, keys) in tables {
-            let defaults = Values::defaults(keys);
-            let mut values = defaults.clone();
+        let tables = TABLES.iter().copied().chain([("device", Placement::KEYS)]);
+        for (table, keys) in tables.chain(CATALOGUE.iter().map(|entry| (entry.kind, entry.keys))) {
             for (i, key) in keys.iter().enumerate() {
-                if let Some(value) = defaults.get(key.name) {
-                    let set = values.set(key.name, value);
-                    assert_eq!(set, Ok(()), "{table}.{}", key.name);
+                if let Some(value) = key.default_value() {
+                    assert_eq!(key.check(&value), Ok(value), "{table}.{}", key.name);
                 }
                 assert!(keys[..i].iter().all(|earlier| earlier.name != key.name));
                 assert!(key.doc.ends_with('.'), "{table}.{}", key.name);
             }
         }
+    }
+
+    #[test]
+    fn what_devices_are_asked_for_is_named_as_their_placement_names_it() {
+        let named = [key!(Request.show), key!(Request.length), "core"];
+        assert_eq!(named, [key!(Placement.show), key!(Placement.length), key!(Placement.core)]);
     }
 }

@@ -4,8 +4,31 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::error::SceneFileError;
-use super::tree::{Item, Node, Origin, Table};
-use crate::keys::KeyError;
+use crate::keys::{KeyError, Value};
+use std::ops::Range;
+
+/// Where something was written.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Origin {
+    /// Bytes of the scene file.
+    File(Range<usize>),
+    /// The override of this number.
+    Override(usize),
+}
+
+/// Where a key and its value were written; the place of a table is its header.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    pub key: Origin,
+    pub value: Origin,
+}
+
+/// The path of a key of the table at `path`.
+pub(super) fn join(path: &str, key: &str) -> String {
+    // A dot in a key, which no known one has, is none between keys.
+    let key = key.replace('.', "\u{1}");
+    if path.is_empty() { key } else { format!("{path}.{key}") }
+}
 
 /// Where the parts of a scene were written, for everything that turns out to be wrong only later:
 /// devices that overlap, a camera inside metal, a photograph that cannot be read.
@@ -14,25 +37,58 @@ pub struct Locations {
     name: String,
     text: Arc<str>,
     overrides: Arc<[String]>,
-    /// By path, such as `device.1.side`; values for keys, headers for tables.
-    places: HashMap<String, Origin>,
+    /// By path, such as `device.1.side`.
+    places: HashMap<String, Place>,
 }
 
 impl Locations {
     /// The locations of a scene that was written nowhere; `name` stands in its messages.
     pub fn nowhere(name: impl Into<String>) -> Self {
-        Locations {
-            name: name.into(),
-            text: "".into(),
-            overrides: [].into(),
-            places: HashMap::new(),
+        Self::new(&name.into(), "", &[])
+    }
+
+    pub(super) fn new(name: &str, text: &str, overrides: &[String]) -> Self {
+        let places = HashMap::new();
+        Locations { name: name.to_owned(), text: text.into(), overrides: overrides.into(), places }
+    }
+
+    /// The text that the places are in.
+    pub(super) fn text(&self) -> Arc<str> {
+        Arc::clone(&self.text)
+    }
+
+    /// Keeps the place of the key at a path.
+    pub(super) fn tell(&mut self, path: &str, place: Place) {
+        self.places.insert(path.to_owned(), place);
+    }
+
+    /// A value at a path and all in it is that of the override of this number.
+    pub(super) fn tell_override(&mut self, path: &str, value: &Value, number: usize) {
+        let origin = || Origin::Override(number);
+        let within = join(path, "");
+        self.places.retain(|known, _| !known.starts_with(&within));
+        self.tell(path, Place { key: origin(), value: origin() });
+        for (name, value) in value.as_table().unwrap_or_default() {
+            self.tell_override(&join(path, name), value, number);
+        }
+        for (number_in_list, value) in value.as_list().unwrap_or_default().iter().enumerate() {
+            if value.as_table().is_some() {
+                self.tell_override(&join(path, &number_in_list.to_string()), value, number);
+            }
         }
     }
 
-    pub(super) fn new(name: &str, text: &str, overrides: &[String], root: &Table) -> Self {
-        let mut places = HashMap::new();
-        record_table(&mut places, "", root);
-        Locations { name: name.to_owned(), text: text.into(), overrides: overrides.into(), places }
+    /// Whether the value at a path is that of an override.
+    pub(super) fn is_overridden(&self, path: &str) -> bool {
+        matches!(self.places.get(path), Some(Place { value: Origin::Override(_), .. }))
+    }
+
+    /// An error that points at a key.
+    pub(super) fn error_at_key(&self, path: &str, message: impl Into<String>) -> SceneFileError {
+        match self.places.get(path) {
+            Some(place) => self.error(&place.key, message),
+            None => SceneFileError::whole(&self.name, message),
+        }
     }
 
     /// An error that points at a part of the scene: `camera.up`, `device.1` (its header) or
@@ -40,7 +96,7 @@ impl Locations {
     pub fn error_at(&self, path: &str, message: impl Into<String>) -> SceneFileError {
         let mut around = path;
         loop {
-            match self.places.get(around) {
+            match self.places.get(around).map(|place| &place.value) {
                 // An override that has made the table around is not to blame for what it does not say.
                 Some(Origin::Override(_)) if around != path && !around.starts_with("device") => {}
                 Some(origin) => return self.error(origin, message),
@@ -58,7 +114,7 @@ impl Locations {
         self.error_at(&error.path_in(table), &error.message)
     }
 
-    pub(super) fn error(&self, origin: &Origin, message: impl Into<String>) -> SceneFileError {
+    fn error(&self, origin: &Origin, message: impl Into<String>) -> SceneFileError {
         match origin {
             Origin::File(span) => {
                 SceneFileError::in_text(&self.name, &self.text, span.clone(), message)
@@ -69,26 +125,4 @@ impl Locations {
             },
         }
     }
-}
-
-fn record_table(places: &mut HashMap<String, Origin>, path: &str, table: &Table) {
-    for entry in &table.entries {
-        let path =
-            if path.is_empty() { entry.key.clone() } else { format!("{path}.{}", entry.key) };
-        record(places, path, &entry.node);
-    }
-}
-
-fn record(places: &mut HashMap<String, Origin>, path: String, node: &Node) {
-    match &node.item {
-        Item::Table(table) => record_table(places, &path, table),
-        // Of a vector only the whole is pointed at.
-        Item::List(items) if items.iter().any(|item| matches!(item.item, Item::Table(_))) => {
-            for (i, item) in items.iter().enumerate() {
-                record(places, format!("{path}.{i}"), item);
-            }
-        }
-        _ => {}
-    }
-    places.entry(path).or_insert_with(|| node.origin.clone());
 }

@@ -1,7 +1,7 @@
 //! Scene files: TOML in, a [`Scene`] out, or one message that says what is wrong and where.
 //!
-//! The text becomes a tree whose nodes know where they were written, overrides are applied to the
-//! tree, and each table is held against its list of keys ([`crate::keys`]). The same lists make
+//! The text becomes values, and the places where they were written; overrides are applied to the values,
+//! and each table is held against its list of keys ([`crate::keys`]). The same lists make
 //! the JSON Schema of scene files ([`schema`]).
 
 mod error;
@@ -22,6 +22,7 @@ pub use locations::Locations;
 pub use schema::schema;
 
 use crate::input::read_up_to;
+use crate::keys::Value;
 use crate::scene::Scene;
 
 /// Longer files are no scenes.
@@ -59,12 +60,59 @@ pub fn parse(
     base_folder: &Path,
     overrides: &[String],
 ) -> Result<Loaded, SceneFileError> {
-    let mut root = tree::parse(name, text)?;
-    overrides::apply(&mut root, overrides, name)?;
-    let locations = Locations::new(name, text, overrides, &root);
+    let mut locations = Locations::new(name, text, overrides);
+    let root = tree::parse(name, &mut locations)?;
+    let mut loaded = read_values(root, name, base_folder, overrides, locations)?;
+    if overrides.is_empty() {
+        loaded.scene.source = text.to_owned();
+    }
+    Ok(loaded)
+}
+
+/// The tables of a scene file as they are written.
+///
+/// # Errors
+///
+/// If the text is not valid TOML.
+pub fn tables(text: &str, name: &str) -> Result<Value, SceneFileError> {
+    tree::parse(name, &mut Locations::new(name, text, &[]))
+}
+
+/// Reads a scene that is a table of values rather than a text; what it would be as a text becomes its source.
+///
+/// # Errors
+///
+/// If it says something a scene cannot say.
+pub fn assemble(
+    tables: Value,
+    name: &str,
+    base_folder: &Path,
+    overrides: &[String],
+) -> Result<Loaded, SceneFileError> {
+    read_values(tables, name, base_folder, overrides, Locations::new(name, "", overrides))
+}
+
+fn read_values(
+    mut root: Value,
+    name: &str,
+    base_folder: &Path,
+    overrides: &[String],
+    mut locations: Locations,
+) -> Result<Loaded, SceneFileError> {
+    overrides::apply(&mut root, overrides, name, &mut locations)?;
     let mut scene = read::read(&root, &locations, base_folder)?;
-    scene.source = if overrides.is_empty() { text.to_owned() } else { root.to_toml().to_string() };
+    scene.source = text(&root);
     Ok(Loaded { scene, locations })
+}
+
+/// The tables of a scene as the text of a scene file.
+#[must_use]
+pub fn text(tables: &Value) -> String {
+    match tree::to_toml(tables) {
+        // A document; a value would be written within braces.
+        toml::Value::Table(table) => table.to_string(),
+        value => value.to_string(),
+    }
 }
 
 fn read_text(path: &Path, name: &str) -> Result<String, SceneFileError> {

@@ -1,27 +1,34 @@
 //! Overrides: `camera.samples=16` sets one key of a scene.
 
 use super::error::SceneFileError;
+use super::locations::{Locations, join};
 use super::read::DEVICES;
-use super::tree::{Item, Node, Origin, Table, parse_value};
-use crate::keys::quoted;
+use super::tree::parse_value;
+use crate::keys::{Value, quoted};
 
 /// The deepest key there is; anything deeper is refused before a tree of it is built.
 const DEEPEST: usize = 16;
 
 /// Applies overrides to a scene, in order.
 pub(super) fn apply(
-    root: &mut Table,
+    root: &mut Value,
     overrides: &[String],
     name: &str,
+    locations: &mut Locations,
 ) -> Result<(), SceneFileError> {
     for (number, text) in overrides.iter().enumerate() {
-        apply_one(root, text, Origin::Override(number))
+        apply_one(root, text, number, locations)
             .map_err(|message| SceneFileError::in_override(name, text, message))?;
     }
     Ok(())
 }
 
-fn apply_one(root: &mut Table, text: &str, origin: Origin) -> Result<(), String> {
+fn apply_one(
+    root: &mut Value,
+    text: &str,
+    number: usize,
+    locations: &mut Locations,
+) -> Result<(), String> {
     let Some((path, value)) = text.split_once('=') else {
         return Err("an override is written KEY=VALUE, such as camera.samples=16".to_owned());
     };
@@ -32,35 +39,43 @@ fn apply_one(root: &mut Table, text: &str, origin: Origin) -> Result<(), String>
     if path.len() > DEEPEST {
         return Err("no key lies that deep".to_owned());
     }
-    let value = parse_value(value.trim(), &origin)?;
-
+    let value = parse_value(value.trim())?;
     let mut walked = String::new();
-    let (first, rest) = path.split_first().ok_or("a key is missing")?;
-    let mut place = descend(root, first, rest.first().copied(), &mut walked, &origin)?;
-    for (i, key) in rest.iter().enumerate() {
-        let next = rest.get(i + 1).copied();
-        place = match &mut place.item {
-            Item::Table(table) => descend(table, key, next, &mut walked, &origin)?,
-            Item::List(items) => entry(items, key, &mut walked, &origin)?,
+    let mut place = root;
+    // The first part of the path that was not there.
+    let mut made = None;
+    for (i, key) in path.iter().enumerate() {
+        let next = path.get(i + 1).copied();
+        let (inner, new) = match place {
+            Value::Table(entries) => descend(entries, key, next, &mut walked)?,
+            Value::List(items) => entry(items, key, &mut walked)?,
             scalar => {
-                let what = scalar.describe();
                 let key = quoted(key, '`');
-                return Err(format!("{walked} is {what}; there is no {key} in it"));
+                return Err(format!("{walked} is {scalar}; there is no {key} in it"));
             }
         };
+        place = inner;
+        if new && made.is_none() {
+            made = Some(i);
+        }
     }
     *place = value;
+    let parts = |count: usize| path[..count].iter().fold(String::new(), |all, key| join(&all, key));
+    // Tables made on the way are the override's, too.
+    for count in made.map_or(path.len(), |made| made + 1)..path.len() {
+        locations.tell_override(&parts(count), &Value::Table(Vec::new()), number);
+    }
+    locations.tell_override(&parts(path.len()), place, number);
     Ok(())
 }
 
-/// The node of a key, made if it is not there; `next` is the key after it.
+/// The value of a key, made if it is not there, and whether it was; `next` is the key after it.
 fn descend<'a>(
-    table: &'a mut Table,
+    entries: &'a mut Vec<(String, Value)>,
     key: &str,
     next: Option<&str>,
     walked: &mut String,
-    origin: &Origin,
-) -> Result<&'a mut Node, String> {
+) -> Result<(&'a mut Value, bool), String> {
     let top = walked.is_empty();
     if !top {
         walked.push('.');
@@ -68,24 +83,28 @@ fn descend<'a>(
     walked.push_str(key);
     let counted = next.is_some_and(|next| next.parse::<usize>().is_ok());
     let devices = top && key == DEVICES;
-    if counted && !devices && table.get(key).is_none() {
+    let known = entries.iter().position(|(name, _)| name == key);
+    if counted && !devices && known.is_none() {
         return Err(format!(
             "{walked} is not written in the scene, so an entry of it cannot be set alone; set \
              all of it: {walked}=[...]"
         ));
     }
-    let new = || if devices { Item::List(Vec::new()) } else { Item::Table(Table::default()) };
-    Ok(table.get_or_insert(key, origin, new))
+    let index = known.unwrap_or(entries.len());
+    if known.is_none() {
+        let new = if devices { Value::List(Vec::new()) } else { Value::Table(Vec::new()) };
+        entries.push((key.to_owned(), new));
+    }
+    Ok((&mut entries[index].1, known.is_none()))
 }
 
-/// An entry of a list by its number; the number after the last adds a table to a list of tables.
+/// An entry of a list by its number, and whether it was made: the number after the last adds a table to a list of tables.
 fn entry<'a>(
-    items: &'a mut Vec<Node>,
+    items: &'a mut Vec<Value>,
     key: &str,
     walked: &mut String,
-    origin: &Origin,
-) -> Result<&'a mut Node, String> {
-    let tables = items.iter().all(|node| matches!(node.item, Item::Table(_)));
+) -> Result<(&'a mut Value, bool), String> {
+    let tables = items.iter().all(|item| item.as_table().is_some());
     let count = items.len();
     let Ok(index) = key.parse::<usize>() else {
         return Err(format!(
@@ -103,9 +122,9 @@ fn entry<'a>(
         return Err(format!("there is no {walked}.{index}: {there}{add}"));
     }
     if index == count {
-        items.push(Node { origin: origin.clone(), item: Item::Table(Table::default()) });
+        items.push(Value::Table(Vec::new()));
     }
     walked.push('.');
     walked.push_str(&index.to_string());
-    Ok(&mut items[index])
+    Ok((&mut items[index], index == count))
 }

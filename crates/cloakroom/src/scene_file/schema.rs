@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::device::{CATALOGUE, Entry};
 use crate::keys::{Key, KeyKind, Limits};
-use crate::scene::{PLACEMENT_KEYS, TABLES};
+use crate::scene::{Placement, TABLES};
 
 /// The JSON Schema (draft 2020-12) of a scene file, made from the lists of keys and the catalogue
 /// of devices.
@@ -51,7 +51,7 @@ fn device(entry: &Entry) -> Value {
         json!({ "const": entry.kind, "description": "What the device is." }),
     );
     all.extend(properties(entry.keys));
-    all.extend(properties(PLACEMENT_KEYS));
+    all.extend(properties(Placement::KEYS));
     let mut table = closed_table(all);
     table.insert("title".to_owned(), entry.title.into());
     table.insert("description".to_owned(), entry.summary.into());
@@ -89,7 +89,7 @@ fn closed_table(properties: Map<String, Value>) -> Map<String, Value> {
 /// A table within a device's; polygons have no default.
 fn inner_table(keys: &[Key]) -> Map<String, Value> {
     let mut table = closed_table(properties(keys));
-    let required = keys.iter().filter(|key| matches!(key.kind, KeyKind::Polygon { .. }));
+    let required = keys.iter().filter(|key| matches!(key.kind, KeyKind::Polygon));
     let required: Vec<_> = required.map(|key| key.name).collect();
     table.insert("required".to_owned(), json!(required));
     table
@@ -100,47 +100,42 @@ fn properties(keys: &[Key]) -> Map<String, Value> {
 }
 
 fn property(key: &Key) -> Value {
-    let (mut property, unit) = match key.kind {
-        KeyKind::Number { unit, limits, .. } => (number(limits), unit),
-        KeyKind::Integer { min, max, .. } => (integer(min, max), ""),
-        KeyKind::Flag { .. } => (json!({ "type": "boolean" }), ""),
-        KeyKind::Choice { options } => (json!({ "enum": options }), ""),
-        KeyKind::Choices { options } => {
-            (json!({ "type": "array", "items": { "enum": options } }), "")
-        }
-        KeyKind::Vector { unit, limits, .. } => (list(number(limits), 3), unit),
-        KeyKind::IntegerPair { min, max, .. } => (list(integer(min, max), 2), ""),
-        KeyKind::Image { .. } => (json!({ "type": "string", "minLength": 1 }), ""),
-        KeyKind::ChoiceOrNumber { options, unit } => {
-            (json!({ "anyOf": [{ "enum": options }, { "type": "number" }] }), unit)
-        }
-        KeyKind::Tensor => (tensor(), ""),
-        KeyKind::Polygon { unit } => {
-            let corner = list(number(Limits::Finite), 2);
-            (json!({ "type": "array", "items": corner, "minItems": 3 }), unit)
-        }
-        KeyKind::Samples { limits } => {
-            let row = json!({ "type": "array", "items": number(limits), "minItems": 1 });
+    let number = number(key.limits);
+    let mut property = match key.kind {
+        KeyKind::Number | KeyKind::Integer => number,
+        KeyKind::Flag => json!({ "type": "boolean" }),
+        KeyKind::Choice { options } => json!({ "enum": options }),
+        KeyKind::Choices { options } => json!({ "type": "array", "items": { "enum": options } }),
+        KeyKind::Vector => list(number, 3),
+        KeyKind::IntegerPair => list(number, 2),
+        KeyKind::Image => json!({ "type": "string", "minLength": 1 }),
+        KeyKind::ChoiceOrNumber { options } => json!({ "anyOf": [{ "enum": options }, number] }),
+        KeyKind::Tensor => tensor(number),
+        KeyKind::Polygon => json!({ "type": "array", "items": list(number, 2), "minItems": 3 }),
+        KeyKind::Samples => {
+            let row = json!({ "type": "array", "items": number, "minItems": 1 });
             let rows = json!({ "type": "array", "items": row, "minItems": 1 });
-            (json!({ "anyOf": [{ "type": "string", "minLength": 1 }, rows] }), "")
+            json!({ "anyOf": [{ "type": "string", "minLength": 1 }, rows] })
         }
-        KeyKind::Table { keys } => (inner_table(keys).into(), ""),
-        KeyKind::Tables { keys } => (json!({ "type": "array", "items": inner_table(keys) }), ""),
+        KeyKind::Table { keys } => inner_table(keys).into(),
+        KeyKind::Tables { keys } => json!({ "type": "array", "items": inner_table(keys) }),
     };
-    let unit = if unit.is_empty() { String::new() } else { format!(" Unit: {unit}.") };
-    property["description"] = format!("{}{unit}", key.doc).into();
+    property["description"] = key.doc.into();
+    if !key.unit.is_empty() {
+        property["description"] = format!("{} Unit: {}.", key.doc, key.unit).into();
+        property["x-unit"] = key.unit.into();
+    }
     if let Some(default) = key.default_value() {
-        property["default"] = Value::from(default);
+        property["default"] = crate::json::json(default);
     }
     property
 }
 
 /// A number, [re, im], or 3 x 3 of either.
-fn tensor() -> Value {
-    let pair = list(number(Limits::Finite), 2);
-    let entry = json!({ "anyOf": [number(Limits::Finite), pair] });
-    let rows = list(list(entry, 3), 3);
-    json!({ "anyOf": [number(Limits::Finite), pair, rows] })
+fn tensor(number: Value) -> Value {
+    let pair = list(number.clone(), 2);
+    let rows = list(list(json!({ "anyOf": [number, pair] }), 3), 3);
+    json!({ "anyOf": [number, pair, rows] })
 }
 
 fn number(limits: Limits) -> Value {
@@ -153,11 +148,10 @@ fn number(limits: Limits) -> Value {
         Limits::Within(low, high) => {
             json!({ "type": "number", "minimum": low, "maximum": high })
         }
+        Limits::Whole(low, high) => {
+            json!({ "type": "integer", "minimum": low, "maximum": high })
+        }
     }
-}
-
-fn integer(min: i64, max: i64) -> Value {
-    json!({ "type": "integer", "minimum": min, "maximum": max })
 }
 
 fn list(items: Value, length: usize) -> Value {
@@ -182,7 +176,7 @@ mod tests {
             assert_eq!(device["additionalProperties"], false);
             assert_eq!(device["properties"]["kind"]["const"], entry.kind);
             let keys = device["properties"].as_object().map(Map::len);
-            assert_eq!(keys, Some(1 + entry.keys.len() + PLACEMENT_KEYS.len()), "a name twice");
+            assert_eq!(keys, Some(1 + entry.keys.len() + Placement::KEYS.len()), "a name twice");
         }
     }
 
@@ -193,6 +187,9 @@ mod tests {
         let view = &camera["field_of_view"];
         assert_eq!((&view["exclusiveMinimum"], &view["default"]), (&json!(0.0), &json!(40.0)));
         assert!(view["description"].as_str().is_some_and(|d| d.ends_with("Unit: degrees.")));
+        assert_eq!(view["x-unit"], "degrees");
+        assert_eq!(schema["$defs"]["square-cloak"]["properties"]["side"]["x-unit"], "cm");
+        assert!(camera["samples"].get("x-unit").is_none());
         assert_eq!(camera["position"]["default"], json!([-100.0, 0.0, 0.0]));
         assert_eq!(camera["resolution"]["items"]["maximum"], 65_536);
         assert_eq!(camera["projection"]["enum"], json!(["perspective", "orthographic"]));

@@ -1,7 +1,7 @@
 //! Bodies against Snell and Fresnel written plainly, surface by surface.
 
-use super::rays::{bench, launch};
 use super::{LIMITS, body, launches};
+use crate::rays::{assembly, launch};
 use cloakroom::trace::{Launch, Leaf, Tracer};
 use glam::DVec3;
 
@@ -94,15 +94,15 @@ fn sphere_hits(ray: &Ray, radius: f64) -> Option<[f64; 2]> {
 #[test]
 fn balls_refract_by_snells_law() {
     for (e, m) in [(2.25, 1.0), (1.0, 3.0), (0.7, 1.1), (-1.69, -1.0), (-1.0, -1.0), (-2.0, -3.0)] {
-        let bench = bench(&body(&format!(
+        let assembly = assembly(&body(&format!(
             "shape = \"sphere\"\nradius = 6\npermittivity = {e}\npermeability = {m}"
         )));
-        let mut tracer = Tracer::new(&bench, LIMITS);
+        let mut tracer = Tracer::new(&assembly, LIMITS);
         let (medium, mut through) = (glass(e, m), 0);
         for launch in launches(500, 10.0) {
             let mut ray = Ray::new(&launch);
             let (leaves, outcome) = tracer.trace(&launch);
-            assert_eq!(outcome.rarities.lost, 0);
+            assert_eq!(outcome.stats.lost, 0);
             let Some([near, _]) = sphere_hits(&ray, 6.0) else {
                 assert!(leaves.len() == 1 && !leaves[0].met_device);
                 continue;
@@ -124,8 +124,9 @@ fn balls_refract_by_snells_law() {
 #[test]
 fn slabs_shift_rays_to_the_side() {
     for (e, m) in [(2.25, 1.0), (3.0, 2.0), (-1.69, -1.0)] {
-        let bench = bench(&body(&format!("thickness = 4\npermittivity = {e}\npermeability = {m}")));
-        let mut tracer = Tracer::new(&bench, LIMITS);
+        let assembly =
+            assembly(&body(&format!("thickness = 4\npermittivity = {e}\npermeability = {m}")));
+        let mut tracer = Tracer::new(&assembly, LIMITS);
         let index = glass(e, m).index;
         for step in 0..80 {
             let angle = f64::from(step).to_radians();
@@ -154,8 +155,8 @@ fn slabs_shift_rays_to_the_side() {
 /// any phase on the way and without reflection; light takes as long as it would without it.
 #[test]
 fn a_matched_negative_slab_is_a_perfect_lens() {
-    let bench = bench(&body("thickness = 6\npermittivity = -1\npermeability = -1"));
-    let mut tracer = Tracer::new(&bench, LIMITS);
+    let assembly = assembly(&body("thickness = 6\npermittivity = -1\npermeability = -1"));
+    let mut tracer = Tracer::new(&assembly, LIMITS);
     let source = DVec3::new(-3.0 - 2.5, 1.0, 2.0);
     let image = DVec3::new(3.0 + 3.5, 1.0, 2.0);
     for step in 0..200 {
@@ -178,7 +179,7 @@ fn a_matched_negative_slab_is_a_perfect_lens() {
 fn boxes_and_cylinders_refract_by_snells_law() {
     let (medium, half) = (glass(2.0, 1.2), DVec3::new(4.0, 3.0, 5.0));
     let bench_of = |keys: &str| {
-        bench(&body(&format!("{keys}\npermittivity = 2.0\npermeability = 1.2\nrotation = 0\n")))
+        assembly(&body(&format!("{keys}\npermittivity = 2.0\npermeability = 1.2\nrotation = 0\n")))
     };
     let boxed = bench_of("shape = \"box\"\nsize = [8, 6, 10]");
     let round = bench_of("shape = \"cylinder\"\nradius = 4\nlength = 10");
@@ -225,7 +226,7 @@ fn boxes_and_cylinders_refract_by_snells_law() {
         for launch in launches(800, 9.0) {
             let mut ray = Ray::new(&launch);
             let (leaves, outcome) = tracer.trace(&launch);
-            assert_eq!(outcome.rarities.lost, 0);
+            assert_eq!(outcome.stats.lost, 0);
             let Some((t, outward)) = hit(&ray, false) else {
                 assert!(!leaves[0].met_device, "{launch:?}");
                 continue;
@@ -258,15 +259,14 @@ fn the_larger_priority_is_there_where_bodies_overlap() {
         };
         // The order in the scene does not matter.
         let text: String = shells.iter().enumerate().map(ball).rev().collect();
-        let bench = bench(&text);
-        let mut tracer = Tracer::new(&bench, LIMITS);
+        let assembly = assembly(&text);
+        let mut tracer = Tracer::new(&assembly, LIMITS);
         let media = [AIR, glass(2.25, 1.0), glass(sign * 1.69, sign), glass(1.2, 1.0)];
         let mut through = 0;
         for launch in launches(400, 5.0) {
             let mut ray = Ray::new(&launch);
             let (leaves, outcome) = tracer.trace(&launch);
-            let sum: f64 = leaves.iter().map(|leaf| leaf.power[0]).sum();
-            assert!((sum + outcome.pruned[0] - 1.0).abs() < 1e-12);
+            outcome.assert_balanced(leaves, 1e-12, &launch);
             let mut follow = || -> Option<()> {
                 for level in 0..3 {
                     let [near, _] = sphere_hits(&ray, shells[level].0)?;

@@ -2,8 +2,6 @@
 //! conformal map, with Snell's law at the border and the law of reflection at the metal: nothing of it knows
 //! virtual space, the program's interfaces or its surfaces.
 
-#![allow(dead_code, reason = "each test uses a part of it")]
-
 use errorfunctions::ComplexErrorFunctions;
 use glam::DVec3;
 use num_complex::Complex64;

@@ -1,16 +1,15 @@
 //! Pictures of scenes, for all tests.
-#![allow(dead_code, reason = "each test uses a part of it")]
 
 use cloakroom::output::{Picture, RgbImage, to_srgb};
-use cloakroom::render::{Studio, Supervision, Wanted, render};
+use cloakroom::render::{ChannelSet, PreparedScene, Supervision, render};
 use cloakroom::scene_file;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// The picture of a scene whose files are in a folder, with the channels that are wanted.
-pub fn rendered(folder: &Path, scene: &str, wanted: Wanted) -> Picture {
+pub fn rendered(folder: &Path, scene: &str, wanted: ChannelSet) -> Picture {
     let loaded = scene_file::parse(scene, "test", folder, &[]).unwrap();
-    let studio = Studio::new(&loaded.scene).unwrap();
+    let studio = PreparedScene::new(&loaded.scene).unwrap();
     let stop = AtomicBool::new(false);
     let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
     render(&studio, wanted, &supervision).unwrap().picture
@@ -18,7 +17,7 @@ pub fn rendered(folder: &Path, scene: &str, wanted: Wanted) -> Picture {
 
 /// The picture of a scene whose files are in a folder, with all channels.
 pub fn picture_in(folder: &Path, scene: &str) -> Picture {
-    rendered(folder, scene, Wanted::Everything)
+    rendered(folder, scene, ChannelSet::Everything)
 }
 
 /// The picture of a scene without files, with all channels.

@@ -1,13 +1,13 @@
 //! Impedance-matched cloaks give every ray back as it came, whatever its direction and polarization.
 
-use super::{Numbers, bench, launch, leaf, random_launch};
+use super::{Numbers, assembly, launch, leaf, random_launch};
 use glam::DVec3;
 
 /// The leaf goes on where the ray would have gone, with its path and fields.
 fn check_untouched(kind: &str, origin: DVec3, direction: DVec3) {
-    let bench = bench(kind);
+    let assembly = assembly(kind);
     let launch = launch(origin, direction);
-    let leaf = leaf(&bench, &launch);
+    let leaf = leaf(&assembly, &launch);
     let along = (leaf.position - origin).dot(launch.direction);
     let beside = leaf.position - origin - launch.direction * along;
     assert!(
@@ -27,7 +27,7 @@ fn every_ray_comes_out_as_it_went_in() {
     for kind in ["'cylinder-cloak'", "'sphere-cloak'", "'sphere-cloak'\ninner = 9.5"] {
         for _ in 0..300 {
             let mut ray = random_launch(&mut numbers).0;
-            while bench(kind).holder(ray.origin).is_some() {
+            while assembly(kind).device_containing(ray.origin).is_some() {
                 // Along the cylinder.
                 ray = random_launch(&mut numbers).0;
             }
@@ -44,26 +44,26 @@ fn every_ray_comes_out_as_it_went_in() {
 #[test]
 fn the_metal_alone_reflects_and_the_mirror_is_nothing() {
     for kind in ["'cylinder-cloak'", "'sphere-cloak'"] {
-        let bare = bench(&format!("{kind}\nshow = 'bare'"));
+        let bare = assembly(&format!("{kind}\nshow = 'bare'"));
         let hit = leaf(&bare, &launch(DVec3::new(-50.0, 2.0, 0.0), DVec3::X));
         // On a circle of radius 4 at height 2 the normal stands at 30 degrees to the ray.
         assert!((hit.position - DVec3::new(-12f64.sqrt(), 2.0, 0.0)).length() < 1e-12);
         let expected = DVec3::new(-0.5, 0.75f64.sqrt(), 0.0);
         assert!(hit.direction.distance(expected) < 1e-13, "{}", hit.direction);
         assert!(!leaf(&bare, &launch(DVec3::new(-50.0, 4.1, 0.0), DVec3::X)).met_device);
-        let mirror = bench(&format!("{kind}\nshow = 'mirror'"));
+        let mirror = assembly(&format!("{kind}\nshow = 'mirror'"));
         assert!(!leaf(&mirror, &launch(DVec3::new(-50.0, 2.0, 0.0), DVec3::X)).met_device);
     }
 }
 
 #[test]
 fn short_cylinders_have_ends() {
-    let bare = bench("'cylinder-cloak'\nshow = 'bare'\nlength = 6");
+    let bare = assembly("'cylinder-cloak'\nshow = 'bare'\nlength = 6");
     let down = |x: f64| launch(DVec3::new(x, 1.0, 20.0), DVec3::NEG_Z);
     let hit = leaf(&bare, &down(2.0));
     assert_eq!((hit.position.z, hit.direction), (3.0, DVec3::Z));
     assert!(!leaf(&bare, &down(4.1)).met_device);
-    let cloak = bench("'cylinder-cloak'\nlength = 6");
+    let cloak = assembly("'cylinder-cloak'\nlength = 6");
     let core = leaf(&cloak, &down(2.0));
     assert_eq!((core.position.z, core.direction), (3.0, DVec3::Z));
     // Reflected inwards above the end it does not meet the side from within.

@@ -1,6 +1,6 @@
 //! Balls of graded index, and the invisible spheres.
 
-use super::{Numbers, bench, launch, leaf, leaves, random_launch};
+use super::{Numbers, assembly, launch, leaf, leaves, random_launch};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -16,11 +16,11 @@ fn chord(origin: DVec3, direction: DVec3) -> (DVec3, DVec3) {
 
 #[test]
 fn the_invisible_sphere_delays_every_ray_by_its_circumference() {
-    let bench = bench("'invisible-sphere'");
+    let assembly = assembly("'invisible-sphere'");
     let mut numbers = Numbers(2);
     for _ in 0..500 {
         let (ray, _) = random_launch(&mut numbers);
-        let out = leaf(&bench, &ray);
+        let out = leaf(&assembly, &ray);
         let end = chord(ray.origin, ray.direction).1;
         assert!(out.position.distance(end) < 1e-9 * RADIUS, "{ray:?}");
         assert!(out.direction.distance(ray.direction) < 1e-9);
@@ -35,8 +35,8 @@ fn the_invisible_sphere_delays_every_ray_by_its_circumference() {
 
 #[test]
 fn eatons_lens_returns_rays_and_the_bender_turns_them_by_its_angle() {
-    let (eaton, right) = (bench("'eaton-lens'"), bench("'bending-sphere'"));
-    let other = bench("'bending-sphere'\nangle = 37.5");
+    let (eaton, right) = (assembly("'eaton-lens'"), assembly("'bending-sphere'"));
+    let other = assembly("'bending-sphere'\nangle = 37.5");
     let mut numbers = Numbers(3);
     for _ in 0..500 {
         let (ray, impact) = random_launch(&mut numbers);
@@ -46,8 +46,8 @@ fn eatons_lens_returns_rays_and_the_bender_turns_them_by_its_angle() {
         let beside = back.position - ray.direction * back.position.dot(ray.direction);
         let before = ray.origin - ray.direction * ray.origin.dot(ray.direction);
         assert!((beside + before).length() < 1e-9 * RADIUS);
-        for (bench, angle) in [(&right, 90.0f64), (&other, 37.5)] {
-            let out = leaf(bench, &ray);
+        for (assembly, angle) in [(&right, 90.0f64), (&other, 37.5)] {
+            let out = leaf(assembly, &ray);
             assert!((out.direction.dot(ray.direction) - angle.to_radians().cos()).abs() < 1e-12);
             // The impact is kept, and the ray has turned towards the centre in its plane.
             let (torque, after) =
@@ -65,7 +65,7 @@ fn eatons_lens_returns_rays_and_the_bender_turns_them_by_its_angle() {
 
 #[test]
 fn luneburgs_lens_focuses_on_the_far_rim() {
-    let bench = bench("'luneburg-lens'");
+    let assembly = assembly("'luneburg-lens'");
     let mut numbers = Numbers(4);
     for _ in 0..30 {
         let direction = numbers.direction();
@@ -74,7 +74,7 @@ fn luneburgs_lens_focuses_on_the_far_rim() {
         for _ in 0..10 {
             let (radius, angle) = (9.9 * numbers.next().sqrt(), numbers.between(0.0, 2.0 * PI));
             let beside = (across * angle.cos() + up * angle.sin()) * radius;
-            let out = leaf(&bench, &launch(beside - direction * 40.0, direction));
+            let out = leaf(&assembly, &launch(beside - direction * 40.0, direction));
             assert!(out.position.distance(direction * RADIUS) < 1e-9 * RADIUS);
             // All at once, for they start on a common wavefront.
             let first = *arrival.get_or_insert(out.optical_path);
@@ -87,12 +87,12 @@ fn luneburgs_lens_focuses_on_the_far_rim() {
 
 #[test]
 fn the_fisheye_images_to_the_antipode() {
-    let bench = bench("'fisheye-lens'");
+    let assembly = assembly("'fisheye-lens'");
     let mut numbers = Numbers(5);
     for _ in 0..500 {
         let (ray, _) = random_launch(&mut numbers);
         let entry = chord(ray.origin, ray.direction).0;
-        let out = leaf(&bench, &ray);
+        let out = leaf(&assembly, &ray);
         assert!(out.position.distance(-entry) < 1e-9 * RADIUS);
         let inside = out.optical_path - (entry - ray.origin).length();
         assert!((inside - PI * RADIUS).abs() < 1e-9 * RADIUS);
@@ -101,7 +101,7 @@ fn the_fisheye_images_to_the_antipode() {
 
 #[test]
 fn the_regularized_sphere_hides_from_its_extraordinary_wave() {
-    let bench = bench("'invisible-sphere'\nmaterial = 'regularized'");
+    let assembly = assembly("'invisible-sphere'\nmaterial = 'regularized'");
     let index = PI + 1.0;
     let mut numbers = Numbers(6);
     for _ in 0..300 {
@@ -110,7 +110,7 @@ fn the_regularized_sphere_hides_from_its_extraordinary_wave() {
         let normal = ray.origin.cross(ray.direction).normalize();
         // First in the plane of the ray, the extraordinary wave, then across it.
         ray.electric = [normal.cross(ray.direction).into(), normal.into()];
-        let all = leaves(&bench, &ray);
+        let all = leaves(&assembly, &ray);
         let to_entry = (entry - ray.origin).length();
         let straight = |i: usize| {
             all.iter()
@@ -138,7 +138,7 @@ fn the_regularized_sphere_hides_from_its_extraordinary_wave() {
         assert!((once.optical_path - path).abs() < 1e-8);
     }
     // 37.3 % at normal incidence, where both waves run together.
-    let all = leaves(&bench, &launch(DVec3::new(-50.0, 0.0, 0.0), DVec3::X));
+    let all = leaves(&assembly, &launch(DVec3::new(-50.0, 0.0, 0.0), DVec3::X));
     let reflected = all.iter().find(|leaf| (leaf.optical_path - 40.0).abs() < 1e-9).unwrap();
     let reflectance = (PI / (PI + 2.0)).powi(2);
     for power in reflected.power {

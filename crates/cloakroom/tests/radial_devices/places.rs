@@ -1,7 +1,7 @@
 //! Where balls and round cylinders may stand, and what they refuse.
 
 use super::try_bench;
-use cloakroom::render::StudioError;
+use cloakroom::render::PreparedSceneError;
 use glam::DVec3;
 
 const ROUND: [&str; 6] = [
@@ -16,13 +16,13 @@ const ROUND: [&str; 6] = [
 #[test]
 fn points_inside_are_inside_and_devices_do_not_overlap() {
     for kind in ROUND {
-        let bench = try_bench(kind).unwrap();
-        assert_eq!(bench.holder(DVec3::new(0.0, 9.99, 0.0)), Some(0), "{kind}");
-        assert_eq!(bench.holder(DVec3::new(7.1, 7.1, 0.0)), None, "{kind}");
+        let assembly = try_bench(kind).unwrap();
+        assert_eq!(assembly.device_containing(DVec3::new(0.0, 9.99, 0.0)), Some(0), "{kind}");
+        assert_eq!(assembly.device_containing(DVec3::new(7.1, 7.1, 0.0)), None, "{kind}");
         let core = try_bench(&format!("{kind}\nshow = 'bare'"));
         if let Ok(core) = core {
-            assert_eq!(core.holder(DVec3::new(3.9, 0.0, 0.0)), Some(0), "{kind}");
-            assert_eq!(core.holder(DVec3::new(4.1, 0.0, 0.0)), None, "{kind}");
+            assert_eq!(core.device_containing(DVec3::new(3.9, 0.0, 0.0)), Some(0), "{kind}");
+            assert_eq!(core.device_containing(DVec3::new(4.1, 0.0, 0.0)), None, "{kind}");
         }
         for other in ROUND {
             let beside = |x: f64| {
@@ -30,7 +30,7 @@ fn points_inside_are_inside_and_devices_do_not_overlap() {
             };
             assert!(beside(20.0).is_ok(), "{kind} {other}");
             assert!(
-                matches!(beside(19.99), Err(StudioError::Overlap { first: 0, second: 1 })),
+                matches!(beside(19.99), Err(PreparedSceneError::Overlap { first: 0, second: 1 })),
                 "{kind} {other}"
             );
         }
@@ -40,7 +40,9 @@ fn points_inside_are_inside_and_devices_do_not_overlap() {
 #[test]
 fn what_makes_no_sense_is_refused() {
     let refused = |device: &str| match try_bench(device) {
-        Err(StudioError::Device { error, .. }) => (error.key.unwrap_or_default(), error.message),
+        Err(PreparedSceneError::Device { error, .. }) => {
+            (error.key.unwrap_or_default(), error.message)
+        }
         other => panic!("{device}: {other:?}"),
     };
     for kind in &ROUND[2..] {

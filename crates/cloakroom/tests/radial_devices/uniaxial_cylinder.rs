@@ -1,7 +1,7 @@
 //! Cylindrical cloaks of uniaxial dielectric: exact in the plane for one polarization, and how they fail
 //! off the plane.
 
-use super::{bench, launch, leaves};
+use super::{assembly, launch, leaves};
 use cloakroom::trace::Leaf;
 use glam::DVec3;
 
@@ -18,11 +18,11 @@ fn strongest(leaves: &[Leaf<2>]) -> &Leaf<2> {
 #[test]
 fn vertical_light_in_the_plane_is_cloaked_but_for_reflections() {
     for material in ["radial", "azimuthal"] {
-        let bench = bench(&cloak(material));
+        let assembly = assembly(&cloak(material));
         for step in 0..400 {
             let y = -1.99 + 0.009_95 * f64::from(step);
             let ray = launch(DVec3::new(-10.0, y, 0.0), DVec3::X);
-            let all = leaves(&bench, &ray);
+            let all = leaves(&assembly, &ray);
             let through = strongest(&all);
             assert!(through.direction.distance(DVec3::X) < 1e-9, "{material} {y}");
             assert!((through.position.y - y).abs() < 1e-9, "{material} {y}");
@@ -32,7 +32,7 @@ fn vertical_light_in_the_plane_is_cloaked_but_for_reflections() {
             assert!(y.abs() > 1.9 || through.power[0] < 1e-9, "{material} {y}");
         }
         // At the axis the border reflects (a/(2b - a))², one ninth, of vertical light.
-        let all = leaves(&bench, &launch(DVec3::new(-10.0, 0.0, 0.0), DVec3::X));
+        let all = leaves(&assembly, &launch(DVec3::new(-10.0, 0.0, 0.0), DVec3::X));
         let back = all.iter().filter(|leaf| (leaf.optical_path - 8.0).abs() < 1e-9);
         let power: f64 = back.clone().map(|leaf| leaf.power[1]).sum();
         assert!((power - 1.0 / 9.0).abs() < 1e-9, "{material} {power}");
@@ -48,7 +48,7 @@ fn vertical_light_in_the_plane_is_cloaked_but_for_reflections() {
 fn failure(material: &str) -> (f64, f64, f64) {
     let (sin, cos) = 10f64.to_radians().sin_cos();
     let ray = launch(DVec3::new(-10.0, 0.3, 0.0), DVec3::new(cos, 0.0, sin));
-    let all = leaves(&bench(&cloak(material)), &ray);
+    let all = leaves(&assembly(&cloak(material)), &ray);
     let leaf = strongest(&all);
     let x = (4.0f64 - 0.09).sqrt();
     let off = leaf.position - DVec3::new(x, 0.3, ray.direction.z / ray.direction.x * (x + 10.0));
@@ -75,7 +75,7 @@ fn horizontal_light_at_the_axis_meets_the_metal_or_turns_back() {
         // Twice the integral of 2 (r - 1)/r from 1 to 2.
         ("azimuthal", 8.0 + 4.0 * (1.0 - 2f64.ln())),
     ] {
-        let all = leaves(&bench(&cloak(material)), &central);
+        let all = leaves(&assembly(&cloak(material)), &central);
         let back = all
             .iter()
             .filter(|leaf| leaf.direction.distance(DVec3::NEG_X) < 1e-9)

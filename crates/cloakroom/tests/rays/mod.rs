@@ -1,22 +1,22 @@
 //! Benches from scene text and rays to send through them, for all tests.
-#![allow(dead_code, reason = "each test uses a part of it")]
 
-use cloakroom::render::StudioError;
+use cloakroom::assembly::Assembly;
+use cloakroom::render::PreparedSceneError;
 use cloakroom::scene_file;
-use cloakroom::trace::{Bench, Launch, Leaf};
+use cloakroom::trace::{Launch, Leaf};
 use glam::DVec3;
 use optics::wave::transverse_basis;
 use std::f64::consts::TAU;
 use std::path::Path;
 
 /// The devices of a scene, or why there are none.
-pub fn try_bench(scene: &str) -> Result<Bench, StudioError> {
+pub fn try_bench(scene: &str) -> Result<Assembly, PreparedSceneError> {
     let loaded = scene_file::parse(scene, "test", Path::new(""), &[]).unwrap();
-    cloakroom::render::bench(&loaded.scene)
+    cloakroom::render::assembly(&loaded.scene)
 }
 
 /// The devices of a scene.
-pub fn bench(scene: &str) -> Bench {
+pub fn assembly(scene: &str) -> Assembly {
     try_bench(scene).unwrap_or_else(|error| panic!("{scene}\n{error}"))
 }
 
@@ -26,7 +26,7 @@ pub fn refusal(scene: &str) -> String {
         Ok(loaded) => loaded,
         Err(error) => return error.to_string(),
     };
-    let error = cloakroom::render::bench(&loaded.scene).unwrap_err();
+    let error = cloakroom::render::assembly(&loaded.scene).unwrap_err();
     loaded.locations.error_at(&error.key(), error.to_string()).to_string()
 }
 

@@ -1,5 +1,6 @@
 //! Holes of bodies, in which other bodies may be.
 
+use super::convex::Convex;
 use super::{Extent, FloorCurve, Outline, Pose, Solid};
 use glam::{DVec2, DVec3};
 
@@ -14,7 +15,7 @@ pub enum Hole {
         curve: FloorCurve,
         /// Where that frame is.
         pose: Pose,
-        /// From where to where the body reaches along z.
+        /// From where to where the body reaches along z of that frame.
         extent: Extent,
     },
 }
@@ -35,9 +36,7 @@ impl Hole {
         match self {
             Self::Round(solid) => Self::Round(solid.placed(place)),
             Self::Lens { curve, pose, extent } => {
-                let z = place.origin().z;
-                let extent = Extent { min: extent.min + z, max: extent.max + z };
-                Self::Lens { curve: curve.clone(), pose: place.after(pose), extent }
+                Self::Lens { curve: curve.clone(), pose: place.after(pose), extent: *extent }
             }
         }
     }
@@ -48,30 +47,34 @@ impl Hole {
         match (self, body) {
             (_, Solid::Nothing) => true,
             (_, Solid::Hollow { whole, .. }) => self.encloses(whole, slack),
+            (Self::Round(Solid::Tilted { solid, pose }), _) => {
+                Self::Round(solid.as_ref().clone()).encloses(&body.placed(&pose.inverse()), slack)
+            }
             (Self::Round(Solid::Ball { centre, radius }), _) => {
                 farthest(body, *centre) <= radius + slack
             }
             (Self::Round(Solid::Cylinder { centre, radius, extent }), _) => {
+                let beside = |at: DVec2| at.distance(*centre);
                 let reach = match section(body, *extent) {
                     Section::Outline(outline) => {
-                        let corners = outline.corners().iter();
-                        corners.map(|corner| corner.distance(*centre)).fold(0.0, f64::max)
+                        outline.corners().iter().map(|corner| beside(*corner)).fold(0.0, f64::max)
                     }
-                    Section::Disc(middle, size) => middle.distance(*centre) + size,
+                    Section::Disc(middle, size) => beside(middle) + size,
+                    Section::Tilted(body) => body.greatest(*extent, |at| beside(at.truncate())),
                 };
                 reach <= radius + slack
             }
             (Self::Round(_), _) => false,
             (Self::Lens { curve, pose, extent }, _) => {
-                let local = |point: DVec2| pose.to_local(point.extend(0.0)).truncate();
-                match section(body, *extent) {
-                    Section::Outline(outline) => {
-                        let corners = outline.corners().iter().map(|corner| local(*corner));
-                        curve.encloses(&Outline::new(corners.collect()))
-                    }
+                let body = body.placed(&pose.inverse());
+                match section(&body, *extent) {
+                    Section::Outline(outline) => curve.encloses(outline),
                     Section::Disc(middle, size) => {
-                        let middle = local(middle);
                         curve.contains(middle) && curve.depth(middle) >= size - slack
+                    }
+                    Section::Tilted(body) => {
+                        let points = body.extremes(*extent).into_iter();
+                        curve.encloses(&Outline::hull(points.map(DVec3::truncate).collect()))
                     }
                 }
             }
@@ -84,6 +87,8 @@ enum Section<'s> {
     Outline(&'s Outline),
     /// Middle and radius.
     Disc(DVec2, f64),
+    /// None is the widest.
+    Tilted(Convex<'s>),
 }
 
 /// The widest cross-section of a body between two z.
@@ -97,11 +102,14 @@ fn section(body: &Solid, extent: Extent) -> Section<'_> {
         }
         Solid::Hollow { whole, .. } => section(whole, extent),
         Solid::Nothing => Section::Disc(DVec2::ZERO, 0.0),
+        Solid::Tilted { .. } => {
+            Convex::of(body).map_or(Section::Disc(DVec2::ZERO, 0.0), Section::Tilted)
+        }
     }
 }
 
 /// How far the farthest point of a body is from a point.
-fn farthest(body: &Solid, point: DVec3) -> f64 {
+pub(super) fn farthest(body: &Solid, point: DVec3) -> f64 {
     let along = |extent: &Extent| (extent.max - point.z).max(point.z - extent.min);
     match body {
         Solid::Nothing => 0.0,
@@ -115,5 +123,6 @@ fn farthest(body: &Solid, point: DVec3) -> f64 {
         }
         Solid::Ball { centre, radius } => centre.distance(point) + radius,
         Solid::Hollow { whole, .. } => farthest(whole, point),
+        Solid::Tilted { solid, pose } => farthest(solid, pose.to_local(point)),
     }
 }

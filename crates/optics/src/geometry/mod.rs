@@ -6,6 +6,7 @@
 //! something takes up.
 
 mod cap;
+mod convex;
 mod cylinder;
 mod floor_curve;
 mod hollow;
@@ -18,6 +19,7 @@ mod sphere;
 mod wall;
 
 pub use cap::Cap;
+pub use convex::REACH;
 pub use cylinder::{Cylinder, CylinderPart, Disc};
 pub use floor_curve::{CurvedSide, FloorCurve, FloorHit, MetalBack};
 pub use hollow::Hole;
@@ -25,7 +27,7 @@ pub use outline::Outline;
 pub use plane::Plane;
 pub use polygon::{ConvexPart, Polygon, PolygonError, SAME_POINT};
 pub use pose::Pose;
-pub use solid::Solid;
+pub use solid::{Solid, TOUCHING};
 pub use sphere::Sphere;
 pub use wall::Wall;
 
@@ -66,9 +68,19 @@ impl Extent {
         (self.min - z).max(z - self.max).max(0.0)
     }
 
-    /// Whether two extents share more than a point.
+    /// Whether two extents share more than `slack` (cm).
     #[must_use]
-    pub fn overlaps(self, other: Self) -> bool {
-        self.min < other.max && other.min < self.max
+    pub fn overlaps(self, other: Self, slack: f64) -> bool {
+        self.min < other.max - slack && other.min < self.max - slack
+    }
+
+    /// The extent at a place whose axis is along z, one way or the other.
+    fn placed(self, pose: &Pose) -> Self {
+        let z = pose.origin().z;
+        if pose.axis().z < 0.0 {
+            Self { min: z - self.max, max: z - self.min }
+        } else {
+            Self { min: self.min + z, max: self.max + z }
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Convex outlines in the xy-plane.
 
 use glam::DVec2;
+use std::f64::consts::TAU;
 
 /// A convex polygon, its corners in counterclockwise order; two corners make a line.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,40 @@ impl Outline {
     pub fn rectangle(half_width: f64, half_height: f64) -> Self {
         let (w, h) = (half_width, half_height);
         Self::new([(-w, -h), (w, -h), (w, h), (-w, h)].map(DVec2::from).to_vec())
+    }
+
+    /// A circle, with corners on it.
+    #[must_use]
+    pub fn circle(centre: DVec2, radius: f64) -> Self {
+        let corner = |k: u32| centre + radius * DVec2::from_angle(TAU * f64::from(k) / 96.0);
+        Self::new((0..96).map(corner).collect())
+    }
+
+    /// The smallest convex polygon around points.
+    #[must_use]
+    pub fn hull(mut points: Vec<DVec2>) -> Self {
+        // Andrew's monotone chain: the lower side from left to right, then the upper one back.
+        points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        points.dedup();
+        if points.len() < 3 {
+            return Self::new(points);
+        }
+        let chain = |points: &mut dyn Iterator<Item = DVec2>| {
+            let mut chain: Vec<DVec2> = Vec::new();
+            for point in points {
+                while let [.., a, b] = chain[..]
+                    && (b - a).perp_dot(point - b) <= 0.0
+                {
+                    chain.pop();
+                }
+                chain.push(point);
+            }
+            chain.pop();
+            chain
+        };
+        let mut corners = chain(&mut points.iter().copied());
+        corners.extend(chain(&mut points.iter().rev().copied()));
+        Self::new(corners)
     }
 
     /// The corners.
@@ -91,7 +126,8 @@ mod tests {
         assert!(!square.overlaps(&moved(DVec2::new(2.0, 0.5)), 1e-9));
         assert!(square.overlaps(&moved(DVec2::new(1.99, 0.5)), 1e-9));
         assert!(!square.overlaps(&moved(DVec2::new(0.0, -2.5)), 1e-9));
-        let strip = Outline::new(vec![DVec2::new(-3.0, 0.0), DVec2::new(3.0, 0.0)]);
+        let strip = Outline::hull(vec![DVec2::new(3.0, 0.0), DVec2::ZERO, DVec2::new(-3.0, 0.0)]);
+        assert_eq!(strip.corners, [DVec2::new(-3.0, 0.0), DVec2::new(3.0, 0.0)]);
         assert!(square.overlaps(&strip, 1e-9));
         assert!(!moved(DVec2::new(0.0, 1.5)).overlaps(&strip, 1e-9));
     }

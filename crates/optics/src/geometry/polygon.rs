@@ -3,8 +3,9 @@
 use super::Outline;
 use glam::DVec2;
 
-/// Points closer than this are one point, cm: coordinates are written with a few digits.
-pub const SAME_POINT: f64 = 1e-6;
+/// Points closer than this are one point, cm. Coordinates are written with a few digits: rounded to six decimals, a
+/// corner may be off by 0.71e-6, and as much again the side on which it lies.
+pub const SAME_POINT: f64 = 2e-6;
 
 /// A polygon that does not cross itself, its corners in counterclockwise order, none of them straight.
 #[derive(Clone, Debug, PartialEq)]

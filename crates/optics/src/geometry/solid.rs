@@ -1,7 +1,12 @@
 //! Convex bodies, whole or with a hole, and whether they are in each other's way.
 
+use super::convex::{Convex, REACH, SAME_AXIS};
+use super::hollow::farthest;
 use super::{Extent, Hole, Outline, Pose};
 use glam::{DVec2, DVec3};
+
+/// How deep two things may press into each other by rounding before they count as overlapping, cm.
+pub const TOUCHING: f64 = 1e-9;
 
 /// A convex body, or one with a hole.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +42,13 @@ pub enum Solid {
         whole: Box<Solid>,
         /// The hole.
         hole: Box<Hole>,
+    },
+    /// A prism or a cylinder whose axis is not along z.
+    Tilted {
+        /// The body in its own frame.
+        solid: Box<Solid>,
+        /// Where that frame is.
+        pose: Pose,
     },
 }
 
@@ -76,6 +88,7 @@ impl Solid {
             }
             Self::Ball { centre, radius } => point.distance_squared(*centre) < radius * radius,
             Self::Hollow { whole, hole } => whole.holds(point) && !hole.holds(point),
+            Self::Tilted { solid, pose } => solid.holds(pose.to_local(point)),
         }
     }
 
@@ -93,6 +106,7 @@ impl Solid {
             }
             Self::Ball { centre, radius } => point.distance_squared(*centre) <= radius * radius,
             Self::Hollow { whole, hole } => whole.contains(point) && !hole.holds(point),
+            Self::Tilted { solid, pose } => solid.contains(pose.to_local(point)),
         }
     }
 
@@ -117,31 +131,44 @@ impl Solid {
             }
             Self::Ball { centre, radius } => Some([*centre - *radius, *centre + *radius]),
             Self::Hollow { whole, .. } => whole.bounds(),
+            Self::Tilted { .. } => {
+                let convex = Convex::of(self)?;
+                let ends = |sign: f64| DVec3::AXES.map(|axis| sign * convex.support(sign * axis));
+                Some([ends(-1.0), ends(1.0)].map(DVec3::from_array))
+            }
         }
     }
 
     /// The body at its place in the world.
     #[must_use]
     pub fn placed(&self, pose: &Pose) -> Self {
-        let z = pose.origin().z;
-        let moved = |extent: &Extent| Extent { min: extent.min + z, max: extent.max + z };
+        let axis = pose.axis();
+        let aside = axis.truncate().abs().max_element();
         match self {
             Self::Nothing => Self::Nothing,
-            Self::Prism { outline, extent } => {
-                let corners = outline.corners().iter().map(|c| pose.point_to_world(*c)).collect();
-                Self::Prism { outline: Outline::new(corners), extent: moved(extent) }
-            }
-            Self::Cylinder { centre, radius, extent } => Self::Cylinder {
-                centre: pose.point_to_world(*centre),
-                radius: *radius,
-                extent: moved(extent),
-            },
             Self::Ball { centre, radius } => {
                 Self::Ball { centre: pose.to_world(*centre), radius: *radius }
             }
             Self::Hollow { whole, hole } => Self::Hollow {
                 whole: Box::new(whole.placed(pose)),
                 hole: Box::new(hole.placed(pose)),
+            },
+            Self::Tilted { solid, pose: own } => solid.placed(&pose.after(own)),
+            Self::Prism { .. } | Self::Cylinder { .. } if aside > SAME_AXIS => {
+                Self::Tilted { solid: Box::new(self.clone()), pose: *pose }
+            }
+            Self::Prism { outline, extent } => {
+                let mut corners: Vec<DVec2> =
+                    outline.corners().iter().map(|c| pose.point_to_world(*c)).collect();
+                if axis.z < 0.0 {
+                    corners.reverse();
+                }
+                Self::Prism { outline: Outline::new(corners), extent: extent.placed(pose) }
+            }
+            Self::Cylinder { centre, radius, extent } => Self::Cylinder {
+                centre: pose.point_to_world(*centre),
+                radius: *radius,
+                extent: extent.placed(pose),
             },
         }
     }
@@ -150,25 +177,37 @@ impl Solid {
     /// other by rounding.
     #[must_use]
     pub fn overlaps(&self, other: &Self, slack: f64) -> bool {
-        use Solid::{Ball, Cylinder, Hollow, Nothing, Prism};
+        use Solid::{Ball, Cylinder, Hollow, Nothing, Prism, Tilted};
         match (self, other) {
             (Nothing, _) | (_, Nothing) => false,
             (Hollow { whole, hole }, other) | (other, Hollow { whole, hole }) => {
                 whole.overlaps(other, slack) && !hole.encloses(other, slack)
             }
+            (Tilted { solid, pose }, other) | (other, Tilted { solid, pose }) => {
+                // Where both have the same axis it is as if they were upright.
+                let other = other.placed(&pose.inverse());
+                match (Convex::of(solid), Convex::of(&other)) {
+                    (Some(solid), Some(other)) if other.is_tilted() => {
+                        solid.overlaps(&other, slack)
+                    }
+                    _ => solid.overlaps(&other, slack),
+                }
+            }
             (Prism { outline, extent }, Prism { outline: second, extent: beyond }) => {
-                extent.overlaps(*beyond) && outline.overlaps(second, slack)
+                extent.overlaps(*beyond, slack) && outline.overlaps(second, slack)
             }
             (
                 Cylinder { centre, radius, extent },
                 Cylinder { centre: second, radius: size, extent: beyond },
-            ) => extent.overlaps(*beyond) && centre.distance(*second) < radius + size - slack,
+            ) => {
+                extent.overlaps(*beyond, slack) && centre.distance(*second) < radius + size - slack
+            }
             (Ball { centre, radius }, Ball { centre: second, radius: size }) => {
                 centre.distance(*second) < radius + size - slack
             }
             (Prism { outline, extent }, Cylinder { centre, radius, extent: beyond })
             | (Cylinder { centre, radius, extent: beyond }, Prism { outline, extent }) => {
-                extent.overlaps(*beyond) && outline.distance(*centre) < radius - slack
+                extent.overlaps(*beyond, slack) && outline.distance(*centre) < radius - slack
             }
             (Ball { centre, radius }, Prism { outline, extent })
             | (Prism { outline, extent }, Ball { centre, radius }) => {
@@ -179,6 +218,79 @@ impl Solid {
             | (Cylinder { centre: axis, radius: size, extent }, Ball { centre, radius }) => {
                 let beside = (centre.truncate().distance(*axis) - size).max(0.0);
                 beside.hypot(extent.distance(centre.z)) < radius - slack
+            }
+        }
+    }
+
+    /// Whether every point of this body is one of the other, a convex one, or no more than [`TOUCHING`] outside.
+    #[must_use]
+    pub fn is_within(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Nothing, _) => true,
+            (_, Self::Nothing | Self::Hollow { .. }) => false,
+            (Self::Hollow { whole, .. }, _) => whole.is_within(other),
+            (_, Self::Ball { centre, radius }) => farthest(self, *centre) <= radius + TOUCHING,
+            _ => Convex::of(other).is_some_and(|around| match (self, Convex::of(self)) {
+                (Self::Ball { centre, radius }, _) => around.holds(
+                    TOUCHING,
+                    |direction| direction.dot(*centre) + radius * direction.length(),
+                    |distance| distance(*centre) + radius,
+                ),
+                (_, Some(inner)) => around.holds(
+                    TOUCHING,
+                    |direction| inner.support(direction),
+                    |distance| inner.greatest(Extent::ENDLESS, distance),
+                ),
+                // An outline without corners.
+                _ => true,
+            }),
+        }
+    }
+
+    /// Whether two thin sheets lie on each other.
+    #[must_use]
+    pub fn coincides(&self, other: &Self, slack: f64) -> bool {
+        let (Some(sheet), Some(other)) = (self.sheet(), other.sheet()) else { return false };
+        let [a, _, b, _] = sheet;
+        let along = (sheet[1] - a).normalize_or_zero();
+        let up = (b - sheet[1]).normalize_or_zero();
+        let across = along.cross(up);
+        let in_plane = |corners: [DVec3; 4]| {
+            let corners = corners.map(|at| DVec2::new(along.dot(at - a), up.dot(at - a)));
+            Outline::hull(corners.to_vec())
+        };
+        other.iter().all(|at| across.dot(*at - a).abs() < slack)
+            && in_plane(sheet).overlaps(&in_plane(other), slack)
+    }
+
+    /// The corners of a sheet, around it; those of an endless one are far away.
+    fn sheet(&self) -> Option<[DVec3; 4]> {
+        match self {
+            Self::Prism { outline, extent } => {
+                let [a, b] = outline.corners() else { return None };
+                let [low, high] = [extent.min.max(-REACH), extent.max.min(REACH)];
+                Some([a.extend(low), b.extend(low), b.extend(high), a.extend(high)])
+            }
+            Self::Tilted { solid, pose } => {
+                solid.sheet().map(|corners| corners.map(|corner| pose.to_world(corner)))
+            }
+            _ => None,
+        }
+    }
+
+    /// The outline of what it hides of the xy-plane, seen along z; round ones with corners. What has no end is cut
+    /// at [`REACH`].
+    #[must_use]
+    pub fn shadow(&self) -> Outline {
+        match self {
+            Self::Nothing => Outline::new(Vec::new()),
+            Self::Prism { outline, .. } => outline.clone(),
+            Self::Cylinder { centre, radius, .. } => Outline::circle(*centre, *radius),
+            Self::Ball { centre, radius } => Outline::circle(centre.truncate(), *radius),
+            Self::Hollow { whole, .. } => whole.shadow(),
+            Self::Tilted { .. } => {
+                let points = Convex::of(self).map(|convex| convex.extremes(Extent::ENDLESS));
+                Outline::hull(points.iter().flatten().map(|at| at.truncate()).collect())
             }
         }
     }

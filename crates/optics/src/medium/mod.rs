@@ -12,6 +12,7 @@ mod error;
 mod modes;
 mod principal_axes;
 mod quadratic;
+mod ray_waves;
 mod tensor;
 mod wave_surface;
 
@@ -19,6 +20,7 @@ pub use error::MediumError;
 pub(crate) use modes::{BOTH_MODES, BothWays, LocalMode, Tangential, mutual_flux};
 pub use modes::{Heading, Mode, ModeKind};
 pub use principal_axes::principal_axes;
+pub use ray_waves::RayWave;
 use tensor::MAGNITUDES;
 pub use tensor::Tensor;
 pub(crate) use tensor::largest;
@@ -254,6 +256,12 @@ impl Medium {
     #[must_use]
     pub fn without_closed_form(self) -> Self {
         Self { class: Class::General, ..self }
+    }
+
+    /// Whether the medium is the same however it is turned.
+    #[must_use]
+    pub fn is_isotropic(&self) -> bool {
+        matches!(self.class, Class::Isotropic(_) | Class::AbsorbingIsotropic(..))
     }
 
     /// Whether the medium takes power from light.

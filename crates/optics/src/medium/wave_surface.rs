@@ -56,6 +56,11 @@ impl WaveSurface {
         Self { form, constant }
     }
 
+    /// A and c.
+    pub(super) fn parts(&self) -> (DMat3, f64) {
+        (self.form, self.constant)
+    }
+
     /// The unit vector of the Poynting vector of a wave with wave vector `p`.
     pub fn ray_direction(&self, wave_vector: DVec3) -> DVec3 {
         self.ray(wave_vector).normalize()

@@ -6,7 +6,9 @@ mod radial;
 pub mod reference;
 mod spline;
 
-pub use conformal_flow::{Boundary, ConformalFlow, FlowEnd, FlowError, Foothold, Half, Unevenness};
+pub use conformal_flow::{
+    Boundary, ConformalFlow, FlowEnd, FlowError, Half, IndexPerturbation, VirtualPoint,
+};
 pub use radial::{
     Border, CentralLens, OpticAxis, RadialEnd, RadialFlow, TransformedShell, TransmutedSphere,
     UniaxialCylinder,

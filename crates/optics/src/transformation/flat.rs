@@ -9,7 +9,7 @@ use crate::lanes::{ComplexLanes, Lanes};
 /// The map f(ζ) = ζ + i y0 of the upper half plane: a flat floor at the height y0.
 ///
 /// Virtual space is physical space, where an index that comes from no map can be followed: see
-/// [`Unevenness`](crate::propagation::Unevenness).
+/// [`IndexPerturbation`](crate::propagation::IndexPerturbation).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatMap {
     level: f64,

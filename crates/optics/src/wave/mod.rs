@@ -37,6 +37,7 @@
 pub const SPEED_OF_LIGHT: f64 = 29.979_245_8;
 
 mod complex_vector;
+mod direction;
 mod frame;
 mod linear_system;
 mod number;
@@ -44,6 +45,7 @@ mod polarization;
 mod stokes;
 
 pub use complex_vector::{ComplexVector, poynting};
+pub use direction::unit;
 pub(crate) use frame::Frame;
 pub(crate) use linear_system::solve;
 pub(crate) use number::{Number, cross, dot};

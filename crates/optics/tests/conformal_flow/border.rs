@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 use optics::geometry::Extent;
-use optics::propagation::{Boundary, ConformalFlow, FlowError, Foothold, Half};
+use optics::propagation::{Boundary, ConformalFlow, FlowError, Half, VirtualPoint};
 use optics::transformation::{GaussianMap, Truncation};
 
 use super::rays::{CUT, Dice, flow, legs};
@@ -14,7 +14,7 @@ fn ends_on_the_border_and_on_shell_with_a_rotation() {
     let mut dice = Dice(77);
     for _ in 0..2000 {
         for (start, p, end) in legs(&flow, dice.enter(&flow, short), 1e-6) {
-            let Foothold { position, index, virtual_position, .. } = end.at;
+            let VirtualPoint { position, index, virtual_position, .. } = end.at;
             let n = flow.index(end.at.half, position).expect("a point of the medium");
             assert!((end.wave_vector.length() - index).abs() < 2e-15 * index);
             assert!((n - index).abs() < 1e-12);
@@ -47,10 +47,11 @@ fn ends_on_the_border_and_on_shell_with_a_rotation() {
 #[test]
 fn starts_on_the_border_go_on_or_end_at_once() {
     let flow = flow(Extent::ENDLESS, 1.0);
-    let at =
-        |x, y| flow.foothold(Half::Upper, DVec3::new(x, y, 0.0)).expect("a point of the border");
+    let at = |x, y| {
+        flow.virtual_point(Half::Upper, DVec3::new(x, y, 0.0)).expect("a point of the border")
+    };
     let top = at(3.0, CUT.y_max);
-    let go = |start: &Foothold, direction: DVec3| {
+    let go = |start: &VirtualPoint, direction: DVec3| {
         flow.advance_from(start, start.index * direction.normalize(), 1e-6).expect("a ray")
     };
     assert_eq!(go(&top, DVec3::new(0.1, 1.0, 0.2)).optical_path, 0.0);
@@ -85,7 +86,7 @@ fn misses_no_crossing_of_straight_paths() {
             let x = dice.between(cut.x_min, cut.x_max);
             let low = flow.map().floor_height_at(x);
             let y = if k % 2 == 0 { cut.y_max } else { dice.between(low, cut.y_max) };
-            let start = flow.foothold(Half::Upper, DVec3::new(x, y, 0.0)).expect("inside");
+            let start = flow.virtual_point(Half::Upper, DVec3::new(x, y, 0.0)).expect("inside");
             let angle = dice.between(-1.0, 1.0).powi(3) - f64::from(k % 3) * std::f64::consts::PI;
             let p = start.index * DVec3::new(angle.cos(), angle.sin(), 0.0);
             let end = flow.advance_from(&start, p, 1e-6).expect("a ray");
@@ -124,7 +125,7 @@ fn refuses_what_it_cannot_follow() {
 fn leaves_a_border_it_nearly_touches() {
     let flow = flow(Extent::ENDLESS, 1.0);
     let start = flow
-        .foothold(Half::Upper, DVec3::new(-25.0, 2.776_314_201_482_194_5e1, 0.0))
+        .virtual_point(Half::Upper, DVec3::new(-25.0, 2.776_314_201_482_194_5e1, 0.0))
         .expect("a point of the border");
     let direction =
         DVec3::new(0.954_058_304_274_097_1, 0.031_478_774_922_878_43, -0.297_962_814_416_479_15);

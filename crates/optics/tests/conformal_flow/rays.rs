@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use optics::geometry::Extent;
-use optics::propagation::{Boundary, ConformalFlow, FlowEnd, Foothold, Half};
+use optics::propagation::{Boundary, ConformalFlow, FlowEnd, Half, VirtualPoint};
 use optics::transformation::{GaussianMap, Truncation};
 
 pub const W: f64 = 10.02;
@@ -30,7 +30,7 @@ impl Dice {
     }
 
     /// A start on one of the faces or on the floor, and a wave vector that goes inwards from there.
-    pub fn enter(&mut self, flow: &ConformalFlow, extent: Extent) -> (Foothold, DVec3) {
+    pub fn enter(&mut self, flow: &ConformalFlow, extent: Extent) -> (VirtualPoint, DVec3) {
         let half = if self.roll() < 0.5 { Half::Upper } else { Half::Lower };
         let side = if half == Half::Upper { 1.0 } else { -1.0 };
         let (mut x, mut z) = (self.between(CUT.x_min, CUT.x_max), self.between(-8.0, 8.0));
@@ -50,7 +50,8 @@ impl Dice {
             3 => low,
             _ => low + share * (CUT.y_max - low),
         };
-        let start = flow.foothold(half, DVec3::new(x, side * y, z)).expect("a point of the border");
+        let start =
+            flow.virtual_point(half, DVec3::new(x, side * y, z)).expect("a point of the border");
         let slope = flow.map().jet(start.virtual_position).f1;
         let inward = match face {
             0 => DVec3::X,
@@ -74,9 +75,9 @@ impl Dice {
 /// The legs of a ray from mirror to mirror until it leaves.
 pub fn legs(
     flow: &ConformalFlow,
-    (start, wave_vector): (Foothold, DVec3),
+    (start, wave_vector): (VirtualPoint, DVec3),
     tolerance: f64,
-) -> Vec<(Foothold, DVec3, FlowEnd)> {
+) -> Vec<(VirtualPoint, DVec3, FlowEnd)> {
     let (mut at, mut p, mut legs) = (start, wave_vector, Vec::new());
     for _ in 0..4 {
         let end = flow.advance_from(&at, p, tolerance).expect("the ray gets through");

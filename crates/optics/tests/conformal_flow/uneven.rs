@@ -4,7 +4,7 @@ use super::rays::{CUT, Dice, flow, legs, steepness};
 use super::uneven_reference;
 use glam::DVec2;
 use optics::geometry::Extent;
-use optics::propagation::{Boundary, GridSpline, Unevenness};
+use optics::propagation::{Boundary, GridSpline, IndexPerturbation};
 
 /// Samples of the square of a factor on a grid that reaches beyond the cut.
 fn grid(spacing: f64, square: impl Fn(DVec2) -> f64) -> GridSpline {
@@ -27,8 +27,8 @@ fn hills(p: DVec2) -> f64 {
 fn an_even_unevenness_is_none() {
     let short = Extent { min: -10.0, max: 10.0 };
     let even = flow(short, 1.1);
-    let uneven =
-        flow(short, 1.1).with_unevenness(Unevenness::new(grid(2.0, |_| 1.0)).expect("positive"));
+    let uneven = flow(short, 1.1)
+        .with_unevenness(IndexPerturbation::new(grid(2.0, |_| 1.0)).expect("positive"));
     let mut dice = Dice(77);
     for _ in 0..300 {
         let (start, p) = dice.enter(&even, short);
@@ -54,8 +54,8 @@ fn uneven_rays_obey_the_physical_ray_equation() {
     let (mut floors, mut compared, mut worst) = (0, 0, [0.0_f64; 4]);
     for k in 0..60 {
         let (extent, c) = [(Extent::ENDLESS, 1.0), (short, 1.0), (short, 1.1456)][k % 3];
-        let flow =
-            flow(extent, c).with_unevenness(Unevenness::new(spline.clone()).expect("positive"));
+        let flow = flow(extent, c)
+            .with_unevenness(IndexPerturbation::new(spline.clone()).expect("positive"));
         for (start, p, end) in legs(&flow, dice.enter(&flow, extent), 1e-8) {
             if steepness(&end) < 0.02 {
                 continue;
@@ -87,8 +87,8 @@ fn uneven_rays_obey_the_physical_ray_equation() {
 fn uneven_rays_can_be_reversed() {
     // Along z without an end, hills of the index can guide light for ever.
     let extent = Extent { min: -50.0, max: 50.0 };
-    let flow =
-        flow(extent, 1.0).with_unevenness(Unevenness::new(grid(0.5, hills)).expect("positive"));
+    let flow = flow(extent, 1.0)
+        .with_unevenness(IndexPerturbation::new(grid(0.5, hills)).expect("positive"));
     let mut dice = Dice(99);
     for _ in 0..200 {
         let (start, p) = dice.enter(&flow, extent);
@@ -106,5 +106,5 @@ fn uneven_rays_can_be_reversed() {
 
 #[test]
 fn a_factor_must_be_positive() {
-    assert!(Unevenness::new(grid(1.0, |p| p.x)).is_none());
+    assert!(IndexPerturbation::new(grid(1.0, |p| p.x)).is_none());
 }

@@ -10,10 +10,11 @@
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program for people")]
 
 use clap::Parser;
+use cloakroom::assembly::Assembly;
 use cloakroom::device::CATALOGUE;
 use cloakroom::render;
 use cloakroom::scene_file;
-use cloakroom::trace::{Bench, Limits, Tracer};
+use cloakroom::trace::{Limits, Tracer};
 use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::fs::{File, OpenOptions};
@@ -134,9 +135,9 @@ fn parcel(number: u64, watch: &Watch) -> Value {
     let ran = catch_unwind(AssertUnwindSafe(|| {
         let scene = trials::scene_of(&mut draws, entry).to_string();
         let loaded = scene_file::parse(&scene, "soak", Path::new("/nowhere"), &[]).ok()?;
-        let bench = render::bench(&loaded.scene).ok()?;
+        let assembly = render::assembly(&loaded.scene).ok()?;
         let tolerance = loaded.scene.trace.tolerance;
-        Some(trace(&bench, Limits { min_power: LEAST_POWER, tolerance }, &mut draws, watch))
+        Some(trace(&assembly, Limits { min_power: LEAST_POWER, tolerance }, &mut draws, watch))
     }));
     match ran {
         Ok(None) => line["refused"] = json!(1),
@@ -148,17 +149,17 @@ fn parcel(number: u64, watch: &Watch) -> Value {
     line
 }
 
-fn trace(bench: &Bench, limits: Limits, draws: &mut Draws<'_>, watch: &Watch) -> Value {
+fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>, watch: &Watch) -> Value {
     let start = Instant::now();
-    let mut tracer = Tracer::new(bench, limits);
+    let mut tracer = Tracer::new(assembly, limits);
     let reach = 10f64.powf(draws.between(0.7, 1.7));
     let [mut rays, mut leaves, mut lost, mut endless] = [0u64; 4];
-    let [mut unbalanced, mut not_finite, mut unsound] = [0u64; 3];
+    let [mut unbalanced, mut not_finite, mut unsound, mut with_losses] = [0u64; 4];
     let (mut worst, mut slowest) = (0.0f64, Duration::ZERO);
     let mut last = start;
     // A device may be so large that rays begin in it: others are taken, but not for ever.
     let launches = (0..2 * RAYS).map(|_| trials::launch(draws, reach));
-    for launch in launches.filter(|launch| trials::starts_in_air(bench, launch)) {
+    for launch in launches.filter(|launch| trials::starts_in_air(assembly, launch)) {
         if rays == RAYS || last - start > LONGEST {
             break;
         }
@@ -166,8 +167,8 @@ fn trace(bench: &Bench, limits: Limits, draws: &mut Draws<'_>, watch: &Watch) ->
         let (found, outcome) = tracer.trace(&launch);
         rays += 1;
         leaves += found.len() as u64;
-        lost += outcome.rarities.lost;
-        endless += u64::from(outcome.rarities.endless > 0);
+        lost += outcome.stats.lost;
+        endless += u64::from(outcome.stats.endless > 0);
         match trials::examine(found, outcome) {
             Ok(off) => worst = worst.max(off),
             Err(fault) => {
@@ -175,8 +176,9 @@ fn trace(bench: &Bench, limits: Limits, draws: &mut Draws<'_>, watch: &Watch) ->
                     Fault::Unbalanced(_) => unbalanced += 1,
                     Fault::NotFinite => not_finite += 1,
                     Fault::Unsound => unsound += 1,
+                    Fault::Lost(_) => with_losses += 1,
                 }
-                if unbalanced + not_finite + unsound == 1 {
+                if unbalanced + not_finite + unsound + with_losses == 1 {
                     eprintln!("{fault:?}: {launch:?}");
                 }
             }
@@ -270,6 +272,6 @@ fn print_table(lines: &[Value]) -> bool {
     }
     let all: Vec<&Value> = lines.iter().collect();
     row("all", &all);
-    let wrong = ["unbalanced", "not_finite", "unsound", "panics", "stuck"];
+    let wrong = ["unbalanced", "not_finite", "unsound", "panics", "stuck", "lost"];
     wrong.iter().all(|name| count(&all, name) == 0)
 }

@@ -1,5 +1,5 @@
 //! The server without a browser: who may ask for what, and what comes of it.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod malformed;
 mod page;

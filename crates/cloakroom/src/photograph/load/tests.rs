@@ -5,6 +5,7 @@ use std::path::Path;
 use image::{ImageBuffer, ImageEncoder, Luma, LumaA, Rgb, Rgba};
 
 use super::*;
+use crate::keys::BUILT_IN_IMAGES;
 
 /// A folder with one file.
 fn with_file<T>(name: &str, bytes: &[u8], test: impl FnOnce(&ImageSource) -> T) -> T {
@@ -171,21 +172,16 @@ fn exr_pixels_that_are_not_finite_are_refused() {
 
 #[test]
 fn built_in_images() {
-    let folder = Path::new("scenes");
-    let bookshelf = ImageSource::parse("builtin:bookshelf", folder).expect("a source");
-    let image = load(&bookshelf).expect("an image");
-    let (width, height) = dimensions(&bookshelf).expect("a size");
-    assert_eq!((image.width, image.height), (width as usize, height as usize));
-    assert!(matches!(image.texels, Texels::Srgb8(_)));
-    let message = ImageSource::parse("builtin:bookshop", folder).expect_err("no such").to_string();
-    assert_eq!(
-        message,
-        "there is no built-in image `builtin:bookshop`; there is `builtin:bookshelf`"
-    );
-    let file = ImageSource::parse("photo.png", folder).expect("a source");
+    for name in BUILT_IN_IMAGES {
+        let source = ImageSource::named(Path::new(name));
+        assert_eq!(source.to_string(), name);
+        let image = load(&source).expect("an image");
+        let (width, height) = dimensions(&source).expect("a size");
+        assert_eq!((image.width, image.height), (width as usize, height as usize));
+        assert!(matches!(image.texels, Texels::Srgb8(_)));
+    }
+    let file = ImageSource::named(Path::new("scenes/photo.png"));
     assert_eq!(file, ImageSource::File("scenes/photo.png".into()));
-    let file = ImageSource::parse("/photo.png", folder).expect("a source");
-    assert_eq!(file, ImageSource::File("/photo.png".into()));
 }
 
 #[test]

@@ -8,22 +8,27 @@ fn camera(change: impl FnOnce(&mut CameraSettings)) -> Result<Camera, KeyError> 
     Camera::new(settings)
 }
 
-fn oblique(projection: Projection) -> Camera {
+fn perspective(field_of_view: f64) -> impl Fn(&mut CameraSettings) {
+    move |s| s.field_of_view = field_of_view.into()
+}
+
+fn orthographic(width: f64) -> impl Fn(&mut CameraSettings) {
+    move |s| (s.projection, s.width) = (Projection::Orthographic, Some(width))
+}
+
+fn oblique(project: impl Fn(&mut CameraSettings)) -> Camera {
     camera(|s| {
         s.position = DVec3::new(-80.0, 30.0, -20.0);
         s.target = DVec3::new(40.0, -5.0, 9.0);
         s.up = DVec3::new(0.2, 1.0, -0.1);
-        s.projection = projection;
+        project(s);
         s.resolution = [101, 64];
     })
     .expect("a camera")
 }
 
 fn cameras() -> [Camera; 2] {
-    [
-        oblique(Projection::Perspective { field_of_view: 70.0 }),
-        oblique(Projection::Orthographic { width: 60.0 }),
-    ]
+    [oblique(perspective(70.0)), oblique(orthographic(60.0))]
 }
 
 #[test]
@@ -69,7 +74,7 @@ fn directions_and_axes_are_orthonormal() {
 
 #[test]
 fn an_orthographic_view_is_as_wide_as_it_says() {
-    let camera = oblique(Projection::Orthographic { width: 60.0 });
+    let camera = oblique(orthographic(60.0));
     let (left, right) = (camera.ray(0.0, 10.0), camera.ray(101.0, 10.0));
     assert!(((right.origin - left.origin) - 60.0 * camera.right()).length() < 1e-12);
     assert_eq!(left.direction, camera.forward());
@@ -100,16 +105,21 @@ fn polarization_follows_the_convention() {
     }
 }
 
+/// The place of a photograph in a plane of constant x.
+fn plane(x: f64) -> Pose {
+    Pose::new(DVec3::X * x, 0.0)
+}
+
 #[test]
 fn the_covering_width_covers_every_pixel_and_no_more() {
     // The paper's camera straight on: 150 cm away, tan 20 degrees to either side.
-    let straight = Camera::default().covering_width(50.0, 1.0).expect("hits");
+    let straight = Camera::default().covering_width(&plane(50.0), 1.0).expect("hits");
     assert!((straight - 300.0 * 20.0_f64.to_radians().tan()).abs() < 1e-10);
-    let tall = Camera::default().covering_width(50.0, 2.0).expect("hits");
+    let tall = Camera::default().covering_width(&plane(50.0), 2.0).expect("hits");
     assert!((tall - 1.5 * straight).abs() < 1e-10);
 
     for camera in cameras() {
-        let width = camera.covering_width(60.0, 1.3).expect("hits");
+        let width = camera.covering_width(&plane(60.0), 1.3).expect("hits");
         let mut reached = 0.0_f64;
         for i in 0..=20 {
             for j in 0..=20 {
@@ -120,34 +130,24 @@ fn the_covering_width_covers_every_pixel_and_no_more() {
             }
         }
         assert!((reached - width).abs() < 1e-9);
-        assert_eq!(camera.covering_width(-200.0, 1.3), None, "behind the camera");
+        assert_eq!(camera.covering_width(&plane(-200.0), 1.3), None, "behind the camera");
     }
-    let wide = camera(|s| s.projection = Projection::Perspective { field_of_view: 100.0 });
+    let wide = camera(perspective(100.0));
     let mut settings = wide.expect("a camera").settings().clone();
     settings.target = DVec3::new(0.0, 0.0, 100.0);
     let aside = Camera::new(settings).expect("a camera");
-    assert_eq!(aside.covering_width(50.0, 1.0), None, "the left edge looks away");
+    assert_eq!(aside.covering_width(&plane(50.0), 1.0), None, "the left edge looks away");
 }
 
 #[test]
 fn impossible_cameras_are_refused_at_the_right_key() {
-    let orthographic = |width| {
-        move |s: &mut CameraSettings| {
-            s.projection = Projection::Orthographic { width };
-        }
-    };
-    let perspective = |field_of_view| {
-        move |s: &mut CameraSettings| {
-            s.projection = Projection::Perspective { field_of_view };
-        }
-    };
     let cases: Vec<(&str, Result<Camera, KeyError>)> = vec![
         ("target", camera(|s| s.target = s.position)),
         ("up", camera(|s| s.up = DVec3::new(-3.0, 0.0, 0.0))),
         ("up", camera(|s| s.up = DVec3::ZERO)),
         ("up", camera(|s| s.up = DVec3::NAN)),
         ("position", camera(|s| s.position.y = f64::INFINITY)),
-        ("target", camera(|s| (s.position.x, s.target.x) = (-1.7e308, 1.7e308))),
+        ("target", camera(|s| s.target.x = 1e7)),
         ("resolution", camera(|s| s.resolution = [0, 10])),
         ("resolution", camera(|s| s.resolution = [10, 65_537])),
         ("samples", camera(|s| s.samples = 0)),
@@ -167,7 +167,7 @@ fn impossible_cameras_are_refused_at_the_right_key() {
 
 #[test]
 fn tiny_and_huge_scenes_have_cameras_too() {
-    for scale in [1e-300, 1e-20, 1e20, 1e300] {
+    for scale in [1e-300, 1e-20, 1e2, 1e4] {
         let camera = camera(|s| {
             s.position *= scale;
             s.target *= scale;

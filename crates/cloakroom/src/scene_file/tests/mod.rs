@@ -6,8 +6,9 @@ mod messages;
 use std::path::{Path, PathBuf};
 
 use super::*;
+use crate::keys::{Given, Value};
 use crate::photograph::ImageSource;
-use crate::scene::{Polarizer, Projection, Show, SurroundingsSettings};
+use crate::scene::{DeviceSettings, Polarizer, Projection, Show};
 
 fn read(text: &str) -> Result<Loaded, SceneFileError> {
     read_with(text, &[])
@@ -80,29 +81,39 @@ fn an_empty_file_is_the_default_scene() {
     }
 }
 
+fn side(device: &DeviceSettings) -> Option<Value> {
+    device.device.table().get("side")
+}
+
 #[test]
 fn every_key_is_read() {
     let scene = scene_with(EVERYTHING, &[]);
     let camera = scene.camera.settings();
     assert_eq!(camera.position.to_array(), [-90.0, 1.5, 0.0]);
     assert_eq!(camera.up.to_array(), [0.0, 1.0, 1.0]);
-    assert_eq!(camera.projection, Projection::Orthographic { width: 60.0 });
+    assert_eq!((camera.projection, camera.width), (Projection::Orthographic, Some(60.0)));
     assert_eq!((camera.resolution, camera.samples, camera.seed), ([640, 480], 16, 7));
     assert_eq!(camera.polarizer, Polarizer::Angle(30.0));
     assert_eq!(scene.light.wavelength_nm, 633.0);
     assert_eq!(scene.photograph.image, ImageSource::File("scenes/me.png".into()));
-    assert_eq!((scene.photograph.x, scene.photograph.width), (60.0, Some(80.0)));
+    assert_eq!((scene.photograph.x, scene.photograph.width), (Given::from(60.0), Some(80.0)));
     let sky = ImageSource::File("scenes/sky.exr".into());
-    assert_eq!(scene.surroundings, SurroundingsSettings::Image(sky));
-    assert_eq!((scene.trace.min_power, scene.trace.min_power_given), (1e-6, true));
+    assert_eq!(scene.surroundings.image, Some(sky));
+    assert_eq!(scene.trace.min_power, Given::from(1e-6));
     assert_eq!(scene.trace.tolerance, 1e-7);
-    assert_eq!((scene.picture.map, scene.picture.color_bar), (Some("time_of_flight"), false));
+    assert_eq!(
+        (scene.picture.map.name(), scene.picture.color_bar),
+        (Some("time_of_flight"), false)
+    );
     let [first, second] = scene.devices.as_slice() else { panic!("two devices") };
-    assert_eq!((first.entry.kind, first.show), ("square-cloak", Show::Bare));
-    assert_eq!((first.rotation, first.position.to_array()), (10.0, [1.0, 2.0, 3.0]));
-    assert_eq!((first.length, first.values.number("side")), (Some(40.0), 12.0));
-    assert_eq!((second.rotation, second.length), (0.0, None));
-    assert_eq!(second.values.number("side"), 14.1);
+    assert_eq!((first.kind(), first.placement.show), ("square-cloak", Show::Bare));
+    assert_eq!(
+        (first.placement.rotation, first.placement.position.to_array()),
+        (10.0, [1.0, 2.0, 3.0])
+    );
+    assert_eq!((first.placement.length, side(first)), (Some(40.0), Some(12.0.into())));
+    assert_eq!((second.placement.rotation, second.placement.length), (0.0, None));
+    assert_eq!(side(second), Some(14.1.into()));
     assert_eq!(scene.source, EVERYTHING);
 }
 
@@ -126,14 +137,15 @@ fn overrides_set_keys_that_are_there_and_keys_that_are_not() {
     assert_eq!(scene.camera.settings().up.to_array(), [0.5, 1.0, 1.0]);
     // Files in overrides are relative to the current folder.
     assert_eq!(scene.photograph.image, ImageSource::File("holiday.jpg".into()));
-    assert_eq!((scene.devices[1].show, scene.devices[1].rotation), (Show::Mirror, -10.0));
+    let second = &scene.devices[1].placement;
+    assert_eq!((second.show, second.rotation), (Show::Mirror, -10.0));
     assert_eq!(scene.devices.len(), 3);
-    assert_eq!(scene.devices[2].values.number("side"), 3.0);
+    assert_eq!(side(&scene.devices[2]), Some(3.0.into()));
 
     let scene = scene_with("", &["device.0.kind=square-cloak", "light.wavelength_nm=600"]);
     assert_eq!((scene.devices.len(), scene.light.wavelength_nm), (1, 600.0));
     let scene = scene_with("", &[r#"device.0={kind="square-cloak", side=2}"#]);
-    assert_eq!(scene.devices[0].values.number("side"), 2.0);
+    assert_eq!(side(&scene.devices[0]), Some(2.0.into()));
     let scene = scene_with("", &[r#"camera={samples=2}"#, "photograph.image=2024-01-01"]);
     assert_eq!(scene.camera.samples(), 2);
     assert_eq!(scene.photograph.image, ImageSource::File("2024-01-01".into()));

@@ -9,7 +9,7 @@ use crate::transformation::MapJet;
 
 /// A ray's constants, and how accurately to follow it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Course {
+pub(super) struct StepControl {
     /// The wave vector along z.
     pub p_z: f64,
     /// The error that the estimate of a step may show, cm.
@@ -49,7 +49,7 @@ impl Demands {
     }
 }
 
-impl Course {
+impl StepControl {
     pub fn new(p_z: f64, strength: f64, demands: &Demands) -> Self {
         // Steep rays take long ways, on which errors have time to grow.
         let flatness = (1.0 - (p_z / strength).powi(2)).max(0.05);

@@ -51,14 +51,14 @@ enum Coordinate {
 
 /// The distance of a coordinate from its limit, positive inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Gauge {
+pub(super) struct EventFunction {
     boundary: Boundary,
     coordinate: Coordinate,
     sign: f64,
     limit: f64,
 }
 
-impl Gauge {
+impl EventFunction {
     fn at(&self, point: &Point, p_z: f64) -> Motion {
         let (value, rate, bend) = match self.coordinate {
             Coordinate::X => (point.jet.f.re, point.velocity.re, point.bend.re),
@@ -156,15 +156,15 @@ pub(super) enum Crossing {
     /// It may touch the border at this share of the step: go there and look.
     Unclear { share: f64 },
     /// It crosses, first at about this share of the step.
-    At { gauge: Gauge, share: f64 },
+    At { gauge: EventFunction, share: f64 },
 }
 
 /// The last moves of a ray, onto the border.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Landing {
+pub(super) struct RootRefinement {
     /// How far to move next.
     pub ahead: f64,
-    gauge: Gauge,
+    gauge: EventFunction,
     /// The limit of each correction.
     reach: f64,
     corrections: u32,
@@ -181,7 +181,7 @@ pub(super) enum Look {
 /// The distances from all parts of the border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gauges {
-    all: [Gauge; 8],
+    all: [EventFunction; 8],
     /// The length over which the map varies.
     scale: f64,
 }
@@ -190,7 +190,8 @@ impl Gauges {
     /// Those of a cut map, the space within the first and beyond the second of two radii about the z axis, which
     /// are infinite where there is none.
     pub fn new(cut: &Truncation, extent: Extent, rim: f64, core: f64, scale: f64) -> Self {
-        let gauge = |boundary, coordinate, sign, limit| Gauge { boundary, coordinate, sign, limit };
+        let gauge =
+            |boundary, coordinate, sign, limit| EventFunction { boundary, coordinate, sign, limit };
         Self {
             all: [
                 gauge(Boundary::Floor, Coordinate::VirtualY, 1.0, 0.0),
@@ -206,7 +207,7 @@ impl Gauges {
         }
     }
 
-    fn finite(&self) -> impl Iterator<Item = &Gauge> {
+    fn finite(&self) -> impl Iterator<Item = &EventFunction> {
         self.all.iter().filter(|gauge| gauge.limit.is_finite())
     }
 
@@ -286,9 +287,9 @@ impl Gauges {
     }
 }
 
-impl Landing {
+impl RootRefinement {
     /// On a border that is `ahead`, at the given gauge, as far as interpolation can tell.
-    pub fn new(ahead: f64, gauge: Gauge, reach: f64) -> Self {
+    pub fn new(ahead: f64, gauge: EventFunction, reach: f64) -> Self {
         Self { ahead, gauge, reach, corrections: 0 }
     }
 

@@ -7,7 +7,7 @@
 //!
 //! These are Hamilton's equations of H = (|P|² + p_z² |f'|² - c²)/2, that is of p² = n². For p_z = 0 the
 //! path in ζ is a straight line; else the force is small and smooth, and the method of order 8 takes a
-//! handful of steps. Where the index is ρ(x, y) times that ([`Unevenness`]), it is c² ρ² that |P|² + p_z² |f'|² must be,
+//! handful of steps. Where the index is ρ(x, y) times that ([`IndexPerturbation`]), it is c² ρ² that |P|² + p_z² |f'|² must be,
 //! and another force comes in: see the module `uneven_strides`. Lengths are in cm, wave vectors in units of the vacuum wave number.
 
 mod course;
@@ -26,11 +26,11 @@ use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 use thiserror::Error;
 
-use self::course::Course;
+use self::course::StepControl;
 use self::crossing::Gauges;
 use self::points::Point;
-pub use self::unevenness::Unevenness;
-use self::walk::Convoy;
+pub use self::unevenness::IndexPerturbation;
+use self::walk::RayPacket;
 use crate::geometry::Extent;
 use crate::lanes::LANES;
 use crate::transformation::{ConformalMap, Truncation};
@@ -78,7 +78,7 @@ pub enum Boundary {
 
 /// A point of one half of the device, known in physical and in virtual space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foothold {
+pub struct VirtualPoint {
     /// The half it belongs to.
     pub half: Half,
     /// Where it is, cm.
@@ -95,7 +95,7 @@ pub struct FlowEnd {
     /// The part of the border.
     pub boundary: Boundary,
     /// Where: on the border, to continue from after a reflection; its index is the one inside.
-    pub at: Foothold,
+    pub at: VirtualPoint,
     /// The wave vector p before refraction or reflection, |p| = n.
     pub wave_vector: DVec3,
     /// The optical path from start to end, cm.
@@ -141,7 +141,7 @@ const BORDER_SLACK: f64 = 1e-9;
 
 /// A ray at its end.
 struct Arrival {
-    course: Course,
+    course: StepControl,
     begin: Point,
     end: Point,
     boundary: Boundary,
@@ -159,7 +159,7 @@ pub struct ConformalFlow {
     strength: f64,
     gauges: Gauges,
     slack: f64,
-    unevenness: Option<Arc<Unevenness>>,
+    unevenness: Option<Arc<IndexPerturbation>>,
 }
 
 impl ConformalFlow {
@@ -226,7 +226,7 @@ impl ConformalFlow {
     /// # Errors
     ///
     /// If it is not finite, or outside.
-    pub fn foothold(&self, half: Half, position: DVec3) -> Result<Foothold, FlowError> {
+    pub fn virtual_point(&self, half: Half, position: DVec3) -> Result<VirtualPoint, FlowError> {
         if !position.is_finite() {
             return Err(FlowError::NotFinite);
         }
@@ -247,7 +247,7 @@ impl ConformalFlow {
             && local.z <= self.extent.max + self.slack
             && self.is_between(z.norm());
         if inside && index.is_finite() {
-            Ok(Foothold { half, position, virtual_position: zeta, index })
+            Ok(VirtualPoint { half, position, virtual_position: zeta, index })
         } else {
             Err(FlowError::Outside)
         }
@@ -263,7 +263,7 @@ impl ConformalFlow {
     ///
     /// # Errors
     ///
-    /// As [`Self::foothold`] and [`Self::advance_from`].
+    /// As [`Self::virtual_point`] and [`Self::advance_from`].
     pub fn advance(
         &self,
         half: Half,
@@ -271,7 +271,7 @@ impl ConformalFlow {
         wave_vector: DVec3,
         tolerance: f64,
     ) -> Result<FlowEnd, FlowError> {
-        self.advance_from(&self.foothold(half, position)?, wave_vector, tolerance)
+        self.advance_from(&self.virtual_point(half, position)?, wave_vector, tolerance)
     }
 
     /// Follows a ray from a point inside or on the border to the next point of the border.
@@ -286,7 +286,7 @@ impl ConformalFlow {
     /// If the wave vector does not belong to the medium, or the ray does not come out.
     pub fn advance_from(
         &self,
-        start: &Foothold,
+        start: &VirtualPoint,
         wave_vector: DVec3,
         tolerance: f64,
     ) -> Result<FlowEnd, FlowError> {
@@ -299,10 +299,10 @@ impl ConformalFlow {
     /// it would be alone.
     pub fn advance_four(
         &self,
-        starts: &[Option<(Foothold, DVec3)>; LANES],
+        starts: &[Option<(VirtualPoint, DVec3)>; LANES],
         tolerance: f64,
     ) -> [Option<Result<FlowEnd, FlowError>>; LANES] {
-        let mut convoy = Convoy::new(self, starts, tolerance);
+        let mut convoy = RayPacket::new(self, starts, tolerance);
         while convoy.moves(self) {}
         std::array::from_fn(|i| {
             let (start, _) = starts[i].as_ref()?;
@@ -311,7 +311,7 @@ impl ConformalFlow {
     }
 
     /// Whether a ray can set out so.
-    fn sets_out(&self, start: &Foothold, wave_vector: DVec3) -> Result<(), FlowError> {
+    fn sets_out(&self, start: &VirtualPoint, wave_vector: DVec3) -> Result<(), FlowError> {
         if !wave_vector.is_finite() {
             return Err(FlowError::NotFinite);
         }
@@ -333,7 +333,7 @@ impl ConformalFlow {
         0.5 * (self.cut.x_max - self.cut.x_min).max(self.cut.y_max - self.map.level())
     }
 
-    fn end(&self, start: &Foothold, arrival: &Arrival) -> FlowEnd {
+    fn end(&self, start: &VirtualPoint, arrival: &Arrival) -> FlowEnd {
         let Arrival { course, begin, mut end, boundary } = *arrival;
         let half = start.half;
         let mut position = DVec3::new(end.jet.f.re, end.jet.f.im, end.z);
@@ -374,7 +374,7 @@ impl ConformalFlow {
         };
         FlowEnd {
             boundary,
-            at: Foothold {
+            at: VirtualPoint {
                 half,
                 position: half.mirrored(position),
                 virtual_position: end.zeta,

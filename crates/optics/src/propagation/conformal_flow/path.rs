@@ -1,7 +1,7 @@
 //! Points along a ray, for drawings.
 
-use super::walk::Convoy;
-use super::{ConformalFlow, FlowError, Foothold};
+use super::walk::RayPacket;
+use super::{ConformalFlow, FlowError, VirtualPoint};
 use crate::propagation::PathPoint;
 use glam::DVec3;
 use num_complex::Complex64;
@@ -18,7 +18,7 @@ impl ConformalFlow {
     /// As [`Self::advance_from`].
     pub fn path(
         &self,
-        start: &Foothold,
+        start: &VirtualPoint,
         wave_vector: DVec3,
         tolerance: f64,
     ) -> Result<Vec<PathPoint>, FlowError> {
@@ -44,7 +44,7 @@ impl ConformalFlow {
                 .collect());
         }
         let mut convoy =
-            Convoy::new(self, &[Some((*start, wave_vector)), None, None, None], tolerance);
+            RayPacket::new(self, &[Some((*start, wave_vector)), None, None, None], tolerance);
         convoy.even_out(self, 0, spacing);
         let mut way = Vec::new();
         let mut last = -1.0;

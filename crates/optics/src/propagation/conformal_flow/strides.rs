@@ -11,7 +11,7 @@ use crate::transformation::{ConformalMap, JetLanes, LaneMap};
 
 /// How a ray moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Pace {
+pub(super) enum StepKind {
     /// Not at all: it is at its start, where the momentum is still conj(f') and the length of P short of P itself.
     Departure,
     /// By Taylor's formula of order two, but for the map at the new place; exact for straight rays.
@@ -36,7 +36,7 @@ pub(super) struct Rays {
 
 /// What has come of a move.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Trials {
+pub(super) struct StepResult {
     pub end: Points,
     /// Estimated error over the allowed one.
     pub error: [f64; LANES],
@@ -48,7 +48,7 @@ pub(super) struct Trials {
     pub crossed: [f64; LANES],
 }
 
-impl Trials {
+impl StepResult {
     /// Takes down what has come of a move.
     #[inline(always)]
     pub fn arrive<S: Simd>(
@@ -83,10 +83,10 @@ pub(super) fn stride(
     map: &ConformalMap,
     gauges: &Gauges,
     rays: &Rays,
-    pace: Pace,
+    pace: StepKind,
     from: &Points,
     length: &[f64; LANES],
-    to: &mut Trials,
+    to: &mut StepResult,
 ) {
     // Which map it is is settled once for a step, not at every evaluation.
     match map {
@@ -109,10 +109,10 @@ struct Strides<'w, M> {
     map: &'w M,
     gauges: &'w Gauges,
     rays: &'w Rays,
-    pace: Pace,
+    pace: StepKind,
     from: &'w Points,
     length: &'w [f64; LANES],
-    to: &'w mut Trials,
+    to: &'w mut StepResult,
 }
 
 /// The force on rays in virtual space.
@@ -167,12 +167,12 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
         let first = Stage { force: from.force, jet: from.jet };
         let mut error = p_z.all(0.0);
         let (motion, stage, z, theta) = match self.pace {
-            Pace::Departure => {
+            StepKind::Departure => {
                 let stage = field.look(from.zeta);
                 let velocity = field.on_shell(stage.jet.f1.conj() * from.momentum, &stage.jet);
                 (Motion { velocity, ..start }, stage, from.z, from.theta)
             }
-            Pace::Coast => {
+            StepKind::Coast => {
                 let [z_rate, theta_rate] = field.rates(&from.jet, from.momentum);
                 let half = h * 0.5;
                 let position = from.zeta.plus_real(from.momentum.plus_real(from.force, half), h);
@@ -181,7 +181,7 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
                 let stage = field.look(position);
                 (Motion { position, velocity }, stage, z, from.theta + theta_rate * h)
             }
-            Pace::Short => {
+            StepKind::Short => {
                 let step = order_four::step(&field, start, first, h);
                 // By the values and slopes at both ends, which are at hand.
                 let [[z0, _], [z1, _]] = [
@@ -193,7 +193,7 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
                 let z = from.z + ((z0 + z1) * 0.5 + slopes * h * (1.0 / 12.0)) * h;
                 (step.end, step.stage, z, from.theta + step.quadrature[1])
             }
-            Pace::Full => {
+            StepKind::Full => {
                 let weight = Lanes::new(simd, self.rays.weight);
                 let weight = ErrorWeight {
                     position: weight,

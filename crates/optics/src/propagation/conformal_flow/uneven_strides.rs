@@ -15,8 +15,8 @@ use pulp::{Simd, WithSimd};
 use super::ConformalFlow;
 use super::crossing::Gauges;
 use super::points::{PointLanes, Points};
-use super::strides::{Pace, Rays, Trials, of_square};
-use super::unevenness::{Factor, Unevenness};
+use super::strides::{Rays, StepKind, StepResult, of_square};
+use super::unevenness::{Factor, IndexPerturbation};
 use crate::lanes::{ComplexLanes, LANES, Lanes, side_by_side};
 use crate::propagation::nystrom::order_eight::ErrorWeight;
 use crate::propagation::nystrom::{Field, Motion, Stage, order_eight};
@@ -25,12 +25,12 @@ use crate::transformation::{ConformalMap, JetLanes, LaneMap};
 /// Moves four rays by the lengths (of any sign) into `to`: coasting, else by the method of order eight.
 pub(super) fn uneven_stride(
     flow: &ConformalFlow,
-    unevenness: &Unevenness,
+    unevenness: &IndexPerturbation,
     rays: &Rays,
-    pace: Pace,
+    pace: StepKind,
     from: &Points,
     length: &[f64; LANES],
-    to: &mut Trials,
+    to: &mut StepResult,
 ) {
     let gauges = &flow.gauges;
     match flow.map() {
@@ -51,20 +51,20 @@ pub(super) fn uneven_stride(
 
 struct Strides<'w, M> {
     map: &'w M,
-    unevenness: &'w Unevenness,
+    unevenness: &'w IndexPerturbation,
     gauges: &'w Gauges,
     rays: &'w Rays,
-    pace: Pace,
+    pace: StepKind,
     from: &'w Points,
     length: &'w [f64; LANES],
-    to: &'w mut Trials,
+    to: &'w mut StepResult,
 }
 
 /// The force on rays in virtual space.
 #[derive(Clone, Copy)]
 struct Force<'w, S: Simd, M> {
     map: &'w M,
-    unevenness: &'w Unevenness,
+    unevenness: &'w IndexPerturbation,
     p_z: Lanes<S>,
     strength: Lanes<S>,
 }
@@ -136,13 +136,13 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
         let start = Motion { position: from.zeta, velocity: from.momentum };
         let zero = p_z.all(0.0);
         let (motion, stage, [z, theta, path], error) = match self.pace {
-            Pace::Departure => {
+            StepKind::Departure => {
                 let stage = field.look(from.zeta);
                 let velocity = stage.jet.map.f1.conj() * from.momentum;
                 let velocity = field.on_shell(velocity, &stage.jet);
                 (Motion { velocity, ..start }, stage, [zero; 3], zero)
             }
-            Pace::Coast => {
+            StepKind::Coast => {
                 let jet = field.jet(from.jet);
                 let [z_rate, theta_rate, path_rate] = field.rates(&jet, from.momentum);
                 let half = h * 0.5;
@@ -156,7 +156,7 @@ impl<M: LaneMap> WithSimd for Strides<'_, M> {
                 ];
                 (Motion { position, velocity }, field.look(position), growth, zero)
             }
-            Pace::Short | Pace::Full => {
+            StepKind::Short | StepKind::Full => {
                 let weight = Lanes::new(simd, self.rays.weight);
                 let weight = ErrorWeight {
                     position: weight,

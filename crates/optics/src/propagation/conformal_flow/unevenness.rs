@@ -7,7 +7,7 @@ use num_complex::Complex64;
 
 use super::course::Demands;
 use super::points::Points;
-use super::strides::{Pace, Rays, Trials, stride};
+use super::strides::{Rays, StepKind, StepResult, stride};
 use super::uneven_strides::uneven_stride;
 use super::{ConformalFlow, MIRROR_MAGNIFIES};
 use crate::lanes::LANES;
@@ -16,7 +16,7 @@ use crate::transformation::MapJet;
 
 /// A smooth factor ρ(x, y) of the index of a conformal map, by its square on a grid.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unevenness {
+pub struct IndexPerturbation {
     square: GridSpline,
     /// Of the square, where it counts.
     bounds: [f64; 2],
@@ -35,7 +35,7 @@ pub(super) struct Factor {
 /// Grid cells over which an unevenness is taken to vary.
 const CELLS_A_SCALE: f64 = 4.0;
 
-impl Unevenness {
+impl IndexPerturbation {
     /// The unevenness whose factor ρ has the square `square`; `None` if that is not positive everywhere. The grid should
     /// reach a few cells beyond the device, and resolve what varies in about four cells.
     #[must_use]
@@ -74,7 +74,7 @@ impl ConformalFlow {
     /// The same medium with an index that is uneven: ρ times that of the map. The unevenness is that of the upper half
     /// plane, in which the lower half is looked at as its mirror image.
     #[must_use]
-    pub fn with_unevenness(self, unevenness: Unevenness) -> Self {
+    pub fn with_unevenness(self, unevenness: IndexPerturbation) -> Self {
         Self { unevenness: Some(Arc::new(unevenness)), ..self }.with_gauges()
     }
 
@@ -115,10 +115,10 @@ impl ConformalFlow {
     pub(super) fn stride(
         &self,
         rays: &Rays,
-        pace: Pace,
+        pace: StepKind,
         from: &Points,
         length: &[f64; LANES],
-        to: &mut Trials,
+        to: &mut StepResult,
     ) {
         match &self.unevenness {
             None => stride(&self.map, &self.gauges, rays, pace, from, length, to),

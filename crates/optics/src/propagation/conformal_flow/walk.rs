@@ -3,11 +3,11 @@
 use glam::DVec3;
 use num_complex::Complex64;
 
-use super::course::{Course, Demands};
-use super::crossing::{Crossing, Landing, Look};
+use super::course::{Demands, StepControl};
+use super::crossing::{Crossing, Look, RootRefinement};
 use super::points::Points;
-use super::strides::{Pace, Rays, Trials};
-use super::{Arrival, Boundary, ConformalFlow, FlowError, Foothold, MAX_STEPS};
+use super::strides::{Rays, StepKind, StepResult};
+use super::{Arrival, Boundary, ConformalFlow, FlowError, MAX_STEPS, VirtualPoint};
 use crate::lanes::LANES;
 
 /// Moves below this share of the map's scale are exact to rounding by Taylor's formula of order two.
@@ -17,13 +17,13 @@ const COASTING: f64 = 1e-4;
 const OVERSHOOT: f64 = 0.012;
 
 /// Four rays on their way, or fewer: each goes where it would go alone.
-pub(super) struct Convoy {
+pub(super) struct RayPacket {
     rays: Rays,
-    courses: [Course; LANES],
+    courses: [StepControl; LANES],
     walks: [Walk; LANES],
     begin: Points,
     here: Points,
-    trials: Trials,
+    trials: StepResult,
 }
 
 /// How far one of them has come.
@@ -41,7 +41,7 @@ enum State {
     /// A step of this length is to be taken.
     Stepping(f64),
     /// It moves onto the border.
-    Landing(Landing),
+    RootRefinement(RootRefinement),
     Arrived(Boundary),
     Failed(FlowError),
 }
@@ -51,17 +51,17 @@ impl State {
     fn ahead(&self) -> Option<f64> {
         match self {
             Self::Stepping(length) => Some(*length),
-            Self::Landing(landing) => Some(landing.ahead),
+            Self::RootRefinement(landing) => Some(landing.ahead),
             Self::Absent | Self::Arrived(_) | Self::Failed(_) => None,
         }
     }
 }
 
-impl Convoy {
+impl RayPacket {
     /// Rays at their starts with their wave vectors, to be followed to the tolerance (cm).
     pub fn new(
         flow: &ConformalFlow,
-        starts: &[Option<(Foothold, DVec3)>; LANES],
+        starts: &[Option<(VirtualPoint, DVec3)>; LANES],
         tolerance: f64,
     ) -> Self {
         let walk = Walk { state: State::Absent, stride: 0.0, steps: 0 };
@@ -74,11 +74,11 @@ impl Convoy {
         };
         let mut convoy = Self {
             rays,
-            courses: [Course::new(0.0, flow.strength, &demands); LANES],
+            courses: [StepControl::new(0.0, flow.strength, &demands); LANES],
             walks: [walk; LANES],
             begin: Points::default(),
             here: Points::default(),
-            trials: Trials::default(),
+            trials: StepResult::default(),
         };
         for (i, start) in starts.iter().enumerate() {
             let Some((start, wave_vector)) = start else { continue };
@@ -92,7 +92,7 @@ impl Convoy {
     }
 
     /// Puts a ray at its start.
-    fn put(&mut self, i: usize, start: &Foothold, wave_vector: DVec3) {
+    fn put(&mut self, i: usize, start: &VirtualPoint, wave_vector: DVec3) {
         let p = start.half.mirrored(wave_vector);
         self.walks[i].state = State::Stepping(0.0);
         self.rays.p_z[i] = p.z;
@@ -115,7 +115,7 @@ impl Convoy {
                 self.here.z[i] = self.here.z[any];
             }
         }
-        self.stride(flow, Pace::Departure, &[0.0; LANES]);
+        self.stride(flow, StepKind::Departure, &[0.0; LANES]);
         self.begin = self.trials.end;
         self.here = self.trials.end;
         let nearer = flow.demands(tolerance, true);
@@ -125,7 +125,7 @@ impl Convoy {
             }
             let aims_at_floor = flow.aims_at_floor(self.here.zeta.at(i), self.here.momentum.at(i));
             let demands = if aims_at_floor { &nearer } else { demands };
-            let mut course = Course::new(self.rays.p_z[i], flow.strength, demands);
+            let mut course = StepControl::new(self.rays.p_z[i], flow.strength, demands);
             course.even = flow.is_uneven();
             self.courses[i] = course;
             self.rays.weight[i] = course.allowed.recip();
@@ -141,7 +141,7 @@ impl Convoy {
     /// Moves each ray that is not at its end once, or more often if that is cheap; whether one has moved.
     pub fn moves(&mut self, flow: &ConformalFlow) -> bool {
         let mut any = false;
-        for pace in [Pace::Full, Pace::Short, Pace::Coast] {
+        for pace in [StepKind::Full, StepKind::Short, StepKind::Coast] {
             let mut length = [0.0; LANES];
             let mut moves = [false; LANES];
             for i in 0..LANES {
@@ -165,20 +165,20 @@ impl Convoy {
         any
     }
 
-    fn stride(&mut self, flow: &ConformalFlow, pace: Pace, length: &[f64; LANES]) {
+    fn stride(&mut self, flow: &ConformalFlow, pace: StepKind, length: &[f64; LANES]) {
         let Self { rays, here, trials, .. } = self;
         flow.stride(rays, pace, here, length, trials);
     }
 
     /// How a ray moves by `length`.
-    fn pace(&self, flow: &ConformalFlow, i: usize, length: f64) -> Pace {
+    fn pace(&self, flow: &ConformalFlow, i: usize, length: f64) -> StepKind {
         let (course, length) = (&self.courses[i], length.abs());
         if course.p_z == 0.0 && !flow.is_uneven() || length <= COASTING * flow.scale() {
-            Pace::Coast
+            StepKind::Coast
         } else if length <= course.short && !flow.is_uneven() {
-            Pace::Short
+            StepKind::Short
         } else {
-            Pace::Full
+            StepKind::Full
         }
     }
 
@@ -218,7 +218,7 @@ impl Convoy {
                 let length = *length;
                 self.stepped(flow, i, length);
             }
-            State::Landing(landing) => {
+            State::RootRefinement(landing) => {
                 self.here.take(i, &self.trials.end);
                 match landing.look(&self.here.at(i), &flow.gauges, self.courses[i].p_z) {
                     Look::Move => {}
@@ -264,7 +264,7 @@ impl Convoy {
                     self.here.take(i, &self.trials.end);
                     (share - 1.0) * length
                 };
-                walk.state = State::Landing(Landing::new(ahead, gauge, length));
+                walk.state = State::RootRefinement(RootRefinement::new(ahead, gauge, length));
             }
         }
     }

@@ -146,12 +146,12 @@ impl UniaxialCylinder {
     }
 
     /// The ordinary wave of the radial axis.
-    fn straight(&self, position: DVec3, wave_vector: DVec3) -> Leg {
+    fn straight(&self, position: DVec3, wave_vector: DVec3) -> PathSegment {
         let direction = wave_vector.normalize();
         let shell = |radius: f64| Cylinder { radius, extent: self.extent };
         let (distance, part) = shell(self.map.outer()).time_to_leave(position, direction);
         let core = shell(self.map.inner());
-        let leg = |distance: f64, border: Border, outward: DVec3, end: DVec3| Leg {
+        let leg = |distance: f64, border: Border, outward: DVec3, end: DVec3| PathSegment {
             border,
             position: end,
             outward,
@@ -174,12 +174,12 @@ impl UniaxialCylinder {
     }
 
     /// The extraordinary wave of the azimuthal axis.
-    fn virtually_straight(&self, position: DVec3, wave_vector: DVec3) -> Leg {
+    fn virtually_straight(&self, position: DVec3, wave_vector: DVec3) -> PathSegment {
         let map = &self.map;
         let momentum = map.jacobian(position) * wave_vector;
         let velocity = momentum.with_z(momentum.z / (map.stretch() * map.stretch()));
         let line = VirtualLine::new(map, self.extent, position, velocity);
-        Leg {
+        PathSegment {
             border: line.border,
             position: line.position,
             outward: line.outward,
@@ -189,7 +189,7 @@ impl UniaxialCylinder {
     }
 
     /// Waves that turn back before the core.
-    fn turning(&self, position: DVec3, wave_vector: DVec3) -> Leg {
+    fn turning(&self, position: DVec3, wave_vector: DVec3) -> PathSegment {
         let TurningCourse { course, radial, border, etas: [start, eta] } =
             TurningCourse::new(self, position, wave_vector);
         let momentum = course.momentum;
@@ -202,7 +202,7 @@ impl UniaxialCylinder {
         let place = self.on_border(border, outward_radial * radius + DVec3::Z * z);
         let p_r = root / rho * course.radial_scale;
         let around = DVec3::Z.cross(outward_radial) * (momentum / radius);
-        Leg {
+        PathSegment {
             border,
             position: place,
             outward: match border {
@@ -230,7 +230,7 @@ impl UniaxialCylinder {
 }
 
 /// The way from border to border.
-struct Leg {
+struct PathSegment {
     border: Border,
     position: DVec3,
     outward: DVec3,
@@ -240,7 +240,7 @@ struct Leg {
 
 /// The way of a ray that turns back before the core.
 pub(super) struct TurningCourse {
-    course: Course,
+    course: StepControl,
     /// The unit vector away from the axis at its start.
     radial: DVec3,
     /// Where it ends.
@@ -253,7 +253,7 @@ impl TurningCourse {
     fn new(cylinder: &UniaxialCylinder, position: DVec3, wave_vector: DVec3) -> Self {
         let radial = cylinder.map.radial(position);
         let momentum = position.truncate().perp_dot(wave_vector.truncate());
-        let course = Course::new(cylinder, momentum, wave_vector.z);
+        let course = StepControl::new(cylinder, momentum, wave_vector.z);
         let radius = cylinder.map.radius(position);
         let start = course.quadratic.parameter(course.rho(radius));
         let start = if wave_vector.dot(radial) < 0.0 { -start } else { start };
@@ -295,7 +295,7 @@ struct Place {
 }
 
 /// The course of a ray that turns: in τ with dr/dτ = ∂H/∂p_r, ρ dρ/dτ = √Q.
-struct Course {
+struct StepControl {
     quadratic: RadialQuadratic,
     /// ρ = scale (r - origin).
     scale: f64,
@@ -308,7 +308,7 @@ struct Course {
     path: [f64; 3],
 }
 
-impl Course {
+impl StepControl {
     fn new(cylinder: &UniaxialCylinder, momentum: f64, p_z: f64) -> Self {
         let (a, k) = (cylinder.map.inner(), cylinder.map.stretch());
         let (k2, l2, pz2) = (k * k, momentum * momentum, p_z * p_z);

@@ -1,0 +1,11 @@
+//! All tests of the command, in one program: one is linked faster than many.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod animating;
+mod bad_input;
+mod book;
+mod commands;
+mod faults;
+mod measuring;
+mod release;
+mod running;

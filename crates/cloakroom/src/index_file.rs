@@ -1,0 +1,119 @@
+//! Numbers on a grid that a scene names by a file: an index.
+
+use crate::device::{AnyDevice, Graded};
+use crate::input::read_up_to;
+use crate::keys::{KeyError, Sampled, Samples, find};
+use cloakroom_trace::key;
+use ndarray::{ArrayView2, Axis};
+use ndarray_npy::{ViewElement, ViewNpyError, ViewNpyExt};
+use std::borrow::Cow;
+use std::fs::File;
+
+/// Longer files are no index of a device.
+const LONGEST: u64 = 256 << 20;
+
+/// A device with the numbers in the place of the file that holds them.
+///
+/// # Errors
+///
+/// If the file cannot be read, or a number in it is not allowed.
+pub(crate) fn with_files_read(device: &AnyDevice) -> Result<Cow<'_, AnyDevice>, KeyError> {
+    let AnyDevice::Graded(graded) = device else { return Ok(Cow::Borrowed(device)) };
+    let Some(Sampled::InFile(file)) = &graded.index else { return Ok(Cow::Borrowed(device)) };
+    let key = find(Graded::KEYS, key!(Graded.index))?;
+    let file = &file.display().to_string();
+    let samples = read(file).map_err(|message| KeyError::at(key.name, message))?;
+    if let Some(at) = samples.values().iter().position(|number| !key.limits.allow(*number)) {
+        let [row, column] = [at / samples.count()[1], at % samples.count()[1]];
+        let message = format!(
+            "{}[{row}][{column}] is {} in {file}; it must be {}",
+            key.name,
+            samples.values()[at],
+            key.limits.describe()
+        );
+        return Err(KeyError::at(key.name, message));
+    }
+    let index = Some(Sampled::Here(samples));
+    Ok(Cow::Owned(AnyDevice::Graded(Graded { index, ..graded.clone() })))
+}
+
+/// Reads a file of numpy with one array of two dimensions, of 64-bit or 32-bit floats.
+///
+/// # Errors
+///
+/// A message that names the file and says why it cannot be used.
+fn read(path: &str) -> Result<Samples, String> {
+    let failed = |reason: String| format!("cannot read {path}: {reason}");
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| read_up_to(LONGEST, file, &mut bytes));
+    read.map_err(|error| failed(error.to_string()))?;
+    let rows = match rows::<f64>(&bytes) {
+        Err(ViewNpyError::WrongDescriptor(_)) => rows::<f32>(&bytes),
+        rows => rows,
+    };
+    let rows = rows.map_err(|error| match error {
+        ViewNpyError::WrongDescriptor(_) => failed("its numbers are no floats".to_owned()),
+        error => failed(format!("it is no .npy file of an array of two dimensions: {error}")),
+    })?;
+    Samples::new(&rows).map_err(|error| failed(error.to_string()))
+}
+
+fn rows<T: ViewElement + Copy + Into<f64>>(bytes: &[u8]) -> Result<Vec<Vec<f64>>, ViewNpyError> {
+    let array = ArrayView2::<T>::view_npy(bytes)?;
+    let row = |row: ndarray::ArrayView1<'_, T>| row.iter().map(|&number| number.into()).collect();
+    Ok(array.axis_iter(Axis(0)).map(row).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::{Array, Array2};
+    use ndarray_npy::WriteNpyExt;
+
+    #[test]
+    fn arrays_of_either_order_and_type_are_read() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let name = path.to_str().expect("a name");
+        let array = Array::from_shape_fn((2, 3), |(i, j)| 1.0 + i as f64 + 0.5 * j as f64);
+        let expected = Samples::new(&[vec![1.0, 1.5, 2.0], vec![2.0, 2.5, 3.0]]).expect("a grid");
+        array.write_npy(File::create(&path).expect("a file")).expect("written");
+        assert_eq!(read(name), Ok(expected.clone()));
+        array.mapv(|n| n as f32).write_npy(File::create(&path).expect("a file")).expect("written");
+        assert_eq!(read(name), Ok(expected.clone()));
+        let turned: Array2<f64> = array.t().as_standard_layout().into_owned();
+        turned.t().write_npy(File::create(&path).expect("a file")).expect("written");
+        assert_eq!(read(name), Ok(expected));
+    }
+
+    #[test]
+    fn what_is_no_such_file_is_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npy");
+        let name = path.to_str().expect("a name");
+        let refused = |part: &str| {
+            let message = read(name).expect_err("must fail");
+            assert!(message.contains("a.npy") && message.contains(part), "{message}");
+        };
+        refused("No such file");
+        std::fs::write(&path, b"nothing").expect("written");
+        refused("no .npy file");
+        Array::from_elem((2, 2), 1_i32)
+            .write_npy(File::create(&path).expect("a file"))
+            .expect("written");
+        refused("no floats");
+        Array::from_elem(3, 1.0_f64)
+            .write_npy(File::create(&path).expect("a file"))
+            .expect("written");
+        refused("two dimensions");
+        // A header that promises more than memory holds.
+        let header = format!(
+            "{:<117}\n",
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000, 1000000), }"
+        );
+        let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+        bytes.extend(header.bytes());
+        std::fs::write(&path, &bytes).expect("written");
+        refused("two dimensions");
+    }
+}

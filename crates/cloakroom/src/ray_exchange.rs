@@ -1,0 +1,292 @@
+//! Rays in, leaves out, as JSON: the form of `cloakroom trace`.
+
+use crate::assembly::Assembly;
+use crate::trace::{Launch, LeafTable, Limits, Stopped};
+use glam::DVec3;
+use optics::wave::{ComplexVector, transverse_basis, unit};
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::AtomicBool;
+
+/// How far from transverse a given electric field may be: |E·d|/|E|.
+const TRANSVERSE: f64 = 1e-6;
+
+/// A ray to be traced.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct RayRequest {
+    /// Where it starts, cm.
+    pub origin: [f64; 3],
+    /// Where it goes, of any length.
+    pub direction: [f64; 3],
+    /// Its polarization.
+    #[serde(default)]
+    pub polarization: Polarization,
+}
+
+/// The polarization of a ray to be traced.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
+#[serde(rename_all = "snake_case")]
+pub enum Polarization {
+    /// E in the plane of the ray and z (along x for a ray along z).
+    #[default]
+    Horizontal,
+    /// E perpendicular to the ray and z.
+    Vertical,
+    /// Any transverse field, of any norm; each component as [re, im].
+    ElectricField([[f64; 2]; 3]),
+}
+
+/// What became of one ray.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct RayReport {
+    /// The leaves, strongest first.
+    pub leaves: Vec<LeafReport>,
+    /// Share of the power absorbed, by media or on opaque bodies.
+    pub absorbed: f64,
+    /// Share of the power in branches too weak to follow.
+    pub pruned: f64,
+}
+
+/// One leaf of a ray tree.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct LeafReport {
+    /// The last point at which it left a device, cm; `None` if it met none.
+    pub position: Option<[f64; 3]>,
+    /// Its direction, a unit vector.
+    pub direction: [f64; 3],
+    /// Its share of the power.
+    pub power: f64,
+    /// Optical path length from the origin to `position`, cm; 0 if it met no device.
+    pub optical_path: f64,
+    /// Its electric field, each component as [re, im]; |E|² = power.
+    pub electric_field: [[f64; 2]; 3],
+}
+
+/// Why rays cannot be traced.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RayError {
+    /// A ray makes no sense.
+    #[error("ray {index} (counted from 0): {problem}")]
+    Ray {
+        /// Which ray, counted from 0.
+        index: usize,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// There are more rays than leaves can be kept of.
+    #[error(
+        "the leaves of {count} rays need {needed_mb} MB of memory, but only {available_mb} MB are free; trace them \
+         in parts"
+    )]
+    TooMany {
+        /// How many rays.
+        count: usize,
+        /// Memory needed, in 10^6 bytes.
+        needed_mb: u64,
+        /// Memory free, in 10^6 bytes.
+        available_mb: u64,
+    },
+    /// The work was stopped from outside.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl RayRequest {
+    /// The ray to launch.
+    ///
+    /// # Errors
+    ///
+    /// A sentence if a number is not finite, the direction or the field vanishes, or the field is not
+    /// transverse.
+    pub fn launch(&self) -> Result<Launch<1>, String> {
+        let origin = DVec3::from_array(self.origin);
+        let direction = DVec3::from_array(self.direction);
+        if !origin.is_finite() || !direction.is_finite() {
+            return Err("origin and direction must be finite numbers".to_owned());
+        }
+        let direction = unit(direction).ok_or("the direction is zero")?;
+        let (horizontal, vertical) = transverse_basis(direction, DVec3::Z, DVec3::X);
+        let electric = match self.polarization {
+            Polarization::Horizontal => horizontal.into(),
+            Polarization::Vertical => vertical.into(),
+            Polarization::ElectricField(components) => transverse(components, direction)?,
+        };
+        Ok(Launch { origin, direction, electric: [electric] })
+    }
+}
+
+/// A field of unit norm across the direction from one that is given nearly so.
+fn transverse(components: [[f64; 2]; 3], direction: DVec3) -> Result<ComplexVector, String> {
+    let part = |i: usize| DVec3::from_array(components.map(|component| component[i]));
+    let field = ComplexVector::new(part(0), part(1));
+    let largest = field.re.abs().max_element().max(field.im.abs().max_element());
+    if !field.re.is_finite() || !field.im.is_finite() {
+        return Err("the electric field must consist of finite numbers".to_owned());
+    }
+    if largest == 0.0 {
+        return Err("the electric field is zero".to_owned());
+    }
+    let field = field * (1.0 / largest);
+    let along = field.dot_real(direction);
+    let norm = field.norm_squared().sqrt();
+    if along.norm() > TRANSVERSE * norm {
+        return Err(format!(
+            "the electric field is not transverse: |E.d|/|E| is {:.3e}, at most {TRANSVERSE:.0e} is \
+             allowed",
+            along.norm() / norm
+        ));
+    }
+    let across = field - ComplexVector::new(direction * along.re, direction * along.im);
+    Ok(across * (1.0 / across.norm_squared().sqrt()))
+}
+
+/// Traces the rays `ray(0)` to `ray(count - 1)`: see [`LeafTable::trace`].
+///
+/// # Errors
+///
+/// If a ray makes no sense or starts in metal or an opaque body (the first such one is named), there is not enough memory for the
+/// leaves, or the work was stopped.
+pub fn leaf_table(
+    assembly: &Assembly,
+    limits: Limits,
+    count: usize,
+    ray: &(impl Fn(usize) -> RayRequest + Sync),
+    done: &(dyn Fn(u64) + Sync),
+    stop: &AtomicBool,
+) -> Result<LeafTable, RayError> {
+    let needed = count as u64 * LeafTable::BYTES_PER_RAY;
+    // Rays are numbered in 32 bits.
+    let most = u64::from(u32::MAX) * LeafTable::BYTES_PER_RAY;
+    let available = crate::memory::available().unwrap_or(most);
+    if needed > available || u32::try_from(count).is_err() {
+        let [needed_mb, available_mb] = [needed, available].map(|bytes| bytes / 1_000_000);
+        return Err(RayError::TooMany { count, needed_mb, available_mb });
+    }
+    let launch = |index: usize| launch(assembly, index, &ray(index));
+    LeafTable::trace(assembly, limits, count, &launch, done, stop)
+}
+
+/// The ray to launch, if it makes sense and starts in air or a medium.
+fn launch(assembly: &Assembly, index: usize, ray: &RayRequest) -> Result<Launch<1>, RayError> {
+    let launch = ray.launch().map_err(|problem| RayError::Ray { index, problem })?;
+    match assembly.region_around(launch.origin, launch.direction) {
+        Ok(_) => Ok(launch),
+        Err(device) => {
+            let problem = format!(
+                "it starts inside device {device} (counted from 0), in metal, an opaque body or a round lens; rays start in air or in another \
+                 medium"
+            );
+            Err(RayError::Ray { index, problem })
+        }
+    }
+}
+
+/// Traces rays, in order.
+///
+/// # Errors
+///
+/// If a ray makes no sense or starts in metal or an opaque body, or the work was stopped.
+pub fn trace_rays(
+    assembly: &Assembly,
+    limits: Limits,
+    rays: &[RayRequest],
+    stop: &AtomicBool,
+) -> Result<Vec<RayReport>, RayError> {
+    let table = leaf_table(assembly, limits, rays.len(), &|i| rays[i].clone(), &|_| {}, stop)?;
+    let mut leaves = (0..table.ray.len()).peekable();
+    let report = |ray: usize| {
+        let of_ray = std::iter::from_fn(|| leaves.next_if(|leaf| table.ray[*leaf] as usize == ray));
+        RayReport {
+            leaves: of_ray.map(|leaf| LeafReport::of(&table, leaf)).collect(),
+            absorbed: table.absorbed[ray],
+            pruned: table.pruned[ray],
+        }
+    };
+    Ok((0..rays.len()).map(report).collect())
+}
+
+impl LeafReport {
+    fn of(table: &LeafTable, leaf: usize) -> Self {
+        let position = table.position[leaf];
+        Self {
+            position: (!position[0].is_nan()).then_some(position),
+            direction: table.direction[leaf],
+            power: table.power[leaf],
+            optical_path: table.optical_path[leaf],
+            electric_field: table.electric_field[leaf].map(|c| [c.re, c.im]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+    use super::*;
+
+    use crate::trace::Tracer;
+    use crate::{render, scene_file};
+    use std::path::Path;
+
+    fn parse(json: &str) -> RayRequest {
+        serde_json::from_str(json).expect("a ray")
+    }
+
+    #[test]
+    fn polarizations_are_read_as_documented() {
+        let horizontal = parse(r#"{"origin": [0,0,0], "direction": [2,0,0]}"#).launch();
+        assert_eq!(horizontal.map(|launch| launch.electric[0]), Ok(DVec3::Z.into()));
+        let vertical =
+            parse(r#"{"origin": [0,0,0], "direction": [1,0,0], "polarization": "vertical"}"#);
+        assert_eq!(vertical.launch().map(|launch| launch.electric[0]), Ok(DVec3::Y.into()));
+        let along_z = parse(r#"{"origin": [0,0,0], "direction": [0,0,-3]}"#).launch();
+        assert_eq!(along_z.map(|launch| launch.electric[0]), Ok(DVec3::X.into()));
+        let circular = parse(
+            r#"{"origin": [0,0,0], "direction": [1,0,0],
+                "polarization": {"electric_field": [[0,0],[3,0],[0,4]]}}"#,
+        );
+        let field = circular.launch().expect("transverse").electric[0];
+        assert!((field.re.y - 0.6).abs() < 1e-15 && (field.im.z - 0.8).abs() < 1e-15);
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let refused = |json: &str| parse(json).launch().expect_err("must be refused");
+        assert!(refused(r#"{"origin": [0,0,0], "direction": [0,0,0]}"#).contains("zero"));
+        let along = r#"{"origin": [0,0,0], "direction": [1,0,0],
+            "polarization": {"electric_field": [[1,0],[1,0],[0,0]]}}"#;
+        assert!(refused(along).contains("not transverse"));
+        let unknown: Result<RayRequest, _> =
+            serde_json::from_str(r#"{"origin": [0,0,0], "direction": [1,0,0], "colour": 1}"#);
+        assert!(unknown.is_err());
+    }
+
+    #[test]
+    fn rays_are_those_that_are_traced_alone() {
+        // Deep trees and flat ones, rays that miss, two devices with cells of their own.
+        let text = "[[device]]\nkind = \"double-gaussian-cloak\"\n\
+                    [[device]]\nkind = \"gaussian-carpet\"\nposition = [0, -60, 0]\n\
+                    [[device]]\nkind = \"square-cloak\"\nmaterial = \"negative-uniaxial\"\nposition = [0, 60, 0]\n";
+        let scene = scene_file::parse(text, "a test", Path::new(""), &[]).unwrap().scene;
+        let assembly = render::assembly(&scene).unwrap();
+        let limits = Limits { min_power: 1e-6, tolerance: 1e-5 };
+        let count = 165;
+        let ray = |index: usize| RayRequest {
+            origin: [-100.0, 0.0, 0.0],
+            direction: [100.0, (index * 17 % 181) as f64 - 90.0, (index * 5 % 31) as f64 - 15.0],
+            polarization: Polarization::Horizontal,
+        };
+        let stop = AtomicBool::new(false);
+        let together = leaf_table(&assembly, limits, count, &ray, &|_| {}, &stop).unwrap();
+        let mut alone = LeafTable::default();
+        let mut tracer = Tracer::<1>::new(&assembly, limits);
+        for index in 0..count {
+            let (leaves, outcome) = tracer.trace(&ray(index).launch().unwrap());
+            alone.push(index, leaves, outcome, &mut Vec::new());
+        }
+        // NaN stands for what met nothing.
+        assert_eq!(format!("{together:?}"), format!("{alone:?}"));
+        assert!(together.position.iter().any(|position| position[0].is_nan()));
+        assert!(together.ray.len() > 2 * count);
+    }
+}

@@ -1,0 +1,195 @@
+//! Devices that stand in bodies, and rays that start in media.
+
+use crate::rays::{Numbers, assembly, launch, refusal};
+use cloakroom::assembly::Assembly;
+use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
+use glam::DVec3;
+
+const LIMITS: Limits = Limits { min_power: 1e-9, tolerance: 1e-8 };
+
+/// The strongest leaf of a ray, if not all of it is trapped.
+fn strongest_of(assembly: &Assembly, ray: &Launch<2>) -> Option<Leaf<2>> {
+    let mut tracer = Tracer::new(assembly, LIMITS);
+    let (leaves, outcome) = tracer.trace(ray);
+    assert_eq!(outcome.stats.lost, 0, "{ray:?}");
+    let sum = leaves.iter().map(|leaf| leaf.power[0]).sum::<f64>();
+    assert!((sum + outcome.absorbed[0] + outcome.pruned[0] - 1.0).abs() < 1e-9, "{sum}");
+    (!leaves.is_empty()).then(|| crate::rays::strongest(leaves))
+}
+
+fn strongest(assembly: &Assembly, ray: &Launch<2>) -> Leaf<2> {
+    strongest_of(assembly, ray).expect("a leaf")
+}
+
+/// A block of a medium that is nothing but a name: light goes through it as through air.
+const OF_AIR: &str = "[[device]]\nkind = \"body\"\nshape = \"box\"\nsize = [60, 60, 60]\n";
+
+#[test]
+fn a_block_of_nothing_around_a_device_changes_nothing() {
+    let mut numbers = Numbers(5);
+    for device in [
+        "kind = \"square-cloak\"\nlength = 20\n",
+        "kind = \"square-cloak\"\nlength = 20\nmaterial = \"positive-uniaxial\"\n",
+        "kind = \"square-cloak\"\nlength = 20\nrotation = 12\ncore = \"open\"\n",
+        "kind = \"double-gaussian-cloak\"\nwidth = 30\nheight = 30\nw = 6\nh = 2.5\nlength = 20\n",
+        "kind = \"cylinder-cloak\"\nlength = 20\naxis = [0.3, 1, 0.2]\n",
+        "kind = \"sphere-cloak\"\n",
+        "kind = \"invisible-sphere\"\nmaterial = \"regularized\"\n",
+        "kind = \"luneburg-lens\"\n",
+        "kind = \"mirror-detour\"\noffset = 3\nhalf_length = 9\nlength = 20\n",
+        "kind = \"gaussian-carpet\"\nwidth = 20\nheight = 10\nw = 4\nh = 1.7\nlength = 20\nfloor = 0\n",
+    ] {
+        let device = format!("[[device]]\n{device}");
+        let (alone, immersed) = (assembly(&device), assembly(&(device.clone() + OF_AIR)));
+        for _ in 0..40 {
+            let from = numbers.direction() * 100.0;
+            let aim = 12.0 * numbers.next() * numbers.direction();
+            let ray = launch(from, aim - from);
+            let [one, other] = [&alone, &immersed].map(|assembly| strongest_of(assembly, &ray));
+            assert_eq!(one.is_some(), other.is_some(), "{device} {ray:?}");
+            let (Some(one), Some(other)) = (one, other) else { continue };
+            assert!((one.power[0] - other.power[0]).abs() < 1e-9, "{device} {one:?} {other:?}");
+            assert!(one.direction.distance(other.direction) < 1e-9, "{device} {one:?} {other:?}");
+            // The block's border is the last that the other leaves.
+            let way = other.position - one.position;
+            if one.met_device {
+                assert!((way - one.direction * way.dot(one.direction)).length() < 1e-9, "{device}");
+                let path = other.optical_path - one.optical_path;
+                assert!((path - way.dot(one.direction)).abs() < 1e-9, "{device} {path} {way}");
+            }
+        }
+    }
+}
+
+#[test]
+fn in_a_matched_block_a_perfect_cloak_changes_nothing_but_the_path() {
+    // The block is matched, so that it reflects nothing; the sphere cloak in it is that of air, and bends. A cloak of the
+    // block's own medium would not: a prism device of the block's tensor times the cloak's is the square cloak in it.
+    let block = "[[device]]\nkind = \"body\"\nshape = \"box\"\nsize = [60, 60, 60]\npermittivity = 2\npermeability = 2\n";
+    let (empty, full) =
+        (assembly(block), assembly(&(block.to_owned() + &scaled_square_cloak(2.0))));
+    let mut numbers = Numbers(9);
+    for _ in 0..200 {
+        let from = DVec3::new(-100.0, numbers.between(-8.0, 8.0), numbers.between(-8.0, 8.0));
+        let ray = launch(from, DVec3::new(1.0, 0.0, numbers.between(-0.05, 0.05)));
+        let [one, other] = [&empty, &full].map(|assembly| strongest(assembly, &ray));
+        assert!((one.power[0] - other.power[0]).abs() < 1e-9, "{one:?} {other:?}");
+        assert!(one.direction.distance(other.direction) < 1e-9, "{one:?} {other:?}");
+        assert!(one.position.distance(other.position) < 1e-8, "{one:?} {other:?}");
+        assert!((one.optical_path - other.optical_path).abs() < 1e-8, "{one:?} {other:?}");
+    }
+}
+
+/// The segments of the square cloak with both tensors times a number, as prisms: the cloak of a medium of that ε = µ.
+fn scaled_square_cloak(factor: f64) -> String {
+    use cloakroom::device::Region;
+    let cloak = assembly("[[device]]\nkind = \"square-cloak\"\n");
+    let d = 14.1 * 0.5f64.sqrt();
+    let b = d / 3f64.sqrt();
+    let mut scene = String::from("[[device]]\nkind = \"prisms\"\nlength = 40\n");
+    let signs = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+    for (region, (x, y)) in cloak.devices()[0].structure.regions.iter().zip(signs) {
+        let Region::Homogeneous(region) = region else { panic!("homogeneous") };
+        let tensor = *region.medium.permittivity() * factor;
+        let row = |i: usize| format!("{:?}", [0, 1, 2].map(|j| tensor.col(j)[i]));
+        let rows = format!("[{}, {}, {}]", row(0), row(1), row(2));
+        scene += &format!(
+            "[[device.prism]]\ncorners = [[{:?}, 0], [0, {:?}], [0, {:?}]]\npermittivity = {rows}\npermeability = {rows}\n",
+            x * d,
+            y * d,
+            y * b
+        );
+    }
+    scene
+        + &format!(
+            "[[device.prism]]\ncorners = [[{d:?}, 0], [0, {b:?}], [{:?}, 0], [0, {:?}]]\nmetal = true\n",
+            -d, -b
+        )
+}
+
+#[test]
+fn rays_that_start_in_glass_leave_it_by_snell_and_fresnel() {
+    for glass in [
+        "[[device]]\nkind = \"body\"\nshape = \"box\"\nsize = [10, 40, 40]\npermittivity = 2.25\n",
+        "[[device]]\nkind = \"prisms\"\n[[device.prism]]\ncorners = [[-5, -20], [5, -20], [5, 20], [-5, 20]]\npermittivity = 2.25\n",
+    ] {
+        let assembly = assembly(glass);
+        for angle in [0.0, 10.0, 25.0, 40.0_f64] {
+            let (sin, cos) = angle.to_radians().sin_cos();
+            let leaf =
+                strongest(&assembly, &launch(DVec3::new(1.0, 0.5, 0.0), DVec3::new(cos, sin, 0.0)));
+            assert!((leaf.direction.y - 1.5 * sin).abs() < 1e-12, "{leaf:?}");
+            let cos_t = (1.0 - 2.25 * sin * sin).sqrt();
+            let [s, p] = [
+                (1.5 * cos - cos_t) / (1.5 * cos + cos_t),
+                (cos - 1.5 * cos_t) / (cos + 1.5 * cos_t),
+            ];
+            // Horizontal light has its field along z: s.
+            assert!((leaf.power[0] - (1.0 - s * s)).abs() < 1e-9, "{leaf:?}");
+            assert!((leaf.power[1] - (1.0 - p * p)).abs() < 1e-9, "{leaf:?}");
+            assert!((leaf.optical_path - 1.5 * 4.0 / cos).abs() < 1e-9, "{leaf:?}");
+        }
+    }
+}
+
+#[test]
+fn rays_that_start_in_a_device_are_those_that_come_by() {
+    // In a medium that reflects nothing, what starts on the way of a ray leaves as it does.
+    let mut numbers = Numbers(23);
+    for device in
+        ["kind = \"square-cloak\"", "kind = \"sphere-cloak\"", "kind = \"cylinder-cloak\""]
+    {
+        let assembly = assembly(&format!("[[device]]\n{device}\n"));
+        for _ in 0..20 {
+            let from = DVec3::new(-30.0, numbers.between(-7.0, 7.0), numbers.between(-4.0, 4.0));
+            let ray = launch(from, DVec3::X);
+            let whole = strongest(&assembly, &ray);
+            let lines = cloakroom::trace::lines(&assembly, LIMITS, &ray, [1.0, 0.0], 1.0);
+            let inside: Vec<_> = lines
+                .iter()
+                .filter(|line| !line.leaves && line.points[0].optical_path > 1.0)
+                .collect();
+            let Some(line) = inside.first() else { continue };
+            // Far from the core, where a piece of the drawn way hardly bends.
+            let middle = (line.points.len() / 8).max(1);
+            if line.points.len() < 2 {
+                continue;
+            }
+            // The middle of a piece of the way, and its direction.
+            let [a, b] = if line.points.len() == 2 {
+                [line.points[0], line.points[1]]
+            } else {
+                [line.points[middle - 1], line.points[middle]]
+            };
+            let (at, along) = (a.position.midpoint(b.position), b.position - a.position);
+            if along.length() < 1e-6 {
+                continue;
+            }
+            let started = strongest(&assembly, &launch(at, along));
+            // The way is drawn in straight pieces.
+            let near = if line.points.len() == 2 { 1e-9 } else { 0.1 };
+            assert!(
+                started.direction.distance(whole.direction) < near,
+                "{device} {whole:?} {started:?}"
+            );
+            assert!((started.power[0] - 1.0).abs() < 1e-6, "{device} {started:?}");
+        }
+    }
+}
+
+#[test]
+fn nothing_starts_in_metal() {
+    let scene =
+        "[camera]\nposition = [0, 0, 0]\ntarget = [1, 0, 0]\n[[device]]\nkind = \"square-cloak\"\n";
+    let loaded =
+        cloakroom::scene_file::parse(scene, "test", std::path::Path::new(""), &[]).unwrap();
+    let error =
+        cloakroom::render::PreparedScene::new(&loaded.scene).map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("in metal or an opaque body"), "{error}");
+    // The closed forms of round lenses go from border to border.
+    let lens = assembly("[[device]]\nkind = \"luneburg-lens\"\n");
+    assert_eq!(lens.region_around(DVec3::X, DVec3::X), Err(0));
+    // A device that only reaches into a body.
+    let half = "[[device]]\nkind = \"sphere-cloak\"\nposition = [30, 0, 0]\n";
+    assert!(refusal(&(half.to_owned() + OF_AIR)).contains("overlaps"));
+}

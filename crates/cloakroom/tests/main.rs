@@ -1,0 +1,33 @@
+//! All tests of scenes, devices and pictures, in one program: one is linked faster than many.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod adaptive;
+mod any_pose;
+mod birefringent_square_cloak;
+mod birefringent_square_cloak_tree;
+mod body;
+mod carpet_cloaks;
+mod devices;
+mod double_gaussian_cloak;
+mod equation_of_motion;
+mod first_face;
+mod glass_prism;
+mod graded;
+mod immersed;
+mod imperfection;
+mod long;
+mod material;
+mod mirror_detour;
+mod open_core;
+mod pictured_bodies;
+mod pictures;
+mod plain_tree;
+mod prisms;
+mod pruning;
+mod pulses;
+mod quality;
+mod radial_devices;
+mod rays;
+mod square_cloak;
+mod stokes;
+mod touching;

@@ -1,0 +1,153 @@
+//! Colour bars: which colour stands for which number.
+
+use super::axes::Frame;
+use super::color_scale::ColorScale;
+use super::drawing::{Drawing, Face, INK, Ink, LINE, Shape, Words};
+use super::quantity::Quantity;
+use super::ticks::{Axis, axis};
+use cloakroom::output::RgbImage;
+use glam::{DAffine2, DVec2};
+
+/// The key to a map of colours: a vertical bar with ticks, and what they count written upwards beside
+/// it. An end beyond which there are numbers ([`ColorScale::is_clipped`]) is drawn as a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColorBar {
+    /// The colours.
+    pub scale: ColorScale,
+    /// What the numbers are.
+    pub quantity: Quantity,
+}
+
+/// The parts of a colour bar in type of a size.
+struct Layout {
+    axis: Axis,
+    /// The width of the widest label.
+    widest: f64,
+    /// The lines of the title.
+    title: Vec<String>,
+}
+
+/// In type of size 1: the width of the colours, and where labels begin to their right.
+const COLORS: f64 = 0.8;
+const LABELS: f64 = COLORS + 0.5;
+/// The steps of colour.
+const STEPS: u32 = 256;
+
+impl ColorBar {
+    fn layout(&self, height: f64, text: f64) -> Layout {
+        let axis = axis(&self.quantity, self.scale.range(), (height / (1.6 * text)) as usize);
+        let widths = axis.ticks.iter().map(|tick| Face::Regular.width(&tick.label, text));
+        let widest = widths.fold(0.0, f64::max);
+        let title = Face::Regular.wrap(&axis.title, text, height);
+        Layout { axis, widest, title }
+    }
+
+    /// The width that it takes up if it is so high, with type of that size.
+    pub(super) fn width(&self, height: f64, text: f64) -> f64 {
+        let Layout { widest, title, .. } = self.layout(height, text);
+        widest + (LABELS + 0.2 + LINE * title.len() as f64) * text
+    }
+
+    /// Draws it with the corner of the colours at a point. They are as high as told; labels, and the points, reach
+    /// beyond them by up to half the height of the type.
+    pub(super) fn draw(&self, drawing: &mut Drawing, at: DVec2, height: f64, text: f64) {
+        let Layout { axis, widest, title } = self.layout(height, text);
+        let width = COLORS * text;
+        let frame = Frame { corner: at, size: DVec2::new(width, height), text };
+        let image = RgbImage::from_fn(1, STEPS, |_, row| {
+            self.scale.color_at(1.0 - (f64::from(row) + 0.5) / f64::from(STEPS))
+        });
+        let place = DAffine2::from_cols(DVec2::X * width, DVec2::Y * height, at);
+        drawing.add("color-bar", Shape::Image { image, cells: true, place });
+        frame.draw(drawing);
+        let thin = Frame::thin(text);
+        let (below, above) = self.scale.is_clipped();
+        for (clipped, share, up) in [(above, 1.0, -0.5), (below, 0.0, 0.5)] {
+            if clipped {
+                // A point: there are numbers beyond.
+                let end = frame.place(DVec2::Y * share);
+                let tip = end + DVec2::new(0.5, up) * width;
+                let point = Shape::Area(vec![vec![end, tip, end + DVec2::X * width]]);
+                let ink = Ink::new(self.scale.color_at(share).0);
+                drawing.add("color-bar-end", point).filled(ink).stroked(INK, thin);
+            }
+        }
+        // To the right, so that digits stand below each other.
+        let right = at.x + LABELS * text + widest;
+        for tick in &axis.ticks {
+            let from = frame.place(DVec2::new(1.0, tick.place));
+            let line = vec![from, from + DVec2::X * 0.3 * text];
+            drawing.add("tick", Shape::Line(line)).stroked(INK, thin);
+            let words = Words::new(tick.label.clone(), DVec2::new(right, from.y), text);
+            drawing.add("tick-label", Shape::Words(words.anchored(1.0))).filled(INK);
+        }
+        for (line, outwards) in title.iter().zip(0..) {
+            let x = right + (0.8 + LINE * f64::from(outwards)) * text;
+            let words = Words::new(line.clone(), DVec2::new(x, at.y + height / 2.0), text);
+            drawing.add("color-bar-title", Shape::Words(words.turned(90.0))).filled(INK);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bar(numbers: &[f64]) -> ColorBar {
+        ColorBar {
+            scale: ColorScale::new(numbers.iter().copied(), 1e-15),
+            quantity: Quantity::of_channel("time_of_flight_difference"),
+        }
+    }
+
+    fn drawn(bar: &ColorBar, height: f64) -> Drawing {
+        let size = DVec2::new(bar.width(height, 16.0), height) + 40.0;
+        let mut drawing = Drawing::new(size, 16.0);
+        bar.draw(&mut drawing, DVec2::splat(20.0), height, 16.0);
+        drawing
+    }
+
+    #[test]
+    fn the_bar_shows_the_colours_from_low_to_high() {
+        let bar = bar(&[0.0, 1e-15]);
+        let image = drawn(&bar, 256.0);
+        let image = image.to_image(image.pixels()).expect("an image");
+        for row in [3, 100, 250] {
+            let place = 1.0 - (f64::from(row) + 0.5) / 256.0;
+            assert_eq!(*image.get_pixel(26, 20 + row), bar.scale.color_at(place));
+        }
+        assert_eq!(image.get_pixel(26, 17).0, [255; 3]);
+    }
+
+    #[test]
+    fn it_keeps_to_its_room() {
+        for height in [60.0, 240.0, 1000.0] {
+            for numbers in [vec![], vec![1.0], vec![-1.0, 1.0], vec![3.0, 3.000_000_1]] {
+                let bar = bar(&numbers);
+                let drawing = drawn(&bar, height);
+                let words = drawing.elements.iter().filter_map(|element| match &element.shape {
+                    Shape::Words(words) => Some(words),
+                    _ => None,
+                });
+                for words in words {
+                    for corner in words.corners() {
+                        let inside = corner.cmpge(DVec2::new(20.0, 12.0)).all()
+                            && corner.cmple(drawing.size - DVec2::new(20.0, 12.0)).all();
+                        assert!(inside, "{words:?} at {height}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn clipped_ends_are_points() {
+        let mut numbers: Vec<f64> = (0..10_000).map(f64::from).collect();
+        numbers[5000] = 1e9;
+        let bar = bar(&numbers);
+        let drawing = drawn(&bar, 200.0);
+        let ends: Vec<_> = drawing.of_class("color-bar-end").collect();
+        assert_eq!(ends.len(), 1);
+        assert_eq!(ends[0].fill, Some(Ink::new(bar.scale.color_at(1.0).0)));
+    }
+}

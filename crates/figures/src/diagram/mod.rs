@@ -1,0 +1,199 @@
+//! Ray diagrams as in books: the devices, a fan or bundle of rays through them, and marks of equal optical path.
+
+mod rays;
+mod solids;
+mod source;
+mod view;
+
+pub use source::Source;
+pub use view::Projected;
+
+use super::drawing::Drawing;
+use super::setting::{Devices, TEXT, sheet};
+use cloakroom::render::{PreparedSceneError, assembly, metadata};
+use cloakroom::scene::Scene;
+use cloakroom::trace::{Limits, Line, lines};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+use view::{Scenery, SpaceView};
+
+/// What a ray diagram shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DiagramSettings {
+    /// Where the rays come from.
+    pub source: Source,
+    /// How many there are; for a projection in space, how many in each of that many layers.
+    pub rays: u32,
+    /// How many layers of rays lie one behind the other along z; 1 for a cross-section.
+    pub layers: u32,
+    /// The plane z = const that the rays start in, cm; `None`: that of the first device's origin.
+    pub z: Option<f64>,
+    /// The width of a bundle, cm; `None`: that of the devices.
+    pub width: Option<f64>,
+    /// The shares of horizontal and vertical polarization.
+    pub polarization: [f64; 2],
+    /// The distance of marks of equal optical path, cm, if there are any.
+    pub wavefronts: Option<f64>,
+    /// Branches weaker than this are not drawn.
+    pub min_power: f64,
+    /// How space is shown.
+    pub projected: Projected,
+    /// Width and height in pixels: their ratio is that of the sheet.
+    pub size: [u32; 2],
+}
+
+impl Default for DiagramSettings {
+    fn default() -> Self {
+        Self {
+            source: Source::Parallel { degrees: 0.0 },
+            // Even, so that none runs on the axis, where cloaks are singular.
+            rays: 20,
+            layers: 1,
+            z: None,
+            width: None,
+            polarization: [0.5, 0.5],
+            wavefronts: None,
+            min_power: 0.01,
+            projected: Projected::Section,
+            size: [1024, 768],
+        }
+    }
+}
+
+/// A ray diagram.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagram {
+    /// The drawing.
+    pub drawing: Drawing,
+    /// Scene and version, for files.
+    pub metadata: Vec<(String, String)>,
+}
+
+/// Why a ray diagram cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum DiagramError {
+    /// The scene is impossible.
+    #[error(transparent)]
+    Scene(#[from] PreparedSceneError),
+    /// There is nothing to draw.
+    #[error("the scene has no device that could be drawn")]
+    NoDevice,
+    /// A ray would start in a device.
+    #[error("the rays start inside device {device} (counted from 0); they must start in air")]
+    Inside {
+        /// Which device, counted from 0.
+        device: usize,
+    },
+    /// A number makes no sense.
+    #[error("{name} is {value}; it must be {allowed}")]
+    Setting {
+        /// What it is the number of.
+        name: &'static str,
+        /// The number.
+        value: f64,
+        /// What would do.
+        allowed: &'static str,
+    },
+    /// The work was stopped from outside.
+    #[error("stopped")]
+    Stopped,
+}
+
+/// More rays than this are no diagram.
+const MOST_RAYS: u32 = 2000;
+
+/// Draws the ray diagram of a scene; `stop` ends the work.
+///
+/// # Errors
+///
+/// If the scene is impossible or empty, a setting makes no sense, or the work was stopped.
+pub fn diagram(
+    scene: &Scene,
+    settings: &DiagramSettings,
+    stop: &AtomicBool,
+) -> Result<Diagram, DiagramError> {
+    check(settings)?;
+    let assembly = assembly(scene)?;
+    let devices = Devices::new(&assembly);
+    let bounds =
+        view::bounds(&assembly).or_else(|| devices.bounds()).ok_or(DiagramError::NoDevice)?;
+    let z = settings.z.unwrap_or_else(|| assembly.devices()[0].pose.origin().z);
+    let scenery = Scenery::new(bounds, z, settings);
+    let launches = settings.source.launches(scene, settings, &scenery);
+    if let Some(device) =
+        launches.iter().find_map(|launch| assembly.device_containing(launch.origin))
+    {
+        return Err(DiagramError::Inside { device });
+    }
+    let limits = Limits { min_power: settings.min_power, tolerance: scene.trace.tolerance };
+    let trees: Vec<Vec<Line>> = launches
+        .par_iter()
+        .map(|launch| {
+            if stop.load(Ordering::Relaxed) {
+                return Err(DiagramError::Stopped);
+            }
+            let mut tree = lines(&assembly, limits, launch, settings.polarization, scenery.reach());
+            tree.retain(|line| line.power >= settings.min_power);
+            Ok(tree)
+        })
+        .collect::<Result<_, _>>()?;
+    let mut drawing = Drawing::new(sheet(settings.size), TEXT);
+    match settings.projected {
+        Projected::Section => {
+            let view = scenery.section_view(drawing.size, devices.has_bar());
+            devices.draw(&mut drawing, &view);
+            let place = |at: DVec3| view.place(at.truncate());
+            let frame = view.frame();
+            if let Some(distance) = settings.wavefronts {
+                let fronts = rays::Wavefronts { distance, apart: scenery.apart(trees.len()) };
+                fronts.draw(&mut drawing, &place, &frame, &trees, &assembly);
+            }
+            rays::draw(&mut drawing, &place, &frame, &trees);
+            view::draw_around(&mut drawing, &devices, settings);
+        }
+        Projected::Space { azimuth, elevation } => {
+            let view = SpaceView::new(&scenery, drawing.size, [azimuth, elevation]);
+            let fronts: Vec<Vec<DVec3>> = settings.wavefronts.map_or_else(Vec::new, |distance| {
+                let count = settings.rays as usize;
+                let wavefronts = rays::Wavefronts { distance, apart: scenery.apart(count) };
+                trees.chunks(count).flat_map(|layer| wavefronts.lines(layer, &assembly)).collect()
+            });
+            solids::draw(&mut drawing, &view, &assembly, (&trees, &fronts), &scenery);
+            view::draw_key(&mut drawing, settings);
+        }
+    }
+    Ok(Diagram { drawing, metadata: metadata(scene) })
+}
+
+fn check(settings: &DiagramSettings) -> Result<(), DiagramError> {
+    let refuse = |name, value, allowed| Err(DiagramError::Setting { name, value, allowed });
+    let positive = "above 0";
+    let rays = u64::from(settings.rays) * u64::from(settings.layers);
+    if rays == 0 || rays > u64::from(MOST_RAYS) {
+        return refuse("the number of rays", rays as f64, "from 1 to 2000");
+    }
+    for (name, value) in [
+        ("the width of the bundle", settings.width),
+        ("the distance of wavefronts", settings.wavefronts),
+        ("the least power", Some(settings.min_power)),
+    ] {
+        if let Some(value) = value
+            && !(value > 0.0 && value.is_finite())
+        {
+            return refuse(name, value, positive);
+        }
+    }
+    let numbers = match settings.source {
+        Source::Parallel { degrees } => vec![degrees],
+        Source::Point(point) => point.to_array().to_vec(),
+        Source::Camera => Vec::new(),
+    };
+    match numbers.into_iter().chain(settings.z).find(|number| !number.is_finite()) {
+        Some(number) => refuse("a coordinate or an angle", number, "a finite number"),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,225 @@
+//! What part of space a diagram shows, and how.
+
+use super::super::drawing::{Drawing, Face, Shape, Words};
+use super::super::setting::{
+    AXES, BAR, Devices, INK, MARGIN, PAPER, TEXT, THIN, View, corners, draw_axes,
+};
+use super::{DiagramSettings, Source, rays};
+use cloakroom::assembly::Assembly;
+use cloakroom::device::REACH;
+use glam::{DVec2, DVec3};
+
+/// How space is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projected {
+    /// Onto the xy-plane: the cross-section.
+    Section,
+    /// In parallel projection, seen from a direction.
+    Space {
+        /// Degrees about y, from the view along -z (0: x to the right) towards that along -x.
+        azimuth: f64,
+        /// Degrees above the xz-plane.
+        elevation: f64,
+    },
+}
+
+/// The row with the key.
+const KEY: f64 = 1.8 * TEXT;
+
+/// Least and greatest x and y of what devices take up, cm, without thin mirrors such as the floors of carpets; of what
+/// is endless, as far as it is wide.
+pub(super) fn bounds(assembly: &Assembly) -> Option<[DVec2; 2]> {
+    /// What is shown of something without any end, cm to either side.
+    const ENDLESS: f64 = 10.0;
+    let boxes = assembly.devices().iter().filter_map(|placed| {
+        let [low, high] = placed.structure.hull.bounds(&placed.pose)?.map(DVec3::truncate);
+        let size = high - low;
+        let shown = if size.min_element() < REACH { 1.5 * size.min_element() } else { ENDLESS };
+        let middle = placed.pose.origin().truncate();
+        let is_endless = size.cmpge(DVec2::splat(REACH));
+        Some([
+            DVec2::select(is_endless, middle - shown, low),
+            DVec2::select(is_endless, middle + shown, high),
+        ])
+    });
+    boxes.reduce(|[low, high], [from, to]| [low.min(from), high.max(to)])
+}
+
+/// The devices' place, and how much around them is shown.
+pub(super) struct Scenery {
+    bounds: [DVec2; 2],
+    shown: [DVec2; 2],
+    pub z: f64,
+}
+
+impl Scenery {
+    pub fn new([low, high]: [DVec2; 2], z: f64, settings: &DiagramSettings) -> Self {
+        let size = (high - low).max_element();
+        // Room for rays to come and to go.
+        let along = match settings.source {
+            Source::Parallel { degrees } => DVec2::from_angle(degrees.to_radians()).abs(),
+            Source::Point(_) | Source::Camera => DVec2::X,
+        };
+        let around = size * (0.06 + 0.4 * along);
+        let mut shown = [low - around, high + around];
+        let near = |point: &DVec2| point.distance((low + high) / 2.0) < 4.0 * size;
+        if let Some(point) = settings.source.place().filter(near) {
+            shown = [shown[0].min(point - 0.05 * size), shown[1].max(point + 0.05 * size)];
+        }
+        Self { bounds: [low, high], shown, z }
+    }
+
+    /// The middle of the devices.
+    pub fn middle(&self) -> DVec2 {
+        (self.bounds[0] + self.bounds[1]) / 2.0
+    }
+
+    /// The radius of a circle around the devices.
+    pub fn radius(&self) -> f64 {
+        0.5 * self.bounds[0].distance(self.bounds[1])
+    }
+
+    /// The width of a bundle that is a little wider than the devices in a direction.
+    pub fn width(&self, across: DVec2) -> f64 {
+        1.06 * (self.bounds[1] - self.bounds[0]).dot(across.abs())
+    }
+
+    /// How far before the middle a bundle starts: out of what is shown.
+    pub fn start(&self) -> f64 {
+        self.shown[0].distance(self.shown[1])
+    }
+
+    /// How far along z space is shown, where devices have no end.
+    pub fn depth(&self) -> f64 {
+        (self.bounds[1] - self.bounds[0]).max_element()
+    }
+
+    /// How far apart the points of a wavefront may be on that many neighbouring rays.
+    pub fn apart(&self, rays: usize) -> f64 {
+        6.0 * self.depth() / rays.max(4) as f64
+    }
+
+    /// How far leaves are followed.
+    pub fn reach(&self) -> f64 {
+        2.0 * self.start()
+    }
+
+    /// Least and greatest x and y that are shown, cm.
+    pub fn shown(&self) -> [DVec2; 2] {
+        self.shown
+    }
+
+    /// The view of the cross-section on a sheet; its window is what is shown.
+    pub fn section_view(&self, sheet: DVec2, bar: bool) -> View {
+        let bar = if bar { BAR } else { 0.0 };
+        let from = DVec2::splat(MARGIN);
+        let size = DVec2::new(sheet.x - 2.0 * MARGIN - bar, sheet.y - 2.0 * MARGIN - KEY);
+        View::fitting(self.shown, [from, size])
+    }
+}
+
+/// Draws what stands around a cross-section: the colour bar, the axes and the key.
+pub(super) fn draw_around(
+    drawing: &mut Drawing,
+    devices: &Devices<'_>,
+    settings: &DiagramSettings,
+) {
+    let sheet = drawing.size;
+    let height = 0.7 * sheet.y;
+    let at = DVec2::new(sheet.x - MARGIN - BAR + 0.6 * TEXT, 0.5 * (sheet.y - KEY - height));
+    devices.draw_bar(drawing, (at, height));
+    draw_axes(drawing, sheet - AXES - DVec2::new(MARGIN, 4.0));
+    draw_key(drawing, settings);
+}
+
+/// Draws what the strokes stand for, in a row at the lower edge.
+pub(super) fn draw_key(drawing: &mut Drawing, settings: &DiagramSettings) {
+    let mut x = MARGIN;
+    let y = drawing.size.y - 0.5 * KEY;
+    let mut write = |drawing: &mut Drawing, text: String, gap: f64| {
+        let words = Words::new(text, DVec2::new(x, y), 0.8 * TEXT).anchored(0.0);
+        x += words.width() + gap;
+        drawing.add("key", Shape::Words(words)).filled(INK);
+        x
+    };
+    let mut at = write(drawing, "power".to_owned(), 0.6 * TEXT);
+    for power in [1.0, 0.3, 0.1, 0.03].into_iter().filter(|power| *power >= settings.min_power) {
+        let line = vec![DVec2::new(at, y), DVec2::new(at + 1.8 * TEXT, y)];
+        let (ink, width) = rays::stroke(power);
+        drawing.add("key-ray", Shape::Line(line)).stroked(ink, width);
+        write(drawing, String::new(), 2.1 * TEXT);
+        at = write(drawing, format!("{} %", power * 100.0), 0.9 * TEXT);
+    }
+    if let Some(distance) = settings.wavefronts {
+        let line = vec![DVec2::new(at, y), DVec2::new(at + 1.8 * TEXT, y)];
+        drawing.add("key-wavefront", Shape::Line(line)).stroked(rays::FRONT, rays::FRONT_WIDTH);
+        write(drawing, String::new(), 2.1 * TEXT);
+        write(drawing, format!("equal optical path, every {distance} cm"), 0.0);
+    }
+}
+
+/// A parallel projection of space onto the sheet.
+pub(super) struct SpaceView {
+    right: DVec3,
+    up: DVec3,
+    /// Towards whoever looks.
+    pub toward: DVec3,
+    scale: f64,
+    middle: DVec3,
+    centre: DVec2,
+    sheet: DVec2,
+}
+
+impl SpaceView {
+    pub fn new(scenery: &Scenery, sheet: DVec2, [azimuth, elevation]: [f64; 2]) -> Self {
+        let (sin, cos) = azimuth.to_radians().sin_cos();
+        let (rise, level) = elevation.to_radians().sin_cos();
+        let right = DVec3::new(cos, 0.0, -sin);
+        let back = DVec3::new(sin, 0.0, cos);
+        let toward = back * level + DVec3::Y * rise;
+        let up = toward.cross(right);
+        let [low, high] = scenery.shown();
+        let half = 0.5 * scenery.depth();
+        let middle = ((low + high) / 2.0).extend(scenery.z);
+        let corners = (0..8).map(|k| {
+            let pick = |bit: u32, a: f64, b: f64| if k >> bit & 1 == 0 { a } else { b };
+            DVec3::new(
+                pick(0, low.x, high.x),
+                pick(1, low.y, high.y),
+                scenery.z + pick(2, -half, half),
+            ) - middle
+        });
+        let reach = corners.fold(DVec2::splat(1e-6), |most, corner| {
+            most.max(DVec2::new(corner.dot(right), corner.dot(up)).abs())
+        });
+        let room = DVec2::new(sheet.x, sheet.y - KEY) / 2.0 - MARGIN;
+        let centre = DVec2::new(sheet.x, sheet.y - KEY) / 2.0;
+        Self { right, up, toward, scale: (room / reach).min_element(), middle, centre, sheet }
+    }
+
+    /// Where on the sheet a point is.
+    pub fn place(&self, at: DVec3) -> DVec2 {
+        let at = at - self.middle;
+        self.centre + self.scale * DVec2::new(at.dot(self.right), -at.dot(self.up))
+    }
+
+    /// The corners of the part of the sheet that it fills.
+    pub fn frame(&self) -> Vec<DVec2> {
+        corners([DVec2::ZERO, self.sheet - DVec2::Y * KEY])
+    }
+
+    /// Draws the directions of x, y and z.
+    pub fn draw_axes(&self, drawing: &mut Drawing) {
+        let origin = DVec2::new(self.sheet.x - 3.2 * TEXT, self.sheet.y - 3.2 * TEXT);
+        let ground = Shape::Circle { centre: origin, radius: 2.7 * TEXT };
+        drawing.add("ground", ground).filled(PAPER.faint(0.85));
+        for (name, axis) in [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)] {
+            let along = DVec2::new(axis.dot(self.right), -axis.dot(self.up));
+            let tip = origin + 1.9 * TEXT * along;
+            drawing.add("coordinate", Shape::Line(vec![origin, tip])).stroked(INK, THIN);
+            let beside = tip + 0.55 * TEXT * along.normalize_or(DVec2::Y);
+            let words = Words::of_runs(vec![(Face::Italic, name.to_owned())], beside, 0.8 * TEXT);
+            drawing.add("coordinate-name", Shape::Words(words)).filled(INK);
+        }
+    }
+}

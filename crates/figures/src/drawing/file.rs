@@ -1,0 +1,69 @@
+//! Drawings as files.
+
+use super::super::IllustrationError;
+use super::Drawing;
+use cloakroom::output::{OutputError, ending, write_png, write_whole};
+use std::path::Path;
+
+/// A format of files of drawings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DrawingFormat {
+    /// Lines, for pages and for further work.
+    Svg,
+    /// Lines, for print.
+    Pdf,
+    /// Pixels.
+    Png,
+}
+
+impl DrawingFormat {
+    /// The format that the ending of a file's name asks for.
+    ///
+    /// # Errors
+    ///
+    /// [`OutputError::UnknownFormat`] for any other ending.
+    pub fn of(path: &Path) -> Result<Self, OutputError> {
+        Self::known(path).ok_or_else(|| OutputError::unknown_format(path, ".svg, .pdf or .png"))
+    }
+
+    /// The format that the ending of a file's name asks for, if it is one of a drawing.
+    #[must_use]
+    pub fn known(path: &Path) -> Option<Self> {
+        match ending(path).as_deref() {
+            Some("svg") => Some(Self::Svg),
+            Some("pdf") => Some(Self::Pdf),
+            Some("png") => Some(Self::Png),
+            _ => None,
+        }
+    }
+}
+
+impl Drawing {
+    /// Writes the drawing as a file that is there whole or not at all, with a title and metadata; a PNG has so many
+    /// pixels, the others are as large as on paper.
+    ///
+    /// # Errors
+    ///
+    /// If the pixels do not fit into the memory, or the file cannot be written.
+    pub fn write(
+        &self,
+        format: DrawingFormat,
+        title: &str,
+        metadata: &[(String, String)],
+        pixels: [u32; 2],
+        path: &Path,
+    ) -> Result<(), IllustrationError> {
+        match format {
+            DrawingFormat::Svg => {
+                let svg = self.to_svg(title, metadata);
+                write_whole(path, |out| out.write_all(svg.as_bytes()))?;
+            }
+            DrawingFormat::Pdf => {
+                let pdf = self.to_pdf(title, metadata);
+                write_whole(path, |out| out.write_all(&pdf))?;
+            }
+            DrawingFormat::Png => write_png(&self.to_image(pixels)?, metadata, path)?,
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,183 @@
+//! Drawings as SVG.
+
+use super::super::quantity::short;
+use super::typeface::Piece;
+use super::{Drawing, Element, Ink, Shape, Words};
+use base64::Engine;
+use cloakroom::output::RgbImage;
+use glam::{DAffine2, DVec2};
+use std::fmt::Write;
+use svg::node::element::{ClipPath, Group, Image, Path, Rectangle, Title};
+use svg::{Document, Node};
+
+impl Drawing {
+    /// The drawing as SVG, as large as on paper. `description` becomes its title, and `metadata` is set down in it.
+    #[must_use]
+    pub fn to_svg(&self, description: &str, metadata: &[(String, String)]) -> String {
+        let size = (self.size * self.mm).to_array().map(|side| format!("{}mm", number(side)));
+        self.markup(size, description, metadata, &embedded)
+    }
+
+    /// The SVG of a size, with images where `source` says that they are, given their place among the elements.
+    pub(super) fn markup(
+        &self,
+        [width, height]: [String; 2],
+        description: &str,
+        metadata: &[(String, String)],
+        source: &dyn Fn(usize, &RgbImage) -> Option<String>,
+    ) -> String {
+        let (w, h) = (number(self.size.x), number(self.size.y));
+        let mut document = Document::new()
+            .set("width", width)
+            .set("height", height)
+            .set("viewBox", format!("0 0 {w} {h}"))
+            .set("preserveAspectRatio", "none")
+            .add(Title::new(description));
+        for (key, text) in metadata {
+            let mut entry = svg::node::element::Element::new("desc");
+            entry.assign("class", key.as_str());
+            entry.append(svg::node::Text::new(text.clone()));
+            document = document.add(entry);
+        }
+        let paper = Rectangle::new().set("width", w).set("height", h).set("fill", "#ffffff");
+        document = document.add(paper);
+        for (index, element) in self.elements.iter().enumerate() {
+            if let Some(clip) = &element.clip {
+                let path = Path::new().set("d", contours(clip)).set("clip-rule", "evenodd");
+                document = document.add(ClipPath::new().set("id", clip_name(index)).add(path));
+            }
+            document = document.add(node(element, index, source));
+        }
+        format!("{document}\n")
+    }
+}
+
+fn clip_name(index: usize) -> String {
+    format!("clip{index}")
+}
+
+fn node(
+    element: &Element,
+    index: usize,
+    source: &dyn Fn(usize, &RgbImage) -> Option<String>,
+) -> Group {
+    let mut group = Group::new().set("class", element.class);
+    if element.clip.is_some() {
+        // The clip is in the coordinates of the sheet: it belongs to the group, not to an image in it.
+        group = group.set("clip-path", format!("url(#{})", clip_name(index)));
+    }
+    match &element.shape {
+        Shape::Area(loops) => {
+            let path = Path::new().set("d", contours(loops)).set("fill-rule", "evenodd");
+            group.add(painted(path, element))
+        }
+        Shape::Line(points) => group.add(painted(Path::new().set("d", line(points)), element)),
+        Shape::Circle { centre, radius } => {
+            let circle = svg::node::element::Circle::new()
+                .set("cx", number(centre.x))
+                .set("cy", number(centre.y))
+                .set("r", number(*radius));
+            group.add(painted(circle, element))
+        }
+        Shape::Image { image, cells, place } => match source(index, image) {
+            Some(href) => group.add(picture(image, *cells, place).set("href", href)),
+            None => group,
+        },
+        Shape::Words(words) => {
+            let path = Path::new().set("d", letters(words));
+            group.set("aria-label", words.text()).add(painted(path, element))
+        }
+    }
+}
+
+/// Sets fill and stroke.
+fn painted<T: Node>(mut node: T, element: &Element) -> T {
+    match element.fill {
+        Some(ink) => {
+            node.assign("fill", hex(ink));
+            if ink.opacity < 1.0 {
+                node.assign("fill-opacity", number(ink.opacity));
+            }
+        }
+        None => node.assign("fill", "none"),
+    }
+    if let Some(stroke) = element.stroke {
+        node.assign("stroke", hex(stroke.ink));
+        if stroke.ink.opacity < 1.0 {
+            node.assign("stroke-opacity", number(stroke.ink.opacity));
+        }
+        node.assign("stroke-width", number(stroke.width));
+        node.assign("stroke-linejoin", "round");
+        if let Some([dash, gap]) = stroke.dash {
+            node.assign("stroke-dasharray", format!("{} {}", number(dash), number(gap)));
+        }
+    }
+    node
+}
+
+fn hex(ink: Ink) -> String {
+    let [r, g, b] = ink.rgb;
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// A number with as many decimals as matter: a thousandth of a unit.
+fn number(value: f64) -> String {
+    short(value, 3)
+}
+
+fn point(p: DVec2) -> String {
+    format!("{},{}", number(p.x), number(p.y))
+}
+
+fn line(points: &[DVec2]) -> String {
+    points.iter().enumerate().fold(String::new(), |mut data, (i, p)| {
+        let _ = write!(data, "{}{}", if i == 0 { 'M' } else { 'L' }, point(*p));
+        data
+    })
+}
+
+fn contours(loops: &[Vec<DVec2>]) -> String {
+    loops.iter().map(|points| line(points) + "Z").collect()
+}
+
+/// The outlines of a text at its place.
+fn letters(words: &Words) -> String {
+    words.outline().into_iter().fold(String::new(), |mut data, piece| {
+        let _ = match piece {
+            Piece::Move(p) => write!(data, "M{}", point(p)),
+            Piece::Line(p) => write!(data, "L{}", point(p)),
+            Piece::Quadratic(a, p) => write!(data, "Q{} {}", point(a), point(p)),
+            Piece::Cubic(a, b, p) => write!(data, "C{} {} {}", point(a), point(b), point(p)),
+            Piece::Close => write!(data, "Z"),
+        };
+        data
+    })
+}
+
+/// An image as a PNG within the SVG; none if it has no pixels.
+fn embedded(_: usize, image: &RgbImage) -> Option<String> {
+    let data = base64::engine::general_purpose::STANDARD.encode(png(image)?);
+    Some(format!("data:image/png;base64,{data}"))
+}
+
+/// An image as a PNG; none if it has no pixels.
+pub(super) fn png(image: &RgbImage) -> Option<Vec<u8>> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut png, image::ImageFormat::Png).ok()?;
+    Some(png.into_inner())
+}
+
+/// An image at its place, its source to be said.
+fn picture(image: &RgbImage, cells: bool, place: &DAffine2) -> Image {
+    // One unit for each pixel, so that the transform holds no tiny numbers.
+    let (width, height) = (f64::from(image.width()), f64::from(image.height()));
+    let (across, down) = (place.x_axis / width, place.y_axis / height);
+    let matrix = [across.x, across.y, down.x, down.y].map(|entry| format!("{entry:.9}"));
+    let transform = format!("matrix({} {})", matrix.join(" "), point(place.translation));
+    let image = Image::new()
+        .set("width", number(width))
+        .set("height", number(height))
+        .set("preserveAspectRatio", "none")
+        .set("transform", transform);
+    if cells { image.set("style", "image-rendering:pixelated") } else { image }
+}

@@ -1,0 +1,128 @@
+//! The example scenes: every file of the folder `scenes/`, carried along in the program.
+
+use crate::gallery::EXHIBITS;
+use crate::paper::FIGURES;
+use cloakroom::keys::hint;
+
+/// A scene file.
+#[derive(Clone, Debug)]
+pub struct Example {
+    /// Where it is in `scenes/`, with `/` between folder and file.
+    pub path: &'static str,
+    /// What it shows.
+    pub words: String,
+    /// The scene, TOML.
+    pub text: &'static str,
+}
+
+/// Scenes that are neither a panel of the paper nor an exhibit: path, words, text.
+const OTHERS: [(&str, &str, &str); 3] = [
+    (
+        "flux/solar-cell.toml",
+        "For `cloakroom flux`: a contact on a solar cell, under a cloak",
+        include_str!("../scenes/flux/solar-cell.toml"),
+    ),
+    (
+        "flux/window.toml",
+        "For `cloakroom flux`: an advertising column before a window",
+        include_str!("../scenes/flux/window.toml"),
+    ),
+    (
+        "shop-window.toml",
+        "For `cloakroom animate`: a cloak with an open core that turns in a shop window",
+        include_str!("../scenes/shop-window.toml"),
+    ),
+];
+
+/// Cloak (iii) of the paper, turned by 10 degrees: the scene to begin with.
+pub const FIRST: &str = include_str!("../scenes/paper/fig7d.toml");
+
+/// All example scenes: those of the paper, those of the gallery, the others.
+#[must_use]
+pub fn all() -> Vec<Example> {
+    let panels = FIGURES.iter().flat_map(|figure| {
+        figure.panels.iter().map(|panel| Example {
+            path: panel.file,
+            words: format!("Figure {}, {}: {}", figure.number, figure.title, panel.caption),
+            text: panel.scene,
+        })
+    });
+    let exhibits = EXHIBITS.iter().filter(|exhibit| exhibit.file.starts_with("gallery/"));
+    let exhibits = exhibits.map(|exhibit| Example {
+        path: exhibit.file,
+        words: format!("{}: {}", exhibit.title, exhibit.map),
+        text: exhibit.scene,
+    });
+    let others = OTHERS.map(|(path, words, text)| Example { path, words: words.to_owned(), text });
+    panels.chain(exhibits).chain(others).collect()
+}
+
+/// The scenes that a list names by file (`gallery/prisms.toml`, `.toml` or not) or by folder (`gallery`), in the order
+/// of [`all`]; all of them for an empty list.
+///
+/// # Errors
+///
+/// A sentence if the list names something that is not there.
+pub fn select(names: &[String]) -> Result<Vec<Example>, String> {
+    let names: Vec<&str> = names.iter().map(|name| name.trim().trim_end_matches('/')).collect();
+    let named = |example: &Example, name: &str| {
+        let folder = example.path.strip_prefix(name).is_some_and(|rest| rest.starts_with('/'));
+        folder || example.path.trim_end_matches(".toml") == name.trim_end_matches(".toml")
+    };
+    let examples = all();
+    if let Some(name) = names.iter().find(|name| !examples.iter().any(|e| named(e, name))) {
+        let mut known: Vec<&str> = examples.iter().map(|example| example.path).collect();
+        known.extend(["paper", "gallery", "flux"]);
+        let hint = hint(name, &known, "there are");
+        return Err(format!("there is no example scene `{name}`{hint}"));
+    }
+    let wanted = |e: &Example| names.is_empty() || names.iter().any(|name| named(e, name));
+    Ok(examples.into_iter().filter(wanted).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+    use std::fs;
+    use std::path::Path;
+
+    /// Adds the files of a folder: path within `scenes/`, text.
+    fn files(folder: &Path, prefix: &str, found: &mut BTreeMap<String, String>) {
+        for entry in fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            let name = format!("{prefix}{}", path.file_name().expect("a name").display());
+            if path.is_dir() {
+                files(&path, &format!("{name}/"), found);
+            } else {
+                found.insert(name, fs::read_to_string(&path).expect("a text"));
+            }
+        }
+    }
+
+    #[test]
+    fn every_file_of_the_folder_is_carried_along_once() {
+        let mut there = BTreeMap::new();
+        files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes"), "", &mut there);
+        let carried = all();
+        assert_eq!(carried.len(), there.len());
+        for example in carried {
+            assert_eq!(there.get(example.path).map(String::as_str), Some(example.text));
+        }
+    }
+
+    #[test]
+    fn scenes_are_selected_by_file_and_folder() {
+        let paths = |list: &[&str]| {
+            let list: Vec<String> = list.iter().map(|&name| name.to_owned()).collect();
+            select(&list).map(|chosen| chosen.iter().map(|e| e.path).collect::<Vec<_>>())
+        };
+        let chosen = paths(&["shop-window", "paper/fig1b.toml", "flux/"]);
+        let expected =
+            ["paper/fig1b.toml", "flux/solar-cell.toml", "flux/window.toml", "shop-window.toml"];
+        assert_eq!(chosen, Ok(expected.to_vec()));
+        assert_eq!(paths(&[]).map(|all| all.len()), Ok(all().len()));
+        let message = paths(&["galery/prisms"]).expect_err("none of that name");
+        assert!(message.contains("did you mean `gallery/prisms.toml`?"), "{message}");
+    }
+}

@@ -1,0 +1,151 @@
+//! A folder of frames: PNG files, each of which says what it shows, so that work can be taken up again.
+
+use super::FilmError;
+use cloakroom::output::{RgbImage, png_texts, write_png};
+use std::fs;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// A folder of numbered frames.
+#[derive(Clone, Debug)]
+pub struct FrameFolder {
+    folder: PathBuf,
+    count: usize,
+}
+
+impl FrameFolder {
+    /// The folder for so many frames, made if it is not there.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be made.
+    pub fn new(folder: &Path, count: usize) -> Result<Self, FilmError> {
+        fs::create_dir_all(folder).map_err(|error| FilmError::Folder {
+            path: folder.to_owned(),
+            reason: error.to_string(),
+        })?;
+        Ok(Self { folder: folder.to_owned(), count })
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.folder
+    }
+
+    /// How many frames it is for.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The file of a frame, counted from 0: `frame-000000.png` and so on.
+    #[must_use]
+    pub fn file(&self, frame: usize) -> PathBuf {
+        self.folder.join(format!("frame-{frame:06}.png"))
+    }
+
+    /// Whether a frame is there that shows just this: it carries the same metadata, and none of `files` has
+    /// changed since.
+    #[must_use]
+    pub fn is_finished(
+        &self,
+        frame: usize,
+        metadata: &[(String, String)],
+        files: &[PathBuf],
+    ) -> bool {
+        let path = self.file(frame);
+        let Ok(made) = fs::metadata(&path).and_then(|file| file.modified()) else { return false };
+        let older = |file: &PathBuf| {
+            fs::metadata(file).and_then(|file| file.modified()).is_ok_and(|time| time < made)
+        };
+        files.iter().all(older) && carried(&path).is_some_and(|carried| same(&carried, metadata))
+    }
+
+    /// Writes a frame.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be written.
+    pub fn write(
+        &self,
+        frame: usize,
+        image: &RgbImage,
+        metadata: &[(String, String)],
+    ) -> Result<(), FilmError> {
+        Ok(write_png(image, metadata, &self.file(frame))?)
+    }
+
+    /// Reads a frame.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be read.
+    pub fn read(&self, frame: usize) -> Result<RgbImage, FilmError> {
+        let path = self.file(frame);
+        let image = image::open(&path);
+        image
+            .map(image::DynamicImage::into_rgb8)
+            .map_err(|error| FilmError::Frame { path, reason: error.to_string() })
+    }
+
+    /// The frames, one after the other, in their order.
+    pub fn read_all(&self) -> impl Iterator<Item = Result<RgbImage, FilmError>> + '_ {
+        (0..self.count).map(|frame| self.read(frame))
+    }
+
+    /// Removes the frames, and the folder if nothing else is in it.
+    pub fn remove(&self) {
+        for frame in 0..self.count {
+            // What cannot be removed stays: the film is there.
+            let _ = fs::remove_file(self.file(frame));
+        }
+        let _ = fs::remove_dir(&self.folder);
+    }
+}
+
+/// What a PNG says of itself.
+fn carried(path: &Path) -> Option<Vec<(String, String)>> {
+    let file = BufReader::new(fs::File::open(path).ok()?);
+    let reader = png::Decoder::new(file).read_info().ok()?;
+    png_texts(reader.info()).ok()
+}
+
+/// Whether two lists of metadata say the same.
+fn same(carried: &[(String, String)], metadata: &[(String, String)]) -> bool {
+    carried.len() == metadata.len() && metadata.iter().all(|pair| carried.contains(pair))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_is_finished_if_it_shows_the_same() {
+        let outer = tempfile::tempdir().expect("a folder");
+        let frames = FrameFolder::new(&outer.path().join("frames"), 2).expect("a folder");
+        let say = |scene: &str| {
+            [("software", "cloakroom"), ("scene", scene)].map(|(k, v)| (k.to_owned(), v.to_owned()))
+        };
+        let image = RgbImage::from_fn(5, 4, |x, y| image::Rgb([x as u8, y as u8, 9]));
+        assert!(!frames.is_finished(0, &say("a"), &[]));
+        frames.write(0, &image, &say("a")).expect("written");
+        assert!(frames.is_finished(0, &say("a"), &[]));
+        assert!(!frames.is_finished(0, &say("b"), &[]) && !frames.is_finished(1, &say("a"), &[]));
+        assert!(!frames.is_finished(0, &say("a")[..1], &[]));
+        assert_eq!(frames.read(0).expect("a frame"), image);
+        // A photograph that has changed since, or is gone.
+        let photo = outer.path().join("photo.png");
+        assert!(!frames.is_finished(0, &say("a"), std::slice::from_ref(&photo)));
+        fs::write(&photo, b"new").expect("written");
+        let later = std::time::SystemTime::now() + std::time::Duration::from_secs(60);
+        let file = fs::File::options().write(true).open(&photo).expect("a file");
+        file.set_modified(later).expect("a time");
+        assert!(!frames.is_finished(0, &say("a"), std::slice::from_ref(&photo)));
+        // Half a file is none.
+        fs::write(frames.file(0), &fs::read(frames.file(0)).expect("bytes")[..40]).expect("cut");
+        assert!(!frames.is_finished(0, &say("a"), &[]));
+        frames.remove();
+        assert!(!frames.path().exists());
+    }
+}

@@ -1,0 +1,326 @@
+//! Films: a scene frame by frame, while keys of it change.
+//!
+//! Frames are rendered one after the other into a folder ([`FrameFolder`]), each a PNG that carries its scene, so
+//! that stopped work goes on where it was and many machines can share it; then they become one file
+//! ([`FilmFormat`]).
+
+mod apng_file;
+mod frames;
+mod gif_file;
+mod video;
+mod webp_file;
+
+pub use frames::FrameFolder;
+
+use crate::{ColorScale, IllustrationError, ScalarMap};
+use cloakroom::output::{self, OutputError, Picture, RgbImage};
+use cloakroom::render::{
+    ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Rendered, Supervision,
+    metadata, render,
+};
+use cloakroom::scene::Scene;
+use cloakroom::trace::TraceStats;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+/// Why there is no film.
+#[derive(Debug, thiserror::Error)]
+pub enum FilmError {
+    /// The folder of the frames cannot be made.
+    #[error("cannot make the folder {}: {reason}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Why not.
+        reason: String,
+    },
+    /// A frame cannot be read.
+    #[error("cannot read the frame {}: {reason}", path.display())]
+    Frame {
+        /// The frame.
+        path: PathBuf,
+        /// Why not.
+        reason: String,
+    },
+    /// The frames are not of one size.
+    #[error(
+        "the frame {} has {} x {} pixels, the first one {} x {}; a film has one size",
+        path.display(), size[0], size[1], first[0], first[1]
+    )]
+    Size {
+        /// The frame.
+        path: PathBuf,
+        /// Its size.
+        size: [u32; 2],
+        /// That of the first frame.
+        first: [u32; 2],
+    },
+    /// The frames are too large for the format.
+    #[error("{format} holds at most {most} x {most} pixels; the frames have {} x {}", size[0], size[1])]
+    TooLarge {
+        /// The format.
+        format: &'static str,
+        /// The most pixels a side.
+        most: u32,
+        /// The size of the frames.
+        size: [u32; 2],
+    },
+    /// There is no `ffmpeg`.
+    #[error(
+        "MP4 and WebM files are made by ffmpeg, which is not installed; install it, or write a .gif, .apng, \
+         .webp or a folder of frames"
+    )]
+    NoFfmpeg,
+    /// `ffmpeg` has failed.
+    #[error("ffmpeg could not make {}: {reason}", path.display())]
+    Ffmpeg {
+        /// The film.
+        path: PathBuf,
+        /// What it said last.
+        reason: String,
+    },
+    /// The film cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A frame cannot be rendered.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// A map cannot be drawn.
+    #[error(transparent)]
+    Map(#[from] IllustrationError),
+}
+
+/// What a film is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FilmFormat {
+    /// Animated GIF: 255 colors.
+    Gif,
+    /// Animated PNG: every color, large files.
+    Apng,
+    /// Animated WebP, lossless.
+    WebP,
+    /// MP4 (H.264), by `ffmpeg`.
+    Mp4,
+    /// WebM (VP9), by `ffmpeg`.
+    WebM,
+    /// A folder of PNG files.
+    Frames,
+}
+
+impl FilmFormat {
+    /// The format that a name asks for: by its ending, and a folder if it has none or there is one of that name.
+    ///
+    /// # Errors
+    ///
+    /// A sentence for any other ending.
+    pub fn of(path: &Path) -> Result<Self, String> {
+        match output::ending(path).as_deref() {
+            _ if path.is_dir() => Ok(Self::Frames),
+            Some("gif") => Ok(Self::Gif),
+            Some("png" | "apng") => Ok(Self::Apng),
+            Some("webp") => Ok(Self::WebP),
+            Some("mp4") => Ok(Self::Mp4),
+            Some("webm") => Ok(Self::WebM),
+            None => Ok(Self::Frames),
+            Some(_) => Err(format!(
+                "cannot tell the format of {} by its ending; use .gif, .apng, .png, .webp, .mp4, .webm, or a \
+                 name without ending for a folder of frames",
+                path.display()
+            )),
+        }
+    }
+
+    /// Checks before long work that the format can be written here.
+    ///
+    /// # Errors
+    ///
+    /// [`FilmError::NoFfmpeg`] where that is needed.
+    pub fn check(self) -> Result<(), FilmError> {
+        match self {
+            Self::Mp4 | Self::WebM if !video::ffmpeg_is_there() => Err(FilmError::NoFfmpeg),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Makes the pictures of frames, one after the other: their images are read once.
+#[derive(Debug, Default)]
+pub struct Projector {
+    images: Images,
+    scale: Option<ColorScale>,
+}
+
+impl Projector {
+    /// A projector whose maps show the range from `low` to `high`, in the unit of their channel.
+    #[must_use]
+    pub fn with_map_range(range: Option<[f64; 2]>) -> Self {
+        let scale = range.map(|[low, high]| ColorScale::between(low, high));
+        Self { images: Images::default(), scale }
+    }
+
+    /// Makes a scene ready.
+    ///
+    /// # Errors
+    ///
+    /// As [`PreparedScene::new`].
+    pub fn studio<'s>(
+        &mut self,
+        scene: &'s Scene,
+    ) -> Result<PreparedScene<'s>, PreparedSceneError> {
+        PreparedScene::with_images(scene, &mut self.images)
+    }
+
+    /// What the frame of a scene carries: that of its picture, and the range of a map.
+    #[must_use]
+    pub fn metadata(&self, scene: &Scene) -> Vec<(String, String)> {
+        let range = self.scale.as_ref().and_then(ColorScale::range);
+        let range = range.filter(|_| scene.picture.map.name().is_some());
+        let range = range.map(|(low, high)| ("map_range".to_owned(), format!("{low} {high}")));
+        metadata(scene).into_iter().chain(range).collect()
+    }
+
+    /// Renders a frame.
+    ///
+    /// # Errors
+    ///
+    /// If it would not fit into memory, or the work was stopped.
+    pub fn frame(
+        &self,
+        scene: &Scene,
+        studio: &PreparedScene<'_>,
+        supervision: &Supervision<'_>,
+    ) -> Result<(RgbImage, TraceStats), FilmError> {
+        let wanted = ChannelSet::for_image(&scene.picture);
+        let Rendered { picture, stats } = render(studio, wanted, supervision)?;
+        Ok((self.shown(scene, &picture)?, stats))
+    }
+
+    fn shown(&self, scene: &Scene, picture: &Picture) -> Result<RgbImage, FilmError> {
+        let Some(channel) = scene.picture.map.name() else { return Ok(output::to_srgb(picture)?) };
+        let map = ScalarMap::with_scale(picture, channel, self.scale)?;
+        Ok(map.into_image(scene.picture.color_bar)?)
+    }
+}
+
+/// Writes finished frames as one file; a film is there whole or not at all. `frame_done` is called after each
+/// frame, `stop` ends the work.
+///
+/// # Errors
+///
+/// If a frame cannot be read or the film not be written, or the work was stopped.
+pub fn write_film(
+    frames: &FrameFolder,
+    format: FilmFormat,
+    path: &Path,
+    settings: &FilmSettings<'_>,
+) -> Result<(), FilmError> {
+    match format {
+        FilmFormat::Gif => gif_file::write(frames, path, settings),
+        FilmFormat::Apng => apng_file::write(frames, path, settings),
+        FilmFormat::WebP => webp_file::write(frames, path, settings),
+        FilmFormat::Mp4 => video::write(frames, path, video::Codec::H264, settings),
+        FilmFormat::WebM => video::write(frames, path, video::Codec::Vp9, settings),
+        FilmFormat::Frames => Ok(()),
+    }
+}
+
+/// How a film is written.
+#[derive(Clone, Copy)]
+pub struct FilmSettings<'a> {
+    /// Frames a second, 1 to 100.
+    pub rate: u32,
+    /// What the film carries: scene, version, seed of its first frame.
+    pub metadata: &'a [(String, String)],
+    /// Called after each frame.
+    pub frame_done: &'a (dyn Fn() + Sync),
+    /// Set from outside to stop the work.
+    pub stop: &'a AtomicBool,
+}
+
+impl FilmSettings<'_> {
+    /// Says that a frame is done; an error if the work is to stop.
+    fn done(&self) -> Result<(), FilmError> {
+        (self.frame_done)();
+        if self.stop.load(std::sync::atomic::Ordering::Relaxed) {
+            return Err(RenderError::Stopped.into());
+        }
+        Ok(())
+    }
+}
+
+/// The size of the frames, all of which must have it; the first one is read for it.
+struct Size([u32; 2]);
+
+impl Size {
+    fn of(frames: &FrameFolder, format: &'static str, most: u32) -> Result<Self, FilmError> {
+        let size: [u32; 2] = frames.read(0)?.dimensions().into();
+        if size.iter().any(|side| *side > most) {
+            return Err(FilmError::TooLarge { format, most, size });
+        }
+        Ok(Self(size))
+    }
+
+    /// Frames that are read, and of that size.
+    fn checked<'f>(
+        &'f self,
+        frames: &'f FrameFolder,
+    ) -> impl Iterator<Item = Result<RgbImage, FilmError>> + 'f {
+        frames.read_all().enumerate().map(|(number, frame)| {
+            let frame = frame?;
+            let size: [u32; 2] = frame.dimensions().into();
+            if size != self.0 {
+                return Err(FilmError::Size { path: frames.file(number), size, first: self.0 });
+            }
+            Ok(frame)
+        })
+    }
+}
+
+/// How long a frame stays, in parts of a second, such that all together keep the rate.
+fn stay(number: usize, rate: u32, parts: f64) -> u32 {
+    let begins = |number: usize| (number as f64 * parts / f64::from(rate)).round();
+    (begins(number + 1) - begins(number)) as u32
+}
+
+/// What ends the writing of a file: an error of the film, or of the file.
+enum Halt {
+    Film(FilmError),
+    File(io::Error),
+}
+
+impl From<FilmError> for Halt {
+    fn from(error: FilmError) -> Self {
+        Self::Film(error)
+    }
+}
+
+impl From<io::Error> for Halt {
+    fn from(error: io::Error) -> Self {
+        Self::File(error)
+    }
+}
+
+/// Writes a file whole or not at all, by work that has errors of its own.
+fn write_whole(
+    path: &Path,
+    write: impl FnOnce(&mut dyn output::WriteSeek) -> Result<(), Halt>,
+) -> Result<(), FilmError> {
+    let mut failure = None;
+    let written = output::write_whole(path, |out| {
+        write(out).map_err(|halt| match halt {
+            Halt::File(error) => error,
+            Halt::Film(error) => {
+                failure = Some(error);
+                io::Error::other("no film")
+            }
+        })
+    });
+    match failure {
+        Some(error) => Err(error),
+        None => Ok(written?),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,155 @@
+//! MP4 and WebM, by the program `ffmpeg` where it is installed.
+
+use super::{FilmError, FilmSettings, FrameFolder, Size};
+use cloakroom::output::{OutputError, check_writable};
+use cloakroom::render::RenderError;
+use std::io::Read;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+/// How a video is coded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Codec {
+    /// H.264 in MP4.
+    H264,
+    /// VP9 in WebM.
+    Vp9,
+}
+
+/// The frames in their folder, as `ffmpeg` takes them: see [`FrameFolder::file`].
+const FRAMES: &str = "frame-%06d.png";
+
+/// How often `ffmpeg` is looked after.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Whether `ffmpeg` can be run.
+pub(super) fn ffmpeg_is_there() -> bool {
+    let mut command = Command::new("ffmpeg");
+    command.arg("-version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.status().is_ok_and(|status| status.success())
+}
+
+/// Lets `ffmpeg` make a video of frames, into a temporary file that is renamed at the end.
+pub(super) fn write(
+    frames: &FrameFolder,
+    path: &Path,
+    codec: Codec,
+    settings: &FilmSettings<'_>,
+) -> Result<(), FilmError> {
+    check_writable(path)?;
+    let size = Size::of(frames, "video", 16_384)?;
+    for frame in size.checked(frames) {
+        frame?;
+        settings.done()?;
+    }
+    let unwritable = |error: std::io::Error| {
+        let (path, reason) = (path.to_owned(), error.to_string());
+        FilmError::Output(OutputError::Write { path, reason })
+    };
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let part = tempfile::Builder::new()
+        .prefix(".cloakroom-")
+        .tempdir_in(folder.unwrap_or(Path::new(".")))
+        .map_err(unwritable)?;
+    // It works in the folder of the frames.
+    let inside = std::path::absolute(part.path()).map_err(unwritable)?;
+    let (file, metadata) = (inside.join("film"), inside.join("metadata"));
+    std::fs::write(&metadata, ffmetadata(settings.metadata)).map_err(unwritable)?;
+    let command = command(frames, [&metadata, &file], codec, settings.rate).spawn();
+    let mut child = command.map_err(|error| {
+        if error.kind() == std::io::ErrorKind::NotFound {
+            FilmError::NoFfmpeg
+        } else {
+            FilmError::Ffmpeg { path: path.to_owned(), reason: error.to_string() }
+        }
+    })?;
+    let done = wait(&mut child, path, settings);
+    let said = child.stderr.take().map(|mut stderr| {
+        let mut said = Vec::new();
+        // What cannot be read is not said.
+        let _ = stderr.read_to_end(&mut said);
+        String::from_utf8_lossy(&said).into_owned()
+    });
+    if !done? {
+        let said = said.unwrap_or_default();
+        let reason = said.lines().last().unwrap_or("it has failed").to_owned();
+        return Err(FilmError::Ffmpeg { path: path.to_owned(), reason });
+    }
+    std::fs::rename(&file, path).map_err(unwritable)
+}
+
+/// Waits for the end, or ends it; whether it has succeeded.
+fn wait(child: &mut Child, path: &Path, settings: &FilmSettings<'_>) -> Result<bool, FilmError> {
+    let failed = |error: std::io::Error| {
+        let (path, reason) = (path.to_owned(), error.to_string());
+        FilmError::Ffmpeg { path, reason }
+    };
+    loop {
+        let ended = child.try_wait().map_err(failed)?;
+        // Ctrl-C in a terminal ends both.
+        if settings.stop.load(Ordering::Relaxed) {
+            // It may have ended by itself.
+            let _ = child.kill();
+            let _ = child.wait();
+            return Err(RenderError::Stopped.into());
+        }
+        if let Some(status) = ended {
+            return Ok(status.success());
+        }
+        std::thread::sleep(LOOK);
+    }
+}
+
+/// The metadata of a film in a form that `ffmpeg` reads, of any length; the scene is the film's comment.
+fn ffmetadata(metadata: &[(String, String)]) -> String {
+    let mut text = ";FFMETADATA1\n".to_owned();
+    for (key, value) in metadata {
+        let key = if key == "scene" { "comment" } else { key };
+        for (part, end) in [(key, '='), (value, '\n')] {
+            for character in part.chars() {
+                if "=;#\\\n".contains(character) {
+                    text.push('\\');
+                }
+                text.push(character);
+            }
+            text.push(end);
+        }
+    }
+    text
+}
+
+fn command(frames: &FrameFolder, [metadata, file]: [&Path; 2], codec: Codec, rate: u32) -> Command {
+    let mut command = Command::new("ffmpeg");
+    command.args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"]);
+    // In their folder: a `%` or a `:` in its name would mean something.
+    command.current_dir(frames.path());
+    command.args(["-framerate", &rate.to_string(), "-start_number", "0", "-i"]);
+    command.args([FRAMES, "-f", "ffmetadata", "-i"]).arg(metadata);
+    command.args(["-map", "0:v", "-map_metadata", "1"]);
+    command.args(["-frames:v", &frames.count().to_string()]);
+    // sRGB to BT.709, told in the file; colors are halved in size, so sides must be even.
+    command.args([
+        "-vf",
+        "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
+        "-colorspace",
+        "bt709",
+        "-color_primaries",
+        "bt709",
+        "-color_trc",
+        "iec61966-2-1",
+    ]);
+    match codec {
+        Codec::H264 => {
+            command.args(["-c:v", "libx264", "-preset", "slow", "-crf", "18"]);
+            command.args(["-movflags", "+faststart", "-f", "mp4"]);
+        }
+        Codec::Vp9 => {
+            command.args(["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1"]);
+            command.args(["-f", "webm"]);
+        }
+    }
+    command.arg(file).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    command
+}

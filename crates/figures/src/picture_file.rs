@@ -1,0 +1,109 @@
+//! Pictures as files: data, images, and maps drawn with their colour bars.
+
+use super::drawing::DrawingFormat;
+use super::{IllustrationError, ScalarMap, scalar_map};
+use cloakroom::output::{Format, OutputError, Picture, to_srgb, write, write_png};
+use std::path::Path;
+
+/// A format of files of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// Pixels or data.
+    Pixels(Format),
+    /// The map of a channel, drawn.
+    Map(DrawingFormat),
+}
+
+impl PictureFormat {
+    /// The format that the ending of a file's name asks for.
+    ///
+    /// # Errors
+    ///
+    /// [`OutputError::UnknownFormat`] for any other ending.
+    pub fn of(path: &Path) -> Result<Self, OutputError> {
+        match DrawingFormat::known(path) {
+            None | Some(DrawingFormat::Png) => Format::of(path).map(Self::Pixels).map_err(|_| {
+                OutputError::unknown_format(path, ".png, .exr or .npz, for a map also .svg or .pdf")
+            }),
+            Some(format) => Ok(Self::Map(format)),
+        }
+    }
+
+    /// Whether a file of the format shows what people see, and is no data.
+    #[must_use]
+    pub fn is_shown(self) -> bool {
+        matches!(self, Self::Pixels(Format::Png) | Self::Map(_))
+    }
+}
+
+/// Writes a picture; `map` is the channel that what is to be seen is a map of, if any, and whether it has a colour bar.
+///
+/// # Errors
+///
+/// If a map is impossible, or not asked for and the format holds nothing else, or the file cannot be written.
+pub fn write_picture(
+    picture: &Picture,
+    map: (Option<&str>, bool),
+    format: PictureFormat,
+    path: &Path,
+) -> Result<(), IllustrationError> {
+    match (format, map) {
+        (PictureFormat::Map(_), (None, _)) => {
+            return Err(IllustrationError::NoMap { path: path.to_owned() });
+        }
+        (PictureFormat::Map(format), (Some(channel), color_bar)) => {
+            let map = ScalarMap::new(picture, channel)?;
+            let drawing = map.draw(color_bar);
+            let title = &map.bar.quantity.title;
+            drawing.write(format, title, &picture.metadata, drawing.pixels(), path)?;
+        }
+        (PictureFormat::Pixels(Format::Png), (Some(channel), color_bar)) => {
+            write_png(&scalar_map(picture, channel, color_bar)?, &picture.metadata, path)?;
+        }
+        (PictureFormat::Pixels(Format::Png), (None, _)) => {
+            write_png(&to_srgb(picture)?, &picture.metadata, path)?;
+        }
+        (PictureFormat::Pixels(_), _) => write(picture, path)?,
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cloakroom::output::{Channel, Samples};
+
+    #[test]
+    fn maps_are_drawn_and_images_are_not() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let names = ["R", "G", "B", "delivered"];
+        let channels = names.map(|name| Channel {
+            name: name.to_owned(),
+            samples: Samples::F32(vec![0.0, 0.25, 0.5, 1.0]),
+        });
+        let channels = channels.to_vec();
+        let picture = Picture { width: 2, height: 2, channels, metadata: Vec::new() };
+        let written = |name: &str, map| {
+            let path = folder.path().join(name);
+            let format = PictureFormat::of(&path).expect(name);
+            write_picture(&picture, map, format, &path)?;
+            Ok::<_, IllustrationError>(std::fs::read(path).expect(name))
+        };
+        let map = (Some("delivered"), true);
+        let svg = String::from_utf8(written("a.svg", map).expect("a file")).expect("text");
+        assert!(svg.contains("aria-label=\"power delivered (%)\""), "{svg}");
+        assert!(written("a.pdf", map).expect("a file").starts_with(b"%PDF"));
+        let bare = String::from_utf8(written("b.svg", (map.0, false)).expect("a file"));
+        assert!(!bare.expect("text").contains("aria-label"));
+        let error = written("c.pdf", (None, true)).expect_err("no map").to_string();
+        assert!(error.contains("c.pdf would be a map") && !folder.path().join("c.pdf").exists());
+        for (name, map) in [("d.png", (None, true)), ("e.png", (map.0, false))] {
+            written(name, map).expect(name);
+            let image = image::open(folder.path().join(name)).expect("an image");
+            assert_eq!((image.width(), image.height()), (2, 2));
+        }
+        assert!(written("f.npz", map).is_ok());
+        let message = PictureFormat::of("a.jpg".as_ref()).expect_err("unknown").to_string();
+        assert!(message.contains(".png, .exr or .npz, for a map also .svg or .pdf"), "{message}");
+    }
+}

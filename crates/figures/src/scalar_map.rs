@@ -1,0 +1,193 @@
+//! Maps of scalar channels in colour.
+
+use super::axes::Frame;
+use super::color_bar::ColorBar;
+use super::color_scale::ColorScale;
+use super::drawing::{Drawing, Shape};
+use super::quantity::Quantity;
+use super::{IllustrationError, type_size};
+use cloakroom::output::{Picture, RgbImage, Samples};
+use glam::{DAffine2, DVec2};
+
+/// A channel of a picture in colour, with the key to its colours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScalarMap {
+    /// One pixel for each of the picture.
+    pub image: RgbImage,
+    /// Which colour stands for which number.
+    pub bar: ColorBar,
+}
+
+impl ScalarMap {
+    /// The map of a channel over the range of its numbers ([`ColorScale`] says which).
+    ///
+    /// # Errors
+    ///
+    /// If the picture has no such channel, or the channel not one number a pixel.
+    pub fn new(picture: &Picture, channel: &str) -> Result<Self, IllustrationError> {
+        Self::with_scale(picture, channel, None)
+    }
+
+    /// The same on a scale that is given, so that pictures can be compared; `None` for that of its numbers.
+    ///
+    /// # Errors
+    ///
+    /// As [`ScalarMap::new`].
+    pub fn with_scale(
+        picture: &Picture,
+        channel: &str,
+        scale: Option<ColorScale>,
+    ) -> Result<Self, IllustrationError> {
+        let samples = &picture
+            .channel(channel)
+            .ok_or_else(|| IllustrationError::UnknownChannel {
+                name: channel.to_owned(),
+                known: picture.channels.iter().map(|channel| channel.name.clone()).collect(),
+            })?
+            .samples;
+        let wrong_size = || IllustrationError::WrongSize {
+            name: channel.to_owned(),
+            samples: samples.len(),
+            width: picture.width,
+            height: picture.height,
+        };
+        if picture.width.checked_mul(picture.height) != Some(samples.len()) {
+            return Err(wrong_size());
+        }
+        let width = u32::try_from(picture.width).map_err(|_| wrong_size())?;
+        let height = u32::try_from(picture.height).map_err(|_| wrong_size())?;
+        // A few units in the last place.
+        let rounding = match samples {
+            Samples::F32(_) | Samples::Rgb(_) => 8.0 * f64::from(f32::EPSILON),
+            Samples::F64(_) => 8.0 * f64::EPSILON,
+        };
+        let of_all = || ColorScale::new((0..samples.len()).map(|i| samples.get(i)), rounding);
+        let scale = scale.unwrap_or_else(of_all);
+        let colors = (0..samples.len()).flat_map(|i| scale.color(samples.get(i)).0).collect();
+        let image = RgbImage::from_raw(width, height, colors).ok_or_else(wrong_size)?;
+        Ok(Self { image, bar: ColorBar { scale, quantity: Quantity::of_channel(channel) } })
+    }
+
+    /// The least and the greatest number that have a colour of their own, in the unit of the
+    /// channel; none if no number is finite.
+    #[must_use]
+    pub fn range(&self) -> Option<(f64, f64)> {
+        self.bar.scale.range()
+    }
+
+    /// The map in pixels, alone or with its colour bar.
+    ///
+    /// # Errors
+    ///
+    /// If there is not enough memory.
+    pub fn into_image(self, color_bar: bool) -> Result<RgbImage, IllustrationError> {
+        if !color_bar {
+            return Ok(self.image);
+        }
+        let drawing = self.draw(true);
+        drawing.to_image(drawing.pixels())
+    }
+
+    /// The map as a drawing, a unit a pixel: alone, or framed, with the colour bar to its right and a margin around
+    /// both.
+    #[must_use]
+    pub fn draw(&self, color_bar: bool) -> Drawing {
+        let [width, height] = [self.image.width(), self.image.height()].map(f64::from);
+        let text = type_size(self.image.width(), self.image.height());
+        if !color_bar {
+            let mut drawing = Drawing::new(DVec2::new(width, height), text);
+            let place = DAffine2::from_scale(drawing.size);
+            let image = self.image.clone();
+            drawing.add("picture", Shape::Image { image, cells: true, place });
+            return drawing;
+        }
+        let margin = text.round();
+        // A very low map gets a bar that has room for ticks and some title.
+        let bar_height = height.max((10.0 * text).round());
+        let bar_at = DVec2::new(2.0 * margin + width, margin);
+        let right = bar_at.x + self.bar.width(bar_height, text) + margin / 2.0;
+        let mut drawing = Drawing::new(DVec2::new(right, bar_height + 2.0 * margin).ceil(), text);
+        let at = DVec2::new(margin, margin + ((bar_height - height) / 2.0).floor());
+        drawing.add_framed(self.image.clone(), true, at, Frame::thin(text).round().max(1.0));
+        self.bar.draw(&mut drawing, bar_at, bar_height, text);
+        drawing
+    }
+}
+
+/// The map of a channel of a picture in pixels: without a colour bar exactly as large as the picture; with one,
+/// in a frame with the bar to its right ([`ScalarMap::draw`]).
+///
+/// # Errors
+///
+/// If the picture has no such channel, the channel not one number a pixel, or there is not enough memory.
+pub fn scalar_map(
+    picture: &Picture,
+    channel: &str,
+    color_bar: bool,
+) -> Result<RgbImage, IllustrationError> {
+    ScalarMap::new(picture, channel)?.into_image(color_bar)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cloakroom::output::Channel;
+
+    fn picture(width: usize, height: usize) -> Picture {
+        let times = (0..width * height).map(|i| i as f64 * 1e-15).collect();
+        let channel = |name: &str, samples| Channel { name: name.to_owned(), samples };
+        Picture {
+            width,
+            height,
+            channels: vec![
+                channel("time_of_flight_difference", Samples::F64(times)),
+                channel("delivered", Samples::F32(vec![1.0; width * height])),
+                channel("broken", Samples::F32(vec![1.0; 3])),
+            ],
+            metadata: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_map_has_a_pixel_for_each_of_the_picture() {
+        let picture = picture(5, 3);
+        let map = scalar_map(&picture, "time_of_flight_difference", false).expect("a map");
+        assert_eq!(map.dimensions(), (5, 3));
+        assert_ne!(map.get_pixel(0, 0), map.get_pixel(4, 2));
+        let range = ScalarMap::new(&picture, "time_of_flight_difference").map(|map| map.range());
+        assert_eq!(range, Ok(Some((0.0, 14.0 * 1e-15))));
+    }
+
+    #[test]
+    fn a_color_bar_stands_beside_the_map() {
+        for (width, height) in [(1, 1), (320, 240), (40, 2000), (2000, 40)] {
+            let picture = picture(width, height);
+            for channel in ["time_of_flight_difference", "delivered"] {
+                let map = ScalarMap::new(&picture, channel).expect("a map");
+                let image = scalar_map(&picture, channel, true).expect("a map");
+                let margin = type_size(width as u32, height as u32) as u32;
+                let top = (image.height() - height as u32) / 2;
+                // Every number has its pixel.
+                for (x, y, pixel) in map.image.enumerate_pixels() {
+                    assert_eq!(image.get_pixel(margin + x, top + y), pixel, "({x}, {y})");
+                }
+                assert_eq!(image.get_pixel(margin - 1, top).0, [24; 3]);
+            }
+        }
+    }
+
+    #[test]
+    fn odd_pictures_do_no_harm() {
+        let empty = picture(0, 0);
+        assert!(scalar_map(&empty, "delivered", true).is_ok());
+        let error = scalar_map(&picture(2, 2), "pruned", false).expect_err("no such channel");
+        assert_eq!(
+            error.to_string(),
+            "the picture has no channel `pruned`; it has time_of_flight_difference, delivered, broken"
+        );
+        let error = scalar_map(&picture(2, 2), "broken", false).expect_err("too few numbers");
+        assert!(error.to_string().contains("3 numbers"));
+        let huge = Picture { width: usize::MAX, height: 2, ..picture(2, 2) };
+        assert!(scalar_map(&huge, "delivered", false).is_err());
+    }
+}

@@ -1,0 +1,79 @@
+//! Bodies: their outlines, filled with a tint of their index.
+
+use super::super::drawing::{Drawing, Ink, Shape};
+use super::device;
+use super::index_map::on_sheet;
+use super::medium_axes::MediumAxes;
+use super::subject::{Subject, bounds, lattice};
+use super::view::View;
+use super::{INK, OPAQUE, PAPER, TEXT, THIN};
+use cloakroom::device::Contour;
+use glam::DVec2;
+use optics::medium::Medium;
+
+/// The colour of a body of a medium, or an opaque one: white for an index of 1, the bluer the larger it is, the redder the more negative.
+pub(super) fn tint(medium: Option<&Medium>) -> Ink {
+    /// For an index far from 1.
+    const POSITIVE: [f64; 3] = [107.0, 174.0, 214.0];
+    const NEGATIVE: [f64; 3] = [244.0, 165.0, 130.0];
+    let Some(medium) = medium else { return OPAQUE };
+    let index = medium.mean_index();
+    let (far, off) = if index < 0.0 { (NEGATIVE, -index) } else { (POSITIVE, (index - 1.0).abs()) };
+    let share = off / (off + 1.0);
+    let mix = |paper: u8, far: f64| (f64::from(paper) * (1.0 - share) + far * share).round() as u8;
+    Ink::new(std::array::from_fn(|i| mix(PAPER.rgb[i], far[i])))
+}
+
+/// Draws a body.
+pub(super) fn draw(drawing: &mut Drawing, view: &View, subject: &Subject<'_>) {
+    for outline in &subject.section.outlines {
+        let area = Shape::Area(vec![on_sheet(view, &subject.pose, &outline.points)]);
+        let element = drawing.add("body", area).filled(tint(subject.section.body_medium));
+        element.stroked(INK, THIN).within(vec![view.frame()]);
+    }
+}
+
+/// Draws what a body is filled with, its axes or its index, where nothing stands before it.
+pub(super) fn draw_medium(
+    drawing: &mut Drawing,
+    view: &View,
+    subject: &Subject<'_>,
+    before: &[(&Subject<'_>, bool)],
+) {
+    let Some(medium) = subject.section.body_medium else { return };
+    if subject.section.is_shadow && MediumAxes::of(medium).is_some() {
+        return;
+    }
+    let [outline] = &subject.section.outlines[..] else { return };
+    let lines: Vec<Vec<DVec2>> = std::iter::once((subject, outline))
+        .chain(
+            before.iter().flat_map(|(other, _)| other.section.outlines.iter().map(|o| (*other, o))),
+        )
+        .map(|(other, contour): (&Subject<'_>, &Contour)| {
+            on_sheet(view, &other.pose, &contour.points)
+        })
+        .collect();
+    // The middle of what is free, or nearly so.
+    let Some([low, high]) = bounds(outline.points.iter().copied()) else { return };
+    const STEPS: u32 = 24;
+    let is_free = |world: DVec2| before.iter().all(|(other, _)| !other.surrounds(world));
+    let widest = std::iter::once((low + high) / 2.0)
+        .chain(lattice([low, high], STEPS))
+        .filter(|point| outline.surrounds(*point))
+        .map(|point| subject.pose.point_to_world(point))
+        .filter(|world| is_free(*world))
+        .map(|world| {
+            let at = view.place(world);
+            let free = |direction: DVec2| device::room(&lines, at, direction);
+            // A label is wider than high.
+            (free(DVec2::Y).min(0.3 * free(DVec2::X)), at)
+        })
+        .fold(None, |best: Option<(f64, DVec2)>, next| match best {
+            Some(best) if best.0 >= next.0 - 1e-9 => Some(best),
+            _ => Some(next),
+        });
+    let Some((room, at)) = widest else { return };
+    if room > 0.3 * TEXT || MediumAxes::of(medium).is_some() {
+        device::draw_filling(drawing, &subject.pose, medium, at, &lines, tint(Some(medium)));
+    }
+}

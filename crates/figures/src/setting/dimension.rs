@@ -1,0 +1,72 @@
+//! Dimensions: how long things are.
+
+use super::super::drawing::{Drawing, Ink, Shape, Words};
+use super::{INK, TEXT, THIN, write};
+use glam::DVec2;
+
+/// The length of an arrow head.
+pub(crate) const HEAD: f64 = 11.0;
+
+/// Draws a dimension line beside the line from `a` to `b` (both on the sheet), shifted by `shift`, with
+/// its label beyond it on a ground of that colour.
+pub(super) fn draw(
+    drawing: &mut Drawing,
+    [a, b]: [DVec2; 2],
+    shift: DVec2,
+    label: &str,
+    ground: Ink,
+) {
+    let outward = shift.normalize_or(DVec2::Y);
+    for end in [a, b] {
+        let line = vec![end + 3.0 * outward, end + shift + 6.0 * outward];
+        drawing.add("extension", Shape::Line(line)).stroked(INK, 0.7 * THIN);
+    }
+    double_arrow(drawing, "dimension", [a + shift, b + shift], INK, THIN);
+    let words = Words::new(label, (a + b) / 2.0 + shift + 0.66 * TEXT * outward, TEXT);
+    write(drawing, "dimension-label", words.turned(upright(b - a)), ground);
+}
+
+/// The angle in degrees of text along a line of the sheet that nobody has to read upside down.
+fn upright(along: DVec2) -> f64 {
+    let angle = (-along.y).atan2(along.x).to_degrees();
+    let turned = if angle > 90.0 - 1e-9 {
+        angle - 180.0
+    } else if angle <= -90.0 - 1e-9 {
+        angle + 180.0
+    } else {
+        angle
+    };
+    // Upright lines are read upwards.
+    if (turned + 90.0).abs() < 1e-6 { 90.0 } else { turned }
+}
+
+/// A line with a head at either end; where it is too short for that, the heads point at it from
+/// outside.
+pub(super) fn double_arrow(
+    drawing: &mut Drawing,
+    class: &'static str,
+    [a, b]: [DVec2; 2],
+    ink: Ink,
+    width: f64,
+) {
+    let along = (b - a).normalize_or(DVec2::X);
+    let head = HEAD * (0.7 + 0.3 * width / THIN);
+    let inside = a.distance(b) > 2.2 * head;
+    let inward = if inside { along } else { -along };
+    let (from, to) = if inside {
+        (a + 0.8 * head * along, b - 0.8 * head * along)
+    } else {
+        (a - 2.0 * head * along, b + 2.0 * head * along)
+    };
+    drawing.add(class, Shape::Line(vec![from, to])).stroked(ink, width);
+    for (tip, back) in [(a, inward), (b, -inward)] {
+        drawing.add("head", arrow_head(tip, back, head)).filled(ink);
+    }
+}
+
+/// The head of an arrow with its tip at a point; `back` is the unit vector along its shaft.
+pub(crate) fn arrow_head(tip: DVec2, back: DVec2, length: f64) -> Shape {
+    let base = tip + length * back;
+    let side = 0.32 * length * back.perp();
+    Shape::Area(vec![vec![tip, base + side, base - side]])
+}

@@ -1,0 +1,210 @@
+//! The setting of a scene: camera, photograph and devices in the xy-plane, drawn to scale from the
+//! scene itself, as in Fig. 1 of Halimeh & Wegener, Opt. Express 21, 9457 (2013).
+
+mod body;
+mod device;
+mod dimension;
+mod index_map;
+mod layout;
+mod legend;
+mod medium_axes;
+mod stage;
+mod subject;
+mod view;
+
+pub(super) use dimension::{HEAD, arrow_head};
+pub(super) use stage::{AXES, draw_axes};
+pub use view::View;
+pub(super) use view::corners;
+
+pub(super) use super::drawing::INK;
+use super::drawing::{Drawing, Ink, Shape, Words};
+use super::quantity::short;
+use cloakroom::assembly::Assembly;
+use cloakroom::render::{PreparedScene, PreparedSceneError, metadata};
+use cloakroom::scene::Scene;
+use glam::DVec2;
+use index_map::IndexScale;
+use layout::Layout;
+use stage::Stage;
+use subject::Subject;
+
+/// The drawing of a setting.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// The drawing, of the aspect of the scene's picture.
+    pub drawing: Drawing,
+    /// Where on it the points of the scene are, for whoever wants to draw more.
+    pub view: View,
+    /// Scene and version, for files.
+    pub metadata: Vec<(String, String)>,
+}
+
+/// The size of lettering. All lengths are for a sheet as large as 1024 x 768.
+pub(super) const TEXT: f64 = 24.0;
+/// The margin of the sheet.
+pub(super) const MARGIN: f64 = 14.0;
+/// The room that a colour bar takes.
+pub(super) const BAR: f64 = 5.2 * TEXT;
+/// The width of thin lines.
+pub(super) const THIN: f64 = 1.5;
+/// The width of the lines that matter.
+pub(super) const THICK: f64 = 2.6;
+
+pub(super) const GRAY: Ink = Ink::new([120, 120, 120]);
+pub(super) const PAPER: Ink = Ink::new([255, 255, 255]);
+pub(super) const METAL: Ink = Ink::new([196, 196, 196]);
+pub(super) const MEDIUM: Ink = Ink::new([222, 235, 247]);
+const OPAQUE: Ink = Ink::new([122, 92, 66]).faint(0.55);
+/// Colours that most people tell apart (Okabe & Ito, Color universal design, 2008).
+pub(super) const BLUE: Ink = Ink::new([0, 114, 178]);
+pub(super) const VERMILION: Ink = Ink::new([213, 94, 0]);
+const SKY: Ink = Ink::new([86, 180, 233]);
+
+/// Draws the setting of a scene: a projection on the xy-plane (x to the right, y up, z out of the
+/// page), to scale. Every device is cut in the plane z = 0 of its own frame; one that would be small is
+/// drawn once more, magnified.
+///
+/// # Errors
+///
+/// If the scene cannot be looked at, as [`PreparedScene::new`] says.
+///
+/// # Example
+///
+/// ```
+/// use cloakroom_figures::setting;
+/// use std::path::Path;
+///
+/// let text = "[[device]]\nkind = \"square-cloak\"";
+/// let scene = cloakroom::scene_file::parse(text, "scene", Path::new(""), &[])?.scene;
+/// let setting = setting(&scene)?;
+/// let svg = setting.drawing.to_svg("A square cloak", &setting.metadata);
+/// assert!(svg.contains("aria-label=\"14.1 cm\""));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
+    let studio = PreparedScene::new(scene)?;
+    let subjects = Subject::all(studio.assembly());
+    let stage = Stage::new(scene, &studio);
+    let scale = IndexScale::of(&subjects);
+    let layout = Layout::new(sheet(scene.camera.resolution()), &stage, &subjects, scale.is_some());
+    let mut drawing = Drawing::new(layout.sheet, TEXT);
+    stage.draw_behind(&mut drawing, &layout.view);
+    let order = Subject::from_back(&subjects);
+    let whole: Vec<_> =
+        order.iter().map(|index| (&subjects[*index], !layout.is_magnified(*index))).collect();
+    draw_devices(&mut drawing, &layout.view, &whole, scale.as_ref());
+    stage.draw_before(&mut drawing, &layout.view);
+    stage.draw_distances(&mut drawing, &layout.view, &subjects);
+    draw_axes(&mut drawing, layout.axes);
+    for inset in &layout.insets {
+        inset.draw_frame(&mut drawing, &layout.view);
+        let is_in = |index: &&usize| inset.group.subjects.contains(*index);
+        let shown: Vec<_> =
+            order.iter().filter(is_in).map(|index| (&subjects[*index], true)).collect();
+        draw_devices(&mut drawing, &inset.view, &shown, scale.as_ref());
+        legend::draw(&mut drawing, inset.legend, &shown);
+    }
+    if let (Some(scale), Some(place)) = (&scale, layout.bar) {
+        scale.draw_bar(&mut drawing, place);
+    }
+    Ok(Setting { drawing, view: layout.view, metadata: metadata(scene) })
+}
+
+/// The devices of a scene in cross-section, to be drawn in any view.
+pub(super) struct Devices<'s> {
+    subjects: Vec<Subject<'s>>,
+    scale: Option<IndexScale>,
+}
+
+impl<'s> Devices<'s> {
+    pub fn new(assembly: &'s Assembly) -> Self {
+        let subjects = Subject::all(assembly);
+        let scale = IndexScale::of(&subjects);
+        Self { subjects, scale }
+    }
+
+    /// Least and greatest x and y of all that has an end, cm.
+    pub fn bounds(&self) -> Option<[DVec2; 2]> {
+        subject::bounds(self.subjects.iter().filter_map(Subject::bounds).flatten())
+    }
+
+    /// Whether the index of graded media is drawn in colours, which a bar explains.
+    pub fn has_bar(&self) -> bool {
+        self.scale.is_some()
+    }
+
+    /// Draws the devices with the axes of their media.
+    pub fn draw(&self, drawing: &mut Drawing, view: &View) {
+        let order = Subject::from_back(&self.subjects);
+        let shown: Vec<_> = order.iter().map(|index| (&self.subjects[*index], true)).collect();
+        draw_shapes(drawing, view, &shown, self.scale.as_ref());
+    }
+
+    /// Draws the bar of the colours with its top left corner at a point, as high as told.
+    pub fn draw_bar(&self, drawing: &mut Drawing, place: (DVec2, f64)) {
+        if let Some(scale) = &self.scale {
+            scale.draw_bar(drawing, place);
+        }
+    }
+}
+
+/// Draws devices from back to front, and where it says so in detail: with the axes of their media and, before
+/// everything else so that they can be read, their dimensions.
+fn draw_devices(
+    drawing: &mut Drawing,
+    view: &View,
+    devices: &[(&Subject<'_>, bool)],
+    scale: Option<&IndexScale>,
+) {
+    draw_shapes(drawing, view, devices, scale);
+    for (place, (subject, _)) in devices.iter().enumerate().filter(|(_, (_, detail))| *detail) {
+        let is_inner = |(other, (around, _)): (usize, &(&Subject<'_>, bool))| {
+            other != place && subject.is_within(around, other > place)
+        };
+        if !devices.iter().enumerate().any(is_inner) {
+            device::draw_dimensions(drawing, view, subject);
+        }
+    }
+}
+
+/// Draws devices from back to front, without their dimensions.
+fn draw_shapes(
+    drawing: &mut Drawing,
+    view: &View,
+    devices: &[(&Subject<'_>, bool)],
+    scale: Option<&IndexScale>,
+) {
+    for (place, (subject, in_detail)) in devices.iter().enumerate() {
+        device::draw(drawing, view, subject, scale);
+        if *in_detail {
+            device::draw_media(drawing, view, subject, &devices[place + 1..]);
+        }
+    }
+}
+
+/// The sheet for a picture of that many pixels: of its aspect, and as large as one of 1024 x 768.
+pub(super) fn sheet(resolution: [u32; 2]) -> DVec2 {
+    let pixels = DVec2::from(resolution.map(f64::from));
+    pixels * (1024.0 * 768.0 / (pixels.x * pixels.y)).sqrt()
+}
+
+/// Writes a label that can be read whatever lies behind it: its letters have a rim of the colour of
+/// the ground.
+fn write(drawing: &mut Drawing, class: &'static str, words: Words, ground: Ink) {
+    drawing.add("rim", Shape::Words(words.clone())).stroked(ground.faint(0.85), 6.0);
+    drawing.add(class, Shape::Words(words)).filled(INK);
+}
+
+/// A length in cm with two decimals at most.
+fn centimetres(length: f64) -> String {
+    format!("{} cm", rounded(length))
+}
+
+/// A number with two decimals at most.
+fn rounded(number: f64) -> String {
+    short(number, 2).replace('-', "\u{2212}")
+}
+
+#[cfg(test)]
+mod tests;

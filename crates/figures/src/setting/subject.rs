@@ -1,0 +1,97 @@
+//! The devices of a scene, ready to be drawn.
+
+use cloakroom::assembly::Assembly;
+use cloakroom::device::{Contour, CrossSection, REACH};
+use glam::DVec2;
+use optics::geometry::Pose;
+
+/// A device as it is drawn, and the place of that.
+pub(super) struct Subject<'s> {
+    pub section: CrossSection<'s>,
+    pub pose: Pose,
+}
+
+impl<'s> Subject<'s> {
+    /// The devices of a scene, in its order.
+    pub fn all(assembly: &'s Assembly) -> Vec<Self> {
+        (assembly.devices().iter())
+            .map(|placed| {
+                let (section, pose) = placed.structure.drawn_at(&placed.pose);
+                Self { section, pose }
+            })
+            .collect()
+    }
+
+    /// The contours of all that is to be seen of it, in its own frame.
+    pub fn contours(&self) -> impl Iterator<Item = &Contour> {
+        let section = &self.section;
+        let borders = section.regions.iter().flat_map(|region| &region.border);
+        section.outlines.iter().chain(&section.metal).chain(borders)
+    }
+
+    /// Least and greatest x and y in the scene, cm, of all that has an end; none if there is nothing.
+    pub fn bounds(&self) -> Option<[DVec2; 2]> {
+        let points = self.contours().flat_map(|contour| &contour.points);
+        let ends = points.filter(|p| p.abs().max_element() < REACH / 2.0);
+        bounds(ends.map(|p| self.pose.point_to_world(*p)))
+    }
+
+    /// The indices of the devices from back to front: of two bodies the one of the larger priority lies before
+    /// the other, as it is the one that is there, else what has the larger z.
+    pub fn from_back(subjects: &[Self]) -> Vec<usize> {
+        let depth = |subject: &Self| {
+            (subject.section.body.map_or(0, |body| body.priority), subject.pose.origin().z)
+        };
+        let mut order: Vec<usize> = (0..subjects.len()).collect();
+        order.sort_by(|&i, &j| {
+            let (a, b) = (depth(&subjects[i]), depth(&subjects[j]));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
+        order
+    }
+
+    /// Whether it is an opaque body, of which there is nothing to see but its outline.
+    pub fn is_opaque(&self) -> bool {
+        self.section.body.is_some() && self.section.body_medium.is_none()
+    }
+
+    /// Whether it is a body that lies within another device as they are drawn; of two of one size, whether
+    /// `or_alike`.
+    pub fn is_within(&self, other: &Self, or_alike: bool) -> bool {
+        let (Some([low, high]), Some([from, to])) = (self.bounds(), other.bounds()) else {
+            return false;
+        };
+        let alike = [low, high] == [from, to];
+        self.section.body.is_some()
+            && (or_alike || !alike)
+            && from.cmple(low).all()
+            && high.cmple(to).all()
+    }
+
+    /// Whether a point of the scene's xy-plane lies within its outline.
+    pub fn surrounds(&self, point: DVec2) -> bool {
+        let local = self.pose.to_local(point.extend(0.0)).truncate();
+        self.section.outlines.iter().any(|outline| outline.surrounds(local))
+    }
+
+    /// Where its axis is in the scene.
+    pub fn origin(&self) -> DVec2 {
+        self.pose.origin().truncate()
+    }
+}
+
+/// The middles of the cells of a box, `steps` either way.
+pub(super) fn lattice([low, high]: [DVec2; 2], steps: u32) -> impl Iterator<Item = DVec2> {
+    (0..steps * steps).map(move |k| {
+        let share = DVec2::new(f64::from(k % steps), f64::from(k / steps)) + 0.5;
+        low + (high - low) * share / f64::from(steps)
+    })
+}
+
+/// Least and greatest x and y.
+pub(super) fn bounds(points: impl IntoIterator<Item = DVec2>) -> Option<[DVec2; 2]> {
+    points.into_iter().fold(None, |known, p| {
+        let [low, high] = known.unwrap_or([p, p]);
+        Some([low.min(p), high.max(p)])
+    })
+}

@@ -1,0 +1,239 @@
+//! Scenes of the paper, made and measured.
+
+use super::VerificationError;
+use cloakroom::assembly::Assembly;
+use cloakroom::device::FactValue;
+use cloakroom::measure::{Region, Survey, View, correlation, survey};
+use cloakroom::output::Picture;
+use cloakroom::render::{ChannelSet, PreparedScene, Supervision, assembly, render};
+use cloakroom::scene::Scene;
+use cloakroom::scene_file;
+use cloakroom::trace::{Launch, Leaf, Limits, Outcome, PathSegment, Tracer};
+use glam::DVec3;
+use optics::wave::transverse_basis;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// Where the paper's camera stands.
+pub(super) const CAMERA: DVec3 = DVec3::new(-100.0, 0.0, 0.0);
+
+/// Half the horizontal field of view, degrees.
+pub(super) const HALF_VIEW: f64 = 20.0;
+
+/// The square cloak of a design.
+pub(super) fn square(material: &str) -> String {
+    format!("[[device]]\nkind = \"square-cloak\"\nmaterial = \"{material}\"\n")
+}
+
+/// Designs (i), (ii) and (iii).
+pub(super) const DESIGNS: [&str; 3] =
+    ["positive-uniaxial", "negative-uniaxial", "impedance-matched"];
+
+/// Design (iv).
+pub(super) const GAUSSIAN: &str = "[[device]]\nkind = \"double-gaussian-cloak\"\n";
+
+/// Makes and measures; stops when it is asked to.
+pub(super) struct Fixture<'s> {
+    pub stop: &'s AtomicBool,
+}
+
+/// A device as the paper's camera sees it.
+pub(super) struct Shown {
+    pub picture: Picture,
+    pub view: View,
+}
+
+impl Fixture<'_> {
+    /// The paper's scene with a device (or none), through a polarizer.
+    fn scene(device: &str, polarizer: &str) -> Result<Scene, VerificationError> {
+        let text = format!(
+            "[camera]\nresolution = [160, 120]\nsamples = 1\npolarizer = \"{polarizer}\"\n\
+             [picture]\nchannels = [\"first_face_reflectance\", \"extraordinary_share\"]\n{device}"
+        );
+        scene_file::parse(&text, "verification", Path::new(""), &[])
+            .map(|loaded| loaded.scene)
+            .map_err(|error| VerificationError::Scene(Box::new(error)))
+    }
+
+    /// The picture of a device.
+    pub fn show(&self, device: &str, polarizer: &str) -> Result<Shown, VerificationError> {
+        let scene = Self::scene(device, polarizer)?;
+        let studio = PreparedScene::new(&scene)?;
+        let supervision = Supervision { rows_done: &|_| {}, stop: self.stop };
+        let picture = render(&studio, ChannelSet::Everything, &supervision)?.picture;
+        Ok(Shown { view: View::of(&picture)?, picture })
+    }
+
+    /// Where the rays of a device's picture go, against those of another scene.
+    pub fn survey(
+        &self,
+        device: &str,
+        polarizer: &str,
+        ideal: &str,
+    ) -> Result<Survey, VerificationError> {
+        let [scene, ideal] = [device, ideal].map(|device| Self::scene(device, polarizer));
+        let (scene, ideal) = (scene?, ideal?);
+        let [studio, ideal] = [&scene, &ideal].map(PreparedScene::new);
+        survey(&studio?, &ideal?, &scene.camera, &|_| {}, self.stop)
+            .ok_or(VerificationError::Stopped)
+    }
+
+    /// The silhouette of a device.
+    pub fn silhouette(&self, device: &str) -> Result<Region, VerificationError> {
+        let survey = self.survey(device, "horizontal", "")?;
+        Ok(Region::new(160, survey.silhouette)?)
+    }
+
+    /// Root mean square displacement at the photograph, cm.
+    pub fn displacement(
+        &self,
+        device: &str,
+        polarizer: &str,
+        ideal: &str,
+    ) -> Result<f64, VerificationError> {
+        let survey = self.survey(device, polarizer, ideal)?;
+        let missing = || VerificationError::Missing("light from the photograph".to_owned());
+        survey.displacement_rms_cm.ok_or_else(missing)
+    }
+
+    /// The devices of a scene.
+    pub fn assembly(&self, device: &str) -> Result<Assembly, VerificationError> {
+        Ok(assembly(&Self::scene(device, "none")?)?)
+    }
+}
+
+/// The mean over red, green and blue of the correlation over a region.
+pub(super) fn likeness(a: &View, b: &View, region: &Region) -> Result<f64, VerificationError> {
+    let mut sum = 0.0;
+    for (a, b) in a.light.iter().zip(&b.light) {
+        sum += correlation(a, b, region)
+            .ok_or_else(|| VerificationError::Missing("contrast".to_owned()))?;
+    }
+    Ok(sum / 3.0)
+}
+
+/// The largest difference of linear light between two views.
+pub(super) fn largest_difference(a: &View, b: &View) -> f64 {
+    let pairs = a.light.iter().zip(&b.light).flat_map(|(a, b)| a.iter().zip(b));
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// The numbers of a channel that are there, one at least.
+pub(super) fn numbers(picture: &Picture, channel: &str) -> Result<Vec<f64>, VerificationError> {
+    let samples = picture
+        .channel(channel)
+        .map(|channel| &channel.samples)
+        .ok_or_else(|| VerificationError::Missing(format!("the channel {channel}")))?;
+    let all = (0..samples.len()).map(|i| samples.get(i));
+    let numbers: Vec<f64> = all.filter(|number| number.is_finite()).collect();
+    if numbers.is_empty() {
+        return Err(VerificationError::Missing(format!("a number in {channel}")));
+    }
+    Ok(numbers)
+}
+
+/// The mean and the largest size of the numbers of a channel that are there.
+pub(super) fn statistics(picture: &Picture, channel: &str) -> Result<[f64; 2], VerificationError> {
+    let numbers = numbers(picture, channel)?;
+    let largest = numbers.iter().copied().map(f64::abs).fold(0.0, f64::max);
+    Ok([numbers.iter().sum::<f64>() / numbers.len() as f64, largest])
+}
+
+/// A fact of the device of a scene, by its name.
+fn fact_value(device: &str, name: &str) -> Result<FactValue, VerificationError> {
+    let scene = Fixture::scene(device, "none")?;
+    let device = scene.devices.first();
+    let facts = device.map(|device| device.facts()).unwrap_or_default();
+    let found = facts.into_iter().find(|fact| fact.name == name);
+    found.map(|fact| fact.value).ok_or_else(|| VerificationError::Missing(name.to_owned()))
+}
+
+/// A fact that is a number.
+pub(super) fn fact(device: &str, name: &str) -> Result<f64, VerificationError> {
+    match fact_value(device, name)? {
+        FactValue::Number(number) => Ok(number),
+        _ => Err(VerificationError::Missing(name.to_owned())),
+    }
+}
+
+/// The principal values of a tensor among the facts of a device.
+pub(super) fn principal_values(device: &str, name: &str) -> Result<Vec<f64>, VerificationError> {
+    match fact_value(device, name)? {
+        FactValue::Numbers(numbers) => Ok(numbers),
+        _ => Err(VerificationError::Missing(name.to_owned())),
+    }
+}
+
+/// Follows single rays through a device, horizontal and vertical at once, down to a power.
+pub(super) struct Rays<'b> {
+    tracer: Tracer<'b, 2>,
+}
+
+impl<'b> Rays<'b> {
+    pub fn new(assembly: &'b Assembly, min_power: f64) -> Self {
+        Self { tracer: Tracer::new(assembly, Limits { min_power, tolerance: 1e-8 }) }
+    }
+
+    pub fn trace(&mut self, origin: DVec3, direction: DVec3) -> (&[Leaf<2>], &Outcome<2>) {
+        self.tracer.trace(&launch(origin, direction))
+    }
+
+    /// The shares of horizontal and vertical light that go on along the ray's own line, as if nothing were there,
+    /// within an angle (degrees) and a distance (cm).
+    pub fn undisturbed(
+        &mut self,
+        origin: DVec3,
+        direction: DVec3,
+        [angle, distance]: [f64; 2],
+    ) -> [f64; 2] {
+        let direction = direction.normalize();
+        let (leaves, _) = self.trace(origin, direction);
+        let on = leaves.iter().filter(|leaf| {
+            let offset = leaf.position - origin;
+            let beside = (offset - direction * offset.dot(direction)).length();
+            leaf.direction.distance(direction) <= angle.to_radians() && beside <= distance
+        });
+        on.fold([0.0; 2], |sum, leaf| [sum[0] + leaf.power[0], sum[1] + leaf.power[1]])
+    }
+}
+
+/// A ray, horizontal and vertical at once.
+fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
+    let direction = direction.normalize();
+    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
+    Launch { origin, direction, electric: [h.into(), v.into()] }
+}
+
+/// The strongest leaf of a ray's vertical light, and how often its way is reflected within a segment: where two legs on
+/// end lie in one. The device must stand in the frame of the scene.
+pub(super) fn reflected_inside(
+    assembly: &Assembly,
+    origin: DVec3,
+    direction: DVec3,
+) -> Option<(Leaf<2>, usize)> {
+    let limits = Limits { min_power: 1e-6, tolerance: 1e-8 };
+    let mut tracer = Tracer::new(assembly, limits).watched(Vec::new());
+    let (leaves, _) = tracer.trace(&launch(origin, direction));
+    let main = *leaves.iter().max_by(|a, b| a.power[1].total_cmp(&b.power[1]))?;
+    let legs: &Vec<PathSegment<2>> = tracer.recorder();
+    let (mut at, mut path) = (main.position, main.optical_path);
+    let mut way = Vec::new();
+    // Back from the leaf, along what ends where the next leg starts.
+    let ends = |leg: &&PathSegment<2>, at: DVec3, path: f64| {
+        let end = leg.path.last().map(|end| (end.position, leg.optical_path + end.optical_path));
+        end.is_some_and(|(place, sum)| place.distance(at) < 1e-9 && (sum - path).abs() < 1e-9)
+            && leg.optical_path < path - 1e-9
+    };
+    while let Some(leg) = legs.iter().find(|leg| ends(leg, at, path)) {
+        way.push(leg.inside);
+        (at, path) = (leg.path[0].position, leg.optical_path);
+    }
+    let reflected = way.windows(2).filter(|pair| pair[0].is_some() && pair[0] == pair[1]);
+    Some((main, reflected.count()))
+}
+
+/// A direction of view: degrees to the right and upwards.
+pub(super) fn gaze(right: f64, up: f64) -> DVec3 {
+    let (right, up) = (right.to_radians(), up.to_radians());
+    DVec3::new(right.cos() * up.cos(), up.sin(), right.sin() * up.cos())
+}

@@ -1,0 +1,72 @@
+//! Section 3, design (iii).
+
+use super::Findings;
+use super::finding::{DOUBLE, Finding, SINGLE, Verdict, below};
+use super::laboratory::{
+    CAMERA, DESIGNS, Fixture, Rays, gaze, largest_difference, square, statistics,
+};
+
+/// Yoctoseconds in a nanosecond.
+const YOCTOSECONDS: f64 = 1e15;
+
+pub(super) fn along_the_axis(laboratory: &Fixture<'_>) -> Findings {
+    let device = square(DESIGNS[2]);
+    let empty = laboratory.show("", "none")?.view;
+    let shown = laboratory.show(&device, "none")?;
+    let bare = laboratory.show(&format!("{device}show = \"bare\"\n"), "none")?.view;
+    let difference = largest_difference(&empty, &shown.view);
+    let bare = largest_difference(&empty, &bare);
+    let [_, late] = statistics(&shown.picture, "time_of_flight_difference")?;
+    let assembly = laboratory.assembly(&device)?;
+    let mut rays = Rays::new(&assembly, 1e-12);
+    let mut lost: f64 = 0.0;
+    for right in [0.0, 7.0, 14.0, 20.0] {
+        for step in -12..=12 {
+            let up = 0.43 * f64::from(step) + 0.1;
+            let [h, v] = rays.undisturbed(CAMERA, gaze(right, up), [1e-6, 1e-6]);
+            lost = lost.max(1.0 - h).max(1.0 - v);
+        }
+    }
+    Ok(vec![
+        Finding::new(
+            "3, Fig. 6",
+            "Bare metal distorts the view; (iii) retrieves the empty view perfectly",
+            format!(
+                "largest difference of linear light: {}, bare {bare:.2}",
+                below(difference, SINGLE, "")
+            ),
+            Verdict::of(difference < 1e-5 && bare > 0.1),
+        ),
+        Finding::new(
+            "3, Fig. 6",
+            "The time of flight is retrieved, too, to machine precision: yoctoseconds",
+            format!("largest difference {}", below(late * YOCTOSECONDS, 20.0, "ys")),
+            Verdict::of(late * YOCTOSECONDS < 1000.0),
+        ),
+        Finding::new(
+            "3",
+            "(iii) is impedance matched to air, for any polarization",
+            format!(
+                "power that is not on its own line, over the view: {}",
+                below(lost, DOUBLE, "")
+            ),
+            Verdict::of(lost < 1e-9),
+        ),
+    ])
+}
+
+pub(super) fn turned(laboratory: &Fixture<'_>) -> Findings {
+    let mut largest: f64 = 0.0;
+    for rotation in [5, 10, 20] {
+        let device = format!("{}rotation = {rotation}\n", square(DESIGNS[2]));
+        let cloaked = laboratory.show(&device, "none")?.view;
+        let mirror = laboratory.show(&format!("{device}show = \"mirror\"\n"), "none")?.view;
+        largest = largest.max(largest_difference(&cloaked, &mirror));
+    }
+    Ok(vec![Finding::new(
+        "3, Fig. 7",
+        "Turned by 5, 10, 20 degrees, (iii) looks exactly as a flat mirror 19.94 cm wide does",
+        format!("largest difference of linear light: {}", below(largest, SINGLE, "")),
+        Verdict::of(largest < 1e-5),
+    )])
+}

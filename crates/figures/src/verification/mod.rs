@@ -1,0 +1,102 @@
+//! The statements of the paper, one by one: Halimeh & Wegener, "Photorealistic rendering of unidirectional
+//! free-space invisibility cloaks", Opt. Express 21, 9457 (2013).
+//!
+//! Each statement that can be checked is computed afresh from the program's own scenes and rays, and the verdict
+//! follows from the numbers by a rule that is written down here, once. No number is adjusted to agree.
+
+mod birefringent;
+mod finding;
+mod geometry;
+mod graded;
+mod laboratory;
+mod matched;
+mod motion;
+
+pub use finding::{Finding, Verdict, markdown};
+
+use cloakroom::measure::MeasureError;
+use cloakroom::render::{PreparedSceneError, RenderError};
+use cloakroom::scene_file::SceneFileError;
+use laboratory::Fixture;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Why the paper could not be gone through.
+#[derive(Debug, thiserror::Error)]
+pub enum VerificationError {
+    /// The work was stopped from outside.
+    #[error("stopped")]
+    Stopped,
+    /// A picture could not be made.
+    #[error("{0}")]
+    Render(RenderError),
+    /// A picture could not be measured.
+    #[error("{0}")]
+    Measure(#[from] MeasureError),
+    /// A scene could not be read.
+    #[error("{0}")]
+    Scene(Box<SceneFileError>),
+    /// A scene could not be built.
+    #[error("{0}")]
+    PreparedScene(#[from] PreparedSceneError),
+    /// A number that should be there is not.
+    #[error("{0} is missing")]
+    Missing(String),
+}
+
+impl From<RenderError> for VerificationError {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Stopped => Self::Stopped,
+            error => Self::Render(error),
+        }
+    }
+}
+
+/// What is found out in one go.
+type Findings = Result<Vec<Finding>, VerificationError>;
+type Check = fn(&Fixture<'_>) -> Findings;
+
+/// All checks, in the order of the paper.
+const CHECKS: &[Check] = &[
+    geometry::introduction,
+    motion::equation,
+    geometry::materials,
+    geometry::setting,
+    birefringent::along_the_axis,
+    birefringent::views,
+    birefringent::turned,
+    birefringent::reflections,
+    birefringent::trapped_light,
+    matched::along_the_axis,
+    matched::turned,
+    graded::index,
+    graded::polarization,
+    graded::views,
+    graded::times,
+    graded::reflections,
+    graded::turned,
+];
+
+/// How many steps [`verify`] takes.
+#[must_use]
+pub fn steps() -> u64 {
+    CHECKS.len() as u64
+}
+
+/// Goes through the paper; `step_done` is called after each of [`steps`].
+///
+/// # Errors
+///
+/// If the work was stopped, or a picture could not be made.
+pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Findings {
+    let laboratory = Fixture { stop };
+    let mut findings = Vec::new();
+    for check in CHECKS {
+        if stop.load(Ordering::Relaxed) {
+            return Err(VerificationError::Stopped);
+        }
+        findings.extend(check(&laboratory)?);
+        step_done();
+    }
+    Ok(findings)
+}

@@ -1,0 +1,14 @@
+//! All tests of light in matter, in one program: one is linked faster than many.
+
+mod birefringence;
+mod conformal_flow;
+mod graded_index;
+mod grazing;
+mod hyperbolic_cuts;
+mod interfaces;
+mod interfaces_million;
+mod long;
+mod paths;
+mod radial_flow;
+mod random_media;
+mod square_cloak_faces;

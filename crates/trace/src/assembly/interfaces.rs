@@ -1,0 +1,69 @@
+//! What of a device's interfaces is worked out once.
+
+use crate::device::{
+    Coating, FarSide, HomogeneousRegion, Region, RegionBorder, Shape, Structure, Surface,
+};
+use glam::DVec3;
+use optics::interface::Reflectionless;
+use optics::medium::Medium;
+
+/// Those interfaces of a device that reflect nothing. They are flat, and homogeneous media meet there.
+#[derive(Clone, Debug)]
+pub(crate) struct Interfaces {
+    /// From air, by the number of the device's surface.
+    surfaces: Vec<Option<Reflectionless>>,
+    /// Out of each region, by the number of its face.
+    faces: Vec<Vec<Option<Reflectionless>>>,
+}
+
+impl Interfaces {
+    /// The interfaces of a device.
+    pub fn of(structure: &Structure) -> Self {
+        let medium = |far: FarSide| match far {
+            FarSide::Outside => Some(&Medium::AIR),
+            FarSide::Region(region) => match structure.regions.get(usize::from(region)) {
+                Some(Region::Homogeneous(region)) => Some(&region.medium),
+                _ => None,
+            },
+            FarSide::Seam(_) | FarSide::Conductor | FarSide::Opaque => None,
+        };
+        let between = |from: &Medium, far: FarSide, normal: DVec3| {
+            Reflectionless::between(from, medium(far)?, normal)
+        };
+        let entrance = |surface: &Surface| {
+            if surface.coating != Coating::None || !matches!(surface.far, FarSide::Region(_)) {
+                return None;
+            }
+            let normal = match &surface.shape {
+                Shape::Wall(wall) => wall.normal(),
+                Shape::Cap(cap) => cap.normal,
+                _ => return None,
+            };
+            between(&Medium::AIR, surface.far, -normal)
+        };
+        let exits = |HomogeneousRegion { medium, border, .. }: &HomogeneousRegion| match border {
+            RegionBorder::Faces(faces) => {
+                faces.iter().map(|face| between(medium, face.far, face.plane.normal)).collect()
+            }
+            RegionBorder::Convex(_) => Vec::new(),
+        };
+        let faces = |region: &Region| match region {
+            Region::Homogeneous(region) => exits(region),
+            Region::Conformal(_) | Region::Radial(_) => Vec::new(),
+        };
+        Self {
+            surfaces: structure.surfaces.iter().map(entrance).collect(),
+            faces: structure.regions.iter().map(faces).collect(),
+        }
+    }
+
+    /// The way from air into the region behind a surface, if nothing is reflected there.
+    pub fn entrance(&self, surface: u16) -> Option<&Reflectionless> {
+        self.surfaces.get(usize::from(surface))?.as_ref()
+    }
+
+    /// The way out of a region through one of its faces, if nothing is reflected there.
+    pub fn exit(&self, region: u16, face: u16) -> Option<&Reflectionless> {
+        self.faces.get(usize::from(region))?.get(usize::from(face))?.as_ref()
+    }
+}

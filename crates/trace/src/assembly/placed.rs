@@ -1,0 +1,85 @@
+//! A device at its place.
+
+use crate::device::{Body, InnerRay, Region, Structure};
+use glam::DVec3;
+use optics::geometry::{Pose, Solid};
+use optics::medium::Medium;
+
+/// A device at its place.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// Where it stands and how it is turned.
+    pub pose: Pose,
+    /// What it is made of.
+    pub structure: Structure,
+}
+
+/// What a ray has just left, and does not meet next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct DepartedSurface {
+    pub device: u16,
+    /// Which of the device's surfaces; the whole device if it is convex.
+    pub surface: Option<u16>,
+}
+
+impl Placed {
+    /// What a ray has left that runs away from this device, the `number`th: the surface that is given, or all of the
+    /// device if it is convex.
+    pub(crate) fn departed(&self, number: u16, surface: Option<u16>) -> Option<DepartedSurface> {
+        let convex = self.structure.hull.is_convex();
+        let surface = surface.filter(|_| !convex);
+        (convex || surface.is_some()).then_some(DepartedSurface { device: number, surface })
+    }
+
+    /// Whether a point of the world lies inside the device.
+    #[must_use]
+    pub fn holds(&self, point: DVec3) -> bool {
+        self.structure.hull.holds(self.pose.to_local(point))
+    }
+
+    /// The space that the device takes up in the world.
+    #[must_use]
+    pub fn solids(&self) -> Vec<Solid> {
+        self.structure.hull.solids().iter().map(|solid| solid.placed(&self.pose)).collect()
+    }
+
+    /// The sheet of its thin mirror in the world, if it has one.
+    pub(super) fn thin_mirror(&self) -> Option<Solid> {
+        self.structure.hull.thin_mirror().map(|mirror| mirror.placed(&self.pose))
+    }
+
+    /// The least and the greatest coordinates of the device and its thin mirror; `None` if it is nowhere.
+    pub(super) fn bounds(&self) -> Option<[DVec3; 2]> {
+        let mirror = self.thin_mirror().and_then(|mirror| mirror.bounds());
+        [self.structure.hull.bounds(&self.pose), mirror]
+            .into_iter()
+            .flatten()
+            .reduce(|[low, high], [from, to]| [low.min(from), high.max(to)])
+    }
+
+    /// The body that it is, if it is one.
+    #[must_use]
+    pub fn body(&self) -> Option<&Body> {
+        self.structure.hull.body()
+    }
+
+    /// Its region of that number.
+    pub(crate) fn region(&self, number: u16) -> &Region {
+        &self.structure.regions[usize::from(number)]
+    }
+
+    /// The medium where a ray is in the region of that number, in the world's frame; the ray is in the device's.
+    pub(crate) fn medium_in_world(&self, region: u16, ray: &InnerRay) -> Option<Medium> {
+        let region = self.region(region);
+        let medium = *region.medium(ray.position, ray.virtual_point.as_ref(), &mut None)?;
+        Some(turned(&medium, &self.pose))
+    }
+}
+
+/// A medium of a device's frame in the world's.
+fn turned(medium: &Medium, pose: &Pose) -> Medium {
+    let (permittivity, permeability) = medium.tensors();
+    let turn = pose.rotation();
+    // A medium stays one when it is turned.
+    Medium::new(permittivity.turned(&turn), permeability.turned(&turn)).unwrap_or(*medium)
+}

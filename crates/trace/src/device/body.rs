@@ -1,0 +1,179 @@
+//! Bodies: slabs, boxes, balls and round cylinders of any homogeneous medium, or opaque ones.
+//!
+//! Bodies may stand in one another: where some overlap, the one of the largest priority is there. So a rod in a
+//! glass of water is three bodies, and light goes from one into the other without any air between.
+
+use super::{
+    Body, Convex, Device, Fact, FarSide, HomogeneousRegion, Hull, REACH, Region, RegionBorder,
+    Request, Shape, Structure, Surface,
+};
+use crate::key;
+use crate::keys::{Given, KeyError, Limits};
+use glam::DVec3;
+use num_complex::Complex64;
+use optics::geometry::{Cylinder, Extent, Outline, Solid, Sphere};
+use optics::medium::{Medium, Tensor};
+use std::path::PathBuf;
+
+crate::choice! {
+    /// The shape of a [`SolidBody`].
+    pub enum BodyShape {
+        /// It stands across x and is endless along y and z.
+        Slab = "slab",
+        /// Its sides are along x, y and z.
+        Box = "box",
+        /// A ball.
+        Sphere = "sphere",
+        /// Its axis is z.
+        Cylinder = "cylinder",
+    }
+}
+
+crate::table! {
+    /// A slab, box, ball or round cylinder of any homogeneous medium, of negative index too, or an opaque one. Where
+    /// bodies overlap, the one of the larger priority is there: a rod in a glass of water is three bodies. After
+    /// Dolling, Wegener, Linden & Hormann, Opt. Express 14, 1842 (2006).
+    pub struct SolidBody {
+        /// Its shape, centred on `position`; a slab stands across x and is endless along y and z, the axis of a cylinder
+        /// is z.
+        shape: BodyShape,
+        /// Thickness of a slab, along x.
+        thickness: Given<f64> = Given::by_default(5.0), "cm", in Limits::LENGTH,
+        /// Size of a box along x, y and z.
+        size: Given<DVec3> = Given::by_default(DVec3::splat(10.0)), "cm", in Limits::LENGTH,
+        /// Radius of a sphere or cylinder.
+        radius: Given<f64> = Given::by_default(5.0), "cm", in Limits::LENGTH,
+        /// Relative permittivity, in the device's frame; symmetric.
+        permittivity: Given<Tensor> = Given::by_default(1.0.into()),
+        /// Relative permeability, in the device's frame; symmetric.
+        permeability: Given<Tensor> = Given::by_default(1.0.into()),
+        /// Speed of light over the speed of a pulse in it, for times of flight; where it is absent, the size of the
+        /// index, 1 at least.
+        group_index: Option<f64>, in Limits::Within(1.0, 1e9),
+        /// Where bodies overlap, the one of the larger priority is there.
+        priority: i64, in Limits::Whole(-1_000_000, 1_000_000),
+        /// What an opaque body shows: { color = [red, green, blue] }, linear, or { image = "file" }: whole and upright
+        /// on each face of a box and each end of a cylinder, once around a sphere or the side of a cylinder.
+        surface: Option<BodySurface>,
+    }
+}
+
+crate::table! {
+    /// What an opaque body shows.
+    pub struct BodySurface {
+        /// Linear red, green and blue that it sends out everywhere.
+        color: Given<[f64; 3]> = Given::by_default([0.5; 3]), in Limits::Within(0.0, 1e30),
+        /// An image on it instead of a color: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to the scene
+        /// file.
+        image: Option<PathBuf>,
+    }
+}
+
+impl Device for SolidBody {
+    const KIND: &'static str = "body";
+    const TITLE: &'static str = "Body";
+
+    fn structure(&self, request: Request) -> Result<Structure, KeyError> {
+        super::refuse_other_views(request, "a body is no cloak")?;
+        let shape = self.convex(request.length)?;
+        let medium = self.medium()?;
+        let pictured = self.surface.as_ref().is_some_and(|surface| surface.image.is_some());
+        if pictured && shape.is_endless() {
+            let message = "an endless body has no place for an image; give a cylinder its `length`, and take a \
+                           box instead of a slab";
+            return Err(KeyError::at(key!(Self.surface), message));
+        }
+        let solid = match shape {
+            Convex::Ball(sphere) => Solid::ball(sphere.radius),
+            Convex::Cylinder(cylinder) => Solid::cylinder(cylinder.radius, cylinder.extent),
+            Convex::Box { half } => {
+                let near = half.min(DVec3::splat(REACH));
+                let outline = Outline::rectangle(near.x, near.y);
+                Solid::Prism { outline, extent: Extent { min: -half.z, max: half.z } }
+            }
+        };
+        let body = Body { shape, priority: self.priority };
+        let far = if medium.is_some() { FarSide::Region(0) } else { FarSide::Opaque };
+        let group_index = self.group_index;
+        let region =
+            |medium| HomogeneousRegion { medium, group_index, border: RegionBorder::Convex(shape) };
+        Ok(Structure {
+            regions: medium.into_iter().map(region).map(Region::Homogeneous).collect(),
+            surfaces: vec![Surface::new(Shape::Convex(shape), far)],
+            hull: Hull::new(solid).of_body(body),
+        })
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let entry = |tensor: Tensor| {
+            let size = tensor.re.x_axis.x;
+            let scalar = tensor == Complex64::new(size, tensor.im.x_axis.x).into();
+            scalar.then_some(Complex64::new(size, tensor.im.x_axis.x))
+        };
+        let mut facts = vec![Fact::number("priority", self.priority as f64)];
+        if let (Some(e), Some(m)) = (entry(self.permittivity.value), entry(self.permeability.value))
+        {
+            // The product of the roots with positive imaginary parts is that of the wave that decays.
+            let root = |value: Complex64| {
+                let root = value.sqrt();
+                if root.im < 0.0 { -root } else { root }
+            };
+            let index = root(e) * root(m);
+            facts.push(Fact::number("index", index.re));
+            facts.push(Fact::number("index_imaginary_part", index.im));
+        }
+        facts
+    }
+}
+
+impl SolidBody {
+    fn convex(&self, length: Option<f64>) -> Result<Convex, KeyError> {
+        let shape = self.shape.word();
+        let sizes = [
+            (key!(Self.thickness), self.thickness.given, &[BodyShape::Slab][..]),
+            (key!(Self.size), self.size.given, &[BodyShape::Box]),
+            (key!(Self.radius), self.radius.given, &[BodyShape::Sphere, BodyShape::Cylinder]),
+        ];
+        let is_own = |shapes: &[BodyShape]| shapes.contains(&self.shape);
+        let own = sizes.iter().find(|(.., shapes)| is_own(shapes)).map_or("", |(key, ..)| key);
+        let length_given =
+            length.is_some() && matches!(self.shape, BodyShape::Box | BodyShape::Sphere);
+        let foreign = sizes.iter().find(|(_, given, shapes)| *given && !is_own(shapes));
+        let foreign = foreign.map(|(key, ..)| *key);
+        if let Some(key) = foreign.or(length_given.then_some(key!(Request.length))) {
+            return Err(KeyError::at(key, format!("a {shape} has no {key}; it has {own}")));
+        }
+        let extent = Extent::centred(length);
+        let radius = self.radius.value;
+        Ok(match self.shape {
+            BodyShape::Slab => {
+                let half = 0.5 * self.thickness.value;
+                Convex::Box { half: DVec3::new(half, f64::INFINITY, extent.max) }
+            }
+            BodyShape::Box => Convex::Box { half: self.size.value * 0.5 },
+            BodyShape::Sphere => Convex::Ball(Sphere { radius }),
+            BodyShape::Cylinder => Convex::Cylinder(Cylinder { radius, extent }),
+        })
+    }
+
+    /// What fills it; nothing that light could enter if it has a surface of its own.
+    fn medium(&self) -> Result<Option<Medium>, KeyError> {
+        let Some(surface) = &self.surface else {
+            return super::medium(self.permittivity.value, self.permeability.value).map(Some);
+        };
+        let of_media = [
+            (key!(Self.permittivity), self.permittivity.given),
+            (key!(Self.permeability), self.permeability.given),
+            (key!(Self.group_index), self.group_index.is_some()),
+        ];
+        if let Some((key, _)) = of_media.into_iter().find(|(_, given)| *given) {
+            let message = format!("a body with a surface of its own is opaque; it has no {key}");
+            return Err(KeyError::at(key, message));
+        }
+        if surface.image.is_some() && surface.color.given {
+            let message = "color and image are both given; a surface takes one of them";
+            return Err(KeyError::at(key!(Self.surface), message));
+        }
+        Ok(None)
+    }
+}

@@ -1,0 +1,177 @@
+//! What the carpet cloaks have in common: a rectangle of graded index on a bump of a mirror floor, light
+//! from above (Li & Pendry, Phys. Rev. Lett. 101, 203901 (2008)).
+//!
+//! A carpet stands on the line y = 0 of its own frame, from which the thin floor goes on to its left and
+//! right. Everything is a mirror on both sides: the floor, the bump, and the flat back of the metal below
+//! it. The back lies on y = 0, for a grating at the depth of its troughs.
+
+use super::{
+    Coating, ConformalRegion, FarSide, GaussianCarpet, Hull, Part, Region, Request, Shape, Show,
+    Structure, Surface,
+};
+use crate::key;
+use crate::keys::KeyError;
+use glam::DVec2;
+use optics::geometry::{Cap, Extent, FloorCurve, MetalBack, Outline, Wall};
+use optics::propagation::{ConformalFlow, Half};
+use optics::transformation::{ConformalMap, GaussianMap, Truncation};
+
+/// The map of width parameter `w` and height `h`.
+pub(super) fn gaussian_map(w: f64, h: f64) -> Result<GaussianMap, KeyError> {
+    GaussianMap::new(w, h).map_err(|error| KeyError::at(key!(GaussianCarpet.h), error.to_string()))
+}
+
+/// The size of a carpet.
+#[derive(Clone, Copy)]
+pub(super) struct Size {
+    /// Along x, cm.
+    pub width: f64,
+    /// Above the floor's level, cm.
+    pub height: f64,
+    /// Of the whole floor along x, cm; 0 for none.
+    pub floor: f64,
+}
+
+/// The rectangle a carpet is cut to, whose metal rises to `peak`.
+///
+/// # Errors
+///
+/// If the metal does not fit in, or the floor ends below the device.
+pub(super) fn cut(size: Size, peak: f64) -> Result<Truncation, KeyError> {
+    let Size { width, height, floor } = size;
+    if height <= peak {
+        let message =
+            format!("height is {height} cm; it must be above h, {peak} cm, to hold the metal");
+        return Err(KeyError::at(key!(GaussianCarpet.height), message));
+    }
+    if floor > 0.0 && floor < width {
+        let message = format!(
+            "floor is {floor} cm; it must be at least as wide as the device, {width} cm, or 0 for none"
+        );
+        return Err(KeyError::at(key!(GaussianCarpet.floor), message));
+    }
+    Ok(Truncation::centred(width, height))
+}
+
+/// A carpet in any view; `strength` is c of its index c/|f'|.
+pub(super) fn structure(
+    map: ConformalMap,
+    cut: Truncation,
+    strength: f64,
+    size: Size,
+    request: Request,
+) -> Structure {
+    let extent = Extent::centred(request.length);
+    let site = Site { cut, half_floor: 0.5 * size.floor, extent };
+    match request.show {
+        Show::Cloak => site.cloak(&ConformalFlow::new(map, cut, extent, strength)),
+        Show::Bare => site.bare(map),
+        Show::Mirror => site.mirror(),
+    }
+}
+
+/// Where a carpet stands.
+struct Site {
+    cut: Truncation,
+    half_floor: f64,
+    extent: Extent,
+}
+
+impl Site {
+    fn cloak(&self, flow: &ConformalFlow) -> Structure {
+        let map = flow.map();
+        let Truncation { x_max: x, y_max: top, .. } = self.cut;
+        let bottom = map.trough();
+        // The metal ends bluntly at the cut; in a trough it ends as high as the floor.
+        let tip = map.floor_height_at(x).max(0.0);
+        let mut surfaces = Vec::new();
+        let medium = FarSide::Region(0);
+        let mut wall = |from: [f64; 2], to: [f64; 2], far: FarSide| {
+            if from != to {
+                let wall = Wall::new(DVec2::from(from), DVec2::from(to), self.extent);
+                surfaces.push(Surface::wall(wall, far));
+            }
+        };
+        wall([x, tip], [x, top], medium);
+        wall([x, top], [-x, top], medium);
+        wall([-x, top], [-x, tip], medium);
+        wall([-x, tip], [-x, bottom], FarSide::Conductor);
+        wall([-x, bottom], [x, bottom], FarSide::Conductor);
+        wall([x, bottom], [x, tip], FarSide::Conductor);
+        let outline = self.box_between(bottom, top);
+        if let Some(ends) = self.extent.ends() {
+            for cap in Cap::both(&outline, ends) {
+                let cap = Shape::Cap(cap);
+                let below = Part::BelowFloor { map: map.clone(), mirrored: false };
+                surfaces.push(Surface::new(cap.clone(), FarSide::Conductor).with_part(below));
+                let above = Part::AboveFloor(map.clone(), Half::Upper);
+                surfaces.push(Surface::new(cap, medium).with_part(above));
+            }
+        }
+        let region = ConformalRegion {
+            flow: flow.clone(),
+            half: Half::Upper,
+            floor: FarSide::Conductor,
+            core: FarSide::Outside,
+            coating: Coating::None,
+            loss_tangent: 0.0,
+        };
+        let hull = Hull::prism(outline, self.extent);
+        self.on_floor(vec![Region::Conformal(region)], surfaces, hull)
+    }
+
+    fn bare(&self, map: ConformalMap) -> Structure {
+        let [bottom, peak] = [map.trough(), map.peak()];
+        let Truncation { x_min, x_max, .. } = self.cut;
+        let tip = map.floor_height_at(x_max);
+        let around = self.box_between(bottom, peak);
+        let curve = FloorCurve::new(map, MetalBack::Flat(bottom), x_min, x_max);
+        let metal = |shape| Surface::new(shape, FarSide::Conductor);
+        let floor = Shape::Curve { curve: curve.clone(), side: None, extent: self.extent };
+        let mut surfaces = vec![metal(floor)];
+        if tip < 0.0 {
+            // A trough at the end is closed by a thin wall up to the floor.
+            surfaces.extend([x_min, x_max].map(|x| {
+                let ends = [tip, 0.0].map(|y| DVec2::new(x, y));
+                Surface::mirror(Wall::new(ends[0], ends[1], self.extent))
+            }));
+        }
+        if let Some(ends) = self.extent.ends() {
+            surfaces.extend(
+                Cap::both(&around, ends)
+                    .map(|cap| metal(Shape::Cap(cap)).with_part(Part::Metal(curve.clone()))),
+            );
+        }
+        self.on_floor(Vec::new(), surfaces, Hull::prism(around, self.extent).of_metal(curve))
+    }
+
+    /// The flat mirror that the floor with the carpet should look like.
+    fn mirror(&self) -> Structure {
+        super::flat_strip(self.half_floor.max(self.cut.x_max), self.extent)
+    }
+
+    /// The rectangle over the width of the device.
+    fn box_between(&self, bottom: f64, top: f64) -> Outline {
+        let Truncation { x_min, x_max, .. } = self.cut;
+        Outline::new(
+            [(x_min, bottom), (x_max, bottom), (x_max, top), (x_min, top)]
+                .map(DVec2::from)
+                .to_vec(),
+        )
+    }
+
+    /// Adds the floor on the left and on the right.
+    fn on_floor(&self, regions: Vec<Region>, mut surfaces: Vec<Surface>, hull: Hull) -> Structure {
+        let (inner, outer) = (self.cut.x_max, self.half_floor);
+        if outer <= inner {
+            return Structure { regions, surfaces, hull };
+        }
+        for side in [-1.0, 1.0] {
+            let ends = [inner, outer].map(|x| DVec2::new(side * x, 0.0));
+            surfaces.push(Surface::mirror(Wall::new(ends[0], ends[1], self.extent)));
+        }
+        let line = [-outer, outer].map(|x| DVec2::new(x, 0.0));
+        let hull = hull.with_thin_mirror(Outline::new(line.to_vec()), self.extent);
+        Structure { regions, surfaces, hull }
+    }
+}

@@ -1,0 +1,142 @@
+//! Convex shapes that are met, left and looked into as a whole.
+
+use glam::DVec3;
+use optics::geometry::{Cylinder, CylinderPart, Disc, Sphere};
+
+/// A convex shape about the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Convex {
+    /// A box; an endless one has infinite sides.
+    Box {
+        /// Half its size along x, y and z, cm.
+        half: DVec3,
+    },
+    /// A ball.
+    Ball(Sphere),
+    /// A round cylinder about the z axis.
+    Cylinder(Cylinder),
+}
+
+impl Convex {
+    /// Whether it has no end somewhere.
+    #[must_use]
+    pub fn is_endless(&self) -> bool {
+        match self {
+            Self::Ball(_) => false,
+            Self::Cylinder(cylinder) => cylinder.extent.ends().is_none(),
+            Self::Box { half } => !half.is_finite(),
+        }
+    }
+
+    /// Where a ray that is outside enters: the distance, from zero on, and the outward unit normal.
+    #[must_use]
+    pub fn entry(&self, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
+        match self {
+            Self::Ball(sphere) => {
+                let distance = sphere.hit(origin, direction)?;
+                Some((distance, sphere.outward(origin + direction * distance)))
+            }
+            Self::Cylinder(cylinder) => {
+                if let Some(distance) = cylinder.hit_side(origin, direction) {
+                    let point = origin + direction * distance;
+                    return Some((distance, cylinder.outward(CylinderPart::Side, point)));
+                }
+                let hit = |end: &Disc| Some((end.hit(origin, direction)?, end.normal));
+                cylinder.ends()?.iter().find_map(hit)
+            }
+            Self::Box { half } => {
+                let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
+                let mut outward = DVec3::ZERO;
+                for axis in 0..3 {
+                    let (h, o, d) = (half[axis], origin[axis], direction[axis]);
+                    if d == 0.0 {
+                        if o.abs() >= h {
+                            return None;
+                        }
+                        continue;
+                    }
+                    let (near, far) = ((-h * d.signum() - o) / d, (h * d.signum() - o) / d);
+                    if near > enter {
+                        enter = near;
+                        outward = -DVec3::AXES[axis] * d.signum();
+                    }
+                    leave = leave.min(far);
+                }
+                (enter >= 0.0 && enter < leave).then_some((enter, outward))
+            }
+        }
+    }
+
+    /// Where a ray that is inside or on the border leaves: the distance, from zero on, and the outward unit
+    /// normal; `None` if it never does.
+    #[must_use]
+    pub fn exit(&self, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
+        let (distance, outward) = match self {
+            Self::Ball(sphere) => {
+                let distance = sphere.time_to_leave(origin, direction);
+                (distance, sphere.outward(origin + direction * distance))
+            }
+            Self::Cylinder(cylinder) => {
+                let (distance, part) = cylinder.time_to_leave(origin, direction);
+                (distance, cylinder.outward(part, origin + direction * distance))
+            }
+            Self::Box { half } => {
+                let far = |axis: usize| {
+                    let d = direction[axis];
+                    let distance = (half[axis] * d.signum() - origin[axis]) / d;
+                    let distance = if d == 0.0 { f64::INFINITY } else { distance.max(0.0) };
+                    (distance, DVec3::AXES[axis] * d.signum())
+                };
+                (0..3).map(far).fold((f64::INFINITY, DVec3::ZERO), |least, exit| {
+                    if exit.0 < least.0 { exit } else { least }
+                })
+            }
+        };
+        distance.is_finite().then_some((distance, outward))
+    }
+
+    /// Whether a ray that goes on from a point is inside: within `slack` (cm) of the border its direction decides.
+    #[must_use]
+    pub fn holds_ahead(&self, point: DVec3, direction: DVec3, slack: f64) -> bool {
+        // How far outside of a part of the border the point is, and the outward component of the direction there.
+        let inside = |off: f64, outward: f64| off < -slack || (off <= slack && outward < 0.0);
+        match self {
+            Self::Ball(sphere) => inside(point.length() - sphere.radius, direction.dot(point)),
+            Self::Cylinder(cylinder) => {
+                let (p, d) = (point.truncate(), direction.truncate());
+                let extent = cylinder.extent;
+                inside(p.length() - cylinder.radius, d.dot(p))
+                    && inside(point.z - extent.max, direction.z)
+                    && inside(extent.min - point.z, -direction.z)
+            }
+            Self::Box { half } => (0..3).all(|axis| {
+                let (p, d) = (point[axis], direction[axis]);
+                inside(p.abs() - half[axis], d * p.signum())
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use optics::geometry::Extent;
+
+    #[test]
+    fn on_the_border_the_direction_decides() {
+        let shapes = [
+            Convex::Box { half: DVec3::new(1.0, f64::INFINITY, 3.0) },
+            Convex::Ball(Sphere { radius: 1.0 }),
+            Convex::Cylinder(Cylinder { radius: 1.0, extent: Extent::centred(Some(6.0)) }),
+        ];
+        for shape in shapes {
+            for off in [-1e-12, 0.0, 1e-12] {
+                let point = DVec3::X * (1.0 + off);
+                assert!(shape.holds_ahead(point, DVec3::new(-0.8, 0.6, 0.0), 1e-9), "{shape:?}");
+                assert!(!shape.holds_ahead(point, DVec3::new(0.8, 0.6, 0.0), 1e-9), "{shape:?}");
+            }
+            assert!(shape.holds_ahead(DVec3::X * 0.99, DVec3::X, 1e-9));
+            assert!(!shape.holds_ahead(DVec3::X * 1.01, DVec3::NEG_X, 1e-9));
+        }
+    }
+}

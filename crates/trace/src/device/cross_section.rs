@@ -1,0 +1,359 @@
+//! What a device looks like cut in the plane z = 0 of its own frame, or, where that is not along the plane of a
+//! drawing, the outline of what it hides of that plane.
+//!
+//! A new kind of [`Region`] or [`Shape`] says here, and nowhere else, what it looks like: its sides as lines, and for a
+//! region whether its medium is graded. The rest follows.
+
+use super::{
+    Body, ConformalRegion, Convex, Face, FarSide, HomogeneousRegion, Region, RegionBorder, Shape,
+    Structure, Surface,
+};
+use glam::DVec2;
+use optics::geometry::{Cylinder, Outline, Pose, REACH, Solid, Sphere};
+use optics::medium::Medium;
+use optics::propagation::Half;
+
+/// Straight pieces that a curve is drawn with.
+const PIECES: u32 = 256;
+
+/// A piece of the border of a region, or of the surfaces.
+#[derive(Clone, Debug, PartialEq)]
+struct Line {
+    /// From point to point, cm.
+    points: Vec<DVec2>,
+    /// What lies on its other side.
+    far: FarSide,
+}
+
+/// A line from point to point, cm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contour {
+    /// The points; the first is not repeated at the end.
+    pub points: Vec<DVec2>,
+    /// Whether the last is joined to the first.
+    pub closed: bool,
+}
+
+/// The cross-section of one region.
+#[derive(Clone, Debug)]
+pub struct Section<'s> {
+    /// Its border; what is inside an odd number of contours is inside.
+    pub border: Vec<Contour>,
+    /// The region.
+    pub region: &'s Region,
+}
+
+/// The cross-section of a device, in its own frame.
+#[derive(Clone, Debug)]
+pub struct CrossSection<'s> {
+    /// What light outside meets.
+    pub outlines: Vec<Contour>,
+    /// The regions; none of a body, which fills its outlines.
+    pub regions: Vec<Section<'s>>,
+    /// The surfaces of metal: closed contours are full of it, open ones are thin mirrors.
+    pub metal: Vec<Contour>,
+    /// The medium that fills the outlines, if the device is a body of one.
+    pub body_medium: Option<&'s Medium>,
+    /// The body that fills the outlines, if the device is one.
+    pub body: Option<&'s Body>,
+    /// Whether it is only seen from afar: its outlines are projections, and nothing is known of within.
+    pub is_shadow: bool,
+}
+
+impl Structure {
+    /// The cross-section in the plane z = 0.
+    #[must_use]
+    pub fn cross_section(&self) -> CrossSection<'_> {
+        let outside: Vec<Line> = self.surfaces.iter().flat_map(Surface::lines).collect();
+        let regions: Vec<Vec<Line>> = self.regions.iter().map(Region::lines).collect();
+        let metal = regions.iter().flatten().chain(&outside);
+        let metal = metal.filter(|line| line.far == FarSide::Conductor);
+        let is_body = self.hull.body().is_some();
+        let sections = self.regions.iter().zip(&regions).filter(|_| !is_body);
+        CrossSection {
+            body_medium: self.body_medium(),
+            body: self.hull.body(),
+            is_shadow: false,
+            metal: joined(metal.map(|line| line.points.clone())),
+            regions: sections
+                .map(|(region, lines)| Section {
+                    border: joined(lines.iter().map(|line| line.points.clone())),
+                    region,
+                })
+                .collect(),
+            outlines: joined(outside.into_iter().map(|line| line.points)),
+        }
+    }
+
+    /// The medium that fills it, if it is a body of one.
+    #[must_use]
+    pub fn body_medium(&self) -> Option<&Medium> {
+        match self.regions.first() {
+            Some(Region::Homogeneous(region)) => self.hull.body().map(|_| &region.medium),
+            _ => None,
+        }
+    }
+
+    /// What the device looks like at a place, drawn on the xy-plane of the world, and the place of that drawing: cut in
+    /// its own plane z = 0 where its axis is along z, the outline of its projection where it is not.
+    #[must_use]
+    pub fn drawn_at(&self, pose: &Pose) -> (CrossSection<'_>, Pose) {
+        if pose.axis().truncate() == DVec2::ZERO {
+            return (self.cross_section(), *pose);
+        }
+        let origin = pose.origin();
+        let contour = |corners: &[DVec2]| Contour {
+            points: corners.iter().map(|corner| *corner - origin.truncate()).collect(),
+            closed: corners.len() > 2,
+        };
+        let shadow = |solid: &Solid| solid.placed(pose).shadow().corners().to_vec();
+        let parts: Vec<Vec<DVec2>> = self.hull.solids().iter().map(shadow).collect();
+        let whole = Outline::hull(parts.concat());
+        // What has neither regions nor is a body is metal.
+        let body = self.hull.body();
+        let is_metal = self.regions.is_empty() && body.is_none();
+        let mirror = self.hull.thin_mirror().map(shadow);
+        let metal = parts.iter().filter(|_| is_metal).chain(&mirror);
+        let metal: Vec<Contour> = metal.map(|part| contour(part)).collect();
+        let outlines = if is_metal { metal.clone() } else { vec![contour(whole.corners())] };
+        let (body_medium, regions) = (self.body_medium(), Vec::new());
+        let section = CrossSection { outlines, regions, metal, body, body_medium, is_shadow: true };
+        (section, Pose::new(origin, 0.0))
+    }
+}
+
+impl Region {
+    /// The border of the region in the plane z = 0.
+    fn lines(&self) -> Vec<Line> {
+        match self {
+            Self::Homogeneous(region) => region.lines(),
+            Self::Conformal(region) => region.lines(),
+            Self::Radial(region) => {
+                let [inner, outer] = region.flow.radii();
+                let mut lines = vec![Line { points: circle(outer), far: FarSide::Outside }];
+                if inner > 0.0 {
+                    lines.push(Line { points: circle(inner), far: region.inner });
+                }
+                lines
+            }
+        }
+    }
+
+    /// Whether the medium varies from point to point.
+    #[must_use]
+    pub fn is_graded(&self) -> bool {
+        match self {
+            Self::Homogeneous(_) => false,
+            Self::Conformal(_) | Self::Radial(_) => true,
+        }
+    }
+
+    /// The medium at a point of the plane z = 0 that lies in the region or on its border; a graded
+    /// medium has none elsewhere.
+    #[must_use]
+    pub fn medium_at(&self, point: DVec2) -> Option<Medium> {
+        let point = point.extend(0.0);
+        let entrance = self.enter(point)?;
+        self.medium(point, entrance.virtual_point.as_ref(), &mut None).copied()
+    }
+}
+
+impl Surface {
+    /// The surface in the plane z = 0: nothing for the ends of a device.
+    fn lines(&self) -> Vec<Line> {
+        let points = match &self.shape {
+            Shape::Wall(wall) => wall.ends().to_vec(),
+            Shape::Convex(shape) => shape.around(),
+            Shape::Round(cylinder) => circle(cylinder.radius),
+            Shape::Curve { curve, side: Some(side), .. } => curve.side_line(*side, PIECES),
+            Shape::Curve { curve, side: None, .. } => {
+                // Back to its beginning.
+                let mut around = curve.outline(PIECES);
+                around.extend(around.first().copied());
+                around
+            }
+            Shape::Cap(_) | Shape::Disc(_) => return Vec::new(),
+        };
+        vec![Line { points, far: self.far }]
+    }
+}
+
+impl Convex {
+    /// Its surface in the plane z = 0, joined to its beginning.
+    fn around(&self) -> Vec<DVec2> {
+        match self {
+            Self::Ball(Sphere { radius }) | Self::Cylinder(Cylinder { radius, .. }) => {
+                circle(*radius)
+            }
+            Self::Box { half } => {
+                let corner = half.truncate().min(DVec2::splat(REACH));
+                let signs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)];
+                signs.map(|sign| DVec2::from(sign) * corner).to_vec()
+            }
+        }
+    }
+}
+
+/// A circle about the origin, joined to its beginning.
+fn circle(radius: f64) -> Vec<DVec2> {
+    let step = std::f64::consts::TAU / f64::from(PIECES);
+    (0..=PIECES).map(|i| DVec2::from_angle(step * f64::from(i % PIECES)) * radius).collect()
+}
+
+impl HomogeneousRegion {
+    fn lines(&self) -> Vec<Line> {
+        if let RegionBorder::Convex(shape) = &self.border {
+            return vec![Line { points: shape.around(), far: FarSide::Outside }];
+        }
+        // A large square, cut by one plane after the other; with each corner, the face whose side
+        // starts there.
+        let mut corners: Vec<(DVec2, Option<&Face>)> =
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+                .map(|corner| (DVec2::from(corner) * REACH, None))
+                .to_vec();
+        for face in self.faces() {
+            let height = |p: DVec2| face.plane.normal.truncate().dot(p) - face.plane.offset;
+            let mut kept = Vec::new();
+            for (i, &(a, on)) in corners.iter().enumerate() {
+                let b = corners[(i + 1) % corners.len()].0;
+                let (at_a, at_b) = (height(a), height(b));
+                let crossing = a + (b - a) * (at_a / (at_a - at_b));
+                match (at_a <= 0.0, at_b <= 0.0) {
+                    (true, true) => kept.push((a, on)),
+                    (true, false) => kept.extend([(a, on), (crossing, Some(face))]),
+                    (false, true) => kept.push((crossing, on)),
+                    (false, false) => {}
+                }
+            }
+            corners = kept;
+        }
+        // A corner that a plane just touches has made a side without length.
+        let n = corners.len();
+        let long = (0..n).filter(|&i| !near(corners[i].0, corners[(i + 1) % n].0));
+        let corners: Vec<_> = long.map(|i| corners[i]).collect();
+        let n = corners.len();
+        // Cutting something so large has rounded much: the corners once more, from their two faces.
+        let exact = |i: usize| {
+            let (rough, on) = corners[i % n];
+            let (Some(a), Some(b)) = (corners[(i + n - 1) % n].1, on) else { return rough };
+            let (p, q) = (a.plane.normal.truncate(), b.plane.normal.truncate());
+            (b.plane.offset * p.perp() - a.plane.offset * q.perp()) / p.perp_dot(q)
+        };
+        (0..n)
+            .map(|i| Line {
+                points: vec![exact(i), exact(i + 1)],
+                far: corners[i].1.map_or(FarSide::Outside, |face| face.far),
+            })
+            .collect()
+    }
+}
+
+impl ConformalRegion {
+    fn lines(&self) -> Vec<Line> {
+        let cut = self.flow.cut();
+        let map = self.flow.map();
+        let mirrored = |p: DVec2| match self.half {
+            Half::Upper => p,
+            Half::Lower => DVec2::new(p.x, -p.y),
+        };
+        let side = |points: Vec<DVec2>, far| Line {
+            points: points.into_iter().map(mirrored).collect(),
+            far,
+        };
+        let [core, rim] = self.flow.radii();
+        let core = core.map(|core| side(circle(core), self.core));
+        if let Some(rim) = rim {
+            return std::iter::once(side(circle(rim), FarSide::Outside)).chain(core).collect();
+        }
+        let floor = map.floor_line(cut.x_min, cut.x_max, PIECES);
+        let upright = |x: f64| {
+            // Below the floor's level, in the troughs of a grating, the ends are metal.
+            let (low, high) = (map.floor_height_at(x), cut.y_max);
+            let level = low.max(map.level());
+            let piece = |a: f64, b: f64| vec![DVec2::new(x, a), DVec2::new(x, b)];
+            let buried = (low < level).then(|| side(piece(low, level), FarSide::Conductor));
+            buried.into_iter().chain([side(piece(level, high), FarSide::Outside)])
+        };
+        let top = [cut.x_max, cut.x_min].map(|x| DVec2::new(x, cut.y_max)).to_vec();
+        [side(floor, self.floor), side(top, FarSide::Outside)]
+            .into_iter()
+            .chain(upright(cut.x_min))
+            .chain(upright(cut.x_max))
+            .chain(core)
+            .collect()
+    }
+}
+
+impl Contour {
+    /// The corners: the points without those on a straight line between their neighbours.
+    #[must_use]
+    pub fn corners(&self) -> Vec<DVec2> {
+        let n = self.points.len();
+        let straight = |i: usize| {
+            let [a, b, c] = [n - 1, 0, 1].map(|step| self.points[(i + step) % n]);
+            let turn = (b - a).perp_dot(c - b);
+            turn.abs() <= 1e-9 * (b - a).length() * (c - b).length() && (b - a).dot(c - b) > 0.0
+        };
+        let is_end = |i: usize| !self.closed && (i == 0 || i + 1 == n);
+        (0..n).filter(|i| is_end(*i) || !straight(*i)).map(|i| self.points[i]).collect()
+    }
+
+    /// Whether a point lies within a closed contour.
+    #[must_use]
+    pub fn surrounds(&self, point: DVec2) -> bool {
+        let n = self.points.len();
+        let crossed = (0..n).filter(|&i| {
+            let (a, b) = (self.points[i], self.points[(i + 1) % n]);
+            let between = (a.y > point.y) != (b.y > point.y);
+            between && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)
+        });
+        self.closed && crossed.count() % 2 == 1
+    }
+}
+
+impl Section<'_> {
+    /// Whether a point lies within.
+    #[must_use]
+    pub fn holds(&self, point: DVec2) -> bool {
+        self.border.iter().filter(|contour| contour.surrounds(point)).count() % 2 == 1
+    }
+}
+
+/// Whether two ends of lines are one point.
+fn near(a: DVec2, b: DVec2) -> bool {
+    a.distance(b) <= 1e-9 * (1.0 + a.length())
+}
+
+/// Lines joined where their ends meet, in whichever direction they run.
+fn joined(lines: impl Iterator<Item = Vec<DVec2>>) -> Vec<Contour> {
+    let mut rest: Vec<Vec<DVec2>> = lines.filter(|line| line.len() > 1).collect();
+    let mut contours = Vec::new();
+    while !rest.is_empty() {
+        let mut points = rest.remove(0);
+        // First on from its end, then from its beginning.
+        for _ in 0..2 {
+            while let Some(end) = points.last().copied()
+                && !near(end, points[0])
+                && let Some(next) = rest.iter().position(|line| {
+                    near(line[0], end) || line.last().is_some_and(|last| near(*last, end))
+                })
+            {
+                let mut line = rest.remove(next);
+                if !near(line[0], end) {
+                    line.reverse();
+                }
+                points.extend(line.into_iter().skip(1));
+            }
+            points.reverse();
+        }
+        let closed = points.len() > 2 && points.last().is_some_and(|last| near(*last, points[0]));
+        if closed {
+            points.pop();
+        }
+        contours.push(Contour { points, closed });
+    }
+    contours
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,173 @@
+//! The double-Gaussian cloak: two Gaussian carpet cloaks back to back (design (iv) of Halimeh & Wegener,
+//! Opt. Express 21, 9457 (2013), after Leonhardt, Science 312, 1777 (2006) and Schmied, Halimeh & Wegener,
+//! Opt. Express 18, 24361 (2010)).
+//!
+//! A rectangle of locally isotropic graded index around a metal lens; the index is n = c/|f'| of the map
+//! [`GaussianMap`], in the lower half that of its mirror image. At the cut the index steps.
+
+use super::{
+    Coating, ConformalRegion, Device, Fact, FarSide, Hull, Part, Region, Request, Shape, Show,
+    Structure, Surface, carpet,
+};
+use crate::key;
+use crate::keys::{KeyError, Limits};
+use glam::{DVec2, DVec3};
+use optics::geometry::{
+    Cap, CurvedSide, Extent, FloorCurve, Hole, MetalBack, Outline, Pose, Solid, Wall,
+};
+use optics::propagation::{ConformalFlow, Half};
+use optics::transformation::{ConformalMap, GaussianMap, Truncation};
+
+crate::table! {
+    /// Unidirectional, polarization-independent cloak of locally isotropic graded index around a metal lens, from a
+    /// conformal map. Design (iv) of Halimeh & Wegener 2013.
+    pub struct DoubleGaussianCloak {
+        /// Width parameter of the map.
+        w: f64 = 10.02, "cm", in Limits::LENGTH,
+        /// Half the height of the metal lens; below 0.886 w.
+        h: f64 = 4.25, "cm", in Limits::LENGTH,
+        /// Size of the cut along x.
+        width: f64 = 50.0, "cm", in Limits::LENGTH,
+        /// Size of the cut along y; above twice h.
+        height: f64 = 57.14, "cm", in Limits::LENGTH,
+        /// Reflect at the cut, and at the border of an open core, as the index step asks for; false is a perfect
+        /// antireflection coating.
+        fresnel: bool = true,
+        /// Divide the index by its minimum, so that it is 1 at least.
+        referenced: bool,
+    }
+}
+
+/// The regions of the two halves.
+const UPPER: u16 = 0;
+const LOWER: u16 = 1;
+
+impl DoubleGaussianCloak {
+    /// The map and the cut of the upper half.
+    fn parts(&self) -> Result<(GaussianMap, Truncation), KeyError> {
+        let map = carpet::gaussian_map(self.w, self.h)?;
+        let h = map.height();
+        let height = self.height;
+        if height <= 2.0 * h {
+            let message = format!(
+                "height is {height} cm; it must be above twice h, {} cm, to hold the metal",
+                2.0 * h
+            );
+            return Err(KeyError::at(key!(Self.height), message));
+        }
+        Ok((map, Truncation::centred(self.width, height / 2.0)))
+    }
+
+    /// The factor c of the index n = c/|f'|.
+    fn strength(&self, map: &ConformalMap, cut: &Truncation) -> f64 {
+        if self.referenced { 1.0 / map.index_range(cut).0 } else { 1.0 }
+    }
+}
+
+impl Device for DoubleGaussianCloak {
+    const KIND: &'static str = "double-gaussian-cloak";
+    const TITLE: &'static str = "Double-Gaussian cloak";
+
+    fn structure(&self, request: Request) -> Result<Structure, KeyError> {
+        let (map, cut) = self.parts()?;
+        let map = ConformalMap::from(map);
+        let extent = Extent::centred(request.length);
+        Ok(match request.show {
+            Show::Cloak => {
+                let coating = if self.fresnel { Coating::None } else { Coating::Antireflection };
+                let strength = self.strength(&map, &cut);
+                cloak(
+                    &ConformalFlow::new(map, cut, extent, strength),
+                    coating,
+                    extent,
+                    request.open_core,
+                )
+            }
+            Show::Bare => bare(map, cut, extent),
+            Show::Mirror => super::flat_strip(cut.x_max, extent),
+        })
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let Ok((gaussian, cut)) = self.parts() else { return Vec::new() };
+        let map = ConformalMap::from(gaussian);
+        let c = self.strength(&map, &cut);
+        let (least, largest) = map.index_range(&cut);
+        vec![
+            Fact::number("index_min", c * least),
+            Fact::number("index_max", c * largest),
+            Fact::number("cloaked_area_cm2", 2.0 * gaussian.area()),
+            Fact::number("cloaked_area_within_cut_cm2", 2.0 * map.area_within(&cut)),
+            Fact::number("mirror_width_cm", 2.0 * cut.x_max),
+        ]
+    }
+}
+
+fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool) -> Structure {
+    let cut = flow.cut();
+    let (x, y) = (cut.x_max, cut.y_max);
+    let outline = Outline::rectangle(x, y);
+    // The metal, or the core, ends bluntly at the cut.
+    let tip = flow.map().floor_height_at(x);
+    let wall = |from: [f64; 2], to: [f64; 2], far: FarSide| {
+        let wall = Wall::new(DVec2::from(from), DVec2::from(to), extent);
+        Surface::wall(wall, far).with_coating(coating)
+    };
+    let (upper, lower) = (FarSide::Region(UPPER), FarSide::Region(LOWER));
+    let mut surfaces = vec![
+        wall([x, -y], [x, -tip], lower),
+        wall([x, tip], [x, y], upper),
+        wall([x, y], [-x, y], upper),
+        wall([-x, y], [-x, tip], upper),
+        wall([-x, -tip], [-x, -y], lower),
+        wall([-x, -y], [x, -y], lower),
+    ];
+    let floor = if open_core { FarSide::Outside } else { FarSide::Conductor };
+    if !open_core {
+        surfaces.push(wall([x, -tip], [x, tip], floor));
+        surfaces.push(wall([-x, tip], [-x, -tip], floor));
+    }
+    for cap in extent.ends().into_iter().flat_map(|ends| Cap::both(&outline, ends)) {
+        let cap = |far, part| {
+            Surface::new(Shape::Cap(cap.clone()), far).with_part(part).with_coating(coating)
+        };
+        let map = || flow.map().clone();
+        surfaces.push(cap(upper, Part::AboveFloor(map(), Half::Upper)));
+        surfaces.push(cap(lower, Part::AboveFloor(map(), Half::Lower)));
+        if !open_core {
+            surfaces.push(cap(floor, Part::BelowFloor { map: map(), mirrored: true }));
+        }
+    }
+    let regions = [Half::Upper, Half::Lower]
+        .map(|half| {
+            let (flow, loss_tangent) = (flow.clone(), 0.0);
+            let core = FarSide::Outside;
+            Region::Conformal(ConformalRegion { flow, half, floor, core, coating, loss_tangent })
+        })
+        .to_vec();
+    if !open_core {
+        return Structure { regions, surfaces, hull: Hull::prism(outline, extent) };
+    }
+    let curve = FloorCurve::new(flow.map().clone(), MetalBack::MirrorImage, cut.x_min, x);
+    for (side, far) in [(CurvedSide::Floor, upper), (CurvedSide::Image, lower)] {
+        let shape = Shape::Curve { curve: curve.clone(), side: Some(side), extent };
+        surfaces.push(Surface::new(shape, far).with_coating(coating).from_behind());
+    }
+    let hole = Hole::Lens { curve, pose: Pose::new(DVec3::ZERO, 0.0), extent };
+    let filled = Solid::Prism { outline, extent };
+    let hull = Hull::new(filled.clone().with_hole(hole)).with_open_core(filled);
+    Structure { regions, surfaces, hull }
+}
+
+fn bare(map: ConformalMap, cut: Truncation, extent: Extent) -> Structure {
+    let x = cut.x_max;
+    let around = Outline::rectangle(x, map.peak());
+    let curve = FloorCurve::new(map, MetalBack::MirrorImage, cut.x_min, x);
+    let metal = |shape| Surface::new(shape, FarSide::Conductor);
+    let mut surfaces = vec![metal(Shape::Curve { curve: curve.clone(), side: None, extent })];
+    for cap in extent.ends().into_iter().flat_map(|ends| Cap::both(&around, ends)) {
+        surfaces.push(metal(Shape::Cap(cap)).with_part(Part::Metal(curve.clone())));
+    }
+    let hull = Hull::prism(around, extent).of_metal(curve);
+    Structure { regions: Vec::new(), surfaces, hull }
+}

@@ -1,0 +1,240 @@
+//! A graded index of one's own: an isotropic index given on a grid over a rectangle or a disc, endless along z or cut,
+//! with or without a round metal core.
+//!
+//! Between the samples the square of the index is a bicubic spline, whose second derivatives are continuous; rays are
+//! followed through that, to the tolerance. At the border the index steps to that of air, with refraction and Fresnel
+//! reflection.
+
+use super::round::{metal_cylinder, pierced, upright};
+use super::{
+    Coating, ConformalRegion, Device, Fact, FarSide, Hull, Region, Request, Shape, Show, Structure,
+    Surface,
+};
+use crate::key;
+use crate::keys::{KeyError, Limits, Sampled, Samples};
+use glam::DVec2;
+use optics::geometry::{Cap, Cylinder, Extent, Hole, Outline, Solid, Wall};
+use optics::propagation::{ConformalFlow, GridSpline, Half, IndexPerturbation};
+use optics::transformation::{ConformalMap, FlatMap, Truncation};
+use std::f64::consts::PI;
+
+crate::choice! {
+    /// The border of a [`Graded`] device.
+    pub enum Border {
+        /// The rectangle of the grid.
+        Rectangle = "rectangle",
+        /// The largest circle about the middle of the grid.
+        Circle = "circle",
+    }
+}
+
+crate::table! {
+    /// A device of one's own: any isotropic graded index, given on a grid over a rectangle or a disc and the same along
+    /// z, around a metal cylinder or without one.
+    pub struct Graded {
+        /// The refractive index on a regular grid from border to border: rows of numbers, one row for each x from the
+        /// least to the largest, in it one number for each y; four at least either way. Or the name of a .npy file,
+        /// relative to the scene file. Between them the square of the index is a bicubic spline.
+        index: Option<Sampled>, in Limits::Between(0.0, 1000.0),
+        /// The border: the rectangle of the grid, or the largest circle about the middle of it.
+        shape: Border,
+        /// Size of the grid along x, from its first sample to its last.
+        width: f64 = 40.0, "cm", in Limits::LENGTH,
+        /// Size of the grid along y, from its first sample to its last.
+        height: f64 = 40.0, "cm", in Limits::LENGTH,
+        /// Radius of a metal cylinder along z in the middle, which the medium surrounds; 0 for none. The samples within
+        /// go on smoothly for about ten steps of the grid; what they are beyond does not matter.
+        inner: f64, "cm", in Limits::LENGTH_OR_ZERO,
+    }
+}
+
+/// How near the core may come to the border, as a share of the way there.
+const THINNEST: f64 = 0.001;
+
+/// Of the size of the device, the length over which it varies at most.
+const VARIES: f64 = 0.25;
+
+/// The border of a device: it is centred on the z axis.
+#[derive(Clone, Copy)]
+struct Site {
+    /// Half the size of the grid along x and y, cm.
+    half: DVec2,
+    /// The radius of the border if it is round, cm.
+    rim: Option<f64>,
+    /// The radius of the core, if there is one, cm.
+    core: Option<f64>,
+}
+
+impl Site {
+    fn new(device: &Graded) -> Result<Self, KeyError> {
+        let half = 0.5 * DVec2::new(device.width, device.height);
+        let nearest = half.min_element();
+        let rim = (device.shape == Border::Circle).then_some(nearest);
+        let inner = device.inner;
+        let most = (1.0 - THINNEST) * nearest;
+        if inner > most {
+            let message =
+                format!("inner is {inner} cm; it must be at most {most} cm, within the border");
+            return Err(KeyError::at(key!(Graded.inner), message));
+        }
+        Ok(Self { half, rim, core: (inner > 0.0).then_some(inner) })
+    }
+
+    /// The area of the medium, cm².
+    fn area(&self) -> f64 {
+        let whole = self.rim.map_or(4.0 * self.half.x * self.half.y, |rim| PI * rim * rim);
+        whole - self.core_area()
+    }
+
+    fn core_area(&self) -> f64 {
+        self.core.map_or(0.0, |core| PI * core * core)
+    }
+
+    /// Whether the medium is at a point of the grid.
+    fn holds(&self, at: DVec2) -> bool {
+        let within = self.rim.is_none_or(|rim| at.length() <= rim);
+        within && self.core.is_none_or(|core| at.length() >= core)
+    }
+
+    /// Where samples are: the first of them, and the steps along x and y.
+    fn grid(&self, count: [usize; 2]) -> [DVec2; 2] {
+        let steps = DVec2::new(count[0] as f64, count[1] as f64) - 1.0;
+        [-self.half, 2.0 * self.half / steps]
+    }
+
+    fn structure(
+        self,
+        square: GridSpline,
+        extent: Extent,
+        open_core: bool,
+    ) -> Result<Structure, KeyError> {
+        let DVec2 { x, y } = self.half;
+        // Beyond a round border, its box is not there.
+        let margin = if self.rim.is_some() { 1.5 } else { 1.0 };
+        let cut = Truncation { x_min: -margin * x, x_max: margin * x, y_max: margin * y };
+        let map = ConformalMap::from(FlatMap::new(-margin * y, VARIES * (2.0 * x.max(y))));
+        let reach = |[nearest, farthest]: [f64; 2]| {
+            self.core.is_none_or(|core| farthest >= core)
+                && self.rim.is_none_or(|rim| nearest <= rim)
+        };
+        let unevenness = IndexPerturbation::within(square, reach).ok_or_else(|| {
+            let message = "between the samples the index falls to 0; take a finer grid, or a larger least index";
+            KeyError::at(key!(Graded.index), message)
+        })?;
+        let flow = ConformalFlow::new(map, cut, extent, 1.0)
+            .between(self.core, self.rim)
+            .with_unevenness(unevenness);
+        let far_of_core = if open_core { FarSide::Outside } else { FarSide::Conductor };
+        let regions = vec![Region::Conformal(ConformalRegion {
+            flow,
+            half: Half::Upper,
+            floor: FarSide::Outside,
+            core: far_of_core,
+            coating: Coating::None,
+            loss_tangent: 0.0,
+        })];
+        let core = (self.core.unwrap_or(0.0), far_of_core);
+        let far = FarSide::Region(0);
+        let outline = Outline::rectangle(x, y);
+        let (mut surfaces, whole) = match self.rim {
+            Some(rim) => (upright(core, rim, extent, far), Solid::cylinder(rim, extent)),
+            None => (upright_box(core, &outline, extent, far), Solid::Prism { outline, extent }),
+        };
+        let hull = match self.core {
+            Some(radius) if open_core => {
+                let shape = Shape::Round(Cylinder { radius, extent });
+                surfaces.push(Surface::new(shape, far).from_behind());
+                let hole = Hole::Round(Solid::cylinder(radius, extent));
+                Hull::new(whole.clone().with_hole(hole)).with_open_core(whole)
+            }
+            _ => Hull::new(whole),
+        };
+        Ok(Structure { regions, surfaces, hull })
+    }
+}
+
+/// The sides and the ends of a box with a round core, which has a radius and is something of its own.
+fn upright_box(
+    core: (f64, FarSide),
+    outline: &Outline,
+    extent: Extent,
+    far: FarSide,
+) -> Vec<Surface> {
+    let wall = |(from, to)| Surface::wall(Wall::new(from, to, extent), far);
+    let ends = extent.ends().into_iter().flat_map(|ends| Cap::both(outline, ends));
+    let ends = ends.flat_map(|cap| pierced(&Shape::Cap(cap), core, far));
+    outline.sides().map(wall).chain(ends).collect()
+}
+
+impl Graded {
+    fn samples(&self) -> Result<&Samples, KeyError> {
+        match &self.index {
+            Some(Sampled::Here(samples)) => Ok(samples),
+            Some(Sampled::InFile(file)) => Err(KeyError::at(
+                key!(Self.index),
+                format!("{} has not been read; a device takes the numbers", file.display()),
+            )),
+            None => {
+                let message = "there is no `index`: rows of numbers, or the name of a .npy file";
+                Err(KeyError::general(message))
+            }
+        }
+    }
+}
+
+/// The square of the index.
+fn square(site: &Site, samples: &Samples) -> Result<GridSpline, KeyError> {
+    let [nx, ny] = samples.count();
+    let [corner, spacing] = site.grid([nx, ny]);
+    // Along x side by side.
+    let along_x = (0..ny).flat_map(|j| (0..nx).map(move |i| samples.values()[i * ny + j].powi(2)));
+    GridSpline::new(corner, spacing, [nx, ny], &along_x.collect::<Vec<_>>())
+        .map_err(|error| KeyError::at(key!(Graded.index), format!("index: {error}")))
+}
+
+impl Device for Graded {
+    const KIND: &'static str = "graded";
+    const TITLE: &'static str = "Graded index of one's own";
+
+    fn structure(&self, request: Request) -> Result<Structure, KeyError> {
+        let site = Site::new(self)?;
+        let extent = Extent::centred(request.length);
+        if request.open_core && site.core.is_none() {
+            let message = "there is no core to open; `inner` is its radius";
+            return Err(KeyError::at("core", message));
+        }
+        match (request.show, site.core) {
+            (Show::Cloak, _) => {
+                site.structure(square(&site, self.samples()?)?, extent, request.open_core)
+            }
+            (Show::Bare, Some(core)) => Ok(metal_cylinder(core, extent)),
+            (Show::Mirror, Some(_)) => Ok(Structure::empty()),
+            (_, None) => {
+                super::refuse_other_views(request, "a graded index without a core hides no metal")?;
+                Ok(Structure::empty())
+            }
+        }
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let Ok(site) = Site::new(self) else { return Vec::new() };
+        let mut facts = vec![Fact::number("medium_area_cm2", site.area())];
+        if site.core.is_some() {
+            facts.push(Fact::number("cloaked_area_cm2", site.core_area()));
+        }
+        if let Ok(samples) = self.samples() {
+            let [_, ny] = samples.count();
+            let [corner, spacing] = site.grid(samples.count());
+            let place = |k: usize| corner + spacing * DVec2::new((k / ny) as f64, (k % ny) as f64);
+            let within = samples.values().iter().enumerate().filter(|(k, _)| site.holds(place(*k)));
+            let start = (f64::INFINITY, 0.0_f64);
+            let (least, largest) =
+                within.fold(start, |(low, high), (_, n)| (low.min(*n), high.max(*n)));
+            if least.is_finite() {
+                facts.push(Fact::number("index_min", least));
+                facts.push(Fact::number("index_max", largest));
+            }
+        }
+        facts
+    }
+}

@@ -1,0 +1,350 @@
+//! The catalogue of devices, and what devices are made of.
+//!
+//! A device is a set of regions filled with media and the surfaces around them
+//! ([`Structure`]). Each kind is one file here, a struct whose fields are the keys of its table in a scene and
+//! which becomes a structure, and one line in [`CATALOGUE`]; nothing else in the program knows it.
+//!
+//! ```
+//! use cloakroom_trace::device::{Device, Request, SquareCloak};
+//!
+//! let cloak = SquareCloak { side: 10.0, ..SquareCloak::default() };
+//! let structure = cloak.build(Request::default())?;
+//! assert_eq!(structure.regions.len(), 4);
+//! # Ok::<(), cloakroom_trace::keys::KeyError>(())
+//! ```
+
+mod bending_sphere;
+mod body;
+mod carpet;
+mod convex;
+mod cross_section;
+mod cylinder_cloak;
+mod double_gaussian_cloak;
+mod gaussian_carpet;
+mod graded;
+mod grating_carpet;
+mod imperfection;
+mod invisible_sphere;
+mod lenses;
+mod mirror_detour;
+mod occupant;
+mod polygons;
+mod prisms;
+mod quasi_conformal_carpet;
+mod region;
+mod round;
+mod sphere_cloak;
+mod square_cloak;
+mod structure;
+mod surface;
+
+pub use bending_sphere::BendingSphere;
+pub use body::{BodyShape, BodySurface, SolidBody};
+pub use convex::Convex;
+pub use cross_section::{Contour, CrossSection, Section};
+pub use cylinder_cloak::{CylinderCloak, ShellMaterial};
+pub use double_gaussian_cloak::DoubleGaussianCloak;
+pub use gaussian_carpet::GaussianCarpet;
+pub use graded::{Border, Graded};
+pub use grating_carpet::GratingCarpet;
+pub use imperfection::Imperfection;
+pub use invisible_sphere::{InvisibleSphere, SphereMaterial};
+pub use lenses::{EatonLens, FisheyeLens, LuneburgLens};
+pub use mirror_detour::MirrorDetour;
+pub use occupant::MaterialAt;
+pub use optics::geometry::REACH;
+pub use prisms::{PrismOfMedium, Prisms};
+pub use quasi_conformal_carpet::QuasiConformalCarpet;
+pub use region::{
+    ConformalRegion, Entrance, Face, HomogeneousRegion, InnerRay, Passage, RadialRegion, Region,
+    RegionBorder,
+};
+pub use sphere_cloak::SphereCloak;
+pub use square_cloak::{SegmentMaterial, SquareCloak};
+pub use structure::{Body, Coating, FarSide, Hull, Structure, SurfaceHit};
+pub use surface::{Part, Shape, Side, Surface};
+
+use crate::key;
+use crate::keys::{Key, KeyError, Table};
+use glam::{DMat3, DVec2};
+use optics::geometry::{Extent, Outline, Solid, Wall};
+use optics::medium::{Medium, Tensor};
+
+crate::choice! {
+    /// What of a device is looked at.
+    pub enum Show {
+        /// The device.
+        Cloak = "cloak",
+        /// The metal alone, without its cloak.
+        Bare = "bare",
+        /// What it should look like: the flat mirror it imitates, or nothing.
+        Mirror = "mirror",
+    }
+}
+
+/// What every device is asked for beside its own keys.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Request {
+    /// What of it is looked at.
+    pub show: Show,
+    /// Whether the hidden region is to be air instead of metal.
+    pub open_core: bool,
+    /// Its whole length along z, cm; endless if absent.
+    pub length: Option<f64>,
+}
+
+/// A device: a table of a scene that becomes a structure.
+pub trait Device: Table {
+    /// The `kind` in a scene file.
+    const KIND: &'static str;
+
+    /// A title for people.
+    const TITLE: &'static str;
+
+    /// Makes it of fields that are each within their limits.
+    ///
+    /// # Errors
+    ///
+    /// If values that are each allowed do not go together.
+    fn structure(&self, request: Request) -> Result<Structure, KeyError>;
+
+    /// Computes what can be said about it in numbers; nothing if it cannot be built.
+    fn facts(&self) -> Vec<Fact>;
+
+    /// Makes the device.
+    ///
+    /// # Errors
+    ///
+    /// If a field is outside its limits, or values that are each allowed do not go together.
+    fn build(&self, request: Request) -> Result<Structure, KeyError> {
+        self.check()?;
+        self.structure(request)
+    }
+}
+
+/// One kind of device.
+#[derive(Debug)]
+pub struct Entry {
+    /// The `kind` in a scene file.
+    pub kind: &'static str,
+    /// A title for people.
+    pub title: &'static str,
+    /// What it is, in a sentence or two, with its source.
+    pub summary: &'static str,
+    /// Its own keys, beside those every device has.
+    pub keys: &'static [Key],
+    /// Makes a device with every key at its default.
+    pub device: fn() -> AnyDevice,
+}
+
+/// A computed property of a device.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fact {
+    /// Its name in snake case, with the unit, as in `cloaked_area_cm2`.
+    pub name: &'static str,
+    /// Its value.
+    pub value: FactValue,
+}
+
+/// The value of a [`Fact`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum FactValue {
+    /// A number.
+    Number(f64),
+    /// A few numbers: a vector, or the principal values of a tensor.
+    Numbers(Vec<f64>),
+}
+
+impl Fact {
+    fn number(name: &'static str, value: f64) -> Self {
+        Self { name, value: FactValue::Number(value) }
+    }
+
+    fn numbers(name: &'static str, values: impl Into<Vec<f64>>) -> Self {
+        Self { name, value: FactValue::Numbers(values.into()) }
+    }
+
+    /// The diagonal of a tensor in its principal axes.
+    fn principal_values(name: &'static str, tensor: &DMat3) -> Self {
+        Self::numbers(name, [tensor.x_axis.x, tensor.y_axis.y, tensor.z_axis.z])
+    }
+}
+
+/// Makes the catalogue of the kinds of devices.
+macro_rules! catalogue {
+    ($($kind:ident),+ $(,)?) => {
+        /// A device of the catalogue.
+        #[derive(Clone, Debug, PartialEq)]
+        #[allow(missing_docs, reason = "each variant is the struct of its name")]
+        #[allow(clippy::large_enum_variant, reason = "a scene has few devices")]
+        pub enum AnyDevice {
+            $($kind($kind)),+
+        }
+
+        /// Every kind of device the program knows.
+        pub static CATALOGUE: &[&Entry] = &[$(&Entry {
+            kind: <$kind as Device>::KIND,
+            title: <$kind as Device>::TITLE,
+            summary: $kind::SUMMARY,
+            keys: $kind::KEYS,
+            device: || AnyDevice::$kind($kind::default()),
+        }),+];
+
+        impl AnyDevice {
+            /// The word for its kind in a scene file.
+            #[must_use]
+            pub fn kind(&self) -> &'static str {
+                match self { $(Self::$kind(_) => <$kind as Device>::KIND),+ }
+            }
+
+            /// Its table.
+            #[must_use]
+            pub fn table(&self) -> &dyn Table {
+                match self { $(Self::$kind(device) => device),+ }
+            }
+
+            /// Its table, to be changed.
+            pub fn table_mut(&mut self) -> &mut dyn Table {
+                match self { $(Self::$kind(device) => device),+ }
+            }
+
+            /// Makes the device.
+            ///
+            /// # Errors
+            ///
+            /// As [`Device::build`].
+            pub fn build(&self, request: Request) -> Result<Structure, KeyError> {
+                match self { $(Self::$kind(device) => device.build(request)),+ }
+            }
+
+            /// What can be said about it in numbers: see [`Device::facts`].
+            #[must_use]
+            pub fn facts(&self) -> Vec<Fact> {
+                match self { $(Self::$kind(device) => device.facts()),+ }
+            }
+        }
+    };
+}
+
+catalogue! {
+    SquareCloak,
+    DoubleGaussianCloak,
+    CylinderCloak,
+    SphereCloak,
+    InvisibleSphere,
+    BendingSphere,
+    EatonLens,
+    LuneburgLens,
+    FisheyeLens,
+    MirrorDetour,
+    Prisms,
+    Graded,
+    SolidBody,
+    GaussianCarpet,
+    GratingCarpet,
+    QuasiConformalCarpet,
+}
+
+/// The entry of a kind, if there is one.
+#[must_use]
+pub fn entry(kind: &str) -> Option<&'static Entry> {
+    CATALOGUE.iter().copied().find(|entry| entry.kind == kind)
+}
+
+/// The medium of the keys `permittivity` and `permeability`.
+fn medium(permittivity: Tensor, permeability: Tensor) -> Result<Medium, KeyError> {
+    Medium::new(permittivity, permeability).map_err(|error| {
+        let magnetic = error.quantity() == Some("permeability");
+        let key =
+            if magnetic { key!(SolidBody.permeability) } else { key!(SolidBody.permittivity) };
+        KeyError::at(key, error.to_string())
+    })
+}
+
+/// Refuses to show a device otherwise than as it is; `reason` says what it is: "a body is no cloak".
+fn refuse_other_views(request: Request, reason: &str) -> Result<(), KeyError> {
+    if request.show == Show::Cloak {
+        return Ok(());
+    }
+    let message = format!("{reason}; it can be shown as it is, with show = \"cloak\", only");
+    Err(KeyError::at(key!(Request.show), message))
+}
+
+/// A two-sided flat metal strip on the x axis, |x| <= `half_width` (cm): what a cloak that opens a
+/// strip should look like.
+fn flat_strip(half_width: f64, extent: Extent) -> Structure {
+    let ends = [DVec2::new(half_width, 0.0), DVec2::new(-half_width, 0.0)];
+    Structure {
+        regions: Vec::new(),
+        surfaces: vec![Surface::mirror(Wall::new(ends[0], ends[1], extent))],
+        hull: Hull::new(Solid::Nothing).with_thin_mirror(Outline::new(ends.to_vec()), extent),
+    }
+}
+
+/// A device of a kind with some of its keys, for tests.
+#[cfg(test)]
+fn built(kind: &str, keys: &[(&str, crate::keys::Value)], request: Request) -> Structure {
+    let mut device = (entry(kind).expect("a kind").device)();
+    for (key, value) in keys {
+        device.table_mut().set(key, value.clone()).expect("a key");
+    }
+    device.build(request).expect("a device")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::keys::{Limits, Sampled, Samples};
+
+    /// What a kind needs to be something.
+    fn sound(entry: &Entry) -> AnyDevice {
+        let mut device = (entry.device)();
+        if let AnyDevice::Graded(graded) = &mut device {
+            graded.index = Samples::new(&vec![vec![1.5; 4]; 4]).ok().map(Sampled::Here);
+        }
+        if let AnyDevice::Prisms(prisms) = &mut device {
+            let corners = Some(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+            prisms.prism = vec![PrismOfMedium { corners, metal: true, ..PrismOfMedium::default() }];
+        }
+        device
+    }
+
+    #[test]
+    fn a_device_of_a_struct_is_that_of_its_written_keys() {
+        for entry in CATALOGUE {
+            let device = sound(entry);
+            let mut read = (entry.device)();
+            for (name, value) in device.table().written() {
+                read.table_mut().set(&name, value).expect("as it was written");
+            }
+            let build = |device: &AnyDevice| {
+                let built = device.build(Request::default());
+                format!("{:?}", built.unwrap_or_else(|error| panic!("{}: {error}", entry.kind)))
+            };
+            assert_eq!(build(&device), build(&read), "{}", entry.kind);
+            assert_eq!(device.facts(), read.facts());
+            assert_eq!(
+                (device.kind(), device.table().keys().len()),
+                (entry.kind, entry.keys.len())
+            );
+        }
+    }
+
+    #[test]
+    fn a_struct_outside_its_limits_is_refused() {
+        for entry in CATALOGUE {
+            for key in entry.keys.iter().filter(|key| key.limits == Limits::LENGTH) {
+                for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
+                    let mut device = sound(entry);
+                    let value = match key.default_value() {
+                        Some(crate::keys::Value::List(_)) => [bad; 3].into(),
+                        _ => bad.into(),
+                    };
+                    assert!(device.table_mut().put(key.name, &value), "{}", key.name);
+                    let error = device.build(Request::default()).expect_err(key.name);
+                    assert_eq!(error.key, Some(key.name), "{}", entry.kind);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! What is where in a device: the same media that the tracer meets, point by point.
+
+use super::{Entrance, Region, Structure};
+use glam::DVec3;
+use optics::medium::Medium;
+
+/// What is at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "it is looked at and dropped")]
+pub enum MaterialAt {
+    /// Air outside of the device.
+    Air,
+    /// A medium, in the device's frame.
+    Medium(Medium),
+    /// Metal, a perfect conductor.
+    Metal,
+    /// Air in the hidden region of a device with an open core.
+    HiddenAir,
+    /// An opaque body.
+    Opaque,
+}
+
+impl Structure {
+    /// What is at a point of the device's frame. Sheets without thickness are not there; on a border the
+    /// medium is, and of two media the first.
+    #[must_use]
+    pub fn material_at(&self, point: DVec3) -> MaterialAt {
+        if !self.hull.spans(point) {
+            return MaterialAt::Air;
+        }
+        match self.region_at(point) {
+            Some((_, _, medium)) => MaterialAt::Medium(medium),
+            None if self.is_opaque() => MaterialAt::Opaque,
+            None if self.hull.has_open_core() => MaterialAt::HiddenAir,
+            None => MaterialAt::Metal,
+        }
+    }
+
+    /// The region that a point within the device's ends lies in or on the border of, the first of several: its number,
+    /// what a ray finds there, and the medium.
+    #[must_use]
+    pub fn region_at(&self, point: DVec3) -> Option<(u16, Entrance, Medium)> {
+        (0u16..).zip(&self.regions).find_map(|(number, region)| {
+            let (entrance, medium) = region.entrance_if_within(point)?;
+            Some((number, entrance, medium))
+        })
+    }
+}
+
+impl Region {
+    /// The entrance and the medium at a point between the ends of the device, if it lies in the region or on its border.
+    pub(crate) fn entrance_if_within(&self, point: DVec3) -> Option<(Entrance, Medium)> {
+        let within = match self {
+            Self::Homogeneous(region) => region.faces().iter().all(|face| {
+                let slack = 1e-12 * (1.0 + face.plane.offset.abs());
+                face.plane.normal.dot(point) - face.plane.offset <= slack
+            }),
+            // There is no virtual_point elsewhere.
+            Self::Conformal(_) => true,
+            Self::Radial(region) => {
+                let outward = region.flow.outward(point);
+                point.dot(outward) >= region.flow.radii()[0]
+            }
+        };
+        let entrance = within.then(|| self.enter(point))??;
+        let medium = *self.medium(point, entrance.virtual_point.as_ref(), &mut None)?;
+        Some((entrance, medium))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::{Request, built};
+
+    fn structure(kind: &str, open_core: bool) -> Structure {
+        let request = Request { open_core, length: Some(20.0), ..Request::default() };
+        built(kind, &[], request)
+    }
+
+    #[test]
+    fn air_media_metal_and_the_hidden_region_are_told_apart() {
+        // Of each cloak a point in its medium and one in its hidden region.
+        for (kind, in_medium, hidden) in [
+            ("square-cloak", DVec3::new(0.0, 8.0, 3.0), DVec3::new(1.0, -1.0, 3.0)),
+            ("double-gaussian-cloak", DVec3::new(3.0, -9.0, 3.0), DVec3::new(1.0, -1.0, 3.0)),
+            ("cylinder-cloak", DVec3::new(0.0, -7.0, 3.0), DVec3::new(0.0, 3.9, -3.0)),
+        ] {
+            for open_core in [false, true] {
+                let device = structure(kind, open_core);
+                let inside = if open_core { MaterialAt::HiddenAir } else { MaterialAt::Metal };
+                assert!(matches!(device.material_at(in_medium), MaterialAt::Medium(_)), "{kind}");
+                assert_eq!(device.material_at(hidden), inside, "{kind}");
+                for outside in [DVec3::new(60.0, 0.0, 0.0), hidden.with_z(10.5)] {
+                    assert_eq!(device.material_at(outside), MaterialAt::Air, "{kind}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn below_a_carpet_there_is_metal() {
+        let device = structure("gaussian-carpet", false);
+        assert_eq!(device.material_at(DVec3::new(0.0, 4.2, 0.0)), MaterialAt::Metal);
+        assert!(matches!(device.material_at(DVec3::new(0.0, 4.3, 0.0)), MaterialAt::Medium(_)));
+        assert_eq!(device.material_at(DVec3::new(0.0, -0.1, 0.0)), MaterialAt::Air);
+    }
+}

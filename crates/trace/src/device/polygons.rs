@@ -1,0 +1,174 @@
+//! Devices of polygonal cross-section: parts of homogeneous media or metal that extend along z and meet without gaps.
+//!
+//! Concave cross-sections are cut into convex regions; the cuts are no interfaces.
+
+use super::{Face, FarSide, HomogeneousRegion, Hull, Region, Shape, Structure, Surface};
+use glam::DVec2;
+use optics::geometry::{Cap, ConvexPart, Extent, Outline, Plane, Polygon, SAME_POINT, Solid, Wall};
+use optics::medium::Medium;
+
+/// A part of a device, of one medium or of metal.
+pub(super) struct PolygonPart {
+    pub polygon: Polygon,
+    /// What fills it; `None` for metal.
+    pub medium: Option<Medium>,
+}
+
+/// Two parts are in each other's way, by their numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Overlap {
+    pub first: usize,
+    pub second: usize,
+}
+
+/// A convex piece of a part.
+struct Piece {
+    /// The part it is of.
+    part: usize,
+    corners: ConvexPart,
+    outline: Outline,
+    /// What it is to its neighbours.
+    itself: FarSide,
+}
+
+/// A stretch of one edge of a piece, and what lies beyond it.
+struct Stretch {
+    from: DVec2,
+    to: DVec2,
+    far: FarSide,
+}
+
+/// The device of the parts.
+///
+/// # Errors
+///
+/// If two parts overlap.
+pub(super) fn polygonal(parts: &[PolygonPart], extent: Extent) -> Result<Structure, Overlap> {
+    let pieces = pieces(parts)?;
+    let (mut regions, mut surfaces) = (Vec::new(), Vec::new());
+    for (index, piece) in pieces.iter().enumerate() {
+        let mut faces = Vec::new();
+        for (edge, (from, to)) in piece.outline.sides().enumerate() {
+            let normal = Wall::new(from, to, extent).normal();
+            let plane = Plane { normal, offset: normal.truncate().dot(from) };
+            let along = (to - from).normalize();
+            let stretches = stretches(parts, &pieces, index, edge);
+            let last = stretches.len() - 1;
+            for (number, Stretch { from, to, far }) in stretches.into_iter().enumerate() {
+                let until = if number == last { f64::INFINITY } else { along.dot(to) };
+                faces.push(Face { until, ..Face::new(plane, far) });
+                if far == FarSide::Outside {
+                    surfaces.push(Surface::wall(Wall::new(from, to, extent), piece.itself));
+                }
+            }
+        }
+        for cap in extent.ends().into_iter().flat_map(|ends| Cap::both(&piece.outline, ends)) {
+            let plane = Plane { normal: cap.normal, offset: cap.z * cap.normal.z };
+            faces.push(Face::new(plane, FarSide::Outside));
+            surfaces.push(Surface::new(Shape::Cap(cap), piece.itself));
+        }
+        if let Some(medium) = parts[piece.part].medium {
+            regions.push(Region::Homogeneous(HomogeneousRegion::between(medium, faces)));
+        }
+    }
+    let solids =
+        pieces.into_iter().map(|piece| Solid::Prism { outline: piece.outline, extent }).collect();
+    Ok(Structure { regions, surfaces, hull: Hull::of_parts(solids) })
+}
+
+/// The convex pieces of all parts, which must not overlap.
+fn pieces(parts: &[PolygonPart]) -> Result<Vec<Piece>, Overlap> {
+    let mut pieces: Vec<Piece> = Vec::new();
+    let mut regions = 0;
+    for (index, part) in parts.iter().enumerate() {
+        for corners in part.polygon.convex_parts() {
+            let outline = part.polygon.outline(&corners);
+            let overlapped = pieces
+                .iter()
+                .find(|other| other.part != index && other.outline.overlaps(&outline, SAME_POINT));
+            if let Some(other) = overlapped {
+                return Err(Overlap { first: other.part, second: index });
+            }
+            let itself = match part.medium {
+                Some(_) => FarSide::Region(regions),
+                None => FarSide::Conductor,
+            };
+            regions += u16::from(part.medium.is_some());
+            pieces.push(Piece { part: index, corners, outline, itself });
+        }
+    }
+    Ok(pieces)
+}
+
+/// The stretches of an edge of a piece, in order from its first corner to its second.
+fn stretches(parts: &[PolygonPart], pieces: &[Piece], index: usize, edge: usize) -> Vec<Stretch> {
+    let piece = &pieces[index];
+    let ends = |piece: &Piece, edge: usize| {
+        [piece.corners[edge], piece.corners[(edge + 1) % piece.corners.len()]]
+    };
+    let [i, j] = ends(piece, edge);
+    let polygon = &parts[piece.part].polygon;
+    let (from, to) = (polygon.corners()[i], polygon.corners()[j]);
+    let whole = |far| vec![Stretch { from, to, far }];
+    if (i + 1) % polygon.corners().len() != j {
+        // A cut: the piece on its other side is of the same prism.
+        let twin = pieces.iter().find(|other| {
+            other.part == piece.part
+                && (0..other.corners.len()).any(|edge| ends(other, edge) == [j, i])
+        });
+        return whole(twin.map_or(FarSide::Outside, |twin| seam(twin.itself)));
+    }
+    let along = (to - from).normalize();
+    let length = from.distance(to);
+    // What touches the side from without: from where to where, in cm from its first corner.
+    let mut touching: Vec<(f64, f64, Stretch)> = Vec::new();
+    for other in pieces.iter().filter(|other| other.part != piece.part) {
+        for (there, back) in other.outline.sides() {
+            let place = |p: DVec2| ((p - from).dot(along), (p - from).perp_dot(along));
+            let ((start, off_start), (end, off_end)) = (place(back), place(there));
+            let (low, high) = (start.max(0.0), end.min(length));
+            // How far off it is where the two are side by side: further on, rounded corners lead astray.
+            let off = |at: f64| off_start + (off_end - off_start) * (at - start) / (end - start);
+            let beside = [low, high].iter().all(|at| off(*at).abs() <= SAME_POINT);
+            if beside && high - low > SAME_POINT {
+                let clamped = |p: DVec2, at: f64| {
+                    if at <= SAME_POINT {
+                        from
+                    } else if at >= length - SAME_POINT {
+                        to
+                    } else {
+                        p
+                    }
+                };
+                let same = other.itself != FarSide::Conductor
+                    && parts[other.part].medium == parts[piece.part].medium;
+                let far = if same { seam(other.itself) } else { other.itself };
+                let (from, to) = (clamped(back, start), clamped(there, end));
+                touching.push((low, high, Stretch { from, to, far }));
+            }
+        }
+    }
+    touching.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let outside = |from, to| Stretch { from, to, far: FarSide::Outside };
+    let mut stretches = Vec::new();
+    let (mut at, mut reached) = (from, 0.0);
+    for (low, high, stretch) in touching {
+        if low - reached > SAME_POINT {
+            stretches.push(outside(at, stretch.from));
+        }
+        (at, reached) = (stretch.to, high);
+        stretches.push(stretch);
+    }
+    if length - reached > SAME_POINT {
+        stretches.push(outside(at, to));
+    }
+    stretches
+}
+
+/// A neighbour of the same medium.
+fn seam(far: FarSide) -> FarSide {
+    match far {
+        FarSide::Region(region) => FarSide::Seam(region),
+        other => other,
+    }
+}

@@ -1,0 +1,134 @@
+//! A device of one's own: prisms of any cross-section, each of a homogeneous medium or of metal.
+//!
+//! Prisms that share a side, whole or in part, meet there without a gap.
+
+use super::polygons::{Overlap, PolygonPart, polygonal};
+use super::{Device, Fact, Request, Show, Structure};
+use crate::key;
+use crate::keys::{Given, KeyError, Limits};
+use glam::DVec2;
+use optics::geometry::{Extent, Polygon, PolygonError, SAME_POINT};
+use optics::medium::Tensor;
+
+crate::table! {
+    /// A device of one's own: prisms of any cross-section and of any homogeneous media, anisotropic, magnetic, negative
+    /// or absorbing, or of metal.
+    pub struct Prisms {
+        /// The prisms, each a table [[device.prism]]; those that share a side, whole or in part, meet there without a
+        /// gap.
+        prism: Vec<PrismOfMedium>,
+    }
+}
+
+crate::table! {
+    /// One of the prisms of [`Prisms`].
+    pub struct PrismOfMedium {
+        /// The corners of its cross-section in the xy-plane, one after the other; it may be concave.
+        corners: Option<Vec<[f64; 2]>>, "cm", in Limits::COORDINATE,
+        /// Relative permittivity, in the device's frame; symmetric.
+        permittivity: Given<Tensor> = Given::by_default(1.0.into()),
+        /// Relative permeability, in the device's frame; symmetric.
+        permeability: Given<Tensor> = Given::by_default(1.0.into()),
+        /// Whether it is metal, a perfect conductor.
+        metal: bool,
+    }
+}
+
+/// More corners than this, all prisms together, are no device.
+const MOST_CORNERS: usize = 4096;
+
+impl Device for Prisms {
+    const KIND: &'static str = "prisms";
+    const TITLE: &'static str = "Prisms of one's own";
+
+    fn structure(&self, request: Request) -> Result<Structure, KeyError> {
+        let mut parts = self.parts()?;
+        match request.show {
+            Show::Cloak => {}
+            Show::Bare => {
+                parts.retain(|part| part.medium.is_none());
+                if parts.is_empty() {
+                    let message = "no prism is metal, so nothing of it is bare";
+                    return Err(KeyError::at(key!(Request.show), message));
+                }
+            }
+            Show::Mirror => super::refuse_other_views(request, "prisms imitate no mirror")?,
+        }
+        polygonal(&parts, Extent::centred(request.length)).map_err(|Overlap { first, second }| {
+            let message =
+                format!("prism {second} overlaps prism {first} (counted from 0); cut one of them");
+            KeyError::at(key!(PrismOfMedium.corners), message).within(key!(Self.prism), second)
+        })
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let parts = self.parts().unwrap_or_default();
+        let area = |metal: bool| {
+            let chosen = parts.iter().filter(|part| part.medium.is_none() == metal);
+            chosen.map(|part| part.polygon.area()).sum::<f64>()
+        };
+        vec![
+            Fact::number("prism_count", parts.len() as f64),
+            Fact::number("medium_area_cm2", area(false)),
+            Fact::number("metal_area_cm2", area(true)),
+        ]
+    }
+}
+
+impl Prisms {
+    /// The prisms, each sound in itself.
+    fn parts(&self) -> Result<Vec<PolygonPart>, KeyError> {
+        if self.prism.is_empty() {
+            let message = "there is no prism; give each one a table [[device.prism]] with `corners` and \
+                           `permittivity` or `metal = true`";
+            return Err(KeyError::general(message));
+        }
+        let mut known: Vec<DVec2> = Vec::new();
+        let prisms = self.prism.iter().enumerate().map(|(number, prism)| {
+            part(prism, &mut known).map_err(|error| error.within(key!(Self.prism), number))
+        });
+        prisms.collect()
+    }
+}
+
+/// One prism; its corners are moved onto those of earlier ones, `known`, that are the same but for rounding.
+fn part(prism: &PrismOfMedium, known: &mut Vec<DVec2>) -> Result<PolygonPart, KeyError> {
+    let missing = || KeyError::general("this prism has no `corners`: three or more [x, y]");
+    let corners = prism.corners.as_ref().ok_or_else(missing)?;
+    if known.len() + corners.len() > MOST_CORNERS {
+        let message = format!("all prisms together have more than {MOST_CORNERS} corners");
+        return Err(KeyError::at(key!(PrismOfMedium.corners), message));
+    }
+    let corners: Vec<DVec2> = corners
+        .iter()
+        .map(|corner| {
+            let corner = DVec2::from(*corner);
+            let same = known.iter().copied().find(|other| other.distance(corner) <= SAME_POINT);
+            same.unwrap_or_else(|| {
+                known.push(corner);
+                corner
+            })
+        })
+        .collect();
+    let polygon = Polygon::new(&corners).map_err(|error: PolygonError| {
+        KeyError::at(key!(PrismOfMedium.corners), error.to_string())
+    })?;
+    let given = [
+        (prism.permittivity.given, key!(PrismOfMedium.permittivity)),
+        (prism.permeability.given, key!(PrismOfMedium.permeability)),
+    ];
+    let medium = match given.into_iter().find(|(given, _)| *given) {
+        Some((_, key)) if prism.metal => {
+            let message = format!("metal is a perfect conductor; it has no {key}");
+            return Err(KeyError::at(key, message));
+        }
+        _ if prism.metal => None,
+        None => {
+            let message = "this prism has neither `permittivity` nor `permeability` nor `metal = true`; \
+                           a prism of air is left out";
+            return Err(KeyError::general(message));
+        }
+        Some(_) => Some(super::medium(prism.permittivity.value, prism.permeability.value)?),
+    };
+    Ok(PolygonPart { polygon, medium })
+}

@@ -1,0 +1,75 @@
+//! The quasi-conformal carpet cloak (Li & Pendry, Phys. Rev. Lett. 101, 203901 (2008); Ergin et al.,
+//! Science 328, 337 (2010)).
+//!
+//! The map is solved for here, [`QuasiConformalMap`]. It does not quite keep the shape of the box, and that
+//! small anisotropy is neglected: an index of c/|f'| is left.
+
+use super::carpet::{self, Size};
+use super::{Device, Fact, Request, Structure};
+use crate::key;
+use crate::keys::{KeyError, Limits};
+use optics::transformation::{ConformalMap, QuasiConformalMap, QuasiConformalMapError, Truncation};
+
+crate::table! {
+    /// Hides a bump of a mirror floor, h cos^2(pi x/w), below a locally isotropic graded index, from the
+    /// quasi-conformal map of a box. Li & Pendry 2008, Ergin et al. 2010.
+    pub struct QuasiConformalCarpet {
+        /// Height of the metal bump.
+        h: f64 = 4.25, "cm", in Limits::LENGTH,
+        /// Whole width of the bump; at most that of the device.
+        w: f64 = 28.0, "cm", in Limits::LENGTH,
+        /// Size of the device along x.
+        width: f64 = 50.0, "cm", in Limits::LENGTH,
+        /// Height of the device above the floor's level; above the bump.
+        height: f64 = 28.57, "cm", in Limits::LENGTH,
+        /// Whole width along x of the mirror floor that the device stands on; 0 for none.
+        floor: f64 = 400.0, "cm", in Limits::LENGTH_OR_ZERO,
+    }
+}
+
+impl QuasiConformalCarpet {
+    fn parts(&self) -> Result<(QuasiConformalMap, Truncation), KeyError> {
+        let cut = carpet::cut(self.size(), self.h)?;
+        let map = QuasiConformalMap::new(self.w, self.h, &cut).map_err(|error| {
+            let key = match error {
+                QuasiConformalMapError::TooWide { .. }
+                | QuasiConformalMapError::TooNarrow { .. } => {
+                    key!(Self.w)
+                }
+                _ => key!(Self.h),
+            };
+            KeyError::at(key, error.to_string())
+        })?;
+        Ok((map, cut))
+    }
+
+    fn size(&self) -> Size {
+        Size { width: self.width, height: self.height, floor: self.floor }
+    }
+}
+
+impl Device for QuasiConformalCarpet {
+    const KIND: &'static str = "quasi-conformal-carpet";
+    const TITLE: &'static str = "Quasi-conformal carpet cloak";
+
+    fn structure(&self, request: Request) -> Result<Structure, KeyError> {
+        let (map, cut) = self.parts()?;
+        let strength = map.strength();
+        Ok(carpet::structure(map.into(), cut, strength, self.size(), request))
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let Ok((quasi_conformal, cut)) = self.parts() else { return Vec::new() };
+        let c = quasi_conformal.strength();
+        let anisotropy = quasi_conformal.anisotropy();
+        let map = ConformalMap::from(quasi_conformal);
+        let (least, largest) = map.index_range(&cut);
+        vec![
+            Fact::number("index_min", c * least),
+            Fact::number("index_max", c * largest),
+            Fact::number("neglected_anisotropy", anisotropy),
+            Fact::number("cloaked_area_cm2", map.area_within(&cut)),
+            Fact::number("mirror_width_cm", 2.0 * cut.x_max),
+        ]
+    }
+}

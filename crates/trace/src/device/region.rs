@@ -1,0 +1,444 @@
+//! Regions of a device, each filled with one medium.
+
+use super::{Coating, Convex, FarSide};
+use glam::{DMat3, DVec3};
+use optics::geometry::Plane;
+use optics::medium::{Medium, ModeKind};
+use optics::propagation::{
+    Border, Boundary, ConformalFlow, FlowEnd, Half, PathPoint, RadialFlow, VirtualPoint,
+};
+
+/// A region filled with one medium.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a device has few cells, and they are met often")]
+pub enum Region {
+    /// A convex region of a homogeneous medium, in which rays are straight.
+    Homogeneous(HomogeneousRegion),
+    /// One half of a cut conformal map, of graded index.
+    Conformal(ConformalRegion),
+    /// A ball or a round cylinder of a radially symmetric medium, whole or hollow.
+    Radial(RadialRegion),
+}
+
+/// A radially symmetric medium about the origin or the z axis.
+#[derive(Clone, Copy, Debug)]
+pub struct RadialRegion {
+    /// How rays run in it.
+    pub flow: RadialFlow,
+    /// What lies beyond its inner border, if it has one.
+    pub inner: FarSide,
+}
+
+/// One half of a cut conformal map above its mirror.
+#[derive(Clone, Debug)]
+pub struct ConformalRegion {
+    /// How rays run in it.
+    pub flow: ConformalFlow,
+    /// Which half it is.
+    pub half: Half,
+    /// What lies beyond its floor.
+    pub floor: FarSide,
+    /// What lies in its round core, if it has one.
+    pub core: FarSide,
+    /// How the medium meets the air.
+    pub coating: Coating,
+    /// Imaginary over real part of its permittivity.
+    pub loss_tangent: f64,
+}
+
+/// A convex region filled with a homogeneous medium.
+#[derive(Clone, Debug)]
+pub struct HomogeneousRegion {
+    /// What fills it.
+    pub medium: Medium,
+    /// The speed of light over that of a pulse; absent: the size of the index, in a body 1 at least.
+    pub group_index: Option<f64>,
+    /// Where it ends.
+    pub border: RegionBorder,
+}
+
+/// Where a homogeneous region ends.
+#[derive(Clone, Debug)]
+pub enum RegionBorder {
+    /// At planes.
+    Faces(Vec<Face>),
+    /// At the border of a convex shape, with what is outside beyond it.
+    Convex(Convex),
+}
+
+/// One bounding plane of a region.
+#[derive(Clone, Copy, Debug)]
+pub struct Face {
+    /// The plane, its normal pointing out of the region.
+    pub plane: Plane,
+    /// What lies beyond it.
+    pub far: FarSide,
+    /// Where the face ends, if the next one goes on in its plane: the coordinate (cm) along z × normal.
+    /// Infinite for the last face in its plane.
+    pub until: f64,
+}
+
+impl Face {
+    /// A whole plane face.
+    #[must_use]
+    pub fn new(plane: Plane, far: FarSide) -> Self {
+        Self { plane, far, until: f64::INFINITY }
+    }
+}
+
+/// What a ray finds on entering a region.
+#[derive(Clone, Copy, Debug)]
+pub struct Entrance {
+    /// The point in the virtual space of a conformal region.
+    pub virtual_point: Option<VirtualPoint>,
+}
+
+/// A ray in a region, at a point of it or of its border.
+#[derive(Clone, Copy, Debug)]
+pub struct InnerRay {
+    /// Where it is.
+    pub position: DVec3,
+    /// Its wave vector.
+    pub wave_vector: DVec3,
+    /// Its unit vector, that of the Poynting vector.
+    pub direction: DVec3,
+    /// Which of the medium's waves it is.
+    pub mode: ModeKind,
+    /// What [`Region::enter`] or the last passage has said of the point.
+    pub virtual_point: Option<VirtualPoint>,
+}
+
+/// A ray's way through a region to the surface where it ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Passage {
+    /// The point on the surface.
+    pub position: DVec3,
+    /// The wave vector there.
+    pub wave_vector: DVec3,
+    /// The unit vector of the ray there.
+    pub direction: DVec3,
+    /// What has taken the electric field along, |Re(E × H*)| being kept; `None` in homogeneous
+    /// media, where the field stays as it is.
+    pub transport: Option<DMat3>,
+    /// Optical path length, cm.
+    pub optical_path: f64,
+    /// ∫ Im n ds along a bent way through a medium that absorbs, cm.
+    pub extinction: f64,
+    /// The point in the virtual space of a conformal region, to go on from after a reflection.
+    pub virtual_point: Option<VirtualPoint>,
+    /// Which surface.
+    pub face: u16,
+    /// The unit normal of the surface, out of the region.
+    pub outward: DVec3,
+    /// What lies beyond.
+    pub far: FarSide,
+    /// How the media meet there.
+    pub coating: Coating,
+}
+
+impl Region {
+    /// What a ray finds that enters the region at a point of its border; `None` if a conformal map has no such
+    /// point: it has been lost in rounding at an edge.
+    #[must_use]
+    pub fn enter(&self, position: DVec3) -> Option<Entrance> {
+        Some(Entrance {
+            virtual_point: match self {
+                Self::Homogeneous(_) | Self::Radial(_) => None,
+                Self::Conformal(region) => {
+                    Some(region.flow.virtual_point(region.half, position).ok()?)
+                }
+            },
+        })
+    }
+
+    /// The medium at a point of the region or its border, `virtual_point` being what [`Region::enter`] or the last
+    /// passage has said of it; `None` if there is none by rounding. That of a graded region is put into
+    /// `local`: media are large, and those of homogeneous regions are not copied.
+    #[must_use]
+    pub fn medium<'m>(
+        &'m self,
+        position: DVec3,
+        virtual_point: Option<&VirtualPoint>,
+        local: &'m mut Option<Medium>,
+    ) -> Option<&'m Medium> {
+        *local = match self {
+            Self::Homogeneous(region) => return Some(&region.medium),
+            Self::Conformal(_) => {
+                virtual_point.map(|virtual_point| Medium::dielectric(virtual_point.index))
+            }
+            Self::Radial(region) => region.flow.medium(position),
+        };
+        local.as_ref()
+    }
+
+    /// Whether rays can start within: the closed forms of round lenses take them from border to border.
+    #[must_use]
+    pub fn can_be_started_in(&self) -> bool {
+        match self {
+            Self::Homogeneous(_) | Self::Conformal(_) => true,
+            Self::Radial(region) => matches!(region.flow, RadialFlow::Transformed(_)),
+        }
+    }
+
+    /// The speed of light times the time of flight along a passage of that optical path and straight length, cm.
+    #[must_use]
+    #[inline]
+    pub fn group_path(&self, optical_path: f64, way: DVec3) -> f64 {
+        match self {
+            Self::Homogeneous(HomogeneousRegion { group_index: Some(index), .. }) => {
+                index * way.length()
+            }
+            Self::Homogeneous(HomogeneousRegion { border: RegionBorder::Convex(_), .. }) => {
+                optical_path.abs().max(way.length())
+            }
+            _ if optical_path < 0.0 => way.length().max(-optical_path),
+            _ => optical_path,
+        }
+    }
+
+    /// Where the waves of the medium start as one and then part: their electric fields, of unit power.
+    #[must_use]
+    pub fn parted(&self, position: DVec3, wave_vector: DVec3) -> Option<[(ModeKind, DVec3); 2]> {
+        match self {
+            Self::Homogeneous(_) | Self::Conformal(_) => None,
+            Self::Radial(region) => region.flow.parted(position, wave_vector),
+        }
+    }
+
+    /// Follows a ray from a point of the region or its border to the next surface.
+    ///
+    /// `tolerance` (cm) bounds the error of position and optical path where the way is integrated.
+    ///
+    /// `None` if the ray cannot be followed: it is lost in rounding at an edge, or an integration
+    /// failed.
+    #[must_use]
+    pub fn advance(&self, ray: &InnerRay, tolerance: f64) -> Option<Passage> {
+        match self {
+            Self::Homogeneous(region) => region.advance(ray),
+            Self::Conformal(region) => {
+                let [passage, ..] = region.advance_four(&[Some(*ray), None, None, None], tolerance);
+                passage
+            }
+            Self::Radial(region) => region.advance(ray),
+        }
+    }
+
+    /// As [`Region::advance`], up to four rays at once: see [`Region::takes_four`]. Each gets what it would get
+    /// alone.
+    #[must_use]
+    pub fn advance_four(
+        &self,
+        rays: &[Option<InnerRay>; 4],
+        tolerance: f64,
+    ) -> [Option<Passage>; 4] {
+        match self {
+            Self::Homogeneous(_) | Self::Radial(_) => {
+                rays.map(|ray| ray.and_then(|ray| self.advance(&ray, tolerance)))
+            }
+            Self::Conformal(region) => region.advance_four(rays, tolerance),
+        }
+    }
+
+    /// Whether four rays go through the region at once hardly slower than one.
+    #[must_use]
+    pub fn takes_four(&self) -> bool {
+        matches!(self, Self::Conformal(_))
+    }
+}
+
+/// Straight pieces that a closed form's path is drawn with.
+const PIECES: u32 = 96;
+
+impl Region {
+    /// Points along the way that [`Region::advance`] takes to `end`, with the optical path from its start: for
+    /// drawings. Without those between where they cannot be had.
+    #[must_use]
+    pub fn path(&self, ray: &InnerRay, end: &Passage, tolerance: f64) -> Vec<PathPoint> {
+        let ends = || {
+            let start = PathPoint { position: ray.position, optical_path: 0.0 };
+            vec![start, PathPoint { position: end.position, optical_path: end.optical_path }]
+        };
+        match self {
+            Self::Homogeneous(_) => ends(),
+            Self::Conformal(region) => {
+                let virtual_point = ray
+                    .virtual_point
+                    .or_else(|| region.flow.virtual_point(region.half, ray.position).ok());
+                let path = virtual_point
+                    .and_then(|start| region.flow.path(&start, ray.wave_vector, tolerance).ok());
+                path.unwrap_or_else(ends)
+            }
+            Self::Radial(region) if region.inner == FarSide::Outside && region.turns_back(ray) => {
+                ends()
+            }
+            Self::Radial(region) => {
+                region.flow.path(ray.position, ray.wave_vector, ray.mode, PIECES)
+            }
+        }
+    }
+}
+
+impl HomogeneousRegion {
+    /// A region between planes.
+    #[must_use]
+    pub fn between(medium: Medium, faces: Vec<Face>) -> Self {
+        Self { medium, group_index: None, border: RegionBorder::Faces(faces) }
+    }
+
+    /// The planes that bound it; none where it is bounded otherwise.
+    #[must_use]
+    pub fn faces(&self) -> &[Face] {
+        match &self.border {
+            RegionBorder::Faces(faces) => faces,
+            RegionBorder::Convex(_) => &[],
+        }
+    }
+
+    fn advance(&self, ray: &InnerRay) -> Option<Passage> {
+        let InnerRay { position, direction, .. } = *ray;
+        let faces = match &self.border {
+            RegionBorder::Faces(faces) => faces,
+            RegionBorder::Convex(shape) => {
+                let (distance, outward) = shape.exit(position, direction)?;
+                let end = position + direction * distance;
+                return Some(Passage::straight(ray, end, 0, outward, FarSide::Outside));
+            }
+        };
+        let mut nearest: Option<(u16, &Face, f64)> = None;
+        for (index, face) in (0u16..).zip(faces) {
+            if let Some(distance) = face.plane.distance(position, direction)
+                && nearest.is_none_or(|(_, _, least)| distance < least)
+            {
+                nearest = Some((index, face, distance));
+            }
+        }
+        let (mut index, mut face, distance) = nearest?;
+        // On the plane to the last bit: what is off along the normal would show in the optical path.
+        let end = face.plane.project(position + direction * distance);
+        while face.until < DVec3::Z.cross(face.plane.normal).dot(end) {
+            index += 1;
+            face = faces.get(usize::from(index))?;
+        }
+        Some(Passage::straight(ray, end, index, face.plane.normal, face.far))
+    }
+}
+
+impl Passage {
+    /// A straight way through a homogeneous medium to a point `end` of a bare surface.
+    #[must_use]
+    pub fn straight(ray: &InnerRay, end: DVec3, face: u16, outward: DVec3, far: FarSide) -> Self {
+        Self {
+            position: end,
+            wave_vector: ray.wave_vector,
+            direction: ray.direction,
+            transport: None,
+            optical_path: ray.wave_vector.dot(end - ray.position),
+            extinction: 0.0,
+            virtual_point: None,
+            face,
+            outward,
+            far,
+            coating: Coating::None,
+        }
+    }
+}
+
+impl ConformalRegion {
+    fn advance_four(&self, rays: &[Option<InnerRay>; 4], tolerance: f64) -> [Option<Passage>; 4] {
+        let starts = rays.map(|ray| {
+            let ray = ray?;
+            let here = || self.flow.virtual_point(self.half, ray.position).ok();
+            Some((ray.virtual_point.or_else(here)?, ray.wave_vector))
+        });
+        let ends = self.flow.advance_four(&starts, tolerance);
+        std::array::from_fn(|i| {
+            let end = ends[i].as_ref()?.as_ref().ok()?;
+            Some(self.passage(&starts[i]?.0, end))
+        })
+    }
+
+    fn passage(&self, start: &VirtualPoint, end: &FlowEnd) -> Passage {
+        let far = match end.boundary {
+            Boundary::Floor => self.floor,
+            Boundary::Core => self.core,
+            // Below the floor's level, in the troughs of a grating, the ends are metal.
+            Boundary::XMin | Boundary::XMax
+                if self.half.mirrored(end.at.position).y < self.flow.map().level() =>
+            {
+                FarSide::Conductor
+            }
+            _ => FarSide::Outside,
+        };
+        Passage {
+            position: end.at.position,
+            wave_vector: end.wave_vector,
+            direction: end.wave_vector.normalize(),
+            // |Re(E × H*)| = n |E|² is what stays.
+            transport: Some(end.transport * (start.index / end.at.index).sqrt()),
+            optical_path: end.optical_path,
+            // Im n = n tan δ/2 to first order.
+            extinction: 0.5 * self.loss_tangent * end.optical_path,
+            virtual_point: Some(end.at),
+            face: end.boundary as u16,
+            outward: end.normal,
+            far,
+            coating: if far == FarSide::Conductor { Coating::None } else { self.coating },
+        }
+    }
+}
+
+/// How far from the core, relative to its radius, rounding may put a ray that comes out of it.
+const AT_CORE: f64 = 1e-12;
+
+impl RadialRegion {
+    fn advance(&self, ray: &InnerRay) -> Option<Passage> {
+        if self.inner == FarSide::Outside && self.turns_back(ray) {
+            return Some(self.back_into_core(ray));
+        }
+        let end = self.flow.advance(ray.position, ray.wave_vector, ray.mode);
+        let sound = end.position.is_finite() && end.wave_vector.is_finite();
+        sound.then_some(Passage {
+            position: end.position,
+            wave_vector: end.wave_vector,
+            direction: end.direction,
+            transport: Some(end.transport),
+            optical_path: end.optical_path,
+            extinction: 0.0,
+            virtual_point: None,
+            face: end.border as u16,
+            outward: end.outward,
+            far: if end.border == Border::Inner { self.inner } else { FarSide::Outside },
+            coating: Coating::None,
+        })
+    }
+
+    /// Whether a ray has come out of an open core into a wave that no ray of the core can be in but those in
+    /// a plane through the axis, or aimed at the centre, to the last digits: the medium is singular there.
+    fn turns_back(&self, ray: &InnerRay) -> bool {
+        let [core, _] = self.flow.radii();
+        let outward = self.flow.outward(ray.position);
+        self.flow.closes_core(ray.mode)
+            && ray.position.dot(outward) <= core * (1.0 + AT_CORE)
+            && ray.direction.dot(outward) > 0.0
+    }
+
+    /// The way of such a ray, which gets the limit: all its neighbours are reflected.
+    fn back_into_core(&self, ray: &InnerRay) -> Passage {
+        let outward = self.flow.outward(ray.position);
+        let turned = |v: DVec3| v - outward * (2.0 * v.dot(outward));
+        Passage {
+            position: ray.position,
+            wave_vector: turned(ray.wave_vector),
+            direction: turned(ray.direction),
+            transport: Some(DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z))),
+            optical_path: 0.0,
+            extinction: 0.0,
+            virtual_point: None,
+            face: Border::Inner as u16,
+            outward: -outward,
+            far: self.inner,
+            // It has met the border already.
+            coating: Coating::Antireflection,
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! The spherical cloak (Pendry, Schurig & Smith, Science 312, 1780 (2006)).
+
+use super::round::{ball, check_radii, hollow_ball, metal_ball, no_length};
+use super::{Device, Fact, Request, Show, Structure};
+use crate::key;
+use crate::keys::{KeyError, Limits};
+use glam::DVec3;
+use optics::geometry::Extent;
+use optics::propagation::{RadialFlow, TransformedShell};
+use optics::transformation::{RadialMap, Symmetry};
+use std::f64::consts::PI;
+
+crate::table! {
+    /// Impedance-matched shell around a metal ball, perfect for every direction, polarization and time of flight.
+    /// Pendry, Schurig & Smith 2006.
+    pub struct SphereCloak {
+        /// Radius of the metal ball; below outer.
+        inner: f64 = 4.0, "cm", in Limits::LENGTH,
+        /// Radius of the cloak.
+        outer: f64 = 10.0, "cm", in Limits::LENGTH,
+    }
+}
+
+impl SphereCloak {
+    /// The radii of the core and of the border.
+    fn radii(&self) -> Result<(f64, f64), KeyError> {
+        check_radii(key!(Self.inner), self.inner, self.outer)?;
+        Ok((self.inner, self.outer))
+    }
+}
+
+impl Device for SphereCloak {
+    const KIND: &'static str = "sphere-cloak";
+    const TITLE: &'static str = "Spherical cloak";
+
+    fn structure(&self, request: Request) -> Result<Structure, KeyError> {
+        no_length(request)?;
+        let (inner, outer) = self.radii()?;
+        Ok(match request.show {
+            Show::Cloak => {
+                let map = RadialMap::new(inner, outer, Symmetry::Centre);
+                let shell = TransformedShell::new(map, Extent::ENDLESS);
+                let flow = RadialFlow::Transformed(shell);
+                if request.open_core { hollow_ball(inner, outer, flow) } else { ball(outer, flow) }
+            }
+            Show::Bare => metal_ball(inner),
+            Show::Mirror => Structure::empty(),
+        })
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let Ok((inner, outer)) = self.radii() else { return Vec::new() };
+        let map = RadialMap::new(inner, outer, Symmetry::Centre);
+        let tensor = map.tensor(DVec3::X * outer);
+        vec![
+            Fact::number("cloaked_volume_cm3", 4.0 / 3.0 * PI * inner.powi(3)),
+            Fact::principal_values("border_tensor_principal_values", &tensor),
+            Fact::number("time_of_flight_difference_ns", 0.0),
+        ]
+    }
+}

@@ -1,0 +1,290 @@
+//! What every device is made of: regions filled with media, and the surfaces that light outside of it meets.
+
+use super::{Convex, Region, Surface};
+use glam::DVec3;
+use optics::geometry::{Extent, FloorCurve, Outline, Pose, Solid};
+
+/// What lies on the other side of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FarSide {
+    /// What is around the device there.
+    Outside,
+    /// The device's region of that number.
+    Region(u16),
+    /// The device's region of that number, of the same medium: the surface is a cut, and no interface.
+    Seam(u16),
+    /// A perfect conductor.
+    Conductor,
+    /// An opaque body: rays end on it.
+    Opaque,
+}
+
+/// How two media meet at a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coating {
+    /// Refraction and reflection as the media ask for.
+    None,
+    /// Refraction alone: a perfect antireflection coating.
+    Antireflection,
+}
+
+/// A device in its own frame.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    /// The regions filled with media.
+    pub regions: Vec<Region>,
+    /// The surfaces that light outside can meet.
+    pub surfaces: Vec<Surface>,
+    /// The space the device takes up.
+    pub hull: Hull,
+}
+
+/// What makes a device a body: other bodies may stand in it, and other devices if it is filled with a medium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Its shape, about the origin of its frame.
+    pub shape: Convex,
+    /// Where bodies overlap, the one of the larger priority is there.
+    pub priority: i64,
+}
+
+/// The space a device takes up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hull {
+    solids: Vec<Solid>,
+    reach: Reach,
+    thin_mirror: Option<Solid>,
+    metal: Option<FloorCurve>,
+    body: Option<Body>,
+    /// The device with its hidden region filled, where that is air.
+    filled: Option<Solid>,
+}
+
+/// What holds a hull, about the origin or the z axis of the device's frame: rays that miss it miss
+/// the device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Reach {
+    Nothing,
+    Cylinder(f64),
+    Ball(f64),
+}
+
+impl Reach {
+    fn of(solid: &Solid) -> Self {
+        match solid {
+            Solid::Nothing => Self::Nothing,
+            Solid::Prism { outline, .. } => Self::Cylinder(outline.radius() * GRAZING),
+            Solid::Cylinder { centre, radius, .. } => {
+                Self::Cylinder((centre.length() + radius) * GRAZING)
+            }
+            Solid::Ball { centre, radius } => Self::Ball((centre.length() + radius) * GRAZING),
+            Solid::Hollow { whole, .. } => Self::of(whole),
+            Solid::Tilted { .. } => solid.bounds().map_or(Self::Nothing, |[low, high]| {
+                Self::Ball(low.abs().max(high.abs()).length() * GRAZING)
+            }),
+        }
+    }
+
+    /// What holds both.
+    fn joined(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Nothing, reach) | (reach, Self::Nothing) => reach,
+            (Self::Ball(a), Self::Ball(b)) => Self::Ball(a.max(b)),
+            (Self::Ball(a) | Self::Cylinder(a), Self::Ball(b) | Self::Cylinder(b)) => {
+                Self::Cylinder(a.max(b))
+            }
+        }
+    }
+}
+
+/// Rays that graze a hull by rounding still count as near it.
+const GRAZING: f64 = 1.0 + 1e-12;
+
+impl Hull {
+    /// The hull of a device that fills a body.
+    #[must_use]
+    pub fn new(solid: Solid) -> Self {
+        Self::of_parts(vec![solid])
+    }
+
+    /// The hull of a device of several parts, which leaves the space between them free.
+    #[must_use]
+    pub fn of_parts(solids: Vec<Solid>) -> Self {
+        let reach = solids.iter().map(Reach::of).fold(Reach::Nothing, Reach::joined);
+        Self { solids, reach, thin_mirror: None, metal: None, body: None, filled: None }
+    }
+
+    /// The hull of a device with a polygonal cross-section that extends along z.
+    #[must_use]
+    pub fn prism(outline: Outline, extent: Extent) -> Self {
+        Self::new(Solid::Prism { outline, extent })
+    }
+
+    /// The hull with a thin mirror as well, such as a floor, on a line of two corners: it holds nothing, and
+    /// the photograph may stand across it.
+    #[must_use]
+    pub fn with_thin_mirror(self, line: Outline, extent: Extent) -> Self {
+        let radius = line.radius() * GRAZING;
+        let reach = match self.reach {
+            Reach::Nothing => Reach::Cylinder(radius),
+            Reach::Cylinder(own) | Reach::Ball(own) => Reach::Cylinder(own.max(radius)),
+        };
+        Self { thin_mirror: Some(Solid::Prism { outline: line, extent }), reach, ..self }
+    }
+
+    /// The hull of bare metal below a floor: it holds only that part of its outline.
+    #[must_use]
+    pub fn of_metal(self, curve: FloorCurve) -> Self {
+        Self { metal: Some(curve), ..self }
+    }
+
+    /// The sheet of its thin mirror, if it has one.
+    #[must_use]
+    pub fn thin_mirror(&self) -> Option<&Solid> {
+        self.thin_mirror.as_ref()
+    }
+
+    /// The hull of a body, which may overlap other bodies.
+    #[must_use]
+    pub fn of_body(self, body: Body) -> Self {
+        Self { body: Some(body), ..self }
+    }
+
+    /// The hull of a cloak whose hidden region is air, and free; `filled` is the cloak together with it.
+    #[must_use]
+    pub fn with_open_core(self, filled: Solid) -> Self {
+        Self { filled: Some(filled), ..self }
+    }
+
+    /// Whether it leaves a hidden region free.
+    #[must_use]
+    pub fn has_open_core(&self) -> bool {
+        self.filled.is_some()
+    }
+
+    /// The body whose hull it is, if it is one's.
+    #[must_use]
+    pub fn body(&self) -> Option<&Body> {
+        self.body.as_ref()
+    }
+
+    /// Whether it is one convex body: light that has left it does not come back by itself.
+    #[must_use]
+    pub fn is_convex(&self) -> bool {
+        matches!(&self.solids[..], [solid] if !matches!(solid, Solid::Hollow { .. }))
+            && self.thin_mirror.is_none()
+            && self.metal.is_none()
+            && self.filled.is_none()
+    }
+
+    /// The solids that it fills.
+    #[must_use]
+    pub fn solids(&self) -> &[Solid] {
+        &self.solids
+    }
+
+    /// Whether a ray (in the device's frame) comes near enough that it may meet the device.
+    #[must_use]
+    pub fn may_be_met(&self, origin: DVec3, direction: DVec3) -> bool {
+        // The closest approach to the axis or the centre, if it lies ahead; else the origin itself.
+        match self.reach {
+            Reach::Nothing => false,
+            Reach::Cylinder(radius) => {
+                let (o, d) = (origin.truncate(), direction.truncate());
+                let beside = d.perp_dot(o);
+                let reach = radius * radius;
+                beside * beside <= reach * d.length_squared()
+                    && (o.dot(d) <= 0.0 || o.length_squared() <= reach)
+            }
+            Reach::Ball(radius) => {
+                let beside = direction.cross(origin);
+                let reach = radius * radius;
+                beside.length_squared() <= reach * direction.length_squared()
+                    && (origin.dot(direction) <= 0.0 || origin.length_squared() <= reach)
+            }
+        }
+    }
+
+    /// Whether a point (in the device's frame) lies inside, border excluded.
+    #[must_use]
+    pub fn holds(&self, point: DVec3) -> bool {
+        let inside = self.solids.iter().any(|solid| solid.holds(point));
+        inside && self.metal.as_ref().is_none_or(|metal| metal.contains(point.truncate()))
+    }
+}
+
+impl Hull {
+    /// The solids with an open core filled.
+    fn filled_solids(&self) -> impl Iterator<Item = &Solid> {
+        self.filled.iter().chain(self.solids.iter().filter(|_| self.filled.is_none()))
+    }
+
+    /// Whether a point (in the device's frame) is of the device or of its hidden region, border included.
+    #[must_use]
+    pub fn spans(&self, point: DVec3) -> bool {
+        self.filled_solids().any(|solid| solid.contains(point))
+            && self.metal.as_ref().is_none_or(|metal| metal.contains(point.truncate()))
+    }
+
+    /// The least and the greatest coordinates of what it spans when it is at a place, infinite (or very
+    /// large) where it has no end; `None` if it spans nothing.
+    #[must_use]
+    pub fn bounds(&self, pose: &Pose) -> Option<[DVec3; 2]> {
+        let bounds = self.filled_solids().filter_map(|solid| solid.placed(pose).bounds());
+        bounds.reduce(|[low, high], [from, to]| [low.min(from), high.max(to)])
+    }
+}
+
+impl Structure {
+    /// A structure without anything: a cloak whose "mirror" view is empty space.
+    #[must_use]
+    pub fn empty() -> Self {
+        Self { regions: Vec::new(), surfaces: Vec::new(), hull: Hull::of_parts(Vec::new()) }
+    }
+
+    /// Whether it is an opaque body.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        self.hull.body.is_some() && self.regions.is_empty()
+    }
+
+    /// The nearest surface that a ray outside meets, from zero on, `departed` being the one it has just left.
+    #[must_use]
+    pub fn first_hit(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        departed: Option<u16>,
+    ) -> Option<SurfaceHit> {
+        if !self.hull.may_be_met(origin, direction) {
+            return None;
+        }
+        let mut nearest: Option<(u16, &Surface, f64, DVec3)> = None;
+        for (index, surface) in (0u16..).zip(&self.surfaces) {
+            if let Some((distance, outward)) =
+                surface.hit(origin, direction, departed == Some(index))
+                && nearest.is_none_or(|(_, _, least, _)| distance < least)
+            {
+                nearest = Some((index, surface, distance, outward));
+            }
+        }
+        let (index, surface, distance, outward) = nearest?;
+        let (far, coating) = (surface.far, surface.coating);
+        Some(SurfaceHit { surface: index, distance, outward, far, coating })
+    }
+}
+
+/// Where a ray outside meets a device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceHit {
+    /// Which of the device's surfaces.
+    pub surface: u16,
+    /// How far along the ray, cm.
+    pub distance: f64,
+    /// Unit normal of the surface, against the ray.
+    pub outward: DVec3,
+    /// What lies behind it.
+    pub far: FarSide,
+    /// How the media meet.
+    pub coating: Coating,
+}

@@ -1,0 +1,226 @@
+//! The surfaces of a device that light outside of it can meet.
+
+use super::{Coating, Convex, FarSide};
+use glam::DVec3;
+use optics::geometry::{
+    Cap, CurvedSide, Cylinder, CylinderPart, Disc, Extent, FloorCurve, Sphere, Wall,
+};
+use optics::propagation::Half;
+use optics::transformation::ConformalMap;
+
+/// A surface, and what lies behind it.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// Where it lies.
+    pub shape: Shape,
+    /// From where it is met.
+    pub side: Side,
+    /// Which part of the shape it is.
+    pub part: Part,
+    /// What lies behind it.
+    pub far: FarSide,
+    /// How the media meet there.
+    pub coating: Coating,
+}
+
+/// A piece of a surface about the origin or the z axis.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// A plane piece that extends along z.
+    Wall(Wall),
+    /// A flat end of a polygonal prism.
+    Cap(Cap),
+    /// A flat end of a round cylinder.
+    Disc(Disc),
+    /// The whole border of a convex shape.
+    Convex(Convex),
+    /// The round side of a cylinder.
+    Round(Cylinder),
+    /// The outline of the metal below the curved floor of a conformal map, or one curved side of it, extended along z.
+    Curve {
+        /// Its cross-section.
+        curve: FloorCurve,
+        /// Which of its sides; all of it if absent.
+        side: Option<CurvedSide>,
+        /// Its extent along z.
+        extent: Extent,
+    },
+}
+
+/// From where a surface is met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// From where its normal points.
+    Front,
+    /// From the other side: the border of a hole.
+    Back,
+    /// From both: a sheet.
+    Both,
+}
+
+/// A part of a flat end.
+#[derive(Clone, Debug)]
+pub enum Part {
+    /// All of it.
+    Whole,
+    /// Within a circle about the z axis of this radius, cm.
+    Within(f64),
+    /// Without a circle about the z axis of this radius, cm.
+    Beyond(f64),
+    /// Above the floor of a conformal map, of its upper half or of its mirror image under y -> -y.
+    AboveFloor(ConformalMap, Half),
+    /// Below the floor of a conformal map, and above that of its mirror image if there is one.
+    BelowFloor {
+        /// The map.
+        map: ConformalMap,
+        /// Whether the map has a mirror image.
+        mirrored: bool,
+    },
+    /// The metal below a floor.
+    Metal(FloorCurve),
+}
+
+impl Part {
+    #[inline]
+    fn holds(&self, point: DVec3) -> bool {
+        let height = |map: &ConformalMap, y: f64| {
+            if y < map.peak() { y - map.floor_height_at(point.x) } else { y }
+        };
+        match self {
+            Self::Whole => true,
+            Self::Within(radius) => point.truncate().length_squared() < radius * radius,
+            Self::Beyond(radius) => point.truncate().length_squared() >= radius * radius,
+            Self::AboveFloor(map, Half::Upper) => height(map, point.y) >= 0.0,
+            Self::AboveFloor(map, Half::Lower) => point.y < 0.0 && height(map, -point.y) >= 0.0,
+            Self::BelowFloor { map, mirrored } => {
+                let y = if *mirrored { point.y.abs() } else { point.y };
+                height(map, y) < 0.0
+            }
+            Self::Metal(curve) => curve.contains(point.truncate()),
+        }
+    }
+}
+
+impl Surface {
+    /// A whole bare surface that is met from the front.
+    #[must_use]
+    pub fn new(shape: Shape, far: FarSide) -> Self {
+        Self { shape, side: Side::Front, part: Part::Whole, far, coating: Coating::None }
+    }
+
+    /// A plane piece that extends along z, met from its front.
+    #[must_use]
+    pub fn wall(wall: Wall, far: FarSide) -> Self {
+        Self::new(Shape::Wall(wall), far)
+    }
+
+    /// A thin two-sided mirror that extends along z.
+    #[must_use]
+    pub fn mirror(wall: Wall) -> Self {
+        Self { side: Side::Both, ..Self::wall(wall, FarSide::Conductor) }
+    }
+
+    /// A ball's border, met from outside.
+    #[must_use]
+    pub fn sphere(sphere: Sphere, far: FarSide) -> Self {
+        Self::new(Shape::Convex(Convex::Ball(sphere)), far)
+    }
+
+    /// The same surface, coated.
+    #[must_use]
+    pub fn with_coating(self, coating: Coating) -> Self {
+        Self { coating, ..self }
+    }
+
+    /// A part of the same surface.
+    #[must_use]
+    pub fn with_part(self, part: Part) -> Self {
+        Self { part, ..self }
+    }
+
+    /// The same surface, met from behind.
+    #[must_use]
+    pub fn from_behind(self) -> Self {
+        Self { side: Side::Back, ..self }
+    }
+
+    /// The distance, from zero on, at which a ray meets the surface and the unit normal there, against the ray. A ray that
+    /// has just `departed` from this same surface does not meet it again at once.
+    #[must_use]
+    #[inline]
+    pub fn hit(&self, origin: DVec3, direction: DVec3, departed: bool) -> Option<(f64, DVec3)> {
+        let least = if departed { AGAIN } else { 0.0 };
+        let (distance, normal) = match (&self.shape, self.side) {
+            (Shape::Curve { curve, side, extent }, _) => {
+                return curve_hit(curve, *side, *extent, origin, direction, least);
+            }
+            // The border of a hole is curved inwards: a ray meets it again.
+            (Shape::Convex(Convex::Ball(sphere)), Side::Back) => {
+                let distance = sphere.hit_within(origin, direction)?;
+                (distance, -sphere.outward(origin + direction * distance))
+            }
+            (Shape::Round(cylinder), Side::Back) => {
+                let distance = cylinder.hit_side_within(origin, direction)?;
+                let point = origin + direction * distance;
+                (distance, -cylinder.outward(CylinderPart::Side, point))
+            }
+            _ if departed => return None,
+            (Shape::Wall(wall), side) => {
+                let facing = -direction.dot(wall.normal());
+                let normal = match side {
+                    Side::Front if facing <= 0.0 => return None,
+                    Side::Front => wall.normal(),
+                    Side::Back if facing >= 0.0 => return None,
+                    Side::Back => -wall.normal(),
+                    Side::Both => wall.normal() * facing.signum(),
+                };
+                (wall.hit(origin, direction)?, normal)
+            }
+            (Shape::Cap(cap), _) => {
+                if direction.dot(cap.normal) >= 0.0 {
+                    return None;
+                }
+                (cap.hit(origin, direction)?, cap.normal)
+            }
+            (Shape::Disc(disc), _) => (disc.hit(origin, direction)?, disc.normal),
+            (Shape::Convex(shape), _) => shape.entry(origin, direction)?,
+            (Shape::Round(cylinder), _) => {
+                let distance = cylinder.hit_side(origin, direction)?;
+                let point = origin + direction * distance;
+                (distance, cylinder.outward(CylinderPart::Side, point))
+            }
+        };
+        let whole = matches!(self.part, Part::Whole);
+        (whole || self.part.holds(origin + direction * distance)).then_some((distance, normal))
+    }
+}
+
+/// A curved surface that a ray has just departed from is not met again closer than this, cm.
+const AGAIN: f64 = 1e-7;
+
+/// Where a ray meets the outline of metal below a floor from outside, or one of its sides from within, within an extent
+/// along z.
+fn curve_hit(
+    curve: &FloorCurve,
+    side: Option<CurvedSide>,
+    extent: Extent,
+    origin: DVec3,
+    direction: DVec3,
+    least: f64,
+) -> Option<(f64, DVec3)> {
+    let (o, d) = (origin.truncate(), direction.truncate());
+    let within = |t: f64| extent.contains(origin.z + t * direction.z);
+    if let Some(side) = side {
+        let hit = curve.first_way_out(side, o, d, least)?;
+        return within(hit.t).then_some((hit.t, -hit.normal.extend(0.0)));
+    }
+    let mut least = least;
+    loop {
+        let hit = curve.first_hit(o, d, least)?;
+        if within(hit.t) {
+            return Some((hit.t, hit.normal.extend(0.0)));
+        }
+        // Past an end: the metal may be met once more, for it is not convex.
+        least = hit.t + AGAIN;
+    }
+}

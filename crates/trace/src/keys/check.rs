@@ -1,0 +1,269 @@
+//! A value held against its key: type, limits, and the message if it does not fit.
+
+use super::nearest::nearest;
+use super::value::{Value, items_of, number_text, quoted};
+use super::{BUILT_IN_IMAGES, BUILT_IN_PREFIX, Key, KeyKind, Limits, Samples, find, tensor};
+
+impl Limits {
+    /// Whether a number is allowed; NaN and the infinities never are.
+    pub fn allow(&self, number: f64) -> bool {
+        number.is_finite()
+            && match *self {
+                Limits::Finite => true,
+                Limits::Positive => number > 0.0,
+                Limits::Between(low, high) => number > low && number < high,
+                Limits::Within(low, high) => number >= low && number <= high,
+                Limits::Whole(low, high) => (low as f64..=high as f64).contains(&number),
+            }
+    }
+
+    /// What is allowed, to be read after "must be": "above 0", "from 0 to 1".
+    pub fn describe(&self) -> String {
+        match *self {
+            Limits::Finite => "a finite number".to_owned(),
+            Limits::Positive => "above 0".to_owned(),
+            Limits::Between(low, high) => {
+                format!("above {} and below {}", number_text(low), number_text(high))
+            }
+            Limits::Within(low, high) => {
+                format!("from {} to {}", number_text(low), number_text(high))
+            }
+            Limits::Whole(low, i64::MAX) => format!("{low} or above"),
+            Limits::Whole(low, high) => format!("from {low} to {high}"),
+        }
+    }
+}
+
+impl Key {
+    /// What the key takes, to be read after "must be": "a number (cm)", "true or false".
+    pub fn describe(&self) -> String {
+        let unit = in_brackets(self.unit);
+        match self.kind {
+            KeyKind::Number => format!("a number{unit}"),
+            KeyKind::Integer => "a whole number".to_owned(),
+            KeyKind::Flag => "true or false".to_owned(),
+            KeyKind::Choice { options } => words(options),
+            KeyKind::Choices { options } => format!("a list of words, each {}", words(options)),
+            KeyKind::Vector => format!("three numbers{unit}"),
+            KeyKind::IntegerPair => "two whole numbers".to_owned(),
+            KeyKind::Image => "the name of an image".to_owned(),
+            KeyKind::ChoiceOrNumber { options } => {
+                let options = options.iter().map(|option| quoted(option, '"'));
+                format!("{} or a number{unit}", options.collect::<Vec<_>>().join(", "))
+            }
+            KeyKind::Tensor => "a number, [re, im], or 3 x 3 of either".to_owned(),
+            KeyKind::Polygon => format!("three or more corners [x, y]{unit}"),
+            KeyKind::Samples => "rows of numbers, or the name of a file".to_owned(),
+            KeyKind::Table { keys } => format!("a table with {}", key_names(keys)),
+            KeyKind::Tables { keys } => format!("a list of tables with {}", key_names(keys)),
+        }
+    }
+
+    /// The value where the key is absent; `None` if absence itself means something.
+    pub fn default_value(&self) -> Option<Value> {
+        (self.default)()
+    }
+
+    /// Holds a value against the key, and gives it back as the key has it: 3 is 3.0 where a number is asked for.
+    ///
+    /// # Errors
+    ///
+    /// A message that says what the value is and what it must be.
+    pub fn check(&self, value: &Value) -> Result<Value, String> {
+        Ok(match self.kind {
+            KeyKind::Number => {
+                let number = value.as_number().ok_or_else(|| self.wrong_type(value))?;
+                self.limit(self.name, number)?;
+                number.into()
+            }
+            KeyKind::Integer => {
+                let integer = value.as_integer().ok_or_else(|| self.wrong_type(value))?;
+                self.limit_integer(self.name, integer)?;
+                integer.into()
+            }
+            KeyKind::Flag => value.as_flag().ok_or_else(|| self.wrong_type(value))?.into(),
+            KeyKind::Choice { options } => self.choose(value, options)?,
+            KeyKind::Choices { options } => {
+                let items = value.as_list().ok_or_else(|| self.wrong_type(value))?;
+                let chosen = items.iter().map(|item| {
+                    choose(item, options).map(Value::from).map_err(|hint| {
+                        format!("{} holds {item}; it must be {}{hint}", self.name, self.describe())
+                    })
+                });
+                Value::List(chosen.collect::<Result<_, _>>()?)
+            }
+            KeyKind::Vector => {
+                let numbers: [f64; 3] = self.list(value, Value::as_number)?;
+                for (number, axis) in numbers.iter().zip(["first", "second", "third"]) {
+                    self.limit(&format!("the {axis} component of {}", self.name), *number)?;
+                }
+                numbers.into()
+            }
+            KeyKind::IntegerPair => {
+                let integers: [i64; 2] = self.list(value, Value::as_integer)?;
+                for (integer, place) in integers.iter().zip(["first", "second"]) {
+                    self.limit_integer(&format!("the {place} number of {}", self.name), *integer)?;
+                }
+                integers.into()
+            }
+            KeyKind::Image | KeyKind::Samples if *value == Value::from("") => {
+                return Err(format!("{} is empty", self.name));
+            }
+            KeyKind::Image => {
+                let name = value.as_text().ok_or_else(|| self.wrong_type(value))?;
+                check_image_name(name)?;
+                value.clone()
+            }
+            KeyKind::Samples => {
+                if !matches!(value, Value::Text(_)) {
+                    self.samples(value)?;
+                }
+                value.clone()
+            }
+            KeyKind::ChoiceOrNumber { options } => match value.as_number() {
+                Some(number) => {
+                    self.limit(self.name, number)?;
+                    number.into()
+                }
+                None => self.choose(value, options)?,
+            },
+            KeyKind::Tensor => {
+                let tensor = tensor::from_value(value).ok_or_else(|| self.wrong_type(value))?;
+                for number in tensor::parts(&tensor) {
+                    self.limit(&format!("an entry of {}", self.name), number)?;
+                }
+                tensor::to_value(&tensor)
+            }
+            KeyKind::Polygon => self.polygon(value)?,
+            KeyKind::Table { keys } => self.table(value, keys)?,
+            KeyKind::Tables { keys } => {
+                let items = value.as_list().ok_or_else(|| self.wrong_type(value))?;
+                let tables = items.iter().map(|item| self.table(item, keys));
+                Value::List(tables.collect::<Result<_, _>>()?)
+            }
+        })
+    }
+
+    fn polygon(&self, value: &Value) -> Result<Value, String> {
+        let items = value.as_list().filter(|items| items.len() >= 3);
+        let items = items.ok_or_else(|| self.wrong_type(value))?;
+        let corner = |item: &Value| -> Result<Value, String> {
+            let corner: [f64; 2] = items_of(item, Value::as_number)
+                .ok_or_else(|| format!("a corner of {} is {item}; it must be [x, y]", self.name))?;
+            for number in corner {
+                self.limit(&format!("a coordinate of {}", self.name), number)?;
+            }
+            Ok(corner.into())
+        };
+        items.iter().map(corner).collect::<Result<_, _>>().map(Value::List)
+    }
+
+    fn samples(&self, value: &Value) -> Result<Samples, String> {
+        let rows = value.as_list().ok_or_else(|| self.wrong_type(value))?;
+        let number = |at: [usize; 2], item: &Value| -> Result<f64, String> {
+            let name = format!("{}[{}][{}]", self.name, at[0], at[1]);
+            let number =
+                item.as_number().ok_or_else(|| format!("{name} is {item}; it must be a number"))?;
+            self.limit(&name, number)?;
+            Ok(number)
+        };
+        let row = |(i, row): (usize, &Value)| -> Result<Vec<f64>, String> {
+            let items = row.as_list().ok_or_else(|| self.wrong_type(value))?;
+            items.iter().enumerate().map(|(j, item)| number([i, j], item)).collect()
+        };
+        let rows: Vec<Vec<f64>> = rows.iter().enumerate().map(row).collect::<Result<_, _>>()?;
+        Samples::new(&rows).map_err(|error| format!("{} is no grid: {error}", self.name))
+    }
+
+    /// The entries that are given, in the order of the keys.
+    fn table(&self, value: &Value, keys: &'static [Key]) -> Result<Value, String> {
+        let entries = value.as_table().ok_or_else(|| self.wrong_type(value))?;
+        let mut given: Vec<Option<(String, Value)>> = vec![None; keys.len()];
+        for (name, value) in entries {
+            let key = find(keys, name).map_err(|error| error.message);
+            let value = key.and_then(|key| key.check(value));
+            let value = value.map_err(|message| format!("in {}: {message}", self.name))?;
+            let place = keys.iter().zip(&mut given).find(|(key, _)| key.name == name);
+            place.into_iter().for_each(|(_, place)| *place = Some((name.clone(), value.clone())));
+        }
+        Ok(Value::Table(given.into_iter().flatten().collect()))
+    }
+
+    /// The message about a value of a wrong type: what it is, and what it must be.
+    pub fn wrong_type(&self, value: &Value) -> String {
+        format!("{} is {value}; it must be {}", self.name, self.describe())
+    }
+
+    fn choose(&self, value: &Value, options: &[&'static str]) -> Result<Value, String> {
+        choose(value, options).map(Value::from).map_err(|hint| self.wrong_type(value) + &hint)
+    }
+
+    fn list<T, const N: usize>(
+        &self,
+        value: &Value,
+        item: impl Fn(&Value) -> Option<T>,
+    ) -> Result<[T; N], String> {
+        items_of(value, item).ok_or_else(|| self.wrong_type(value))
+    }
+
+    /// Refuses a number outside the limits, by the name `name`.
+    pub(super) fn limit(&self, name: &str, number: f64) -> Result<(), String> {
+        if self.limits.allow(number) {
+            return Ok(());
+        }
+        if !number.is_finite() {
+            let what = if number.is_nan() { "not a number (nan)" } else { "infinite" };
+            return Err(format!("{name} is {what}; numbers must be finite"));
+        }
+        let space = if self.unit.is_empty() { "" } else { " " };
+        let (shown, unit) = (number_text(number), self.unit);
+        Err(format!("{name} is {shown}{space}{unit}; it must be {}", self.limits.describe()))
+    }
+
+    fn limit_integer(&self, name: &str, integer: i64) -> Result<(), String> {
+        match self.limits {
+            Limits::Whole(min, max) if !(min..=max).contains(&integer) => {
+                Err(format!("{name} is {integer}; it must be {}", self.limits.describe()))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Refuses names of built-in images that do not exist; whether a file is there is not looked at.
+fn check_image_name(name: &str) -> Result<(), String> {
+    if !name.starts_with(BUILT_IN_PREFIX) || BUILT_IN_IMAGES.contains(&name) {
+        return Ok(());
+    }
+    let known = BUILT_IN_IMAGES.map(|known| quoted(known, '`')).join(", ");
+    Err(format!("there is no built-in image {}; there is {known}", quoted(name, '`')))
+}
+
+/// The option that a word is; else a hint which one may have been meant.
+fn choose(value: &Value, options: &[&'static str]) -> Result<&'static str, String> {
+    let Value::Text(word) = value else { return Err(String::new()) };
+    options.iter().copied().find(|option| option == word).ok_or_else(|| {
+        let meant = nearest(word, options.iter().copied());
+        meant.map(|meant| format!("; did you mean {}?", quoted(meant, '"'))).unwrap_or_default()
+    })
+}
+
+/// `"a", "b" or "c"`.
+fn words(options: &[&str]) -> String {
+    let quoted: Vec<_> = options.iter().map(|option| quoted(option, '"')).collect();
+    match quoted.as_slice() {
+        [] => "nothing".to_owned(),
+        [only] => only.clone(),
+        [first @ .., last] => format!("{} or {last}", first.join(", ")),
+    }
+}
+
+/// "the key a", "the keys a, b".
+fn key_names(keys: &[Key]) -> String {
+    let names: Vec<_> = keys.iter().map(|key| key.name).collect();
+    format!("the key{} {}", if names.len() == 1 { "" } else { "s" }, names.join(", "))
+}
+
+fn in_brackets(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" ({unit})") }
+}

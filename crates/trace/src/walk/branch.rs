@@ -1,0 +1,215 @@
+//! A branch of a ray tree on its way.
+
+use super::{Launch, Leaf, LeafEnd};
+use crate::assembly::DepartedSurface;
+use crate::device::InnerRay;
+use crate::split_mix::mix;
+use glam::DVec3;
+use num_complex::Complex64;
+use optics::geometry::Pose;
+use optics::interface::{IncidentWave, OutgoingWave};
+use optics::medium::{ModeKind, RayWave};
+use optics::propagation::VirtualPoint;
+use optics::wave::ComplexVector;
+
+/// Where a branch runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// In air, in the world's frame.
+    Air,
+    /// In a region of a device, in the device's frame.
+    Region { device: u16, region: u16 },
+}
+
+/// A branch: a ray with the fields of `N` launched polarizations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Branch<const N: usize> {
+    pub place: Place,
+    pub position: DVec3,
+    pub wave_vector: DVec3,
+    pub attenuation: DVec3,
+    pub direction: DVec3,
+    pub electric: [ComplexVector; N],
+    pub power: [f64; N],
+    /// Whether the tree of each launched polarization alone has this branch.
+    pub survives_alone: [bool; N],
+    pub optical_path: f64,
+    /// Speed of light times the time of flight, cm.
+    pub group_path: f64,
+    /// What it has just left, if it runs outside of it now: in air or in the body around it.
+    pub departed: Option<DepartedSurface>,
+    /// How many borders in a row it has crossed without getting anywhere.
+    pub standstills: u8,
+    pub met_device: bool,
+    pub path: u64,
+    /// Which of the waves of the medium it is in.
+    pub mode: ModeKind,
+    /// Where it is in the virtual space of a conformal region.
+    pub virtual_point: Option<VirtualPoint>,
+}
+
+impl<const N: usize> Branch<N> {
+    /// The root of the tree of a ray launched in air.
+    pub fn launched(launch: &Launch<N>) -> Self {
+        Self {
+            place: Place::Air,
+            position: launch.origin,
+            wave_vector: launch.direction,
+            attenuation: DVec3::ZERO,
+            direction: launch.direction,
+            electric: launch.electric,
+            power: launch.electric.map(ComplexVector::norm_squared),
+            survives_alone: [true; N],
+            optical_path: 0.0,
+            group_path: 0.0,
+            departed: None,
+            standstills: 0,
+            met_device: false,
+            path: 0,
+            mode: ModeKind::Shared,
+            virtual_point: None,
+        }
+    }
+
+    /// The wave as an interface sees it.
+    pub fn incident(&self) -> IncidentWave<N> {
+        IncidentWave {
+            wave_vector: self.wave_vector,
+            attenuation: self.attenuation,
+            direction: self.direction,
+            electric: self.electric,
+            power: self.power,
+        }
+    }
+
+    /// The ray as a region sees it.
+    pub fn inner_ray(&self) -> InnerRay {
+        InnerRay {
+            position: self.position,
+            wave_vector: self.wave_vector,
+            direction: self.direction,
+            mode: self.mode,
+            virtual_point: self.virtual_point,
+        }
+    }
+
+    /// The part of the branch whose field lies along `field`, as a wave of its own; `across` is the
+    /// field of the other part, perpendicular to it.
+    pub fn part(&self, mode: ModeKind, field: DVec3, across: DVec3) -> Self {
+        let [along, beside] =
+            [field, across].map(|field| self.electric.map(|e| e.dot_real(field.normalize())));
+        let mut part = *self;
+        for i in 0..N {
+            let share = along[i].norm_sqr() / (along[i].norm_sqr() + beside[i].norm_sqr());
+            let share = if share.is_nan() { 0.0 } else { share };
+            part.power[i] = self.power[i] * share;
+            let unit = ComplexVector::from(field.normalize());
+            part.electric[i] = unit.scaled(along[i]);
+        }
+        part.mode = mode;
+        part.path = fingerprint(self.path, mode as u64);
+        part
+    }
+
+    /// The branch as one of the waves in which it starts, with its amplitude for each launched polarization.
+    pub fn as_wave(&self, wave: &RayWave, amplitudes: [Complex64; N]) -> Self {
+        let field = wave.electric.unwrap_or_default();
+        Self {
+            wave_vector: wave.wave_vector,
+            attenuation: wave.attenuation,
+            electric: amplitudes.map(|amplitude| field.scaled(amplitude)),
+            power: amplitudes.map(|amplitude| amplitude.norm_sqr()),
+            mode: wave.kind,
+            path: fingerprint(self.path, wave.kind as u64),
+            ..*self
+        }
+    }
+
+    /// Goes on from here as `wave`, the event telling how.
+    pub fn go_on_as(&mut self, wave: &OutgoingWave<N>, event: u64) {
+        self.wave_vector = wave.wave_vector;
+        self.attenuation = wave.attenuation;
+        self.direction = wave.direction;
+        self.electric = wave.electric;
+        self.power = wave.power;
+        self.mode = wave.mode;
+        self.path = fingerprint(self.path, event);
+    }
+
+    /// Comes out into air, `departed` being what it leaves: there all that decays across a beam is its profile: behind an absorbing wedge the
+    /// wave of the match decays along the surface, by some 1e-5 of its wave vector; a ray is a plane
+    /// wave along its direction, transverse, and of its power.
+    pub fn come_out(&mut self, departed: Option<DepartedSurface>) {
+        (self.place, self.departed) = (Place::Air, departed);
+        if self.attenuation == DVec3::ZERO {
+            return;
+        }
+        for (field, power) in self.electric.iter_mut().zip(self.power) {
+            let along = field.dot_real(self.direction);
+            let across =
+                *field - ComplexVector::new(self.direction * along.re, self.direction * along.im);
+            let size = across.norm_squared();
+            *field = if size > 0.0 { across * (power / size).sqrt() } else { across };
+        }
+        self.wave_vector = self.direction;
+        self.attenuation = DVec3::ZERO;
+    }
+
+    /// The branch as a leaf with its end.
+    pub fn leaf(&self, end: LeafEnd) -> Leaf<N> {
+        Leaf {
+            position: self.position,
+            met_device: self.met_device,
+            direction: self.direction,
+            power: self.power,
+            electric: self.electric,
+            survives_alone: self.survives_alone,
+            optical_path: self.optical_path,
+            group_path: self.group_path,
+            end,
+            path: self.path,
+        }
+    }
+
+    /// Takes the branch from the world's frame into that of a device.
+    pub fn enter_frame(&mut self, pose: &Pose) {
+        self.position = pose.to_local(self.position);
+        self.wave_vector = pose.vector_to_local(self.wave_vector);
+        self.attenuation = pose.vector_to_local(self.attenuation);
+        self.direction = pose.vector_to_local(self.direction);
+        self.electric = self.electric.map(|field| pose.field_to_local(field));
+    }
+
+    /// Takes the branch from the frame of a device into the world's.
+    pub fn leave_frame(&mut self, pose: &Pose) {
+        self.position = pose.to_world(self.position);
+        self.wave_vector = pose.vector_to_world(self.wave_vector);
+        self.attenuation = pose.vector_to_world(self.attenuation);
+        self.direction = pose.vector_to_world(self.direction);
+        self.electric = self.electric.map(|field| pose.field_to_world(field));
+    }
+
+    /// Enters a region of the device in whose frame it is.
+    pub fn enter_region(&mut self, device: u16, region: u16, virtual_point: Option<VirtualPoint>) {
+        self.place = Place::Region { device, region };
+        self.virtual_point = virtual_point;
+        self.departed = None;
+    }
+
+    /// Notes that branches below that power are not followed.
+    pub fn update_survival(&mut self, least_power: f64) {
+        for (survives, power) in self.survives_alone.iter_mut().zip(self.power) {
+            *survives &= power >= least_power;
+        }
+    }
+
+    /// The power of its strongest polarization.
+    pub fn largest_power(&self) -> f64 {
+        self.power.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// Adds an event to the fingerprint of a path.
+fn fingerprint(path: u64, event: u64) -> u64 {
+    mix(path ^ event)
+}

@@ -1,0 +1,46 @@
+//! Four trees side by side: neighbouring rays meet the same regions, and some take four rays at once.
+
+use super::branch::Branch;
+use super::{Launch, Tracer};
+use crate::device::InnerRay;
+
+/// Traces four rays at once. Each tree is what [`Tracer::trace`] makes of its ray alone.
+#[derive(Clone, Debug)]
+pub struct FourTracers<'a, const N: usize> {
+    tracers: [Tracer<'a, N>; 4],
+}
+
+impl<'a, const N: usize> FourTracers<'a, N> {
+    /// Four tracers like the given one.
+    #[must_use]
+    pub fn new(tracer: &Tracer<'a, N>) -> Self {
+        Self { tracers: std::array::from_fn(|_| tracer.clone()) }
+    }
+
+    /// The tracers; each keeps what it has [traced](Tracer::traced) last.
+    #[must_use]
+    pub fn each(&self) -> &[Tracer<'a, N>; 4] {
+        &self.tracers
+    }
+
+    /// Follows four rays to the end of every branch. See [`Tracer::trace`].
+    pub fn trace(&mut self, launches: &[Launch<N>; 4]) {
+        let mut branches = launches.each_ref().map(Branch::launched);
+        // Where each waits to be taken through a region.
+        let mut regions: [Option<(u16, u16)>; 4] = [None; 4];
+        for (i, region) in regions.iter_mut().enumerate() {
+            *region = self.tracers[i].begin(&mut branches[i]);
+        }
+        while let Some(&region) = regions.iter().flatten().next() {
+            let rays: [Option<InnerRay>; 4] = std::array::from_fn(|i| {
+                (regions[i] == Some(region)).then(|| branches[i].inner_ray())
+            });
+            let passages = self.tracers[0].advance_four(region, &rays);
+            for (i, passage) in passages.iter().enumerate() {
+                if rays[i].is_some() {
+                    regions[i] = self.tracers[i].resume(&mut branches[i], region, passage.as_ref());
+                }
+            }
+        }
+    }
+}

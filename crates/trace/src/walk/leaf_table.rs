@@ -1,0 +1,142 @@
+//! Many rays at once, their leaves side by side in arrays.
+
+use super::neighbours::side_by_side;
+use super::{FourTracers, Launch, Leaf, Limits, Outcome, Tracer};
+use crate::assembly::Assembly;
+use num_complex::Complex64;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Fewest and most rays that one thread takes at a time.
+const BATCH: [usize; 2] = [64, 4096];
+
+/// Batches a thread, so that all end at about the same time.
+const BATCHES: usize = 16;
+
+/// Work was stopped from outside before it was done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("stopped")]
+pub struct Stopped;
+
+/// What became of many rays: the leaves of all of them, ray by ray, the strongest of each first.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LeafTable {
+    /// The number of the ray that each leaf is of, counted from 0.
+    pub ray: Vec<u32>,
+    /// The last point at which each leaf left a device, cm; NaN if it met none.
+    pub position: Vec<[f64; 3]>,
+    /// Its direction, a unit vector.
+    pub direction: Vec<[f64; 3]>,
+    /// Its share of the power of its ray.
+    pub power: Vec<f64>,
+    /// Optical path length from the ray's origin to `position`, cm; 0 if it met no device.
+    pub optical_path: Vec<f64>,
+    /// Its electric field; |E|² = power.
+    pub electric_field: Vec<[Complex64; 3]>,
+    /// For each ray: the share of its power absorbed, by media or on opaque bodies.
+    pub absorbed: Vec<f64>,
+    /// For each ray: the share of its power in branches too weak to follow.
+    pub pruned: Vec<f64>,
+}
+
+impl LeafTable {
+    /// Bytes that a ray with one leaf takes while the table is put together: twice its row.
+    pub const BYTES_PER_RAY: u64 = 2 * (4 + 24 + 24 + 8 + 8 + 48 + 16);
+
+    /// Traces the rays `launch(0)` to `launch(count - 1)`, which may be 2^32 at most; `done` is told now and then, from
+    /// any thread, how many more have been traced. With the feature `rayon`, on all threads; the table is the same.
+    ///
+    /// # Errors
+    ///
+    /// The error of the first ray that `launch` refuses, or [`Stopped`].
+    pub fn trace<E: From<Stopped> + Send>(
+        assembly: &Assembly,
+        limits: Limits,
+        count: usize,
+        launch: &(impl Fn(usize) -> Result<Launch<1>, E> + Sync),
+        done: &(dyn Fn(u64) + Sync),
+        stop: &AtomicBool,
+    ) -> Result<Self, E> {
+        let size = (count / (BATCHES * crate::parallel::threads())).clamp(BATCH[0], BATCH[1]);
+        let batches = crate::parallel::map(count.div_ceil(size), |batch| {
+            if stop.load(Ordering::Relaxed) {
+                return Err(E::from(Stopped));
+            }
+            let mut tracers = FourTracers::new(&Tracer::<1>::new(assembly, limits));
+            let rays = batch * size..count.min((batch + 1) * size);
+            let number = rays.len() as u64;
+            let table = Self::of_batch(&mut tracers, rays, launch)?;
+            done(number);
+            Ok(table)
+        });
+        let mut all = Self::default();
+        // In order, so that the first bad ray is the one that is named.
+        for batch in batches {
+            all.append(batch?);
+        }
+        Ok(all)
+    }
+
+    fn of_batch<E>(
+        tracers: &mut FourTracers<'_, 1>,
+        rays: std::ops::Range<usize>,
+        launch: &impl Fn(usize) -> Result<Launch<1>, E>,
+    ) -> Result<Self, E> {
+        let mut table = Self::default();
+        let launches = rays.clone().map(launch).collect::<Result<Vec<Launch<1>>, _>>()?;
+        let mut all_leaves: Vec<Leaf<1>> = Vec::new();
+        let mut ended = Vec::with_capacity(launches.len());
+        for four in side_by_side(&launches).chunks(4) {
+            tracers.trace(&std::array::from_fn(|i| launches[four[i.min(four.len() - 1)]]));
+            for (ray, tracer) in four.iter().zip(tracers.each()) {
+                let (leaves, outcome) = tracer.traced();
+                let first = all_leaves.len();
+                all_leaves.extend_from_slice(leaves);
+                ended.push((*ray, first..all_leaves.len(), *outcome));
+            }
+        }
+        ended.sort_by_key(|(ray, ..)| *ray);
+        let mut sorted: Vec<Leaf<1>> = Vec::new();
+        for (ray, leaves, outcome) in ended {
+            table.push(rays.start + ray, &all_leaves[leaves], &outcome, &mut sorted);
+        }
+        Ok(table)
+    }
+
+    /// Adds what became of one ray; `sorted` is memory to work in.
+    pub fn push(
+        &mut self,
+        ray: usize,
+        leaves: &[Leaf<1>],
+        outcome: &Outcome<1>,
+        sorted: &mut Vec<Leaf<1>>,
+    ) {
+        sorted.clear();
+        sorted.extend(leaves.iter().filter(|leaf| leaf.body().is_none()));
+        sorted.sort_by(|a, b| b.power[0].total_cmp(&a.power[0]));
+        for leaf in sorted.iter() {
+            // The number of rays fits into 32 bits.
+            self.ray.push(ray as u32);
+            let position = if leaf.met_device { leaf.position.to_array() } else { [f64::NAN; 3] };
+            self.position.push(position);
+            self.direction.push(leaf.direction.to_array());
+            self.power.push(leaf.power[0]);
+            self.optical_path.push(if leaf.met_device { leaf.optical_path } else { 0.0 });
+            self.electric_field.push(leaf.electric[0].components());
+        }
+        // What ends on opaque bodies is absorbed there.
+        let ended: f64 = leaves.iter().filter(|l| l.body().is_some()).map(|l| l.power[0]).sum();
+        self.absorbed.push(outcome.absorbed[0] + ended);
+        self.pruned.push(outcome.pruned[0]);
+    }
+
+    fn append(&mut self, mut other: Self) {
+        self.ray.append(&mut other.ray);
+        self.position.append(&mut other.position);
+        self.direction.append(&mut other.direction);
+        self.power.append(&mut other.power);
+        self.optical_path.append(&mut other.optical_path);
+        self.electric_field.append(&mut other.electric_field);
+        self.absorbed.append(&mut other.absorbed);
+        self.pruned.append(&mut other.pruned);
+    }
+}

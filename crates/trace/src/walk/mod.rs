@@ -1,0 +1,23 @@
+//! The ray tree: how a ray launched in air runs through the devices of a scene.
+//!
+//! The tracer knows only this: advance to the next surface; at a surface, split by the interface
+//! solver; at a conductor, reflect. Power is accounted for: what the leaves carry, what is
+//! absorbed and what is pruned add up to what was launched.
+
+mod branch;
+mod first_face;
+mod four;
+mod leaf;
+mod leaf_table;
+mod neighbours;
+mod recorder;
+mod start;
+mod surfaces;
+mod tracer;
+
+pub use first_face::FirstFace;
+pub use four::FourTracers;
+pub use leaf::{Leaf, LeafEnd, Outcome, TraceStats};
+pub use leaf_table::{LeafTable, Stopped};
+pub use recorder::{Line, PathRecorder, PathSegment, lines};
+pub use tracer::{Launch, Limits, Tracer};

@@ -1,0 +1,103 @@
+//! The ways that rays take, for drawings.
+
+use super::{FirstFace, Launch, LeafEnd, Limits, Tracer};
+use crate::assembly::Assembly;
+use optics::interface::OutgoingWave;
+use optics::propagation::PathPoint;
+
+/// One who watches a tracer. Nobody, `()`, costs nothing.
+pub trait PathRecorder<const N: usize> {
+    /// Whether rays end at the first surface that they meet.
+    const STOPS_AT_SURFACE: bool = false;
+
+    /// Called for each piece of a branch's way from surface to surface.
+    fn record(&mut self, leg: impl FnOnce() -> PathSegment<N>);
+
+    /// Called with the waves that leave the first surface, if rays end there.
+    fn stopped(&mut self, _waves: &[OutgoingWave<N>]) {}
+}
+
+/// The first surface that a ray meets, as it is looked at on its own.
+impl<const N: usize> PathRecorder<N> for Option<FirstFace<N>> {
+    const STOPS_AT_SURFACE: bool = true;
+
+    fn record(&mut self, _: impl FnOnce() -> PathSegment<N>) {}
+
+    fn stopped(&mut self, waves: &[OutgoingWave<N>]) {
+        self.get_or_insert_default().add(waves);
+    }
+}
+
+/// A piece of a branch's way from surface to surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathSegment<const N: usize> {
+    /// The power of the branch where it starts, for each launched polarization.
+    pub power: [f64; N],
+    /// The optical path from the ray's origin to where it starts, cm.
+    pub optical_path: f64,
+    /// The device and its region that it is in; `None` in air.
+    pub inside: Option<(u16, u16)>,
+    /// The way, in the frame of the device that it is in, else in the world's.
+    pub path: Vec<PathPoint>,
+}
+
+impl<const N: usize> PathRecorder<N> for () {
+    #[inline(always)]
+    fn record(&mut self, _: impl FnOnce() -> PathSegment<N>) {}
+}
+
+impl<const N: usize> PathRecorder<N> for Vec<PathSegment<N>> {
+    fn record(&mut self, leg: impl FnOnce() -> PathSegment<N>) {
+        self.push(leg());
+    }
+}
+
+/// A piece of a ray tree in the world, to be drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// Its share of the power launched.
+    pub power: f64,
+    /// The way, with the optical path from the ray's origin.
+    pub points: Vec<PathPoint>,
+    /// Whether it goes on for ever.
+    pub leaves: bool,
+}
+
+/// All pieces of the tree of a ray. `weights` are the shares of the launched polarizations; a leaf is followed for
+/// `reach` (cm).
+#[must_use]
+pub fn lines<const N: usize>(
+    assembly: &Assembly,
+    limits: Limits,
+    launch: &Launch<N>,
+    weights: [f64; N],
+    reach: f64,
+) -> Vec<Line> {
+    let weighed = |power: [f64; N]| power.iter().zip(weights).map(|(p, w)| p * w).sum();
+    let mut tracer = Tracer::new(assembly, limits).watched(Vec::new());
+    let (leaves, _) = tracer.trace(launch);
+    let mut lines: Vec<Line> = leaves
+        .iter()
+        .filter(|leaf| leaf.end == LeafEnd::Away)
+        .map(|leaf| Line {
+            power: weighed(leaf.power),
+            points: [0.0, reach]
+                .map(|way| PathPoint {
+                    position: leaf.position + leaf.direction * way,
+                    optical_path: leaf.optical_path + way,
+                })
+                .to_vec(),
+            leaves: true,
+        })
+        .collect();
+    lines.extend(tracer.recorder().drain(..).map(|leg| {
+        let pose = leg.inside.map(|(device, _)| assembly.devices()[usize::from(device)].pose);
+        let point = |at: PathPoint| PathPoint {
+            position: pose.map_or(at.position, |pose| pose.to_world(at.position)),
+            optical_path: leg.optical_path + at.optical_path,
+        };
+        let points = leg.path.iter().map(|at| point(*at)).collect();
+        Line { power: weighed(leg.power), points, leaves: false }
+    }));
+    lines
+}

@@ -1,0 +1,271 @@
+//! The walk along the ray tree.
+
+use super::branch::{Branch, Place};
+use super::{Leaf, Outcome, PathRecorder};
+use crate::assembly::{Assembly, Screen};
+use crate::device::{InnerRay, Passage};
+use glam::DVec3;
+use optics::interface::OutgoingWaves;
+use optics::wave::ComplexVector;
+
+/// A ray to launch, with `N` polarizations at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Launch<const N: usize> {
+    /// Where it starts, cm.
+    pub origin: DVec3,
+    /// Its direction, a unit vector.
+    pub direction: DVec3,
+    /// The electric fields, across the direction and of unit norm; each has the power 1 wherever it starts.
+    pub electric: [ComplexVector; N],
+}
+
+/// When a branch is followed no further, and how exactly graded media are traced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Branches below this share of the launched power, in every polarization, are pruned.
+    pub min_power: f64,
+    /// Largest error of position and optical path on leaving a device, cm.
+    pub tolerance: f64,
+}
+
+/// Few trees meet this many surfaces. Those that do, by light that is trapped or runs almost along the
+/// device, are followed on with a threshold ten times as high, so that the strong branches are not
+/// lost; what that cuts counts as pruned.
+const MANY_EVENTS: u32 = 100_000;
+
+/// After as many surfaces again the threshold is raised once more.
+const MORE_EVENTS: u32 = 10_000;
+
+/// What rounding leaves of a wave that is not there.
+const NO_POWER: f64 = 1e-24;
+
+/// The share of the power that rounding may take at an interface.
+const LEAK: f64 = 1e-10;
+
+/// Traces rays. It keeps its memory from ray to ray: make one a thread. `W` is who watches it, nobody as a rule.
+#[derive(Clone, Debug)]
+pub struct Tracer<'a, const N: usize, W = ()> {
+    pub(super) assembly: &'a Assembly,
+    pub(super) limits: Limits,
+    pub(super) screen: Option<Screen>,
+    pub(super) waiting: Vec<Branch<N>>,
+    pub(super) leaves: Vec<Leaf<N>>,
+    pub(super) outcome: Outcome<N>,
+    /// Surfaces met, and the power below which branches have become endless.
+    events: u32,
+    threshold: f64,
+    pub(super) recorder: W,
+    /// Whether the screen touches a device.
+    pub(super) screen_touches: bool,
+    /// Where the last rays have started, and in which region of which device.
+    pub(super) started: Option<(DVec3, Option<(u16, u16)>)>,
+}
+
+impl<'a, const N: usize> Tracer<'a, N> {
+    /// A tracer for the devices of `assembly`.
+    #[must_use]
+    pub fn new(assembly: &'a Assembly, limits: Limits) -> Self {
+        Self::watching(assembly, limits, ())
+    }
+
+    /// The same tracer, watched.
+    #[must_use]
+    pub fn watched<W: PathRecorder<N>>(self, recorder: W) -> Tracer<'a, N, W> {
+        let Self { assembly, limits, screen, screen_touches, .. } = self;
+        Tracer { screen, screen_touches, ..Tracer::watching(assembly, limits, recorder) }
+    }
+}
+
+impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
+    fn watching(assembly: &'a Assembly, limits: Limits, recorder: W) -> Self {
+        Self {
+            assembly,
+            limits,
+            screen: None,
+            screen_touches: false,
+            waiting: Vec::new(),
+            leaves: Vec::new(),
+            outcome: Outcome::default(),
+            events: 0,
+            threshold: 0.0,
+            started: None,
+            recorder,
+        }
+    }
+
+    /// Who has watched it.
+    pub fn recorder(&mut self) -> &mut W {
+        &mut self.recorder
+    }
+
+    /// Ends branches that meet a screen.
+    #[must_use]
+    pub fn with_screen(self, screen: Screen) -> Self {
+        Self { screen_touches: screen.touches(self.assembly), screen: Some(screen), ..self }
+    }
+
+    /// Follows one ray to the end of every branch: the leaves, in the order the tree was walked,
+    /// and the account of the rest of the power. A ray that starts in a medium is launched in those waves of it whose rays
+    /// run along its direction; one that starts in metal is lost.
+    pub fn trace(&mut self, launch: &Launch<N>) -> (&[Leaf<N>], &Outcome<N>) {
+        let mut branch = Branch::launched(launch);
+        let mut here = self.begin(&mut branch);
+        while let Some((device, number)) = here {
+            let region = self.assembly.device(device).region(number);
+            let passage = region.advance(&branch.inner_ray(), self.limits.tolerance);
+            here = self.resume(&mut branch, (device, number), passage.as_ref());
+        }
+        self.traced()
+    }
+
+    /// What has come of the last ray: see [`Tracer::trace`].
+    #[must_use]
+    pub fn traced(&self) -> (&[Leaf<N>], &Outcome<N>) {
+        (&self.leaves, &self.outcome)
+    }
+
+    /// Follows the tree of a launched ray to where a branch, which takes the place of the given one, is to be
+    /// taken through a region that takes four: the device and its region. None if it is at the end.
+    pub(super) fn begin(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
+        self.leaves.clear();
+        self.outcome = Outcome::default();
+        self.waiting.clear();
+        (self.events, self.threshold) = (0, self.least_power());
+        if !self.start(branch) {
+            *branch = self.waiting.pop()?;
+        }
+        self.walk(branch)
+    }
+
+    /// As [`Self::begin`], from where the branch has been taken through a region.
+    pub(super) fn resume(
+        &mut self,
+        branch: &mut Branch<N>,
+        region: (u16, u16),
+        passage: Option<&Passage>,
+    ) -> Option<(u16, u16)> {
+        if !self.pass(branch, region, passage) {
+            *branch = self.waiting.pop()?;
+        }
+        self.walk(branch)
+    }
+
+    /// Takes rays through a region: see [`Region::advance_four`](crate::device::Region::advance_four).
+    pub(super) fn advance_four(
+        &self,
+        (device, region): (u16, u16),
+        rays: &[Option<InnerRay>; 4],
+    ) -> [Option<Passage>; 4] {
+        self.assembly.device(device).region(region).advance_four(rays, self.limits.tolerance)
+    }
+
+    fn walk(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
+        loop {
+            let goes_on = if branch.largest_power() < self.threshold {
+                self.outcome.stats.endless += 1;
+                self.prune(branch.power);
+                false
+            } else {
+                self.events += 1;
+                if self.events > MANY_EVENTS {
+                    self.events -= MORE_EVENTS;
+                    self.threshold *= 10.0;
+                }
+                match branch.place {
+                    Place::Air => self.through_air(branch),
+                    Place::Region { device, region: number } => {
+                        let region = self.assembly.device(device).region(number);
+                        if region.takes_four() {
+                            return Some((device, number));
+                        }
+                        !self.parts(branch, region) && {
+                            let ray = branch.inner_ray();
+                            let passage = region.advance(&ray, self.limits.tolerance);
+                            self.pass(branch, (device, number), passage.as_ref())
+                        }
+                    }
+                }
+            };
+            if !goes_on {
+                *branch = *self.waiting.last()?;
+                self.waiting.truncate(self.waiting.len() - 1);
+            }
+        }
+    }
+
+    /// Takes from a branch what an absorbing medium keeps of it on a straight way; whether what is left
+    /// is to be followed, for else it is pruned.
+    pub(super) fn absorb(&mut self, branch: &mut Branch<N>, way: DVec3) -> bool {
+        self.extinguish(branch, branch.attenuation.dot(way))
+    }
+
+    /// As [`Self::absorb`], given ∫ Im n ds along the way, cm.
+    pub(super) fn extinguish(&mut self, branch: &mut Branch<N>, extinction: f64) -> bool {
+        // Power never grows along a ray: rounding must not have it so.
+        let depth = (self.assembly.vacuum_wave_number() * extinction).max(0.0);
+        let (amplitude, kept) = ((-depth).exp(), (-2.0 * depth).exp());
+        for (i, power) in branch.power.iter_mut().enumerate() {
+            let left = *power * kept;
+            self.outcome.absorbed[i] += *power - left;
+            *power = left;
+            branch.electric[i] = branch.electric[i] * amplitude;
+        }
+        branch.update_survival(self.least_power());
+        self.follows(branch.power)
+    }
+
+    /// Counts power as pruned that an interface has left in waves too weak to follow, and as lost what it could
+    /// not hand on: the account must not leak, even where numbers fail.
+    pub(super) fn check_account(
+        &mut self,
+        branch: &Branch<N>,
+        waves: &mut OutgoingWaves<N>,
+        weak: [f64; N],
+    ) {
+        let rest: [f64; N] = std::array::from_fn(|i| {
+            branch.power[i] - waves.iter().map(|wave| wave.power[i]).sum::<f64>() - weak[i]
+        });
+        if rest.iter().any(|rest| !rest.is_finite()) {
+            waves.clear();
+            self.lose(branch.power);
+            return;
+        }
+        let mut lost = false;
+        for (i, power) in branch.power.iter().enumerate() {
+            self.outcome.pruned[i] += weak[i];
+            if rest[i].abs() > LEAK * power {
+                self.outcome.pruned[i] += rest[i];
+                lost = true;
+            }
+        }
+        self.outcome.stats.lost += u64::from(lost);
+    }
+
+    /// The least power of branches that are followed.
+    pub(super) fn least_power(&self) -> f64 {
+        self.limits.min_power.max(NO_POWER)
+    }
+
+    /// Whether a branch of that power is followed; else it is pruned, and need not be made.
+    pub(super) fn follows(&mut self, power: [f64; N]) -> bool {
+        let largest = power.iter().copied().fold(0.0, f64::max);
+        let follows = largest >= self.least_power();
+        if !follows {
+            self.prune(power);
+        }
+        follows
+    }
+
+    /// Gives up a branch that cannot be followed: it does not go on.
+    pub(super) fn lose(&mut self, power: [f64; N]) -> bool {
+        self.outcome.stats.lost += 1;
+        self.prune(power);
+        false
+    }
+
+    pub(super) fn prune(&mut self, power: [f64; N]) {
+        for (sum, power) in self.outcome.pruned.iter_mut().zip(power) {
+            *sum += power;
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! The trials for a moment each, and what the soak has found.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod briefly;
+mod long;
+mod soaked;
