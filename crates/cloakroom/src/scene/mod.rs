@@ -1,7 +1,7 @@
 //! The model of a scene: camera, light, photograph, surroundings and devices.
 //!
 //! Plain data, free of files: [`scene_file`](crate::scene_file) fills it from TOML, other front
-//! ends from [`Values`].
+//! ends from a [`Table`].
 
 mod camera;
 mod polarizer;
