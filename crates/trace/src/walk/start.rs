@@ -45,16 +45,12 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
     /// Puts a launched branch where it starts; whether it goes on from there. In a birefringent medium it becomes two
     /// that wait.
     pub(super) fn start(&mut self, branch: &mut Branch<N>) -> bool {
-        let place = match self.started {
-            Some((origin, place)) if origin == branch.position => place,
-            _ => {
-                let place = self.assembly.region_around(branch.position, branch.direction);
-                let Ok(place) = place else { return self.lose(branch.power) };
-                self.started = Some((branch.position, place));
-                place
-            }
-        };
-        let Some((number, region)) = place else { return true };
+        if self.started.0 != branch.position {
+            let place = self.assembly.region_around(branch.position, branch.direction);
+            let Ok(place) = place else { return self.lose(branch.power) };
+            self.started = (branch.position, place);
+        }
+        let Some((number, region)) = self.started.1 else { return true };
         let device = self.assembly.device(number);
         branch.enter_frame(&device.pose);
         branch.place = Place::Region { device: number, region };

@@ -105,7 +105,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// Takes a branch in air that has come to a surface of a device into it.
     fn enter(&mut self, branch: &mut Branch<N>, number: u16, hit: &SurfaceHit) -> bool {
         let device = self.assembly.device(number);
-        let departed = device.departed(number, Some(hit.surface));
+        let departed = || device.departed(number, Some(hit.surface));
         let event = event(number, hit);
         let region = match hit.far {
             FarSide::Region(region) | FarSide::Seam(region) => region,
@@ -114,7 +114,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 let waves = self.reflect(&Medium::AIR, branch, -hit.outward);
                 return self.go_on(branch, &waves, event, |branch, _| {
                     branch.leave_frame(&device.pose);
-                    branch.departed = departed;
+                    branch.departed = departed();
                 });
             }
             FarSide::Opaque => return self.end(branch, LeafEnd::Body(number)),
@@ -141,7 +141,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.go_on(branch, &waves, event, |branch, side| match side {
             Side::Reflected => {
                 branch.leave_frame(&device.pose);
-                branch.departed = departed;
+                branch.departed = departed();
             }
             Side::Transmitted => branch.enter_region(number, region, entrance.virtual_point),
         })

@@ -58,7 +58,7 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     /// Whether the screen touches a device.
     pub(super) screen_touches: bool,
     /// Where the last rays have started, and in which region of which device.
-    pub(super) started: Option<(DVec3, Option<(u16, u16)>)>,
+    pub(super) started: (DVec3, Option<(u16, u16)>),
 }
 
 impl<'a, const N: usize> Tracer<'a, N> {
@@ -88,7 +88,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             outcome: Outcome::default(),
             events: 0,
             threshold: 0.0,
-            started: None,
+            started: (DVec3::NAN, None),
             recorder,
         }
     }
