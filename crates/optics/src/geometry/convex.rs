@@ -360,8 +360,20 @@ mod tests {
         }
     }
 
+    /// The directions of the edges of a prism, and of the axis of a prism or a cylinder.
+    fn edges(solid: &Solid) -> Vec<DVec3> {
+        let Some(convex) = Convex::of(solid) else { return Vec::new() };
+        let mut edges = vec![convex.pose.axis()];
+        if let Section::Outline(outline) = convex.section {
+            let side = |(a, b): (DVec2, DVec2)| convex.pose.vector_to_world((b - a).extend(0.0));
+            edges.extend(outline.sides().map(side));
+        }
+        edges
+    }
+
     /// How far one must be moved along a unit vector until the other is free: the least over all directions of how
-    /// far the planes across them must go, by search. At least the true distance.
+    /// far the planes across them must go. Of prisms these planes lie along two edges; else they are searched for, and what is
+    /// found is at least the true distance.
     fn way_out(a: &Solid, b: &Solid, towards: DVec3) -> f64 {
         let needed = |direction: DVec3| {
             let share = direction.dot(towards);
@@ -388,7 +400,10 @@ mod tests {
             let beside = DVec2::from_angle(2.399_963_229_728_653 * f64::from(k));
             (beside * (1.0 - z * z).sqrt()).extend(z)
         };
-        let starts = (0..800).map(golden).map(allowed);
+        let edges = [edges(a), edges(b)].concat();
+        let pairs = edges.iter().flat_map(|one| edges.iter().map(|other| one.cross(*other)));
+        let along = edges.iter().flat_map(|edge| [*edge, -*edge]);
+        let starts = (0..800).map(golden).chain(pairs).chain(along).map(allowed);
         let mut best = (f64::INFINITY, DVec3::ZERO);
         let mut few: Vec<(f64, DVec3)> = starts.map(|n| (needed(n), n)).collect();
         few.sort_by(|x, y| x.0.total_cmp(&y.0));
