@@ -16,6 +16,7 @@
 mod bending_sphere;
 mod body;
 mod carpet;
+mod closed_form;
 mod convex;
 mod cross_section;
 mod cylinder_cloak;
@@ -40,6 +41,7 @@ mod surface;
 
 pub use bending_sphere::BendingSphere;
 pub use body::{BodyShape, BodySurface, SolidBody};
+pub use closed_form::ClosedFormRegion;
 pub use convex::Convex;
 pub use cross_section::{Contour, CrossSection, Section};
 pub use cylinder_cloak::{CylinderCloak, ShellMaterial};
