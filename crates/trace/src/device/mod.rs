@@ -21,6 +21,7 @@ mod convex;
 mod cross_section;
 mod cylinder_cloak;
 mod double_gaussian_cloak;
+mod fisheye_hemisphere;
 mod gaussian_carpet;
 mod graded;
 mod grating_carpet;
@@ -46,6 +47,7 @@ pub use convex::Convex;
 pub use cross_section::{Contour, CrossSection, Section};
 pub use cylinder_cloak::{CylinderCloak, ShellMaterial};
 pub use double_gaussian_cloak::DoubleGaussianCloak;
+pub use fisheye_hemisphere::FisheyeHemisphere;
 pub use gaussian_carpet::GaussianCarpet;
 pub use graded::{Border, Graded};
 pub use grating_carpet::GratingCarpet;
@@ -238,6 +240,7 @@ catalogue! {
     EatonLens,
     LuneburgLens,
     FisheyeLens,
+    FisheyeHemisphere,
     MirrorDetour,
     Prisms,
     Graded,
