@@ -24,6 +24,7 @@ mod double_gaussian_cloak;
 mod fisheye_hemisphere;
 mod gaussian_carpet;
 mod graded;
+mod graded_box;
 mod grating_carpet;
 mod imperfection;
 mod invisible_sphere;
@@ -50,6 +51,7 @@ pub use double_gaussian_cloak::DoubleGaussianCloak;
 pub use fisheye_hemisphere::FisheyeHemisphere;
 pub use gaussian_carpet::GaussianCarpet;
 pub use graded::{Border, Graded};
+pub use graded_box::GradedBox;
 pub use grating_carpet::GratingCarpet;
 pub use imperfection::Imperfection;
 pub use invisible_sphere::{InvisibleSphere, SphereMaterial};
@@ -244,6 +246,7 @@ catalogue! {
     MirrorDetour,
     Prisms,
     Graded,
+    GradedBox,
     SolidBody,
     GaussianCarpet,
     GratingCarpet,
