@@ -174,12 +174,14 @@ impl Region {
         local.as_ref()
     }
 
-    /// Whether rays can start within: the closed forms of round lenses take them from border to border.
+    /// Whether rays can start within: the closed forms of round birefringent media take them from border to border.
     #[must_use]
     pub fn can_be_started_in(&self) -> bool {
         match self {
             Self::Homogeneous(_) | Self::Conformal(_) | Self::ClosedForm(_) => true,
-            Self::Radial(region) => matches!(region.flow, RadialFlow::Transformed(_)),
+            Self::Radial(region) => {
+                matches!(region.flow, RadialFlow::Transformed(_) | RadialFlow::Lens(_))
+            }
         }
     }
 

@@ -17,7 +17,7 @@ pub use transformed_shell::TransformedShell;
 pub use transmuted_sphere::TransmutedSphere;
 pub use uniaxial_cylinder::{OpticAxis, UniaxialCylinder};
 
-use super::{PathPoint, turn_in_plane};
+use super::{PathPoint, first_way_out, turn_in_plane};
 use crate::geometry::CylinderPart;
 use crate::medium::{Medium, ModeKind};
 use crate::transformation::RadialMap;
@@ -113,7 +113,7 @@ impl RadialFlow {
 
     /// Follows a ray from a point of the border, where it has the given wave vector and is the given
     /// wave of the medium, to the next point of the border. It must run into the medium or along its
-    /// border.
+    /// border. In an isotropic medium it may start within, too.
     #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
         match self {
