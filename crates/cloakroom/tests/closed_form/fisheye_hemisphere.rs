@@ -56,7 +56,7 @@ fn two_halves_are_the_whole_lens() {
         for sign in [1.0, -1.0] {
             let (rotation, axis) = (numbers.between(0.0, 360.0), numbers.direction());
             let pose = Pose::with_axis(DVec3::ZERO, rotation, axis);
-            let [normal, axis] = [pose.vector_to_local(normal * sign), axis].map(DVec3::to_array);
+            let [normal, axis] = [pose.vector_to_local(normal * sign), axis].map(|v| v.to_array());
             scene += &format!(
                 "[[device]]\nkind = 'fisheye-hemisphere'\nposition = [4, 5, -6]\nrotation = {rotation:?}\n\
                  axis = {axis:?}\ncut_normal = {normal:?}\ncut_distance = {:?}\n",
@@ -92,7 +92,7 @@ fn parallel_light_onto_the_cut_meets_at_the_pole() {
         let r = 0.19 * f64::from(n);
         let beside = DVec2::from_angle(TAU * f64::from(n * n) / 50.0) * r;
         let ray = launch(DVec3::new(-30.0, beside.x, beside.y), DVec3::X);
-        let (out, _) = tracer.trace(&ray);
+        let out = tracer.trace(&ray).0.to_vec();
         let met = out.iter().find(|leaf| leaf.position.distance(DVec3::X * RADIUS) < 1e-9);
         let met = met.expect("the focus");
         assert!((met.optical_path - 30.0 - FRAC_PI_2 * RADIUS).abs() < 1e-9);

@@ -7,18 +7,18 @@ mod graded_box;
 use crate::rays::{Numbers, assembly, launch};
 use cloakroom::assembly::Assembly;
 use cloakroom::device::{InnerRay, Region, Structure};
-use cloakroom::trace::{Launch, Leaf, Limits, TraceStats, Tracer};
+use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::DVec3;
 use optics::medium::ModeKind;
 use optics::propagation::reference::{ReferenceRay, SquaredIndex, follow};
 
 const LIMITS: Limits = Limits { min_power: 1e-6, tolerance: 1e-9 };
 
-/// The leaves of a ray whose power is accounted for, and in whose tree nothing was rare.
+/// The leaves of a ray whose power is accounted for, none of it lost; what starts inside may be caught by total reflection.
 fn leaves(assembly: &Assembly, launch: &Launch<2>) -> Vec<Leaf<2>> {
     let mut tracer = Tracer::new(assembly, LIMITS);
     let (leaves, outcome) = tracer.trace(launch);
-    assert_eq!(outcome.stats, TraceStats::default(), "{launch:?}");
+    assert_eq!(outcome.stats.lost, 0, "{launch:?}");
     outcome.assert_balanced(leaves, 1e-9, launch);
     leaves.to_vec()
 }
@@ -83,8 +83,9 @@ fn check_piece(
     // The way that is drawn leads there.
     let path = region.path(&ray, &end, 1e-9);
     let last = path.last().expect("points");
-    assert!(last.position.distance(end.position) < 1e-12 && path[0].position == position);
-    assert!(path.iter().all(|at| height(at.position) < 1e-12));
+    let first = path[0].position;
+    assert!(last.position.distance(end.position) < 1e-11 && first.distance(position) < 1e-11);
+    assert!(path.iter().all(|at| height(at.position) < 1e-11));
     let outward = end.outward;
     (end.position, (end.direction - outward * (2.0 * outward.dot(end.direction))).normalize())
 }

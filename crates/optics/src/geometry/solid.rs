@@ -526,7 +526,7 @@ mod tests {
             let shadow = part.shadow();
             let tips = shadow.corners().iter().map(|at| at.x).fold(f64::MIN, f64::max);
             assert!((tips - high.x).abs() < 1e-2 && part.contains(pose.origin() - out * 1.9));
-            assert!(!part.holds(pose.origin() + out * offset));
+            assert!(!part.holds(pose.origin() + out * (offset + 1e-9)));
         }
     }
 

@@ -36,16 +36,15 @@ pub struct CurvedRay {
 /// The first way out of a surface along a ray: the first t from 0 on, infinity and then the negative numbers
 /// following the positive ones, at which c + b t + a t² grows through zero. As numerator and denominator, the
 /// former never negative: t = ∞ is sound, and the angle 2 atan2(numerator, denominator) with t = tan(angle/2) is,
-/// too. `None` if it never does, or stays on the
-/// surface.
+/// too. `None` if it never does.
 ///
 /// c, how far outside the start is, counts as 0 where rounding has made it positive.
 #[must_use]
 pub fn first_way_out([c, b, a]: [f64; 3]) -> Option<[f64; 2]> {
     let c = c.min(0.0);
     let discriminant = b * b - 4.0 * a * c;
-    let within = [c, b, a] == [0.0; 3];
-    if within || discriminant.is_nan() || discriminant < 0.0 {
+    let constant = [b, a] == [0.0; 2];
+    if constant || discriminant.is_nan() || discriminant < 0.0 {
         return None;
     }
     let root = discriminant.sqrt();
