@@ -59,7 +59,7 @@ impl Convex {
             Self::Box { half } => (None, None, half),
         };
         let plane = move |side: usize| {
-            let sign = if side % 2 == 0 { -1.0 } else { 1.0 };
+            let sign = [-1.0, 1.0][side % 2];
             Plane { normal: sign * DVec3::AXES[side / 2], offset: half[side / 2] }
         };
         let sides = (0..6).map(plane).filter(|plane| plane.offset.is_finite());
