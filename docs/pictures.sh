@@ -26,7 +26,9 @@ rays bending-sphere gallery/bending-sphere --width 24
 rays eaton-lens gallery/eaton-lens --width 24
 rays luneburg-lens gallery/luneburg-lens --wavefronts 2 --width 24
 rays fisheye-lens gallery/fisheye-lens --point=-10,0,0
+rays fisheye-hemisphere gallery/fisheye-hemisphere --wavefronts 2 --width 24
 rays graded gallery/graded --width 24
+rays graded-box gallery/graded-box --width 24
 rays mirror-detour gallery/mirror-detour-orthographic --width 40
 rays gaussian-carpet gallery/gaussian-carpet --parallel=-40 --wavefronts 4
 rays grating-carpet gallery/grating-carpet --parallel=-40

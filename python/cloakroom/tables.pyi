@@ -338,6 +338,45 @@ class FisheyeLens(Device):
     @property
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
 
+class FisheyeHemisphere(Device):
+    def __init__(
+        self,
+        *,
+        axis: ArrayLike | None = ...,
+        core: Literal["metal", "open"] | None = ...,
+        cut_distance: float | None = ...,
+        cut_normal: ArrayLike | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
+        index: float | None = ...,
+        length: float | None = ...,
+        position: ArrayLike | None = ...,
+        radius: float | None = ...,
+        rotation: float | None = ...,
+        show: Literal["cloak", "bare", "mirror"] | None = ...,
+    ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
+    @property
+    def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def cut_distance(self) -> float: ...
+    @property
+    def cut_normal(self) -> list[Any]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
+    @property
+    def index(self) -> float: ...
+    @property
+    def length(self) -> float | None: ...
+    @property
+    def position(self) -> list[Any]: ...
+    @property
+    def radius(self) -> float: ...
+    @property
+    def rotation(self) -> float: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+
 class MirrorDetour(Device):
     def __init__(
         self,
@@ -443,6 +482,42 @@ class Graded(Device):
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
     @property
     def width(self) -> float: ...
+
+class GradedBox(Device):
+    def __init__(
+        self,
+        *,
+        axis: ArrayLike | None = ...,
+        core: Literal["metal", "open"] | None = ...,
+        gradient: ArrayLike | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
+        index: float | None = ...,
+        length: float | None = ...,
+        position: ArrayLike | None = ...,
+        rotation: float | None = ...,
+        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        sides: ArrayLike | None = ...,
+    ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
+    @property
+    def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def gradient(self) -> list[Any]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
+    @property
+    def index(self) -> float: ...
+    @property
+    def length(self) -> float | None: ...
+    @property
+    def position(self) -> list[Any]: ...
+    @property
+    def rotation(self) -> float: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    @property
+    def sides(self) -> list[Any]: ...
 
 class Body(Device):
     def __init__(

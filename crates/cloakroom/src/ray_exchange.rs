@@ -173,7 +173,7 @@ fn launch(assembly: &Assembly, index: usize, ray: &RayRequest) -> Result<Launch<
         Ok(_) => Ok(launch),
         Err(device) => {
             let problem = format!(
-                "it starts inside device {device} (counted from 0), in metal, an opaque body or a round lens; rays start in air or in another \
+                "it starts inside device {device} (counted from 0), in metal, an opaque body or a round birefringent medium; rays start in air or in another \
                  medium"
             );
             Err(RayError::Ray { index, problem })

@@ -136,9 +136,17 @@ fn rays_that_start_in_glass_leave_it_by_snell_and_fresnel() {
 fn rays_that_start_in_a_device_are_those_that_come_by() {
     // In a medium that reflects nothing, what starts on the way of a ray leaves as it does.
     let mut numbers = Numbers(23);
-    for device in
-        ["kind = \"square-cloak\"", "kind = \"sphere-cloak\"", "kind = \"cylinder-cloak\""]
-    {
+    for kind in [
+        "square-cloak",
+        "sphere-cloak",
+        "cylinder-cloak",
+        "luneburg-lens",
+        "fisheye-lens",
+        "eaton-lens",
+        "bending-sphere",
+        "invisible-sphere",
+    ] {
+        let device = format!("kind = \"{kind}\"");
         let assembly = assembly(&format!("[[device]]\n{device}\n"));
         for _ in 0..20 {
             let from = DVec3::new(-30.0, numbers.between(-7.0, 7.0), numbers.between(-4.0, 4.0));
@@ -186,8 +194,9 @@ fn nothing_starts_in_metal() {
     let error =
         cloakroom::render::PreparedScene::new(&loaded.scene).map(|_| ()).unwrap_err().to_string();
     assert!(error.contains("in metal or an opaque body"), "{error}");
-    // The closed forms of round lenses go from border to border.
-    let lens = assembly("[[device]]\nkind = \"luneburg-lens\"\n");
+    // The closed forms of round birefringent media go from border to border.
+    let regularized = "[[device]]\nkind = \"invisible-sphere\"\nmaterial = \"regularized\"\n";
+    let lens = assembly(regularized);
     assert_eq!(lens.region_around(DVec3::X, DVec3::X), Err(0));
     // A device that only reaches into a body.
     let half = "[[device]]\nkind = \"sphere-cloak\"\nposition = [30, 0, 0]\n";

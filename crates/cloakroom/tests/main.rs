@@ -7,6 +7,7 @@ mod birefringent_square_cloak;
 mod birefringent_square_cloak_tree;
 mod body;
 mod carpet_cloaks;
+mod closed_form;
 mod devices;
 mod double_gaussian_cloak;
 mod equation_of_motion;

@@ -68,7 +68,7 @@ impl BodySurface {
             Appearance::Image(source) => {
                 let source = &source;
                 let texture = match body.shape {
-                    Convex::Ball(_) => Texture::Ball(images.ball(source)?),
+                    Convex::Ball(_) | Convex::CutBall(_) => Texture::Ball(images.ball(source)?),
                     Convex::Cylinder(cylinder) => Texture::Cylinder(cylinder, images.side(source)?),
                     Convex::Box { half } => Texture::Box(half, images.face(source)?),
                 };

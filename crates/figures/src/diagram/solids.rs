@@ -91,7 +91,7 @@ fn add_device(items: &mut Vec<Item>, view: &SpaceView, placed: &Placed, scenery:
             Solid::Hollow { whole, .. } => whole.as_ref(),
             solid => solid,
         };
-        matches!(whole, Solid::Ball { .. })
+        matches!(whole, Solid::Ball { .. } | Solid::CutBall { .. })
     });
     // Its ends in its own frame; upright ones are cut where the scenery is.
     let half = scenery.depth() / 2.0;
@@ -159,7 +159,7 @@ fn add_prism(
     }
 }
 
-/// A circle of a cross-section as a ball: its outline as seen, and its equator.
+/// A circle of a cross-section as a ball: its outline as seen, and its equator; of a cut one what is left, and the rim.
 fn add_ball(
     items: &mut Vec<Item>,
     view: &SpaceView,
@@ -178,14 +178,34 @@ fn add_ball(
         };
         (0..=AROUND).map(at).collect::<Vec<_>>()
     };
-    let outline = circle(right, toward.cross(right));
+    let cut = placed.structure.hull.solids().iter().find_map(|solid| match solid {
+        Solid::CutBall { ball, .. } => Some(*ball),
+        _ => None,
+    });
+    let is_left = |at: DVec3| {
+        let point = placed.pose.to_local(centre.lerp(at, 0.999));
+        cut.is_none_or(|ball| ball.height(point) <= 0.0)
+    };
+    let mut outline = circle(right, toward.cross(right));
+    if let Some(ball) = cut {
+        for at in &mut outline {
+            let direction = placed.pose.vector_to_local((*at - centre) / radius);
+            *at = placed.pose.to_world(ball.farthest_along(direction));
+        }
+        let normal = placed.pose.vector_to_world(ball.plane.normal);
+        let u = normal.any_orthonormal_vector() * (ball.rim() / radius);
+        let rim = circle(u, normal.cross(u)).into_iter().map(|at| at + normal * ball.plane.offset);
+        for pair in rim.collect::<Vec<_>>().windows(2) {
+            items.push(Item { points: pair.to_vec(), paint: Paint::Edge(INK.faint(0.4), THIN) });
+        }
+    }
     let ink = if metal { METAL } else { MEDIUM.faint(0.3) };
     items.push(Item { points: outline.clone(), paint: Paint::Face(ink) });
     for pair in outline.windows(2) {
         items.push(Item { points: pair.to_vec(), paint: Paint::Edge(INK, THIN) });
     }
     for (u, v) in [(DVec3::X, DVec3::Z), (DVec3::X, DVec3::Y)] {
-        for pair in circle(u, v).windows(2) {
+        for pair in circle(u, v).windows(2).filter(|pair| is_left(pair[0]) && is_left(pair[1])) {
             let hidden = ((pair[0] + pair[1]) / 2.0 - centre).dot(toward) < 0.0;
             let ink = INK.faint(if hidden { 0.15 } else { 0.4 });
             items.push(Item { points: pair.to_vec(), paint: Paint::Edge(ink, 0.7 * THIN) });

@@ -1,6 +1,6 @@
 //! Prisms and round cylinders in any pose: whether they are in each other's way.
 
-use super::{Extent, Outline, Pose, Solid};
+use super::{CutBall, Extent, Outline, Pose, Solid};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -28,6 +28,8 @@ enum Bound {
     Plane { normal: DVec3, offset: f64 },
     /// `radius` less the distance from the line through `point` along the unit vector `axis`.
     Tube { point: DVec3, axis: DVec3, radius: f64 },
+    /// `radius` less the distance from `centre`.
+    Ball { centre: DVec3, radius: f64 },
 }
 
 impl Bound {
@@ -37,6 +39,11 @@ impl Bound {
             Self::Plane { normal, offset } => (offset - normal.dot(at), -normal),
             Self::Tube { point, axis, radius } => {
                 let aside = (at - point).reject_from_normalized(axis);
+                let distance = aside.length();
+                (radius - distance, -aside / distance.max(f64::MIN_POSITIVE))
+            }
+            Self::Ball { centre, radius } => {
+                let aside = at - centre;
                 let distance = aside.length();
                 (radius - distance, -aside / distance.max(f64::MIN_POSITIVE))
             }
@@ -57,7 +64,9 @@ impl<'s> Convex<'s> {
             Solid::Tilted { solid, pose } => {
                 Self::of(solid).map(|own| Self { pose: pose.after(&own.pose), ..own })
             }
-            Solid::Nothing | Solid::Ball { .. } | Solid::Hollow { .. } => None,
+            Solid::Nothing | Solid::Ball { .. } | Solid::CutBall { .. } | Solid::Hollow { .. } => {
+                None
+            }
         }
     }
 
@@ -130,19 +139,8 @@ impl<'s> Convex<'s> {
         (self.pose.to_world(middle.extend(0.5 * (low + high))), matrix)
     }
 
-    /// Whether two of them press into each other by more than `slack`: whether there is a point that lies deeper
-    /// than half of it in both.
-    ///
-    /// How deep a point lies in both is a concave function of it, and its maximum is looked for by the ellipsoid
-    /// method with deep cuts (Grötschel, Lovász, Schrijver, Geometric Algorithms and Combinatorial Optimization,
-    /// chapter 3): the ellipsoid holds all points that may be deep enough, and each step halves it at least by a
-    /// linear bound on the depth. It needs no case for faces, edges, rims and what else may meet, and it ends with
-    /// a proof: such a point, or none left. The ellipsoid is kept as a matrix that makes it of the unit ball, so
-    /// that a thin one is as exact as a round one.
+    /// Whether two of them press into each other by more than `slack`: see [`meet_deep`].
     pub fn overlaps(&self, other: &Self, slack: f64) -> bool {
-        /// From the largest ellipsoid to the smallest it takes some 800 steps.
-        const MOST_STEPS: u32 = 5000;
-        let needed = 0.5 * slack;
         let (from, to) = if self.ellipsoid().1.determinant() < other.ellipsoid().1.determinant() {
             (self, other)
         } else {
@@ -153,30 +151,7 @@ impl<'s> Convex<'s> {
         let (from, to) = (from.seen_from(&frame), to.seen_from(&frame));
         let mut bounds = from.bounds(slack);
         bounds.extend(to.bounds(slack));
-        let (mut at, mut shape) = from.ellipsoid();
-        for _ in 0..MOST_STEPS {
-            let depths = bounds.iter().map(|bound| bound.depth(at));
-            let Some((depth, gradient)) = depths.min_by(|a, b| a.0.total_cmp(&b.0)) else {
-                return false;
-            };
-            if depth > needed {
-                return true;
-            }
-            let most = shape.transpose() * gradient;
-            let reach = most.length();
-            let cut = (needed - depth) / reach;
-            if cut.is_nan() || cut >= 1.0 {
-                return false;
-            }
-            let towards = most / reach;
-            let step = shape * towards;
-            at += 0.25 * (1.0 + 3.0 * cut) * step;
-            let squeeze = (0.5 * (1.0 - cut) / (1.0 + cut)).sqrt() - 1.0;
-            let [x, y, z] = towards.to_array().map(|share| squeeze * share * step);
-            let stretch = (1.125 * (1.0 - cut * cut)).sqrt();
-            shape = (shape + DMat3::from_cols(x, y, z)) * stretch;
-        }
-        false
+        meet_deep(&bounds, from.ellipsoid(), slack)
     }
 
     /// The greatest value of a convex function over the part of the body that lies between two z of its common
@@ -261,7 +236,9 @@ impl<'s> Convex<'s> {
     ) -> bool {
         self.bounds(0.0).iter().all(|bound| match bound {
             Bound::Plane { normal, offset } => support(*normal) <= offset + slack,
-            tube @ Bound::Tube { .. } => greatest(&|at| -tube.depth(at).0) <= slack,
+            round @ (Bound::Tube { .. } | Bound::Ball { .. }) => {
+                greatest(&|at| -round.depth(at).0) <= slack
+            }
         })
     }
 
@@ -282,6 +259,66 @@ impl<'s> Convex<'s> {
         let along = if own.z.abs() < SAME_AXIS { 0.0 } else { own.z * end };
         beside + along + direction.dot(self.pose.origin())
     }
+}
+
+/// Whether two bodies, one of them a cut ball, press into each other by more than `slack`.
+pub(super) fn press(one: &Solid, other: &Solid, slack: f64) -> bool {
+    let bounded = |solid: &Solid| match solid {
+        Solid::Ball { centre, radius } => {
+            let ellipsoid = (*centre, DMat3::from_diagonal(DVec3::splat(*radius)));
+            Some((vec![Bound::Ball { centre: *centre, radius: *radius }], ellipsoid))
+        }
+        Solid::CutBall { centre, ball: CutBall { sphere, plane } } => {
+            let offset = plane.offset + plane.normal.dot(*centre);
+            let cut = Bound::Plane { normal: plane.normal, offset };
+            let ellipsoid = (*centre, DMat3::from_diagonal(DVec3::splat(sphere.radius)));
+            Some((vec![cut, Bound::Ball { centre: *centre, radius: sphere.radius }], ellipsoid))
+        }
+        _ => Convex::of(solid).map(|convex| (convex.bounds(slack), convex.ellipsoid())),
+    };
+    let (Some(one), Some(other)) = (bounded(one), bounded(other)) else { return false };
+    let first = one.1.1.determinant() < other.1.1.determinant();
+    let (smaller, larger) = if first { (one, other) } else { (other, one) };
+    let bounds: Vec<Bound> = smaller.0.into_iter().chain(larger.0).collect();
+    meet_deep(&bounds, smaller.1, slack)
+}
+
+/// Whether there is a point in an ellipsoid that lies deeper than half of `slack` in all of some bounds.
+///
+/// How deep a point lies in both bodies is a concave function of it, and its maximum is looked for by the ellipsoid
+/// method with deep cuts (Grötschel, Lovász, Schrijver, Geometric Algorithms and Combinatorial Optimization,
+/// chapter 3): the ellipsoid holds all points that may be deep enough, and each step halves it at least by a
+/// linear bound on the depth. It needs no case for faces, edges, rims and what else may meet, and it ends with
+/// a proof: such a point, or none left. The ellipsoid is kept as a matrix that makes it of the unit ball, so
+/// that a thin one is as exact as a round one.
+fn meet_deep(bounds: &[Bound], ellipsoid: (DVec3, DMat3), slack: f64) -> bool {
+    /// From the largest ellipsoid to the smallest it takes some 800 steps.
+    const MOST_STEPS: u32 = 5000;
+    let needed = 0.5 * slack;
+    let (mut at, mut shape) = ellipsoid;
+    for _ in 0..MOST_STEPS {
+        let depths = bounds.iter().map(|bound| bound.depth(at));
+        let Some((depth, gradient)) = depths.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+            return false;
+        };
+        if depth > needed {
+            return true;
+        }
+        let most = shape.transpose() * gradient;
+        let reach = most.length();
+        let cut = (needed - depth) / reach;
+        if cut.is_nan() || cut >= 1.0 {
+            return false;
+        }
+        let towards = most / reach;
+        let step = shape * towards;
+        at += 0.25 * (1.0 + 3.0 * cut) * step;
+        let squeeze = (0.5 * (1.0 - cut) / (1.0 + cut)).sqrt() - 1.0;
+        let [x, y, z] = towards.to_array().map(|share| squeeze * share * step);
+        let stretch = (1.125 * (1.0 - cut * cut)).sqrt();
+        shape = (shape + DMat3::from_cols(x, y, z)) * stretch;
+    }
+    false
 }
 
 /// Axes whose directions differ by no more are parallel but for rounding.

@@ -1,7 +1,7 @@
 //! Holes of bodies, in which other bodies may be.
 
 use super::convex::Convex;
-use super::{Extent, FloorCurve, Outline, Pose, Solid};
+use super::{CutBall, Extent, FloorCurve, Outline, Pose, Solid, Sphere};
 use glam::{DVec2, DVec3};
 
 /// A hole in a convex body.
@@ -96,7 +96,9 @@ fn section(body: &Solid, extent: Extent) -> Section<'_> {
     match body {
         Solid::Prism { outline, .. } => Section::Outline(outline),
         Solid::Cylinder { centre, radius, .. } => Section::Disc(*centre, *radius),
-        Solid::Ball { centre, radius } => {
+        // To a round hole a cut ball is the whole one.
+        Solid::Ball { centre, radius }
+        | Solid::CutBall { centre, ball: CutBall { sphere: Sphere { radius }, .. } } => {
             let aside = extent.distance(centre.z);
             Section::Disc(centre.truncate(), (radius * radius - aside * aside).max(0.0).sqrt())
         }
@@ -122,6 +124,7 @@ pub(super) fn farthest(body: &Solid, point: DVec3) -> f64 {
             (centre.distance(point.truncate()) + radius).hypot(along(extent))
         }
         Solid::Ball { centre, radius } => centre.distance(point) + radius,
+        Solid::CutBall { centre, ball } => ball.farthest_from(point - centre),
         Solid::Hollow { whole, .. } => farthest(whole, point),
         Solid::Tilted { solid, pose } => farthest(solid, pose.to_local(point)),
     }

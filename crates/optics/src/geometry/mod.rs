@@ -7,7 +7,9 @@
 
 mod cap;
 mod convex;
+mod cut_ball;
 mod cylinder;
+mod flat_or_round;
 mod floor_curve;
 mod hollow;
 mod outline;
@@ -20,7 +22,9 @@ mod wall;
 
 pub use cap::Cap;
 pub use convex::REACH;
+pub use cut_ball::CutBall;
 pub use cylinder::{Cylinder, CylinderPart, Disc};
+pub use flat_or_round::FlatOrRound;
 pub use floor_curve::{CurvedSide, FloorCurve, FloorHit, MetalBack};
 pub use hollow::Hole;
 pub use outline::Outline;

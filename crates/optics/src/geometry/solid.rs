@@ -1,8 +1,8 @@
 //! Convex bodies, whole or with a hole, and whether they are in each other's way.
 
-use super::convex::{Convex, REACH, SAME_AXIS};
+use super::convex::{Convex, REACH, SAME_AXIS, press};
 use super::hollow::farthest;
-use super::{Extent, Hole, Outline, Pose};
+use super::{CutBall, Extent, Hole, Outline, Plane, Pose};
 use glam::{DVec2, DVec3};
 
 /// How deep two things may press into each other by rounding before they count as overlapping, cm.
@@ -35,6 +35,13 @@ pub enum Solid {
         centre: DVec3,
         /// Its radius, cm.
         radius: f64,
+    },
+    /// A ball of which a plane has cut something off.
+    CutBall {
+        /// The centre of the ball.
+        centre: DVec3,
+        /// What is left of it, about that centre.
+        ball: CutBall,
     },
     /// A convex body but for a hole, in which others may be.
     Hollow {
@@ -87,6 +94,7 @@ impl Solid {
                 between(extent) && point.truncate().distance_squared(*centre) < radius * radius
             }
             Self::Ball { centre, radius } => point.distance_squared(*centre) < radius * radius,
+            Self::CutBall { centre, ball } => ball.height(point - centre) < 0.0,
             Self::Hollow { whole, hole } => whole.holds(point) && !hole.holds(point),
             Self::Tilted { solid, pose } => solid.holds(pose.to_local(point)),
         }
@@ -105,6 +113,7 @@ impl Solid {
                 extent.contains(point.z) && beside <= radius * radius
             }
             Self::Ball { centre, radius } => point.distance_squared(*centre) <= radius * radius,
+            Self::CutBall { centre, ball } => ball.height(point - centre) <= 0.0,
             Self::Hollow { whole, hole } => whole.contains(point) && !hole.holds(point),
             Self::Tilted { solid, pose } => solid.contains(pose.to_local(point)),
         }
@@ -130,6 +139,12 @@ impl Solid {
                 Some(boxed([*centre - *radius, *centre + *radius], extent))
             }
             Self::Ball { centre, radius } => Some([*centre - *radius, *centre + *radius]),
+            Self::CutBall { centre, ball } => {
+                let end =
+                    |sign: f64, axis: usize| ball.farthest_along(sign * DVec3::AXES[axis])[axis];
+                let ends = |sign: f64| DVec3::from_array([0, 1, 2].map(|axis| end(sign, axis)));
+                Some([*centre + ends(-1.0), *centre + ends(1.0)])
+            }
             Self::Hollow { whole, .. } => whole.bounds(),
             Self::Tilted { .. } => {
                 let convex = Convex::of(self)?;
@@ -148,6 +163,11 @@ impl Solid {
             Self::Nothing => Self::Nothing,
             Self::Ball { centre, radius } => {
                 Self::Ball { centre: pose.to_world(*centre), radius: *radius }
+            }
+            Self::CutBall { centre, ball } => {
+                let normal = pose.vector_to_world(ball.plane.normal);
+                let plane = Plane { normal, ..ball.plane };
+                Self::CutBall { centre: pose.to_world(*centre), ball: CutBall { plane, ..*ball } }
             }
             Self::Hollow { whole, hole } => Self::Hollow {
                 whole: Box::new(whole.placed(pose)),
@@ -177,12 +197,13 @@ impl Solid {
     /// other by rounding.
     #[must_use]
     pub fn overlaps(&self, other: &Self, slack: f64) -> bool {
-        use Solid::{Ball, Cylinder, Hollow, Nothing, Prism, Tilted};
+        use Solid::{Ball, CutBall, Cylinder, Hollow, Nothing, Prism, Tilted};
         match (self, other) {
             (Nothing, _) | (_, Nothing) => false,
             (Hollow { whole, hole }, other) | (other, Hollow { whole, hole }) => {
                 whole.overlaps(other, slack) && !hole.encloses(other, slack)
             }
+            (CutBall { .. }, _) | (_, CutBall { .. }) => press(self, other, slack),
             (Tilted { solid, pose }, other) | (other, Tilted { solid, pose }) => {
                 // Where both have the same axis it is as if they were upright.
                 let other = other.placed(&pose.inverse());
@@ -227,10 +248,17 @@ impl Solid {
     pub fn is_within(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Nothing, _) => true,
-            (_, Self::Nothing | Self::Hollow { .. }) => false,
+            // No body is a cut ball: nothing is asked to be within one.
+            (_, Self::Nothing | Self::Hollow { .. } | Self::CutBall { .. }) => false,
             (Self::Hollow { whole, .. }, _) => whole.is_within(other),
             (_, Self::Ball { centre, radius }) => farthest(self, *centre) <= radius + TOUCHING,
             _ => Convex::of(other).is_some_and(|around| match (self, Convex::of(self)) {
+                // To a round side it is the whole ball.
+                (Self::CutBall { centre, ball }, _) => around.holds(
+                    TOUCHING,
+                    |direction| direction.dot(*centre + ball.farthest_along(direction)),
+                    |distance| distance(*centre) + ball.sphere.radius,
+                ),
                 (Self::Ball { centre, radius }, _) => around.holds(
                     TOUCHING,
                     |direction| direction.dot(*centre) + radius * direction.length(),
@@ -287,6 +315,11 @@ impl Solid {
             Self::Prism { outline, .. } => outline.clone(),
             Self::Cylinder { centre, radius, .. } => Outline::circle(*centre, *radius),
             Self::Ball { centre, radius } => Outline::circle(centre.truncate(), *radius),
+            Self::CutBall { centre, ball } => {
+                let around = Outline::circle(DVec2::ZERO, 1.0);
+                let tips = around.corners().iter().map(|at| ball.farthest_along(at.extend(0.0)));
+                Outline::hull(tips.map(|tip| (*centre + tip).truncate()).collect())
+            }
             Self::Hollow { whole, .. } => whole.shadow(),
             Self::Tilted { .. } => {
                 let points = Convex::of(self).map(|convex| convex.extremes(Extent::ENDLESS));
@@ -298,7 +331,7 @@ impl Solid {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{FloorCurve, MetalBack};
+    use super::super::{FloorCurve, MetalBack, Sphere};
     use super::*;
     use crate::transformation::{ConformalMap, GaussianMap};
 
@@ -437,6 +470,63 @@ mod tests {
             };
             assert!(!meets(0.0) && !meets(inside - 1e-5) && meets(inside + 1e-5), "{body:?}");
             assert!(meets(outside - 1e-6) && !meets(outside + 1e-6), "{body:?}");
+        }
+    }
+
+    /// What a plane leaves of a ball of radius 2, at a place.
+    fn cut(normal: DVec3, offset: f64, pose: &Pose) -> Solid {
+        let plane = Plane { normal: normal.normalize(), offset };
+        let ball = CutBall { sphere: Sphere { radius: 2.0 }, plane };
+        Solid::CutBall { centre: DVec3::ZERO, ball }.placed(pose)
+    }
+
+    #[test]
+    fn parts_of_a_ball_are_in_the_way_where_they_are() {
+        let normal = DVec3::new(2.0, -1.0, 2.0) / 3.0;
+        for (k, offset) in [0.0, 1.2, -0.7].into_iter().enumerate() {
+            let axis = DVec3::new(1.0, k as f64, -0.3);
+            let pose = Pose::with_axis(DVec3::new(30.0, -7.0, 1e3), 33.0, axis);
+            let out = pose.vector_to_world(normal);
+            let part = cut(normal, offset, &pose);
+            let meet = |other: &Solid, way: f64| {
+                let other = moved(other, out * way);
+                let both = [part.overlaps(&other, SLACK), other.overlaps(&part, SLACK)];
+                assert_eq!(both[0], both[1], "{offset} {other:?}");
+                both[0]
+            };
+            // The part that was cut off, in its place; a ball, a cylinder and a box upon the cut.
+            assert!(!meet(&cut(-normal, -offset, &pose), 0.0));
+            assert!(meet(&cut(-normal, -offset, &pose), -1e-6));
+            let turn = Pose::with_axis(DVec3::ZERO, 10.0, normal);
+            for solid in [
+                Solid::ball(1.0),
+                Solid::cylinder(1.0, Extent::centred(Some(2.0))),
+                box_of(1.0),
+                cut(normal, 1.0, &Pose::IDENTITY),
+            ] {
+                let other = solid.placed(&pose.after(&turn));
+                let lowest = if matches!(solid, Solid::CutBall { .. }) { 2.0 } else { 1.0 };
+                let other = if lowest > 1.0 { solid.placed(&pose) } else { other };
+                assert!(!meet(&other, lowest + offset + 1e-7), "{offset} {solid:?}");
+                assert!(meet(&other, lowest + offset - 1e-7), "{offset} {solid:?}");
+            }
+            // Round the other way.
+            assert!(!meet(&Solid::ball(1.0).placed(&pose), -3.0 - 1e-7));
+            assert!(meet(&Solid::ball(1.0).placed(&pose), -3.0 + 1e-7));
+            // All of it is within its bounds and its shadow, and within a box just as large.
+            let [low, high] = part.bounds().expect("bounds");
+            let half = 0.5 * (high - low);
+            let around = |size: DVec3| {
+                let outline = Outline::rectangle(size.x, size.y);
+                let extent = Extent { min: -size.z, max: size.z };
+                moved(&Solid::Prism { outline, extent }, 0.5 * (high + low))
+            };
+            assert!(part.is_within(&around(half)) && !part.is_within(&around(half - 1e-6)));
+            assert!(part.is_within(&moved(&Solid::ball(2.0), pose.origin())));
+            let shadow = part.shadow();
+            let tips = shadow.corners().iter().map(|at| at.x).fold(f64::MIN, f64::max);
+            assert!((tips - high.x).abs() < 1e-2 && part.contains(pose.origin() - out * 1.9));
+            assert!(!part.holds(pose.origin() + out * (offset + 1e-9)));
         }
     }
 

@@ -49,7 +49,7 @@ impl Interfaces {
         };
         let faces = |region: &Region| match region {
             Region::Homogeneous(region) => exits(region),
-            Region::Conformal(_) | Region::Radial(_) => Vec::new(),
+            Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) => Vec::new(),
         };
         Self {
             surfaces: structure.surfaces.iter().map(entrance).collect(),

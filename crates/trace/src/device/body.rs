@@ -4,14 +4,14 @@
 //! glass of water is three bodies, and light goes from one into the other without any air between.
 
 use super::{
-    Body, Convex, Device, Fact, FarSide, HomogeneousRegion, Hull, REACH, Region, RegionBorder,
-    Request, Shape, Structure, Surface,
+    Body, Convex, Device, Fact, FarSide, HomogeneousRegion, Hull, Region, RegionBorder, Request,
+    Shape, Structure, Surface,
 };
 use crate::key;
 use crate::keys::{Given, KeyError, Limits};
 use glam::DVec3;
 use num_complex::Complex64;
-use optics::geometry::{Cylinder, Extent, Outline, Solid, Sphere};
+use optics::geometry::{Cylinder, Extent, Sphere};
 use optics::medium::{Medium, Tensor};
 use std::path::PathBuf;
 
@@ -83,15 +83,6 @@ impl Device for SolidBody {
                            box instead of a slab";
             return Err(KeyError::at(key!(Self.surface), message));
         }
-        let solid = match shape {
-            Convex::Ball(sphere) => Solid::ball(sphere.radius),
-            Convex::Cylinder(cylinder) => Solid::cylinder(cylinder.radius, cylinder.extent),
-            Convex::Box { half } => {
-                let near = half.min(DVec3::splat(REACH));
-                let outline = Outline::rectangle(near.x, near.y);
-                Solid::Prism { outline, extent: Extent { min: -half.z, max: half.z } }
-            }
-        };
         let body = Body { shape, priority: self.priority };
         let far = if medium.is_some() { FarSide::Region(0) } else { FarSide::Opaque };
         let group_index = self.group_index;
@@ -100,7 +91,7 @@ impl Device for SolidBody {
         Ok(Structure {
             regions: medium.into_iter().map(region).map(Region::Homogeneous).collect(),
             surfaces: vec![Surface::new(Shape::Convex(shape), far)],
-            hull: Hull::new(solid).of_body(body),
+            hull: Hull::new(shape.solid()).of_body(body),
         })
     }
 

@@ -1,7 +1,10 @@
 //! Convex shapes that are met, left and looked into as a whole.
 
 use glam::DVec3;
-use optics::geometry::{Cylinder, CylinderPart, Disc, Sphere};
+use optics::geometry::{
+    CutBall, Cylinder, CylinderPart, Disc, Extent, FlatOrRound, Outline, Plane, REACH, Solid,
+    Sphere,
+};
 
 /// A convex shape about the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +16,8 @@ pub enum Convex {
     },
     /// A ball.
     Ball(Sphere),
+    /// A ball of which a plane has cut something off.
+    CutBall(CutBall),
     /// A round cylinder about the z axis.
     Cylinder(Cylinder),
 }
@@ -22,10 +27,43 @@ impl Convex {
     #[must_use]
     pub fn is_endless(&self) -> bool {
         match self {
-            Self::Ball(_) => false,
+            Self::Ball(_) | Self::CutBall(_) => false,
             Self::Cylinder(cylinder) => cylinder.extent.ends().is_none(),
             Self::Box { half } => !half.is_finite(),
         }
+    }
+
+    /// The space that it takes up; what has no end reaches to [`REACH`].
+    #[must_use]
+    pub fn solid(&self) -> Solid {
+        match *self {
+            Self::Ball(sphere) => Solid::ball(sphere.radius),
+            Self::CutBall(ball) => Solid::CutBall { centre: DVec3::ZERO, ball },
+            Self::Cylinder(cylinder) => Solid::cylinder(cylinder.radius, cylinder.extent),
+            Self::Box { half } => {
+                let near = half.min(DVec3::splat(REACH));
+                let outline = Outline::rectangle(near.x, near.y);
+                Solid::Prism { outline, extent: Extent { min: -half.z, max: half.z } }
+            }
+        }
+    }
+
+    /// The planes and spheres between which it is, without the round side of a cylinder.
+    pub fn bounds(&self) -> impl Iterator<Item = FlatOrRound> + use<> {
+        let (sphere, cut, half) = match *self {
+            Self::Ball(sphere) => (Some(sphere), None, DVec3::INFINITY),
+            Self::CutBall(CutBall { sphere, plane }) => {
+                (Some(sphere), Some(plane), DVec3::INFINITY)
+            }
+            Self::Cylinder(cylinder) => (None, None, DVec3::INFINITY.with_z(cylinder.extent.max)),
+            Self::Box { half } => (None, None, half),
+        };
+        let plane = move |side: usize| {
+            let sign = [-1.0, 1.0][side % 2];
+            Plane { normal: sign * DVec3::AXES[side / 2], offset: half[side / 2] }
+        };
+        let sides = (0..6).map(plane).filter(|plane| plane.offset.is_finite());
+        sides.chain(cut).map(FlatOrRound::from).chain(sphere.map(FlatOrRound::from))
     }
 
     /// Where a ray that is outside enters: the distance, from zero on, and the outward unit normal.
@@ -36,6 +74,7 @@ impl Convex {
                 let distance = sphere.hit(origin, direction)?;
                 Some((distance, sphere.outward(origin + direction * distance)))
             }
+            Self::CutBall(ball) => ball.entry(origin, direction),
             Self::Cylinder(cylinder) => {
                 if let Some(distance) = cylinder.hit_side(origin, direction) {
                     let point = origin + direction * distance;
@@ -76,6 +115,7 @@ impl Convex {
                 let distance = sphere.time_to_leave(origin, direction);
                 (distance, sphere.outward(origin + direction * distance))
             }
+            Self::CutBall(ball) => ball.exit(origin, direction),
             Self::Cylinder(cylinder) => {
                 let (distance, part) = cylinder.time_to_leave(origin, direction);
                 (distance, cylinder.outward(part, origin + direction * distance))
@@ -102,6 +142,10 @@ impl Convex {
         let inside = |off: f64, outward: f64| off < -slack || (off <= slack && outward < 0.0);
         match self {
             Self::Ball(sphere) => inside(point.length() - sphere.radius, direction.dot(point)),
+            Self::CutBall(CutBall { sphere, plane }) => {
+                inside(point.length() - sphere.radius, direction.dot(point))
+                    && inside(plane.normal.dot(point) - plane.offset, direction.dot(plane.normal))
+            }
             Self::Cylinder(cylinder) => {
                 let (p, d) = (point.truncate(), direction.truncate());
                 let extent = cylinder.extent;
@@ -120,7 +164,6 @@ impl Convex {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use optics::geometry::Extent;
 
     #[test]
     fn on_the_border_the_direction_decides() {
@@ -128,6 +171,10 @@ mod tests {
             Convex::Box { half: DVec3::new(1.0, f64::INFINITY, 3.0) },
             Convex::Ball(Sphere { radius: 1.0 }),
             Convex::Cylinder(Cylinder { radius: 1.0, extent: Extent::centred(Some(6.0)) }),
+            Convex::CutBall(CutBall {
+                sphere: Sphere { radius: 2.0 },
+                plane: Plane { normal: DVec3::X, offset: 1.0 },
+            }),
         ];
         for shape in shapes {
             for off in [-1e-12, 0.0, 1e-12] {

@@ -136,6 +136,9 @@ impl Region {
                 }
                 lines
             }
+            Self::ClosedForm(region) => {
+                vec![Line { points: region.border.around(), far: FarSide::Outside }]
+            }
         }
     }
 
@@ -144,7 +147,7 @@ impl Region {
     pub fn is_graded(&self) -> bool {
         match self {
             Self::Homogeneous(_) => false,
-            Self::Conformal(_) | Self::Radial(_) => true,
+            Self::Conformal(_) | Self::Radial(_) | Self::ClosedForm(_) => true,
         }
     }
 
@@ -184,6 +187,11 @@ impl Convex {
         match self {
             Self::Ball(Sphere { radius }) | Self::Cylinder(Cylinder { radius, .. }) => {
                 circle(*radius)
+            }
+            Self::CutBall(ball) => {
+                let mut around = ball.section(PIECES);
+                around.extend(around.first().copied());
+                around
             }
             Self::Box { half } => {
                 let corner = half.truncate().min(DVec2::splat(REACH));

@@ -16,12 +16,15 @@
 mod bending_sphere;
 mod body;
 mod carpet;
+mod closed_form;
 mod convex;
 mod cross_section;
 mod cylinder_cloak;
 mod double_gaussian_cloak;
+mod fisheye_hemisphere;
 mod gaussian_carpet;
 mod graded;
+mod graded_box;
 mod grating_carpet;
 mod imperfection;
 mod invisible_sphere;
@@ -40,12 +43,15 @@ mod surface;
 
 pub use bending_sphere::BendingSphere;
 pub use body::{BodyShape, BodySurface, SolidBody};
+pub use closed_form::ClosedFormRegion;
 pub use convex::Convex;
 pub use cross_section::{Contour, CrossSection, Section};
 pub use cylinder_cloak::{CylinderCloak, ShellMaterial};
 pub use double_gaussian_cloak::DoubleGaussianCloak;
+pub use fisheye_hemisphere::FisheyeHemisphere;
 pub use gaussian_carpet::GaussianCarpet;
 pub use graded::{Border, Graded};
+pub use graded_box::GradedBox;
 pub use grating_carpet::GratingCarpet;
 pub use imperfection::Imperfection;
 pub use invisible_sphere::{InvisibleSphere, SphereMaterial};
@@ -236,9 +242,11 @@ catalogue! {
     EatonLens,
     LuneburgLens,
     FisheyeLens,
+    FisheyeHemisphere,
     MirrorDetour,
     Prisms,
     Graded,
+    GradedBox,
     SolidBody,
     GaussianCarpet,
     GratingCarpet,

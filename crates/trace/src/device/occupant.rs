@@ -61,6 +61,7 @@ impl Region {
                 let outward = region.flow.outward(point);
                 point.dot(outward) >= region.flow.radii()[0]
             }
+            Self::ClosedForm(region) => region.holds(point),
         };
         let entrance = within.then(|| self.enter(point))??;
         let medium = *self.medium(point, entrance.virtual_point.as_ref(), &mut None)?;

@@ -1,6 +1,6 @@
 //! Regions of a device, each filled with one medium.
 
-use super::{Coating, Convex, FarSide};
+use super::{ClosedFormRegion, Coating, Convex, FarSide};
 use glam::{DMat3, DVec3};
 use optics::geometry::Plane;
 use optics::medium::{Medium, ModeKind};
@@ -18,6 +18,8 @@ pub enum Region {
     Conformal(ConformalRegion),
     /// A ball or a round cylinder of a radially symmetric medium, whole or hollow.
     Radial(RadialRegion),
+    /// A convex region of a graded medium whose rays are known in closed form.
+    ClosedForm(ClosedFormRegion),
 }
 
 /// A radially symmetric medium about the origin or the z axis.
@@ -144,7 +146,7 @@ impl Region {
     pub fn enter(&self, position: DVec3) -> Option<Entrance> {
         Some(Entrance {
             virtual_point: match self {
-                Self::Homogeneous(_) | Self::Radial(_) => None,
+                Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) => None,
                 Self::Conformal(region) => {
                     Some(region.flow.virtual_point(region.half, position).ok()?)
                 }
@@ -169,16 +171,19 @@ impl Region {
                 virtual_point.map(|virtual_point| Medium::dielectric(virtual_point.index))
             }
             Self::Radial(region) => region.flow.medium(position),
+            Self::ClosedForm(region) => Some(region.medium(position)),
         };
         local.as_ref()
     }
 
-    /// Whether rays can start within: the closed forms of round lenses take them from border to border.
+    /// Whether rays can start within: the closed forms of round birefringent media take them from border to border.
     #[must_use]
     pub fn can_be_started_in(&self) -> bool {
         match self {
-            Self::Homogeneous(_) | Self::Conformal(_) => true,
-            Self::Radial(region) => matches!(region.flow, RadialFlow::Transformed(_)),
+            Self::Homogeneous(_) | Self::Conformal(_) | Self::ClosedForm(_) => true,
+            Self::Radial(region) => {
+                matches!(region.flow, RadialFlow::Transformed(_) | RadialFlow::Lens(_))
+            }
         }
     }
 
@@ -202,7 +207,7 @@ impl Region {
     #[must_use]
     pub fn parted(&self, position: DVec3, wave_vector: DVec3) -> Option<[(ModeKind, DVec3); 2]> {
         match self {
-            Self::Homogeneous(_) | Self::Conformal(_) => None,
+            Self::Homogeneous(_) | Self::Conformal(_) | Self::ClosedForm(_) => None,
             Self::Radial(region) => region.flow.parted(position, wave_vector),
         }
     }
@@ -222,6 +227,7 @@ impl Region {
                 passage
             }
             Self::Radial(region) => region.advance(ray),
+            Self::ClosedForm(region) => region.advance(ray),
         }
     }
 
@@ -234,7 +240,7 @@ impl Region {
         tolerance: f64,
     ) -> [Option<Passage>; 4] {
         match self {
-            Self::Homogeneous(_) | Self::Radial(_) => {
+            Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) => {
                 rays.map(|ray| ray.and_then(|ray| self.advance(&ray, tolerance)))
             }
             Self::Conformal(region) => region.advance_four(rays, tolerance),
@@ -276,6 +282,7 @@ impl Region {
             Self::Radial(region) => {
                 region.flow.path(ray.position, ray.wave_vector, ray.mode, PIECES)
             }
+            Self::ClosedForm(region) => region.path(ray, PIECES),
         }
     }
 }

@@ -78,6 +78,9 @@ impl Reach {
                 Self::Cylinder((centre.length() + radius) * GRAZING)
             }
             Solid::Ball { centre, radius } => Self::Ball((centre.length() + radius) * GRAZING),
+            Solid::CutBall { centre, ball } => {
+                Self::Ball((centre.length() + ball.sphere.radius) * GRAZING)
+            }
             Solid::Hollow { whole, .. } => Self::of(whole),
             Solid::Tilted { .. } => solid.bounds().map_or(Self::Nothing, |[low, high]| {
                 Self::Ball(low.abs().max(high.abs()).length() * GRAZING)

@@ -14,7 +14,7 @@ impl Assembly {
     ///
     /// # Errors
     ///
-    /// The number of the device in whose metal, opaque inside, or round lens it would start.
+    /// The number of the device in whose metal, opaque inside, or round birefringent medium it would start.
     pub fn region_around(
         &self,
         point: DVec3,

@@ -1,7 +1,7 @@
 //! Balls of graded index with closed-form transfers: Eaton's family, Luneburg's lens and Maxwell's
 //! fish-eye.
 
-use super::{Border, PathPoint, RadialEnd, plane_normal, turn_in_plane};
+use super::{Border, PathPoint, RadialEnd, first_way_out, plane_normal, turn_in_plane};
 use crate::medium::Medium;
 use glam::{DMat3, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -81,6 +81,10 @@ impl CentralLens {
 
     /// The point at a share of the way that [`Self::advance`] takes.
     pub(super) fn way_point(&self, position: DVec3, wave_vector: DVec3, share: f64) -> PathPoint {
+        if self.is_within(position) {
+            let way = self.way_from_within(position, wave_vector, share);
+            return PathPoint { position: way.position, optical_path: way.optical_path };
+        }
         let (x, d) = (position.normalize(), wave_vector.normalize());
         let normal = plane_normal(x, d);
         let cosine = x.dot(d);
@@ -104,9 +108,62 @@ impl CentralLens {
         PathPoint { position: place * self.radius, optical_path: path * self.radius }
     }
 
-    /// Follows a ray from a point of the surface to where it comes out.
+    /// Whether a point is not one of the surface.
+    fn is_within(&self, position: DVec3) -> bool {
+        position.length() < (1.0 - AT_SURFACE) * self.radius
+    }
+
+    /// The point at a share of the way to the surface of a ray that starts within.
+    fn way_from_within(&self, position: DVec3, wave_vector: DVec3, share: f64) -> RadialEnd {
+        let (x, d) = (position / self.radius, wave_vector.normalize());
+        let normal = plane_normal(x, d);
+        let (at, onward, path) = match self.profile {
+            Profile::Eaton(angle) => eaton_from_within(x, d, normal, angle / PI, share),
+            Profile::Luneburg => {
+                // r² = 1 + (x² - 1) cos 2σ + x·p sin 2σ
+                let p = d * (2.0 - x.length_squared()).sqrt();
+                let sigma = share * 0.5 * first_rise(x.length_squared() - 1.0, x.dot(p));
+                let (sin, cos) = sigma.sin_cos();
+                let inside = (1.0 - x.length_squared()) * cos - x.dot(p) * sin;
+                (x * cos + p * sin, p * cos - x * sin, sigma + inside * sin)
+            }
+            Profile::Fisheye => {
+                // On the sphere of which it is the stereographic projection: height 1 - shrunk, climbing.
+                let shrunk = 2.0 / (1.0 + x.length_squared());
+                let climb = shrunk * x.dot(d);
+                let (point, along) = (x * shrunk, d - x * climb);
+                let angle = share * first_rise(1.0 - shrunk, climb);
+                let (sin, cos) = angle.sin_cos();
+                let below = 1.0 - (1.0 - shrunk) * cos - climb * sin;
+                let at = (point * cos + along * sin) / below;
+                (at, along * cos - point * sin + at * (climb * cos - (1.0 - shrunk) * sin), angle)
+            }
+        };
+        let onward = onward.normalize();
+        let index_at = |share: f64| self.index(share.clamp(NEAREST, 1.0) * self.radius);
+        let index = index_at(at.length());
+        // |Re(E × H*)| = n |E|².
+        let kept = (index_at(x.length()) / index).sqrt();
+        RadialEnd {
+            border: Border::Outer,
+            position: at * self.radius,
+            wave_vector: onward * index,
+            direction: onward,
+            optical_path: path * self.radius,
+            transport: turn_in_plane(normal, d, onward) * kept,
+            outward: at.try_normalize().unwrap_or(onward),
+        }
+    }
+
+    /// Follows a ray from a point of the ball or its surface to where it comes out.
     #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3) -> RadialEnd {
+        if self.is_within(position) {
+            let end = self.way_from_within(position, wave_vector, 1.0);
+            // On the surface, where the index is 1, to the last bit.
+            let position = end.outward * self.radius;
+            return RadialEnd { position, wave_vector: end.direction, ..end };
+        }
         let x = position.normalize();
         let d = wave_vector.normalize();
         let normal = plane_normal(x, d);
@@ -135,6 +192,50 @@ impl CentralLens {
             outward,
         }
     }
+}
+
+/// Closer to the surface than this share of the radius a ray starts on it.
+const AT_SURFACE: f64 = 1e-9;
+
+/// The first angle, from 0 to 2π, at which a cos φ + b sin φ, which is negative at 0, grows through zero.
+fn first_rise(a: f64, b: f64) -> f64 {
+    // tan φ/2 makes a quadratic of it.
+    let [over, under] = first_way_out([a, 2.0 * b, -a]).unwrap_or([0.0, 1.0]);
+    2.0 * over.atan2(under)
+}
+
+/// The point at a share of the way to the surface of a ray from `x` within a ball of Eaton's family of radius 1, the
+/// vector along the ray where that comes out, and the optical path.
+fn eaton_from_within(
+    x: DVec3,
+    d: DVec3,
+    normal: DVec3,
+    turn: f64,
+    share: f64,
+) -> (DVec3, DVec3, f64) {
+    let radial = x.try_normalize().unwrap_or(d);
+    let c = eaton_parameter(turn, x.length().max(NEAREST)).tanh();
+    // r n = √(1 - c²), of which these are the components across the radius and along it.
+    let size = (1.0 - c * c).sqrt();
+    let (l, inward) = (size * radial.cross(d).length(), size * -radial.dot(d));
+    let s = c.hypot(inward);
+    let done = |phase: f64| {
+        // From where the whole ray comes in, around the turning point at π/2.
+        let psi = phase.min(PI - phase);
+        let (sin, cos) = psi.sin_cos();
+        let swept = (l * sin).atan2(cos) * turn + s.atan2(l) - (s * cos).atan2(l);
+        let path = turn * psi + s * (1.0 - cos);
+        if phase <= FRAC_PI_2 {
+            return (path, swept);
+        }
+        (turn * PI + 2.0 * s - path, turn * PI + 2.0 * s.atan2(l) - swept)
+    };
+    let start = c.atan2(inward);
+    let phase = start + share * (PI - start);
+    let [(from, before), (to, after)] = [start, phase].map(done);
+    let outward = radial.rotate_axis(normal, after - before);
+    let onward = outward * s + normal.cross(outward) * l;
+    (outward * eaton_radius(turn, s * phase.sin()), onward, to - from)
 }
 
 /// A point of a way through a ball of Eaton's family, of radius 1.
@@ -178,8 +279,13 @@ const NEAREST: f64 = 1e-6;
 /// The index of Eaton's family at x = r/R, `turn` being 1/m. With v = e^w, n = e^(w/m) and
 /// w/m + ln cosh w + ln x = 0.
 fn eaton_index(turn: f64, x: f64) -> f64 {
+    (turn * eaton_parameter(turn, x)).exp()
+}
+
+/// w of [`eaton_index`].
+fn eaton_parameter(turn: f64, x: f64) -> f64 {
     if x >= 1.0 {
-        return 1.0;
+        return 0.0;
     }
     let log = x.ln();
     // ln cosh w >= w - ln 2: from above, Newton's method on this convex function stays above.
@@ -192,7 +298,7 @@ fn eaton_index(turn: f64, x: f64) -> f64 {
             break;
         }
     }
-    (turn * w).exp()
+    w
 }
 
 #[cfg(test)]
@@ -214,5 +320,46 @@ mod tests {
             assert!((invisible.index(r) / n - 1.0).abs() < 1e-13, "{r}: {n}");
         }
         assert_eq!(CentralLens::eaton(1.0, 0.0).index(0.3), 1.0);
+    }
+
+    #[test]
+    fn a_ray_that_starts_within_goes_on_as_one_that_comes_by() {
+        let lenses = [
+            CentralLens::luneburg(2.0),
+            CentralLens::fisheye(2.0),
+            CentralLens::eaton(2.0, PI),
+            CentralLens::eaton(2.0, 2.0 * PI),
+            CentralLens::eaton(2.0, 0.4),
+            CentralLens::eaton(2.0, 0.0),
+        ];
+        for (lens, step) in lenses.into_iter().flat_map(|lens| (1..20).map(move |n| (lens, n))) {
+            let entry = DVec3::new(-2.0, 0.0, 0.0);
+            let inwards = DVec3::new(1.0, 0.1 * f64::from(step % 7), 0.3).normalize();
+            let end = lens.advance(entry, inwards);
+            let share = f64::from(step) / 20.0;
+            let at = |share: f64| lens.way_point(entry, inwards, share);
+            let (here, near) = (at(share), [share - 1e-6, share + 1e-6].map(at));
+            let index = lens.index(here.position.length());
+            let onward = (near[1].position - near[0].position).normalize() * index;
+            let found = lens.advance(here.position, onward);
+            // The direction is that of a short chord.
+            assert!(found.position.distance(end.position) < 1e-7, "{lens:?} {step} {found:?}");
+            assert!(found.direction.distance(end.direction) < 1e-7, "{lens:?} {step}");
+            let path = here.optical_path + found.optical_path;
+            assert!((path - end.optical_path).abs() < 1e-7, "{lens:?} {step}");
+            // In its plane the field turns with the ray; the power is kept.
+            let field = found.transport * onward.normalize();
+            assert!(field.distance(found.direction * index.sqrt()) < 1e-9);
+            let middle = lens.way_point(here.position, onward, 0.5);
+            let last = lens.way_point(here.position, onward, 1.0);
+            assert!(last.position.distance(found.position) < 1e-9);
+            assert!(middle.optical_path < found.optical_path);
+            assert!(middle.position.length() < lens.radius());
+            // Out along the radius, from near the centre too.
+            for r in [1.2, 1e-3] {
+                let out = lens.advance(DVec3::X * r, DVec3::X);
+                assert!(out.position.distance(DVec3::X * 2.0) < 1e-9 && out.optical_path > 0.0);
+            }
+        }
     }
 }

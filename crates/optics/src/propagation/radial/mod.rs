@@ -17,7 +17,7 @@ pub use transformed_shell::TransformedShell;
 pub use transmuted_sphere::TransmutedSphere;
 pub use uniaxial_cylinder::{OpticAxis, UniaxialCylinder};
 
-use super::PathPoint;
+use super::{PathPoint, first_way_out, turn_in_plane};
 use crate::geometry::CylinderPart;
 use crate::medium::{Medium, ModeKind};
 use crate::transformation::RadialMap;
@@ -113,7 +113,7 @@ impl RadialFlow {
 
     /// Follows a ray from a point of the border, where it has the given wave vector and is the given
     /// wave of the medium, to the next point of the border. It must run into the medium or along its
-    /// border.
+    /// border. In an isotropic medium it may start within, too.
     #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
         match self {
@@ -205,14 +205,4 @@ fn plane_normal(position: DVec3, direction: DVec3) -> DVec3 {
         .and_then(across)
         .or_else(|| across(DVec3::Z))
         .unwrap_or(DVec3::X)
-}
-
-/// The rotation that keeps `normal` and takes the unit vector `from`, across it, to `to`.
-fn turn_in_plane(normal: DVec3, from: DVec3, to: DVec3) -> DMat3 {
-    let column = |component: usize| {
-        to * from[component]
-            + normal.cross(to) * normal.cross(from)[component]
-            + normal * normal[component]
-    };
-    DMat3::from_cols(column(0), column(1), column(2))
 }

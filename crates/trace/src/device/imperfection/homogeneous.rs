@@ -22,7 +22,7 @@ pub(super) fn apply(
         .zip(groups)
         .filter_map(|(region, group)| match region {
             Region::Homogeneous(region) => Some((group, &mut region.medium)),
-            Region::Conformal(_) | Region::Radial(_) => None,
+            Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) => None,
         })
         .collect();
     let values = media.iter().flat_map(|(_, medium)| {

@@ -74,8 +74,8 @@ impl Imperfection {
             match region {
                 Region::Homogeneous(_) => {}
                 Region::Conformal(region) => graded::apply(self, &deviates, region)?,
-                Region::Radial(_) => {
-                    let message = "round graded devices are followed in closed form, for their ideal index only; \
+                Region::Radial(_) | Region::ClosedForm(_) => {
+                    let message = "this graded medium is followed in closed form, for its ideal index only; \
                                    homogeneous and conformal ones can be imperfect";
                     return Err(KeyError::at(TABLE, message));
                 }
