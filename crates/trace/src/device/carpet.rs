@@ -6,7 +6,7 @@
 //! it. The back lies on y = 0, for a grating at the depth of its troughs.
 
 use super::{
-    Coating, ConformalRegion, FarSide, GaussianCarpet, Hull, Part, Region, Request, Shape, Show,
+    ConformalRegion, Fact, FarSide, GaussianCarpet, Hull, Part, Region, Request, Shape, Show,
     Structure, Surface,
 };
 use crate::key;
@@ -21,24 +21,17 @@ pub(super) fn gaussian_map(w: f64, h: f64) -> Result<GaussianMap, KeyError> {
     GaussianMap::new(w, h).map_err(|error| KeyError::at(key!(GaussianCarpet.h), error.to_string()))
 }
 
-/// The size of a carpet.
-#[derive(Clone, Copy)]
-pub(super) struct Size {
-    /// Along x, cm.
-    pub width: f64,
-    /// Above the floor's level, cm.
-    pub height: f64,
-    /// Of the whole floor along x, cm; 0 for none.
-    pub floor: f64,
-}
-
-/// The rectangle a carpet is cut to, whose metal rises to `peak`.
+/// The rectangle a carpet is cut to, whose metal rises to `peak`, of a width along x and a height above the floor's
+/// level; the floor may be wider, or 0 for none. All in cm.
 ///
 /// # Errors
 ///
 /// If the metal does not fit in, or the floor ends below the device.
-pub(super) fn cut(size: Size, peak: f64) -> Result<Truncation, KeyError> {
-    let Size { width, height, floor } = size;
+pub(super) fn cut(
+    [width, height]: [f64; 2],
+    floor: f64,
+    peak: f64,
+) -> Result<Truncation, KeyError> {
     if height <= peak {
         let message =
             format!("height is {height} cm; it must be above h, {peak} cm, to hold the metal");
@@ -53,21 +46,29 @@ pub(super) fn cut(size: Size, peak: f64) -> Result<Truncation, KeyError> {
     Ok(Truncation::centred(width, height))
 }
 
-/// A carpet in any view; `strength` is c of its index c/|f'|.
+/// A carpet in any view, on a floor so wide (cm); `strength` is c of its index c/|f'|.
 pub(super) fn structure(
     map: ConformalMap,
     cut: Truncation,
     strength: f64,
-    size: Size,
+    floor: f64,
     request: Request,
 ) -> Structure {
     let extent = Extent::centred(request.length);
-    let site = Site { cut, half_floor: 0.5 * size.floor, extent };
+    let site = Site { cut, half_floor: 0.5 * floor, extent };
     match request.show {
-        Show::Cloak => site.cloak(&ConformalFlow::new(map, cut, extent, strength)),
+        Show::Cloak => site.cloak(ConformalFlow::new(map, cut, extent, strength)),
         Show::Bare => site.bare(map),
         Show::Mirror => site.mirror(),
     }
+}
+
+/// The facts of a carpet, or of several that are alike: the range of its index c/|f'|, those of its own, and how wide
+/// the mirror is.
+pub(super) fn facts(map: &ConformalMap, cut: &Truncation, c: f64, own: &[Fact]) -> Vec<Fact> {
+    let (least, largest) = map.index_range(cut);
+    let index = [Fact::number("index_min", c * least), Fact::number("index_max", c * largest)];
+    [&index, own, &[Fact::number("mirror_width_cm", 2.0 * cut.x_max)]].concat()
 }
 
 /// Where a carpet stands.
@@ -78,7 +79,7 @@ struct Site {
 }
 
 impl Site {
-    fn cloak(&self, flow: &ConformalFlow) -> Structure {
+    fn cloak(&self, flow: ConformalFlow) -> Structure {
         let map = flow.map();
         let Truncation { x_max: x, y_max: top, .. } = self.cut;
         let bottom = map.trough();
@@ -108,14 +109,7 @@ impl Site {
                 surfaces.push(Surface::new(cap, medium).with_part(above));
             }
         }
-        let region = ConformalRegion {
-            flow: flow.clone(),
-            half: Half::Upper,
-            floor: FarSide::Conductor,
-            core: FarSide::Outside,
-            coating: Coating::None,
-            loss_tangent: 0.0,
-        };
+        let region = ConformalRegion::new(flow, Half::Upper, FarSide::Conductor);
         let hull = Hull::prism(outline, self.extent);
         self.on_floor(vec![Region::Conformal(region)], surfaces, hull)
     }

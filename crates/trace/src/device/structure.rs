@@ -2,7 +2,7 @@
 
 use super::{Convex, Region, Surface};
 use glam::DVec3;
-use optics::geometry::{Extent, FloorCurve, Outline, Pose, Solid};
+use optics::geometry::{Extent, FloorCurve, Hole, Outline, Pose, Solid};
 
 /// What lies on the other side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,6 +148,12 @@ impl Hull {
     #[must_use]
     pub fn of_body(self, body: Body) -> Self {
         Self { body: Some(body), ..self }
+    }
+
+    /// The hull of a cloak around a hidden region that is air, and free: `filled` without `hole`.
+    #[must_use]
+    pub fn around(hole: Hole, filled: Solid) -> Self {
+        Self::new(filled.clone().with_hole(hole)).with_open_core(filled)
     }
 
     /// The hull of a cloak whose hidden region is air, and free; `filled` is the cloak together with it.
