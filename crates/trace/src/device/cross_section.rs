@@ -74,14 +74,11 @@ impl Structure {
             body_medium: self.body_medium(),
             body: self.hull.body(),
             is_shadow: false,
-            metal: joined(metal.map(|line| line.points.clone())),
+            metal: joined(metal),
             regions: sections
-                .map(|(region, lines)| Section {
-                    border: joined(lines.iter().map(|line| line.points.clone())),
-                    region,
-                })
+                .map(|(region, lines)| Section { border: joined(lines), region })
                 .collect(),
-            outlines: joined(outside.into_iter().map(|line| line.points)),
+            outlines: joined(&outside),
         }
     }
 
@@ -325,7 +322,8 @@ fn near(a: DVec2, b: DVec2) -> bool {
 }
 
 /// Lines joined where their ends meet, in whichever direction they run.
-fn joined(lines: impl Iterator<Item = Vec<DVec2>>) -> Vec<Contour> {
+fn joined<'l>(lines: impl IntoIterator<Item = &'l Line>) -> Vec<Contour> {
+    let lines = lines.into_iter().map(|line| line.points.clone());
     let mut rest: Vec<Vec<DVec2>> = lines.filter(|line| line.len() > 1).collect();
     let mut contours = Vec::new();
     while !rest.is_empty() {

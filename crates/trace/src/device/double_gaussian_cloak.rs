@@ -79,7 +79,11 @@ impl Device for DoubleGaussianCloak {
                 let flow = ConformalFlow::new(map, cut, extent, strength);
                 cloak(&flow, coating, extent, request.open_core)
             }
-            Show::Bare => bare(map, cut, extent),
+            Show::Bare => {
+                let around = Outline::rectangle(cut.x_max, map.peak());
+                let curve = FloorCurve::new(map, MetalBack::MirrorImage, cut.x_min, cut.x_max);
+                carpet::metal(curve, around, extent)
+            }
             Show::Mirror => super::flat_strip(cut.x_max, extent),
         })
     }
@@ -148,17 +152,4 @@ fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool
     let hole = Hole::Lens { curve, pose: Pose::new(DVec3::ZERO, 0.0), extent };
     let hull = Hull::around(hole, Solid::Prism { outline, extent });
     Structure { regions, surfaces, hull }
-}
-
-fn bare(map: ConformalMap, cut: Truncation, extent: Extent) -> Structure {
-    let x = cut.x_max;
-    let around = Outline::rectangle(x, map.peak());
-    let curve = FloorCurve::new(map, MetalBack::MirrorImage, cut.x_min, x);
-    let metal = |shape| Surface::new(shape, FarSide::Conductor);
-    let mut surfaces = vec![metal(Shape::Curve { curve: curve.clone(), side: None, extent })];
-    for cap in extent.ends().into_iter().flat_map(|ends| Cap::both(&around, ends)) {
-        surfaces.push(metal(Shape::Cap(cap)).with_part(Part::Metal(curve.clone())));
-    }
-    let hull = Hull::prism(around, extent).of_metal(curve);
-    Structure { regions: Vec::new(), surfaces, hull }
 }

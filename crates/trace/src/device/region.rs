@@ -8,6 +8,9 @@ use optics::propagation::{
     Border, Boundary, ConformalFlow, FlowEnd, Half, PathPoint, RadialFlow, VirtualPoint,
 };
 
+/// Straight pieces that a closed form's path is drawn with.
+const PIECES: u32 = 96;
+
 /// A region filled with one medium.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "a device has few cells, and they are met often")]
@@ -244,12 +247,7 @@ impl Region {
     pub fn takes_four(&self) -> bool {
         matches!(self, Self::Conformal(_))
     }
-}
 
-/// Straight pieces that a closed form's path is drawn with.
-const PIECES: u32 = 96;
-
-impl Region {
     /// Points along the way that [`Region::advance`] takes to `end`, with the optical path from its start: for
     /// drawings. Without those between where they cannot be had.
     #[must_use]

@@ -124,12 +124,9 @@ impl Hull {
     /// the photograph may stand across it.
     #[must_use]
     pub fn with_thin_mirror(self, line: Outline, extent: Extent) -> Self {
-        let radius = line.radius() * GRAZING;
-        let reach = match self.reach {
-            Reach::Nothing => Reach::Cylinder(radius),
-            Reach::Cylinder(own) | Reach::Ball(own) => Reach::Cylinder(own.max(radius)),
-        };
-        Self { thin_mirror: Some(Solid::Prism { outline: line, extent }), reach, ..self }
+        let sheet = Solid::Prism { outline: line, extent };
+        let reach = self.reach.joined(Reach::of(&sheet));
+        Self { thin_mirror: Some(sheet), reach, ..self }
     }
 
     /// The hull of bare metal below a floor: it holds only that part of its outline.
@@ -217,9 +214,7 @@ impl Hull {
         let inside = self.solids.iter().any(|solid| solid.holds(point));
         inside && self.metal.as_ref().is_none_or(|metal| metal.contains(point.truncate()))
     }
-}
 
-impl Hull {
     /// The solids with an open core filled.
     fn filled_solids(&self) -> impl Iterator<Item = &Solid> {
         self.filled.iter().chain(self.solids.iter().filter(|_| self.filled.is_none()))
