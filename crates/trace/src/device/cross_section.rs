@@ -74,11 +74,14 @@ impl Structure {
             body_medium: self.body_medium(),
             body: self.hull.body(),
             is_shadow: false,
-            metal: joined(metal),
+            metal: joined(metal.map(|line| line.points.clone())),
             regions: sections
-                .map(|(region, lines)| Section { border: joined(lines), region })
+                .map(|(region, lines)| Section {
+                    border: joined(lines.iter().map(|line| line.points.clone())),
+                    region,
+                })
                 .collect(),
-            outlines: joined(&outside),
+            outlines: joined(outside.into_iter().map(|line| line.points)),
         }
     }
 
@@ -322,8 +325,7 @@ fn near(a: DVec2, b: DVec2) -> bool {
 }
 
 /// Lines joined where their ends meet, in whichever direction they run.
-fn joined<'l>(lines: impl IntoIterator<Item = &'l Line>) -> Vec<Contour> {
-    let lines = lines.into_iter().map(|line| line.points.clone());
+fn joined(lines: impl Iterator<Item = Vec<DVec2>>) -> Vec<Contour> {
     let mut rest: Vec<Vec<DVec2>> = lines.filter(|line| line.len() > 1).collect();
     let mut contours = Vec::new();
     while !rest.is_empty() {
