@@ -1,43 +1,88 @@
 //! Errors of the library as Python exceptions, with the same messages.
 
+use cloakroom::flux::FluxError;
+use cloakroom::material::MaterialError;
+use cloakroom::measure::QualityError;
 use cloakroom::output::OutputError;
+use cloakroom::ray_exchange::RayError;
 use cloakroom::render::RenderError;
 use cloakroom::scene_file::SceneFileError;
+use cloakroom_figures::verification::VerificationError;
+use cloakroom_figures::{IllustrationError, TableError};
 use pyo3::PyErr;
-use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError, PyOSError, PyValueError};
+use pyo3::exceptions::{
+    PyFileNotFoundError, PyKeyboardInterrupt, PyMemoryError, PyOSError, PyValueError,
+};
+use std::error::Error;
+use std::path::Path;
 
-/// A `ValueError` with the message of an error.
-pub fn value_error(error: impl std::fmt::Display) -> PyErr {
-    PyValueError::new_err(error.to_string())
+/// What a function of the package raises.
+#[derive(Debug)]
+pub struct Failure(PyErr);
+
+impl From<Failure> for PyErr {
+    fn from(failure: Failure) -> Self {
+        failure.0
+    }
 }
 
-/// What work that was stopped from outside ends with, should nobody say more.
-pub fn stopped() -> PyErr {
-    PyKeyboardInterrupt::new_err(())
+impl<E: Error + 'static> From<E> for Failure {
+    /// The exception for an error of the library, or an exception as it is. Work that was stopped from outside ends
+    /// with `KeyboardInterrupt`, should nobody say more.
+    fn from(error: E) -> Self {
+        let error: Box<dyn Error> = Box::new(error);
+        let error = match error.downcast::<PyErr>() {
+            Ok(raised) => return Self(*raised),
+            Err(error) => error,
+        };
+        let stopped = matches!(error.downcast_ref(), Some(RenderError::Stopped))
+            || matches!(error.downcast_ref(), Some(QualityError::Render(RenderError::Stopped)))
+            || matches!(error.downcast_ref(), Some(MaterialError::Stopped))
+            || matches!(error.downcast_ref(), Some(FluxError::Stopped))
+            || matches!(error.downcast_ref(), Some(RayError::Stopped(_)))
+            || matches!(error.downcast_ref(), Some(VerificationError::Stopped));
+        let too_large = matches!(error.downcast_ref(), Some(RenderError::TooLarge { .. }))
+            || matches!(error.downcast_ref(), Some(MaterialError::TooLarge { .. }))
+            || matches!(error.downcast_ref(), Some(RayError::TooMany { .. }));
+        let unwritten = match (error.downcast_ref(), error.downcast_ref()) {
+            (Some(IllustrationError::Output(error)), _) | (_, Some(TableError::Output(error))) => {
+                Some(error)
+            }
+            _ => error.downcast_ref(),
+        };
+        let message = error.to_string();
+        Self(if stopped {
+            PyKeyboardInterrupt::new_err(())
+        } else if too_large {
+            PyMemoryError::new_err(message)
+        } else if matches!(unwritten, Some(OutputError::Write { .. })) {
+            PyOSError::new_err(message)
+        } else {
+            PyValueError::new_err(message)
+        })
+    }
+}
+
+/// A `ValueError` with a message.
+pub fn value_error(message: impl std::fmt::Display) -> Failure {
+    Failure(PyValueError::new_err(message.to_string()))
+}
+
+/// An error of reading a file, which may not be there.
+pub fn unreadable(path: &Path, error: impl Error + 'static) -> Failure {
+    if path.exists() {
+        error.into()
+    } else {
+        PyFileNotFoundError::new_err(error.to_string()).into()
+    }
 }
 
 /// An error of a scene. That of a file says where in the file; a scene made in Python has no lines, and an override is
 /// no argument of a command line.
-pub fn scene_error(error: &SceneFileError, is_file: bool) -> PyErr {
+pub fn scene_error(error: &SceneFileError, is_file: bool) -> Failure {
     match &error.override_text {
         Some(text) => value_error(format!("{text}: {}", error.message)),
         None if is_file => value_error(error),
         None => value_error(&error.message),
-    }
-}
-
-/// An error of a rendering.
-pub fn render_error(error: &RenderError) -> PyErr {
-    match error {
-        RenderError::Stopped => stopped(),
-        RenderError::TooLarge { .. } => PyMemoryError::new_err(error.to_string()),
-    }
-}
-
-/// An error of writing a file.
-pub fn output_error(error: &OutputError) -> PyErr {
-    match error {
-        OutputError::Write { .. } => PyOSError::new_err(error.to_string()),
-        _ => value_error(error),
     }
 }

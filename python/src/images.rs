@@ -1,9 +1,8 @@
 //! Images that are arrays.
 
-use crate::errors::value_error;
+use crate::errors::{Failure, value_error};
 use cloakroom::photograph::{ImageSource, LinearImage, Texels};
-use ndarray::ArrayView3;
-use numpy::{PyArray3, PyReadonlyArray3, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
@@ -18,32 +17,31 @@ pub struct Image {
 #[pymethods]
 impl Image {
     #[new]
-    fn new(array: &Bound<'_, PyAny>) -> PyResult<Self> {
+    fn new(array: &Bound<'_, PyAny>) -> Result<Self, Failure> {
         let (shape, texels) = if let Ok(codes) = array.extract::<PyReadonlyArray3<'_, u8>>() {
-            (codes.shape().to_vec(), Texels::Srgb8(in_order(&codes.as_array())))
+            (codes.shape().to_vec(), Texels::Srgb8(codes.as_array().iter().copied().collect()))
         } else if let Ok(light) = array.extract::<PyReadonlyArray3<'_, f32>>() {
-            (light.shape().to_vec(), Texels::Linear(in_order(&light.as_array())))
+            (light.shape().to_vec(), Texels::Linear(light.as_array().iter().copied().collect()))
         } else {
-            return Err(PyTypeError::new_err(
-                "an image must be of uint8 or float32, (height, width, 3)",
-            ));
+            let message = "an image must be of uint8 or float32, (height, width, 3)";
+            return Err(PyTypeError::new_err(message).into());
         };
         let [height, width, 3] = shape[..] else {
             return Err(value_error("an image must be of the shape (height, width, 3)"));
         };
         let image = LinearImage { width, height, texels };
-        Ok(Self { source: ImageSource::memory(image).map_err(value_error)? })
+        Ok(Self { source: ImageSource::memory(image)? })
     }
 
     /// The array, a copy.
-    fn array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn array<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>, Failure> {
         let ImageSource::Memory(image) = &self.source else {
             return Err(value_error("the image is no array"));
         };
-        let shape = (image.height, image.width, 3);
+        let shape = [image.height, image.width, 3];
         Ok(match &image.texels {
-            Texels::Srgb8(codes) => of_shape(py, shape, codes)?.into_any(),
-            Texels::Linear(light) => of_shape(py, shape, light)?.into_any(),
+            Texels::Srgb8(codes) => PyArray1::from_slice(py, codes).reshape(shape)?.into_any(),
+            Texels::Linear(light) => PyArray1::from_slice(py, light).reshape(shape)?.into_any(),
         })
     }
 
@@ -51,22 +49,5 @@ impl Image {
     #[getter]
     fn name(&self) -> String {
         self.source.to_string()
-    }
-}
-
-fn of_shape<'py, T: numpy::Element + Copy>(
-    py: Python<'py>,
-    shape: (usize, usize, usize),
-    values: &[T],
-) -> PyResult<Bound<'py, PyArray3<T>>> {
-    let view = ArrayView3::from_shape(shape, values).map_err(value_error)?;
-    Ok(PyArray3::from_array(py, &view))
-}
-
-/// The elements in the order of rows.
-fn in_order<T: Copy>(array: &ArrayView3<'_, T>) -> Vec<T> {
-    match array.as_slice() {
-        Some(slice) => slice.to_vec(),
-        None => array.iter().copied().collect(),
     }
 }

@@ -1,6 +1,6 @@
 //! Interfaces solved by the thousand.
 
-use crate::errors::value_error;
+use crate::errors::{Failure, value_error};
 use crate::supervision::supervised;
 use cloakroom::interface_exchange::{InterfaceReport, InterfaceRequest, ModeReport};
 use glam::DVec3;
@@ -11,6 +11,7 @@ use optics::medium::{Medium, Tensor};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
+use std::sync::atomic::Ordering;
 
 /// Permittivity and permeability of a medium, each of shape (N, 3, 3), or (1, 3, 3) for all.
 type Tensors<'py> = (PyReadonlyArray3<'py, Complex64>, PyReadonlyArray3<'py, Complex64>);
@@ -25,7 +26,7 @@ struct Media<'a> {
 }
 
 impl<'a> Media<'a> {
-    fn new(name: &'static str, tensors: &'a Tensors<'_>) -> PyResult<Self> {
+    fn new(name: &'static str, tensors: &'a Tensors<'_>) -> Result<Self, Failure> {
         let (permittivity, permeability) = (tensors.0.as_array(), tensors.1.as_array());
         let mut media = Self { name, permittivity, permeability, same: None };
         if media.permittivity.len_of(Axis(0)) == 1 && media.permeability.len_of(Axis(0)) == 1 {
@@ -63,7 +64,7 @@ pub fn interface<'py>(
     normals: PyReadonlyArray2<'py, f64>,
     tangentials: PyReadonlyArray2<'py, f64>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> Result<Bound<'py, PyDict>, Failure> {
     let incident = Media::new("incident", &incident)?;
     let beyond = transmitted.as_ref().map(|tensors| Media::new("transmitted", tensors));
     let beyond = beyond.transpose()?;
@@ -81,25 +82,25 @@ pub fn interface<'py>(
         );
         request.and_then(|request| request.solve()).map_err(|error| error.to_string())
     };
-    let reports = supervised(py, progress.as_ref(), |watch| {
+    let reports = supervised(py, progress.as_ref(), |watch, supervision| {
         watch.begin(count as u64);
         let solved: Vec<Result<InterfaceReport, String>> = (0..count)
             .into_par_iter()
             .map(|index| {
-                if watch.stop().load(std::sync::atomic::Ordering::Relaxed) {
+                if supervision.stop.load(Ordering::Relaxed) {
                     return Err("stopped".to_owned());
                 }
-                watch.advance(1);
+                (supervision.rows_done)(1);
                 solve(index)
             })
             .collect();
         // In order, so that the first bad one is the one that is named.
         let reports = solved.into_iter().enumerate().map(|(index, report)| {
-            report.map_err(|problem| format!("interface {index} (counted from 0): {problem}"))
+            let named = |problem| format!("interface {index} (counted from 0): {problem}");
+            report.map_err(|problem| value_error(named(problem)))
         });
-        reports.collect::<Result<Vec<_>, String>>()
-    })?
-    .map_err(value_error)?;
+        reports.collect::<Result<Vec<_>, _>>()
+    })?;
     arrays(py, &reports, if beyond.is_some() { 4 } else { 2 })
 }
 
@@ -107,7 +108,7 @@ fn arrays<'py>(
     py: Python<'py>,
     reports: &[InterfaceReport],
     outgoing: usize,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> Result<Bound<'py, PyDict>, Failure> {
     let arrays = PyDict::new(py);
     arrays.set_item("incident", modes(py, reports, |report| &report.incident)?)?;
     arrays.set_item("reflected", modes(py, reports, |report| &report.reflected)?)?;
@@ -133,7 +134,7 @@ fn modes<'py>(
     py: Python<'py>,
     reports: &[InterfaceReport],
     of: impl Fn(&InterfaceReport) -> &[ModeReport],
-) -> PyResult<Bound<'py, PyDict>> {
+) -> Result<Bound<'py, PyDict>, Failure> {
     let shape = (reports.len(), 2, 3);
     let complex = |field: fn(&ModeReport) -> &[[f64; 2]; 3]| {
         Array3::from_shape_fn(shape, |(i, mode, axis)| {

@@ -1,11 +1,10 @@
 //! What devices are made of, into files.
 
-use crate::errors::{output_error, stopped, value_error};
+use crate::errors::Failure;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
-use cloakroom::material::{self, Frame, MaterialError, Resolution};
+use cloakroom::material::{self, Frame, Resolution};
 use cloakroom::output::{self, GridFormat};
-use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -22,31 +21,28 @@ pub fn export_grid(
     spacing: Option<f64>,
     world: bool,
     progress: Option<Py<PyAny>>,
-) -> PyResult<()> {
-    GridFormat::of(&path).map_err(|error| output_error(&error))?;
-    output::check_writable(&path).map_err(|error| output_error(&error))?;
+) -> Result<(), Failure> {
+    GridFormat::of(&path)?;
+    output::check_writable(&path)?;
     let frame = if world { Frame::World } else { Frame::Device };
     let resolution = match (cells, spacing) {
         (Some(cells), _) => Resolution::Cells(cells),
         (None, Some(side)) => Resolution::Spacing(side),
         (None, None) => Resolution::Default,
     };
-    supervised(py, progress.as_ref(), |watch| {
-        let assembly = scene.assembly().map_err(|error| scene.located(&error))?;
-        let begun = |rows| watch.begin(rows);
-        let sampled = watch.supervise(|supervision| {
-            material::sample(
-                scene.scene(),
-                &assembly,
-                device,
-                frame,
-                resolution,
-                &begun,
-                supervision,
-            )
-        });
-        output::write_grid(&sampled.map_err(failure)?, &path).map_err(|error| output_error(&error))
-    })?
+    supervised(py, progress.as_ref(), |watch, supervision| {
+        let (assembly, begun) = (scene.assembly()?, |rows| watch.begin(rows));
+        let sampled = material::sample(
+            scene.scene(),
+            assembly,
+            device,
+            frame,
+            resolution,
+            &begun,
+            supervision,
+        )?;
+        Ok(output::write_grid(&sampled, &path)?)
+    })
 }
 
 /// Writes the homogeneous segments of a device as a table.
@@ -56,18 +52,9 @@ pub fn export_table(
     scene: &Scene,
     path: PathBuf,
     device: Option<usize>,
-) -> PyResult<()> {
-    supervised(py, None, |_| {
-        let assembly = scene.assembly().map_err(|error| scene.located(&error))?;
-        let segments = material::segments(scene.scene(), &assembly, device).map_err(failure)?;
-        material::write_segments(&segments, &path).map_err(|error| output_error(&error))
-    })?
-}
-
-fn failure(error: MaterialError) -> PyErr {
-    match error {
-        MaterialError::Stopped => stopped(),
-        MaterialError::TooLarge { .. } => PyMemoryError::new_err(error.to_string()),
-        error => value_error(error),
-    }
+) -> Result<(), Failure> {
+    supervised(py, None, |_, _| {
+        let segments = material::segments(scene.scene(), scene.assembly()?, device)?;
+        Ok(material::write_segments(&segments, &path)?)
+    })
 }

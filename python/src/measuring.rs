@@ -1,46 +1,37 @@
 //! What is measured: pictures against each other, devices over settings, light on a receiver, the paper's statements.
 
-use crate::errors::{output_error, stopped, value_error};
+use crate::errors::{Failure, unreadable};
 use crate::images::Image;
 use crate::pictures::picture_of;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
 use cloakroom::flux::{self as light, Direction, FluxError, Sampling};
-use cloakroom::measure::{
-    self, Plan, QualityError, Region, Sweep, View, quality as measured_quality,
-};
+use cloakroom::measure::{self, Plan, Region, Sweep, View};
 use cloakroom::output;
 use cloakroom::photograph::ImageSource;
-use cloakroom::render::RenderError;
-use cloakroom_figures::verification::{self, VerificationError};
-use cloakroom_figures::{STANDARD_PLOT, TableError, TableFormat, write_table};
-use ndarray::{ArrayD, IxDyn};
+use cloakroom_figures::verification;
+use cloakroom_figures::{STANDARD_PLOT, TableFormat, write_table};
+use ndarray::ArrayD;
 use numpy::{IntoPyArray, PyReadonlyArray2, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyFileNotFoundError, PyTypeError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A picture as it may be handed over: the channels of one, an image, or the name of a file.
-fn view(object: &Bound<'_, PyAny>) -> PyResult<View> {
+fn view(object: &Bound<'_, PyAny>) -> Result<View, Failure> {
     if let Ok(channels) = object.cast::<PyDict>() {
-        return View::of(&picture_of(channels, Vec::new())?).map_err(value_error);
+        return Ok(View::of(&picture_of(channels, Vec::new())?)?);
     }
     if let Ok(image) = object.cast::<Image>()
         && let ImageSource::Memory(image) = &image.get().source
     {
-        return View::of_linear(image).map_err(value_error);
+        return Ok(View::of_linear(image)?);
     }
     let path: PathBuf = object
         .extract()
         .map_err(|_| PyTypeError::new_err("a picture, an array or a path is expected"))?;
-    View::read(&path).map_err(|error| {
-        if path.exists() {
-            value_error(error)
-        } else {
-            PyFileNotFoundError::new_err(error.to_string())
-        }
-    })
+    View::read(&path).map_err(|error| unreadable(&path, error))
 }
 
 /// Compares two pictures, over the whole and over a region: a mask (height, width), or left, top, width and height in
@@ -53,7 +44,7 @@ pub fn quality(
     second: &Bound<'_, PyAny>,
     mask: Option<PyReadonlyArray2<'_, bool>>,
     rectangle: Option<[usize; 4]>,
-) -> PyResult<String> {
+) -> Result<String, Failure> {
     let (first, second) = (view(first)?, view(second)?);
     let region = match (mask, rectangle) {
         (Some(mask), _) => {
@@ -63,9 +54,9 @@ pub fn quality(
         (None, Some(rectangle)) => Some(Region::rectangle(&first, rectangle)),
         (None, None) => None,
     };
-    let region = region.transpose().map_err(value_error)?;
-    let comparison = supervised(py, None, |_| measure::compare(&first, &second, region.as_ref()))?;
-    serde_json::to_string(&comparison.map_err(value_error)?).map_err(value_error)
+    let region = region.transpose()?;
+    let compare = || measure::compare(&first, &second, region.as_ref());
+    Ok(serde_json::to_string(&supervised(py, None, |_, _| Ok(compare()?))?)?)
 }
 
 /// Measures a scene for every combination of the values of keys, as overrides write them; `path` may name a table or a
@@ -78,52 +69,31 @@ pub fn sweep(
     sweeps: Vec<(String, Vec<String>)>,
     path: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<String> {
-    let format = path.as_deref().map(TableFormat::of).transpose();
-    let format = format.map_err(|error| output_error(&error))?;
-    check_writable(path.as_deref())?;
+) -> Result<String, Failure> {
+    let format = path.as_deref().map(TableFormat::of).transpose()?;
+    path.as_deref().map_or(Ok(()), output::check_writable)?;
     let sweeps: Vec<Sweep> =
         sweeps.into_iter().map(|(key, values)| Sweep { key, values }).collect();
-    let table = supervised(py, progress.as_ref(), |watch| {
-        let plan = Plan::new(sweeps, |further| scene.reload(further)).map_err(quality_error)?;
+    let table = supervised(py, progress.as_ref(), |watch, supervision| {
+        let plan = Plan::new(sweeps, |further| scene.reload(further))?;
         watch.begin(plan.steps());
-        watch.supervise(|supervision| measured_quality(&plan, supervision)).map_err(quality_error)
-    })??;
+        Ok(measure::quality(&plan, supervision)?)
+    })?;
     if let (Some(path), Some(format)) = (&path, format) {
-        let plot = STANDARD_PLOT.map(str::to_owned);
-        write_table(&table, format, &plot, path).map_err(|error| match error {
-            TableError::Output(error) => output_error(&error),
-            error => value_error(error),
-        })?;
+        write_table(&table, format, &STANDARD_PLOT.map(str::to_owned), path)?;
     }
-    serde_json::to_string(&table.to_json()).map_err(value_error)
-}
-
-/// Says before long work that a file cannot be written.
-fn check_writable(path: Option<&Path>) -> PyResult<()> {
-    path.map_or(Ok(()), output::check_writable).map_err(|error| output_error(&error))
-}
-
-fn quality_error(error: QualityError) -> PyErr {
-    match error {
-        QualityError::Render(RenderError::Stopped) => stopped(),
-        error => value_error(error),
-    }
+    Ok(serde_json::to_string(&table.to_json())?)
 }
 
 /// Goes through the statements of the paper. Gives JSON.
 #[pyfunction]
 #[pyo3(signature = (progress=None))]
-pub fn verify(py: Python<'_>, progress: Option<Py<PyAny>>) -> PyResult<String> {
-    let findings = supervised(py, progress.as_ref(), |watch| {
+pub fn verify(py: Python<'_>, progress: Option<Py<PyAny>>) -> Result<String, Failure> {
+    let findings = supervised(py, progress.as_ref(), |watch, supervision| {
         watch.begin(verification::steps());
-        verification::verify(&|| watch.advance(1), watch.stop())
-    })?
-    .map_err(|error| match error {
-        VerificationError::Stopped => stopped(),
-        error => value_error(error),
+        Ok(verification::verify(&|| (supervision.rows_done)(1), supervision.stop)?)
     })?;
-    serde_json::to_string(&findings).map_err(value_error)
+    Ok(serde_json::to_string(&findings)?)
 }
 
 /// Measures the light on the receiver, for angles of incidence tilted along the receiver, or for the sun over a day at a
@@ -140,8 +110,8 @@ pub fn flux<'py>(
     sampling: [u32; 3],
     path: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
-    check_writable(path.as_deref())?;
+) -> Result<Bound<'py, PyDict>, Failure> {
+    path.as_deref().map_or(Ok(()), output::check_writable)?;
     let receiver = &scene.scene().receiver;
     let directions: Vec<Direction> = match sun {
         Some([latitude, declination]) => light::sun_day(receiver, latitude, declination, 0.5),
@@ -149,24 +119,20 @@ pub fn flux<'py>(
     };
     let [rays, samples, cells] = sampling;
     let sampling = Sampling { rays, samples, cells };
-    let report = supervised(py, progress.as_ref(), |watch| {
-        watch.supervise(|supervision| {
-            let begun = |steps| watch.begin(steps);
-            light::flux(scene.scene(), &directions, sampling, &begun, supervision)
+    let report = supervised(py, progress.as_ref(), |watch, supervision| {
+        let begun = |steps| watch.begin(steps);
+        let report = light::flux(scene.scene(), &directions, sampling, &begun, supervision);
+        report.map_err(|error| match error {
+            FluxError::Scene(error) => scene.located(&error),
+            error => error.into(),
         })
-    })?
-    .map_err(|error| match error {
-        FluxError::Scene(error) => scene.located(&error),
-        FluxError::Stopped => stopped(),
-        error => value_error(error),
     })?;
     if let Some(path) = path {
-        light::write_flux_npz(&report, &path).map_err(|error| output_error(&error))?;
+        light::write_flux_npz(&report, &path)?;
     }
     let arrays = PyDict::new(py);
     for (name, shape, values) in light::flux_arrays(&report).into_parts() {
-        let array = ArrayD::from_shape_vec(IxDyn(&shape), values).map_err(value_error)?;
-        arrays.set_item(name, array.into_pyarray(py))?;
+        arrays.set_item(name, ArrayD::from_shape_vec(shape, values)?.into_pyarray(py))?;
     }
     Ok(arrays)
 }

@@ -1,15 +1,15 @@
 //! Pictures: rendered into numpy arrays, and from them into files.
 
-use crate::errors::{output_error, render_error, value_error};
+use crate::errors::{Failure, unreadable, value_error};
 use crate::scenes::Scene;
 use crate::supervision::supervised;
 use cloakroom::output::{self, Channel, Picture, RgbImage, Samples};
 use cloakroom::render as rendering;
-use cloakroom::render::{ChannelSet, PreparedScene, Tile};
-use cloakroom_figures::{IllustrationError, PictureFormat, scalar_map, write_picture};
+use cloakroom::render::{ChannelSet, Tile};
+use cloakroom_figures::{PictureFormat, scalar_map, write_picture};
 use ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyFileNotFoundError, PyTypeError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::io::Cursor;
@@ -31,29 +31,27 @@ pub fn render<'py>(
     image_only: bool,
     tile: Option<[u32; 4]>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Rendered<'py>> {
+) -> Result<Rendered<'py>, Failure> {
     let tile = tile.map(|[left, top, width, height]| {
         Tile { left, top, width, height }.check(scene.scene().camera.resolution())
     });
-    let tile = tile.transpose().map_err(value_error)?;
+    let tile = tile.transpose()?;
     let wanted = if image_only { ChannelSet::Image } else { ChannelSet::Everything };
-    let rendered = supervised(py, progress.as_ref(), |watch| {
-        let studio = PreparedScene::new(scene.scene()).map_err(|error| scene.located(&error))?;
+    let rendered = supervised(py, progress.as_ref(), |watch, supervision| {
+        let studio = scene.prepared()?;
         watch.begin(tile.map_or(studio.rows(), |tile| tile.height.into()));
-        watch
-            .supervise(|supervision| match tile {
-                Some(tile) => rendering::render_tile(&studio, wanted, tile, supervision),
-                None => rendering::render(&studio, wanted, supervision),
-            })
-            .map_err(|error| render_error(&error))
-    })??;
+        Ok(match tile {
+            Some(tile) => rendering::render_tile(&studio, wanted, tile, supervision)?,
+            None => rendering::render(&studio, wanted, supervision)?,
+        })
+    })?;
     let stats = (rendered.stats.endless, rendered.stats.lost);
     let (channels, metadata) = arrays(py, rendered.picture)?;
     Ok((channels, metadata, stats))
 }
 
 /// The channels of a picture as arrays, and its metadata. The memory of each channel goes to numpy as it is.
-fn arrays(py: Python<'_>, picture: Picture) -> PyResult<Arrays<'_>> {
+fn arrays(py: Python<'_>, picture: Picture) -> Result<Arrays<'_>, Failure> {
     let shape = (picture.height, picture.width);
     let channels = PyDict::new(py);
     for Channel { name, samples } in picture.channels {
@@ -62,7 +60,7 @@ fn arrays(py: Python<'_>, picture: Picture) -> PyResult<Arrays<'_>> {
             Samples::F64(values) => channels.set_item(name, plane(py, shape, values)?)?,
             Samples::Rgb(values) => {
                 let colors = Array3::from_shape_vec((shape.0, shape.1, 3), values.into_flattened());
-                channels.set_item(name, colors.map_err(value_error)?.into_pyarray(py))?;
+                channels.set_item(name, colors?.into_pyarray(py))?;
             }
         }
     }
@@ -71,15 +69,9 @@ fn arrays(py: Python<'_>, picture: Picture) -> PyResult<Arrays<'_>> {
 
 /// Reads a picture from an NPZ.
 #[pyfunction]
-pub fn read(py: Python<'_>, path: PathBuf) -> PyResult<Arrays<'_>> {
-    let picture = supervised(py, None, |_| output::read_npz(&path))?.map_err(|error| {
-        if path.exists() {
-            value_error(error)
-        } else {
-            PyFileNotFoundError::new_err(error.to_string())
-        }
-    })?;
-    arrays(py, picture)
+pub fn read(py: Python<'_>, path: PathBuf) -> Result<Arrays<'_>, Failure> {
+    let read = |error| unreadable(&path, error);
+    arrays(py, supervised(py, None, |_, _| output::read_npz(&path).map_err(read))?)
 }
 
 /// What a tile is called, its channels and its metadata.
@@ -87,20 +79,20 @@ type Piece<'py> = (String, Bound<'py, PyDict>, Vec<(String, String)>);
 
 /// Puts tiles together.
 #[pyfunction]
-pub fn merge<'py>(py: Python<'py>, tiles: Vec<Piece<'py>>) -> PyResult<Arrays<'py>> {
+pub fn merge<'py>(py: Python<'py>, tiles: Vec<Piece<'py>>) -> Result<Arrays<'py>, Failure> {
     let piece = |(name, channels, metadata): Piece<'_>| {
         Ok((name, metadata, picture_of(&channels, Vec::new())?))
     };
-    let pieces = tiles.into_iter().map(piece).collect::<PyResult<Vec<_>>>()?;
-    arrays(py, rendering::merge(&pieces).map_err(value_error)?)
+    let pieces = tiles.into_iter().map(piece).collect::<Result<Vec<_>, Failure>>()?;
+    arrays(py, rendering::merge(&pieces)?)
 }
 
 fn plane<'py, T: numpy::Element>(
     py: Python<'py>,
     shape: (usize, usize),
     values: Vec<T>,
-) -> PyResult<Bound<'py, numpy::PyArray2<T>>> {
-    Ok(Array2::from_shape_vec(shape, values).map_err(value_error)?.into_pyarray(py))
+) -> Result<Bound<'py, numpy::PyArray2<T>>, Failure> {
+    Ok(Array2::from_shape_vec(shape, values)?.into_pyarray(py))
 }
 
 /// Writes channels as the ending of the file's name asks for; a PNG shows the image, or the map of one channel.
@@ -111,16 +103,11 @@ pub fn save(
     channels: &Bound<'_, PyDict>,
     metadata: Vec<(String, String)>,
     map: (Option<String>, bool),
-) -> PyResult<()> {
-    let format = PictureFormat::of(&path).map_err(|error| output_error(&error))?;
+) -> Result<(), Failure> {
+    let format = PictureFormat::of(&path)?;
     let picture = picture_of(channels, metadata)?;
-    supervised(py, None, |_| {
-        let map = (map.0.as_deref(), map.1);
-        write_picture(&picture, map, format, &path).map_err(|error| match error {
-            IllustrationError::Output(error) => output_error(&error),
-            error => value_error(error),
-        })
-    })?
+    let map = (map.0.as_deref(), map.1);
+    supervised(py, None, |_, _| Ok(write_picture(&picture, map, format, &path)?))
 }
 
 /// What a PNG of the channels shows, as 8-bit sRGB (height, width, 3).
@@ -129,13 +116,12 @@ pub fn srgb<'py>(
     py: Python<'py>,
     channels: &Bound<'py, PyDict>,
     map: (Option<String>, bool),
-) -> PyResult<Bound<'py, PyArray3<u8>>> {
+) -> Result<Bound<'py, PyArray3<u8>>, Failure> {
     let picture = picture_of(channels, Vec::new())?;
-    let image = supervised(py, None, |_| shown(&picture, &map))??;
+    let image = supervised(py, None, |_, _| shown(&picture, &map))?;
     let (width, height) = image.dimensions();
     let shape = (height as usize, width as usize, 3);
-    let array = Array3::from_shape_vec(shape, image.into_raw()).map_err(value_error)?;
-    Ok(array.into_pyarray(py))
+    Ok(Array3::from_shape_vec(shape, image.into_raw())?.into_pyarray(py))
 }
 
 /// A PNG of the channels as bytes.
@@ -145,29 +131,31 @@ pub fn png_bytes<'py>(
     channels: &Bound<'py, PyDict>,
     metadata: Vec<(String, String)>,
     map: (Option<String>, bool),
-) -> PyResult<Bound<'py, PyBytes>> {
+) -> Result<Bound<'py, PyBytes>, Failure> {
     let picture = picture_of(channels, metadata)?;
-    let bytes = supervised(py, None, |_| {
+    let bytes = supervised(py, None, |_, _| {
         let mut out = Cursor::new(Vec::new());
-        output::encode_png(&shown(&picture, &map)?, &picture.metadata, &mut out)
-            .map_err(value_error)?;
-        Ok::<_, PyErr>(out.into_inner())
-    })??;
+        output::encode_png(&shown(&picture, &map)?, &picture.metadata, &mut out)?;
+        Ok(out.into_inner())
+    })?;
     Ok(PyBytes::new(py, &bytes))
 }
 
-fn shown(picture: &Picture, (map, color_bar): &(Option<String>, bool)) -> PyResult<RgbImage> {
-    match map {
-        None => output::to_srgb(picture).map_err(|error| output_error(&error)),
-        Some(channel) => scalar_map(picture, channel, *color_bar).map_err(value_error),
-    }
+fn shown(
+    picture: &Picture,
+    (map, color_bar): &(Option<String>, bool),
+) -> Result<RgbImage, Failure> {
+    Ok(match map {
+        None => output::to_srgb(picture)?,
+        Some(channel) => scalar_map(picture, channel, *color_bar)?,
+    })
 }
 
 /// The picture that channels are.
 pub fn picture_of(
     channels: &Bound<'_, PyDict>,
     metadata: Vec<(String, String)>,
-) -> PyResult<Picture> {
+) -> Result<Picture, Failure> {
     let mut size = None;
     let mut taken = Vec::new();
     for (name, array) in channels {
@@ -183,10 +171,11 @@ pub fn picture_of(
             let (texels, _) = values.as_chunks::<3>();
             (colors.shape().to_vec(), Samples::Rgb(texels.to_vec()))
         } else {
-            return Err(PyTypeError::new_err(format!(
+            let message = format!(
                 "channel `{name}` must be an array of float32 or float64, (height, width), or of float32, \
                  (height, width, 3)"
-            )));
+            );
+            return Err(PyTypeError::new_err(message).into());
         };
         let shape = [shape[0], shape[1]];
         if *size.get_or_insert(shape) != shape {

@@ -1,22 +1,15 @@
 //! Rays traced by the million.
 
-use crate::errors::{stopped, value_error};
+use crate::errors::Failure;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
-use cloakroom::ray_exchange::{Polarization, RayError, RayRequest, leaf_table};
+use cloakroom::ray_exchange::{Polarization, RayRequest, leaf_table};
 use cloakroom::render::ray_limits;
-use ndarray::{Array2, ArrayView2, Axis};
+use ndarray::{Array2, ArrayView2, Axis, ShapeError};
 use num_complex::Complex64;
 use numpy::{IntoPyArray, PyReadonlyArray2};
-use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-
-/// Polarizations of rays: a word for all of them, or a field for each.
-enum Polarizations<'a> {
-    Same(Polarization),
-    Fields(ArrayView2<'a, Complex64>),
-}
 
 /// Traces rays of shape (N, 3); `polarization` is a word, `fields` of shape (N, 3) stand instead of it. Gives the
 /// arrays of a `Traced` by their names.
@@ -32,32 +25,30 @@ pub fn trace<'py>(
     fields: Option<PyReadonlyArray2<'py, Complex64>>,
     min_power: Option<f64>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> Result<Bound<'py, PyDict>, Failure> {
     let (origins, directions) = (origins.as_array(), directions.as_array());
-    let polarizations = match &fields {
-        Some(fields) => Polarizations::Fields(fields.as_array()),
-        None if polarization == "vertical" => Polarizations::Same(Polarization::Vertical),
-        None => Polarizations::Same(Polarization::Horizontal),
-    };
+    let fields = fields.as_ref().map(PyReadonlyArray2::as_array);
+    let vertical = polarization == "vertical";
     let count = origins.len_of(Axis(0));
     let limits = ray_limits(scene.scene(), min_power);
     let ray = |index: usize| {
         let row = |array: &ArrayView2<'_, f64>| std::array::from_fn(|axis| array[[index, axis]]);
-        let polarization = match &polarizations {
-            Polarizations::Same(polarization) => *polarization,
-            Polarizations::Fields(fields) => {
+        let polarization = match &fields {
+            Some(fields) => {
                 let field = |axis| fields[[index, axis]];
                 Polarization::ElectricField([0, 1, 2].map(field).map(|c| [c.re, c.im]))
             }
+            None if vertical => Polarization::Vertical,
+            None => Polarization::Horizontal,
         };
         RayRequest { origin: row(&origins), direction: row(&directions), polarization }
     };
-    let table = supervised(py, progress.as_ref(), |watch| {
-        let assembly = scene.assembly().map_err(|error| scene.located(&error))?;
+    let table = supervised(py, progress.as_ref(), |watch, supervision| {
+        let assembly = scene.assembly()?;
         watch.begin(count as u64);
-        let done = |rays| watch.advance(rays);
-        leaf_table(&assembly, limits, count, &ray, &done, watch.stop()).map_err(ray_error)
-    })??;
+        let (done, stop) = (supervision.rows_done, supervision.stop);
+        Ok(leaf_table(assembly, limits, count, &ray, done, stop)?)
+    })?;
     let arrays = PyDict::new(py);
     arrays.set_item("ray", table.ray.into_pyarray(py))?;
     arrays.set_item("position", triples(table.position)?.into_pyarray(py))?;
@@ -71,14 +62,6 @@ pub fn trace<'py>(
 }
 
 /// Rows of three, their memory as it is.
-fn triples<T>(rows: Vec<[T; 3]>) -> PyResult<Array2<T>> {
-    Array2::from_shape_vec((rows.len(), 3), rows.into_flattened()).map_err(value_error)
-}
-
-fn ray_error(error: RayError) -> PyErr {
-    match error {
-        RayError::Stopped(_) => stopped(),
-        RayError::TooMany { .. } => PyMemoryError::new_err(error.to_string()),
-        RayError::Ray { .. } => value_error(error),
-    }
+fn triples<T>(rows: Vec<[T; 3]>) -> Result<Array2<T>, ShapeError> {
+    Array2::from_shape_vec((rows.len(), 3), rows.into_flattened())
 }

@@ -1,16 +1,15 @@
 //! Scenes.
 
-use crate::errors::{scene_error, value_error};
+use crate::errors::{Failure, scene_error, unreadable, value_error};
 use crate::images::Image;
 use crate::supervision::supervised;
 use crate::values::value_of;
 use cloakroom::assembly::Assembly;
 use cloakroom::keys::Value;
 use cloakroom::photograph::ImageSource;
-use cloakroom::render::{PreparedSceneError, assembly};
+use cloakroom::render::{PreparedScene, PreparedSceneError, assembly};
 use cloakroom::scene;
 use cloakroom::scene_file::{self, Loaded, SceneFileError};
-use pyo3::exceptions::PyFileNotFoundError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
@@ -25,7 +24,7 @@ pub struct Scene {
     arrays: Arrays,
     loaded: Loaded,
     /// The devices, built when they are first needed.
-    assembly: OnceLock<Arc<Assembly>>,
+    assembly: OnceLock<Assembly>,
 }
 
 /// What a scene is read from.
@@ -104,7 +103,7 @@ impl Scene {
         overrides: Vec<String>,
         photograph: Option<&Image>,
         surroundings: Option<&Image>,
-    ) -> PyResult<Self> {
+    ) -> Result<Self, Failure> {
         let written = Written { content: Content::Text(text), name, folder, is_file };
         Self::read(Arc::new(written), overrides, Arrays::new(photograph, surroundings))
     }
@@ -117,7 +116,7 @@ impl Scene {
         folder: PathBuf,
         photograph: Option<&Image>,
         surroundings: Option<&Image>,
-    ) -> PyResult<Self> {
+    ) -> Result<Self, Failure> {
         let name = "scene".to_owned();
         let content = Content::Tables(value_of(&name, tables)?);
         let written = Written { content, name, folder, is_file: false };
@@ -126,14 +125,8 @@ impl Scene {
 
     /// Reads a scene file.
     #[staticmethod]
-    fn load(path: PathBuf) -> PyResult<Self> {
-        let loaded = scene_file::load(&path, &[]).map_err(|error| {
-            if path.exists() {
-                scene_error(&error, true)
-            } else {
-                PyFileNotFoundError::new_err(error.to_string())
-            }
-        })?;
+    fn load(path: PathBuf) -> Result<Self, Failure> {
+        let loaded = scene_file::load(&path, &[]).map_err(|error| unreadable(&path, error))?;
         let written = Written {
             content: Content::Text(loaded.scene.source.clone()),
             name: path.display().to_string(),
@@ -151,7 +144,7 @@ impl Scene {
         overrides: Vec<String>,
         photograph: Option<&Image>,
         surroundings: Option<&Image>,
-    ) -> PyResult<Self> {
+    ) -> Result<Self, Failure> {
         let arrays = Arrays::new(photograph, surroundings);
         Self::read(Arc::clone(&self.written), overrides, arrays)
     }
@@ -208,14 +201,17 @@ impl Scene {
     }
 
     /// Builds the devices, and the rest of what a picture needs.
-    fn check(&self, py: Python<'_>) -> PyResult<()> {
-        supervised(py, None, |_| cloakroom::render::PreparedScene::new(self.scene()).map(drop))?
-            .map_err(|error| self.located(&error))
+    fn check(&self, py: Python<'_>) -> Result<(), Failure> {
+        supervised(py, None, |_, _| self.prepared().map(drop))
     }
 }
 
 impl Scene {
-    fn read(written: Arc<Written>, overrides: Vec<String>, arrays: Arrays) -> PyResult<Self> {
+    fn read(
+        written: Arc<Written>,
+        overrides: Vec<String>,
+        arrays: Arrays,
+    ) -> Result<Self, Failure> {
         let loaded = written.read(&overrides, &arrays);
         let loaded = loaded.map_err(|error| scene_error(&error, written.is_file))?;
         Ok(Self { written, overrides, arrays, loaded, assembly: OnceLock::new() })
@@ -227,7 +223,7 @@ impl Scene {
     }
 
     /// An error of the built scene, at its place.
-    pub fn located(&self, error: &PreparedSceneError) -> PyErr {
+    pub fn located(&self, error: &PreparedSceneError) -> Failure {
         if self.written.is_file {
             let located = self.loaded.locations.error_at(&error.key(), error.to_string());
             return scene_error(&located, true);
@@ -240,12 +236,17 @@ impl Scene {
         self.written.read(&[&self.overrides, further].concat(), &self.arrays)
     }
 
+    /// What a picture needs, built.
+    pub fn prepared(&self) -> Result<PreparedScene<'_>, Failure> {
+        PreparedScene::new(self.scene()).map_err(|error| self.located(&error))
+    }
+
     /// Its devices, built.
-    pub fn assembly(&self) -> Result<Arc<Assembly>, PreparedSceneError> {
+    pub fn assembly(&self) -> Result<&Assembly, Failure> {
         if let Some(assembly) = self.assembly.get() {
-            return Ok(Arc::clone(assembly));
+            return Ok(assembly);
         }
-        let built = Arc::new(assembly(self.scene())?);
-        Ok(Arc::clone(self.assembly.get_or_init(|| built)))
+        let built = assembly(self.scene()).map_err(|error| self.located(&error))?;
+        Ok(self.assembly.get_or_init(|| built))
     }
 }

@@ -1,5 +1,6 @@
 //! Long work: without the interpreter's lock, with progress, stopped by Ctrl-C, its panics as exceptions.
 
+use crate::errors::Failure;
 use cloakroom::render::Supervision;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -18,33 +19,17 @@ const BEAT: Duration = Duration::from_millis(50);
 /// More threads than any machine has.
 const MOST_THREADS: usize = 4096;
 
-/// How far the work is, and whether it is to stop.
+/// How far the work is.
 #[derive(Debug, Default)]
 pub struct Watch {
-    stop: AtomicBool,
     done: AtomicU64,
     total: AtomicU64,
 }
 
 impl Watch {
-    /// Set to stop the work.
-    pub fn stop(&self) -> &AtomicBool {
-        &self.stop
-    }
-
     /// Says how many steps there are.
     pub fn begin(&self, steps: u64) {
         self.total.store(steps, Ordering::Relaxed);
-    }
-
-    /// Says how many more steps have been done.
-    pub fn advance(&self, steps: u64) {
-        self.done.fetch_add(steps, Ordering::Relaxed);
-    }
-
-    /// Runs work that wants to be supervised.
-    pub fn supervise<T>(&self, work: impl FnOnce(&Supervision<'_>) -> T) -> T {
-        work(&Supervision { rows_done: &|rows| self.advance(rows), stop: &self.stop })
     }
 
     fn tell(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
@@ -57,25 +42,28 @@ impl Watch {
 }
 
 /// Runs work on all threads while other Python threads go on; `progress` is called with the steps done and the steps
-/// in all.
+/// in all, of which the work tells what it is watched and supervised by.
 ///
 /// # Errors
 ///
-/// What a signal handler or `progress` raises, after the work has been stopped; `RuntimeError` for a panic.
+/// That of the work; what a signal handler or `progress` raises, after the work has been stopped; `RuntimeError` for a
+/// panic.
 pub fn supervised<T: Send>(
     py: Python<'_>,
     progress: Option<&Py<PyAny>>,
-    work: impl FnOnce(&Watch) -> T + Send,
-) -> PyResult<T> {
+    work: impl FnOnce(&Watch, &Supervision<'_>) -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
     let pool = pool()?;
-    let watch = Watch::default();
+    let (watch, stop) = (Watch::default(), AtomicBool::new(false));
+    let rows_done = |rows| _ = watch.done.fetch_add(rows, Ordering::Relaxed);
+    let supervision = Supervision { rows_done: &rows_done, stop: &stop };
     let (result, raised) = py.detach(|| {
         thread::scope(|scope| {
             let (finished, news) = channel::<()>();
             let worker = scope.spawn(|| {
                 let _finished = finished;
                 // What a panic leaves behind is dropped with it.
-                catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&watch))))
+                catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&watch, &supervision))))
             });
             let mut raised = None;
             while news.recv_timeout(BEAT) == Err(RecvTimeoutError::Timeout) {
@@ -85,7 +73,7 @@ pub fn supervised<T: Send>(
                 let told =
                     Python::attach(|py| py.check_signals().and_then(|()| watch.tell(py, progress)));
                 if let Err(error) = told {
-                    watch.stop.store(true, Ordering::Relaxed);
+                    stop.store(true, Ordering::Relaxed);
                     raised = Some(error);
                 }
             }
@@ -93,11 +81,11 @@ pub fn supervised<T: Send>(
         })
     });
     match (raised, result) {
-        (Some(error), _) => Err(error),
-        (None, Err(panic)) => Err(panicked(&*panic)),
+        (Some(error), _) => Err(error.into()),
+        (None, Err(panic)) => Err(panicked(&*panic).into()),
         (None, Ok(result)) => {
             watch.tell(py, progress)?;
-            Ok(result)
+            result
         }
     }
 }
@@ -159,6 +147,6 @@ pub fn threads() -> PyResult<usize> {
 
 /// Panics, for the test that a panic does not take the interpreter down.
 #[pyfunction]
-pub fn fail_on_purpose(py: Python<'_>) -> PyResult<()> {
-    supervised(py, None, |_| panic!("on purpose"))
+pub fn fail_on_purpose(py: Python<'_>) -> Result<(), Failure> {
+    supervised(py, None, |_, _| panic!("on purpose"))
 }

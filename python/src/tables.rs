@@ -1,6 +1,6 @@
 //! The tables of a scene: held against their lists of keys, and described.
 
-use crate::errors::value_error;
+use crate::errors::{Failure, value_error};
 use crate::values::{object_of, value_of};
 use cloakroom::device;
 use cloakroom::keys::{Key, hint, unknown};
@@ -26,7 +26,7 @@ pub fn fit<'py>(
     py: Python<'py>,
     table: &str,
     entries: &Bound<'py, PyDict>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> Result<Bound<'py, PyDict>, Failure> {
     let (lists, place) = lists(table)?;
     let keys = || lists.iter().copied().flatten();
     let fitted = PyDict::new(py);
@@ -34,7 +34,7 @@ pub fn fit<'py>(
         let name: String = name.extract()?;
         let Some(key) = keys().find(|key| key.name == name) else {
             let known: Vec<&str> = keys().map(|key| key.name).collect();
-            return Err(PyTypeError::new_err(unknown("key", &name, &place, &known)));
+            return Err(PyTypeError::new_err(unknown("key", &name, &place, &known)).into());
         };
         let value = key.check(&value_of(&name, &object)?).map_err(value_error)?;
         fitted.set_item(name, object_of(py, &value)?)?;
@@ -43,7 +43,7 @@ pub fn fit<'py>(
 }
 
 /// The lists of keys of a table or a kind of device, and how messages call it.
-fn lists(table: &str) -> PyResult<(Vec<&'static [Key]>, String)> {
+fn lists(table: &str) -> Result<(Vec<&'static [Key]>, String), Failure> {
     if let Some((name, keys)) = TABLES.iter().find(|(name, _)| *name == table) {
         return Ok((vec![keys], format!(" in [{name}]")));
     }

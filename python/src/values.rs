@@ -65,8 +65,7 @@ fn convert(name: &str, object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Valu
     if let Ok(size) = object.getattr("size").and_then(|size| size.extract::<usize>())
         && size > MOST_ENTRIES
     {
-        let message = format!("{name} has {size} entries; no key takes that many");
-        return Err(PyValueError::new_err(message));
+        return Err(too_many(name, size));
     }
     if let Ok(plain) = object.call_method0("tolist") {
         return convert(name, &plain, depth + 1);
@@ -80,11 +79,14 @@ fn convert(name: &str, object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Valu
 fn list(name: &str, object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Value> {
     let length = object.len()?;
     if length > MOST_ENTRIES {
-        let message = format!("{name} has {length} entries; no key takes that many");
-        return Err(PyValueError::new_err(message));
+        return Err(too_many(name, length));
     }
     let items = object.try_iter()?.map(|item| convert(name, &item?, depth + 1));
     items.collect::<PyResult<_>>().map(Value::List)
+}
+
+fn too_many(name: &str, entries: usize) -> PyErr {
+    PyValueError::new_err(format!("{name} has {entries} entries; no key takes that many"))
 }
 
 /// A value as a Python object.

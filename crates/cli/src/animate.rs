@@ -1,43 +1,38 @@
 //! `cloakroom animate`: a film of a scene while keys of it change.
 
 use crate::arguments::AnimateArguments;
-use crate::interruption;
-use crate::progress;
+use crate::interruption::{self, STOP};
+use crate::progress::supervised;
 use crate::render::tell_rarities;
 use crate::report::{Failure, say};
 use crate::scene;
 use cloakroom::output;
-use cloakroom::render::{RenderError, Supervision};
-use cloakroom::scene_file::{self, Loaded};
+use cloakroom::scene_file::Loaded;
 use cloakroom::timeline::Timeline;
 use cloakroom::trace::TraceStats;
-use cloakroom_figures::film::{
-    FilmError, FilmFormat, FilmSettings, FrameFolder, Projector, write_film,
-};
+use cloakroom_figures::film::{FilmFormat, FilmSettings, FrameFolder, Projector, write_film};
 use std::ffi::OsString;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 /// Renders the frames that are not there yet, and makes the film of them.
-pub fn run(arguments: &AnimateArguments, stop: &AtomicBool) -> Result<(), Failure> {
+pub fn run(arguments: &AnimateArguments) -> Result<(), Failure> {
     let path = &arguments.output;
     let format = FilmFormat::of(path).map_err(Failure::Failed)?;
-    let timeline =
-        Timeline::new(&arguments.sweeps, arguments.frames).map_err(Failure::from_error)?;
+    let timeline = Timeline::new(&arguments.sweeps, arguments.frames)?;
     let count = timeline.frames();
     let range = range(arguments.frames_only, count)?;
     if arguments.frames_only.is_none() && format != FilmFormat::Frames {
-        format.check().map_err(Failure::from_error)?;
-        output::check_writable(path).map_err(Failure::from_error)?;
+        format.check()?;
+        output::check_writable(path)?;
     }
     scene::use_threads(&arguments.threads)?;
     let mut projector = Projector::with_map_range(arguments.map_range);
     let scenes = scenes(arguments, &timeline, range.clone(), &mut projector)?;
     let folder = if format == FilmFormat::Frames { path.clone() } else { frames_beside(path) };
-    let frames = FrameFolder::new(&folder, count).map_err(failure)?;
+    let frames = FrameFolder::new(&folder, count)?;
     let _busy = interruption::busy();
-    let rendered = render(&scenes, range, &frames, &mut projector, stop);
+    let rendered = render(&scenes, range, &frames, &mut projector);
     if let Err(Failure::Interrupted) = rendered {
         say(&format!("the finished frames are kept in {}", folder.display()));
     }
@@ -52,17 +47,12 @@ pub fn run(arguments: &AnimateArguments, stop: &AtomicBool) -> Result<(), Failur
         ));
         return Ok(());
     }
-    let bar = progress::bar(count as u64, "writing");
     let metadata = scenes.first().map(|loaded| projector.metadata(&loaded.scene));
-    let settings = FilmSettings {
-        rate: arguments.fps,
-        metadata: &metadata.unwrap_or_default(),
-        frame_done: &|| bar.inc(1),
-        stop,
-    };
-    let written = write_film(&frames, format, path, &settings);
-    bar.finish_and_clear();
-    written.map_err(failure)?;
+    let (rate, metadata) = (arguments.fps, &metadata.unwrap_or_default());
+    supervised(count as u64, "writing", |bar, _| {
+        let settings = FilmSettings { rate, metadata, frame_done: &|| bar.inc(1), stop: &STOP };
+        write_film(&frames, format, path, &settings)
+    })?;
     if !arguments.keep_frames {
         frames.remove();
     }
@@ -78,9 +68,7 @@ fn scenes(
 ) -> Result<Vec<Loaded>, Failure> {
     let mut scenes: Vec<Loaded> = Vec::new();
     for frame in range {
-        let overrides = [&arguments.scene.overrides[..], &timeline.overrides(frame)].concat();
-        let loaded =
-            scene_file::load(&arguments.scene.scene, &overrides).map_err(Failure::from_error)?;
+        let loaded = scene::load(&arguments.scene, &timeline.overrides(frame))?;
         projector.studio(&loaded.scene).map_err(|error| scene::located(&loaded, &error))?;
         if loaded.scene.picture.map.name().is_some() && arguments.map_range.is_none() {
             return Err(Failure::Failed(
@@ -106,13 +94,10 @@ fn render(
     range: Range<usize>,
     frames: &FrameFolder,
     projector: &mut Projector,
-    stop: &AtomicBool,
 ) -> Result<(), Failure> {
     let rows = scenes.first().map_or(0, |first| u64::from(first.scene.camera.resolution()[1]));
-    let bar = progress::bar(rows * scenes.len() as u64, "rendering");
-    let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
     let (mut stats, mut skipped) = (TraceStats::default(), 0);
-    let all = || {
+    supervised(rows * scenes.len() as u64, "rendering", |bar, supervision| {
         for (loaded, frame) in scenes.iter().zip(range) {
             let scene = &loaded.scene;
             let studio = projector.studio(scene).map_err(|error| scene::located(loaded, &error))?;
@@ -123,15 +108,12 @@ fn render(
                 bar.inc(rows);
                 continue;
             }
-            let (image, rare) = projector.frame(scene, &studio, &supervision).map_err(failure)?;
+            let (image, rare) = projector.frame(scene, &studio, supervision)?;
             stats += rare;
-            frames.write(frame, &image, &metadata).map_err(failure)?;
+            frames.write(frame, &image, &metadata)?;
         }
-        Ok(())
-    };
-    let rendered = all();
-    bar.finish_and_clear();
-    rendered?;
+        Ok::<_, Failure>(())
+    })?;
     tell_rarities(&stats);
     if skipped > 0 {
         say(&format!("{skipped} of {} frames were there already", scenes.len()));
@@ -156,11 +138,4 @@ fn frames_beside(path: &Path) -> PathBuf {
     let mut name = OsString::from(path);
     name.push(".frames");
     name.into()
-}
-
-fn failure(error: FilmError) -> Failure {
-    match error {
-        FilmError::Render(RenderError::Stopped) => Failure::Interrupted,
-        error => Failure::from_error(error),
-    }
 }

@@ -1,10 +1,8 @@
 //! The command line.
 
-mod carried;
 mod measuring;
 mod values;
 
-pub use carried::{CompletionsArguments, ManualArguments, ScenesArguments, SchemaArguments};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use cloakroom::render::Tile;
@@ -41,7 +39,10 @@ pub enum Command {
     /// List the pulses in which a short flash of the photograph arrives at one pixel.
     Pulses(PulsesArguments),
     /// Solve interfaces between media, or of a medium and metal; JSON in, JSON out.
-    Interface(InterfaceArguments),
+    Interface {
+        /// The interfaces: a JSON file, or - for standard input.
+        interfaces: PathBuf,
+    },
     /// Make the figures of Halimeh & Wegener, Opt. Express 21, 9457 (2013): the setting (1), drawn as
     /// PNG and SVG, and the pictures (2-9).
     Figures(FiguresArguments),
@@ -63,13 +64,24 @@ pub enum Command {
     /// Open a page in the browser, served on this machine alone, on which devices can be turned and changed.
     View(ViewArguments),
     /// List the devices with their keys and computed facts.
-    Devices(DevicesArguments),
+    Devices {
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+    },
     /// List the example scenes, or copy them.
     Scenes(ScenesArguments),
     /// Print the JSON Schema of scene files, for editors, or the same as a page to read.
-    Schema(SchemaArguments),
+    Schema {
+        /// Print a page in Markdown.
+        #[arg(long)]
+        markdown: bool,
+    },
     /// Print completions of the command line for a shell.
-    Completions(CompletionsArguments),
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
     /// Print a manual page, as in `cloakroom manual render | man -l -`, or write them all.
     Manual(ManualArguments),
 }
@@ -192,13 +204,6 @@ pub struct PulsesArguments {
     pub json: bool,
 }
 
-/// Arguments of `interface`.
-#[derive(Args, Debug)]
-pub struct InterfaceArguments {
-    /// The interfaces: a JSON file, or - for standard input.
-    pub interfaces: PathBuf,
-}
-
 /// Arguments of `figures`.
 #[derive(Args, Debug)]
 pub struct FiguresArguments {
@@ -263,10 +268,26 @@ pub struct ViewArguments {
     pub threads: ThreadsArguments,
 }
 
-/// Arguments of `devices`.
+/// Arguments of `scenes`.
 #[derive(Args, Debug)]
-pub struct DevicesArguments {
+pub struct ScenesArguments {
+    /// Only these files or folders, as in shop-window,gallery.
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub only: Vec<String>,
+    /// Copy them into this folder.
+    #[arg(long, value_name = "DIR", conflicts_with = "json")]
+    pub out: Option<PathBuf>,
     /// Print JSON.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `manual`.
+#[derive(Args, Debug)]
+pub struct ManualArguments {
+    /// The command [default: all of them in short].
+    pub command: Option<String>,
+    /// Write a page for each command into this folder.
+    #[arg(long, value_name = "DIR", conflicts_with = "command")]
+    pub out: Option<PathBuf>,
 }

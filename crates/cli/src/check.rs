@@ -4,24 +4,20 @@ use crate::arguments::SceneArguments;
 use crate::devices::fact_lines;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::render::{PreparedScene, estimated_seconds};
+use cloakroom::render::{Images, PreparedScene, estimated_seconds};
+use cloakroom::scene::Scene;
 use cloakroom::threads;
 use std::fmt::Write;
 
 /// Validates a scene and prints facts about it.
 pub fn run(arguments: &SceneArguments) -> Result<(), Failure> {
-    let loaded = scene::load(arguments)?;
-    let studio = PreparedScene::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
-    let mut text = String::new();
-    describe(&studio, &loaded.scene, &mut text).map_err(Failure::from_error)?;
-    report::print(&text)
+    let loaded = scene::load(arguments, &[])?;
+    let studio = scene::prepared(&loaded, &mut Images::default())?;
+    report::print(&described(&studio, &loaded.scene)?)
 }
 
-fn describe(
-    studio: &PreparedScene<'_>,
-    scene: &cloakroom::scene::Scene,
-    text: &mut String,
-) -> std::fmt::Result {
+fn described(studio: &PreparedScene<'_>, scene: &Scene) -> Result<String, std::fmt::Error> {
+    let mut text = String::new();
     let camera = &scene.camera;
     let [width, height] = camera.resolution();
     let [photo_width, photo_height] = studio.photograph_size();
@@ -46,5 +42,6 @@ fn describe(
         }
     }
     let seconds = estimated_seconds(studio);
-    writeln!(text, "estimate     {seconds:.1} s to render on {} threads", threads::count())
+    writeln!(text, "estimate     {seconds:.1} s to render on {} threads", threads::count())?;
+    Ok(text)
 }

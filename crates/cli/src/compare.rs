@@ -5,41 +5,33 @@ use crate::report::{self, Failure};
 use crate::scene;
 use cloakroom::measure::{Comparison, Figures, MeasureError, Region, View, compare};
 use std::fmt::Write;
-use std::path::Path;
 
 /// Compares two pictures.
 pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
     scene::use_threads(&arguments.threads)?;
-    let read = |path: &Path| View::read(path).map_err(Failure::from_error);
-    let (first, second) = (read(&arguments.first)?, read(&arguments.second)?);
+    let (first, second) = (View::read(&arguments.first)?, View::read(&arguments.second)?);
     let region = match (&arguments.mask, arguments.region) {
         (Some(mask), _) => {
-            Some(Region::bright(&read(mask)?).map_err(|error| in_mask(mask, &error))?)
+            Some(Region::bright(&View::read(mask)?).map_err(|error| match error {
+                MeasureError::EmptyRegion => {
+                    Failure::Failed(format!("{}: nothing in this mask is white", mask.display()))
+                }
+                error => error.into(),
+            })?)
         }
-        (None, Some(rectangle)) => {
-            Some(Region::rectangle(&first, rectangle).map_err(Failure::from_error)?)
-        }
+        (None, Some(rectangle)) => Some(Region::rectangle(&first, rectangle)?),
         (None, None) => None,
     };
     let comparison = compare(&first, &second, region.as_ref()).map_err(|error| match error {
         MeasureError::SizesDiffer { .. } => Failure::Failed(format!(
             "pictures to be compared, and a mask, must be of one size; {error}"
         )),
-        error => Failure::from_error(error),
+        error => error.into(),
     })?;
     if arguments.json {
         return report::print_json(&comparison);
     }
-    report::print(&table(&comparison).map_err(Failure::from_error)?)
-}
-
-fn in_mask(mask: &Path, error: &MeasureError) -> Failure {
-    match error {
-        MeasureError::EmptyRegion => {
-            Failure::Failed(format!("{}: nothing in this mask is white", mask.display()))
-        }
-        error => Failure::from_error(error),
-    }
+    report::print(&table(&comparison)?)
 }
 
 /// The figures for people: a column for the picture, and one for the region.
@@ -54,10 +46,7 @@ fn table(comparison: &Comparison) -> Result<String, std::fmt::Error> {
         }
         writeln!(text)
     };
-    row("", &|figures| {
-        let whole = std::ptr::eq(figures, columns[0]);
-        if whole { "picture".to_owned() } else { "region".to_owned() }
-    })?;
+    row("", &|f| if std::ptr::eq(f, columns[0]) { "picture" } else { "region" }.to_owned())?;
     row("pixels", &|f| f.pixels.to_string())?;
     row("correlation (R G B)", &|f| triple(f.correlation.map(|c| number(c, 5))))?;
     row("  at the best shift", &|f| {

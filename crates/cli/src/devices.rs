@@ -1,40 +1,39 @@
 //! `cloakroom devices`: the catalogue with computed facts.
 
-use crate::arguments::DevicesArguments;
 use crate::report::{self, Failure};
 use cloakroom::device::{CATALOGUE, Entry, Fact, FactValue};
 use cloakroom::json::json as value_json;
 use cloakroom::keys::{Key, KeyKind};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// Prints the catalogue.
-pub fn run(arguments: &DevicesArguments) -> Result<(), Failure> {
-    if arguments.json {
+pub fn run(json: bool) -> Result<(), Failure> {
+    if json {
         let list: Vec<Value> = CATALOGUE.iter().map(|entry| as_json(entry)).collect();
         return report::print_json(&json!({ "devices": list }));
     }
     let mut text = String::new();
     for entry in CATALOGUE {
-        describe(entry, &mut text).map_err(Failure::from_error)?;
+        describe(entry, &mut text)?;
     }
     report::print(&text)
 }
 
 fn as_json(entry: &Entry) -> Value {
-    let mut object = Map::new();
-    object.insert("kind".into(), json!(entry.kind));
-    object.insert("title".into(), json!(entry.title));
-    object.insert("summary".into(), json!(entry.summary));
-    object.insert("keys".into(), keys_as_json(entry.keys));
+    let mut object = json!({
+        "kind": entry.kind,
+        "title": entry.title,
+        "summary": entry.summary,
+        "keys": keys_as_json(entry.keys),
+    });
     for fact in (entry.device)().facts() {
-        let value = match fact.value {
+        object[fact.name] = match fact.value {
             FactValue::Number(number) => json!(number),
             FactValue::Numbers(numbers) => json!(numbers),
         };
-        object.insert(fact.name.into(), value);
     }
-    Value::Object(object)
+    object
 }
 
 fn keys_as_json(keys: &[Key]) -> Value {
@@ -48,21 +47,24 @@ fn keys_as_json(keys: &[Key]) -> Value {
     keys.iter().map(key).collect()
 }
 
-/// A line for each key; those of a list of tables follow it, as `prism.corners`.
-fn describe_keys(keys: &[Key], prefix: &str, text: &mut String) -> std::fmt::Result {
+/// Keys by their names; those of a table, or of a list of tables, follow it, as `prism.corners`.
+pub fn all_keys(keys: &'static [Key]) -> Vec<(String, &'static Key)> {
+    let mut all = Vec::new();
     for key in keys {
-        let name = format!("{prefix}{}", key.name);
-        writeln!(text, "  {name:<12} {} ({})", key.doc, key.describe())?;
+        all.push((key.name.to_owned(), key));
         if let KeyKind::Table { keys } | KeyKind::Tables { keys } = key.kind {
-            describe_keys(keys, &format!("{name}."), text)?;
+            let within = all_keys(keys).into_iter();
+            all.extend(within.map(|(name, inner)| (format!("{}.{name}", key.name), inner)));
         }
     }
-    Ok(())
+    all
 }
 
 fn describe(entry: &Entry, text: &mut String) -> std::fmt::Result {
     writeln!(text, "{}\n  {}\n", entry.kind, entry.summary)?;
-    describe_keys(entry.keys, "", text)?;
+    for (name, key) in all_keys(entry.keys) {
+        writeln!(text, "  {name:<12} {} ({})", key.doc, key.describe())?;
+    }
     writeln!(text)?;
     for line in fact_lines((entry.device)().facts()) {
         writeln!(text, "  {line}")?;
@@ -72,17 +74,13 @@ fn describe(entry: &Entry, text: &mut String) -> std::fmt::Result {
 
 /// The computed facts of a device, a line each.
 pub fn fact_lines(facts: Vec<Fact>) -> Vec<String> {
-    facts
-        .into_iter()
-        .map(|fact| {
-            let value = match fact.value {
-                FactValue::Number(number) => format!("{number:.6}"),
-                FactValue::Numbers(numbers) => {
-                    let parts: Vec<String> = numbers.iter().map(|n| format!("{n:.6}")).collect();
-                    parts.join(", ")
-                }
-            };
-            format!("{:<32} {value}", fact.name)
-        })
-        .collect()
+    let line = |fact: Fact| {
+        let numbers = match fact.value {
+            FactValue::Number(number) => vec![number],
+            FactValue::Numbers(numbers) => numbers,
+        };
+        let words: Vec<String> = numbers.iter().map(|n| format!("{n:.6}")).collect();
+        format!("{:<32} {}", fact.name, words.join(", "))
+    };
+    facts.into_iter().map(line).collect()
 }

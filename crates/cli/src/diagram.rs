@@ -1,46 +1,42 @@
 //! `cloakroom diagram`: ray diagrams and settings.
 
 use crate::arguments::DiagramArguments;
+use crate::files::{check_writable, formats};
+use crate::interruption::{self, STOP};
 use crate::report::Failure;
-use crate::{interruption, scene};
-use cloakroom::output;
-use cloakroom::scene_file::Loaded;
+use crate::scene;
+use cloakroom::scene::Camera;
 use cloakroom_figures::{
     Diagram, DiagramError, DiagramSettings, DrawingFormat, Projected, Setting, Source,
 };
-use std::sync::atomic::AtomicBool;
 
 /// Draws a scene and writes every file asked for.
-pub fn run(arguments: &DiagramArguments, stop: &AtomicBool) -> Result<(), Failure> {
-    let formats: Vec<DrawingFormat> = (arguments.outputs.iter())
-        .map(|path| DrawingFormat::of(path))
-        .collect::<Result<_, _>>()
-        .map_err(Failure::from_error)?;
-    for path in &arguments.outputs {
-        output::check_writable(path).map_err(Failure::from_error)?;
-    }
-    let loaded = scene::load(&arguments.scene)?;
+pub fn run(arguments: &DiagramArguments) -> Result<(), Failure> {
+    let formats = formats(&arguments.outputs, DrawingFormat::of)?;
+    check_writable(&arguments.outputs)?;
+    let loaded = scene::load(&arguments.scene, &[])?;
     let _busy = interruption::busy();
     let (drawing, metadata, title) = if arguments.setting {
-        let [width, height] = arguments.size;
         let mut scene = loaded.scene.clone();
         let mut settings = scene.camera.settings().clone();
         // The sheet has the aspect of the picture.
-        settings.resolution = [width, height];
-        scene.camera = cloakroom::scene::Camera::new(settings).map_err(Failure::from_error)?;
+        settings.resolution = arguments.size;
+        scene.camera = Camera::new(settings)?;
         let Setting { drawing, metadata, .. } =
             cloakroom_figures::setting(&scene).map_err(|e| scene::located(&loaded, &e))?;
         (drawing, metadata, "Setting")
     } else {
         let Diagram { drawing, metadata } =
-            cloakroom_figures::diagram(&loaded.scene, &settings(arguments), stop)
-                .map_err(|error| failure(&loaded, error))?;
+            cloakroom_figures::diagram(&loaded.scene, &settings(arguments), &STOP).map_err(
+                |error| match error {
+                    DiagramError::Scene(error) => scene::located(&loaded, &error),
+                    error => error.into(),
+                },
+            )?;
         (drawing, metadata, "Ray diagram")
     };
-    for (path, format) in arguments.outputs.iter().zip(formats) {
-        drawing
-            .write(format, title, &metadata, arguments.size, path)
-            .map_err(Failure::from_error)?;
+    for (path, format) in formats {
+        drawing.write(format, title, &metadata, arguments.size, path)?;
     }
     Ok(())
 }
@@ -68,13 +64,5 @@ fn settings(arguments: &DiagramArguments) -> DiagramSettings {
             Projected::Space { azimuth, elevation }
         }),
         size: arguments.size,
-    }
-}
-
-fn failure(loaded: &Loaded, error: DiagramError) -> Failure {
-    match error {
-        DiagramError::Scene(error) => scene::located(loaded, &error),
-        DiagramError::Stopped => Failure::Interrupted,
-        other => Failure::from_error(other),
     }
 }

@@ -1,64 +1,30 @@
 //! `cloakroom export`: what a device is made of.
 
 use crate::arguments::ExportArguments;
+use crate::progress::supervised;
 use crate::report::Failure;
-use crate::{interruption, progress, scene};
-use cloakroom::assembly::Assembly;
-use cloakroom::material::{self, Frame, MaterialError, Resolution};
+use crate::{interruption, scene};
+use cloakroom::material::{self, Frame, Resolution};
 use cloakroom::output::{self, GridFormat};
-use cloakroom::render::{self, Supervision};
-use cloakroom::scene_file::Loaded;
-use std::sync::atomic::AtomicBool;
 
 /// Writes the material of a device.
-pub fn run(arguments: &ExportArguments, stop: &AtomicBool) -> Result<(), Failure> {
+pub fn run(arguments: &ExportArguments) -> Result<(), Failure> {
     scene::use_threads(&arguments.threads)?;
-    let loaded = scene::load(&arguments.scene)?;
-    let assembly = render::assembly(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let loaded = scene::load(&arguments.scene, &[])?;
+    let assembly = scene::assembly(&loaded)?;
+    let (scene, device, path) = (&loaded.scene, arguments.device, &arguments.output);
     if arguments.table {
-        table(arguments, &loaded, &assembly)
-    } else {
-        grid(arguments, &loaded, &assembly, stop)
+        let segments = material::segments(scene, &assembly, device)?;
+        return Ok(material::write_segments(&segments, path)?);
     }
-}
-
-fn grid(
-    arguments: &ExportArguments,
-    loaded: &Loaded,
-    assembly: &Assembly,
-    stop: &AtomicBool,
-) -> Result<(), Failure> {
-    GridFormat::of(&arguments.output).map_err(Failure::from_error)?;
-    output::check_writable(&arguments.output).map_err(Failure::from_error)?;
+    GridFormat::of(path)?;
+    output::check_writable(path)?;
     let frame = if arguments.frame == "world" { Frame::World } else { Frame::Device };
     let resolution = arguments.grid.unwrap_or(Resolution::Default);
     let _busy = interruption::busy();
-    let bar = progress::bar(0, "sampling");
-    let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
-    let begun = |rows| bar.set_length(rows);
-    let sampled = material::sample(
-        &loaded.scene,
-        assembly,
-        arguments.device,
-        frame,
-        resolution,
-        &begun,
-        &supervision,
-    );
-    bar.finish_and_clear();
-    let sampled = sampled.map_err(failure)?;
-    output::write_grid(&sampled, &arguments.output).map_err(Failure::from_error)
-}
-
-fn table(arguments: &ExportArguments, loaded: &Loaded, assembly: &Assembly) -> Result<(), Failure> {
-    let segments =
-        material::segments(&loaded.scene, assembly, arguments.device).map_err(failure)?;
-    material::write_segments(&segments, &arguments.output).map_err(Failure::from_error)
-}
-
-fn failure(error: MaterialError) -> Failure {
-    match error {
-        MaterialError::Stopped => Failure::Interrupted,
-        other => Failure::from_error(other),
-    }
+    let sampled = supervised(0, "sampling", |bar, supervision| {
+        let begun = |rows| bar.set_length(rows);
+        material::sample(scene, &assembly, device, frame, resolution, &begun, supervision)
+    })?;
+    Ok(output::write_grid(&sampled, path)?)
 }

@@ -1,8 +1,9 @@
 //! `cloakroom figures`: the figures of the paper, drawn and rendered.
 
 use crate::arguments::FiguresArguments;
+use crate::files::make_folder;
 use crate::interruption;
-use crate::panels::{self, merge, write_drawing, write_png};
+use crate::panels::{merge, write_drawing, write_png};
 use crate::render::rgb;
 use crate::report::Failure;
 use crate::scene;
@@ -13,17 +14,16 @@ use cloakroom::scene_file::Loaded;
 use cloakroom_figures::paper::{self, Figure, Panel, Shows};
 use cloakroom_figures::{ColorBar, ScalarMap, Setting, SheetPanel, sheet};
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 /// Makes panels and sheets.
-pub fn run(arguments: &FiguresArguments, stop: &AtomicBool) -> Result<(), Failure> {
+pub fn run(arguments: &FiguresArguments) -> Result<(), Failure> {
     let chosen = paper::select(&arguments.only).map_err(Failure::Usage)?;
     scene::use_threads(&arguments.panels.threads)?;
-    panels::make_folder(&arguments.out)?;
+    make_folder(&arguments.out)?;
     let _busy = interruption::busy();
     let mut images = Images::default();
     for (figure, panels) in chosen {
-        make(figure, &panels, arguments, &mut images, stop)?;
+        make(figure, &panels, arguments, &mut images)?;
     }
     Ok(())
 }
@@ -34,23 +34,19 @@ fn make(
     chosen: &[&'static Panel],
     arguments: &FiguresArguments,
     images: &mut Images,
-    stop: &AtomicBool,
 ) -> Result<(), Failure> {
     let mut on_sheet = Vec::new();
     let mut metadata: Vec<(String, String)> = Vec::new();
     let mut views = Views::new(chosen, arguments)?;
     for (index, panel) in chosen.iter().enumerate() {
         let shown = match panel.shows {
-            Shows::Picture => rendered(&mut views, index, arguments, images, stop)?,
+            Shows::Picture => rendered(&mut views, index, arguments, images)?,
             Shows::Setting => drawn(panel, &views.subjects[index].loaded, arguments)?,
         };
-        merge(&mut metadata, &shown.metadata);
-        on_sheet.push(SheetPanel {
-            image: shown.image,
-            label: format!("({})", panel.letter()),
-            caption: panel.caption.to_owned(),
-            bar: shown.bar,
-        });
+        let (image, bar, of_panel) = shown;
+        merge(&mut metadata, &of_panel);
+        let (label, caption) = (format!("({})", panel.letter()), panel.caption.to_owned());
+        on_sheet.push(SheetPanel { image, label, caption, bar });
     }
     if chosen.len() == figure.panels.len() {
         let title = format!("Figure {}. {}", figure.number, figure.title);
@@ -62,12 +58,8 @@ fn make(
     Ok(())
 }
 
-/// A panel that has been written, for its sheet.
-struct Shown {
-    image: RgbImage,
-    bar: Option<ColorBar>,
-    metadata: Vec<(String, String)>,
-}
+/// A panel that has been written, for its sheet: what it shows, the colors of a map, and the metadata.
+type Shown = (RgbImage, Option<ColorBar>, Vec<(String, String)>);
 
 /// Renders a panel and writes it.
 fn rendered(
@@ -75,17 +67,14 @@ fn rendered(
     index: usize,
     arguments: &FiguresArguments,
     images: &mut Images,
-    stop: &AtomicBool,
 ) -> Result<Shown, Failure> {
-    let picture = views.picture(index, images, stop)?;
+    let picture = views.picture(index, images)?;
     let Subject { panel, loaded, .. } = &views.subjects[index];
     let image = rgb(&loaded.scene, &picture)?;
-    let bar = match loaded.scene.picture.map.name() {
-        Some(channel) => Some(ScalarMap::new(&picture, channel).map_err(Failure::from_error)?.bar),
-        None => None,
-    };
+    let map = loaded.scene.picture.map.name();
+    let map = map.map(|channel| ScalarMap::new(&picture, channel)).transpose()?;
     write_png(&image, &picture.metadata, &file(panel.name, "png", arguments))?;
-    Ok(Shown { image, bar, metadata: picture.metadata })
+    Ok((image, map.map(|map| map.bar), picture.metadata))
 }
 
 /// Draws the setting of a panel and writes it, in pixels and as lines.
@@ -93,11 +82,11 @@ fn drawn(panel: &Panel, loaded: &Loaded, arguments: &FiguresArguments) -> Result
     let Setting { drawing, metadata, .. } =
         cloakroom_figures::setting(&loaded.scene).map_err(|e| scene::located(loaded, &e))?;
     let size = arguments.panels.size;
-    let image = drawing.to_image(size).map_err(Failure::from_error)?;
+    let image = drawing.to_image(size)?;
     write_png(&image, &metadata, &file(panel.name, "png", arguments))?;
     let files = ["svg", "pdf"].map(|ending| file(panel.name, ending, arguments));
     write_drawing(&drawing, panel.caption, &metadata, size, &files)?;
-    Ok(Shown { image, bar: None, metadata })
+    Ok((image, None, metadata))
 }
 
 /// The file of a panel or of a sheet.

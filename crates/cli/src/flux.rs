@@ -1,52 +1,47 @@
 //! `cloakroom flux`: the light that comes through to a receiver.
 
 use crate::arguments::FluxArguments;
+use crate::files::{check_writable, formats};
+use crate::progress::supervised;
 use crate::report::{Failure, say};
-use crate::{interruption, progress, quality, render, report, scene};
-use cloakroom::flux::{self, Direction, FluxError, FluxReport, Sampling};
-use cloakroom::output::{self, OutputError};
-use cloakroom::render::Supervision;
+use crate::{interruption, render, report, scene};
+use cloakroom::flux::{self, Direction, FluxError, FluxReport, Gain, Sampling};
+use cloakroom::output;
 use cloakroom::scene::Scene;
+use cloakroom::trace::TraceStats;
 use cloakroom_figures::{Drawing, DrawingFormat, TableFormat, flux_map, flux_plot};
 use std::fmt::Write;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 /// Measures the flux and writes every file asked for.
-pub fn run(arguments: &FluxArguments, stop: &AtomicBool) -> Result<(), Failure> {
-    let files = quality::formats(&arguments.outputs)?;
-    let map = arguments.map.as_deref().map(|path| Ok((path, DrawingFormat::of(path)?)));
-    let map = map.transpose().map_err(|error: OutputError| Failure::from_error(error))?;
-    for path in arguments.outputs.iter().chain(&arguments.map) {
-        output::check_writable(path).map_err(Failure::from_error)?;
-    }
+pub fn run(arguments: &FluxArguments) -> Result<(), Failure> {
+    let files = formats(&arguments.outputs, TableFormat::of)?;
+    let map = formats(arguments.map.as_slice(), DrawingFormat::of)?;
+    check_writable(arguments.outputs.iter().chain(&arguments.map))?;
     scene::use_threads(&arguments.threads)?;
-    let loaded = scene::load(&arguments.scene)?;
+    let loaded = scene::load(&arguments.scene, &[])?;
     let (directions, axis) = directions(arguments, &loaded.scene)?;
     let sampling =
         Sampling { rays: arguments.rays, samples: arguments.samples, cells: arguments.cells };
     let _busy = interruption::busy();
-    let bar = progress::bar(0, "tracing");
-    let supervision = Supervision { rows_done: &|steps| bar.inc(steps), stop };
-    let begun = |steps| bar.set_length(steps);
-    let measured = flux::flux(&loaded.scene, &directions, sampling, &begun, &supervision);
-    bar.finish_and_clear();
+    let measured = supervised(0, "tracing", |bar, supervision| {
+        let begun = |steps| bar.set_length(steps);
+        flux::flux(&loaded.scene, &directions, sampling, &begun, supervision)
+    });
     let measured = measured.map_err(|error| match error {
         FluxError::Scene(error) => scene::located(&loaded, &error),
-        FluxError::Stopped => Failure::Interrupted,
-        other => Failure::from_error(other),
+        error => error.into(),
     })?;
-    let mut stats = cloakroom::trace::TraceStats::default();
+    let mut stats = TraceStats::default();
     measured.incidences.iter().for_each(|incidence| stats += incidence.stats);
     render::tell_rarities(&stats);
     for (path, format) in files {
         write(&measured, axis, format, path)?;
     }
-    if let Some((path, format)) = map
-        && let Some(map) = flux_map(&measured, axis)
-    {
-        let drawing = map.draw().map_err(Failure::from_error)?;
-        save(&drawing, "Irradiance of the receiver", &measured, (path, format))?;
+    for (path, format) in map {
+        if let Some(map) = flux_map(&measured, axis) {
+            save(&map.draw()?, "Irradiance of the receiver", &measured, (path, format))?;
+        }
     }
     report::print(&table(&measured, axis))
 }
@@ -79,11 +74,10 @@ fn write(
     path: &Path,
 ) -> Result<(), Failure> {
     match format {
-        TableFormat::Npz => flux::write_flux_npz(measured, path).map_err(Failure::from_error),
+        TableFormat::Npz => Ok(flux::write_flux_npz(measured, path)?),
         TableFormat::Csv => {
             let text = flux::flux_csv(measured);
-            output::write_whole(path, |out| out.write_all(text.as_bytes()))
-                .map_err(Failure::from_error)
+            Ok(output::write_whole(path, |out| out.write_all(text.as_bytes()))?)
         }
         TableFormat::Plot(format) => {
             let drawing = flux_plot(measured, axis).draw();
@@ -102,7 +96,7 @@ fn save(
     if format == DrawingFormat::Png {
         say(&format!("{}: {} x {} pixels", path.display(), size[0], size[1]));
     }
-    drawing.write(format, title, &measured.metadata, size, path).map_err(Failure::from_error)
+    Ok(drawing.write(format, title, &measured.metadata, size, path)?)
 }
 
 /// The totals and their convergence in words.
@@ -111,11 +105,13 @@ fn table(measured: &FluxReport, axis: &str) -> String {
         "{axis:>22} {:>9} {:>9} {:>19} {:>23}\n",
         "nothing", "bare", "cloaked", "shadow given back, %"
     );
+    let given = |gain: Option<Gain>| {
+        gain.map_or("-".to_owned(), |gain| format!("{:.3} ± {:.3}", gain.percent, gain.error))
+    };
     // Writing to a string cannot fail.
     for incidence in &measured.incidences {
         let [nothing, bare, cloaked] = incidence.totals.map(|stand| stand[2]);
-        let given = incidence.gains[2]
-            .map_or("-".to_owned(), |gain| format!("{:.3} ± {:.3}", gain.percent, gain.error));
+        let given = given(incidence.gains[2]);
         let _ = writeln!(
             text,
             "{:>22.4} {:>9.5} {:>9.5} {:>9.5} ± {:>7.5} {given:>23}",
@@ -125,9 +121,7 @@ fn table(measured: &FluxReport, axis: &str) -> String {
     if let Some(middle) = measured.incidences.get(measured.incidences.len() / 2) {
         let _ = writeln!(text, "convergence at {}:", middle.direction.label);
         for step in &middle.convergence {
-            let given = step
-                .gain
-                .map_or("-".to_owned(), |gain| format!("{:.3} ± {:.3}", gain.percent, gain.error));
+            let given = given(step.gain);
             let _ = writeln!(
                 text,
                 "{:>12} rays: cloaked {:.5} ± {:.5}, given back {given} %",

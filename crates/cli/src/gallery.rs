@@ -1,29 +1,29 @@
 //! `cloakroom gallery`: a picture of every device, how long light takes, and the table of them all.
 
 use crate::arguments::GalleryArguments;
+use crate::files::make_folder;
 use crate::interruption;
 use crate::panels::{self, merge, write_drawing, write_png};
-use crate::render::{picture, rgb, tell_rarities};
+use crate::render::{picture, rgb};
 use crate::report::Failure;
 use crate::scene;
-use cloakroom::render::{ChannelSet, Images, PreparedScene, Rendered};
+use cloakroom::render::{ChannelSet, Images};
 use cloakroom_figures::gallery::{self, EXHIBITS, Exhibit};
 use cloakroom_figures::{ScalarMap, TablePicture, TableRow, table};
-use std::sync::atomic::AtomicBool;
 
 /// The channel whose map stands beside the picture.
 const MAP: &str = "time_of_flight_difference";
 
 /// Makes the chosen pictures and maps, and the table if all are chosen.
-pub fn run(arguments: &GalleryArguments, stop: &AtomicBool) -> Result<(), Failure> {
+pub fn run(arguments: &GalleryArguments) -> Result<(), Failure> {
     let chosen = gallery::select(&arguments.only).map_err(Failure::Usage)?;
     scene::use_threads(&arguments.panels.threads)?;
-    panels::make_folder(&arguments.out)?;
+    make_folder(&arguments.out)?;
     let _busy = interruption::busy();
     let (mut images, mut rows) = (Images::default(), Vec::new());
     let mut metadata = Vec::new();
     for exhibit in &chosen {
-        rows.push(make(exhibit, arguments, &mut images, &mut metadata, stop)?);
+        rows.push(make(exhibit, arguments, &mut images, &mut metadata)?);
     }
     if chosen.len() == EXHIBITS.len() {
         let drawing = table(gallery::TITLE, &rows);
@@ -39,15 +39,12 @@ fn make(
     arguments: &GalleryArguments,
     images: &mut Images,
     metadata: &mut Vec<(String, String)>,
-    stop: &AtomicBool,
 ) -> Result<TableRow, Failure> {
     let loaded = panels::load(exhibit.scene, exhibit.name, &arguments.panels, &[])?;
-    let studio = PreparedScene::with_images(&loaded.scene, images)
-        .map_err(|error| scene::located(&loaded, &error))?;
-    let Rendered { picture, stats } = picture(&studio, ChannelSet::Everything, exhibit.name, stop)?;
-    tell_rarities(&stats);
+    let studio = scene::prepared(&loaded, images)?;
+    let picture = picture(&studio, ChannelSet::Everything, exhibit.name)?;
     let image = rgb(&loaded.scene, &picture)?;
-    let map = ScalarMap::new(&picture, MAP).map_err(Failure::from_error)?;
+    let map = ScalarMap::new(&picture, MAP)?;
     let file = |ending: &str| arguments.out.join(format!("{}{ending}", exhibit.name));
     write_png(&image, &picture.metadata, &file(".png"))?;
     let drawing = map.draw(true);

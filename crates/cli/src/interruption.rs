@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-static STOP: AtomicBool = AtomicBool::new(false);
+/// Set when work is to stop.
+pub static STOP: AtomicBool = AtomicBool::new(false);
 static BUSY: AtomicBool = AtomicBool::new(false);
 static FIRST: OnceLock<Instant> = OnceLock::new();
 
@@ -15,7 +16,7 @@ const AT_ONCE: Duration = Duration::from_millis(500);
 /// Watches for Ctrl-C and for being asked to end. During work that looks at the flag, the first one
 /// stops it cleanly, and another one, for the impatient, ends the process at once; at any other time,
 /// as while input is awaited, the first one does.
-pub fn watch() -> Result<&'static AtomicBool, Failure> {
+pub fn watch() -> Result<(), Failure> {
     ctrlc::set_handler(|| {
         STOP.store(true, Ordering::SeqCst);
         let is_impatient = FIRST.get_or_init(Instant::now).elapsed() > AT_ONCE;
@@ -23,8 +24,7 @@ pub fn watch() -> Result<&'static AtomicBool, Failure> {
             std::process::exit(130);
         }
     })
-    .map_err(|error| Failure::Failed(format!("cannot watch for Ctrl-C: {error}")))?;
-    Ok(&STOP)
+    .map_err(|error| Failure::Failed(format!("cannot watch for Ctrl-C: {error}")))
 }
 
 /// Work that looks at the flag, or leaves unfinished files if ended at once; over when dropped.

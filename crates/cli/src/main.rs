@@ -11,10 +11,10 @@ mod devices;
 mod diagram;
 mod export;
 mod figures;
+mod files;
 mod flux;
 mod gallery;
 mod input;
-mod interface;
 mod interruption;
 mod manual;
 mod merge;
@@ -47,28 +47,28 @@ fn main() -> ExitCode {
 }
 
 fn run(command: &Command) -> Result<(), Failure> {
-    let stop = interruption::watch()?;
+    interruption::watch()?;
     match command {
-        Command::Render(arguments) => render::run(arguments, stop),
+        Command::Render(arguments) => render::run(arguments),
         Command::Merge(arguments) => merge::run(arguments),
-        Command::Animate(arguments) => animate::run(arguments, stop),
+        Command::Animate(arguments) => animate::run(arguments),
         Command::Check(arguments) => check::run(arguments),
-        Command::Trace(arguments) => trace::run(arguments, stop),
+        Command::Trace(arguments) => trace::run(arguments),
         Command::Pulses(arguments) => pulses::run(arguments),
-        Command::Interface(arguments) => interface::run(arguments),
-        Command::Figures(arguments) => figures::run(arguments, stop),
-        Command::Gallery(arguments) => gallery::run(arguments, stop),
-        Command::Flux(arguments) => flux::run(arguments, stop),
-        Command::Diagram(arguments) => diagram::run(arguments, stop),
-        Command::Export(arguments) => export::run(arguments, stop),
+        Command::Interface { interfaces } => trace::interfaces(interfaces),
+        Command::Figures(arguments) => figures::run(arguments),
+        Command::Gallery(arguments) => gallery::run(arguments),
+        Command::Flux(arguments) => flux::run(arguments),
+        Command::Diagram(arguments) => diagram::run(arguments),
+        Command::Export(arguments) => export::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
-        Command::Quality(arguments) => quality::run(arguments, stop),
-        Command::Verify(arguments) => verify::run(arguments, stop),
-        Command::View(arguments) => view::run(arguments, stop),
-        Command::Devices(arguments) => devices::run(arguments),
+        Command::Quality(arguments) => quality::run(arguments),
+        Command::Verify(arguments) => verify::run(arguments),
+        Command::View(arguments) => view::run(arguments),
+        Command::Devices { json } => devices::run(*json),
         Command::Scenes(arguments) => scenes::run(arguments),
-        Command::Completions(arguments) => manual::completions(arguments),
+        Command::Completions { shell } => manual::completions(*shell),
         Command::Manual(arguments) => manual::run(arguments),
-        Command::Schema(arguments) => schema::run(arguments),
+        Command::Schema { markdown } => schema::run(*markdown),
     }
 }

@@ -1,11 +1,11 @@
 //! `cloakroom manual` and `cloakroom completions`: the manual pages, and completions for shells.
 
-use crate::arguments::{Arguments, CompletionsArguments, ManualArguments};
-use crate::panels::make_folder;
-use crate::report::{self, Failure, say};
+use crate::arguments::{Arguments, ManualArguments};
+use crate::files::{make_folder, write};
+use crate::report::{self, Failure};
 use clap::{Command, CommandFactory};
+use clap_complete::Shell;
 use clap_mangen::Man;
-use cloakroom::output::write_whole;
 
 /// Prints a manual page, or writes them all into a folder.
 pub fn run(arguments: &ManualArguments) -> Result<(), Failure> {
@@ -18,10 +18,7 @@ pub fn run(arguments: &ManualArguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.out {
         make_folder(folder)?;
         for page in pages {
-            let path = folder.join(Man::new(page.clone()).get_filename());
-            let text = page_text(page)?;
-            write_whole(&path, |file| file.write_all(&text)).map_err(Failure::from_error)?;
-            say(&path.display().to_string());
+            write(&folder.join(Man::new(page.clone()).get_filename()), &page_text(page)?)?;
         }
         return Ok(());
     }
@@ -34,14 +31,14 @@ pub fn run(arguments: &ManualArguments) -> Result<(), Failure> {
 /// A page in the language of `man`.
 fn page_text(command: &Command) -> Result<Vec<u8>, Failure> {
     let mut text = Vec::new();
-    Man::new(command.clone()).render(&mut text).map_err(Failure::from_error)?;
+    Man::new(command.clone()).render(&mut text)?;
     Ok(text)
 }
 
 /// Prints the completions of a shell.
-pub fn completions(arguments: &CompletionsArguments) -> Result<(), Failure> {
+pub fn completions(shell: Shell) -> Result<(), Failure> {
     let mut command = Arguments::command();
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut command, "cloakroom", &mut script);
+    clap_complete::generate(shell, &mut command, "cloakroom", &mut script);
     report::print(&String::from_utf8_lossy(&script))
 }

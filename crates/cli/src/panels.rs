@@ -1,18 +1,11 @@
 //! Panels: scenes that the program carries along, as the command line wants them, and their files.
 
 use crate::arguments::PanelArguments;
-use crate::report::{Failure, say};
+use crate::report::{Failure, wrote};
 use cloakroom::output::{self, RgbImage};
 use cloakroom::scene_file::{self, Loaded};
 use cloakroom_figures::{Drawing, DrawingFormat};
 use std::path::{Path, PathBuf};
-
-/// Makes the folder for the files.
-pub fn make_folder(folder: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| {
-        Failure::Failed(format!("cannot make the folder {}: {error}", folder.display()))
-    })
-}
 
 /// Reads the scene of a panel, with what the command line changes in it, and with more overrides.
 pub fn load(
@@ -32,8 +25,7 @@ pub fn load(
         overrides.push(format!("photograph.image={}", photo.display()));
     }
     overrides.extend(more.iter().map(|more| (*more).to_owned()));
-    scene_file::parse(scene, &format!("{name}.toml"), Path::new(""), &overrides)
-        .map_err(Failure::from_error)
+    Ok(scene_file::parse(scene, &format!("{name}.toml"), Path::new(""), &overrides)?)
 }
 
 /// Writes a PNG and says so.
@@ -42,8 +34,8 @@ pub fn write_png(
     metadata: &[(String, String)],
     path: &Path,
 ) -> Result<(), Failure> {
-    output::write_png(image, metadata, path).map_err(Failure::from_error)?;
-    say(&format!("{}", path.display()));
+    output::write_png(image, metadata, path)?;
+    wrote(path);
     Ok(())
 }
 
@@ -56,9 +48,8 @@ pub fn write_drawing(
     files: &[PathBuf],
 ) -> Result<(), Failure> {
     for path in files {
-        let format = DrawingFormat::of(path).map_err(Failure::from_error)?;
-        drawing.write(format, title, metadata, pixels, path).map_err(Failure::from_error)?;
-        say(&format!("{}", path.display()));
+        drawing.write(DrawingFormat::of(path)?, title, metadata, pixels, path)?;
+        wrote(path);
     }
     Ok(())
 }

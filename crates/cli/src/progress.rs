@@ -1,10 +1,16 @@
-//! Progress: a bar with the remaining time on a terminal, silence when piped.
+//! Long work: a bar with the remaining time on a terminal, silence when piped, and an end at Ctrl-C.
 
+use crate::interruption::STOP;
+use cloakroom::render::Supervision;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 
-/// A bar for work that comes in `steps` steps, on standard error.
-pub fn bar(steps: u64, what: &str) -> ProgressBar {
+/// Does work that comes in `steps` steps; it gets their bar, on standard error, and what it is supervised by.
+pub fn supervised<T>(
+    steps: u64,
+    what: &str,
+    work: impl FnOnce(&ProgressBar, &Supervision<'_>) -> T,
+) -> T {
     let target = if std::io::stderr().is_terminal() {
         ProgressDrawTarget::stderr_with_hz(10)
     } else {
@@ -15,5 +21,7 @@ pub fn bar(steps: u64, what: &str) -> ProgressBar {
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     bar.set_style(style);
     bar.set_message(what.to_owned());
-    bar
+    let done = work(&bar, &Supervision { rows_done: &|steps| bar.inc(steps), stop: &STOP });
+    bar.finish_and_clear();
+    done
 }

@@ -3,24 +3,23 @@
 use crate::arguments::PulsesArguments;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::render::{self, PreparedScene, PulseList};
+use cloakroom::render::{self, Images, PulseList};
 use std::fmt::Write;
 
 /// Lists the pulses of a pixel.
 pub fn run(arguments: &PulsesArguments) -> Result<(), Failure> {
-    let loaded = scene::load(&arguments.scene)?;
-    let studio = PreparedScene::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let loaded = scene::load(&arguments.scene, &[])?;
+    let studio = scene::prepared(&loaded, &mut Images::default())?;
     let list = render::pulses(&studio, arguments.pixel)
         .map_err(|error| Failure::Usage(format!("--pixel: {error}")))?;
     if arguments.json {
         return report::print_json(&list);
     }
-    let mut text = String::new();
-    describe(&list, &mut text).map_err(Failure::from_error)?;
-    report::print(&text)
+    report::print(&described(&list)?)
 }
 
-fn describe(list: &PulseList, text: &mut String) -> std::fmt::Result {
+fn described(list: &PulseList) -> Result<String, std::fmt::Error> {
+    let mut text = String::new();
     let [column, row] = list.pixel;
     let time = |time: Option<f64>| time.map_or("-".to_owned(), |time| format!("{time:.9}"));
     writeln!(text, "pixel {column},{row}")?;
@@ -30,12 +29,9 @@ fn describe(list: &PulseList, text: &mut String) -> std::fmt::Result {
         "time of flight ns", "delay ns", "power"
     )?;
     for pulse in &list.pulses {
-        let landings: Vec<String> = pulse
-            .landings
-            .iter()
+        let landings: Vec<String> = (pulse.landings.iter())
             .map(|landing| {
-                let [_, y, z] = landing.position_cm;
-                format!("({y:.3}, {z:.3})")
+                format!("({:.3}, {:.3})", landing.position_cm[1], landing.position_cm[2])
             })
             .collect();
         writeln!(
@@ -61,5 +57,6 @@ fn describe(list: &PulseList, text: &mut String) -> std::fmt::Result {
         text,
         "mean {mean} ns, spread {spread} ns, pulses within {:.1e} ns are one",
         list.resolution_ns
-    )
+    )?;
+    Ok(text)
 }

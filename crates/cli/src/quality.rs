@@ -1,19 +1,16 @@
 //! `cloakroom quality`: how well devices work over a range of settings.
 
 use crate::arguments::QualityArguments;
+use crate::files::{check_writable, formats};
 use crate::interruption;
-use crate::progress;
+use crate::progress::supervised;
 use crate::render::tell_rarities;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::measure::{Constraint, Plan, QualityError, QualityTable, Sweep, quality};
-use cloakroom::output;
-use cloakroom::render::{RenderError, Supervision};
+use cloakroom::measure::{Constraint, Plan, QualityTable, Sweep, quality};
 use cloakroom::scene_file;
 use cloakroom_figures::{TableFormat, write_table};
 use std::fmt::Write;
-use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 /// The columns that are printed for people; files hold all.
 const PRINTED: [(&str, &str); 8] = [
@@ -28,57 +25,30 @@ const PRINTED: [(&str, &str); 8] = [
 ];
 
 /// Measures every combination, writes every file asked for and prints the table.
-pub fn run(arguments: &QualityArguments, stop: &AtomicBool) -> Result<(), Failure> {
-    let formats = formats(&arguments.outputs)?;
+pub fn run(arguments: &QualityArguments) -> Result<(), Failure> {
+    let formats = formats(&arguments.outputs, TableFormat::of)?;
     scene::use_threads(&arguments.threads)?;
-    let sweeps: Vec<Sweep> = arguments
-        .sweeps
-        .iter()
-        .map(|text| Sweep::parse(text))
-        .collect::<Result<_, _>>()
-        .map_err(Failure::from_error)?;
+    let sweeps =
+        arguments.sweeps.iter().map(|text| Sweep::parse(text)).collect::<Result<_, _>>()?;
     let load = |further: &[String]| {
         scene_file::load(&arguments.scene.scene, &[&arguments.scene.overrides, further].concat())
     };
-    let holds: Vec<Constraint> = arguments
-        .holds
-        .iter()
-        .map(|text| Constraint::parse(text))
-        .collect::<Result<_, _>>()
-        .map_err(Failure::from_error)?;
-    let plan = Plan::holding(sweeps, holds, load).map_err(failure)?;
-    let plan = plan.with_draws(arguments.draws).map_err(failure)?;
-    plan.check_columns(&arguments.plot).map_err(Failure::from_error)?;
-    for path in &arguments.outputs {
-        output::check_writable(path).map_err(Failure::from_error)?;
-    }
+    let holds =
+        arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;
+    let plan = Plan::holding(sweeps, holds, load)?.with_draws(arguments.draws)?;
+    plan.check_columns(&arguments.plot)?;
+    check_writable(&arguments.outputs)?;
     let _busy = interruption::busy();
-    let bar = progress::bar(plan.steps(), "measuring");
-    let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
-    let table = quality(&plan, &supervision);
-    bar.finish_and_clear();
-    let table = table.map_err(failure)?;
+    let table =
+        supervised(plan.steps(), "measuring", |_, supervision| quality(&plan, supervision))?;
     tell_rarities(&table.stats);
     for (path, format) in formats {
-        write_table(&table, format, &arguments.plot, path).map_err(Failure::from_error)?;
+        write_table(&table, format, &arguments.plot, path)?;
     }
     if arguments.json {
         return report::print_json(&table.to_json());
     }
-    report::print(&text(&table).map_err(Failure::from_error)?)
-}
-
-fn failure(error: QualityError) -> Failure {
-    match error {
-        QualityError::Render(RenderError::Stopped) => Failure::Interrupted,
-        error => Failure::from_error(error),
-    }
-}
-
-/// The files to write with their formats.
-pub fn formats(outputs: &[PathBuf]) -> Result<Vec<(&PathBuf, TableFormat)>, Failure> {
-    let format = |path| TableFormat::of(path).map_err(Failure::from_error);
-    outputs.iter().map(|path| Ok((path, format(path)?))).collect()
+    report::print(&text(&table)?)
 }
 
 /// The table for people.
@@ -102,10 +72,8 @@ fn text(table: &QualityTable) -> Result<String, std::fmt::Error> {
     }
     // Held keys, which are no figures, are told apart by their dots.
     let held = table.columns.iter().filter(|column| column.name.contains('.'));
-    let printed: Vec<(&str, &str)> = held
-        .map(|column| (column.name.as_str(), column.name.as_str()))
-        .chain(PRINTED.iter().copied())
-        .collect();
+    let held = held.map(|column| (column.name.as_str(), column.name.as_str()));
+    let printed: Vec<(&str, &str)> = held.chain(PRINTED).collect();
     let column = |title: &str| (title.len() + 2).max(if table.has_errors() { 14 } else { 12 });
     for (_, title) in &printed {
         write!(text, "{title:>width$}", width = column(title))?;

@@ -1,55 +1,52 @@
 //! `cloakroom render`: a scene to pictures and data.
 
 use crate::arguments::RenderArguments;
+use crate::files::formats;
 use crate::interruption;
-use crate::progress;
+use crate::progress::supervised;
 use crate::report::{Failure, say};
 use crate::scene;
 use cloakroom::output::{self, Format, Picture};
-use cloakroom::render::{
-    self, ChannelSet, PreparedScene, RenderError, Rendered, Supervision, Tile,
-};
+use cloakroom::render::{self, ChannelSet, Images, PreparedScene, Rendered, Tile};
 use cloakroom::scene::Scene;
 use cloakroom::trace::TraceStats;
 use cloakroom_figures::{IllustrationError, PictureFormat, scalar_map, write_picture};
 use std::io;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::path::Path;
 
 /// Renders a scene and writes every file asked for.
-pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure> {
-    let formats = formats(&arguments.outputs)?;
+pub fn run(arguments: &RenderArguments) -> Result<(), Failure> {
+    let formats = formats(&arguments.outputs, PictureFormat::of)?;
     scene::use_threads(&arguments.threads)?;
     let data = formats.iter().any(|(_, format)| !format.is_shown());
-    let loaded =
-        scene::load_with(&arguments.scene, channels(&arguments.channels, data)?.as_slice())?;
-    let studio = PreparedScene::new(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
-    let wanted =
-        if data { ChannelSet::Everything } else { ChannelSet::for_image(&loaded.scene.picture) };
+    let loaded = scene::load(&arguments.scene, channels(&arguments.channels, data)?.as_slice())?;
+    let studio = scene::prepared(&loaded, &mut Images::default())?;
+    let shown = &loaded.scene.picture;
+    let wanted = if data { ChannelSet::Everything } else { ChannelSet::for_image(shown) };
     for (path, format) in &formats {
-        if matches!(format, PictureFormat::Map(_)) && loaded.scene.picture.map.name().is_none() {
-            let path = (*path).clone();
-            return Err(Failure::from_error(IllustrationError::NoMap { path }));
+        if matches!(format, PictureFormat::Map(_)) && shown.map.name().is_none() {
+            return Err(IllustrationError::NoMap { path: path.to_path_buf() }.into());
         }
-        output::check_writable(path).map_err(Failure::from_error)?;
+        output::check_writable(path)?;
     }
     let _busy = interruption::busy();
     if let Some(tile) = arguments.tile {
         let tile = check_tile(tile, &loaded.scene, &formats)?;
-        return in_tile(&studio, wanted, tile, &formats, stop);
+        let picture = supervised(tile.height.into(), "rendering", |_, supervision| {
+            render::render_tile(&studio, wanted, tile, supervision)
+        });
+        let picture = told(picture?);
+        return formats.iter().try_for_each(|(path, _)| Ok(output::write(&picture, path)?));
     }
     if let [(path, PictureFormat::Pixels(Format::Png))] = formats[..]
-        && loaded.scene.picture.map.name().is_none()
+        && shown.map.name().is_none()
         && render::strips(&studio).nth(1).is_some()
     {
-        return in_strips(&studio, &loaded.scene, path, stop);
+        return in_strips(&studio, &loaded.scene, path);
     }
-    let Rendered { picture, stats } = picture(&studio, wanted, "rendering", stop)?;
-    tell_rarities(&stats);
-    let shown = &loaded.scene.picture;
+    let picture = picture(&studio, wanted, "rendering")?;
     for (path, format) in formats {
-        write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)
-            .map_err(Failure::from_error)?;
+        write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)?;
     }
     Ok(())
 }
@@ -58,7 +55,7 @@ pub fn run(arguments: &RenderArguments, stop: &AtomicBool) -> Result<(), Failure
 fn check_tile(
     tile: Tile,
     scene: &Scene,
-    formats: &[(&PathBuf, PictureFormat)],
+    formats: &[(&Path, PictureFormat)],
 ) -> Result<Tile, Failure> {
     for (path, format) in formats {
         if matches!(format, PictureFormat::Pixels(Format::Exr) | PictureFormat::Map(_)) {
@@ -72,62 +69,29 @@ fn check_tile(
             )));
         }
     }
-    tile.check(scene.camera.resolution()).map_err(Failure::from_error)
-}
-
-/// Renders a tile and writes its files.
-fn in_tile(
-    studio: &PreparedScene<'_>,
-    wanted: ChannelSet,
-    tile: Tile,
-    formats: &[(&PathBuf, PictureFormat)],
-    stop: &AtomicBool,
-) -> Result<(), Failure> {
-    let bar = progress::bar(tile.height.into(), "rendering");
-    let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
-    let rendered = render::render_tile(studio, wanted, tile, &supervision);
-    bar.finish_and_clear();
-    let Rendered { picture, stats } = rendered.map_err(failed)?;
-    tell_rarities(&stats);
-    for (path, _) in formats {
-        output::write(&picture, path).map_err(Failure::from_error)?;
-    }
-    Ok(())
+    Ok(tile.check(scene.camera.resolution())?)
 }
 
 /// Renders a large image strip by strip into its file.
-fn in_strips(
-    studio: &PreparedScene<'_>,
-    scene: &Scene,
-    path: &Path,
-    stop: &AtomicBool,
-) -> Result<(), Failure> {
-    let bar = progress::bar(studio.rows(), "rendering");
-    let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
+fn in_strips(studio: &PreparedScene<'_>, scene: &Scene, path: &Path) -> Result<(), Failure> {
     let (mut stats, mut failure) = (TraceStats::default(), None);
-    let images = render::strips(studio).map(|rows| {
-        let strip = render::render_rows(studio, ChannelSet::Image, rows, &supervision)
-            .map_err(failed)
-            .and_then(|strip| {
+    let written = supervised(studio.rows(), "rendering", |_, supervision| {
+        let images = render::strips(studio).map(|rows| {
+            let strip = render::render_rows(studio, ChannelSet::Image, rows, supervision);
+            let image = strip.map_err(Failure::from).and_then(|strip| {
                 stats += strip.stats;
-                output::to_srgb(&strip.picture).map_err(Failure::from_error)
+                Ok(output::to_srgb(&strip.picture)?)
             });
-        strip.map_err(|error| {
-            failure = Some(error);
-            io::Error::other("no strip")
-        })
+            image.map_err(|error| {
+                failure = Some(error);
+                io::Error::other("no strip")
+            })
+        });
+        let (size, metadata) = (scene.camera.resolution(), render::metadata(scene));
+        output::write_png_in_strips(size, &metadata, path, images)
     });
-    let written = output::write_png_in_strips(
-        scene.camera.resolution(),
-        &render::metadata(scene),
-        path,
-        images,
-    );
-    bar.finish_and_clear();
-    if let Some(failure) = failure {
-        return Err(failure);
-    }
-    written.map_err(Failure::from_error)?;
+    failure.map_or(Ok(()), Err)?;
+    written?;
     tell_rarities(&stats);
     Ok(())
 }
@@ -146,55 +110,40 @@ fn channels(names: &[String], data: bool) -> Result<Option<String>, Failure> {
     }
 }
 
-/// The files to write with their formats.
-fn formats(outputs: &[PathBuf]) -> Result<Vec<(&PathBuf, PictureFormat)>, Failure> {
-    let format = |path| PictureFormat::of(path).map_err(Failure::from_error);
-    outputs.iter().map(|path| Ok((path, format(path)?))).collect()
-}
-
-/// Renders with a progress bar.
+/// Renders with a progress bar, and says what was rare.
 pub fn picture(
     studio: &PreparedScene<'_>,
     wanted: ChannelSet,
     what: &str,
-    stop: &AtomicBool,
-) -> Result<Rendered, Failure> {
-    let bar = progress::bar(studio.rows(), what);
-    let supervision = Supervision { rows_done: &|rows| bar.inc(rows), stop };
-    let rendered = render::render(studio, wanted, &supervision);
-    bar.finish_and_clear();
-    rendered.map_err(failed)
+) -> Result<Picture, Failure> {
+    let rendered = supervised(studio.rows(), what, |_, supervision| {
+        render::render(studio, wanted, supervision)
+    });
+    Ok(told(rendered?))
 }
 
-fn failed(error: RenderError) -> Failure {
-    match error {
-        RenderError::Stopped => Failure::Interrupted,
-        RenderError::TooLarge { .. } => Failure::from_error(error),
-    }
+/// The picture, once it has been said what was rare in it.
+fn told(rendered: Rendered) -> Picture {
+    tell_rarities(&rendered.stats);
+    rendered.picture
 }
 
 /// What a PNG of the scene shows: the image, or the map of one channel.
 pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure> {
-    match scene.picture.map.name() {
-        None => output::to_srgb(picture).map_err(Failure::from_error),
-        Some(channel) => {
-            scalar_map(picture, channel, scene.picture.color_bar).map_err(Failure::from_error)
-        }
-    }
+    Ok(match scene.picture.map.name() {
+        None => output::to_srgb(picture)?,
+        Some(channel) => scalar_map(picture, channel, scene.picture.color_bar)?,
+    })
 }
 
 /// Says what was rare, if anything was.
 pub fn tell_rarities(stats: &TraceStats) {
-    if stats.endless > 0 {
-        say(&format!(
-            "note: {} branches of ray trees without end were cut, the weakest first; their power is in `pruned`",
-            stats.endless
-        ));
-    }
-    if stats.lost > 0 {
-        say(&format!(
-            "note: {} branches could not be followed through a device; their power is in `pruned`",
-            stats.lost
-        ));
+    for (count, what) in [
+        (stats.endless, "of ray trees without end were cut, the weakest first"),
+        (stats.lost, "could not be followed through a device"),
+    ] {
+        if count > 0 {
+            say(&format!("note: {count} branches {what}; their power is in `pruned`"));
+        }
     }
 }

@@ -1,6 +1,15 @@
 //! Words for people: messages on standard error, results on standard output.
 
+use cloakroom::flux::FluxError;
+use cloakroom::material::MaterialError;
+use cloakroom::measure::QualityError;
+use cloakroom::render::RenderError;
+use cloakroom_figures::DiagramError;
+use cloakroom_figures::film::FilmError;
+use cloakroom_figures::verification::VerificationError;
+use std::error::Error;
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Why the command ends without success.
@@ -15,33 +24,41 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// A failure with the message of an error.
-    pub fn from_error(error: impl std::fmt::Display) -> Self {
-        Self::Failed(error.to_string())
-    }
-
     /// Tells the user and gives the exit status.
     pub fn tell(self) -> ExitCode {
-        match self {
-            Self::Failed(message) => {
-                say(&format!("error: {message}"));
-                ExitCode::from(1)
-            }
-            Self::Usage(message) => {
-                say(&format!("error: {message}"));
-                ExitCode::from(2)
-            }
-            Self::Interrupted => {
-                say("interrupted");
-                ExitCode::from(130)
-            }
-        }
+        let (words, status) = match self {
+            Self::Failed(message) => (format!("error: {message}"), 1),
+            Self::Usage(message) => (format!("error: {message}"), 2),
+            Self::Interrupted => ("interrupted".to_owned(), 130),
+        };
+        say(&words);
+        ExitCode::from(status)
+    }
+}
+
+impl<E: Error + 'static> From<E> for Failure {
+    /// What work ends with that Ctrl-C has stopped, else a failure with the message of the error.
+    fn from(error: E) -> Self {
+        let of: &(dyn Error + 'static) = &error;
+        let stopped = matches!(of.downcast_ref(), Some(RenderError::Stopped))
+            || matches!(of.downcast_ref(), Some(FilmError::Render(RenderError::Stopped)))
+            || matches!(of.downcast_ref(), Some(QualityError::Render(RenderError::Stopped)))
+            || matches!(of.downcast_ref(), Some(MaterialError::Stopped))
+            || matches!(of.downcast_ref(), Some(FluxError::Stopped))
+            || matches!(of.downcast_ref(), Some(DiagramError::Stopped))
+            || matches!(of.downcast_ref(), Some(VerificationError::Stopped));
+        if stopped { Self::Interrupted } else { Self::Failed(error.to_string()) }
     }
 }
 
 /// Says something on standard error. Nobody listening is no reason to fail.
 pub fn say(message: &str) {
     let _ = writeln!(std::io::stderr(), "{message}");
+}
+
+/// Says that a file has been written.
+pub fn wrote(path: &Path) {
+    say(&path.display().to_string());
 }
 
 /// Prints text on standard output. A reader that has gone away (as in `| head`) ends the printing
@@ -59,6 +76,5 @@ pub fn print(text: &str) -> Result<(), Failure> {
 
 /// Prints JSON on standard output, for people to read and programs to parse.
 pub fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(value).map_err(Failure::from_error)?;
-    print(&format!("{text}\n"))
+    print(&format!("{}\n", serde_json::to_string_pretty(value)?))
 }

@@ -2,23 +2,28 @@
 
 use crate::arguments::{SceneArguments, ThreadsArguments};
 use crate::report::Failure;
-use cloakroom::render::PreparedSceneError;
+use cloakroom::assembly::Assembly;
+use cloakroom::render::{self, Images, PreparedScene, PreparedSceneError};
 use cloakroom::scene_file::{self, Loaded};
 
-/// Reads a scene with its overrides.
-pub fn load(arguments: &SceneArguments) -> Result<Loaded, Failure> {
-    load_with(arguments, &[])
+/// Reads a scene with its overrides and further ones after them.
+pub fn load(arguments: &SceneArguments, further: &[String]) -> Result<Loaded, Failure> {
+    Ok(scene_file::load(&arguments.scene, &[&arguments.overrides, further].concat())?)
 }
 
-/// Reads a scene with its overrides and further ones after them.
-pub fn load_with(arguments: &SceneArguments, further: &[String]) -> Result<Loaded, Failure> {
-    let overrides = [&arguments.overrides, further].concat();
-    scene_file::load(&arguments.scene, &overrides).map_err(Failure::from_error)
+/// What a picture of a scene needs, built; `images` keeps what has been read.
+pub fn prepared<'s>(loaded: &'s Loaded, images: &mut Images) -> Result<PreparedScene<'s>, Failure> {
+    PreparedScene::with_images(&loaded.scene, images).map_err(|error| located(loaded, &error))
+}
+
+/// The devices of a scene, built.
+pub fn assembly(loaded: &Loaded) -> Result<Assembly, Failure> {
+    render::assembly(&loaded.scene).map_err(|error| located(loaded, &error))
 }
 
 /// An error of a scene that could be read but not built, at its place in the file.
 pub fn located(loaded: &Loaded, error: &PreparedSceneError) -> Failure {
-    Failure::from_error(loaded.locations.error_at(&error.key(), error.to_string()))
+    loaded.locations.error_at(&error.key(), error.to_string()).into()
 }
 
 /// Lets the work use the given number of threads, or all cores.

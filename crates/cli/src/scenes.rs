@@ -1,9 +1,8 @@
 //! `cloakroom scenes`: the example scenes, listed or copied.
 
 use crate::arguments::ScenesArguments;
-use crate::panels::make_folder;
+use crate::files::{make_folder, write};
 use crate::report::{self, Failure, say};
-use cloakroom::output::write_whole;
 use cloakroom_figures::examples::{self, Example};
 use serde_json::{Value, json};
 use std::fs;
@@ -53,9 +52,7 @@ fn copy(chosen: &[Example], folder: &Path) -> Result<(), Failure> {
         if let Some(parent) = path.parent() {
             make_folder(parent)?;
         }
-        write_whole(&path, |file| file.write_all(example.text.as_bytes()))
-            .map_err(Failure::from_error)?;
-        say(&path.display().to_string());
+        write(&path, example.text.as_bytes())?;
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `cloakroom schema`: all that a scene file can say, for editors or for people.
 
-use crate::arguments::SchemaArguments;
+use crate::devices::all_keys;
 use crate::report::{self, Failure};
 use cloakroom::device::CATALOGUE;
 use cloakroom::keys::{Key, KeyKind, Limits};
@@ -9,17 +9,16 @@ use cloakroom::scene_file;
 use std::fmt::{self, Write};
 
 /// Prints the JSON Schema, or the reference page.
-pub fn run(arguments: &SchemaArguments) -> Result<(), Failure> {
-    if arguments.markdown {
-        let mut text = String::new();
-        write_reference(&mut text).map_err(Failure::from_error)?;
-        return report::print(&text);
+pub fn run(markdown: bool) -> Result<(), Failure> {
+    if markdown {
+        return report::print(&reference()?);
     }
     report::print_json(&scene_file::schema())
 }
 
 /// Every table with its keys, as a page in Markdown.
-fn write_reference(text: &mut String) -> fmt::Result {
+fn reference() -> Result<String, fmt::Error> {
+    let mut text = String::new();
     writeln!(text, "# Scene reference\n")?;
     writeln!(
         text,
@@ -29,38 +28,28 @@ fn write_reference(text: &mut String) -> fmt::Result {
     )?;
     for (name, keys) in TABLES {
         writeln!(text, "## `[{name}]`\n")?;
-        write_table(keys, text)?;
+        write_table(keys, &mut text)?;
     }
     writeln!(text, "## `[[device]]`\n")?;
     writeln!(text, "Every device takes these keys beside its `kind` and the keys of its kind.\n")?;
-    write_table(Placement::KEYS, text)?;
+    write_table(Placement::KEYS, &mut text)?;
     for entry in CATALOGUE {
         writeln!(text, "## `kind = \"{}\"`\n\n{}\n", entry.kind, entry.summary)?;
         if !entry.keys.is_empty() {
-            write_table(entry.keys, text)?;
+            write_table(entry.keys, &mut text)?;
         }
     }
     // One line break ends the page.
-    text.truncate(text.trim_end().len());
-    writeln!(text)
+    Ok(format!("{}\n", text.trim_end()))
 }
 
 /// The keys of a table, those of tables within it after them.
-fn write_table(keys: &[Key], text: &mut String) -> fmt::Result {
+fn write_table(keys: &'static [Key], text: &mut String) -> fmt::Result {
     writeln!(text, "| key | what it is | value | default |\n| --- | --- | --- | --- |")?;
-    write_rows(keys, "", text)?;
-    writeln!(text)
-}
-
-fn write_rows(keys: &[Key], prefix: &str, text: &mut String) -> fmt::Result {
-    for key in keys {
-        let (allowed, default) = (allowed(key), default(key));
-        writeln!(text, "| `{prefix}{}` | {} | {allowed} | {default} |", key.name, key.doc)?;
-        if let KeyKind::Table { keys } | KeyKind::Tables { keys } = key.kind {
-            write_rows(keys, &format!("{prefix}{}.", key.name), text)?;
-        }
+    for (name, key) in all_keys(keys) {
+        writeln!(text, "| `{name}` | {} | {} | {} |", key.doc, allowed(key), default(key))?;
     }
-    Ok(())
+    writeln!(text)
 }
 
 /// What values a key takes, with its limits.

@@ -1,19 +1,20 @@
-//! `cloakroom trace`: rays in, leaves out.
+//! `cloakroom trace`: rays in, leaves out; `cloakroom interface`: two media in, modes and powers out.
 
 use crate::arguments::TraceArguments;
 use crate::input;
-use crate::interruption;
+use crate::interruption::{self, STOP};
 use crate::report::{self, Failure};
 use crate::scene;
+use cloakroom::interface_exchange::solve_interfaces;
 use cloakroom::ray_exchange::{RayError, RayRequest, trace_rays};
 use cloakroom::render;
-use std::sync::atomic::AtomicBool;
+use std::path::Path;
 
 /// Traces the rays of a file through a scene.
-pub fn run(arguments: &TraceArguments, stop: &AtomicBool) -> Result<(), Failure> {
+pub fn run(arguments: &TraceArguments) -> Result<(), Failure> {
     scene::use_threads(&arguments.threads)?;
-    let loaded = scene::load(&arguments.scene)?;
-    let assembly = render::assembly(&loaded.scene).map_err(|e| scene::located(&loaded, &e))?;
+    let loaded = scene::load(&arguments.scene, &[])?;
+    let assembly = scene::assembly(&loaded)?;
     if let Some(p) = arguments.min_power.filter(|p| !(0.0..=1.0).contains(p)) {
         return Err(Failure::Usage(format!("--min-power is {p}; it must be from 0 to 1")));
     }
@@ -21,13 +22,12 @@ pub fn run(arguments: &TraceArguments, stop: &AtomicBool) -> Result<(), Failure>
     let (text, name) = input::read(&arguments.rays)?;
     let rays = parse_rays(&text, &name)?;
     let busy = interruption::busy();
-    let reports = trace_rays(&assembly, limits, &rays, stop).map_err(|error| match error {
+    let reports = trace_rays(&assembly, limits, &rays, &STOP).map_err(|error| match error {
         RayError::Stopped(_) => Failure::Interrupted,
         error => Failure::Failed(format!("{name}: {error}")),
     })?;
     drop(busy);
-    let text = serde_json::to_string(&reports).map_err(Failure::from_error)?;
-    report::print(&format!("{text}\n"))
+    report::print(&format!("{}\n", serde_json::to_string(&reports)?))
 }
 
 /// The rays of a JSON text; `name` says where it comes from.
@@ -39,4 +39,12 @@ fn parse_rays(text: &str, name: &str) -> Result<Vec<RayRequest>, Failure> {
              \"horizontal\", \"vertical\" or {{\"electric_field\": [[re,im],[re,im],[re,im]]}}"
         ))
     })
+}
+
+/// Solves the interfaces of a file.
+pub fn interfaces(path: &Path) -> Result<(), Failure> {
+    let (text, name) = input::read(path)?;
+    let solved =
+        solve_interfaces(&text).map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
+    report::print_json(&solved)
 }

@@ -1,25 +1,19 @@
 //! `cloakroom verify`: the statements of the paper, and what comes out here.
 
 use crate::arguments::VerifyArguments;
-use crate::interruption;
-use crate::progress;
+use crate::interruption::{self, STOP};
+use crate::progress::supervised;
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom_figures::verification::{self, VerificationError, markdown, verify};
-use std::sync::atomic::AtomicBool;
+use cloakroom_figures::verification::{self, markdown, verify};
 
 /// Goes through the paper and prints what has been found.
-pub fn run(arguments: &VerifyArguments, stop: &AtomicBool) -> Result<(), Failure> {
+pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     scene::use_threads(&arguments.threads)?;
     let busy = interruption::busy();
-    let bar = progress::bar(verification::steps(), "verifying");
-    let findings = verify(&|| bar.inc(1), stop);
-    bar.finish_and_clear();
+    let findings =
+        supervised(verification::steps(), "verifying", |bar, _| verify(&|| bar.inc(1), &STOP))?;
     drop(busy);
-    let findings = findings.map_err(|error| match error {
-        VerificationError::Stopped => Failure::Interrupted,
-        error => Failure::from_error(error),
-    })?;
     if arguments.json {
         return report::print_json(&serde_json::json!({ "findings": findings }));
     }

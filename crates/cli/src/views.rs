@@ -3,15 +3,15 @@
 
 use crate::arguments::FiguresArguments;
 use crate::panels;
-use crate::render::{picture, tell_rarities};
+use crate::render::picture;
 use crate::report::Failure;
 use crate::scene;
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, Images, PreparedScene, Rendered, metadata};
+use cloakroom::render::{ChannelSet, Images, metadata};
 use cloakroom::scene::Polarizer;
 use cloakroom::scene_file::Loaded;
 use cloakroom_figures::paper::{Panel, Shows};
-use std::sync::atomic::AtomicBool;
+use std::collections::HashMap;
 
 /// A panel and its scene.
 pub struct Subject {
@@ -25,16 +25,11 @@ pub struct Subject {
 /// The panels of a figure, and the pictures of the views that they share, as far as they have been needed.
 pub struct Views {
     pub subjects: Vec<Subject>,
-    /// With the text of their scenes.
-    pictures: Vec<(String, Picture)>,
+    /// By the text of their scenes.
+    pictures: HashMap<String, Picture>,
 }
 
 impl Subject {
-    fn new(panel: &'static Panel, arguments: &FiguresArguments) -> Result<Self, Failure> {
-        let loaded = panels::load(panel.scene, &file_name(panel), &arguments.panels, &[])?;
-        Ok(Self { panel, loaded, view: None })
-    }
-
     /// What must be rendered of a view for it.
     fn wanted_of_view(&self) -> ChannelSet {
         let own = ChannelSet::for_image(&self.loaded.scene.picture);
@@ -63,8 +58,13 @@ impl Subject {
 impl Views {
     /// Reads the scenes of panels.
     pub fn new(panels: &[&'static Panel], arguments: &FiguresArguments) -> Result<Self, Failure> {
-        let mut subjects = (panels.iter().map(|panel| Subject::new(panel, arguments)))
-            .collect::<Result<Vec<_>, _>>()?;
+        let load = |panel: &Panel, overrides: &[&str]| {
+            panels::load(panel.scene, &format!("fig{}", panel.name), &arguments.panels, overrides)
+        };
+        let subject = |panel: &&'static Panel| {
+            Ok::<_, Failure>(Subject { panel, loaded: load(panel, &[])?, view: None })
+        };
+        let mut subjects = panels.iter().map(subject).collect::<Result<Vec<_>, _>>()?;
         let map = subjects.iter().find_map(|subject| subject.loaded.scene.picture.map.name());
         let map_override = map.map(|map| format!("picture.map={map}"));
         let overrides: Vec<&str> =
@@ -78,52 +78,32 @@ impl Views {
                 Polarizer::Angle(_) => false,
             };
             if panel.shows == Shows::Picture && shares {
-                *view = Some(panels::load(
-                    panel.scene,
-                    &file_name(panel),
-                    &arguments.panels,
-                    &overrides,
-                )?);
+                *view = Some(load(panel, &overrides)?);
             }
         }
-        Ok(Self { subjects, pictures: Vec::new() })
+        Ok(Self { subjects, pictures: HashMap::new() })
     }
 
     /// The picture of a panel, given its place among the panels.
-    pub fn picture(
-        &mut self,
-        index: usize,
-        images: &mut Images,
-        stop: &AtomicBool,
-    ) -> Result<Picture, Failure> {
+    pub fn picture(&mut self, index: usize, images: &mut Images) -> Result<Picture, Failure> {
         let subject = &self.subjects[index];
         let what = format!("figure {}", subject.panel.name);
-        let mut render = |loaded: &Loaded, wanted| {
-            let studio = PreparedScene::with_images(&loaded.scene, images)
-                .map_err(|error| scene::located(loaded, &error))?;
-            let Rendered { picture, stats } = picture(&studio, wanted, &what, stop)?;
-            tell_rarities(&stats);
-            Ok(picture)
-        };
+        let mut render =
+            |loaded: &Loaded, wanted| picture(&scene::prepared(loaded, images)?, wanted, &what);
         let sharing = || self.subjects.iter().filter(|s| s.view_text() == subject.view_text());
         if let Some(view) = &subject.view
             && sharing().nth(1).is_some()
         {
             let text = &view.scene.source;
-            if !self.pictures.iter().any(|(known, _)| known == text) {
+            if !self.pictures.contains_key(text) {
                 let wanted =
                     sharing().map(Subject::wanted_of_view).fold(ChannelSet::Image, ChannelSet::max);
-                self.pictures.push((text.clone(), render(view, wanted)?));
+                self.pictures.insert(text.clone(), render(view, wanted)?);
             }
-            let shared = self.pictures.iter().find(|(known, _)| known == text);
-            if let Some(picture) = shared.and_then(|(_, picture)| subject.of_view(picture)) {
+            if let Some(picture) = self.pictures.get(text).and_then(|view| subject.of_view(view)) {
                 return Ok(picture);
             }
         }
         render(&subject.loaded, ChannelSet::for_image(&subject.loaded.scene.picture))
     }
-}
-
-fn file_name(panel: &Panel) -> String {
-    format!("fig{}", panel.name)
 }

@@ -26,35 +26,36 @@ pub(crate) fn listen(port: u16) -> std::io::Result<TcpListener> {
 
 /// The names under which the server answers.
 #[derive(Clone, Debug)]
-pub(crate) struct Names {
-    hosts: [String; 2],
-}
+pub(crate) struct Names([String; 2]);
 
 impl Names {
     /// Those of a port.
     pub fn of(port: u16) -> Self {
-        Self { hosts: ["127.0.0.1", "localhost"].map(|name| format!("{name}:{port}")) }
+        Self(["127.0.0.1", "localhost"].map(|name| format!("{name}:{port}")))
     }
 
     /// Whether a request was meant for this server. A page from elsewhere whose name has been made to lead here
     /// (DNS rebinding) says another name.
     pub fn host_is_ours(&self, headers: &HeaderMap) -> bool {
-        let mut hosts = headers.get_all(header::HOST).iter();
-        let host = hosts.next().and_then(|host| host.to_str().ok());
-        let ours = |host: &str| self.hosts.iter().any(|ours| host.eq_ignore_ascii_case(ours));
-        hosts.next().is_none() && host.is_some_and(ours)
+        only(headers, &header::HOST).is_some_and(|host| self.has(host))
     }
 
     /// Whether a request comes from this server's own page; browsers say so with every WebSocket.
     pub fn origin_is_ours(&self, headers: &HeaderMap) -> bool {
-        let mut origins = headers.get_all(header::ORIGIN).iter();
-        let origin = origins.next().and_then(|origin| origin.to_str().ok());
-        let ours = |origin: &str| {
-            let host = origin.strip_prefix("http://");
-            host.is_some_and(|host| self.hosts.iter().any(|ours| host.eq_ignore_ascii_case(ours)))
-        };
-        origins.next().is_none() && origin.is_some_and(ours)
+        let host = only(headers, &header::ORIGIN).and_then(|origin| origin.strip_prefix("http://"));
+        host.is_some_and(|host| self.has(host))
     }
+
+    fn has(&self, host: &str) -> bool {
+        self.0.iter().any(|ours| host.eq_ignore_ascii_case(ours))
+    }
+}
+
+/// The text of a header that is there once.
+fn only<'h>(headers: &'h HeaderMap, name: &header::HeaderName) -> Option<&'h str> {
+    let mut values = headers.get_all(name).iter();
+    let value = values.next()?.to_str().ok()?;
+    values.next().is_none().then_some(value)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::ray_tree;
 use crate::scenes::is_plain_name;
 use crate::seen::Seen;
 use crate::server::Server;
-use crate::slot::Slot;
+use crate::slot::{Slot, lock};
 use axum::body::Bytes;
 use axum::extract::ws;
 use cloakroom::photograph::{ImageSource, LoadError, load_bytes};
@@ -14,7 +14,7 @@ use cloakroom::render::Images;
 use futures_util::{SinkExt, StreamExt};
 use serde_json::{Value, json};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use tokio::sync::mpsc;
 
 /// Messages on the way to a page; who has more to say waits.
@@ -27,7 +27,8 @@ const MOST_PIXELS: u64 = 40_000_000;
 const MOST_PIXELS_OF_ALL: u64 = 160_000_000;
 
 /// The page has gone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the page has gone")]
 pub(crate) struct Gone;
 
 /// Where messages to a page go.
@@ -103,18 +104,6 @@ pub(crate) struct Client {
 }
 
 impl Client {
-    fn new(server: Arc<Server>) -> Self {
-        Self {
-            server,
-            looks: Slot::default(),
-            seen: Seen::default(),
-            rays: Slot::default(),
-            shown: Mutex::default(),
-            uploaded: Mutex::default(),
-            uploads: AtomicU64::new(0),
-        }
-    }
-
     /// The images that all pages share.
     pub fn images(&self) -> Images {
         lock(&self.server.images).clone()
@@ -135,12 +124,10 @@ impl Client {
         let source = self.server.opened.source_of(name);
         let _one = lock(&self.server.reading);
         let image = load_bytes(&source, bytes, MOST_PIXELS).map_err(|error| match error {
-            LoadError::TooLarge { .. } => {
-                format!(
-                    "the photograph is too large: at most {} million pixels",
-                    MOST_PIXELS / 1_000_000
-                )
-            }
+            LoadError::TooLarge { .. } => format!(
+                "the photograph is too large: at most {} million pixels",
+                MOST_PIXELS / 1_000_000
+            ),
             LoadError::NotAnImage { .. } | LoadError::Empty { .. } => {
                 "this is not an image that can be read (PNG, JPEG or EXR)".to_owned()
             }
@@ -166,10 +153,6 @@ impl Client {
     }
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// Serves a page until it closes, or the server ends.
 pub(crate) async fn serve(socket: ws::WebSocket, server: Arc<Server>) {
     let (mut sink, mut stream) = socket.split();
@@ -185,7 +168,15 @@ pub(crate) async fn serve(socket: ws::WebSocket, server: Arc<Server>) {
         // It may be closed already.
         let _ = sink.close().await;
     });
-    let client = Arc::new(Client::new(server));
+    let client = Arc::new(Client {
+        server,
+        looks: Slot::default(),
+        seen: Seen::default(),
+        rays: Slot::default(),
+        shown: Mutex::default(),
+        uploaded: Mutex::default(),
+        uploads: AtomicU64::new(0),
+    });
     if start_threads(&client, &outbox).is_ok() {
         let mut session = Session { client: &client, outbox: &outbox, name: None, stop: None };
         let greeting = client.server.greeting.clone();
@@ -254,43 +245,33 @@ impl Session<'_> {
                 let stop = Arc::new(AtomicBool::new(false));
                 self.stop = Some((stop.clone(), look.moving));
                 self.client.looks.put(Wish { look, stop });
-                Ok(())
             }
-            Message::Seen(seen) => {
-                self.client.seen.tell(seen.id);
-                Ok(())
-            }
+            Message::Seen { id } => self.client.seen.tell(id),
             Message::Ray(ray) => {
                 let shown = lock(&self.client.shown).clone();
-                match shown {
-                    Some(shown) => self.client.rays.put((ray, shown)),
-                    None => {
-                        let message =
-                            "there is no picture yet that a ray could be followed through";
-                        self.outbox.answer(&error(Some(ray.id), message)).await?;
-                    }
-                }
-                Ok(())
+                let Some(shown) = shown else {
+                    let message = "there is no picture yet that a ray could be followed through";
+                    return self.outbox.answer(&error(Some(ray.id), message)).await;
+                };
+                self.client.rays.put((ray, shown));
             }
-            Message::Save(save) => {
+            Message::Save { scene } => {
                 let uploaded = self.client.uploaded();
                 let source = uploaded.as_ref().map(|uploaded| &uploaded.source);
-                let read = self.client.server.opened.read(&save.scene, source);
+                let read = self.client.server.opened.read(&scene, source);
                 let answer = match read {
                     Ok(loaded) => json!({ "saved": { "text": loaded.scene.source } }),
                     Err(problem) => error(None, &problem),
                 };
-                self.outbox.answer(&answer).await
+                return self.outbox.answer(&answer).await;
             }
-            Message::Photograph(photograph) => {
-                if is_plain_name(&photograph.name) {
-                    self.name = Some(photograph.name);
-                    return Ok(());
-                }
+            Message::Photograph { name } if is_plain_name(&name) => self.name = Some(name),
+            Message::Photograph { .. } => {
                 let message = "a photograph's name is that of a file, without folders";
-                self.outbox.answer(&error(None, message)).await
+                return self.outbox.answer(&error(None, message)).await;
             }
         }
+        Ok(())
     }
 
     async fn take_photograph(&mut self, bytes: Bytes) -> Result<(), Gone> {

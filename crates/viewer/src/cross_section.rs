@@ -1,7 +1,7 @@
 //! The cross-section of a scene in the plane z = 0, for the page to draw.
 
 use cloakroom::assembly::Placed;
-use cloakroom::device::Contour;
+use cloakroom::device::{Contour, Section};
 use cloakroom::render::PreparedScene;
 use cloakroom::scene::{Appearance, DeviceSettings, Projection, Scene};
 use serde_json::{Value, json};
@@ -34,24 +34,14 @@ pub(crate) fn cross_section(scene: &Scene, studio: &PreparedScene<'_>) -> Value 
 fn device(settings: &DeviceSettings, placed: &Placed) -> Value {
     let (section, pose) = placed.structure.drawn_at(&placed.pose);
     let points = |contour: &Contour| -> Vec<[f64; 2]> {
-        contour
-            .points
-            .iter()
-            .map(|at| pose.point_to_world(*at))
-            .map(|at| point(at.x, at.y))
-            .collect()
+        let world = contour.points.iter().map(|at| pose.point_to_world(*at));
+        world.map(|at| point(at.x, at.y)).collect()
     };
     let all = |contours: &[Contour]| contours.iter().map(points).collect::<Vec<_>>();
-    let regions: Vec<Value> = section
-        .regions
-        .iter()
-        .map(|region| json!({ "border": all(&region.border), "graded": region.region.is_graded() }))
-        .collect();
-    let metal: Vec<Value> = section
-        .metal
-        .iter()
-        .map(|contour| json!({ "points": points(contour), "closed": contour.closed }))
-        .collect();
+    let region = |section: &Section<'_>| json!({ "border": all(&section.border), "graded": section.region.is_graded() });
+    let regions: Vec<Value> = section.regions.iter().map(region).collect();
+    let metal = |contour: &Contour| json!({ "points": points(contour), "closed": contour.closed });
+    let metal: Vec<Value> = section.metal.iter().map(metal).collect();
     let body = section.body.map(|_| match settings.appearance() {
         None => json!("medium"),
         Some(Appearance::Color(color)) => json!(color),
@@ -60,12 +50,7 @@ fn device(settings: &DeviceSettings, placed: &Placed) -> Value {
     json!({ "regions": regions, "metal": metal, "outlines": all(&section.outlines), "body": body })
 }
 
-/// A point of the drawing.
+/// A point of the drawing, rounded to what can be seen.
 pub(crate) fn point(x: f64, y: f64) -> [f64; 2] {
-    [x, y].map(|number| round(number.clamp(-FAR, FAR)))
-}
-
-/// Rounded to what can be seen.
-fn round(number: f64) -> f64 {
-    (number * 1e4).round() / 1e4
+    [x, y].map(|number| (number.clamp(-FAR, FAR) * 1e4).round() / 1e4)
 }

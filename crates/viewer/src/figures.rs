@@ -1,32 +1,17 @@
 //! Numbers for what a page shows: power, times of flight, and likeness to what should be seen.
 
 use cloakroom::measure::{
-    Figures, FlightFigures, MeasureError, Region, View, bare, compare, empty, ideal, survey,
+    FlightFigures, MeasureError, Region, View, bare, compare, empty, ideal, survey,
 };
 use cloakroom::output::Picture;
-use cloakroom::render::{
-    ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Supervision, render,
-};
+use cloakroom::render::{ChannelSet, Images, PreparedScene, RenderError, Supervision, render};
 use cloakroom::scene::{Camera, CameraSettings, Scene};
 use serde_json::{Value, json};
+use std::error::Error;
 use std::sync::atomic::AtomicBool;
 
 /// Width of the pictures that numbers are taken from, pixels.
 const WIDTH: u32 = 160;
-
-/// Why there are no numbers.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum FiguresError {
-    /// A view cannot be set up.
-    #[error(transparent)]
-    PreparedScene(#[from] PreparedSceneError),
-    /// A view cannot be rendered.
-    #[error(transparent)]
-    Render(#[from] RenderError),
-    /// Views cannot be compared.
-    #[error(transparent)]
-    Measure(#[from] MeasureError),
-}
 
 /// The numbers of a scene, from small pictures of one sample a pixel: of the scene, of the empty view, of what
 /// should be seen, and of the bare metal.
@@ -36,30 +21,27 @@ pub(crate) fn figures(
     scene: &Scene,
     images: &mut Images,
     stop: &AtomicBool,
-) -> Result<Value, FiguresError> {
+) -> Result<Value, Box<dyn Error>> {
     let supervision = Supervision { rows_done: &|_| {}, stop };
     let scene = small(scene);
-    let mut picture = |scene: &Scene| -> Result<Picture, FiguresError> {
-        let studio = PreparedScene::with_images(scene, images)?;
+    let mut picture = |scene: &Scene| -> Result<Picture, Box<dyn Error>> {
+        let studio = prepared(scene, images)?;
         Ok(render(&studio, ChannelSet::Everything, &supervision)?.picture)
     };
     let wanted_scene = ideal(&scene);
     let shown = picture(&scene)?;
     let nothing = View::of(&picture(&empty(&scene))?)?;
     let wanted = View::of(&picture(&wanted_scene)?)?;
-    let bare = match bare(&scene) {
-        Some(bare) => Some(View::of(&picture(&bare)?)?),
-        None => None,
-    };
+    let bare = bare(&scene).map(|bare| picture(&bare)).transpose()?;
+    let bare = bare.as_ref().map(View::of).transpose()?;
     let view = View::of(&shown)?;
-    let [studio, ideal] =
-        [&scene, &wanted_scene].map(|scene| PreparedScene::with_images(scene, images));
-    let rays =
-        survey(&studio?, &ideal?, &scene.camera, &|_| {}, stop).ok_or(RenderError::Stopped)?;
+    let (studio, ideal) = (prepared(&scene, images)?, prepared(&wanted_scene, images)?);
+    let rays = survey(&studio, &ideal, &scene.camera, &|_| {}, stop).ok_or(RenderError::Stopped)?;
     let silhouette = Region::new(view.width, rays.silhouette.clone()).ok();
     let likeness = |of: &View, to: &View| -> Result<Value, MeasureError> {
         let comparison = compare(to, of, silhouette.as_ref())?;
-        Ok(likeness(comparison.region.as_ref().unwrap_or(&comparison.picture)))
+        let figures = comparison.region.as_ref().unwrap_or(&comparison.picture);
+        Ok(json!({ "structural_similarity": figures.structural_similarity }))
     };
     let mean = |name: &str| {
         let (region, samples) = (silhouette.as_ref()?, &shown.channel(name)?.samples);
@@ -83,8 +65,9 @@ pub(crate) fn figures(
     }))
 }
 
-fn likeness(figures: &Figures) -> Value {
-    json!({ "structural_similarity": figures.structural_similarity })
+/// A scene of those that are compared, built; its errors are about no key of the scene that is shown.
+fn prepared<'s>(scene: &'s Scene, images: &mut Images) -> Result<PreparedScene<'s>, String> {
+    PreparedScene::with_images(scene, images).map_err(|error| error.to_string())
 }
 
 /// The same scene in few pixels.

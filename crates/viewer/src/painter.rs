@@ -1,23 +1,25 @@
 //! The thread that renders for one page: coarsely at once, then in full, then with more samples. What it sends at each
 //! number of samples is the picture that `cloakroom render` makes with that number.
 
-use crate::client::{Client, Outbox};
+use crate::client::{Client, Gone, Outbox};
 use crate::cross_section::cross_section;
-use crate::figures::{FiguresError, figures, resized};
-use crate::frame::{Caption, Scale, encode};
+use crate::figures::{figures, resized};
+use crate::frame::encode;
 use crate::pace::{Pace, Pass};
 use crate::protocol::{Beside, Look, error};
+use crate::slot::lock;
 use cloakroom::measure::{bare, empty, ideal};
-use cloakroom::output::{OutputError, RgbImage, to_srgb};
+use cloakroom::output::to_srgb;
 use cloakroom::render::{
     ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Supervision, render,
 };
 use cloakroom::scene::{DeviceSettings, Placement, Scene};
-use cloakroom_figures::{IllustrationError, Quantity, ScalarMap};
+use cloakroom_figures::{Quantity, ScalarMap};
 use serde_json::{Value, json};
+use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// What coarse pictures may leave out: branches weaker than this, and places less exact than this, cm.
@@ -47,48 +49,11 @@ pub(crate) struct Shown {
 }
 
 /// Why there is no picture.
-#[derive(Debug, thiserror::Error)]
-enum PaintError {
-    /// The scene makes no sense.
-    #[error("{0}")]
-    Scene(String),
-    /// It cannot be built.
-    #[error(transparent)]
-    PreparedScene(#[from] PreparedSceneError),
-    /// It cannot be rendered.
-    #[error(transparent)]
-    Render(#[from] RenderError),
-    /// It cannot be measured.
-    #[error(transparent)]
-    Figures(#[from] FiguresError),
-    /// Its map cannot be drawn.
-    #[error(transparent)]
-    Map(#[from] IllustrationError),
-    /// It has no image.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// The page has gone.
-    #[error("the page has gone")]
-    Gone,
-}
+type PaintError = Box<dyn Error>;
 
-impl PaintError {
-    /// Whether newer wishes, or the end of the page, are why.
-    fn is_stop(&self) -> bool {
-        use RenderError::Stopped;
-        matches!(
-            self,
-            Self::Render(Stopped) | Self::Figures(FiguresError::Render(Stopped)) | Self::Gone
-        )
-    }
-
-    /// The key of the scene that it is about.
-    fn key(&self) -> Option<String> {
-        match self {
-            Self::PreparedScene(error) => Some(error.key()),
-            _ => None,
-        }
-    }
+/// Whether newer wishes, or the end of the page, are why.
+fn is_stop(error: &PaintError) -> bool {
+    error.is::<Gone>() || matches!(error.downcast_ref(), Some(RenderError::Stopped))
 }
 
 /// Paints what a page wishes, until it is gone.
@@ -107,10 +72,11 @@ pub(crate) fn paint(client: &Client, outbox: &Outbox) {
         let painted = catch_unwind(AssertUnwindSafe(|| painter.paint(&wish)));
         let said = match painted {
             Ok(Ok(())) => Ok(()),
-            Ok(Err(failure)) if failure.is_stop() => Ok(()),
+            Ok(Err(failure)) if is_stop(&failure) => Ok(()),
             Ok(Err(failure)) => {
                 let mut message = error(Some(id), &failure.to_string());
-                message["error"]["key"] = json!(failure.key());
+                let of_scene = failure.downcast_ref::<PreparedSceneError>();
+                message["error"]["key"] = json!(of_scene.map(PreparedSceneError::key));
                 outbox.say(&message)
             }
             Err(_) => outbox.say(&error(
@@ -144,23 +110,17 @@ impl Painter<'_> {
         let uploaded = self.client.uploaded();
         let source = uploaded.as_ref().map(|uploaded| &uploaded.source);
         let opened = &self.client.server.opened;
-        let scene = opened.read(&look.scene, source).map_err(PaintError::Scene)?.scene;
-        let mut images = match &uploaded {
-            Some(uploaded) if uploaded.source == scene.photograph.image => {
-                match self.uploaded.take().filter(|(number, _)| *number == uploaded.number) {
-                    Some((_, images)) => images,
-                    None => uploaded.images.clone(),
-                }
-            }
-            _ => std::mem::take(&mut self.images),
+        let scene = opened.read(&look.scene, source)?.scene;
+        let Some(uploaded) = uploaded.filter(|own| own.source == scene.photograph.image) else {
+            let mut images = std::mem::take(&mut self.images);
+            let painted = self.paint_scene(wish, &scene, &mut images);
+            self.images = images;
+            return painted;
         };
+        let known = self.uploaded.take().filter(|(number, _)| *number == uploaded.number);
+        let mut images = known.map_or(uploaded.images, |(_, images)| images);
         let painted = self.paint_scene(wish, &scene, &mut images);
-        match uploaded {
-            Some(uploaded) if uploaded.source == scene.photograph.image => {
-                self.uploaded = Some((uploaded.number, images));
-            }
-            _ => self.images = images,
-        }
+        self.uploaded = Some((uploaded.number, images));
         painted
     }
 
@@ -176,7 +136,7 @@ impl Painter<'_> {
             let studio = PreparedScene::with_images(&full, images)?;
             let section = cross_section(&full, &studio);
             if section != self.section {
-                self.say(&json!({ "section": section }))?;
+                self.outbox.say(&json!({ "section": section }))?;
                 self.section = section;
             }
         }
@@ -187,10 +147,8 @@ impl Painter<'_> {
             Beside::Empty => Some(("empty", empty(scene))),
             Beside::Mirror => Some(("mirror", ideal(scene))),
         };
-        let views: Vec<(&'static str, &Scene)> = [("scene", scene)]
-            .into_iter()
-            .chain(beside.as_ref().map(|(name, scene)| (*name, scene)))
-            .collect();
+        let mut views = vec![("scene", scene)];
+        views.extend(beside.as_ref().map(|(name, scene)| (*name, scene)));
         if !look.moving && !are_alike(&self.devices, &scene.devices) {
             // Other devices take another time: something is to be seen at once.
             self.pace = Pace::default();
@@ -209,7 +167,7 @@ impl Painter<'_> {
             if !pass.coarse && pass.samples == 1 {
                 let mut numbers = figures(scene, images, &wish.stop)?;
                 numbers["id"] = json!(look.id);
-                self.say(&json!({ "numbers": numbers }))?;
+                self.outbox.say(&json!({ "numbers": numbers }))?;
             }
         }
         Ok(())
@@ -231,7 +189,14 @@ impl Painter<'_> {
         }
         let start = Instant::now();
         let studio = PreparedScene::with_images(&scene, images)?;
-        let progress = Progress::new(self.outbox, wish.look.id, pass.samples, studio.rows());
+        let progress = Progress {
+            outbox: self.outbox,
+            id: wish.look.id,
+            samples: pass.samples,
+            rows: studio.rows(),
+            done: AtomicU64::new(0),
+            told: Mutex::new(Instant::now()),
+        };
         let rows_done = |rows| progress.add(rows);
         let quiet = |_| {};
         let supervision = Supervision {
@@ -240,32 +205,29 @@ impl Painter<'_> {
         };
         let wanted = ChannelSet::for_image(&scene.picture);
         let picture = render(&studio, wanted, &supervision)?.picture;
-        let (image, scale): (RgbImage, Option<Scale>) = match scene.picture.map.name() {
-            None => (to_srgb(&picture)?, None),
+        let (image, scale) = match scene.picture.map.name() {
+            None => (to_srgb(&picture)?, Value::Null),
             Some(channel) => {
                 let map = ScalarMap::new(&picture, channel)?;
                 let scale = scale(channel, map.range());
-                (map.image, Some(scale))
+                (map.image, scale)
             }
         };
         let time = start.elapsed();
-        let caption = Caption {
-            id: wish.look.id,
-            view,
-            width: pass.size[0],
-            height: pass.size[1],
-            samples: pass.samples,
-            min_power: scene.trace.min_power.value,
-            finished: pass.finished,
-            last,
-            scale,
-        };
-        self.outbox.send_bytes(encode(&caption, &image)).map_err(|_| PaintError::Gone)?;
+        // Whether it is the best that was asked for, and the last of those that are shown beside each other.
+        let caption = json!({
+            "id": wish.look.id,
+            "view": view,
+            "width": pass.size[0],
+            "height": pass.size[1],
+            "samples": pass.samples,
+            "min_power": scene.trace.min_power.value,
+            "finished": pass.finished,
+            "last": last,
+            "scale": scale,
+        });
+        self.outbox.send_bytes(encode(&caption, &image))?;
         Ok(time)
-    }
-
-    fn say(&self, message: &Value) -> Result<(), PaintError> {
-        self.outbox.say(message).map_err(|_| PaintError::Gone)
     }
 }
 
@@ -279,17 +241,17 @@ fn are_alike(some: &[DeviceSettings], others: &[DeviceSettings]) -> bool {
     some.len() == others.len() && some.iter().zip(others).all(alike)
 }
 
-/// The scale of a map in a unit for people.
-fn scale(channel: &str, range: Option<(f64, f64)>) -> Scale {
+/// The scale of a map, which colors stand for which numbers, in a unit for people; no ends if no number is finite.
+fn scale(channel: &str, range: Option<(f64, f64)>) -> Value {
     let quantity = Quantity::of_channel(channel);
     let size = range.map_or(0.0, |(low, high)| low.abs().max(high.abs()));
     let unit = quantity.unit(size);
-    Scale {
-        title: quantity.title,
-        low: range.map(|(low, _)| low / unit.size),
-        high: range.map(|(_, high)| high / unit.size),
-        unit: unit.symbol,
-    }
+    json!({
+        "title": quantity.title,
+        "low": range.map(|(low, _)| low / unit.size),
+        "high": range.map(|(_, high)| high / unit.size),
+        "unit": unit.symbol,
+    })
 }
 
 /// Tells a page now and then how far a picture is.
@@ -302,15 +264,10 @@ struct Progress<'a> {
     told: Mutex<Instant>,
 }
 
-impl<'a> Progress<'a> {
-    fn new(outbox: &'a Outbox, id: u64, samples: u32, rows: u64) -> Self {
-        let told = Mutex::new(Instant::now());
-        Self { outbox, id, samples, rows, done: AtomicU64::new(0), told }
-    }
-
+impl Progress<'_> {
     fn add(&self, rows: u64) {
         let done = self.done.fetch_add(rows, Ordering::Relaxed) + rows;
-        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut told = lock(&self.told);
         if told.elapsed() >= PROGRESS {
             *told = Instant::now();
             let share = done as f64 / self.rows as f64;

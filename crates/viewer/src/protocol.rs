@@ -25,13 +25,22 @@ pub(crate) enum Message {
     /// Show this.
     Look(Look),
     /// The first picture of a look is on the screen.
-    Seen(Seen),
+    Seen {
+        /// That of the look.
+        id: u64,
+    },
     /// Follow the ray of a point of the picture that is shown.
     Ray(Ray),
     /// Say this scene as TOML.
-    Save(Save),
+    Save {
+        /// The scene.
+        scene: SceneTables,
+    },
     /// The next binary message is a photograph of that name.
-    Photograph(PhotographName),
+    Photograph {
+        /// A file's name, without folders.
+        name: String,
+    },
 }
 
 /// What to look at.
@@ -69,14 +78,6 @@ pub(crate) enum Beside {
     Mirror,
 }
 
-/// What is on the screen.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Seen {
-    /// That of the look.
-    pub id: u64,
-}
-
 /// A point of the picture.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -85,22 +86,6 @@ pub(crate) struct Ray {
     pub id: u64,
     /// The point, as shares of width and height from the top left.
     pub at: [f64; 2],
-}
-
-/// A scene to be saved.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Save {
-    /// The scene.
-    pub scene: SceneTables,
-}
-
-/// The name of a photograph.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct PhotographName {
-    /// A file's name, without folders.
-    pub name: String,
 }
 
 impl Message {

@@ -30,24 +30,20 @@ pub(crate) type Wish = (Ray, Arc<Shown>);
 pub(crate) fn follow(slot: &Slot<Wish>, outbox: &Outbox) {
     let mut images = Images::default();
     let mut next = slot.take();
-    while let Some((first, shown)) = next.take() {
+    while let Some((_, shown)) = next.clone() {
         images.clone_from(&shown.images);
         // The devices are built once for all points of one picture.
-        let Ok(studio) = PreparedScene::with_images(&shown.scene, &mut images) else {
-            next = slot.take();
-            continue;
-        };
-        let mut ray = first;
-        loop {
-            let answer = json!({ "rays": answer(&shown.scene, &studio, &ray) });
-            if outbox.say(&answer).is_err() {
-                return;
+        let studio = PreparedScene::with_images(&shown.scene, &mut images);
+        while let Some((ray, same)) = &next
+            && Arc::ptr_eq(same, &shown)
+        {
+            if let Ok(studio) = &studio {
+                let answer = json!({ "rays": answer(&shown.scene, studio, ray) });
+                if outbox.say(&answer).is_err() {
+                    return;
+                }
             }
             next = slot.take();
-            match &next {
-                Some((another, same)) if Arc::ptr_eq(same, &shown) => ray = *another,
-                _ => break,
-            }
         }
     }
 }
@@ -66,15 +62,15 @@ fn answer(scene: &Scene, studio: &PreparedScene<'_>, ray: &Ray) -> Value {
         min_power: studio.limits().min_power.max(LEAST_POWER),
         tolerance: studio.limits().tolerance.max(1e-4),
     };
-    let (origin, direction) = (sight.origin, sight.direction);
+    let (origin, direction, assembly) = (sight.origin, sight.direction, studio.assembly());
     let mut tree = match camera.polarizer().amplitudes() {
         None => {
             let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
-            lines(studio.assembly(), limits, &launch, [0.5, 0.5], REACH)
+            lines(assembly, limits, &launch, [0.5, 0.5], REACH)
         }
         Some([a, b]) => {
             let launch = Launch { origin, direction, electric: [(h * a + v * b).into()] };
-            lines(studio.assembly(), limits, &launch, [1.0], REACH)
+            lines(assembly, limits, &launch, [1.0], REACH)
         }
     };
     tree.sort_by(|a, b| b.power.total_cmp(&a.power));

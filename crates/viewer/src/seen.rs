@@ -1,8 +1,9 @@
 //! What a page has put on its screen. Finer pictures wait for that: they take all processors, and a browser on the same
 //! machine would show the coarse one a second late.
 
+use crate::slot::lock;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex};
 use std::time::Duration;
 
 /// The newest look of which something has been seen.
@@ -15,14 +16,14 @@ pub(crate) struct Seen {
 impl Seen {
     /// The page has shown a picture of this look.
     pub fn tell(&self, look: u64) {
-        let mut seen = self.lock();
+        let mut seen = lock(&self.look);
         *seen = look.max(*seen);
         self.changed.notify_all();
     }
 
     /// Sets a flag that somebody who waits looks at.
     pub fn stop(&self, flag: &AtomicBool) {
-        let _seen = self.lock();
+        let _seen = lock(&self.look);
         flag.store(true, Ordering::Relaxed);
         self.changed.notify_all();
     }
@@ -31,11 +32,7 @@ impl Seen {
     pub fn wait(&self, look: u64, patience: Duration, stop: &AtomicBool) {
         let unseen = |seen: &mut u64| *seen < look && !stop.load(Ordering::Relaxed);
         // Whether it was seen or not, the work goes on.
-        let _ = self.changed.wait_timeout_while(self.lock(), patience, unseen);
-    }
-
-    fn lock(&self) -> MutexGuard<'_, u64> {
-        self.look.lock().unwrap_or_else(PoisonError::into_inner)
+        let _ = self.changed.wait_timeout_while(lock(&self.look), patience, unseen);
     }
 }
 

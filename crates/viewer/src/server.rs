@@ -6,6 +6,7 @@ use crate::catalogue::greeting;
 use crate::client;
 use crate::protocol::{LARGEST_PHOTOGRAPH, LONGEST_TEXT};
 use crate::scenes::Opened;
+use crate::slot::lock;
 use axum::Router;
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{Request, State};
@@ -160,7 +161,7 @@ async fn stopped(stop: &AtomicBool) {
 fn read_images(scene: &Scene, server: &Arc<Server>) {
     let (scene, server) = (scene.clone(), server.clone());
     std::thread::spawn(move || {
-        let mut images = server.images.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut images = lock(&server.images);
         // The page is told what is wrong with the scene, if anything is.
         let _ = PreparedScene::with_images(&scene, &mut images);
     });

@@ -25,13 +25,13 @@ impl<T> Default for Slot<T> {
 impl<T> Slot<T> {
     /// Puts something in, in the place of what was there.
     pub fn put(&self, wish: T) {
-        self.lock().waiting = Some(wish);
+        lock(&self.content).waiting = Some(wish);
         self.changed.notify_one();
     }
 
     /// Waits for something and takes it; `None` once the slot is closed.
     pub fn take(&self) -> Option<T> {
-        let mut content = self.lock();
+        let mut content = lock(&self.content);
         loop {
             if content.closed {
                 return None;
@@ -45,11 +45,12 @@ impl<T> Slot<T> {
 
     /// Ends the waiting for good.
     pub fn close(&self) {
-        self.lock().closed = true;
+        lock(&self.content).closed = true;
         self.changed.notify_all();
     }
+}
 
-    fn lock(&self) -> MutexGuard<'_, Content<T>> {
-        self.content.lock().unwrap_or_else(PoisonError::into_inner)
-    }
+/// Holds what a mutex guards, whatever has become of who held it before.
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,6 +1,7 @@
 //! Values on the command line, read.
 
 use cloakroom::material::Resolution;
+use std::str::FromStr;
 
 /// Reads a point such as -30,0,0.
 pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
@@ -40,10 +41,8 @@ pub(super) fn angles(text: &str) -> Result<[f64; 3], String> {
 
 /// Reads the first and the last of some frames, such as 0..29.
 pub(super) fn frames_only(text: &str) -> Result<[usize; 2], String> {
-    let pair = text
-        .split_once("..")
-        .and_then(|(first, last)| Some([first.trim().parse().ok()?, last.trim().parse().ok()?]));
-    pair.filter(|[first, last]| first <= last)
+    parsed(text, "..")
+        .filter(|[first, last]| first <= last)
         .ok_or_else(|| "write FIRST..LAST, counted from 0, as in 0..29".to_owned())
 }
 
@@ -54,18 +53,9 @@ pub(super) fn map_range(text: &str) -> Result<[f64; 2], String> {
         .ok_or_else(|| "write LOW,HIGH, the smaller number first, as in -0.1,0.1".to_owned())
 }
 
-/// Finite numbers between commas.
-fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
-    let numbers: Result<Vec<f64>, _> =
-        text.split(',').map(|number| number.trim().parse()).collect();
-    let numbers = numbers.ok().filter(|numbers| numbers.iter().all(|n| n.is_finite()))?;
-    numbers.try_into().ok()
-}
-
 /// Reads a grid such as 200x200x1 or 0.1.
 pub(super) fn grid(text: &str) -> Result<Resolution, String> {
-    let counts: Result<Vec<u32>, _> = text.split('x').map(|count| count.trim().parse()).collect();
-    if let Some(counts) = counts.ok().and_then(|counts| <[u32; 3]>::try_from(counts).ok()) {
+    if let Some(counts) = parsed(text, "x") {
         return Ok(Resolution::Cells(counts));
     }
     text.parse().map(Resolution::Spacing).map_err(|_| {
@@ -76,17 +66,13 @@ pub(super) fn grid(text: &str) -> Result<Resolution, String> {
 
 /// Reads a pixel such as 512,384.
 pub(super) fn pixel(text: &str) -> Result<[u32; 2], String> {
-    let pair = text.split_once(',').map(|(x, y)| (x.trim().parse(), y.trim().parse()));
-    match pair {
-        Some((Ok(column), Ok(row))) => Ok([column, row]),
-        _ => Err("write COLUMN,ROW, counted from 0 at the top left, as in 512,384".to_owned()),
-    }
+    parsed(text, ",")
+        .ok_or_else(|| "write COLUMN,ROW, counted from 0 at the top left, as in 512,384".to_owned())
 }
 
 /// Reads a rectangle such as 100,50,200,150.
 pub(super) fn rectangle(text: &str) -> Result<[usize; 4], String> {
-    let numbers: Option<Vec<usize>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
-    numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| {
+    parsed(text, ",").ok_or_else(|| {
         "write X,Y,W,H in pixels: left column, top row, width, height, as in 100,50,200,150"
             .to_owned()
     })
@@ -94,11 +80,23 @@ pub(super) fn rectangle(text: &str) -> Result<[usize; 4], String> {
 
 /// Reads a size such as 1024x768.
 pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once('x').map(|(w, h)| (w.parse(), h.parse()));
-    match sides {
-        Some((Ok(w), Ok(h))) if (1..=65536).contains(&w) && (1..=65536).contains(&h) => Ok([w, h]),
-        _ => Err("write WIDTHxHEIGHT in pixels, each from 1 to 65536, as in 1024x768".to_owned()),
-    }
+    parsed(text, "x")
+        .filter(|sides| sides.iter().all(|side| (1..=65536).contains(side)))
+        .ok_or_else(|| {
+            "write WIDTHxHEIGHT in pixels, each from 1 to 65536, as in 1024x768".to_owned()
+        })
+}
+
+/// Finite numbers between commas.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    parsed(text, ",").filter(|numbers: &[f64; N]| numbers.iter().all(|n| n.is_finite()))
+}
+
+/// What stands between separators, so many of them.
+fn parsed<T: FromStr, const N: usize>(text: &str, separator: &str) -> Option<[T; N]> {
+    let parts: Option<Vec<T>> =
+        text.split(separator).map(|part| part.trim().parse().ok()).collect();
+    parts?.try_into().ok()
 }
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ impl Device for BendingSphere {
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         lens_alone(request)?;
-        Ok(ball(self.radius, RadialFlow::Lens(self.lens())))
+        Ok(ball(self.radius, RadialFlow::Lens(self.lens()), None))
     }
 
     fn facts(&self) -> Vec<Fact> {

@@ -97,9 +97,8 @@ impl Device for SolidBody {
 
     fn facts(&self) -> Vec<Fact> {
         let entry = |tensor: Tensor| {
-            let size = tensor.re.x_axis.x;
-            let scalar = tensor == Complex64::new(size, tensor.im.x_axis.x).into();
-            scalar.then_some(Complex64::new(size, tensor.im.x_axis.x))
+            let entry = Complex64::new(tensor.re.x_axis.x, tensor.im.x_axis.x);
+            (tensor == entry.into()).then_some(entry)
         };
         let mut facts = vec![Fact::number("priority", self.priority as f64)];
         if let (Some(e), Some(m)) = (entry(self.permittivity.value), entry(self.permeability.value))

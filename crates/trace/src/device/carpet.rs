@@ -6,7 +6,7 @@
 //! it. The back lies on y = 0, for a grating at the depth of its troughs.
 
 use super::{
-    Coating, ConformalRegion, FarSide, GaussianCarpet, Hull, Part, Region, Request, Shape, Show,
+    ConformalRegion, Fact, FarSide, GaussianCarpet, Hull, Part, Region, Request, Shape, Show,
     Structure, Surface,
 };
 use crate::key;
@@ -21,24 +21,17 @@ pub(super) fn gaussian_map(w: f64, h: f64) -> Result<GaussianMap, KeyError> {
     GaussianMap::new(w, h).map_err(|error| KeyError::at(key!(GaussianCarpet.h), error.to_string()))
 }
 
-/// The size of a carpet.
-#[derive(Clone, Copy)]
-pub(super) struct Size {
-    /// Along x, cm.
-    pub width: f64,
-    /// Above the floor's level, cm.
-    pub height: f64,
-    /// Of the whole floor along x, cm; 0 for none.
-    pub floor: f64,
-}
-
-/// The rectangle a carpet is cut to, whose metal rises to `peak`.
+/// The rectangle a carpet is cut to, whose metal rises to `peak`, of a width along x and a height above the floor's
+/// level; the floor may be wider, or 0 for none. All in cm.
 ///
 /// # Errors
 ///
 /// If the metal does not fit in, or the floor ends below the device.
-pub(super) fn cut(size: Size, peak: f64) -> Result<Truncation, KeyError> {
-    let Size { width, height, floor } = size;
+pub(super) fn cut(
+    [width, height]: [f64; 2],
+    floor: f64,
+    peak: f64,
+) -> Result<Truncation, KeyError> {
     if height <= peak {
         let message =
             format!("height is {height} cm; it must be above h, {peak} cm, to hold the metal");
@@ -53,21 +46,41 @@ pub(super) fn cut(size: Size, peak: f64) -> Result<Truncation, KeyError> {
     Ok(Truncation::centred(width, height))
 }
 
-/// A carpet in any view; `strength` is c of its index c/|f'|.
+/// A carpet in any view, on a floor so wide (cm); `strength` is c of its index c/|f'|.
 pub(super) fn structure(
     map: ConformalMap,
     cut: Truncation,
     strength: f64,
-    size: Size,
+    floor: f64,
     request: Request,
 ) -> Structure {
     let extent = Extent::centred(request.length);
-    let site = Site { cut, half_floor: 0.5 * size.floor, extent };
+    let site = Site { cut, half_floor: 0.5 * floor, extent };
     match request.show {
-        Show::Cloak => site.cloak(&ConformalFlow::new(map, cut, extent, strength)),
+        Show::Cloak => site.cloak(ConformalFlow::new(map, cut, extent, strength)),
         Show::Bare => site.bare(map),
-        Show::Mirror => site.mirror(),
+        // The flat mirror that the floor with the carpet should look like.
+        Show::Mirror => super::flat_strip(site.half_floor.max(cut.x_max), extent),
     }
+}
+
+/// The facts of a carpet, or of several that are alike: the range of its index c/|f'|, those of its own, and how wide
+/// the mirror is.
+pub(super) fn facts(map: &ConformalMap, cut: &Truncation, c: f64, own: &[Fact]) -> Vec<Fact> {
+    let (least, largest) = map.index_range(cut);
+    let index = [Fact::number("index_min", c * least), Fact::number("index_max", c * largest)];
+    [&index, own, &[Fact::number("mirror_width_cm", 2.0 * cut.x_max)]].concat()
+}
+
+/// The metal below a floor, bare, in a prism around it: the outline, then the ends.
+pub(super) fn metal(curve: FloorCurve, around: Outline, extent: Extent) -> Structure {
+    let metal = |shape| Surface::new(shape, FarSide::Conductor);
+    let mut surfaces = vec![metal(Shape::Curve { curve: curve.clone(), side: None, extent })];
+    for cap in extent.ends().into_iter().flat_map(|ends| Cap::both(&around, ends)) {
+        surfaces.push(metal(Shape::Cap(cap)).with_part(Part::Metal(curve.clone())));
+    }
+    let hull = Hull::prism(around, extent).of_metal(curve);
+    Structure { regions: Vec::new(), surfaces, hull }
 }
 
 /// Where a carpet stands.
@@ -78,7 +91,7 @@ struct Site {
 }
 
 impl Site {
-    fn cloak(&self, flow: &ConformalFlow) -> Structure {
+    fn cloak(&self, flow: ConformalFlow) -> Structure {
         let map = flow.map();
         let Truncation { x_max: x, y_max: top, .. } = self.cut;
         let bottom = map.trough();
@@ -99,23 +112,13 @@ impl Site {
         wall([-x, bottom], [x, bottom], FarSide::Conductor);
         wall([x, bottom], [x, tip], FarSide::Conductor);
         let outline = self.box_between(bottom, top);
-        if let Some(ends) = self.extent.ends() {
-            for cap in Cap::both(&outline, ends) {
-                let cap = Shape::Cap(cap);
-                let below = Part::BelowFloor { map: map.clone(), mirrored: false };
-                surfaces.push(Surface::new(cap.clone(), FarSide::Conductor).with_part(below));
-                let above = Part::AboveFloor(map.clone(), Half::Upper);
-                surfaces.push(Surface::new(cap, medium).with_part(above));
-            }
+        for cap in self.extent.ends().into_iter().flat_map(|ends| Cap::both(&outline, ends)) {
+            let cap = |far, part| Surface::new(Shape::Cap(cap.clone()), far).with_part(part);
+            let below = Part::BelowFloor { map: map.clone(), mirrored: false };
+            surfaces.push(cap(FarSide::Conductor, below));
+            surfaces.push(cap(medium, Part::AboveFloor(map.clone(), Half::Upper)));
         }
-        let region = ConformalRegion {
-            flow: flow.clone(),
-            half: Half::Upper,
-            floor: FarSide::Conductor,
-            core: FarSide::Outside,
-            coating: Coating::None,
-            loss_tangent: 0.0,
-        };
+        let region = ConformalRegion::new(flow, Half::Upper, FarSide::Conductor);
         let hull = Hull::prism(outline, self.extent);
         self.on_floor(vec![Region::Conformal(region)], surfaces, hull)
     }
@@ -126,38 +129,23 @@ impl Site {
         let tip = map.floor_height_at(x_max);
         let around = self.box_between(bottom, peak);
         let curve = FloorCurve::new(map, MetalBack::Flat(bottom), x_min, x_max);
-        let metal = |shape| Surface::new(shape, FarSide::Conductor);
-        let floor = Shape::Curve { curve: curve.clone(), side: None, extent: self.extent };
-        let mut surfaces = vec![metal(floor)];
+        let Structure { mut surfaces, hull, .. } = metal(curve, around, self.extent);
         if tip < 0.0 {
             // A trough at the end is closed by a thin wall up to the floor.
-            surfaces.extend([x_min, x_max].map(|x| {
+            let closed = [x_min, x_max].map(|x| {
                 let ends = [tip, 0.0].map(|y| DVec2::new(x, y));
                 Surface::mirror(Wall::new(ends[0], ends[1], self.extent))
-            }));
+            });
+            surfaces.splice(1..1, closed);
         }
-        if let Some(ends) = self.extent.ends() {
-            surfaces.extend(
-                Cap::both(&around, ends)
-                    .map(|cap| metal(Shape::Cap(cap)).with_part(Part::Metal(curve.clone()))),
-            );
-        }
-        self.on_floor(Vec::new(), surfaces, Hull::prism(around, self.extent).of_metal(curve))
-    }
-
-    /// The flat mirror that the floor with the carpet should look like.
-    fn mirror(&self) -> Structure {
-        super::flat_strip(self.half_floor.max(self.cut.x_max), self.extent)
+        self.on_floor(Vec::new(), surfaces, hull)
     }
 
     /// The rectangle over the width of the device.
     fn box_between(&self, bottom: f64, top: f64) -> Outline {
         let Truncation { x_min, x_max, .. } = self.cut;
-        Outline::new(
-            [(x_min, bottom), (x_max, bottom), (x_max, top), (x_min, top)]
-                .map(DVec2::from)
-                .to_vec(),
-        )
+        let corners = [(x_min, bottom), (x_max, bottom), (x_max, top), (x_min, top)];
+        Outline::new(corners.map(DVec2::from).to_vec())
     }
 
     /// Adds the floor on the left and on the right.

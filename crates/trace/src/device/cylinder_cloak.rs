@@ -1,7 +1,7 @@
 //! The cylindrical cloak, impedance matched (Pendry, Schurig & Smith, Science 312, 1780 (2006); Schurig et
 //! al., Science 314, 977 (2006)) or of a uniaxial dielectric (after Cai et al., Nature Photon. 1, 224 (2007)).
 
-use super::round::{check_radii, hollow_tube, metal_cylinder, tube};
+use super::round::{check_radii, metal_cylinder, tube};
 use super::{Device, Fact, Request, Show, Structure};
 use crate::key;
 use crate::keys::{KeyError, Limits};
@@ -73,8 +73,7 @@ impl Device for CylinderCloak {
                         RadialFlow::Uniaxial(UniaxialCylinder::new(inner, outer, axis, extent))
                     }
                 };
-                let shell = if request.open_core { hollow_tube } else { tube };
-                shell(inner, outer, extent, flow)
+                tube(inner, outer, extent, flow, request.open_core)
             }
             Show::Bare => metal_cylinder(inner, extent),
             Show::Mirror => Structure::empty(),
@@ -84,27 +83,23 @@ impl Device for CylinderCloak {
     fn facts(&self) -> Vec<Fact> {
         let Ok((inner, outer)) = self.radii() else { return Vec::new() };
         let border = DVec3::X * outer;
-        let area = Fact::number("cloaked_area_cm2", PI * inner * inner);
+        let mut facts = vec![Fact::number("cloaked_area_cm2", PI * inner * inner)];
         match self.optic_axis() {
             None => {
                 let tensor = RadialMap::new(inner, outer, Symmetry::Axis).tensor(border);
-                vec![
-                    area,
-                    Fact::principal_values("border_tensor_principal_values", &tensor),
-                    Fact::number("time_of_flight_difference_ns", 0.0),
-                ]
+                facts.push(Fact::principal_values("border_tensor_principal_values", &tensor));
+                facts.push(Fact::number("time_of_flight_difference_ns", 0.0));
             }
             Some(axis) => {
                 let shell = UniaxialCylinder::new(inner, outer, axis, Extent::ENDLESS);
-                let mut facts = vec![area];
                 if let Some(medium) = shell.medium(border) {
                     let name = "border_permittivity_principal_values";
                     facts.push(Fact::principal_values(name, medium.permittivity()));
                 }
                 let reflectance = (inner / (2.0 * outer - inner)).powi(2);
                 facts.push(Fact::number("normal_reflectance_vertical", reflectance));
-                facts
             }
         }
+        facts
     }
 }

@@ -76,14 +76,14 @@ impl Device for DoubleGaussianCloak {
             Show::Cloak => {
                 let coating = if self.fresnel { Coating::None } else { Coating::Antireflection };
                 let strength = self.strength(&map, &cut);
-                cloak(
-                    &ConformalFlow::new(map, cut, extent, strength),
-                    coating,
-                    extent,
-                    request.open_core,
-                )
+                let flow = ConformalFlow::new(map, cut, extent, strength);
+                cloak(&flow, coating, extent, request.open_core)
             }
-            Show::Bare => bare(map, cut, extent),
+            Show::Bare => {
+                let around = Outline::rectangle(cut.x_max, map.peak());
+                let curve = FloorCurve::new(map, MetalBack::MirrorImage, cut.x_min, cut.x_max);
+                carpet::metal(curve, around, extent)
+            }
             Show::Mirror => super::flat_strip(cut.x_max, extent),
         })
     }
@@ -92,14 +92,11 @@ impl Device for DoubleGaussianCloak {
         let Ok((gaussian, cut)) = self.parts() else { return Vec::new() };
         let map = ConformalMap::from(gaussian);
         let c = self.strength(&map, &cut);
-        let (least, largest) = map.index_range(&cut);
-        vec![
-            Fact::number("index_min", c * least),
-            Fact::number("index_max", c * largest),
+        let areas = [
             Fact::number("cloaked_area_cm2", 2.0 * gaussian.area()),
             Fact::number("cloaked_area_within_cut_cm2", 2.0 * map.area_within(&cut)),
-            Fact::number("mirror_width_cm", 2.0 * cut.x_max),
-        ]
+        ];
+        carpet::facts(&map, &cut, c, &areas)
     }
 }
 
@@ -140,9 +137,8 @@ fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool
     }
     let regions = [Half::Upper, Half::Lower]
         .map(|half| {
-            let (flow, loss_tangent) = (flow.clone(), 0.0);
-            let core = FarSide::Outside;
-            Region::Conformal(ConformalRegion { flow, half, floor, core, coating, loss_tangent })
+            let region = ConformalRegion::new(flow.clone(), half, floor);
+            Region::Conformal(ConformalRegion { coating, ..region })
         })
         .to_vec();
     if !open_core {
@@ -154,20 +150,6 @@ fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool
         surfaces.push(Surface::new(shape, far).with_coating(coating).from_behind());
     }
     let hole = Hole::Lens { curve, pose: Pose::new(DVec3::ZERO, 0.0), extent };
-    let filled = Solid::Prism { outline, extent };
-    let hull = Hull::new(filled.clone().with_hole(hole)).with_open_core(filled);
+    let hull = Hull::around(hole, Solid::Prism { outline, extent });
     Structure { regions, surfaces, hull }
-}
-
-fn bare(map: ConformalMap, cut: Truncation, extent: Extent) -> Structure {
-    let x = cut.x_max;
-    let around = Outline::rectangle(x, map.peak());
-    let curve = FloorCurve::new(map, MetalBack::MirrorImage, cut.x_min, x);
-    let metal = |shape| Surface::new(shape, FarSide::Conductor);
-    let mut surfaces = vec![metal(Shape::Curve { curve: curve.clone(), side: None, extent })];
-    for cap in extent.ends().into_iter().flat_map(|ends| Cap::both(&around, ends)) {
-        surfaces.push(metal(Shape::Cap(cap)).with_part(Part::Metal(curve.clone())));
-    }
-    let hull = Hull::prism(around, extent).of_metal(curve);
-    Structure { regions: Vec::new(), surfaces, hull }
 }

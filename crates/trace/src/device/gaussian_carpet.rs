@@ -3,8 +3,7 @@
 //!
 //! A conformal map, [`GaussianMap`], so the index 1/|f'| is exact: the bump looks like flat floor.
 
-use super::carpet::{self, Size};
-use super::{Device, Fact, Request, Structure};
+use super::{Device, Fact, Request, Structure, carpet};
 use crate::keys::{KeyError, Limits};
 use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
@@ -28,11 +27,7 @@ crate::table! {
 impl GaussianCarpet {
     fn parts(&self) -> Result<(GaussianMap, Truncation), KeyError> {
         let map = carpet::gaussian_map(self.w, self.h)?;
-        Ok((map, carpet::cut(self.size(), map.height())?))
-    }
-
-    fn size(&self) -> Size {
-        Size { width: self.width, height: self.height, floor: self.floor }
+        Ok((map, carpet::cut([self.width, self.height], self.floor, map.height())?))
     }
 }
 
@@ -42,19 +37,16 @@ impl Device for GaussianCarpet {
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
-        Ok(carpet::structure(map.into(), cut, 1.0, self.size(), request))
+        Ok(carpet::structure(map.into(), cut, 1.0, self.floor, request))
     }
 
     fn facts(&self) -> Vec<Fact> {
         let Ok((gaussian, cut)) = self.parts() else { return Vec::new() };
         let map = ConformalMap::from(gaussian);
-        let (least, largest) = map.index_range(&cut);
-        vec![
-            Fact::number("index_min", least),
-            Fact::number("index_max", largest),
+        let areas = [
             Fact::number("cloaked_area_cm2", gaussian.area()),
             Fact::number("cloaked_area_within_cut_cm2", map.area_within(&cut)),
-            Fact::number("mirror_width_cm", 2.0 * cut.x_max),
-        ]
+        ];
+        carpet::facts(&map, &cut, 1.0, &areas)
     }
 }

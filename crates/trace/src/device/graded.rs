@@ -5,15 +5,14 @@
 //! followed through that, to the tolerance. At the border the index steps to that of air, with refraction and Fresnel
 //! reflection.
 
-use super::round::{metal_cylinder, pierced, upright};
+use super::round::{metal_cylinder, pierced, round_hole, upright};
 use super::{
-    Coating, ConformalRegion, Device, Fact, FarSide, Hull, Region, Request, Shape, Show, Structure,
-    Surface,
+    ConformalRegion, Device, Fact, FarSide, Hull, Region, Request, Shape, Show, Structure, Surface,
 };
 use crate::key;
 use crate::keys::{KeyError, Limits, Sampled, Samples};
 use glam::DVec2;
-use optics::geometry::{Cap, Cylinder, Extent, Hole, Outline, Solid, Wall};
+use optics::geometry::{Cap, Extent, Hole, Outline, Solid, Wall};
 use optics::propagation::{ConformalFlow, GridSpline, Half, IndexPerturbation};
 use optics::transformation::{ConformalMap, FlatMap, Truncation};
 use std::f64::consts::PI;
@@ -125,14 +124,8 @@ impl Site {
             .between(self.core, self.rim)
             .with_unevenness(unevenness);
         let far_of_core = if open_core { FarSide::Outside } else { FarSide::Conductor };
-        let regions = vec![Region::Conformal(ConformalRegion {
-            flow,
-            half: Half::Upper,
-            floor: FarSide::Outside,
-            core: far_of_core,
-            coating: Coating::None,
-            loss_tangent: 0.0,
-        })];
+        let region = ConformalRegion::new(flow, Half::Upper, FarSide::Outside);
+        let regions = vec![Region::Conformal(ConformalRegion { core: far_of_core, ..region })];
         let core = (self.core.unwrap_or(0.0), far_of_core);
         let far = FarSide::Region(0);
         let outline = Outline::rectangle(x, y);
@@ -142,10 +135,8 @@ impl Site {
         };
         let hull = match self.core {
             Some(radius) if open_core => {
-                let shape = Shape::Round(Cylinder { radius, extent });
-                surfaces.push(Surface::new(shape, far).from_behind());
-                let hole = Hole::Round(Solid::cylinder(radius, extent));
-                Hull::new(whole.clone().with_hole(hole)).with_open_core(whole)
+                surfaces.push(round_hole(radius, extent));
+                Hull::around(Hole::Round(Solid::cylinder(radius, extent)), whole)
             }
             _ => Hull::new(whole),
         };

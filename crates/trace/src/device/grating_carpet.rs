@@ -4,8 +4,7 @@
 //! A conformal map, [`GratingMap`], so the index 1/|f'| is exact. The metal swings between y = -h and h about
 //! the floor's level y = 0, and below that level the device ends at metal.
 
-use super::carpet::{self, Size};
-use super::{Device, Fact, Request, Structure};
+use super::{Device, Fact, Request, Structure, carpet};
 use crate::key;
 use crate::keys::{KeyError, Limits};
 use optics::transformation::{ConformalMap, GratingMap, Truncation};
@@ -43,11 +42,7 @@ impl GratingCarpet {
             );
             return Err(KeyError::at(key!(Self.period), message));
         }
-        Ok((map, carpet::cut(self.size(), h)?))
-    }
-
-    fn size(&self) -> Size {
-        Size { width: self.width, height: self.height, floor: self.floor }
+        Ok((map, carpet::cut([width, self.height], self.floor, h)?))
     }
 }
 
@@ -57,17 +52,12 @@ impl Device for GratingCarpet {
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
-        Ok(carpet::structure(map.into(), cut, 1.0, self.size(), request))
+        Ok(carpet::structure(map.into(), cut, 1.0, self.floor, request))
     }
 
     fn facts(&self) -> Vec<Fact> {
         let Ok((grating, cut)) = self.parts() else { return Vec::new() };
-        let (least, largest) = ConformalMap::from(grating).index_range(&cut);
-        vec![
-            Fact::number("index_min", least),
-            Fact::number("index_max", largest),
-            Fact::number("cloaked_area_per_period_cm2", grating.area_of_a_period()),
-            Fact::number("mirror_width_cm", 2.0 * cut.x_max),
-        ]
+        let area = Fact::number("cloaked_area_per_period_cm2", grating.area_of_a_period());
+        carpet::facts(&ConformalMap::from(grating), &cut, 1.0, &[area])
     }
 }

@@ -38,15 +38,11 @@ impl Device for InvisibleSphere {
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         lens_alone(request)?;
         let radius = self.radius;
-        Ok(ball(
-            radius,
-            match self.material {
-                SphereMaterial::Regularized => {
-                    RadialFlow::Transmuted(TransmutedSphere::new(radius))
-                }
-                SphereMaterial::Graded => RadialFlow::Lens(CentralLens::eaton(radius, TAU)),
-            },
-        ))
+        let flow = match self.material {
+            SphereMaterial::Regularized => RadialFlow::Transmuted(TransmutedSphere::new(radius)),
+            SphereMaterial::Graded => RadialFlow::Lens(CentralLens::eaton(radius, TAU)),
+        };
+        Ok(ball(radius, flow, None))
     }
 
     fn facts(&self) -> Vec<Fact> {

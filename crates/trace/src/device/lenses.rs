@@ -27,7 +27,7 @@ macro_rules! lens {
             fn structure(&self, request: Request) -> Result<Structure, KeyError> {
                 lens_alone(request)?;
                 let lens: fn(f64) -> CentralLens = $lens;
-                Ok(ball(self.radius, RadialFlow::Lens(lens(self.radius))))
+                Ok(ball(self.radius, RadialFlow::Lens(lens(self.radius)), None))
             }
 
             fn facts(&self) -> Vec<Fact> {

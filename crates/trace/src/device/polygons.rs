@@ -14,13 +14,6 @@ pub(super) struct PolygonPart {
     pub medium: Option<Medium>,
 }
 
-/// Two parts are in each other's way, by their numbers.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Overlap {
-    pub first: usize,
-    pub second: usize,
-}
-
 /// A convex piece of a part.
 struct Piece {
     /// The part it is of.
@@ -42,8 +35,8 @@ struct Stretch {
 ///
 /// # Errors
 ///
-/// If two parts overlap.
-pub(super) fn polygonal(parts: &[PolygonPart], extent: Extent) -> Result<Structure, Overlap> {
+/// If two parts overlap: their numbers.
+pub(super) fn polygonal(parts: &[PolygonPart], extent: Extent) -> Result<Structure, [usize; 2]> {
     let pieces = pieces(parts)?;
     let (mut regions, mut surfaces) = (Vec::new(), Vec::new());
     for (index, piece) in pieces.iter().enumerate() {
@@ -77,7 +70,7 @@ pub(super) fn polygonal(parts: &[PolygonPart], extent: Extent) -> Result<Structu
 }
 
 /// The convex pieces of all parts, which must not overlap.
-fn pieces(parts: &[PolygonPart]) -> Result<Vec<Piece>, Overlap> {
+fn pieces(parts: &[PolygonPart]) -> Result<Vec<Piece>, [usize; 2]> {
     let mut pieces: Vec<Piece> = Vec::new();
     let mut regions = 0;
     for (index, part) in parts.iter().enumerate() {
@@ -87,7 +80,7 @@ fn pieces(parts: &[PolygonPart]) -> Result<Vec<Piece>, Overlap> {
                 .iter()
                 .find(|other| other.part != index && other.outline.overlaps(&outline, SAME_POINT));
             if let Some(other) = overlapped {
-                return Err(Overlap { first: other.part, second: index });
+                return Err([other.part, index]);
             }
             let itself = match part.medium {
                 Some(_) => FarSide::Region(regions),
@@ -131,14 +124,10 @@ fn stretches(parts: &[PolygonPart], pieces: &[Piece], index: usize, edge: usize)
             let off = |at: f64| off_start + (off_end - off_start) * (at - start) / (end - start);
             let beside = [low, high].iter().all(|at| off(*at).abs() <= SAME_POINT);
             if beside && high - low > SAME_POINT {
-                let clamped = |p: DVec2, at: f64| {
-                    if at <= SAME_POINT {
-                        from
-                    } else if at >= length - SAME_POINT {
-                        to
-                    } else {
-                        p
-                    }
+                let clamped = |p: DVec2, at: f64| match at {
+                    at if at <= SAME_POINT => from,
+                    at if at >= length - SAME_POINT => to,
+                    _ => p,
                 };
                 let same = other.itself != FarSide::Conductor
                     && parts[other.part].medium == parts[piece.part].medium;

@@ -2,7 +2,7 @@
 //!
 //! Prisms that share a side, whole or in part, meet there without a gap.
 
-use super::polygons::{Overlap, PolygonPart, polygonal};
+use super::polygons::{PolygonPart, polygonal};
 use super::{Device, Fact, Request, Show, Structure};
 use crate::key;
 use crate::keys::{Given, KeyError, Limits};
@@ -54,7 +54,7 @@ impl Device for Prisms {
             }
             Show::Mirror => super::refuse_other_views(request, "prisms imitate no mirror")?,
         }
-        polygonal(&parts, Extent::centred(request.length)).map_err(|Overlap { first, second }| {
+        polygonal(&parts, Extent::centred(request.length)).map_err(|[first, second]| {
             let message =
                 format!("prism {second} overlaps prism {first} (counted from 0); cut one of them");
             KeyError::at(key!(PrismOfMedium.corners), message).within(key!(Self.prism), second)

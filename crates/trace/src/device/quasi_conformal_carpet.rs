@@ -4,8 +4,7 @@
 //! The map is solved for here, [`QuasiConformalMap`]. It does not quite keep the shape of the box, and that
 //! small anisotropy is neglected: an index of c/|f'| is left.
 
-use super::carpet::{self, Size};
-use super::{Device, Fact, Request, Structure};
+use super::{Device, Fact, Request, Structure, carpet};
 use crate::key;
 use crate::keys::{KeyError, Limits};
 use optics::transformation::{ConformalMap, QuasiConformalMap, QuasiConformalMapError, Truncation};
@@ -29,7 +28,7 @@ crate::table! {
 
 impl QuasiConformalCarpet {
     fn parts(&self) -> Result<(QuasiConformalMap, Truncation), KeyError> {
-        let cut = carpet::cut(self.size(), self.h)?;
+        let cut = carpet::cut([self.width, self.height], self.floor, self.h)?;
         let map = QuasiConformalMap::new(self.w, self.h, &cut).map_err(|error| {
             let key = match error {
                 QuasiConformalMapError::TooWide { .. }
@@ -42,10 +41,6 @@ impl QuasiConformalCarpet {
         })?;
         Ok((map, cut))
     }
-
-    fn size(&self) -> Size {
-        Size { width: self.width, height: self.height, floor: self.floor }
-    }
 }
 
 impl Device for QuasiConformalCarpet {
@@ -55,7 +50,7 @@ impl Device for QuasiConformalCarpet {
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
         let strength = map.strength();
-        Ok(carpet::structure(map.into(), cut, strength, self.size(), request))
+        Ok(carpet::structure(map.into(), cut, strength, self.floor, request))
     }
 
     fn facts(&self) -> Vec<Fact> {
@@ -63,13 +58,10 @@ impl Device for QuasiConformalCarpet {
         let c = quasi_conformal.strength();
         let anisotropy = quasi_conformal.anisotropy();
         let map = ConformalMap::from(quasi_conformal);
-        let (least, largest) = map.index_range(&cut);
-        vec![
-            Fact::number("index_min", c * least),
-            Fact::number("index_max", c * largest),
+        let own = [
             Fact::number("neglected_anisotropy", anisotropy),
             Fact::number("cloaked_area_cm2", map.area_within(&cut)),
-            Fact::number("mirror_width_cm", 2.0 * cut.x_max),
-        ]
+        ];
+        carpet::facts(&map, &cut, c, &own)
     }
 }

@@ -8,6 +8,9 @@ use optics::propagation::{
     Border, Boundary, ConformalFlow, FlowEnd, Half, PathPoint, RadialFlow, VirtualPoint,
 };
 
+/// Straight pieces that a closed form's path is drawn with.
+const PIECES: u32 = 96;
+
 /// A region filled with one medium.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "a device has few cells, and they are met often")]
@@ -252,12 +255,7 @@ impl Region {
     pub fn takes_four(&self) -> bool {
         matches!(self, Self::Conformal(_))
     }
-}
 
-/// Straight pieces that a closed form's path is drawn with.
-const PIECES: u32 = 96;
-
-impl Region {
     /// Points along the way that [`Region::advance`] takes to `end`, with the optical path from its start: for
     /// drawings. Without those between where they cannot be had.
     #[must_use]
@@ -353,6 +351,13 @@ impl Passage {
 }
 
 impl ConformalRegion {
+    /// One half of a bare map of an ideal medium, without a round core.
+    #[must_use]
+    pub fn new(flow: ConformalFlow, half: Half, floor: FarSide) -> Self {
+        let (core, coating) = (FarSide::Outside, Coating::None);
+        Self { flow, half, floor, core, coating, loss_tangent: 0.0 }
+    }
+
     fn advance_four(&self, rays: &[Option<InnerRay>; 4], tolerance: f64) -> [Option<Passage>; 4] {
         let starts = rays.map(|ray| {
             let ray = ray?;
@@ -406,18 +411,13 @@ impl RadialRegion {
         }
         let end = self.flow.advance(ray.position, ray.wave_vector, ray.mode);
         let sound = end.position.is_finite() && end.wave_vector.is_finite();
-        sound.then_some(Passage {
-            position: end.position,
+        let far = if end.border == Border::Inner { self.inner } else { FarSide::Outside };
+        sound.then(|| Passage {
             wave_vector: end.wave_vector,
             direction: end.direction,
             transport: Some(end.transport),
             optical_path: end.optical_path,
-            extinction: 0.0,
-            virtual_point: None,
-            face: end.border as u16,
-            outward: end.outward,
-            far: if end.border == Border::Inner { self.inner } else { FarSide::Outside },
-            coating: Coating::None,
+            ..Passage::straight(ray, end.position, end.border as u16, end.outward, far)
         })
     }
 
@@ -436,18 +436,13 @@ impl RadialRegion {
         let outward = self.flow.outward(ray.position);
         let turned = |v: DVec3| v - outward * (2.0 * v.dot(outward));
         Passage {
-            position: ray.position,
             wave_vector: turned(ray.wave_vector),
             direction: turned(ray.direction),
             transport: Some(DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z))),
             optical_path: 0.0,
-            extinction: 0.0,
-            virtual_point: None,
-            face: Border::Inner as u16,
-            outward: -outward,
-            far: self.inner,
             // It has met the border already.
             coating: Coating::Antireflection,
+            ..Passage::straight(ray, ray.position, Border::Inner as u16, -outward, self.inner)
         }
     }
 }

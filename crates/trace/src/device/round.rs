@@ -40,27 +40,18 @@ pub(super) fn lens_alone(request: Request) -> Result<(), KeyError> {
     no_length(request)
 }
 
-/// A ball filled with a medium, solid or around a metal core that no light comes to.
-pub(super) fn ball(radius: f64, flow: RadialFlow) -> Structure {
-    let region = RadialRegion { flow, inner: FarSide::Conductor };
-    Structure {
-        regions: vec![Region::Radial(region)],
-        surfaces: vec![Surface::sphere(Sphere { radius }, FarSide::Region(0))],
-        hull: Hull::new(Solid::ball(radius)),
-    }
-}
-
-/// A ball filled with a medium around an open core.
-pub(super) fn hollow_ball(core: f64, radius: f64, flow: RadialFlow) -> Structure {
-    let filled = Solid::ball(radius);
-    let solid = filled.clone().with_hole(Hole::Round(Solid::ball(core)));
-    let [outer, inner] =
-        [radius, core].map(|radius| Surface::sphere(Sphere { radius }, FarSide::Region(0)));
-    Structure {
-        regions: vec![Region::Radial(RadialRegion { flow, inner: FarSide::Outside })],
-        surfaces: vec![outer, inner.from_behind()],
-        hull: Hull::new(solid).with_open_core(filled),
-    }
+/// A ball filled with a medium: solid, around a metal core that no light comes to, or around an open core of a radius.
+pub(super) fn ball(radius: f64, flow: RadialFlow, open_core: Option<f64>) -> Structure {
+    let border = |radius| Surface::sphere(Sphere { radius }, FarSide::Region(0));
+    let (mut surfaces, solid) = (vec![border(radius)], Solid::ball(radius));
+    let (inner, hull) = match open_core {
+        None => (FarSide::Conductor, Hull::new(solid)),
+        Some(core) => {
+            surfaces.push(border(core).from_behind());
+            (FarSide::Outside, Hull::around(Hole::Round(Solid::ball(core)), solid))
+        }
+    };
+    Structure { regions: vec![Region::Radial(RadialRegion { flow, inner })], surfaces, hull }
 }
 
 /// A metal ball.
@@ -72,24 +63,29 @@ pub(super) fn metal_ball(radius: f64) -> Structure {
     }
 }
 
-/// A round cylinder filled with a medium around a metal core.
-pub(super) fn tube(core: f64, radius: f64, extent: Extent, flow: RadialFlow) -> Structure {
-    let region = RadialRegion { flow, inner: FarSide::Conductor };
-    let surfaces = upright((core, FarSide::Conductor), radius, extent, FarSide::Region(0));
-    let hull = Hull::new(Solid::cylinder(radius, extent));
-    Structure { regions: vec![Region::Radial(region)], surfaces, hull }
+/// A round cylinder filled with a medium around a core of metal, or around an open one.
+pub(super) fn tube(
+    core: f64,
+    radius: f64,
+    extent: Extent,
+    flow: RadialFlow,
+    open_core: bool,
+) -> Structure {
+    let inner = if open_core { FarSide::Outside } else { FarSide::Conductor };
+    let mut surfaces = upright((core, inner), radius, extent, FarSide::Region(0));
+    let solid = Solid::cylinder(radius, extent);
+    let hull = if open_core {
+        surfaces.push(round_hole(core, extent));
+        Hull::around(Hole::Round(Solid::cylinder(core, extent)), solid)
+    } else {
+        Hull::new(solid)
+    };
+    Structure { regions: vec![Region::Radial(RadialRegion { flow, inner })], surfaces, hull }
 }
 
-/// A round cylinder filled with a medium around an open core.
-pub(super) fn hollow_tube(core: f64, radius: f64, extent: Extent, flow: RadialFlow) -> Structure {
-    let region = RadialRegion { flow, inner: FarSide::Outside };
-    let filled = Solid::cylinder(radius, extent);
-    let solid = filled.clone().with_hole(Hole::Round(Solid::cylinder(core, extent)));
-    let mut surfaces = upright((core, FarSide::Outside), radius, extent, FarSide::Region(0));
-    let hole = Shape::Round(Cylinder { radius: core, extent });
-    surfaces.push(Surface::new(hole, FarSide::Region(0)).from_behind());
-    let hull = Hull::new(solid).with_open_core(filled);
-    Structure { regions: vec![Region::Radial(region)], surfaces, hull }
+/// The border of an open core, in the first region.
+pub(super) fn round_hole(radius: f64, extent: Extent) -> Surface {
+    Surface::new(Shape::Round(Cylinder { radius, extent }), FarSide::Region(0)).from_behind()
 }
 
 /// A round metal cylinder.

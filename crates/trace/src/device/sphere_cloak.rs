@@ -1,6 +1,6 @@
 //! The spherical cloak (Pendry, Schurig & Smith, Science 312, 1780 (2006)).
 
-use super::round::{ball, check_radii, hollow_ball, metal_ball, no_length};
+use super::round::{ball, check_radii, metal_ball, no_length};
 use super::{Device, Fact, Request, Show, Structure};
 use crate::key;
 use crate::keys::{KeyError, Limits};
@@ -39,9 +39,8 @@ impl Device for SphereCloak {
         Ok(match request.show {
             Show::Cloak => {
                 let map = RadialMap::new(inner, outer, Symmetry::Centre);
-                let shell = TransformedShell::new(map, Extent::ENDLESS);
-                let flow = RadialFlow::Transformed(shell);
-                if request.open_core { hollow_ball(inner, outer, flow) } else { ball(outer, flow) }
+                let flow = RadialFlow::Transformed(TransformedShell::new(map, Extent::ENDLESS));
+                ball(outer, flow, request.open_core.then_some(inner))
             }
             Show::Bare => metal_ball(inner),
             Show::Mirror => Structure::empty(),

@@ -53,10 +53,7 @@ impl Device for SquareCloak {
         match request.show {
             Show::Cloak => square(&map, Some(&Recipe::new(self, &map)), extent, request.open_core),
             Show::Bare => square(&map, None, extent, false),
-            Show::Mirror => {
-                let half = map.half_diagonal();
-                Ok(super::flat_strip(half, extent))
-            }
+            Show::Mirror => Ok(super::flat_strip(map.half_diagonal(), extent)),
         }
     }
 
@@ -159,14 +156,13 @@ impl Recipe {
         let DVec3 { x: along_u, y: along_v, z: along_z } = self.principal;
         match self.material {
             SegmentMaterial::ImpedanceMatched => {
-                Medium::impedance_matched(self.exact.map_or_else(
-                    || {
-                        let m = turn * DMat3::from_diagonal(self.principal) * turn.transpose();
-                        // Symmetric to the last bit.
-                        (m + m.transpose()) * 0.5
-                    },
-                    |map| map.tensor(quadrant),
-                ))
+                let of_principal = || {
+                    let m = turn * DMat3::from_diagonal(self.principal) * turn.transpose();
+                    // Symmetric to the last bit.
+                    (m + m.transpose()) * 0.5
+                };
+                let exact = self.exact.map(|map| map.tensor(quadrant));
+                Medium::impedance_matched(exact.unwrap_or_else(of_principal))
             }
             SegmentMaterial::PositiveUniaxial => {
                 Medium::uniaxial_magnetic(along_z, along_v, along_u, u)

@@ -2,7 +2,7 @@
 
 use super::{Convex, Region, Surface};
 use glam::DVec3;
-use optics::geometry::{Extent, FloorCurve, Outline, Pose, Solid};
+use optics::geometry::{Extent, FloorCurve, Hole, Outline, Pose, Solid};
 
 /// What lies on the other side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,12 +127,9 @@ impl Hull {
     /// the photograph may stand across it.
     #[must_use]
     pub fn with_thin_mirror(self, line: Outline, extent: Extent) -> Self {
-        let radius = line.radius() * GRAZING;
-        let reach = match self.reach {
-            Reach::Nothing => Reach::Cylinder(radius),
-            Reach::Cylinder(own) | Reach::Ball(own) => Reach::Cylinder(own.max(radius)),
-        };
-        Self { thin_mirror: Some(Solid::Prism { outline: line, extent }), reach, ..self }
+        let sheet = Solid::Prism { outline: line, extent };
+        let reach = self.reach.joined(Reach::of(&sheet));
+        Self { thin_mirror: Some(sheet), reach, ..self }
     }
 
     /// The hull of bare metal below a floor: it holds only that part of its outline.
@@ -151,6 +148,12 @@ impl Hull {
     #[must_use]
     pub fn of_body(self, body: Body) -> Self {
         Self { body: Some(body), ..self }
+    }
+
+    /// The hull of a cloak around a hidden region that is air, and free: `filled` without `hole`.
+    #[must_use]
+    pub fn around(hole: Hole, filled: Solid) -> Self {
+        Self::new(filled.clone().with_hole(hole)).with_open_core(filled)
     }
 
     /// The hull of a cloak whose hidden region is air, and free; `filled` is the cloak together with it.
@@ -214,9 +217,7 @@ impl Hull {
         let inside = self.solids.iter().any(|solid| solid.holds(point));
         inside && self.metal.as_ref().is_none_or(|metal| metal.contains(point.truncate()))
     }
-}
 
-impl Hull {
     /// The solids with an open core filled.
     fn filled_solids(&self) -> impl Iterator<Item = &Solid> {
         self.filled.iter().chain(self.solids.iter().filter(|_| self.filled.is_none()))

@@ -72,20 +72,19 @@ impl Key {
     pub fn check(&self, value: &Value) -> Result<Value, String> {
         Ok(match self.kind {
             KeyKind::Number => {
-                let number = value.as_number().ok_or_else(|| self.wrong_type(value))?;
+                let number = self.of_type(value, value.as_number())?;
                 self.limit(self.name, number)?;
                 number.into()
             }
             KeyKind::Integer => {
-                let integer = value.as_integer().ok_or_else(|| self.wrong_type(value))?;
+                let integer = self.of_type(value, value.as_integer())?;
                 self.limit_integer(self.name, integer)?;
                 integer.into()
             }
-            KeyKind::Flag => value.as_flag().ok_or_else(|| self.wrong_type(value))?.into(),
+            KeyKind::Flag => self.of_type(value, value.as_flag())?.into(),
             KeyKind::Choice { options } => self.choose(value, options)?,
             KeyKind::Choices { options } => {
-                let items = value.as_list().ok_or_else(|| self.wrong_type(value))?;
-                let chosen = items.iter().map(|item| {
+                let chosen = self.of_type(value, value.as_list())?.iter().map(|item| {
                     choose(item, options).map(Value::from).map_err(|hint| {
                         format!("{} holds {item}; it must be {}{hint}", self.name, self.describe())
                     })
@@ -93,14 +92,14 @@ impl Key {
                 Value::List(chosen.collect::<Result<_, _>>()?)
             }
             KeyKind::Vector => {
-                let numbers: [f64; 3] = self.list(value, Value::as_number)?;
+                let numbers: [f64; 3] = self.of_type(value, items_of(value, Value::as_number))?;
                 for (number, axis) in numbers.iter().zip(["first", "second", "third"]) {
                     self.limit(&format!("the {axis} component of {}", self.name), *number)?;
                 }
                 numbers.into()
             }
             KeyKind::IntegerPair => {
-                let integers: [i64; 2] = self.list(value, Value::as_integer)?;
+                let integers: [i64; 2] = self.of_type(value, items_of(value, Value::as_integer))?;
                 for (integer, place) in integers.iter().zip(["first", "second"]) {
                     self.limit_integer(&format!("the {place} number of {}", self.name), *integer)?;
                 }
@@ -110,8 +109,7 @@ impl Key {
                 return Err(format!("{} is empty", self.name));
             }
             KeyKind::Image => {
-                let name = value.as_text().ok_or_else(|| self.wrong_type(value))?;
-                check_image_name(name)?;
+                check_image_name(self.of_type(value, value.as_text())?)?;
                 value.clone()
             }
             KeyKind::Samples => {
@@ -128,7 +126,7 @@ impl Key {
                 None => self.choose(value, options)?,
             },
             KeyKind::Tensor => {
-                let tensor = tensor::from_value(value).ok_or_else(|| self.wrong_type(value))?;
+                let tensor = self.of_type(value, tensor::from_value(value))?;
                 for number in tensor::parts(&tensor) {
                     self.limit(&format!("an entry of {}", self.name), number)?;
                 }
@@ -137,7 +135,7 @@ impl Key {
             KeyKind::Polygon => self.polygon(value)?,
             KeyKind::Table { keys } => self.table(value, keys)?,
             KeyKind::Tables { keys } => {
-                let items = value.as_list().ok_or_else(|| self.wrong_type(value))?;
+                let items = self.of_type(value, value.as_list())?;
                 let tables = items.iter().map(|item| self.table(item, keys));
                 Value::List(tables.collect::<Result<_, _>>()?)
             }
@@ -146,7 +144,7 @@ impl Key {
 
     fn polygon(&self, value: &Value) -> Result<Value, String> {
         let items = value.as_list().filter(|items| items.len() >= 3);
-        let items = items.ok_or_else(|| self.wrong_type(value))?;
+        let items = self.of_type(value, items)?;
         let corner = |item: &Value| -> Result<Value, String> {
             let corner: [f64; 2] = items_of(item, Value::as_number)
                 .ok_or_else(|| format!("a corner of {} is {item}; it must be [x, y]", self.name))?;
@@ -159,7 +157,7 @@ impl Key {
     }
 
     fn samples(&self, value: &Value) -> Result<Samples, String> {
-        let rows = value.as_list().ok_or_else(|| self.wrong_type(value))?;
+        let rows = self.of_type(value, value.as_list())?;
         let number = |at: [usize; 2], item: &Value| -> Result<f64, String> {
             let name = format!("{}[{}][{}]", self.name, at[0], at[1]);
             let number =
@@ -168,7 +166,7 @@ impl Key {
             Ok(number)
         };
         let row = |(i, row): (usize, &Value)| -> Result<Vec<f64>, String> {
-            let items = row.as_list().ok_or_else(|| self.wrong_type(value))?;
+            let items = self.of_type(value, row.as_list())?;
             items.iter().enumerate().map(|(j, item)| number([i, j], item)).collect()
         };
         let rows: Vec<Vec<f64>> = rows.iter().enumerate().map(row).collect::<Result<_, _>>()?;
@@ -177,16 +175,17 @@ impl Key {
 
     /// The entries that are given, in the order of the keys.
     fn table(&self, value: &Value, keys: &'static [Key]) -> Result<Value, String> {
-        let entries = value.as_table().ok_or_else(|| self.wrong_type(value))?;
-        let mut given: Vec<Option<(String, Value)>> = vec![None; keys.len()];
-        for (name, value) in entries {
+        let mut given = Vec::new();
+        for (name, value) in self.of_type(value, value.as_table())? {
             let key = find(keys, name).map_err(|error| error.message);
             let value = key.and_then(|key| key.check(value));
-            let value = value.map_err(|message| format!("in {}: {message}", self.name))?;
-            let place = keys.iter().zip(&mut given).find(|(key, _)| key.name == name);
-            place.into_iter().for_each(|(_, place)| *place = Some((name.clone(), value.clone())));
+            given.push((
+                name.clone(),
+                value.map_err(|message| format!("in {}: {message}", self.name))?,
+            ));
         }
-        Ok(Value::Table(given.into_iter().flatten().collect()))
+        given.sort_by_key(|(name, _)| keys.iter().position(|key| key.name == name));
+        Ok(Value::Table(given))
     }
 
     /// The message about a value of a wrong type: what it is, and what it must be.
@@ -198,12 +197,9 @@ impl Key {
         choose(value, options).map(Value::from).map_err(|hint| self.wrong_type(value) + &hint)
     }
 
-    fn list<T, const N: usize>(
-        &self,
-        value: &Value,
-        item: impl Fn(&Value) -> Option<T>,
-    ) -> Result<[T; N], String> {
-        items_of(value, item).ok_or_else(|| self.wrong_type(value))
+    /// What a value has been read as, if it is of the type of the key.
+    fn of_type<T>(&self, value: &Value, read: Option<T>) -> Result<T, String> {
+        read.ok_or_else(|| self.wrong_type(value))
     }
 
     /// Refuses a number outside the limits, by the name `name`.

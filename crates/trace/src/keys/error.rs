@@ -38,10 +38,7 @@ impl KeyError {
     #[must_use]
     pub fn path_in(&self, table: &str) -> String {
         let entry = self.entry.map(|(list, number)| format!("{list}.{number}"));
-        [Some(table), entry.as_deref(), self.key]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join(".")
+        let parts = [Some(table), entry.as_deref(), self.key];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(".")
     }
 }

@@ -18,7 +18,7 @@ mod value;
 pub use error::KeyError;
 pub use field::{Field, Given, Item, Sampled, VisitFile};
 pub use nearest::{hint, nearest, unknown};
-pub use samples::{Samples, SamplesError};
+pub use samples::Samples;
 #[doc(hidden)]
 pub use table::trimmed;
 pub use table::{Table, find};

@@ -10,37 +10,22 @@ pub struct Samples {
     values: Arc<[f64]>,
 }
 
-/// Why numbers are no grid.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SamplesError {
-    /// A row has another length than the first.
-    #[error("row {row} has {count} numbers, row 0 has {first}; all must have as many")]
-    Ragged {
-        /// Which row, from 0.
-        row: usize,
-        /// How many numbers it has.
-        count: usize,
-        /// How many the first has.
-        first: usize,
-    },
-    /// There are no numbers.
-    #[error("there are no numbers in it")]
-    Empty,
-}
-
 impl Samples {
     /// The grid of rows of numbers.
     ///
     /// # Errors
     ///
-    /// If the rows are not of one length, or there is nothing in them.
-    pub fn new(rows: &[Vec<f64>]) -> Result<Self, SamplesError> {
+    /// A message if the rows are not of one length, or there is nothing in them.
+    pub fn new(rows: &[Vec<f64>]) -> Result<Self, String> {
         let first = rows.first().map_or(0, Vec::len);
         if first == 0 {
-            return Err(SamplesError::Empty);
+            return Err("there are no numbers in it".to_owned());
         }
         if let Some((row, odd)) = rows.iter().enumerate().find(|(_, row)| row.len() != first) {
-            return Err(SamplesError::Ragged { row, count: odd.len(), first });
+            let count = odd.len();
+            return Err(format!(
+                "row {row} has {count} numbers, row 0 has {first}; all must have as many"
+            ));
         }
         Ok(Self { count: [rows.len(), first], values: rows.concat().into() })
     }

@@ -161,8 +161,7 @@ pub fn vector_text(vector: DVec3) -> String {
 /// A text between quotes, control characters escaped, long ones cut short.
 pub fn quoted(text: &str, quote: char) -> String {
     const LONGEST: usize = 60;
-    let mut shown: String =
-        text.chars().take(LONGEST).flat_map(char::escape_debug).collect::<String>();
+    let mut shown: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
     if quote == '`' {
         shown = shown.replace("\\\"", "\"");
     }

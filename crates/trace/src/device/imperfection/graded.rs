@@ -121,9 +121,8 @@ impl Grid {
         });
         let width = imperfection.resolution / self.spacing;
         self.smooth(&mut off, width);
-        off.iter()
-            .map(|[sum, weight]| if *weight > 0.0 { 1.0 + sum / weight } else { 1.0 })
-            .collect()
+        let ratio = |[sum, weight]: &[f64; 2]| if *weight > 0.0 { 1.0 + sum / weight } else { 1.0 };
+        off.iter().map(ratio).collect()
     }
 
     /// Smooths by a Gaussian of a standard deviation in samples, along x and then along y.
