@@ -164,7 +164,7 @@ pub fn flux<'py>(
         light::write_flux_npz(&report, &path).map_err(|error| output_error(&error))?;
     }
     let arrays = PyDict::new(py);
-    for (name, shape, values) in light::flux_arrays(&report).into_parts() {
+    for (name, shape, values) in light::flux_arrays(&report) {
         let array = ArrayD::from_shape_vec(IxDyn(&shape), values).map_err(value_error)?;
         arrays.set_item(name, array.into_pyarray(py))?;
     }

@@ -134,24 +134,25 @@ impl Client {
     fn hang(&self, name: &str, bytes: &[u8]) -> Result<Value, String> {
         let source = self.server.opened.source_of(name);
         let _one = lock(&self.server.reading);
-        let image = load_bytes(&source, bytes, MOST_PIXELS).map_err(|error| match error.problem {
-            LoadProblem::TooLarge => {
-                format!(
-                    "the photograph is too large: at most {} million pixels",
-                    MOST_PIXELS / 1_000_000
-                )
-            }
-            LoadProblem::NotAnImage | LoadProblem::Empty => {
-                "this is not an image that can be read (PNG, JPEG or EXR)".to_owned()
-            }
-            LoadProblem::OtherFormat(format) => {
-                format!("this is a {format} image; only PNG, JPEG and EXR can be read")
-            }
-            LoadProblem::Unsupported(reason) => {
-                format!("this image uses a feature that is not supported: {reason}")
-            }
-            _ => "this image is damaged or cut short".to_owned(),
-        })?;
+        let image =
+            load_bytes(&source, bytes, MOST_PIXELS).map_err(|error| match error.problem {
+                LoadProblem::TooLarge => {
+                    format!(
+                        "the photograph is too large: at most {} million pixels",
+                        MOST_PIXELS / 1_000_000
+                    )
+                }
+                LoadProblem::NotAnImage | LoadProblem::Empty => {
+                    "this is not an image that can be read (PNG, JPEG or EXR)".to_owned()
+                }
+                LoadProblem::OtherFormat(format) => {
+                    format!("this is a {format} image; only PNG, JPEG and EXR can be read")
+                }
+                LoadProblem::Unsupported(reason) => {
+                    format!("this image uses a feature that is not supported: {reason}")
+                }
+                _ => "this image is damaged or cut short".to_owned(),
+            })?;
         let (width, height) = (image.width, image.height);
         // The old one makes room.
         *lock(&self.uploaded) = None;

@@ -11,6 +11,7 @@ pub use segments::{Segment, segments, write_segments};
 
 use crate::assembly::{Assembly, Placed};
 use crate::device::Show;
+use crate::memory::Shortage;
 use crate::scene::Scene;
 
 /// Why the material of a device cannot be given.
@@ -55,16 +56,13 @@ pub enum MaterialError {
     EmptyGrid,
     /// The grid has too many cells.
     #[error(
-        "a grid of {} x {} x {} cells needs {needed_mb} MB of memory, but only {available_mb} MB are free; \
-         take fewer", cells[0], cells[1], cells[2]
+        "a grid of {} x {} x {} cells {shortage}; take fewer", cells[0], cells[1], cells[2]
     )]
     TooLarge {
         /// Cells along x, y and z.
         cells: [u64; 3],
-        /// Memory needed, in 10^6 bytes.
-        needed_mb: u64,
-        /// Memory free, in 10^6 bytes.
-        available_mb: u64,
+        /// The memory needed and there.
+        shortage: Shortage,
     },
     /// The device has no end in the plane, so no grid fits around it.
     #[error("the device is endless along every axis of the grid; take the device's frame")]

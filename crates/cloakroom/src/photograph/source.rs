@@ -119,7 +119,9 @@ impl LoadProblem {
             Self::Unsupported(reason) => {
                 format!("{image} uses a feature that is not supported: {reason}")
             }
-            Self::NoPixels([width, height]) => format!("{image} has no pixels ({width} x {height})"),
+            Self::NoPixels([width, height]) => {
+                format!("{image} has no pixels ({width} x {height})")
+            }
             Self::TooLarge => format!(
                 "{image} is too large: at most {} million pixels and {} GiB of memory are allowed",
                 MAX_PIXELS / 1_000_000,
