@@ -85,7 +85,8 @@ pub fn sweep(
     let sweeps: Vec<Sweep> =
         sweeps.into_iter().map(|(key, values)| Sweep { key, values }).collect();
     let table = supervised(py, progress.as_ref(), |watch| {
-        let plan = Plan::new(sweeps, |further| scene.reload(further)).map_err(quality_error)?;
+        let plan = Plan::new(sweeps, Vec::new(), |further| scene.reload(further))
+            .map_err(quality_error)?;
         watch.begin(plan.steps());
         watch.supervise(|supervision| measured_quality(&plan, supervision)).map_err(quality_error)
     })??;

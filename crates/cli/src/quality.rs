@@ -46,7 +46,7 @@ pub fn run(arguments: &QualityArguments, stop: &AtomicBool) -> Result<(), Failur
         .map(|text| Constraint::parse(text))
         .collect::<Result<_, _>>()
         .map_err(Failure::from_error)?;
-    let plan = Plan::holding(sweeps, holds, load).map_err(failure)?;
+    let plan = Plan::new(sweeps, holds, load).map_err(failure)?;
     let plan = plan.with_draws(arguments.draws).map_err(failure)?;
     plan.check_columns(&arguments.plot).map_err(Failure::from_error)?;
     for path in &arguments.outputs {
