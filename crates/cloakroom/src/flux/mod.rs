@@ -100,12 +100,26 @@ pub fn flux(
     begun: &dyn Fn(u64),
     supervision: &Supervision<'_>,
 ) -> Result<FluxReport, FluxError> {
-    check(sampling)?;
+    for (name, value, low, high) in [
+        ("the number of rays", sampling.rays, 16, 100_000_000),
+        ("the number of samples", sampling.samples, 2, 1024),
+        ("the number of cells", sampling.cells, 1, 4096),
+    ] {
+        if !(low..=high).contains(&value) {
+            return Err(FluxError::Setting { name, value, low, high });
+        }
+    }
     if directions.is_empty() {
         return Err(FluxError::NoDirection);
     }
-    let benches = benches(scene)?;
-    let launcher = Launcher::new(scene, &benches[Stand::Cloaked as usize], sampling)?;
+    if scene.devices.is_empty() {
+        return Err(FluxError::NoDevice);
+    }
+    let cloaked = assembly(scene)?;
+    let launcher = Launcher::new(scene, &cloaked, sampling)?;
+    let bare = measure::bare(scene).map_or_else(|| Ok(cloaked.clone()), |bare| assembly(&bare))?;
+    // In the order of `STANDS`.
+    let assemblies = [assembly(&measure::empty(scene))?, bare, cloaked];
     begun((directions.len() * STANDS.len()) as u64);
     let mut incidences = Vec::new();
     for direction in directions {
@@ -114,7 +128,7 @@ pub fn flux(
             return Err(FluxError::FromBehind(degrees));
         }
         let mut tallies = Vec::new();
-        for assembly in &benches {
+        for assembly in &assemblies {
             tallies.push(tally(scene, assembly, &launcher, *direction, sampling, supervision)?);
             (supervision.rows_done)(1);
         }
@@ -128,29 +142,6 @@ pub fn flux(
         incidences,
         metadata: metadata(scene),
     })
-}
-
-fn check(sampling: Sampling) -> Result<(), FluxError> {
-    for (name, value, low, high) in [
-        ("the number of rays", sampling.rays, 16, 100_000_000),
-        ("the number of samples", sampling.samples, 2, 1024),
-        ("the number of cells", sampling.cells, 1, 4096),
-    ] {
-        if !(low..=high).contains(&value) {
-            return Err(FluxError::Setting { name, value, low, high });
-        }
-    }
-    Ok(())
-}
-
-/// The scene without devices, with bare metal ([`measure::bare`]), and as it is.
-fn benches(scene: &Scene) -> Result<[Assembly; 3], FluxError> {
-    if scene.devices.is_empty() {
-        return Err(FluxError::NoDevice);
-    }
-    let cloaked = assembly(scene)?;
-    let bare = measure::bare(scene).map_or_else(|| Ok(cloaked.clone()), |bare| assembly(&bare))?;
-    Ok([assembly(&measure::empty(scene))?, bare, cloaked])
 }
 
 /// Traces all samples of one direction.

@@ -246,15 +246,13 @@ fn from_decoder(error: ImageError) -> LoadProblem {
 /// Linear light from decoded pixels; transparent pixels lie over black.
 fn linear(image: DynamicImage) -> LinearImage {
     let (width, height) = (image.width() as usize, image.height() as usize);
+    let is_opaque = |pixels: &image::RgbaImage| pixels.pixels().all(|pixel| pixel.0[3] == 255);
     let texels = match image {
-        DynamicImage::ImageRgb8(pixels) => Texels::Srgb8(pixels.into_raw()),
-        DynamicImage::ImageLuma8(pixels) => {
-            Texels::Srgb8(pixels.iter().flat_map(|&gray| [gray; 3]).collect())
+        DynamicImage::ImageRgb8(_) | DynamicImage::ImageLuma8(_) => {
+            Texels::Srgb8(image.into_rgb8().into_raw())
         }
-        DynamicImage::ImageRgba8(pixels) if pixels.pixels().all(|pixel| pixel.0[3] == 255) => {
-            Texels::Srgb8(
-                pixels.pixels().flat_map(|pixel| [pixel.0[0], pixel.0[1], pixel.0[2]]).collect(),
-            )
+        DynamicImage::ImageRgba8(ref pixels) if is_opaque(pixels) => {
+            Texels::Srgb8(image.into_rgb8().into_raw())
         }
         DynamicImage::ImageLumaA8(_) | DynamicImage::ImageRgba8(_) => {
             let table = srgb::decode_table();
