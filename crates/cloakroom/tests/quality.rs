@@ -223,3 +223,37 @@ fn a_held_fact_stays_while_keys_are_swept() {
     let message = held("device.0.w=cloaked_area_cm2", "device.0.h=4,30").unwrap_err().to_string();
     assert!(message.contains("h=30"), "{message}");
 }
+
+#[test]
+fn files_hold_the_table() {
+    let scene =
+        "[camera]\nresolution = [16, 12]\nsamples = 1\n[[device]]\nkind = \"square-cloak\"\n";
+    let sweeps = ["camera.polarizer=horizontal,vertical", "device.0.rotation=0..10:5"];
+    let mut table = measured(scene, &sweeps);
+    let column = table.column("delivered").unwrap();
+    table.rows[5].numbers[column] = f64::NAN;
+    let folder = tempfile::tempdir().unwrap();
+    let [csv, npz] = ["a.csv", "a.npz"].map(|name| folder.path().join(name));
+    table.write_csv(&csv).unwrap();
+    table.write_npz(&npz).unwrap();
+    let text = std::fs::read_to_string(csv).unwrap();
+    let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(lines.len(), 7);
+    assert_eq!(lines[0][..3], ["camera.polarizer", "device.0.rotation", "silhouette_share"]);
+    assert_eq!((lines[0].len(), lines[0][2 + column]), (2 + table.columns.len(), "delivered"));
+    assert_eq!(
+        (&lines[3][..2], &lines[6][..2]),
+        (&["horizontal", "10"][..], &["vertical", "10"][..])
+    );
+    assert_eq!(lines[3][2 + column].parse(), Ok(table.figure(2, "delivered")));
+    assert_eq!(lines[6][2 + column], "");
+    let mut npz = ndarray_npy::NpzReader::new(std::fs::File::open(npz).unwrap()).unwrap();
+    let rotation: ndarray::Array1<f64> = npz.by_name("device.0.rotation").unwrap();
+    assert_eq!(rotation.to_vec(), [0.0, 5.0, 10.0, 0.0, 5.0, 10.0]);
+    let delivered: ndarray::Array1<f64> = npz.by_name("delivered").unwrap();
+    assert!(delivered[2] == table.figure(2, "delivered") && delivered[5].is_nan());
+    let json = table.to_json();
+    assert_eq!(json["rows"][5]["settings"]["device.0.rotation"], "10");
+    assert!(json["rows"][5]["figures"]["delivered"].is_null());
+    assert_eq!(json["rows"][2]["figures"]["delivered"], table.figure(2, "delivered"));
+}

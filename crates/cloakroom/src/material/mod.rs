@@ -25,12 +25,9 @@ pub enum MaterialError {
         /// How many there are.
         count: usize,
     },
-    /// It is not said which device.
-    #[error("the scene has {count} devices; say which one is meant, from 0 to {}", count - 1)]
-    WhichDevice {
-        /// How many there are.
-        count: usize,
-    },
+    /// It is not said which of so many devices.
+    #[error("the scene has {0} devices; say which one is meant, from 0 to {last}", last = .0 - 1)]
+    WhichDevice(usize),
     /// The device has no medium in it.
     #[error("device {device}, {kind}, {reason}: it has no material")]
     NoMaterial {
@@ -72,28 +69,27 @@ pub enum MaterialError {
     Stopped,
 }
 
-/// The device that is meant: that of the number, or the only one there is.
-fn chosen(assembly: &Assembly, device: Option<usize>) -> Result<(usize, &Placed), MaterialError> {
+/// The device that is meant, if there is a medium in it: that of the number, or the only one there is.
+fn chosen<'a>(
+    scene: &Scene,
+    assembly: &'a Assembly,
+    device: Option<usize>,
+) -> Result<(usize, &'a Placed), MaterialError> {
     let count = assembly.devices().len();
-    let index = match device {
+    let device = match device {
         Some(device) => device,
-        None if count > 1 => return Err(MaterialError::WhichDevice { count }),
+        None if count > 1 => return Err(MaterialError::WhichDevice(count)),
         None => 0,
     };
-    let placed = assembly.devices().get(index);
-    placed.map(|placed| (index, placed)).ok_or(MaterialError::NoDevice { device: index, count })
-}
-
-/// Why a device has no medium in it, if it has none.
-fn without_material(scene: &Scene, device: usize, placed: &Placed) -> Option<MaterialError> {
-    let structure = &placed.structure;
+    let none = MaterialError::NoDevice { device, count };
+    let placed = assembly.devices().get(device).ok_or(none)?;
     let settings = &scene.devices[device];
     let reason = match settings.placement.show {
         Show::Bare => "is shown as bare metal",
         Show::Mirror => "is shown as the mirror it imitates",
-        Show::Cloak if structure.is_opaque() => "is opaque",
-        Show::Cloak if structure.regions.is_empty() => "is made of metal alone",
-        Show::Cloak => return None,
+        Show::Cloak if placed.structure.is_opaque() => "is opaque",
+        Show::Cloak if placed.structure.regions.is_empty() => "is made of metal alone",
+        Show::Cloak => return Ok((device, placed)),
     };
-    Some(MaterialError::NoMaterial { device, kind: settings.kind(), reason })
+    Err(MaterialError::NoMaterial { device, kind: settings.kind(), reason })
 }

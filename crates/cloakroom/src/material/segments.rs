@@ -1,6 +1,6 @@
 //! The homogeneous segments of a device as a table: corners, axes, tensors.
 
-use super::{MaterialError, chosen, without_material};
+use super::{MaterialError, chosen};
 use crate::assembly::Assembly;
 use crate::device::{HomogeneousRegion, Region};
 use crate::output::{OutputError, WriteSeek, ending, write_whole};
@@ -68,10 +68,7 @@ pub fn segments(
     assembly: &Assembly,
     device: Option<usize>,
 ) -> Result<Vec<Segment>, MaterialError> {
-    let (device, placed) = chosen(assembly, device)?;
-    if let Some(error) = without_material(scene, device, placed) {
-        return Err(error);
-    }
+    let (device, placed) = chosen(scene, assembly, device)?;
     let structure = &placed.structure;
     let section = structure.cross_section();
     let z_cm = scene.devices[device].placement.length.map(|length| [-length / 2.0, length / 2.0]);
