@@ -28,25 +28,15 @@ pub enum MaterialError {
     /// It is not said which of so many devices.
     #[error("the scene has {0} devices; say which one is meant, from 0 to {last}", last = .0 - 1)]
     WhichDevice(usize),
-    /// The device has no medium in it.
-    #[error("device {device}, {kind}, {reason}: it has no material")]
-    NoMaterial {
+    /// The device has no medium in it, or no homogeneous segments.
+    #[error("device {device}, {kind}, {problem}")]
+    Unsuitable {
         /// Which device, counted from 0.
         device: usize,
         /// Its kind.
         kind: &'static str,
-        /// What it is instead.
-        reason: &'static str,
-    },
-    /// The device has no homogeneous segments.
-    #[error(
-        "device {device}, {kind}, has no homogeneous segments to list: it is a single body, or its medium is graded"
-    )]
-    NoSegments {
-        /// Which device, counted from 0.
-        device: usize,
-        /// Its kind.
-        kind: &'static str,
+        /// What it is instead, and hence has not.
+        problem: &'static str,
     },
     /// The grid has no cells.
     #[error("a grid needs a positive spacing, and at least one cell along each axis")]
@@ -84,12 +74,14 @@ fn chosen<'a>(
     let none = MaterialError::NoDevice { device, count };
     let placed = assembly.devices().get(device).ok_or(none)?;
     let settings = &scene.devices[device];
-    let reason = match settings.placement.show {
-        Show::Bare => "is shown as bare metal",
-        Show::Mirror => "is shown as the mirror it imitates",
-        Show::Cloak if placed.structure.is_opaque() => "is opaque",
-        Show::Cloak if placed.structure.regions.is_empty() => "is made of metal alone",
+    let problem = match settings.placement.show {
+        Show::Bare => "is shown as bare metal: it has no material",
+        Show::Mirror => "is shown as the mirror it imitates: it has no material",
+        Show::Cloak if placed.structure.is_opaque() => "is opaque: it has no material",
+        Show::Cloak if placed.structure.regions.is_empty() => {
+            "is made of metal alone: it has no material"
+        }
         Show::Cloak => return Ok((device, placed)),
     };
-    Err(MaterialError::NoMaterial { device, kind: settings.kind(), reason })
+    Err(MaterialError::Unsuitable { device, kind: settings.kind(), problem })
 }

@@ -90,7 +90,9 @@ pub fn segments(
     let mut segments: Vec<Segment> = of_medium.collect();
     if segments.is_empty() {
         let kind = scene.devices[device].kind();
-        return Err(MaterialError::NoSegments { device, kind });
+        let problem =
+            "has no homogeneous segments to list: it is a single body, or its medium is graded";
+        return Err(MaterialError::Unsuitable { device, kind, problem });
     }
     let metal = section.metal.iter().filter(|contour| contour.closed);
     segments.extend(metal.map(|contour| segment(contour.corners(), None)));

@@ -48,28 +48,13 @@ pub enum MeasureError {
     /// An image cannot be loaded.
     #[error("{0}")]
     Image(#[from] crate::photograph::LoadError),
-    /// A picture lacks a channel that is needed.
-    #[error("{name} has no channel `{channel}`")]
-    MissingChannel {
+    /// A picture lacks a channel that is needed, or has a pixel in it that is infinite or not a number.
+    #[error("{name} {problem}")]
+    Channel {
         /// What the picture is called.
         name: String,
-        /// The channel.
-        channel: String,
-    },
-    /// A pixel is infinite or not a number.
-    #[error(
-        "channel `{channel}` of {name} has a pixel that is not a finite number, in column {column} and \
-         row {row}"
-    )]
-    NotFinite {
-        /// What the picture is called.
-        name: String,
-        /// The channel.
-        channel: &'static str,
-        /// Column of the first such pixel, from 0.
-        column: usize,
-        /// Row of the first such pixel, from 0.
-        row: usize,
+        /// What is wrong with it.
+        problem: String,
     },
     /// Two pictures, or a picture and a mask, differ in size.
     #[error("the sizes differ: {} x {} pixels and {} x {}", first[0], first[1], second[0], second[1])]

@@ -131,12 +131,6 @@ impl Plan {
         let columns = self.columns();
         names.iter().try_for_each(|name| find_column(&columns, name).map(drop))
     }
-
-    /// How many combinations there are.
-    #[must_use]
-    pub fn combinations(&self) -> usize {
-        self.scenes.len()
-    }
 }
 
 /// The ideal and the empty view.

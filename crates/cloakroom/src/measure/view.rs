@@ -111,9 +111,9 @@ impl View {
             Some((0..samples.len()).map(|i| samples.get(i)).collect::<Vec<f64>>())
         };
         let color = |channel: &str| {
-            plane(channel).ok_or_else(|| MeasureError::MissingChannel {
+            plane(channel).ok_or_else(|| MeasureError::Channel {
                 name: name.to_owned(),
-                channel: channel.to_owned(),
+                problem: format!("has no channel `{channel}`"),
             })
         };
         let light = [color("R")?, color("G")?, color("B")?];
@@ -137,12 +137,10 @@ impl View {
             }
             if let Some(at) = plane.iter().position(|value| !value.is_finite()) {
                 let (column, row) = (at % width, at / width);
-                return Err(MeasureError::NotFinite {
-                    name: name.to_owned(),
-                    channel,
-                    column,
-                    row,
-                });
+                let problem = format!(
+                    "has a pixel in channel `{channel}` that is not a finite number, in column {column} and row {row}"
+                );
+                return Err(MeasureError::Channel { name: name.to_owned(), problem });
             }
         }
         let (time_of_flight, time_of_flight_difference, delivered) = (None, None, None);

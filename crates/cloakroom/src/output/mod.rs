@@ -41,12 +41,9 @@ pub enum OutputError {
         /// The endings there are for what it is to hold.
         known: &'static str,
     },
-    /// The picture has no image.
-    #[error("the picture has no channel `{name}`")]
-    MissingChannel {
-        /// The channel.
-        name: String,
-    },
+    /// The picture has no image: this channel is missing.
+    #[error("the picture has no channel `{0}`")]
+    MissingChannel(String),
 }
 
 impl OutputError {
@@ -65,10 +62,6 @@ impl OutputError {
     /// For a file whose name has none of the endings `known`.
     pub fn unknown_format(path: &Path, known: &'static str) -> Self {
         Self::UnknownFormat { path: path.to_owned(), known }
-    }
-
-    fn with_reason(path: &Path, reason: &str) -> Self {
-        Self::Write { path: path.to_owned(), reason: reason.to_owned() }
     }
 }
 

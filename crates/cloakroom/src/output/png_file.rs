@@ -15,7 +15,7 @@ pub fn to_srgb(picture: &Picture) -> Result<RgbImage, OutputError> {
         picture
             .channel(name)
             .map(|channel| &channel.samples)
-            .ok_or_else(|| OutputError::MissingChannel { name: name.to_owned() })
+            .ok_or_else(|| OutputError::MissingChannel(name.to_owned()))
     };
     let planes: [&Samples; 3] = [find("R")?, find("G")?, find("B")?];
     let codes = Codes::new();
@@ -33,7 +33,7 @@ pub fn to_srgb(picture: &Picture) -> Result<RgbImage, OutputError> {
     }
     // Pictures are at most 65536 pixels a side, and the buffer has been made to measure.
     RgbImage::from_raw(picture.width as u32, picture.height as u32, bytes)
-        .ok_or_else(|| OutputError::MissingChannel { name: "R".to_owned() })
+        .ok_or_else(|| OutputError::MissingChannel("R".to_owned()))
 }
 
 /// The sRGB codes of linear light.

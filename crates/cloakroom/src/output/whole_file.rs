@@ -64,7 +64,8 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
 
 /// The folder within which a file comes into being by a rename; `None` where it is to be written to what is there.
 fn folder(path: &Path) -> Result<Option<PathBuf>, OutputError> {
-    let refuse = |reason: &str| Err(OutputError::with_reason(path, reason));
+    let refuse =
+        |reason: &str| Err(OutputError::Write { path: path.to_owned(), reason: reason.to_owned() });
     if path.as_os_str().to_string_lossy().ends_with(std::path::is_separator) {
         return refuse("a name that ends like this is that of a folder");
     }

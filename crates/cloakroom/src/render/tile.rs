@@ -27,12 +27,9 @@ pub struct Tile {
 /// What is wrong with a tile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TileError {
-    /// It is not written as a tile.
-    #[error("`{text}` is no tile; write LEFT,TOP,WIDTH,HEIGHT in pixels, such as 0,0,512,384")]
-    Unreadable {
-        /// What is written.
-        text: String,
-    },
+    /// This is not written as a tile.
+    #[error("`{0}` is no tile; write LEFT,TOP,WIDTH,HEIGHT in pixels, such as 0,0,512,384")]
+    Unreadable(String),
     /// It has no pixels, or some that the picture has not.
     #[error("the tile {tile} is empty or reaches beyond the picture of {width} x {height} pixels")]
     Outside {
@@ -99,7 +96,7 @@ impl FromStr for Tile {
 
     fn from_str(text: &str) -> Result<Self, TileError> {
         let [left, top, width, height] =
-            numbers(text).ok_or_else(|| TileError::Unreadable { text: text.to_owned() })?;
+            numbers(text).ok_or_else(|| TileError::Unreadable(text.to_owned()))?;
         Ok(Self { left, top, width, height })
     }
 }
