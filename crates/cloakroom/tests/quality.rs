@@ -20,7 +20,7 @@ fn measured(scene: &str, sweeps: &[&str]) -> QualityTable {
     };
     let table = quality(&plan, &Supervision { rows_done: &count, stop: &stop }).unwrap();
     assert_eq!(done.into_inner(), plan.steps(), "the progress runs to its end");
-    let rows = table.sweeps.iter().map(|sweep| sweep.values.len()).product();
+    let rows: usize = table.sweeps.iter().map(|sweep| sweep.values.len()).product();
     assert_eq!(table.rows.len(), rows);
     table
 }
