@@ -75,7 +75,7 @@ pub fn sweep(
     let sweeps: Vec<Sweep> =
         sweeps.into_iter().map(|(key, values)| Sweep { key, values }).collect();
     let table = supervised(py, progress.as_ref(), |watch, supervision| {
-        let plan = Plan::new(sweeps, |further| scene.reload(further))?;
+        let plan = Plan::new(sweeps, Vec::new(), |further| scene.reload(further))?;
         watch.begin(plan.steps());
         Ok(measure::quality(&plan, supervision)?)
     })?;
@@ -131,7 +131,7 @@ pub fn flux<'py>(
         light::write_flux_npz(&report, &path)?;
     }
     let arrays = PyDict::new(py);
-    for (name, shape, values) in light::flux_arrays(&report).into_parts() {
+    for (name, shape, values) in light::flux_arrays(&report) {
         arrays.set_item(name, ArrayD::from_shape_vec(shape, values)?.into_pyarray(py))?;
     }
     Ok(arrays)

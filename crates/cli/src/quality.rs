@@ -35,7 +35,7 @@ pub fn run(arguments: &QualityArguments) -> Result<(), Failure> {
     };
     let holds =
         arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;
-    let plan = Plan::holding(sweeps, holds, load)?.with_draws(arguments.draws)?;
+    let plan = Plan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;
     plan.check_columns(&arguments.plot)?;
     check_writable(&arguments.outputs)?;
     let _busy = interruption::busy();

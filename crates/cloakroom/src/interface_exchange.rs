@@ -114,10 +114,10 @@ impl InterfaceRequest {
         if solved && power.iter().flatten().all(adds_up) {
             return Ok(());
         }
-        Err(InterfaceError::whole(
+        Err(InterfaceError::at(
+            "",
             "the waves cannot be computed in double precision; principal values that differ by less, or a shorter \
-             tangential wave vector, would do"
-                .to_owned(),
+             tangential wave vector, would do",
         ))
     }
 }
@@ -130,7 +130,7 @@ impl InterfaceRequest {
 /// If the text is no JSON or asks for something that cannot be; the message names the place.
 pub fn solve_interfaces(text: &str) -> Result<serde_json::Value, InterfaceError> {
     let value: serde_json::Value =
-        serde_json::from_str(text).map_err(|error| InterfaceError::whole(error.to_string()))?;
+        serde_json::from_str(text).map_err(|error| InterfaceError::at("", error.to_string()))?;
     let answer = match &value {
         serde_json::Value::Array(items) => {
             let reports = items
@@ -146,5 +146,5 @@ pub fn solve_interfaces(text: &str) -> Result<serde_json::Value, InterfaceError>
         }
         item => serde_json::to_value(InterfaceRequest::read(item, "")?.solve()?),
     };
-    answer.map_err(|error| InterfaceError::whole(error.to_string()))
+    answer.map_err(|error| InterfaceError::at("", error.to_string()))
 }

@@ -7,6 +7,26 @@ pub fn available() -> Option<u64> {
     of_what_is_read(&|path| std::fs::read_to_string(path).ok())
 }
 
+/// There is not enough memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("needs {needed_mb} MB of memory, but only {available_mb} MB are free")]
+pub struct Shortage {
+    /// Memory needed, in 10^6 bytes.
+    pub needed_mb: u64,
+    /// Memory free, in 10^6 bytes.
+    pub available_mb: u64,
+}
+
+/// Refuses what takes more bytes than are [`available`], or than `most` wherever that is less.
+pub(crate) fn check(needed: u64, most: u64) -> Result<(), Shortage> {
+    let available = available().unwrap_or(most).min(most);
+    if needed > available {
+        let [needed_mb, available_mb] = [needed, available].map(|bytes| bytes / 1_000_000);
+        return Err(Shortage { needed_mb, available_mb });
+    }
+    Ok(())
+}
+
 /// The least of all limits, each from files that `read` gives the text of.
 fn of_what_is_read(read: &dyn Fn(&str) -> Option<String>) -> Option<u64> {
     let system = field(&read("/proc/meminfo")?, "MemAvailable:").map(|kib| kib * 1024);

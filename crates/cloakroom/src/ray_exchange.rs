@@ -1,6 +1,7 @@
 //! Rays in, leaves out, as JSON: the form of `cloakroom trace`.
 
 use crate::assembly::Assembly;
+use crate::memory::{self, Shortage};
 use crate::trace::{Launch, LeafTable, Limits, Stopped};
 use glam::DVec3;
 use optics::wave::{ComplexVector, transverse_basis, unit};
@@ -74,17 +75,12 @@ pub enum RayError {
         problem: String,
     },
     /// There are more rays than leaves can be kept of.
-    #[error(
-        "the leaves of {count} rays need {needed_mb} MB of memory, but only {available_mb} MB are free; trace them \
-         in parts"
-    )]
+    #[error("tracing {count} rays {shortage}; trace them in parts")]
     TooMany {
         /// How many rays.
         count: usize,
-        /// Memory needed, in 10^6 bytes.
-        needed_mb: u64,
-        /// Memory free, in 10^6 bytes.
-        available_mb: u64,
+        /// The memory needed for their leaves and there.
+        shortage: Shortage,
     },
     /// The work was stopped from outside.
     #[error(transparent)]
@@ -157,28 +153,20 @@ pub fn leaf_table(
     let needed = count as u64 * LeafTable::BYTES_PER_RAY;
     // Rays are numbered in 32 bits.
     let most = u64::from(u32::MAX) * LeafTable::BYTES_PER_RAY;
-    let available = crate::memory::available().unwrap_or(most);
-    if needed > available || u32::try_from(count).is_err() {
-        let [needed_mb, available_mb] = [needed, available].map(|bytes| bytes / 1_000_000);
-        return Err(RayError::TooMany { count, needed_mb, available_mb });
-    }
-    let launch = |index: usize| launch(assembly, index, &ray(index));
+    memory::check(needed, most).map_err(|shortage| RayError::TooMany { count, shortage })?;
+    // The ray to launch, if it makes sense and starts in air or a medium.
+    let launch = |index: usize| {
+        let wrong = |problem| RayError::Ray { index, problem };
+        let launch = ray(index).launch().map_err(wrong)?;
+        assembly.region_around(launch.origin, launch.direction).map_err(|device| {
+            wrong(format!(
+                "it starts inside device {device} (counted from 0), in metal, an opaque body or a round \
+                 birefringent medium; rays start in air or in another medium"
+            ))
+        })?;
+        Ok(launch)
+    };
     LeafTable::trace(assembly, limits, count, &launch, done, stop)
-}
-
-/// The ray to launch, if it makes sense and starts in air or a medium.
-fn launch(assembly: &Assembly, index: usize, ray: &RayRequest) -> Result<Launch<1>, RayError> {
-    let launch = ray.launch().map_err(|problem| RayError::Ray { index, problem })?;
-    match assembly.region_around(launch.origin, launch.direction) {
-        Ok(_) => Ok(launch),
-        Err(device) => {
-            let problem = format!(
-                "it starts inside device {device} (counted from 0), in metal, an opaque body or a round birefringent medium; rays start in air or in another \
-                 medium"
-            );
-            Err(RayError::Ray { index, problem })
-        }
-    }
 }
 
 /// Traces rays, in order.
@@ -194,28 +182,22 @@ pub fn trace_rays(
 ) -> Result<Vec<RayReport>, RayError> {
     let table = leaf_table(assembly, limits, rays.len(), &|i| rays[i].clone(), &|_| {}, stop)?;
     let mut leaves = (0..table.ray.len()).peekable();
+    let leaf = |leaf: usize| LeafReport {
+        position: Some(table.position[leaf]).filter(|position| !position[0].is_nan()),
+        direction: table.direction[leaf],
+        power: table.power[leaf],
+        optical_path: table.optical_path[leaf],
+        electric_field: table.electric_field[leaf].map(|c| [c.re, c.im]),
+    };
     let report = |ray: usize| {
         let of_ray = std::iter::from_fn(|| leaves.next_if(|leaf| table.ray[*leaf] as usize == ray));
         RayReport {
-            leaves: of_ray.map(|leaf| LeafReport::of(&table, leaf)).collect(),
+            leaves: of_ray.map(leaf).collect(),
             absorbed: table.absorbed[ray],
             pruned: table.pruned[ray],
         }
     };
     Ok((0..rays.len()).map(report).collect())
-}
-
-impl LeafReport {
-    fn of(table: &LeafTable, leaf: usize) -> Self {
-        let position = table.position[leaf];
-        Self {
-            position: (!position[0].is_nan()).then_some(position),
-            direction: table.direction[leaf],
-            power: table.power[leaf],
-            optical_path: table.optical_path[leaf],
-            electric_field: table.electric_field[leaf].map(|c| [c.re, c.im]),
-        }
-    }
 }
 
 #[cfg(test)]

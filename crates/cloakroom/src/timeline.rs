@@ -28,18 +28,12 @@ pub enum TimelineError {
         /// What is wrong with it.
         problem: String,
     },
-    /// It is not said how many frames there are.
-    #[error("--sweep {text} says where to go but not in how many frames; give --frames")]
-    NoCount {
-        /// The sweep as it was written.
-        text: String,
-    },
-    /// There are too many frames.
-    #[error("a film has 1 to {MOST_FRAMES} frames, not {frames}")]
-    Count {
-        /// How many were asked for.
-        frames: usize,
-    },
+    /// It is not said how many frames there are for this sweep, as it was written.
+    #[error("--sweep {0} says where to go but not in how many frames; give --frames")]
+    NoCount(String),
+    /// There are too many frames, or none.
+    #[error("a film has 1 to {MOST_FRAMES} frames, not {0}")]
+    Count(usize),
     /// A sweep has another number of values.
     #[error("--sweep {key} has {values} values, but the film has {frames} frames")]
     Uneven {
@@ -53,12 +47,6 @@ pub enum TimelineError {
     /// Nothing changes.
     #[error("nothing changes from frame to frame; give a --sweep")]
     Still,
-    /// One key is swept twice.
-    #[error("{key} is swept twice")]
-    Twice {
-        /// The key.
-        key: String,
-    },
 }
 
 impl Timeline {
@@ -73,20 +61,19 @@ impl Timeline {
     /// If a sweep cannot be read, or they do not agree in the number of frames.
     pub fn new(texts: &[String], frames: Option<usize>) -> Result<Self, TimelineError> {
         if let Some(frames) = frames.filter(|frames| !(1..=MOST_FRAMES).contains(frames)) {
-            return Err(TimelineError::Count { frames });
+            return Err(TimelineError::Count(frames));
         }
         let mut sweeps: Vec<Sweep> = Vec::new();
         for text in texts {
             let sweep = match way(text)? {
                 Some((key, points)) => {
-                    let frames =
-                        frames.ok_or_else(|| TimelineError::NoCount { text: text.clone() })?;
+                    let frames = frames.ok_or_else(|| TimelineError::NoCount(text.clone()))?;
                     Sweep { values: spread(&key, &points, frames), key }
                 }
                 None => Sweep::parse(text)?,
             };
             if sweeps.iter().any(|other| other.key == sweep.key) {
-                return Err(TimelineError::Twice { key: sweep.key });
+                return Err(SweepError::Twice(sweep.key).into());
             }
             sweeps.push(sweep);
         }

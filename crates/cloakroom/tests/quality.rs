@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 fn plan(scene: &str, sweeps: &[&str]) -> Result<Plan, QualityError> {
     let sweeps = sweeps.iter().map(|text| Sweep::parse(text).unwrap()).collect();
-    Plan::new(sweeps, |more| scene_file::parse(scene, "test", Path::new(""), more))
+    Plan::new(sweeps, Vec::new(), |more| scene_file::parse(scene, "test", Path::new(""), more))
 }
 
 fn measured(scene: &str, sweeps: &[&str]) -> QualityTable {
@@ -20,7 +20,8 @@ fn measured(scene: &str, sweeps: &[&str]) -> QualityTable {
     };
     let table = quality(&plan, &Supervision { rows_done: &count, stop: &stop }).unwrap();
     assert_eq!(done.into_inner(), plan.steps(), "the progress runs to its end");
-    assert_eq!(table.rows.len(), plan.combinations());
+    let rows: usize = table.sweeps.iter().map(|sweep| sweep.values.len()).product();
+    assert_eq!(table.rows.len(), rows);
     table
 }
 
@@ -150,7 +151,7 @@ fn draws_give_means_with_errors_that_shrink_as_one_over_root_n() {
     let table = |draws: u32, sweep: &str| {
         let sweeps = vec![Sweep::parse(sweep).unwrap()];
         let load = |more: &[String]| scene_file::parse(ERRONEOUS, "test", folder.path(), more);
-        let plan = Plan::new(sweeps, load).unwrap().with_draws(draws).unwrap();
+        let plan = Plan::new(sweeps, Vec::new(), load).unwrap().with_draws(draws).unwrap();
         let (done, stop) = (AtomicU64::new(0), AtomicBool::new(false));
         let count = |rows| {
             done.fetch_add(rows, Ordering::Relaxed);
@@ -207,7 +208,7 @@ fn a_held_fact_stays_while_keys_are_swept() {
     let held = |hold: &str, sweep: &str| {
         let (sweeps, holds) =
             (vec![Sweep::parse(sweep).unwrap()], vec![Constraint::parse(hold).unwrap()]);
-        Plan::holding(sweeps, holds, |more| scene_file::parse(scene, "test", Path::new(""), more))
+        Plan::new(sweeps, holds, |more| scene_file::parse(scene, "test", Path::new(""), more))
     };
     let plan = held("device.0.w=cloaked_area_cm2", "device.0.h=3,4.25").unwrap();
     plan.check_columns(&["device.0.w".to_owned()]).unwrap();
@@ -222,4 +223,38 @@ fn a_held_fact_stays_while_keys_are_swept() {
     assert!(message.contains("both swept and held"), "{message}");
     let message = held("device.0.w=cloaked_area_cm2", "device.0.h=4,30").unwrap_err().to_string();
     assert!(message.contains("h=30"), "{message}");
+}
+
+#[test]
+fn files_hold_the_table() {
+    let scene =
+        "[camera]\nresolution = [16, 12]\nsamples = 1\n[[device]]\nkind = \"square-cloak\"\n";
+    let sweeps = ["camera.polarizer=horizontal,vertical", "device.0.rotation=0..10:5"];
+    let mut table = measured(scene, &sweeps);
+    let column = table.column("delivered").unwrap();
+    table.rows[5].numbers[column] = f64::NAN;
+    let folder = tempfile::tempdir().unwrap();
+    let [csv, npz] = ["a.csv", "a.npz"].map(|name| folder.path().join(name));
+    table.write_csv(&csv).unwrap();
+    table.write_npz(&npz).unwrap();
+    let text = std::fs::read_to_string(csv).unwrap();
+    let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(lines.len(), 7);
+    assert_eq!(lines[0][..3], ["camera.polarizer", "device.0.rotation", "silhouette_share"]);
+    assert_eq!((lines[0].len(), lines[0][2 + column]), (2 + table.columns.len(), "delivered"));
+    assert_eq!(
+        (&lines[3][..2], &lines[6][..2]),
+        (&["horizontal", "10"][..], &["vertical", "10"][..])
+    );
+    assert_eq!(lines[3][2 + column].parse(), Ok(table.figure(2, "delivered")));
+    assert_eq!(lines[6][2 + column], "");
+    let mut npz = ndarray_npy::NpzReader::new(std::fs::File::open(npz).unwrap()).unwrap();
+    let rotation: ndarray::Array1<f64> = npz.by_name("device.0.rotation").unwrap();
+    assert_eq!(rotation.to_vec(), [0.0, 5.0, 10.0, 0.0, 5.0, 10.0]);
+    let delivered: ndarray::Array1<f64> = npz.by_name("delivered").unwrap();
+    assert!(delivered[2] == table.figure(2, "delivered") && delivered[5].is_nan());
+    let json = table.to_json();
+    assert_eq!(json["rows"][5]["settings"]["device.0.rotation"], "10");
+    assert!(json["rows"][5]["figures"]["delivered"].is_null());
+    assert_eq!(json["rows"][2]["figures"]["delivered"], table.figure(2, "delivered"));
 }

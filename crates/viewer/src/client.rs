@@ -9,7 +9,7 @@ use crate::server::Server;
 use crate::slot::{Slot, lock};
 use axum::body::Bytes;
 use axum::extract::ws;
-use cloakroom::photograph::{ImageSource, LoadError, load_bytes};
+use cloakroom::photograph::{ImageSource, LoadProblem, load_bytes};
 use cloakroom::render::Images;
 use futures_util::{SinkExt, StreamExt};
 use serde_json::{Value, json};
@@ -123,22 +123,25 @@ impl Client {
     fn hang(&self, name: &str, bytes: &[u8]) -> Result<Value, String> {
         let source = self.server.opened.source_of(name);
         let _one = lock(&self.server.reading);
-        let image = load_bytes(&source, bytes, MOST_PIXELS).map_err(|error| match error {
-            LoadError::TooLarge { .. } => format!(
-                "the photograph is too large: at most {} million pixels",
-                MOST_PIXELS / 1_000_000
-            ),
-            LoadError::NotAnImage { .. } | LoadError::Empty { .. } => {
-                "this is not an image that can be read (PNG, JPEG or EXR)".to_owned()
-            }
-            LoadError::OtherFormat { format, .. } => {
-                format!("this is a {format} image; only PNG, JPEG and EXR can be read")
-            }
-            LoadError::Unsupported { reason, .. } => {
-                format!("this image uses a feature that is not supported: {reason}")
-            }
-            _ => "this image is damaged or cut short".to_owned(),
-        })?;
+        let image =
+            load_bytes(&source, bytes, MOST_PIXELS).map_err(|error| match error.problem {
+                LoadProblem::TooLarge => {
+                    format!(
+                        "the photograph is too large: at most {} million pixels",
+                        MOST_PIXELS / 1_000_000
+                    )
+                }
+                LoadProblem::NotAnImage | LoadProblem::Empty => {
+                    "this is not an image that can be read (PNG, JPEG or EXR)".to_owned()
+                }
+                LoadProblem::OtherFormat(format) => {
+                    format!("this is a {format} image; only PNG, JPEG and EXR can be read")
+                }
+                LoadProblem::Unsupported(reason) => {
+                    format!("this image uses a feature that is not supported: {reason}")
+                }
+                _ => "this image is damaged or cut short".to_owned(),
+            })?;
         let (width, height) = (image.width, image.height);
         // The old one makes room.
         *lock(&self.uploaded) = None;

@@ -1,9 +1,12 @@
 //! Flux as data: CSV and NPZ.
 
-use super::{FluxReport, STANDS};
-use crate::output::{Arrays, OutputError, write_arrays};
+use super::{FluxReport, Gain, STANDS};
+use crate::output::{OutputError, write_npz};
 use std::fmt::Write;
 use std::path::Path;
+
+/// Name, shape and values of each of a few arrays, the last index running fastest.
+pub type Arrays = Vec<(&'static str, Vec<usize>, Vec<f64>)>;
 
 /// What light is meant.
 const LIGHTS: [&str; 3] = ["horizontal", "vertical", "unpolarized"];
@@ -49,37 +52,38 @@ pub fn flux_csv(report: &FluxReport) -> String {
 pub fn flux_arrays(report: &FluxReport) -> Arrays {
     let all = &report.incidences;
     let count = all.len();
-    let mut arrays = Arrays::default();
     let steps = all.first().map_or(0, |incidence| incidence.convergence.len());
     let [wide, long] = report.cells;
-    let middles = |cells: usize, size: f64| -> Vec<f64> {
-        (0..cells).map(|i| size * ((i as f64 + 0.5) / cells as f64 - 0.5)).collect()
+    let middles = |cells: usize, size: f64| {
+        (0..cells).map(move |i| size * ((i as f64 + 0.5) / cells as f64 - 0.5))
     };
-    arrays.add("label", &[count], all.iter().map(|i| i.direction.label));
-    arrays.add("incidence_deg", &[count], all.iter().map(|i| i.degrees));
-    let along = all.iter().flat_map(|i| i.direction.along.to_array());
-    arrays.add("direction", &[count, 3], along);
+    let percent = |gain: Option<Gain>| gain.map_or(f64::NAN, |gain| gain.percent);
+    let error = |gain: Option<Gain>| gain.map_or(f64::NAN, |gain| gain.error);
     let totals = || all.iter().flat_map(|i| i.totals.as_flattened());
-    arrays.add("total", &[count, 3, 3], totals().map(|total| total.mean));
-    arrays.add("total_error", &[count, 3, 3], totals().map(|total| total.error));
     let gains = || all.iter().flat_map(|i| i.gains);
-    let percent = gains().map(|gain| gain.map_or(f64::NAN, |gain| gain.percent));
-    arrays.add("given_back_percent", &[count, 3], percent);
-    let errors = gains().map(|gain| gain.map_or(f64::NAN, |gain| gain.error));
-    arrays.add("given_back_error", &[count, 3], errors);
-    let maps = all.iter().flat_map(|i| i.maps.iter().flatten().copied());
-    arrays.add("map", &[count, 3, long, wide], maps);
-    arrays.add("across", &[wide], middles(wide, report.size[0]).into_iter());
-    arrays.add("along", &[long], middles(long, report.size[1]).into_iter());
+    let mut maps = all.iter().flat_map(|i| i.maps.iter().flatten().copied());
     let walk = || all.iter().flat_map(|i| &i.convergence);
     let size = [count, steps];
-    arrays.add("rays", &size, walk().map(|step| step.rays as f64));
-    arrays.add("cloaked_by_rays", &size, walk().map(|step| step.cloaked.mean));
-    arrays.add("cloaked_error_by_rays", &size, walk().map(|step| step.cloaked.error));
-    let by_rays = walk().map(|step| step.gain.map_or(f64::NAN, |gain| gain.percent));
-    arrays.add("given_back_by_rays", &size, by_rays);
-    let by_rays = walk().map(|step| step.gain.map_or(f64::NAN, |gain| gain.error));
-    arrays.add("given_back_error_by_rays", &size, by_rays);
+    let mut arrays = Arrays::new();
+    let mut add = |name, shape: &[usize], values: &mut dyn Iterator<Item = f64>| {
+        arrays.push((name, shape.to_vec(), values.collect()));
+    };
+    add("label", &[count], &mut all.iter().map(|i| i.direction.label));
+    add("incidence_deg", &[count], &mut all.iter().map(|i| i.degrees));
+    let mut along = all.iter().flat_map(|i| i.direction.along.to_array());
+    add("direction", &[count, 3], &mut along);
+    add("total", &[count, 3, 3], &mut totals().map(|total| total.mean));
+    add("total_error", &[count, 3, 3], &mut totals().map(|total| total.error));
+    add("given_back_percent", &[count, 3], &mut gains().map(percent));
+    add("given_back_error", &[count, 3], &mut gains().map(error));
+    add("map", &[count, 3, long, wide], &mut maps);
+    add("across", &[wide], &mut middles(wide, report.size[0]));
+    add("along", &[long], &mut middles(long, report.size[1]));
+    add("rays", &size, &mut walk().map(|step| step.rays as f64));
+    add("cloaked_by_rays", &size, &mut walk().map(|step| step.cloaked.mean));
+    add("cloaked_error_by_rays", &size, &mut walk().map(|step| step.cloaked.error));
+    add("given_back_by_rays", &size, &mut walk().map(|step| percent(step.gain)));
+    add("given_back_error_by_rays", &size, &mut walk().map(|step| error(step.gain)));
     arrays
 }
 
@@ -89,5 +93,8 @@ pub fn flux_arrays(report: &FluxReport) -> Arrays {
 ///
 /// If the file cannot be written.
 pub fn write_flux_npz(report: &FluxReport, path: &Path) -> Result<(), OutputError> {
-    write_arrays(&flux_arrays(report), &report.metadata, path)
+    write_npz(path, &report.metadata, |npz| {
+        let arrays = flux_arrays(report);
+        arrays.iter().try_for_each(|(name, shape, values)| npz.add(name, &shape[..], values))
+    })
 }

@@ -16,7 +16,8 @@ pub(super) struct Launcher {
     corners: Vec<DVec3>,
     /// Whether the problem is endless along z: then one row of rays, anywhere along z, says all.
     endless: bool,
-    cells: [usize; 2],
+    /// Cells across and along the receiver.
+    pub cells: [usize; 2],
     rays: u32,
 }
 
@@ -32,12 +33,19 @@ impl Launcher {
                 continue;
             };
             if !(high - low).truncate().is_finite() {
-                return Err(FluxError::EndlessAskew { device });
+                return Err(FluxError::Endless {
+                    device,
+                    problem: "its axis, which is not that of z; give it a `length`",
+                });
             }
             let is_endless = high.z - low.z > REACH;
             endless.push(is_endless);
             if is_endless && receiver.normal.z != 0.0 {
-                return Err(FluxError::EndlessAcross { device });
+                return Err(FluxError::Endless {
+                    device,
+                    problem: "z, and the receiver is not along z; give the device a `length`, or the receiver a \
+                              normal with z = 0",
+                });
             }
             let (low, high) =
                 if is_endless { (low.with_z(0.0), high.with_z(0.0)) } else { (low, high) };
@@ -54,7 +62,10 @@ impl Launcher {
         }
         let all = endless.iter().all(|endless| *endless);
         if !all && let Some(device) = endless.iter().position(|endless| *endless) {
-            return Err(FluxError::EndlessBeside { device });
+            return Err(FluxError::Endless {
+                device,
+                problem: "z and others are not; give it a `length`",
+            });
         }
         let [across, along] = receiver.axes();
         for (u, v) in [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)] {
@@ -68,11 +79,6 @@ impl Launcher {
         let long =
             if all { 1 } else { (receiver.length / side).round().clamp(1.0, 4096.0) as usize };
         Ok(Self { receiver, corners, endless: all, cells: [wide, long], rays: sampling.rays })
-    }
-
-    /// Cells across and along the receiver.
-    pub fn cells(&self) -> [usize; 2] {
-        self.cells
     }
 
     /// The size of the receiver, cm; endless along z: of a piece 1 cm long.
@@ -153,17 +159,13 @@ pub(super) struct Field {
     along: DVec3,
     electric: [DVec3; 2],
     counts: [u32; 2],
-    share: f64,
+    /// The irradiance on the whole receiver that a ray stands for, that across the light being 1.
+    pub share: f64,
 }
 
 impl Field {
     pub fn count(&self) -> u32 {
         self.counts[0] * self.counts[1]
-    }
-
-    /// The irradiance on the whole receiver that a ray stands for, that across the light being 1.
-    pub fn share(&self) -> f64 {
-        self.share
     }
 
     /// A ray: anywhere in its cell of the grid.

@@ -9,7 +9,7 @@ mod launch;
 mod result;
 
 pub use directions::{Direction, across_range, sun_day};
-pub use files::{flux_arrays, flux_csv, write_flux_npz};
+pub use files::{Arrays, flux_arrays, flux_csv, write_flux_npz};
 pub use result::{Convergence, FluxReport, Gain, Incidence, STANDS, Stand, Total};
 
 use crate::assembly::Assembly;
@@ -33,12 +33,6 @@ pub struct Sampling {
     pub cells: u32,
 }
 
-impl Default for Sampling {
-    fn default() -> Self {
-        Self { rays: 4096, samples: 8, cells: 60 }
-    }
-}
-
 /// Why no flux can be given.
 #[derive(Debug, thiserror::Error)]
 pub enum FluxError {
@@ -59,42 +53,22 @@ pub enum FluxError {
         /// How far it reaches through, cm.
         depth: f64,
     },
-    /// A device without an end is across the receiver.
-    #[error(
-        "device {device} (counted from 0) is endless along z, and the receiver is not along z; give the device a \
-         `length`, or the receiver a normal with z = 0"
-    )]
-    EndlessAcross {
+    /// A device without an end is across the receiver, not upright, or beside one that has ends.
+    #[error("device {device} (counted from 0) is endless along {problem}")]
+    Endless {
         /// Which device, counted from 0.
         device: usize,
-    },
-    /// A device without an end is not upright.
-    #[error(
-        "device {device} (counted from 0) is endless along its axis, which is not that of z; give it a `length`"
-    )]
-    EndlessAskew {
-        /// Which device, counted from 0.
-        device: usize,
-    },
-    /// Some devices have ends along z and some have not.
-    #[error(
-        "device {device} (counted from 0) is endless along z and others are not; give it a `length`"
-    )]
-    EndlessBeside {
-        /// Which device, counted from 0.
-        device: usize,
+        /// Along what, what is wrong with that, and the mend.
+        problem: &'static str,
     },
     /// There are no directions of the light.
     #[error("there is no direction that light comes to the receiver from")]
     NoDirection,
-    /// A direction does not come from the front.
+    /// A direction does not come from the front, at this angle to the normal, degrees.
     #[error(
-        "light at {degrees} degrees to the normal does not come from the front of the receiver; it must be less than 90"
+        "light at {0} degrees to the normal does not come from the front of the receiver; it must be less than 90"
     )]
-    FromBehind {
-        /// The angle to the normal, degrees.
-        degrees: f64,
-    },
+    FromBehind(f64),
     /// A number makes no sense.
     #[error("{name} is {value}; it must be from {low} to {high}")]
     Setting {
@@ -126,37 +100,6 @@ pub fn flux(
     begun: &dyn Fn(u64),
     supervision: &Supervision<'_>,
 ) -> Result<FluxReport, FluxError> {
-    check(sampling)?;
-    if directions.is_empty() {
-        return Err(FluxError::NoDirection);
-    }
-    let benches = benches(scene)?;
-    let launcher = Launcher::new(scene, &benches[Stand::Cloaked as usize], sampling)?;
-    begun((directions.len() * STANDS.len()) as u64);
-    let mut incidences = Vec::new();
-    for direction in directions {
-        let degrees = direction.incidence(&scene.receiver);
-        if degrees >= 90.0 {
-            return Err(FluxError::FromBehind { degrees });
-        }
-        let mut tallies = Vec::new();
-        for assembly in &benches {
-            tallies.push(tally(scene, assembly, &launcher, *direction, sampling, supervision)?);
-            (supervision.rows_done)(1);
-        }
-        let field = launcher.field(*direction);
-        let rays = (field.count(), field.share());
-        incidences.push(Incidence::new(*direction, degrees, &tallies, rays));
-    }
-    Ok(FluxReport {
-        cells: launcher.cells(),
-        size: launcher.size(),
-        incidences,
-        metadata: metadata(scene),
-    })
-}
-
-fn check(sampling: Sampling) -> Result<(), FluxError> {
     for (name, value, low, high) in [
         ("the number of rays", sampling.rays, 16, 100_000_000),
         ("the number of samples", sampling.samples, 2, 1024),
@@ -166,17 +109,39 @@ fn check(sampling: Sampling) -> Result<(), FluxError> {
             return Err(FluxError::Setting { name, value, low, high });
         }
     }
-    Ok(())
-}
-
-/// The scene without devices, with bare metal ([`measure::bare`]), and as it is.
-fn benches(scene: &Scene) -> Result<[Assembly; 3], FluxError> {
+    if directions.is_empty() {
+        return Err(FluxError::NoDirection);
+    }
     if scene.devices.is_empty() {
         return Err(FluxError::NoDevice);
     }
     let cloaked = assembly(scene)?;
+    let launcher = Launcher::new(scene, &cloaked, sampling)?;
     let bare = measure::bare(scene).map_or_else(|| Ok(cloaked.clone()), |bare| assembly(&bare))?;
-    Ok([assembly(&measure::empty(scene))?, bare, cloaked])
+    // In the order of `STANDS`.
+    let assemblies = [assembly(&measure::empty(scene))?, bare, cloaked];
+    begun((directions.len() * STANDS.len()) as u64);
+    let mut incidences = Vec::new();
+    for direction in directions {
+        let degrees = direction.incidence(&scene.receiver);
+        if degrees >= 90.0 {
+            return Err(FluxError::FromBehind(degrees));
+        }
+        let mut tallies = Vec::new();
+        for assembly in &assemblies {
+            tallies.push(tally(scene, assembly, &launcher, *direction, sampling, supervision)?);
+            (supervision.rows_done)(1);
+        }
+        let field = launcher.field(*direction);
+        let rays = (field.count(), field.share);
+        incidences.push(Incidence::new(*direction, degrees, &tallies, rays));
+    }
+    Ok(FluxReport {
+        cells: launcher.cells,
+        size: launcher.size(),
+        incidences,
+        metadata: metadata(scene),
+    })
 }
 
 /// Traces all samples of one direction.
@@ -194,7 +159,7 @@ fn tally(
         .into_par_iter()
         .map(|sample| {
             let mut tracer = Tracer::<2>::new(assembly, limits);
-            let mut tally = Tally::new(launcher.cells());
+            let mut tally = Tally::new(launcher.cells);
             for number in 0..field.count() {
                 if number % 256 == 0 && supervision.stop.load(Ordering::Relaxed) {
                     return Err(FluxError::Stopped);
@@ -204,7 +169,7 @@ fn tally(
                 tally.stats += outcome.stats;
                 for leaf in leaves.iter().filter(|leaf| leaf.body().is_none()) {
                     if let Some(cell) = launcher.cell(leaf.position, leaf.direction) {
-                        tally.add(cell, leaf.power.map(|power| power * field.share()));
+                        tally.add(cell, leaf.power.map(|power| power * field.share));
                     }
                 }
             }

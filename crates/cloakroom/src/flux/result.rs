@@ -21,11 +21,7 @@ impl Stand {
     /// Its name in files.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Nothing => "nothing",
-            Self::Bare => "bare",
-            Self::Cloaked => "cloaked",
-        }
+        ["nothing", "bare", "cloaked"][self as usize]
     }
 }
 

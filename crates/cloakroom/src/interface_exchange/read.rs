@@ -37,11 +37,7 @@ pub struct InterfaceError {
 }
 
 impl InterfaceError {
-    pub(super) fn whole(problem: String) -> Self {
-        Self { place: String::new(), problem }
-    }
-
-    fn at(place: &str, problem: impl Into<String>) -> Self {
+    pub(super) fn at(place: &str, problem: impl Into<String>) -> Self {
         Self { place: place.trim_start_matches('.').to_owned(), problem: problem.into() }
     }
 }
@@ -135,20 +131,13 @@ fn medium(value: &Value, place: &str) -> Result<Medium, InterfaceError> {
 
 /// A number, a pair [re, im], or 3 x 3 of either.
 fn tensor(value: &Value, place: &str) -> Result<Tensor, InterfaceError> {
-    let Value::Array(rows) = value else {
-        return Ok(entry(value, place)?.into());
-    };
-    if rows.len() == 2 && rows.iter().all(Value::is_number) {
+    if value.as_array().is_none_or(|rows| rows.len() == 2 && rows.iter().all(Value::is_number)) {
         return Ok(entry(value, place)?.into());
     }
-    let rows = three(rows, place, "a number, [re, im] or a 3 x 3 array")?;
     let mut re = DMat3::ZERO;
     let mut im = DMat3::ZERO;
-    for (i, row) in rows.iter().enumerate() {
+    for (i, row) in three(value, place, "a number, [re, im] or a 3 x 3 array")?.iter().enumerate() {
         let place = format!("{place}[{i}]");
-        let Value::Array(row) = row else {
-            return Err(InterfaceError::at(&place, "expected a row of three entries"));
-        };
         for (j, value) in three(row, &place, "a row of three entries")?.iter().enumerate() {
             let value = entry(value, &format!("{place}[{j}]"))?;
             re.col_mut(j)[i] = value.re;
@@ -159,38 +148,32 @@ fn tensor(value: &Value, place: &str) -> Result<Tensor, InterfaceError> {
 }
 
 fn entry(value: &Value, place: &str) -> Result<Complex64, InterfaceError> {
-    if let Value::Array(parts) = value
-        && let [re, im] = parts.as_slice()
-    {
-        let part = |value: &Value, i: usize| number(value, &format!("{place}[{i}]"));
-        return Ok(Complex64::new(part(re, 0)?, part(im, 1)?));
-    }
-    match value {
-        Value::Array(_) => Err(InterfaceError::at(place, "expected a number or [re, im]")),
-        value => Ok(number(value, place)?.into()),
+    let part = |value: &Value, i: usize| number(value, &format!("{place}[{i}]"));
+    match value.as_array().map(Vec::as_slice) {
+        None => Ok(number(value, place)?.into()),
+        Some([re, im]) => Ok(Complex64::new(part(re, 0)?, part(im, 1)?)),
+        Some(_) => Err(InterfaceError::at(place, "expected a number or [re, im]")),
     }
 }
 
 fn vector(value: &Value, place: &str) -> Result<DVec3, InterfaceError> {
-    let Value::Array(components) = value else {
-        return Err(InterfaceError::at(place, "expected [x, y, z]"));
-    };
     let mut vector = DVec3::ZERO;
-    for (i, value) in three(components, place, "[x, y, z]")?.iter().enumerate() {
+    for (i, value) in three(value, place, "[x, y, z]")?.iter().enumerate() {
         vector[i] = number(value, &format!("{place}[{i}]"))?;
     }
     Ok(vector)
 }
 
-fn three<'a>(
-    values: &'a [Value],
-    place: &str,
-    expected: &str,
-) -> Result<&'a [Value; 3], InterfaceError> {
-    values.try_into().map_err(|_| {
-        let problem = format!("expected {expected}, found {} entries", values.len());
-        InterfaceError::at(place, problem)
-    })
+/// The three entries of an array.
+fn three<'a>(value: &'a Value, place: &str, expected: &str) -> Result<&'a [Value], InterfaceError> {
+    match value {
+        Value::Array(values) if values.len() == 3 => Ok(values),
+        Value::Array(values) => {
+            let problem = format!("expected {expected}, found {} entries", values.len());
+            Err(InterfaceError::at(place, problem))
+        }
+        _ => Err(InterfaceError::at(place, format!("expected {expected}"))),
+    }
 }
 
 fn number(value: &Value, place: &str) -> Result<f64, InterfaceError> {

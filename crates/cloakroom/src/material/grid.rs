@@ -125,13 +125,10 @@ fn check_memory(cells: [f64; 3]) -> Result<(), MaterialError> {
     /// A code, an index and two tensors with their imaginary parts: as they are sampled, and in arrays.
     const BYTES: f64 = 2.0 * 8.0 * (2.0 + 4.0 * 6.0);
     let needed = cells.iter().product::<f64>() * BYTES;
-    let available = crate::memory::available().map_or(f64::INFINITY, |bytes| bytes as f64);
-    if needed > available || cells.iter().any(|count| *count > MOST_CELLS) {
-        return Err(MaterialError::TooLarge {
-            cells: cells.map(|count| count as u64),
-            needed_mb: (needed / 1e6) as u64,
-            available_mb: (available / 1e6) as u64,
-        });
-    }
-    Ok(())
+    let is_countable = cells.iter().all(|count| *count <= MOST_CELLS);
+    let most = if is_countable { f64::INFINITY } else { MOST_CELLS * BYTES };
+    crate::memory::check(needed as u64, most as u64).map_err(|shortage| MaterialError::TooLarge {
+        cells: cells.map(|count| count as u64),
+        shortage,
+    })
 }

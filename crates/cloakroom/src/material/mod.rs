@@ -11,6 +11,7 @@ pub use segments::{Segment, segments, write_segments};
 
 use crate::assembly::{Assembly, Placed};
 use crate::device::Show;
+use crate::memory::Shortage;
 use crate::scene::Scene;
 
 /// Why the material of a device cannot be given.
@@ -24,47 +25,31 @@ pub enum MaterialError {
         /// How many there are.
         count: usize,
     },
-    /// It is not said which device.
-    #[error("the scene has {count} devices; say which one is meant, from 0 to {}", count - 1)]
-    WhichDevice {
-        /// How many there are.
-        count: usize,
-    },
-    /// The device has no medium in it.
-    #[error("device {device}, {kind}, {reason}: it has no material")]
-    NoMaterial {
+    /// It is not said which of so many devices.
+    #[error("the scene has {0} devices; say which one is meant, from 0 to {last}", last = .0 - 1)]
+    WhichDevice(usize),
+    /// The device has no medium in it, or no homogeneous segments.
+    #[error("device {device}, {kind}, {problem}")]
+    Unsuitable {
         /// Which device, counted from 0.
         device: usize,
         /// Its kind.
         kind: &'static str,
-        /// What it is instead.
-        reason: &'static str,
-    },
-    /// The device has no homogeneous segments.
-    #[error(
-        "device {device}, {kind}, has no homogeneous segments to list: it is a single body, or its medium is graded"
-    )]
-    NoSegments {
-        /// Which device, counted from 0.
-        device: usize,
-        /// Its kind.
-        kind: &'static str,
+        /// What it is instead, and hence has not.
+        problem: &'static str,
     },
     /// The grid has no cells.
     #[error("a grid needs a positive spacing, and at least one cell along each axis")]
     EmptyGrid,
     /// The grid has too many cells.
     #[error(
-        "a grid of {} x {} x {} cells needs {needed_mb} MB of memory, but only {available_mb} MB are free; \
-         take fewer", cells[0], cells[1], cells[2]
+        "a grid of {} x {} x {} cells {shortage}; take fewer", cells[0], cells[1], cells[2]
     )]
     TooLarge {
         /// Cells along x, y and z.
         cells: [u64; 3],
-        /// Memory needed, in 10^6 bytes.
-        needed_mb: u64,
-        /// Memory free, in 10^6 bytes.
-        available_mb: u64,
+        /// The memory needed and there.
+        shortage: Shortage,
     },
     /// The device has no end in the plane, so no grid fits around it.
     #[error("the device is endless along every axis of the grid; take the device's frame")]
@@ -74,28 +59,29 @@ pub enum MaterialError {
     Stopped,
 }
 
-/// The device that is meant: that of the number, or the only one there is.
-fn chosen(assembly: &Assembly, device: Option<usize>) -> Result<(usize, &Placed), MaterialError> {
+/// The device that is meant, if there is a medium in it: that of the number, or the only one there is.
+fn chosen<'a>(
+    scene: &Scene,
+    assembly: &'a Assembly,
+    device: Option<usize>,
+) -> Result<(usize, &'a Placed), MaterialError> {
     let count = assembly.devices().len();
-    let index = match device {
+    let device = match device {
         Some(device) => device,
-        None if count > 1 => return Err(MaterialError::WhichDevice { count }),
+        None if count > 1 => return Err(MaterialError::WhichDevice(count)),
         None => 0,
     };
-    let placed = assembly.devices().get(index);
-    placed.map(|placed| (index, placed)).ok_or(MaterialError::NoDevice { device: index, count })
-}
-
-/// Why a device has no medium in it, if it has none.
-fn without_material(scene: &Scene, device: usize, placed: &Placed) -> Option<MaterialError> {
-    let structure = &placed.structure;
+    let none = MaterialError::NoDevice { device, count };
+    let placed = assembly.devices().get(device).ok_or(none)?;
     let settings = &scene.devices[device];
-    let reason = match settings.placement.show {
-        Show::Bare => "is shown as bare metal",
-        Show::Mirror => "is shown as the mirror it imitates",
-        Show::Cloak if structure.is_opaque() => "is opaque",
-        Show::Cloak if structure.regions.is_empty() => "is made of metal alone",
-        Show::Cloak => return None,
+    let problem = match settings.placement.show {
+        Show::Bare => "is shown as bare metal: it has no material",
+        Show::Mirror => "is shown as the mirror it imitates: it has no material",
+        Show::Cloak if placed.structure.is_opaque() => "is opaque: it has no material",
+        Show::Cloak if placed.structure.regions.is_empty() => {
+            "is made of metal alone: it has no material"
+        }
+        Show::Cloak => return Ok((device, placed)),
     };
-    Some(MaterialError::NoMaterial { device, kind: settings.kind(), reason })
+    Err(MaterialError::Unsuitable { device, kind: settings.kind(), problem })
 }

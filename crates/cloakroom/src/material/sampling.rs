@@ -1,6 +1,6 @@
 //! The material of a device on a grid.
 
-use super::{Frame, Grid, MaterialError, Resolution, chosen, without_material};
+use super::{Frame, Grid, MaterialError, Resolution, chosen};
 use crate::assembly::{Assembly, Placed};
 use crate::device::MaterialAt;
 use crate::output::{GridArray, GridFile, GridValues};
@@ -62,10 +62,7 @@ pub fn sample(
     begun: &dyn Fn(u64),
     supervision: &Supervision<'_>,
 ) -> Result<GridFile, MaterialError> {
-    let (device, placed) = chosen(assembly, device)?;
-    if let Some(error) = without_material(scene, device, placed) {
-        return Err(error);
-    }
+    let (device, placed) = chosen(scene, assembly, device)?;
     let grid = Grid::around(placed, frame, resolution)?;
     let row = grid.cells[0];
     let rows = grid.count() / row;
@@ -93,28 +90,24 @@ pub fn sample(
 }
 
 fn point(placed: &Placed, frame: Frame, at: glam::DVec3) -> Point {
-    let local = match frame {
-        Frame::Device => at,
-        Frame::World => placed.pose.to_local(at),
-    };
-    let occupant = placed.structure.material_at(local);
+    let is_world = frame == Frame::World;
+    let local = if is_world { placed.pose.to_local(at) } else { at };
     let empty = |region, value: f64| Point {
         region,
         index: value,
         real: [[value, value, value, value - 1.0, value - 1.0, value - 1.0]; 2],
         imaginary: [[0.0 * value; 6]; 2],
     };
-    let medium = match occupant {
+    let medium = match placed.structure.material_at(local) {
         MaterialAt::Air => return empty(Region::Air, 1.0),
         MaterialAt::HiddenAir => return empty(Region::Hidden, 1.0),
         MaterialAt::Metal | MaterialAt::Opaque => return empty(Region::Metal, f64::NAN),
         MaterialAt::Medium(medium) => medium,
     };
     let (permittivity, permeability) = medium.tensors();
-    let tensors = [permittivity, permeability].map(|tensor| match frame {
-        Frame::Device => tensor,
-        Frame::World => tensor.turned(&placed.pose.rotation()),
-    });
+    let turned = |tensor: Tensor| tensor.turned(&placed.pose.rotation());
+    let tensors = [permittivity, permeability];
+    let tensors = if is_world { tensors.map(turned) } else { tensors };
     let six = |m: &DMat3| [m.x_axis.x, m.y_axis.y, m.z_axis.z, m.x_axis.y, m.y_axis.z, m.x_axis.z];
     Point {
         region: Region::Material,

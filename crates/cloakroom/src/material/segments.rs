@@ -1,14 +1,14 @@
 //! The homogeneous segments of a device as a table: corners, axes, tensors.
 
-use super::{MaterialError, chosen, without_material};
+use super::{MaterialError, chosen};
 use crate::assembly::Assembly;
 use crate::device::{HomogeneousRegion, Region};
-use crate::output::{OutputError, ending, write_whole};
+use crate::output::{OutputError, WriteSeek, ending, write_whole};
 use crate::scene::Scene;
 use glam::{DMat3, DVec2, DVec3};
-use optics::medium::principal_axes;
+use optics::medium::{Medium, principal_axes};
 use serde::Serialize;
-use std::fmt::Write;
+use std::io;
 use std::path::Path;
 
 /// A piece of a device: a prism of one medium, or a piece of metal. All in the device's frame.
@@ -68,43 +68,34 @@ pub fn segments(
     assembly: &Assembly,
     device: Option<usize>,
 ) -> Result<Vec<Segment>, MaterialError> {
-    let (device, placed) = chosen(assembly, device)?;
-    if let Some(error) = without_material(scene, device, placed) {
-        return Err(error);
-    }
+    let (device, placed) = chosen(scene, assembly, device)?;
     let structure = &placed.structure;
     let section = structure.cross_section();
     let z_cm = scene.devices[device].placement.length.map(|length| [-length / 2.0, length / 2.0]);
-    let corners = |points: Vec<DVec2>| points.into_iter().map(|p| (p + 0.0).to_array()).collect();
+    let segment = |points: Vec<DVec2>, medium: Option<&Medium>| Segment {
+        segment: 0,
+        filling: if medium.is_some() { "medium" } else { "metal" },
+        corners_cm: points.into_iter().map(|p| (p + 0.0).to_array()).collect(),
+        z_cm,
+        permittivity: medium.map(|medium| Principal::of(medium.permittivity())),
+        permeability: medium.map(|medium| Principal::of(medium.permeability())),
+        optic_axis: medium.and_then(Medium::optic_axis).map(towards_x),
+    };
     let of_medium = section.regions.iter().filter_map(|region| {
-        let Region::Homogeneous(HomogeneousRegion { medium, .. }) = region.region else {
+        let Region::Homogeneous(HomogeneousRegion { medium, .. }) = &region.region else {
             return None;
         };
-        Some(Segment {
-            segment: 0,
-            filling: "medium",
-            corners_cm: corners(region.border.first()?.corners()),
-            z_cm,
-            permittivity: Some(Principal::of(medium.permittivity())),
-            permeability: Some(Principal::of(medium.permeability())),
-            optic_axis: medium.optic_axis().map(towards_x),
-        })
+        Some(segment(region.border.first()?.corners(), Some(medium)))
     });
     let mut segments: Vec<Segment> = of_medium.collect();
     if segments.is_empty() {
         let kind = scene.devices[device].kind();
-        return Err(MaterialError::NoSegments { device, kind });
+        let problem =
+            "has no homogeneous segments to list: it is a single body, or its medium is graded";
+        return Err(MaterialError::Unsuitable { device, kind, problem });
     }
     let metal = section.metal.iter().filter(|contour| contour.closed);
-    segments.extend(metal.map(|contour| Segment {
-        segment: 0,
-        filling: "metal",
-        corners_cm: corners(contour.corners()),
-        z_cm,
-        permittivity: None,
-        permeability: None,
-        optic_axis: None,
-    }));
+    segments.extend(metal.map(|contour| segment(contour.corners(), None)));
     for (number, segment) in segments.iter_mut().enumerate() {
         segment.segment = number;
     }
@@ -120,30 +111,27 @@ pub fn segments(
 /// If the ending is another, or the file cannot be written.
 pub fn write_segments(segments: &[Segment], path: &Path) -> Result<(), OutputError> {
     match ending(path).as_deref() {
-        Some("csv") => write_whole(path, |out| out.write_all(csv(segments).as_bytes())),
+        Some("csv") => write_whole(path, |out| csv(segments, out)),
         Some("json") => write_whole(path, |out| Ok(serde_json::to_writer_pretty(out, segments)?)),
         _ => Err(OutputError::unknown_format(path, ".csv or .json")),
     }
 }
 
-fn csv(segments: &[Segment]) -> String {
+fn csv(segments: &[Segment], out: &mut dyn WriteSeek) -> io::Result<()> {
     let most = segments.iter().map(|segment| segment.corners_cm.len()).max().unwrap_or(0);
-    let mut text =
-        "segment,filling,z_min_cm,z_max_cm,optic_axis_x,optic_axis_y,optic_axis_z".to_owned();
-    let mut name = |name: String| {
-        text.push(',');
-        text.push_str(&name);
-    };
+    let mut names = ["segment", "filling", "z_min_cm", "z_max_cm"].map(str::to_owned).to_vec();
+    names.extend(["x", "y", "z"].map(|axis| format!("optic_axis_{axis}")));
     for tensor in ["permittivity", "permeability"] {
         for i in 1..=3 {
-            name(format!("{tensor}_{i}"));
-            ["x", "y", "z"].into_iter().for_each(|axis| name(format!("{tensor}_axis_{i}_{axis}")));
+            names.push(format!("{tensor}_{i}"));
+            names.extend(["x", "y", "z"].map(|axis| format!("{tensor}_axis_{i}_{axis}")));
         }
     }
     for corner in 1..=most {
-        ["x", "y"].into_iter().for_each(|axis| name(format!("corner_{corner}_{axis}_cm")));
+        names.extend(["x", "y"].map(|axis| format!("corner_{corner}_{axis}_cm")));
     }
-    text.push('\n');
+    let mut table = csv::Writer::from_writer(out);
+    table.write_record(&names)?;
     for segment in segments {
         let mut numbers: Vec<Option<f64>> = Vec::new();
         numbers.extend([0, 1].map(|end| segment.z_cm.map(|z| z[end])));
@@ -158,13 +146,9 @@ fn csv(segments: &[Segment]) -> String {
             let at = segment.corners_cm.get(corner);
             numbers.extend([0, 1].map(|axis| at.map(|at| at[axis])));
         }
-        // Writing to a string cannot fail.
-        let _ = write!(text, "{},{}", segment.segment, segment.filling);
-        for number in numbers {
-            text.push(',');
-            text.extend(number.map(|number| number.to_string()));
-        }
-        text.push('\n');
+        let first = [segment.segment.to_string(), segment.filling.to_owned()];
+        let text = |number: Option<f64>| number.map(|n| n.to_string()).unwrap_or_default();
+        table.write_record(first.into_iter().chain(numbers.into_iter().map(text)))?;
     }
-    text
+    table.flush()
 }

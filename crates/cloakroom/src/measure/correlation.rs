@@ -99,12 +99,11 @@ impl Transform {
         let field = [width, height].map(|side| smooth(2 * side));
         // Two masks, four spectra and three correlations of a channel, and a copy.
         let needed = 10 * 16 * field[0] as u64 * field[1] as u64;
-        if let Some(available) = crate::memory::available()
-            && needed > available
-        {
-            let [needed_mb, available_mb] = [needed, available].map(|bytes| bytes / 1_000_000);
-            return Err(MeasureError::TooLarge { width, height, needed_mb, available_mb });
-        }
+        crate::memory::check(needed, u64::MAX).map_err(|shortage| MeasureError::TooLarge {
+            width,
+            height,
+            shortage,
+        })?;
         let mut planner = FftPlanner::new();
         let mut plan = |side: usize| {
             [FftDirection::Forward, FftDirection::Inverse].map(|way| planner.plan_fft(side, way))

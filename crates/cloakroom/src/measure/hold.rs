@@ -18,69 +18,13 @@ pub struct Constraint {
 }
 
 /// Why a fact cannot be held.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ConstraintError {
-    /// It is not written as it should be.
-    #[error("--hold {text}: write device.N.KEY=FACT, as in device.0.w=cloaked_area_cm2")]
-    Unreadable {
-        /// As it was written.
-        text: String,
-    },
-    /// The scene has no such device.
-    #[error("--hold {key}: the scene has no device {device} (devices are counted from 0)")]
-    NoDevice {
-        /// The key.
-        key: String,
-        /// The device asked for.
-        device: usize,
-    },
-    /// The device has no such key, or it is not a number that could be scaled.
-    #[error("--hold {key}: {problem}")]
-    Key {
-        /// The key.
-        key: String,
-        /// What is wrong with it.
-        problem: String,
-    },
-    /// The device has no such fact.
-    #[error("--hold {key}: a {kind} has no computed number {}{hint}", quoted(.fact, '`'))]
-    NoFact {
-        /// The key.
-        key: String,
-        /// The kind of device.
-        kind: &'static str,
-        /// The fact asked for.
-        fact: String,
-        /// What may have been meant.
-        hint: String,
-    },
-    /// A held key is swept, too.
-    #[error("{key} is both swept and held")]
-    Swept {
-        /// The key.
-        key: String,
-    },
-    /// No value of the key will do.
-    #[error(
-        "--hold {key}: no value from {} to {} keeps {fact} at {}{}", number_text(range[0]),
-        number_text(range[1]), number_text(*target), at(.settings)
-    )]
-    NoSolution {
-        /// The key.
-        key: String,
-        /// The fact.
-        fact: String,
-        /// What it should be.
-        target: f64,
-        /// The values that were tried.
-        range: [f64; 2],
-        /// The swept settings.
-        settings: Vec<String>,
-    },
-}
-
-fn at(settings: &[String]) -> String {
-    if settings.is_empty() { String::new() } else { format!(" with {}", settings.join(", ")) }
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("--hold {text}: {problem}")]
+pub struct ConstraintError {
+    /// The key, or all that was written where there is none in it.
+    pub text: String,
+    /// What is wrong with it.
+    pub problem: String,
 }
 
 /// Factors between neighbouring trial values: the eighth root of 2, over six octaves to either side.
@@ -102,7 +46,14 @@ impl Constraint {
             Some(Self { key: key.to_owned(), fact: fact.to_owned(), device: number.parse().ok()? })
                 .filter(|_| sound)
         };
-        read().ok_or_else(|| ConstraintError::Unreadable { text: text.to_owned() })
+        read().ok_or_else(|| ConstraintError {
+            text: text.to_owned(),
+            problem: "write device.N.KEY=FACT, as in device.0.w=cloaked_area_cm2".to_owned(),
+        })
+    }
+
+    pub(super) fn refused(&self, problem: impl Into<String>) -> ConstraintError {
+        ConstraintError { text: self.key.clone(), problem: problem.into() }
     }
 
     /// The name of the key in its device.
@@ -111,8 +62,10 @@ impl Constraint {
     }
 
     fn device<'s>(&self, scene: &'s Scene) -> Result<&'s DeviceSettings, ConstraintError> {
-        let missing = || ConstraintError::NoDevice { key: self.key.clone(), device: self.device };
-        scene.devices.get(self.device).ok_or_else(missing)
+        scene.devices.get(self.device).ok_or_else(|| {
+            let device = self.device;
+            self.refused(format!("the scene has no device {device} (devices are counted from 0)"))
+        })
     }
 
     /// The fact as it is in a scene.
@@ -123,29 +76,27 @@ impl Constraint {
             let facts = device.facts();
             let numbers = facts.iter().filter(|fact| matches!(fact.value, FactValue::Number(_)));
             let known: Vec<&str> = numbers.map(|fact| fact.name).collect();
-            ConstraintError::NoFact {
-                key: self.key.clone(),
-                kind: device.kind(),
-                fact: self.fact.clone(),
-                hint: hint(&self.fact, &known, "known ones"),
-            }
+            let hint = hint(&self.fact, &known, "known ones");
+            let (kind, fact) = (device.kind(), quoted(&self.fact, '`'));
+            self.refused(format!("a {kind} has no computed number {fact}{hint}"))
         })
     }
 
     /// The value of the key from which the search starts.
     fn start(&self, device: &DeviceSettings) -> Result<f64, ConstraintError> {
-        let refuse = |problem: String| ConstraintError::Key { key: self.key.clone(), problem };
         let keys = device.device.table().keys();
         if !keys.iter().any(|key| key.name == self.name()) {
             let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
             let hint = hint(self.name(), &known, "its keys");
             let kind = device.kind();
-            return Err(refuse(format!("a {kind} has no key {}{hint}", quoted(self.name(), '`'))));
+            return Err(
+                self.refused(format!("a {kind} has no key {}{hint}", quoted(self.name(), '`')))
+            );
         }
         let number = device.device.table().get(self.name()).and_then(|value| value.as_number());
         number
             .filter(|number| *number > 0.0)
-            .ok_or_else(|| refuse("the key must be a number above 0 in the scene".to_owned()))
+            .ok_or_else(|| self.refused("the key must be a number above 0 in the scene"))
     }
 
     /// The value of the key with which the fact is `target` in a scene in which all other keys are set.
@@ -162,12 +113,14 @@ impl Constraint {
             fact(&device, &self.fact).map(|fact| fact - target)
         };
         let value = |k: i32| start * 2f64.powf(f64::from(k) / f64::from(TRIALS_AN_OCTAVE));
-        let none = || ConstraintError::NoSolution {
-            key: self.key.clone(),
-            fact: self.fact.clone(),
-            target,
-            range: [-1, 1].map(|side| value(side * OCTAVES * TRIALS_AN_OCTAVE)),
-            settings: settings.to_vec(),
+        let none = || {
+            let end = |side: i32| number_text(value(side * OCTAVES * TRIALS_AN_OCTAVE));
+            let (low, high, fact, target) = (end(-1), end(1), &self.fact, number_text(target));
+            let with = if settings.is_empty() { "" } else { " with " };
+            let settings = settings.join(", ");
+            self.refused(format!(
+                "no value from {low} to {high} keeps {fact} at {target}{with}{settings}"
+            ))
         };
         let mut bracket = None;
         // Away from where it is, to either side in turn.
@@ -231,7 +184,8 @@ mod tests {
             let found = hold.solve(&other, target, &[]);
             // Beyond h/w = 0.886 there is no such map.
             if h / exact > 0.886 {
-                assert!(matches!(found, Err(ConstraintError::NoSolution { .. })), "{found:?}");
+                let message = found.expect_err("no such map").to_string();
+                assert!(message.contains("no value from"), "{message}");
             } else {
                 let found = found.expect("a width");
                 assert!((found - exact).abs() < 1e-12, "h = {h}: {found} {exact}");

@@ -72,14 +72,12 @@ impl Measured {
             let part = likeness.as_ref().and_then(|l| l.region.as_ref());
             list.likeness(&format!("{name}_silhouette"), word, part);
         }
-        let rays = self.rays.as_ref();
-        let off = rays.and_then(|rays| rays.displacement_rms_cm);
-        list.add("displacement_rms_cm", "RMS displacement", "cm", off);
-        let turned = rays.and_then(|rays| rays.direction_error_rms_deg);
+        let rays = |value: fn(&Survey) -> Option<f64>| self.rays.as_ref().and_then(value);
+        let turned = rays(|rays| rays.direction_error_rms_deg);
+        list.add("displacement_rms_cm", "RMS displacement", "cm", rays(|r| r.displacement_rms_cm));
         list.add("direction_error_rms_deg", "RMS direction error", "°", turned);
-        let share = rays.and_then(|rays| rays.uncloaked_share);
-        list.add("uncloaked_share", "Uncloaked share", "", share);
-        let area = rays.map(|rays| rays.uncloaked_area_cm2);
+        list.add("uncloaked_share", "Uncloaked share", "", rays(|rays| rays.uncloaked_share));
+        let area = rays(|rays| Some(rays.uncloaked_area_cm2));
         list.add("uncloaked_area_cm2", "Uncloaked area", "cm²", area);
         for ((name, title), power) in POWERS.into_iter().zip(self.powers) {
             list.add(name, title, "", power);
@@ -111,10 +109,13 @@ impl Numbers {
 
     /// The likeness with a view; `with` says which, and over what if not over the silhouette.
     fn likeness(&mut self, prefix: &str, with: &str, figures: Option<&Figures>) {
-        let name = |what: &str| format!("{prefix}_{what}");
-        let mean = |values: [Option<f64>; 3]| match values {
-            [Some(r), Some(g), Some(b)] => Some((r + g + b) / 3.0),
-            _ => None,
+        // A title must fit beside a panel; the ideal over the silhouette goes without saying.
+        let title = |word: &str| match with {
+            "Ideal" => word.to_owned(),
+            _ => format!("{word} ({with})"),
+        };
+        let mut add = |what: &str, title: &str, number| {
+            self.add(&format!("{prefix}_{what}"), title, "", number);
         };
         let plain = figures.map_or([None; 3], |f| f.correlation);
         let best = figures.map_or([None; 3], |f| f.correlation_maximum);
@@ -123,24 +124,18 @@ impl Numbers {
             ("correlation", "Correlation", plain),
             ("correlation_maximum", "Best correlation", best),
         ] {
-            // A title must fit beside a panel; the ideal over the silhouette goes without saying.
-            let title = if with == "Ideal" { word.to_owned() } else { format!("{word} ({with})") };
-            self.add(&name(what), &title, "", mean(values));
+            let mean = match values {
+                [Some(r), Some(g), Some(b)] => Some((r + g + b) / 3.0),
+                _ => None,
+            };
+            let title = title(word);
+            add(what, &title, mean);
             for (color, value) in ["red", "green", "blue"].into_iter().zip(values) {
-                self.add(
-                    &name(&format!("{what}_{color}")),
-                    &format!("{title}, {color}"),
-                    "",
-                    value,
-                );
+                add(&format!("{what}_{color}"), &format!("{title}, {color}"), value);
             }
         }
-        for (what, word, value) in [
-            ("structural_similarity", "SSIM", figures.map(|f| f.structural_similarity)),
-            ("flip", "FLIP", figures.map(|f| f.flip)),
-        ] {
-            let title = if with == "Ideal" { word.to_owned() } else { format!("{word} ({with})") };
-            self.add(&name(what), &title, "", value);
-        }
+        let similarity = figures.map(|f| f.structural_similarity);
+        add("structural_similarity", &title("SSIM"), similarity);
+        add("flip", &title("FLIP"), figures.map(|f| f.flip));
     }
 }

@@ -39,44 +39,22 @@ pub use survey::{CLOAKED_WITHIN_CM, Survey, survey};
 pub use sweep::{Sweep, SweepError, combinations};
 pub use view::View;
 
-use std::path::PathBuf;
-
 /// Why something cannot be measured.
 #[derive(Debug, thiserror::Error)]
 pub enum MeasureError {
     /// A file cannot be read as a picture.
-    #[error("cannot read {}: {reason}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// Why not.
-        reason: String,
-    },
+    #[error(transparent)]
+    Unreadable(#[from] crate::output::ReadError),
     /// An image cannot be loaded.
     #[error("{0}")]
     Image(#[from] crate::photograph::LoadError),
-    /// A picture lacks a channel that is needed.
-    #[error("{name} has no channel `{channel}`")]
-    MissingChannel {
+    /// A picture lacks a channel that is needed, or has a pixel in it that is infinite or not a number.
+    #[error("{name} {problem}")]
+    Channel {
         /// What the picture is called.
         name: String,
-        /// The channel.
-        channel: String,
-    },
-    /// A pixel is infinite or not a number.
-    #[error(
-        "channel `{channel}` of {name} has a pixel that is not a finite number, in column {column} and \
-         row {row}"
-    )]
-    NotFinite {
-        /// What the picture is called.
-        name: String,
-        /// The channel.
-        channel: String,
-        /// Column of the first such pixel, from 0.
-        column: usize,
-        /// Row of the first such pixel, from 0.
-        row: usize,
+        /// What is wrong with it.
+        problem: String,
     },
     /// Two pictures, or a picture and a mask, differ in size.
     #[error("the sizes differ: {} x {} pixels and {} x {}", first[0], first[1], second[0], second[1])]
@@ -99,17 +77,14 @@ pub enum MeasureError {
     },
     /// There is not enough memory.
     #[error(
-        "comparing pictures of {width} x {height} pixels over all shifts needs {needed_mb} MB of memory, \
-         but only {available_mb} MB are free; compare smaller ones"
+        "comparing pictures of {width} x {height} pixels over all shifts {shortage}; compare smaller ones"
     )]
     TooLarge {
         /// Width of the pictures.
         width: usize,
         /// Height of the pictures.
         height: usize,
-        /// Memory needed, in 10^6 bytes.
-        needed_mb: u64,
-        /// Memory free, in 10^6 bytes.
-        available_mb: u64,
+        /// The memory needed and there.
+        shortage: crate::memory::Shortage,
     },
 }

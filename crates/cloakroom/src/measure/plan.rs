@@ -4,7 +4,7 @@ use super::hold::Constraint;
 use super::quality::{QualityError, UnknownColumn, find_column, located};
 use super::quality_files::name_and_unit;
 use super::sweep::{Sweep, combinations};
-use super::{Column, ConstraintError, SweepError, columns};
+use super::{Column, SweepError, columns};
 use crate::device::Imperfection;
 use crate::render::assembly;
 use crate::scene::Scene;
@@ -31,25 +31,13 @@ pub(super) struct Combination {
 
 impl Plan {
     /// Reads the scene of every combination; `load` reads the scene with further overrides, such as
-    /// `device.0.rotation=5`. Every scene is built once, so that what cannot be is told before the work.
+    /// `device.0.rotation=5`. Every scene is built once, so that what cannot be is told before the work. Held keys follow
+    /// the swept ones so that a computed fact of their device stays what it is in the scene without sweeps.
     ///
     /// # Errors
     ///
-    /// If the sweeps make no sense, or a scene cannot be read or built.
+    /// If the sweeps make no sense, a scene cannot be read or built, or a fact cannot be held.
     pub fn new(
-        sweeps: Vec<Sweep>,
-        load: impl Fn(&[String]) -> Result<Loaded, SceneFileError>,
-    ) -> Result<Self, QualityError> {
-        Self::holding(sweeps, Vec::new(), load)
-    }
-
-    /// As [`Self::new`], with keys that follow the swept ones so that a computed fact of their device stays what it
-    /// is in the scene without sweeps.
-    ///
-    /// # Errors
-    ///
-    /// As [`Self::new`], and if a fact cannot be held.
-    pub fn holding(
         sweeps: Vec<Sweep>,
         holds: Vec<Constraint>,
         load: impl Fn(&[String]) -> Result<Loaded, SceneFileError>,
@@ -59,11 +47,11 @@ impl Plan {
         };
         let both = |hold: &&Constraint| sweeps.iter().any(|sweep| sweep.key == hold.key);
         if let Some(hold) = holds.iter().find(both) {
-            return Err(ConstraintError::Swept { key: hold.key.clone() }.into());
+            return Err(hold.refused("the key is both swept and held").into());
         }
         for (i, hold) in holds.iter().enumerate() {
             if holds[..i].iter().any(|other| other.key == hold.key) {
-                return Err(SweepError::Twice { key: hold.key.clone() }.into());
+                return Err(SweepError::Twice(hold.key.clone()).into());
             }
         }
         let chosen = combinations(&sweeps)?;
@@ -103,7 +91,7 @@ impl Plan {
     pub fn with_draws(self, draws: u32) -> Result<Self, QualityError> {
         let random = self.scenes.iter().any(|one| is_random(&one.loaded.scene));
         if draws > 1 && !random {
-            return Err(QualityError::NothingRandom { draws });
+            return Err(QualityError::NothingRandom(draws));
         }
         Ok(Self { draws: draws.max(1), ..self })
     }
@@ -142,12 +130,6 @@ impl Plan {
     pub fn check_columns(&self, names: &[String]) -> Result<(), UnknownColumn> {
         let columns = self.columns();
         names.iter().try_for_each(|name| find_column(&columns, name).map(drop))
-    }
-
-    /// How many combinations there are.
-    #[must_use]
-    pub fn combinations(&self) -> usize {
-        self.scenes.len()
     }
 }
 

@@ -32,15 +32,12 @@ pub enum QualityError {
     /// A fact of a device cannot be held.
     #[error("{0}")]
     Constraint(#[from] ConstraintError),
-    /// There are draws of something that is not random.
+    /// There are so many draws of something that is not random.
     #[error(
-        "--draws {draws}: nothing in the scene is random; give a device an error, as in \
+        "--draws {0}: nothing in the scene is random; give a device an error, as in \
          --set device.0.imperfection.error=0.01"
     )]
-    NothingRandom {
-        /// How many draws.
-        draws: u32,
-    },
+    NothingRandom(u32),
 }
 
 /// The message of an error in an override: here, those are the swept values.

@@ -31,12 +31,9 @@ pub enum SweepError {
         /// What is wrong with it.
         problem: String,
     },
-    /// One key is swept twice.
-    #[error("{key} is swept twice")]
-    Twice {
-        /// The key.
-        key: String,
-    },
+    /// This key is swept twice.
+    #[error("{0} is swept twice")]
+    Twice(String),
     /// There are too many combinations.
     #[error("these sweeps have more than {MOST} combinations")]
     TooMany,
@@ -143,7 +140,7 @@ fn split(text: &str) -> Vec<String> {
 pub fn combinations(sweeps: &[Sweep]) -> Result<Vec<Vec<usize>>, SweepError> {
     for (i, sweep) in sweeps.iter().enumerate() {
         if sweeps[..i].iter().any(|other| other.key == sweep.key) {
-            return Err(SweepError::Twice { key: sweep.key.clone() });
+            return Err(SweepError::Twice(sweep.key.clone()));
         }
     }
     let count =

@@ -1,11 +1,8 @@
 //! A picture to be measured.
 
 use super::MeasureError;
-use crate::output::{Format, Picture};
+use crate::output::{Format, Picture, ReadError, read_channels};
 use crate::photograph::{ImageSource, LinearImage, Texels, decode_table, load};
-use ndarray::Array2;
-use ndarray_npy::{NpzReader, ReadNpzError};
-use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -13,6 +10,9 @@ use std::path::Path;
 const FLIGHT: &str = "time_of_flight";
 const FLIGHT_DIFFERENCE: &str = "time_of_flight_difference";
 const DELIVERED: &str = "delivered";
+
+/// All channels that make a view.
+const CHANNELS: [&str; 6] = ["R", "G", "B", FLIGHT, FLIGHT_DIFFERENCE, DELIVERED];
 
 /// A picture in linear light, with the times and powers that came with it. All planes run row by row from
 /// the top left.
@@ -39,15 +39,7 @@ impl View {
     ///
     /// If the planes are not of that size, or hold a number that is not finite.
     pub fn new(width: usize, height: usize, light: [Vec<f64>; 3]) -> Result<Self, MeasureError> {
-        Self {
-            width,
-            height,
-            light,
-            time_of_flight: None,
-            time_of_flight_difference: None,
-            delivered: None,
-        }
-        .checked("the picture")
+        Self::named("the picture", [width, height], light)
     }
 
     /// A rendered picture as a view.
@@ -56,11 +48,7 @@ impl View {
     ///
     /// If it has no image, or one with a number that is not finite.
     pub fn of(picture: &Picture) -> Result<Self, MeasureError> {
-        let plane = |name: &str| {
-            let samples = &picture.channel(name)?.samples;
-            Some((0..samples.len()).map(|i| samples.get(i)).collect::<Vec<f64>>())
-        };
-        Self::from_planes("the picture", [picture.width, picture.height], plane)
+        Self::of_named(picture, "the picture")
     }
 
     /// Reads a view from a file, as its ending says: NPZ and EXR hold linear light in `R`, `G` and `B`, times
@@ -70,52 +58,18 @@ impl View {
     ///
     /// If the file cannot be read, or holds no image or one with a number that is not finite.
     pub fn read(path: &Path) -> Result<Self, MeasureError> {
-        let unreadable =
-            |reason: String| MeasureError::Unreadable { path: path.to_owned(), reason };
         match Format::of(path) {
-            Err(_) => Err(unreadable("its ending is not .png, .exr or .npz".to_owned())),
+            Err(_) => Err(ReadError::new(path, "its ending is not .png, .exr or .npz").into()),
             Ok(Format::Png) => Self::of_image(path),
             Ok(Format::Exr) => {
-                let mut view = Self::of_image(path)?;
-                let planes = read_exr(path).map_err(unreadable)?;
-                let size = view.width * view.height;
-                let find = |name: &str| {
-                    planes.iter().find(|(known, values)| known == name && values.len() == size)
-                };
-                let plane = |name: &str| find(name).map(|(_, values)| values.clone());
-                view.time_of_flight = plane(FLIGHT);
-                view.time_of_flight_difference = plane(FLIGHT_DIFFERENCE);
-                view.delivered = plane(DELIVERED);
-                Ok(view)
+                let view = Self::of_image(path)?;
+                let planes = read_exr(path).map_err(|reason| ReadError::new(path, reason))?;
+                let plane = |wanted: &str| planes.iter().find(|(name, _)| name == wanted);
+                Ok(view.with_flight(|name| Some(plane(name)?.1.clone())))
             }
             Ok(Format::Npz) => {
-                let file = File::open(path).map_err(|error| unreadable(error.to_string()))?;
-                let mut npz =
-                    NpzReader::new(file).map_err(|error| unreadable(error.to_string()))?;
-                let name = path.display().to_string();
-                let red = npz_plane(&mut npz, "R").map_err(unreadable)?;
-                let Some(red) = red else {
-                    return Err(MeasureError::MissingChannel { name, channel: "R".to_owned() });
-                };
-                let (height, width) = red.dim();
-                let mut planes = vec![("R", red)];
-                for channel in ["G", "B", FLIGHT, FLIGHT_DIFFERENCE, DELIVERED] {
-                    let Some(plane) = npz_plane(&mut npz, channel).map_err(unreadable)? else {
-                        continue;
-                    };
-                    if plane.dim() != (height, width) {
-                        let (other_height, other_width) = plane.dim();
-                        return Err(unreadable(format!(
-                            "`R` has {width} x {height} pixels, but `{channel}` {other_width} x \
-                             {other_height}"
-                        )));
-                    }
-                    planes.push((channel, plane));
-                }
-                Self::from_planes(&name, [width, height], |wanted| {
-                    let plane = planes.iter().find(|(channel, _)| *channel == wanted);
-                    plane.map(|(_, plane)| plane.iter().copied().collect())
-                })
+                let picture = read_channels(path, |name| CHANNELS.contains(&name))?;
+                Self::of_named(&picture, &path.display().to_string())
             }
         }
     }
@@ -151,65 +105,56 @@ impl View {
         Self::new(*width, *height, [plane(0), plane(1), plane(2)])
     }
 
-    fn from_planes(
-        name: &str,
-        [width, height]: [usize; 2],
-        plane: impl Fn(&str) -> Option<Vec<f64>>,
-    ) -> Result<Self, MeasureError> {
+    fn of_named(picture: &Picture, name: &str) -> Result<Self, MeasureError> {
+        let plane = |channel: &str| {
+            let samples = &picture.channel(channel)?.samples;
+            Some((0..samples.len()).map(|i| samples.get(i)).collect::<Vec<f64>>())
+        };
         let color = |channel: &str| {
-            plane(channel).ok_or_else(|| MeasureError::MissingChannel {
+            plane(channel).ok_or_else(|| MeasureError::Channel {
                 name: name.to_owned(),
-                channel: channel.to_owned(),
+                problem: format!("has no channel `{channel}`"),
             })
         };
-        Self {
-            width,
-            height,
-            light: [color("R")?, color("G")?, color("B")?],
-            time_of_flight: plane(FLIGHT),
-            time_of_flight_difference: plane(FLIGHT_DIFFERENCE),
-            delivered: plane(DELIVERED),
-        }
-        .checked(name)
+        let light = [color("R")?, color("G")?, color("B")?];
+        Ok(Self::named(name, [picture.width, picture.height], light)?.with_flight(plane))
     }
 
-    /// The view, if its light is finite and there is any.
-    fn checked(self, name: &str) -> Result<Self, MeasureError> {
-        let size = self.pixels();
+    /// A view of light alone, if that is finite and there is any.
+    fn named(
+        name: &str,
+        [width, height]: [usize; 2],
+        light: [Vec<f64>; 3],
+    ) -> Result<Self, MeasureError> {
+        let size = width * height;
         if size == 0 {
             return Err(MeasureError::EmptyRegion);
         }
-        for (channel, plane) in ["R", "G", "B"].iter().zip(&self.light) {
+        for (channel, plane) in CHANNELS.into_iter().zip(&light) {
             if plane.len() != size {
-                return Err(MeasureError::SizesDiffer {
-                    first: [self.width, self.height],
-                    second: [plane.len(), 1],
-                });
+                let (first, second) = ([width, height], [plane.len(), 1]);
+                return Err(MeasureError::SizesDiffer { first, second });
             }
             if let Some(at) = plane.iter().position(|value| !value.is_finite()) {
-                return Err(MeasureError::NotFinite {
-                    name: name.to_owned(),
-                    channel: (*channel).to_owned(),
-                    column: at % self.width,
-                    row: at / self.width,
-                });
+                let (column, row) = (at % width, at / width);
+                let problem = format!(
+                    "has a pixel in channel `{channel}` that is not a finite number, in column {column} and row {row}"
+                );
+                return Err(MeasureError::Channel { name: name.to_owned(), problem });
             }
         }
-        Ok(self)
+        let (time_of_flight, time_of_flight_difference, delivered) = (None, None, None);
+        Ok(Self { width, height, light, time_of_flight, time_of_flight_difference, delivered })
     }
-}
 
-/// An array of an archive, in either precision; `None` if there is none of that name.
-fn npz_plane(npz: &mut NpzReader<File>, name: &str) -> Result<Option<Array2<f64>>, String> {
-    let names = npz.names().map_err(|error| error.to_string())?;
-    if !names.iter().any(|known| known.trim_end_matches(".npy") == name) {
-        return Ok(None);
+    /// The same view with the times and powers that there are, where they are of its size.
+    fn with_flight(self, plane: impl Fn(&str) -> Option<Vec<f64>>) -> Self {
+        let size = self.pixels();
+        let [time_of_flight, time_of_flight_difference, delivered] =
+            [FLIGHT, FLIGHT_DIFFERENCE, DELIVERED]
+                .map(|name| plane(name).filter(|values| values.len() == size));
+        Self { time_of_flight, time_of_flight_difference, delivered, ..self }
     }
-    let single: Result<Array2<f32>, ReadNpzError> = npz.by_name(name);
-    if let Ok(single) = single {
-        return Ok(Some(single.mapv(f64::from)));
-    }
-    npz.by_name(name).map(Some).map_err(|error| format!("`{name}`: {error}"))
 }
 
 /// The channels of an EXR file that has been found sound.

@@ -1,6 +1,6 @@
 //! EXR: every channel in single precision.
 
-use super::{OutputError, Picture, Samples, write_whole};
+use super::{Channel, OutputError, Picture, Samples, write_whole};
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes, Layer,
     LayerAttributes, Text, Vec2, WritableImage,
@@ -15,29 +15,20 @@ use std::path::Path;
 ///
 /// If the file cannot be written.
 pub(super) fn write_exr(picture: &Picture, path: &Path) -> Result<(), OutputError> {
-    let channels = picture
-        .channels
-        .iter()
-        .flat_map(|channel| {
-            let name = &channel.name;
-            let planes = match &channel.samples {
-                Samples::F32(values) => vec![(name.clone(), values.clone())],
-                Samples::F64(values) => {
-                    vec![(name.clone(), values.iter().map(|value| *value as f32).collect())]
-                }
-                Samples::Rgb(values) => ["R", "G", "B"]
-                    .iter()
-                    .enumerate()
-                    .map(|(i, color)| {
-                        (format!("{name}.{color}"), values.iter().map(|rgb| rgb[i]).collect())
-                    })
-                    .collect(),
-            };
-            planes
-                .into_iter()
-                .map(|(name, plane)| AnyChannel::new(text(&name), FlatSamples::F32(plane)))
-        })
-        .collect();
+    let plane =
+        |name: &str, values: Vec<f32>| AnyChannel::new(text(name), FlatSamples::F32(values));
+    let planes = |Channel { name, samples }: &Channel| match samples {
+        Samples::F32(values) => vec![plane(name, values.clone())],
+        Samples::F64(values) => {
+            vec![plane(name, values.iter().map(|value| *value as f32).collect())]
+        }
+        Samples::Rgb(values) => {
+            let color = |i: usize| values.iter().map(|rgb| rgb[i]).collect();
+            let colors = ["R", "G", "B"].into_iter().enumerate();
+            colors.map(|(i, word)| plane(&format!("{name}.{word}"), color(i))).collect()
+        }
+    };
+    let channels = picture.channels.iter().flat_map(planes).collect();
     let size = Vec2(picture.width, picture.height);
     let mut attributes = LayerAttributes::default();
     for (key, value) in &picture.metadata {

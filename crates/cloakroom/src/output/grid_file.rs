@@ -1,9 +1,8 @@
 //! Data on a regular grid of cells, into files: NPZ, VTK image data and CSV.
 
-use super::{OutputError, WriteSeek, ending, write_whole};
+use super::{OutputError, ending, write_npz, write_whole};
 use base64::prelude::{BASE64_STANDARD, Engine};
-use ndarray::{ArrayView1, ArrayView3, ArrayView5};
-use ndarray_npy::NpzWriter;
+use ndarray::ShapeBuilder;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -81,12 +80,11 @@ const ENTRY_NAMES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 ///
 /// If the ending is unknown, or the file cannot be written.
 pub fn write_grid(grid: &GridFile, path: &Path) -> Result<(), OutputError> {
-    let format = GridFormat::of(path)?;
-    write_whole(path, |out| match format {
-        GridFormat::Npz => grid.write_npz(out),
-        GridFormat::Vti => grid.write_vti(&mut BufWriter::new(out)),
-        GridFormat::Csv => grid.write_csv(&mut BufWriter::new(out)),
-    })
+    match GridFormat::of(path)? {
+        GridFormat::Npz => grid.write_npz(path),
+        GridFormat::Vti => write_whole(path, |out| grid.write_vti(&mut BufWriter::new(out))),
+        GridFormat::Csv => write_whole(path, |out| grid.write_csv(&mut BufWriter::new(out))),
+    }
 }
 
 impl GridFile {
@@ -101,37 +99,27 @@ impl GridFile {
 
     /// Arrays `x`, `y`, `z` of the middles of the cells, and each array with the indices of x, y and z, and of
     /// row and column for a tensor; the metadata as the array of bytes `metadata`, a JSON object.
-    fn write_npz(&self, out: &mut dyn WriteSeek) -> io::Result<()> {
-        let mut npz = NpzWriter::new(out);
-        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            let middles = self.coordinates(axis);
-            npz.add_array(name, &ArrayView1::from(&middles)).map_err(io::Error::other)?;
-        }
-        let [nx, ny, nz] = self.cells;
-        for GridArray { name, values } in &self.arrays {
-            match values {
-                GridValues::Codes(codes, _) => {
-                    let array = ArrayView3::from_shape((nz, ny, nx), codes);
-                    let array = array.map_err(io::Error::other)?.reversed_axes();
-                    npz.add_array(*name, &array).map_err(io::Error::other)?;
-                }
-                GridValues::Numbers(numbers) => {
-                    let array = ArrayView3::from_shape((nz, ny, nx), numbers);
-                    let array = array.map_err(io::Error::other)?.reversed_axes();
-                    npz.add_array(*name, &array).map_err(io::Error::other)?;
-                }
-                GridValues::SymmetricTensors(tensors) => {
-                    let entries: Vec<f64> =
-                        tensors.iter().flat_map(|six| ENTRIES.map(|entry| six[entry])).collect();
-                    let array = ArrayView5::from_shape((nz, ny, nx, 3, 3), &entries);
-                    let array = array.map_err(io::Error::other)?.permuted_axes([2, 1, 0, 3, 4]);
-                    npz.add_array(*name, &array).map_err(io::Error::other)?;
+    fn write_npz(&self, path: &Path) -> Result<(), OutputError> {
+        write_npz(path, &self.metadata, |npz| {
+            for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+                npz.add(name, self.cells[axis], &self.coordinates(axis))?;
+            }
+            let [nx, ny, nz] = self.cells;
+            for GridArray { name, values } in &self.arrays {
+                match values {
+                    GridValues::Codes(codes, _) => npz.add(name, (nx, ny, nz).f(), codes)?,
+                    GridValues::Numbers(numbers) => npz.add(name, (nx, ny, nz).f(), numbers)?,
+                    GridValues::SymmetricTensors(tensors) => {
+                        let entries =
+                            tensors.iter().flat_map(|six| ENTRIES.map(|entry| six[entry]));
+                        let steps = (9, 9 * nx, 9 * nx * ny, 3, 1);
+                        let shape = (nx, ny, nz, 3, 3).strides(steps);
+                        npz.add(name, shape, &entries.collect::<Vec<f64>>())?;
+                    }
                 }
             }
-        }
-        super::npz_file::add_metadata(&mut npz, &self.metadata)?;
-        npz.finish().map_err(io::Error::other)?;
-        Ok(())
+            Ok(())
+        })
     }
 
     /// VTK XML image data with all arrays on its cells, little-endian and appended in base64.

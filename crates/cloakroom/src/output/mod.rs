@@ -1,7 +1,6 @@
 //! Pictures (PNG, EXR, NPZ) and data on grids (NPZ, VTI, CSV) into files, each whole or not at all; and pictures back
 //! from PNG and NPZ.
 
-mod arrays;
 mod exr_file;
 mod grid_file;
 mod npz_file;
@@ -10,12 +9,13 @@ mod png_file;
 mod reading;
 mod whole_file;
 
-pub use arrays::{Arrays, write_arrays};
 pub use grid_file::{GridArray, GridFile, GridFormat, GridValues, write_grid};
 pub use image::RgbImage;
+pub(crate) use npz_file::write_npz;
 pub use picture::{Channel, Picture, Samples};
 pub use png_file::{encode_png, to_srgb, write_png, write_png_in_strips};
 pub use png_file::{encoder as png_encoder, texts as png_texts};
+pub(crate) use reading::read_channels;
 pub use reading::{ReadError, read_npz, read_png};
 pub use whole_file::{WriteSeek, check_writable, write_whole};
 
@@ -41,12 +41,9 @@ pub enum OutputError {
         /// The endings there are for what it is to hold.
         known: &'static str,
     },
-    /// The picture has no image.
-    #[error("the picture has no channel `{name}`")]
-    MissingChannel {
-        /// The channel.
-        name: String,
-    },
+    /// The picture has no image: this channel is missing.
+    #[error("the picture has no channel `{0}`")]
+    MissingChannel(String),
 }
 
 impl OutputError {
@@ -65,10 +62,6 @@ impl OutputError {
     /// For a file whose name has none of the endings `known`.
     pub fn unknown_format(path: &Path, known: &'static str) -> Self {
         Self::UnknownFormat { path: path.to_owned(), known }
-    }
-
-    fn with_reason(path: &Path, reason: &str) -> Self {
-        Self::Write { path: path.to_owned(), reason: reason.to_owned() }
     }
 }
 
@@ -130,6 +123,6 @@ pub fn write(picture: &Picture, path: &Path) -> Result<(), OutputError> {
     match Format::of(path)? {
         Format::Png => write_png(&to_srgb(picture)?, &picture.metadata, path),
         Format::Exr => exr_file::write_exr(picture, path),
-        Format::Npz => npz_file::write_npz(picture, path),
+        Format::Npz => npz_file::write_picture(picture, path),
     }
 }

@@ -1,55 +1,68 @@
-//! NPZ: every channel as one numpy array, (height, width) or (height, width, 3).
+//! NPZ: arrays for numpy, as those of a picture: every channel as one array, (height, width) or (height, width, 3).
 
-use super::{OutputError, Picture, Samples, write_whole};
-use ndarray::{ArrayView1, ArrayView2, ArrayView3};
-use ndarray_npy::NpzWriter;
+use super::{OutputError, Picture, Samples, WriteSeek, write_whole};
+use ndarray::{ArrayView, ArrayView1, Dimension, StrideShape};
+use ndarray_npy::{NpzWriter, WritableElement};
+use serde_json::{Map, Value};
 use std::io;
 use std::path::Path;
 
-/// Writes every channel as an array (height, width) under its name, and the metadata as the array
-/// of bytes `metadata`, which holds a JSON object in UTF-8.
+/// An archive of arrays that is being written.
+pub(crate) struct Npz<'o> {
+    writer: NpzWriter<&'o mut dyn WriteSeek>,
+    /// What becomes the array of bytes `metadata`, which holds a JSON object in UTF-8.
+    pub metadata: Map<String, Value>,
+}
+
+impl Npz<'_> {
+    /// Adds an array of that shape.
+    pub fn add<T: WritableElement, D: Dimension>(
+        &mut self,
+        name: &str,
+        shape: impl Into<StrideShape<D>>,
+        values: &[T],
+    ) -> io::Result<()> {
+        let array = ArrayView::from_shape(shape, values).map_err(io::Error::other)?;
+        self.writer.add_array(name, &array).map_err(io::Error::other)
+    }
+}
+
+/// Writes an archive of the arrays that `add` adds, and metadata as the array of bytes `metadata`.
 ///
 /// # Errors
 ///
 /// If the file cannot be written.
-pub(super) fn write_npz(picture: &Picture, path: &Path) -> Result<(), OutputError> {
+pub(crate) fn write_npz(
+    path: &Path,
+    metadata: &[(String, String)],
+    add: impl FnOnce(&mut Npz<'_>) -> io::Result<()>,
+) -> Result<(), OutputError> {
     write_whole(path, |out| {
-        let mut npz = NpzWriter::new(out);
-        let shape = (picture.height, picture.width);
-        for channel in &picture.channels {
-            match &channel.samples {
-                Samples::F32(values) => {
-                    let array = ArrayView2::from_shape(shape, values).map_err(io::Error::other)?;
-                    npz.add_array(&channel.name, &array).map_err(io::Error::other)?;
-                }
-                Samples::Rgb(values) => {
-                    let shape = (picture.height, picture.width, 3);
-                    let values = values.as_flattened();
-                    let array = ArrayView3::from_shape(shape, values).map_err(io::Error::other)?;
-                    npz.add_array(&channel.name, &array).map_err(io::Error::other)?;
-                }
-                Samples::F64(values) => {
-                    let array = ArrayView2::from_shape(shape, values).map_err(io::Error::other)?;
-                    npz.add_array(&channel.name, &array).map_err(io::Error::other)?;
-                }
-            }
-        }
-        add_metadata(&mut npz, &picture.metadata)?;
-        npz.finish().map_err(io::Error::other)?;
-        Ok(())
+        let metadata = metadata.iter().map(|(key, text)| (key.clone(), text.clone().into()));
+        let mut npz = Npz { writer: NpzWriter::new(out), metadata: metadata.collect() };
+        add(&mut npz)?;
+        let bytes = serde_json::to_vec(&npz.metadata)?;
+        npz.writer.add_array("metadata", &ArrayView1::from(&bytes)).map_err(io::Error::other)?;
+        npz.writer.finish().map(drop).map_err(io::Error::other)
     })
 }
 
-/// Adds metadata as the array of bytes `metadata`, which holds a JSON object in UTF-8.
-pub(super) fn add_metadata<W: io::Write + io::Seek>(
-    npz: &mut NpzWriter<W>,
-    metadata: &[(String, String)],
-) -> io::Result<()> {
-    let metadata: serde_json::Map<String, serde_json::Value> =
-        metadata.iter().map(|(key, text)| (key.clone(), text.clone().into())).collect();
-    let bytes = serde_json::to_vec(&metadata).map_err(io::Error::other)?;
-    npz.add_array("metadata", &ArrayView1::from(&bytes[..])).map_err(io::Error::other)?;
-    Ok(())
+/// Writes every channel as an array (height, width) under its name, and the metadata.
+///
+/// # Errors
+///
+/// If the file cannot be written.
+pub(super) fn write_picture(picture: &Picture, path: &Path) -> Result<(), OutputError> {
+    let (height, width) = (picture.height, picture.width);
+    write_npz(path, &picture.metadata, |npz| {
+        picture.channels.iter().try_for_each(|channel| match &channel.samples {
+            Samples::F32(values) => npz.add(&channel.name, (height, width), values),
+            Samples::F64(values) => npz.add(&channel.name, (height, width), values),
+            Samples::Rgb(values) => {
+                npz.add(&channel.name, (height, width, 3), values.as_flattened())
+            }
+        })
+    })
 }
 
 #[cfg(test)]

@@ -66,6 +66,15 @@ impl Samples {
         }
     }
 
+    /// How many bytes they take.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::F32(_) | Self::Rgb(_) => 4 * self.len(),
+            Self::F64(_) => 8 * self.len(),
+        }
+    }
+
     /// Whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -1,6 +1,6 @@
 //! PNG: 8-bit sRGB.
 
-use super::{OutputError, Picture, RgbImage, Samples, write_whole};
+use super::{OutputError, Picture, RgbImage, Samples, WriteSeek, write_whole};
 use crate::photograph::decode;
 use std::io::{self, Write};
 use std::path::Path;
@@ -15,7 +15,7 @@ pub fn to_srgb(picture: &Picture) -> Result<RgbImage, OutputError> {
         picture
             .channel(name)
             .map(|channel| &channel.samples)
-            .ok_or_else(|| OutputError::MissingChannel { name: name.to_owned() })
+            .ok_or_else(|| OutputError::MissingChannel(name.to_owned()))
     };
     let planes: [&Samples; 3] = [find("R")?, find("G")?, find("B")?];
     let codes = Codes::new();
@@ -33,7 +33,7 @@ pub fn to_srgb(picture: &Picture) -> Result<RgbImage, OutputError> {
     }
     // Pictures are at most 65536 pixels a side, and the buffer has been made to measure.
     RgbImage::from_raw(picture.width as u32, picture.height as u32, bytes)
-        .ok_or_else(|| OutputError::MissingChannel { name: "R".to_owned() })
+        .ok_or_else(|| OutputError::MissingChannel("R".to_owned()))
 }
 
 /// The sRGB codes of linear light.
@@ -93,9 +93,9 @@ pub fn write_png(
 pub fn encode_png(
     image: &RgbImage,
     metadata: &[(String, String)],
-    out: &mut dyn super::WriteSeek,
+    out: &mut dyn WriteSeek,
 ) -> io::Result<()> {
-    let mut writer = header(image.dimensions(), metadata, out)?;
+    let mut writer = encoder(image.dimensions(), metadata, out)?.write_header()?;
     writer.write_image_data(image.as_raw())?;
     Ok(writer.finish()?)
 }
@@ -113,7 +113,7 @@ pub fn write_png_in_strips(
     strips: impl IntoIterator<Item = io::Result<RgbImage>>,
 ) -> Result<(), OutputError> {
     write_whole(path, |out| {
-        let mut writer = header((width, height), metadata, out)?;
+        let mut writer = encoder((width, height), metadata, out)?.write_header()?;
         let mut stream = writer.stream_writer()?;
         for strip in strips {
             stream.write_all(strip?.as_raw())?;
@@ -123,20 +123,12 @@ pub fn write_png_in_strips(
     })
 }
 
-fn header<'o>(
-    size: (u32, u32),
-    metadata: &[(String, String)],
-    out: &'o mut dyn super::WriteSeek,
-) -> Result<png::Writer<&'o mut dyn super::WriteSeek>, png::EncodingError> {
-    encoder(size, metadata, out)?.write_header()
-}
-
 /// An encoder of 8-bit sRGB with text metadata.
 pub fn encoder<'o>(
     (width, height): (u32, u32),
     metadata: &[(String, String)],
-    out: &'o mut dyn super::WriteSeek,
-) -> Result<png::Encoder<'static, &'o mut dyn super::WriteSeek>, png::EncodingError> {
+    out: &'o mut dyn WriteSeek,
+) -> Result<png::Encoder<'static, &'o mut dyn WriteSeek>, png::EncodingError> {
     let mut encoder = png::Encoder::new(out, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);

@@ -1,8 +1,10 @@
 //! Pictures read back from files.
 
 use super::{Channel, Picture, RgbImage, Samples, png_texts};
-use ndarray::{Array, Array1, ArrayBase, Dimension, Ix2, Ix3, OwnedRepr};
-use ndarray_npy::{NpzReader, ReadNpzError, ReadableElement};
+use ndarray::{Array1, Array2, Array3};
+use ndarray_npy::{NpzReader, ReadNpzError};
+use std::error::Error;
+use std::fmt::Display;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -20,75 +22,89 @@ pub struct ReadError {
     pub reason: String,
 }
 
+impl ReadError {
+    /// For a file that cannot be read.
+    pub(crate) fn new(path: &Path, reason: impl ToString) -> Self {
+        Self { path: path.to_owned(), reason: reason.to_string() }
+    }
+}
+
 /// Reads a picture from an NPZ: every channel, and the metadata.
 ///
 /// # Errors
 ///
 /// If the file cannot be read, or an array in it is none of a picture.
 pub fn read_npz(path: &Path) -> Result<Picture, ReadError> {
-    let failed = |reason: String| ReadError { path: path.to_owned(), reason };
-    let file = File::open(path).map_err(|error| failed(error.to_string()))?;
-    let mut npz =
-        NpzReader::new(BufReader::new(file)).map_err(|error| failed(error.to_string()))?;
-    let names = npz.names().map_err(|error| failed(error.to_string()))?;
-    let (mut channels, mut metadata, mut size) = (Vec::new(), Vec::new(), None);
-    for name in names {
-        if name == "metadata" {
-            let bytes: Result<Array1<u8>, _> = npz.by_name(&name);
-            let bytes = bytes.map_err(|error| failed(format!("`{name}`: {error}")))?.to_vec();
-            let texts: serde_json::Map<String, serde_json::Value> = serde_json::from_slice(&bytes)
-                .map_err(|error| failed(format!("`{name}`: {error}")))?;
-            let text =
-                |(key, text): (String, serde_json::Value)| Some((key, text.as_str()?.to_owned()));
-            metadata = texts.into_iter().filter_map(text).collect();
-            // JSON has no order of keys; other files do.
-            metadata.sort_by_key(|(key, _): &(String, String)| {
-                METADATA_KEYS.iter().position(|known| known == key).unwrap_or(METADATA_KEYS.len())
-            });
-            continue;
-        }
-        let (shape, samples) = samples(&mut npz, &name)
-            .map_err(|error| failed(format!("`{name}`: {error}")))?
-            .ok_or_else(|| failed(format!("`{name}` is no array of a picture")))?;
-        if *size.get_or_insert(shape) != shape {
-            return Err(failed(format!("`{name}` is not of the size of the others")));
-        }
-        channels.push(Channel { name, samples });
+    let picture = read_channels(path, |_| true)?;
+    if picture.channels.is_empty() {
+        return Err(ReadError::new(path, "it has no channels"));
     }
-    let [height, width] = size.ok_or_else(|| failed("it has no channels".to_owned()))?;
-    Ok(Picture { width, height, channels, metadata })
+    Ok(picture)
 }
 
-/// Height and width of an array of a picture, and its numbers; `None` if it is none.
+/// Reads the channels of those names from an NPZ, and its metadata if that is one of them.
+///
+/// # Errors
+///
+/// If the file cannot be read, or one of these arrays is none of a picture.
+pub(crate) fn read_channels(
+    path: &Path,
+    wanted: impl Fn(&str) -> bool,
+) -> Result<Picture, ReadError> {
+    let read = || -> Result<Picture, Box<dyn Error>> {
+        let mut npz = NpzReader::new(BufReader::new(File::open(path)?))?;
+        let (mut channels, mut metadata, mut size) = (Vec::new(), Vec::new(), None);
+        for name in npz.names()?.into_iter().filter(|name| wanted(name)) {
+            let within = |error: &dyn Display| format!("`{name}`: {error}");
+            if name == "metadata" {
+                let bytes: Array1<u8> = npz.by_name(&name).map_err(|error| within(&error))?;
+                let texts: serde_json::Map<String, serde_json::Value> =
+                    serde_json::from_slice(&bytes.to_vec()).map_err(|error| within(&error))?;
+                let texts = texts.into_iter();
+                metadata = texts
+                    .filter_map(|(key, text)| Some((key, text.as_str()?.to_owned())))
+                    .collect();
+                // JSON has no order of keys; other files do.
+                metadata.sort_by_key(|(key, _): &(String, String)| {
+                    let known = METADATA_KEYS.iter().position(|known| known == key);
+                    known.unwrap_or(METADATA_KEYS.len())
+                });
+                continue;
+            }
+            let (shape, samples) = samples(&mut npz, &name)
+                .map_err(|error| within(&error))?
+                .ok_or_else(|| format!("`{name}` is no array of a picture"))?;
+            if *size.get_or_insert(shape) != shape {
+                return Err(format!("`{name}` is not of the size of the others").into());
+            }
+            channels.push(Channel { name, samples });
+        }
+        let [height, width] = size.unwrap_or_default();
+        Ok(Picture { width, height, channels, metadata })
+    };
+    read().map_err(|error| ReadError::new(path, error))
+}
+
+/// Height and width of an array of a picture, and its numbers row by row; `None` if it is none.
 fn samples(
     npz: &mut NpzReader<BufReader<File>>,
     name: &str,
 ) -> Result<Option<([usize; 2], Samples)>, ReadNpzError> {
-    if let Ok(array) = read::<f32, Ix2>(npz, name) {
-        let (height, width) = array.dim();
-        return Ok(Some(([height, width], Samples::F32(in_order(array)))));
+    let single: Result<Array2<f32>, _> = npz.by_name(name);
+    if let Ok(array) = single {
+        let size = [array.nrows(), array.ncols()];
+        return Ok(Some((size, Samples::F32(array.iter().copied().collect()))));
     }
-    if let Ok(array) = read::<f32, Ix3>(npz, name) {
+    let colors: Result<Array3<f32>, _> = npz.by_name(name);
+    if let Ok(array) = colors {
         let (height, width, colors) = array.dim();
-        let values = in_order(array);
-        let samples = (colors == 3).then(|| Samples::Rgb(values.as_chunks().0.to_vec()));
-        return Ok(samples.map(|samples| ([height, width], samples)));
+        let values: Vec<f32> = array.iter().copied().collect();
+        let samples = || Samples::Rgb(values.as_chunks().0.to_vec());
+        return Ok((colors == 3).then(|| ([height, width], samples())));
     }
-    let array = read::<f64, Ix2>(npz, name)?;
-    let (height, width) = array.dim();
-    Ok(Some(([height, width], Samples::F64(in_order(array)))))
-}
-
-fn read<T: ReadableElement, D: Dimension>(
-    npz: &mut NpzReader<BufReader<File>>,
-    name: &str,
-) -> Result<ArrayBase<OwnedRepr<T>, D>, ReadNpzError> {
-    npz.by_name(name)
-}
-
-/// The numbers row by row.
-fn in_order<T: Copy, D: Dimension>(array: Array<T, D>) -> Vec<T> {
-    array.iter().copied().collect()
+    let array: Array2<f64> = npz.by_name(name)?;
+    let size = [array.nrows(), array.ncols()];
+    Ok(Some((size, Samples::F64(array.iter().copied().collect()))))
 }
 
 /// Reads a PNG of 8-bit colors, as this program writes it, with its text metadata.
@@ -97,22 +113,20 @@ fn in_order<T: Copy, D: Dimension>(array: Array<T, D>) -> Vec<T> {
 ///
 /// If the file cannot be read, or is a PNG of another kind.
 pub fn read_png(path: &Path) -> Result<(RgbImage, Vec<(String, String)>), ReadError> {
-    let failed = |reason: String| ReadError { path: path.to_owned(), reason };
-    let file = File::open(path).map_err(|error| failed(error.to_string()))?;
-    let mut reader = png::Decoder::new(BufReader::new(file))
-        .read_info()
-        .map_err(|error| failed(error.to_string()))?;
-    let other = || failed("it is no PNG of this program (8 bits, red, green and blue)".to_owned());
-    if reader.output_color_type() != (png::ColorType::Rgb, png::BitDepth::Eight) {
-        return Err(other());
-    }
-    let mut pixels = vec![0; reader.output_buffer_size().ok_or_else(other)?];
-    reader.next_frame(&mut pixels).map_err(|error| failed(error.to_string()))?;
-    reader.finish().map_err(|error| failed(error.to_string()))?;
-    let info = reader.info();
-    let metadata = png_texts(info).map_err(|error| failed(error.to_string()))?;
-    let image = RgbImage::from_raw(info.width, info.height, pixels).ok_or_else(other)?;
-    Ok((image, metadata))
+    const OTHER: &str = "it is no PNG of this program (8 bits, red, green and blue)";
+    let read = || -> Result<_, Box<dyn Error>> {
+        let mut reader = png::Decoder::new(BufReader::new(File::open(path)?)).read_info()?;
+        if reader.output_color_type() != (png::ColorType::Rgb, png::BitDepth::Eight) {
+            return Err(OTHER.into());
+        }
+        let mut pixels = vec![0; reader.output_buffer_size().ok_or(OTHER)?];
+        reader.next_frame(&mut pixels)?;
+        reader.finish()?;
+        let info = reader.info();
+        let metadata = png_texts(info)?;
+        Ok((RgbImage::from_raw(info.width, info.height, pixels).ok_or(OTHER)?, metadata))
+    };
+    read().map_err(|error| ReadError::new(path, error))
 }
 
 #[cfg(test)]

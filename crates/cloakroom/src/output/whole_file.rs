@@ -17,19 +17,17 @@ pub fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut dyn WriteSeek) -> io::Result<()>,
 ) -> Result<(), OutputError> {
-    match place(path)? {
-        Place::Direct => {
+    let written = match folder(path)? {
+        None => {
             // Pipes cannot be sought in: the bytes are gathered first.
             let mut bytes = io::Cursor::new(Vec::new());
-            let written = write(&mut bytes).and_then(|()| {
+            write(&mut bytes).and_then(|()| {
                 fs::OpenOptions::new().write(true).open(path)?.write_all(bytes.get_ref())
-            });
-            written.map_err(|error| OutputError::new(path, &error))
+            })
         }
-        Place::In(folder) => {
-            write_and_rename(path, &folder, write).map_err(|error| OutputError::new(path, &error))
-        }
-    }
+        Some(folder) => write_and_rename(path, &folder, write),
+    };
+    written.map_err(|error| OutputError::new(path, &error))
 }
 
 /// What a file can be written into.
@@ -64,26 +62,20 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// How a file can come into being.
-enum Place {
-    /// By a rename within this folder.
-    In(PathBuf),
-    /// By writing to what is there.
-    Direct,
-}
-
-fn place(path: &Path) -> Result<Place, OutputError> {
-    let refuse = |reason: &str| Err(OutputError::with_reason(path, reason));
+/// The folder within which a file comes into being by a rename; `None` where it is to be written to what is there.
+fn folder(path: &Path) -> Result<Option<PathBuf>, OutputError> {
+    let refuse =
+        |reason: &str| Err(OutputError::Write { path: path.to_owned(), reason: reason.to_owned() });
     if path.as_os_str().to_string_lossy().ends_with(std::path::is_separator) {
         return refuse("a name that ends like this is that of a folder");
     }
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => return refuse("it is a folder"),
-        Ok(found) if !found.is_file() => return Ok(Place::Direct),
+        Ok(found) if !found.is_file() => return Ok(None),
         // A link is followed, so that it stays one.
         Ok(_) if path.is_symlink() => {
             let target = fs::canonicalize(path).map_err(|error| OutputError::new(path, &error))?;
-            return place(&target);
+            return folder(&target);
         }
         _ => {}
     }
@@ -94,7 +86,7 @@ fn place(path: &Path) -> Result<Place, OutputError> {
     if !folder.is_dir() {
         return refuse(&format!("there is no folder {}", folder.display()));
     }
-    Ok(Place::In(folder.to_owned()))
+    Ok(Some(folder.to_owned()))
 }
 
 /// Checks before long work that a file can be written where it is wanted. What can go wrong later
@@ -104,9 +96,9 @@ fn place(path: &Path) -> Result<Place, OutputError> {
 ///
 /// [`OutputError`] with the file's name and the reason.
 pub fn check_writable(path: &Path) -> Result<(), OutputError> {
-    let tried = match place(path)? {
-        Place::Direct => fs::OpenOptions::new().write(true).open(path).map(drop),
-        Place::In(folder) => temporary(&folder).map(drop),
+    let tried = match folder(path)? {
+        None => fs::OpenOptions::new().write(true).open(path).map(drop),
+        Some(folder) => temporary(&folder).map(drop),
     };
     tried.map_err(|error| OutputError::new(path, &error))
 }

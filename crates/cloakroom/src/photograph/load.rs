@@ -8,7 +8,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
-use super::source::{ImageSource, LoadError};
+use super::source::{ImageSource, LoadError, LoadProblem};
 use super::{exr_limits, jpeg_markers, srgb};
 use crate::input::read_up_to;
 
@@ -55,12 +55,15 @@ pub fn dimensions(source: &ImageSource) -> Result<(u32, u32), LoadError> {
         // Checked when it was made a source: far fewer than 2^32.
         return Ok((image.width as u32, image.height as u32));
     }
-    let bytes = read_bytes(source)?;
-    let (mut decoder, _) = open(source, &bytes)?;
-    let (width, height) = decoder.dimensions();
-    let orientation = guarded(source, || Ok(orientation(&mut decoder)))?;
-    // The odd half of the orientations exchanges rows and columns.
-    Ok(if orientation.to_exif() >= 5 { (height, width) } else { (width, height) })
+    let size = || {
+        let bytes = read_bytes(source)?;
+        let (mut decoder, _) = open(&bytes, MAX_PIXELS)?;
+        let (width, height) = decoder.dimensions();
+        let orientation = guarded(|| Ok(orientation(&mut decoder)))?;
+        // The odd half of the orientations exchanges rows and columns.
+        Ok(if orientation.to_exif() >= 5 { (height, width) } else { (width, height) })
+    };
+    size().map_err(|problem| LoadError { image: source.clone(), problem })
 }
 
 /// Reads an image into linear light.
@@ -78,7 +81,9 @@ pub fn load(source: &ImageSource) -> Result<LinearImage, LoadError> {
     if let ImageSource::Memory(image) = source {
         return Ok(LinearImage::clone(image));
     }
-    read(source, &read_bytes(source)?)
+    read_bytes(source)
+        .and_then(|bytes| read(&bytes, MAX_PIXELS))
+        .map_err(|problem| LoadError { image: source.clone(), problem })
 }
 
 /// Reads the bytes of an image file, as [`load()`] does; `source` is its name in messages. It may have
@@ -92,122 +97,104 @@ pub fn load_bytes(
     bytes: &[u8],
     most_pixels: u64,
 ) -> Result<LinearImage, LoadError> {
-    let (decoder, _) = open(source, bytes)?;
-    if u64::from(decoder.dimensions().0) * u64::from(decoder.dimensions().1) > most_pixels {
-        return Err(LoadError::TooLarge { image: source.clone() });
-    }
-    read(source, bytes)
+    read(bytes, most_pixels).map_err(|problem| LoadError { image: source.clone(), problem })
 }
 
 /// Linear light from the bytes of an image file.
-fn read(source: &ImageSource, bytes: &[u8]) -> Result<LinearImage, LoadError> {
-    let image = linear(guarded(source, || decode(source, bytes))?);
-    image.check(source)?;
+fn read(bytes: &[u8], most_pixels: u64) -> Result<LinearImage, LoadProblem> {
+    let image = linear(guarded(|| decode(bytes, most_pixels))?);
+    image.check()?;
     Ok(image)
 }
 
 impl LinearImage {
-    /// Refuses an image that cannot be looked at; `source` stands in the message.
-    pub(super) fn check(&self, source: &ImageSource) -> Result<(), LoadError> {
-        let (image, width, height) = (source.clone(), self.width, self.height);
+    /// Refuses an image that cannot be looked at.
+    pub(super) fn check(&self) -> Result<(), LoadProblem> {
+        let (width, height) = (self.width, self.height);
         let pixels = width.saturating_mul(height);
         if pixels as u64 > MAX_PIXELS {
-            return Err(LoadError::TooLarge { image });
+            return Err(LoadProblem::TooLarge);
         }
         if pixels == 0 {
             // Below the largest number of pixels, and thus of 32 bits.
-            return Err(LoadError::NoPixels { image, width: width as u32, height: height as u32 });
+            return Err(LoadProblem::NoPixels([width as u32, height as u32]));
         }
-        let count = match &self.texels {
-            Texels::Srgb8(codes) => codes.len(),
-            Texels::Linear(values) => values.len(),
+        let (count, not_finite) = match &self.texels {
+            Texels::Srgb8(codes) => (codes.len(), None),
+            Texels::Linear(values) => {
+                (values.len(), values.iter().position(|value| !value.is_finite()))
+            }
         };
-        if count != 3 * pixels {
-            return Err(LoadError::WrongCount { image, count });
-        }
-        match &self.texels {
-            Texels::Linear(values) => match values.iter().position(|value| !value.is_finite()) {
-                Some(at) => {
-                    let (column, row) = (at / 3 % width, at / 3 / width);
-                    Err(LoadError::NotFinite { image, column, row })
-                }
-                None => Ok(()),
-            },
-            Texels::Srgb8(_) => Ok(()),
+        match not_finite {
+            _ if count != 3 * pixels => Err(LoadProblem::WrongCount(count)),
+            Some(at) => Err(LoadProblem::NotFinite([at / 3 % width, at / 3 / width])),
+            None => Ok(()),
         }
     }
 }
 
 /// The bytes of an image file, once its beginning shows that it can be one.
-fn read_bytes(source: &ImageSource) -> Result<Cow<'static, [u8]>, LoadError> {
+fn read_bytes(source: &ImageSource) -> Result<Cow<'static, [u8]>, LoadProblem> {
     let path = match source {
         ImageSource::BuiltIn(name) => {
-            return ImageSource::built_in(name)
-                .map(Cow::Borrowed)
-                .ok_or_else(|| LoadError::Missing { image: source.clone() });
+            return ImageSource::built_in(name).map(Cow::Borrowed).ok_or(LoadProblem::Missing);
         }
         ImageSource::File(path) => path,
         // It has no file: `load` and `dimensions` look at it itself.
-        ImageSource::Memory(_) => return Err(LoadError::NotAnImage { image: source.clone() }),
+        ImageSource::Memory(_) => return Err(LoadProblem::NotAnImage),
     };
-    let image = || source.clone();
     let failed = |reason: io::Error| match reason.kind() {
-        io::ErrorKind::NotFound => LoadError::Missing { image: image() },
-        io::ErrorKind::IsADirectory => LoadError::Folder { image: image() },
-        io::ErrorKind::FileTooLarge => LoadError::TooLarge { image: image() },
-        _ => LoadError::Unreadable { image: image(), reason },
+        io::ErrorKind::NotFound => LoadProblem::Missing,
+        io::ErrorKind::IsADirectory => LoadProblem::Folder,
+        io::ErrorKind::FileTooLarge => LoadProblem::TooLarge,
+        _ => LoadProblem::Unreadable(reason),
     };
     let mut file = File::open(path).map_err(failed)?;
     let metadata = file.metadata().map_err(failed)?;
     if metadata.is_dir() {
-        return Err(LoadError::Folder { image: image() });
+        return Err(LoadProblem::Folder);
     }
     if metadata.len() > MAX_FILE {
-        return Err(LoadError::TooLarge { image: image() });
+        return Err(LoadProblem::TooLarge);
     }
     // Devices and pipes have no length: look at the beginning before reading on.
     let mut bytes = Vec::new();
     file.by_ref().take(16).read_to_end(&mut bytes).map_err(failed)?;
-    format(source, &bytes)?;
+    format(&bytes)?;
     bytes.reserve(usize::try_from(metadata.len()).unwrap_or(0));
     read_up_to(MAX_FILE, file, &mut bytes).map_err(failed)?;
     Ok(bytes.into())
 }
 
 /// The format, from the first bytes.
-fn format(source: &ImageSource, bytes: &[u8]) -> Result<ImageFormat, LoadError> {
-    let image = || source.clone();
+fn format(bytes: &[u8]) -> Result<ImageFormat, LoadProblem> {
     if bytes.is_empty() {
-        return Err(LoadError::Empty { image: image() });
+        return Err(LoadProblem::Empty);
     }
     match image::guess_format(bytes) {
         Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::OpenExr)) => Ok(format),
-        Ok(other) => Err(LoadError::OtherFormat {
-            image: image(),
-            format: format!("{other:?}").to_uppercase(),
-        }),
-        Err(_) => Err(LoadError::NotAnImage { image: image() }),
+        Ok(other) => Err(LoadProblem::OtherFormat(format!("{other:?}").to_uppercase())),
+        Err(_) => Err(LoadProblem::NotAnImage),
     }
 }
 
 /// A decoder that has read the header and found the size acceptable.
-fn open<'b>(
-    source: &ImageSource,
-    bytes: &'b [u8],
-) -> Result<(impl ImageDecoder + use<'b>, ImageFormat), LoadError> {
-    let format = format(source, bytes)?;
-    if format == ImageFormat::OpenExr && !guarded(source, || Ok(exr_limits::are_kept(bytes)))? {
-        return Err(LoadError::TooLarge { image: source.clone() });
+fn open(
+    bytes: &[u8],
+    most_pixels: u64,
+) -> Result<(impl ImageDecoder + use<'_>, ImageFormat), LoadProblem> {
+    let format = format(bytes)?;
+    if format == ImageFormat::OpenExr && !guarded(|| Ok(exr_limits::are_kept(bytes)))? {
+        return Err(LoadProblem::TooLarge);
     }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(MAX_MEMORY);
     reader.limits(limits);
-    let decoder =
-        guarded(source, || reader.into_decoder().map_err(|error| from_decoder(source, error)))?;
+    let decoder = guarded(|| reader.into_decoder().map_err(from_decoder))?;
     let (width, height) = decoder.dimensions();
     if width == 0 || height == 0 {
-        return Err(LoadError::NoPixels { image: source.clone(), width, height });
+        return Err(LoadProblem::NoPixels([width, height]));
     }
     let pixels = u64::from(width) * u64::from(height);
     // 8-bit images stay as they are; others become floats beside their decoded form, which the
@@ -218,22 +205,20 @@ fn open<'b>(
         image::ColorType::Rgb8 | image::ColorType::L8 => decoded + 3 + 4,
         _ => 2 * decoded + 12 + 4,
     };
-    if pixels > MAX_PIXELS || pixels * per_pixel > MAX_MEMORY {
-        return Err(LoadError::TooLarge { image: source.clone() });
+    if pixels > most_pixels.min(MAX_PIXELS) || pixels * per_pixel > MAX_MEMORY {
+        return Err(LoadProblem::TooLarge);
     }
     Ok((decoder, format))
 }
 
 /// The decoded image, upright.
-fn decode(source: &ImageSource, bytes: &[u8]) -> Result<DynamicImage, LoadError> {
-    let (mut decoder, format) = open(source, bytes)?;
+fn decode(bytes: &[u8], most_pixels: u64) -> Result<DynamicImage, LoadProblem> {
+    let (mut decoder, format) = open(bytes, most_pixels)?;
     if format == ImageFormat::Jpeg && !jpeg_markers::is_complete(bytes) {
-        let reason = "the end-of-image marker is missing".to_owned();
-        return Err(LoadError::Damaged { image: source.clone(), reason });
+        return Err(LoadProblem::Damaged("the end-of-image marker is missing".to_owned()));
     }
     let orientation = orientation(&mut decoder);
-    let mut image =
-        DynamicImage::from_decoder(decoder).map_err(|error| from_decoder(source, error))?;
+    let mut image = DynamicImage::from_decoder(decoder).map_err(from_decoder)?;
     image.apply_orientation(orientation);
     Ok(image)
 }
@@ -244,40 +229,30 @@ fn orientation(decoder: &mut impl ImageDecoder) -> Orientation {
 }
 
 /// Runs a decoder; a panic inside it (a bug set off by a damaged file) becomes an error.
-fn guarded<T>(
-    source: &ImageSource,
-    work: impl FnOnce() -> Result<T, LoadError>,
-) -> Result<T, LoadError> {
+fn guarded<T>(work: impl FnOnce() -> Result<T, LoadProblem>) -> Result<T, LoadProblem> {
     // The decoder is dropped by the panic; nothing of it is looked at again.
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
-        let reason = "the decoder gave up".to_owned();
-        Err(LoadError::Damaged { image: source.clone(), reason })
-    })
+    catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|_| Err(LoadProblem::Damaged("the decoder gave up".to_owned())))
 }
 
-fn from_decoder(source: &ImageSource, error: ImageError) -> LoadError {
-    let image = source.clone();
+fn from_decoder(error: ImageError) -> LoadProblem {
     match error {
-        ImageError::Limits(_) => LoadError::TooLarge { image },
-        ImageError::Unsupported(reason) => {
-            LoadError::Unsupported { image, reason: reason.to_string() }
-        }
-        other => LoadError::Damaged { image, reason: other.to_string() },
+        ImageError::Limits(_) => LoadProblem::TooLarge,
+        ImageError::Unsupported(reason) => LoadProblem::Unsupported(reason.to_string()),
+        other => LoadProblem::Damaged(other.to_string()),
     }
 }
 
 /// Linear light from decoded pixels; transparent pixels lie over black.
 fn linear(image: DynamicImage) -> LinearImage {
     let (width, height) = (image.width() as usize, image.height() as usize);
+    let is_opaque = |pixels: &image::RgbaImage| pixels.pixels().all(|pixel| pixel.0[3] == 255);
     let texels = match image {
-        DynamicImage::ImageRgb8(pixels) => Texels::Srgb8(pixels.into_raw()),
-        DynamicImage::ImageLuma8(pixels) => {
-            Texels::Srgb8(pixels.iter().flat_map(|&gray| [gray; 3]).collect())
+        DynamicImage::ImageRgb8(_) | DynamicImage::ImageLuma8(_) => {
+            Texels::Srgb8(image.into_rgb8().into_raw())
         }
-        DynamicImage::ImageRgba8(pixels) if pixels.pixels().all(|pixel| pixel.0[3] == 255) => {
-            Texels::Srgb8(
-                pixels.pixels().flat_map(|pixel| [pixel.0[0], pixel.0[1], pixel.0[2]]).collect(),
-            )
+        DynamicImage::ImageRgba8(ref pixels) if is_opaque(pixels) => {
+            Texels::Srgb8(image.into_rgb8().into_raw())
         }
         DynamicImage::ImageLumaA8(_) | DynamicImage::ImageRgba8(_) => {
             let table = srgb::decode_table();

@@ -21,5 +21,5 @@ mod srgb;
 pub use equirectangular::Equirectangular;
 pub use load::{LinearImage, Texels, dimensions, load, load_bytes};
 pub use pyramid::{Edges, Pyramid};
-pub use source::{ImageSource, LoadError};
+pub use source::{ImageSource, LoadError, LoadProblem};
 pub use srgb::{decode, decode_table, encode};

@@ -35,11 +35,10 @@ impl ImageSource {
     /// [`LoadError`] where it has no pixels or too many, its texels are not as many, or one of them is not
     /// finite.
     pub fn memory(image: LinearImage) -> Result<Self, LoadError> {
-        let source = Self::Memory(Arc::new(image));
-        if let Self::Memory(image) = &source {
-            image.check(&source)?;
-        }
-        Ok(source)
+        let checked = image.check();
+        let image = Self::Memory(Arc::new(image));
+        checked.map_err(|problem| LoadError { image: image.clone(), problem })?;
+        Ok(image)
     }
 
     /// The image that a key of a scene names.
@@ -62,101 +61,76 @@ impl std::fmt::Display for ImageSource {
     }
 }
 
-/// Why an image cannot be used. Each message names the image.
+/// Why an image cannot be used. The message names the image.
 #[derive(Debug, thiserror::Error)]
-pub enum LoadError {
+#[error("{}", problem.of(image))]
+pub struct LoadError {
+    /// The image.
+    pub image: ImageSource,
+    /// What is wrong with it.
+    pub problem: LoadProblem,
+}
+
+/// What is wrong with an image.
+#[derive(Debug)]
+pub enum LoadProblem {
     /// There is no such file.
-    #[error("there is no image file {image}")]
-    Missing {
-        /// The image.
-        image: ImageSource,
-    },
+    Missing,
     /// The path is a folder.
-    #[error("{image} is a folder, not an image file")]
-    Folder {
-        /// The image.
-        image: ImageSource,
-    },
-    /// The operating system refuses to read the file.
-    #[error("cannot read {image}: {reason}")]
-    Unreadable {
-        /// The image.
-        image: ImageSource,
-        /// What the operating system says.
-        reason: io::Error,
-    },
+    Folder,
+    /// The operating system refuses to read the file, and says why.
+    Unreadable(io::Error),
     /// The file has no bytes.
-    #[error("{image} is empty")]
-    Empty {
-        /// The image.
-        image: ImageSource,
-    },
+    Empty,
     /// The file is no image, or of a kind that is not known.
-    #[error("{image} is not an image that can be read (PNG, JPEG or EXR)")]
-    NotAnImage {
-        /// The image.
-        image: ImageSource,
-    },
-    /// An image of a kind that is known but not read.
-    #[error("{image} is a {format} image; only PNG, JPEG and EXR can be read")]
-    OtherFormat {
-        /// The image.
-        image: ImageSource,
-        /// The kind.
-        format: String,
-    },
-    /// The file ends early or is damaged.
-    #[error("{image} is damaged or cut short: {reason}")]
-    Damaged {
-        /// The image.
-        image: ImageSource,
-        /// What the decoder says.
-        reason: String,
-    },
-    /// The image uses a feature of its format that is not read.
-    #[error("{image} uses a feature that is not supported: {reason}")]
-    Unsupported {
-        /// The image.
-        image: ImageSource,
-        /// What the decoder says.
-        reason: String,
-    },
-    /// The image has no pixels.
-    #[error("{image} has no pixels ({width} x {height})")]
-    NoPixels {
-        /// The image.
-        image: ImageSource,
-        /// Width in pixels.
-        width: u32,
-        /// Height in pixels.
-        height: u32,
-    },
+    NotAnImage,
+    /// An image of this kind, which is known but not read.
+    OtherFormat(String),
+    /// The file ends early or is damaged: what the decoder says.
+    Damaged(String),
+    /// The image uses a feature of its format that is not read: what the decoder says.
+    Unsupported(String),
+    /// The image has no pixels: its width and height.
+    NoPixels([u32; 2]),
     /// The image has too many pixels, or would take too much memory.
-    #[error(
-        "{image} is too large: at most {} million pixels and {} GiB of memory are allowed",
-        MAX_PIXELS / 1_000_000,
-        MAX_MEMORY >> 30
-    )]
-    TooLarge {
-        /// The image.
-        image: ImageSource,
-    },
-    /// An image in memory has not as many texels as its size says.
-    #[error("{image} has {count} texels")]
-    WrongCount {
-        /// The image.
-        image: ImageSource,
-        /// How many there are.
-        count: usize,
-    },
-    /// A pixel of an EXR image or of one in memory is infinite or not a number.
-    #[error("{image} has a pixel that is not a finite number, in column {column} and row {row}")]
-    NotFinite {
-        /// The image.
-        image: ImageSource,
-        /// Column of the first such pixel, from 0.
-        column: usize,
-        /// Row of the first such pixel, from 0.
-        row: usize,
-    },
+    TooLarge,
+    /// An image in memory has not as many texels as its size says, but so many.
+    WrongCount(usize),
+    /// A pixel of an EXR image or of one in memory is infinite or not a number: the column and row of the first such
+    /// one, from 0.
+    NotFinite([usize; 2]),
+}
+
+impl LoadProblem {
+    /// The message for an image.
+    fn of(&self, image: &ImageSource) -> String {
+        match self {
+            Self::Missing => format!("there is no image file {image}"),
+            Self::Folder => format!("{image} is a folder, not an image file"),
+            Self::Unreadable(reason) => format!("cannot read {image}: {reason}"),
+            Self::Empty => format!("{image} is empty"),
+            Self::NotAnImage => {
+                format!("{image} is not an image that can be read (PNG, JPEG or EXR)")
+            }
+            Self::OtherFormat(format) => {
+                format!("{image} is a {format} image; only PNG, JPEG and EXR can be read")
+            }
+            Self::Damaged(reason) => format!("{image} is damaged or cut short: {reason}"),
+            Self::Unsupported(reason) => {
+                format!("{image} uses a feature that is not supported: {reason}")
+            }
+            Self::NoPixels([width, height]) => {
+                format!("{image} has no pixels ({width} x {height})")
+            }
+            Self::TooLarge => format!(
+                "{image} is too large: at most {} million pixels and {} GiB of memory are allowed",
+                MAX_PIXELS / 1_000_000,
+                MAX_MEMORY >> 30
+            ),
+            Self::WrongCount(count) => format!("{image} has {count} texels"),
+            Self::NotFinite([column, row]) => format!(
+                "{image} has a pixel that is not a finite number, in column {column} and row {row}"
+            ),
+        }
+    }
 }

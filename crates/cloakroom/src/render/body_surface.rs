@@ -17,20 +17,15 @@ use std::sync::Arc;
 
 /// What an opaque body shows.
 #[derive(Clone, Debug)]
-pub(super) enum BodySurface {
-    Color([f64; 3]),
-    Image(Box<Picture>),
-}
-
-/// An image on a body.
-#[derive(Clone, Debug)]
-pub(super) struct Picture {
+pub(super) struct BodySurface {
     pose: Pose,
     texture: Texture,
 }
 
 #[derive(Clone, Debug)]
 enum Texture {
+    /// The same everywhere.
+    Color([f64; 3]),
     /// On the faces of a box of half that size.
     Box(DVec3, Arc<Pyramid>),
     /// On the side and the ends of a cylinder.
@@ -63,32 +58,31 @@ impl BodySurface {
         else {
             return Ok(None);
         };
-        Ok(Some(match appearance {
-            Appearance::Color(color) => Self::Color(color),
-            Appearance::Image(source) => {
-                let source = &source;
-                let texture = match body.shape {
-                    Convex::Ball(_) | Convex::CutBall(_) => Texture::Ball(images.ball(source)?),
-                    Convex::Cylinder(cylinder) => Texture::Cylinder(cylinder, images.side(source)?),
-                    Convex::Box { half } => Texture::Box(half, images.face(source)?),
-                };
-                Self::Image(Box::new(Picture { pose: placed.pose, texture }))
+        let texture = match (&appearance, body.shape) {
+            (Appearance::Color(color), _) => Texture::Color(*color),
+            (Appearance::Image(image), Convex::Ball(_) | Convex::CutBall(_)) => {
+                Texture::Ball(images.ball(image)?)
             }
-        }))
+            (Appearance::Image(image), Convex::Cylinder(cylinder)) => {
+                Texture::Cylinder(cylinder, images.side(image)?)
+            }
+            (Appearance::Image(image), Convex::Box { half }) => {
+                Texture::Box(half, images.face(image)?)
+            }
+        };
+        Ok(Some(Self { pose: placed.pose, texture }))
     }
 
     /// Linear light from a point of the surface. `steps` says, for the normal of the tangent plane there, how far
     /// away (cm) rays one sample further along the axes of the camera's picture come to that plane.
     pub fn light(&self, point: DVec3, steps: impl Fn(DVec3) -> [DVec3; 2]) -> [f64; 3] {
-        let Picture { pose, texture } = match self {
-            Self::Color(color) => return *color,
-            Self::Image(picture) => picture.as_ref(),
-        };
+        let Self { pose, texture } = self;
         let local = pose.to_local(point);
         let steps_from = |normal: DVec3| {
             steps(pose.vector_to_world(normal)).map(|step| pose.vector_to_local(step))
         };
         let (image, spot) = match texture {
+            Texture::Color(color) => return *color,
             Texture::Ball(image) => {
                 let radius = local.length();
                 // Seen from outside, right and left are exchanged.

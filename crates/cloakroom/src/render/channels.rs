@@ -1,5 +1,6 @@
 //! The named channels of a picture.
 
+use crate::output::Samples;
 use crate::scene::PictureSettings;
 
 /// What a picture is asked to hold, from little to much.
@@ -10,7 +11,7 @@ pub enum ChannelSet {
     /// That and the images through a horizontal and a vertical polarizer, `horizontal.R` to `vertical.B`, as pictures
     /// through them alone would be. Where every channel is wanted, these too show all branches that are followed.
     Polarizers,
-    /// Every channel of [`Channel::ALWAYS`], and those of [`Channel::OPTIONAL`] that the scene asks for.
+    /// Every channel that every file of data holds, and the others that the scene asks for.
     Everything,
 }
 
@@ -59,112 +60,69 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// The channels that every file of data holds, in its order.
-    pub const ALWAYS: [Self; 16] = [
-        Self::Image(0),
-        Self::Image(1),
-        Self::Image(2),
-        Self::Horizontal(0),
-        Self::Horizontal(1),
-        Self::Horizontal(2),
-        Self::Vertical(0),
-        Self::Vertical(1),
-        Self::Vertical(2),
-        Self::TimeOfFlight,
-        Self::TimeOfFlightSpread,
-        Self::TimeOfFlightDifference,
-        Self::Delivered,
-        Self::Escaped,
-        Self::Absorbed,
-        Self::Pruned,
-    ];
-
-    /// The channels that a scene must ask for, in the order of files.
-    pub const OPTIONAL: [Self; 6] = [
-        Self::Stokes(0),
-        Self::Stokes(1),
-        Self::Stokes(2),
-        Self::Stokes(3),
-        Self::ExtraordinaryShare,
-        Self::FirstFaceReflectance,
+    /// All channels in the order of files, with their names there: those that every file of data holds, then those that
+    /// a scene must ask for.
+    const NAMES: [(Self, &str); 22] = [
+        (Self::Image(0), "R"),
+        (Self::Image(1), "G"),
+        (Self::Image(2), "B"),
+        (Self::Horizontal(0), "horizontal.R"),
+        (Self::Horizontal(1), "horizontal.G"),
+        (Self::Horizontal(2), "horizontal.B"),
+        (Self::Vertical(0), "vertical.R"),
+        (Self::Vertical(1), "vertical.G"),
+        (Self::Vertical(2), "vertical.B"),
+        (Self::TimeOfFlight, "time_of_flight"),
+        (Self::TimeOfFlightSpread, "time_of_flight_spread"),
+        (Self::TimeOfFlightDifference, "time_of_flight_difference"),
+        (Self::Delivered, "delivered"),
+        (Self::Escaped, "escaped"),
+        (Self::Absorbed, "absorbed"),
+        (Self::Pruned, "pruned"),
+        (Self::Stokes(0), "stokes.S0"),
+        (Self::Stokes(1), "stokes.S1"),
+        (Self::Stokes(2), "stokes.S2"),
+        (Self::Stokes(3), "stokes.S3"),
+        (Self::ExtraordinaryShare, "extraordinary_share"),
+        (Self::FirstFaceReflectance, "first_face_reflectance"),
     ];
 
     /// Its name in files.
     #[must_use]
     pub fn name(self) -> &'static str {
-        let nth = |names: &[&'static str], i: usize| names[i.min(names.len() - 1)];
-        match self {
-            Self::Image(i) => nth(&["R", "G", "B"], i),
-            Self::Horizontal(i) => nth(&["horizontal.R", "horizontal.G", "horizontal.B"], i),
-            Self::Vertical(i) => nth(&["vertical.R", "vertical.G", "vertical.B"], i),
-            Self::TimeOfFlight => "time_of_flight",
-            Self::TimeOfFlightSpread => "time_of_flight_spread",
-            Self::TimeOfFlightDifference => "time_of_flight_difference",
-            Self::Delivered => "delivered",
-            Self::Escaped => "escaped",
-            Self::Absorbed => "absorbed",
-            Self::Pruned => "pruned",
-            Self::Stokes(i) => nth(&["stokes.S0", "stokes.S1", "stokes.S2", "stokes.S3"], i),
-            Self::ExtraordinaryShare => "extraordinary_share",
-            Self::FirstFaceReflectance => "first_face_reflectance",
-        }
+        Self::NAMES.iter().find(|(channel, _)| *channel == self).map_or("", |(_, name)| name)
     }
 
-    /// What its samples are.
+    /// Its samples before anything is seen.
     #[must_use]
-    pub fn form(self) -> Form {
+    pub fn blank(self, pixels: usize) -> Samples {
         match self {
             // Differences of times go down to yoctoseconds.
             Self::TimeOfFlight | Self::TimeOfFlightSpread | Self::TimeOfFlightDifference => {
-                Form::Double
+                Samples::F64(vec![0.0; pixels])
             }
-            Self::Stokes(_) => Form::Rgb,
-            _ => Form::Single,
+            Self::Stokes(_) => Samples::Rgb(vec![[0.0; 3]; pixels]),
+            _ => Samples::F32(vec![0.0; pixels]),
         }
     }
 
     /// The channels of a picture that is to hold `wanted`.
     #[must_use]
     pub fn of(wanted: ChannelSet, picture: &PictureSettings) -> Vec<Self> {
-        match wanted {
-            ChannelSet::Image => Self::ALWAYS[..3].to_vec(),
-            ChannelSet::Polarizers => Self::ALWAYS[..9].to_vec(),
-            ChannelSet::Everything => {
-                let asked = Self::OPTIONAL.iter().filter(|c| picture.asks_for(c.keyword()));
-                Self::ALWAYS.iter().chain(asked).copied().collect()
+        let first = match wanted {
+            ChannelSet::Image => 3,
+            ChannelSet::Polarizers => 9,
+            ChannelSet::Everything => Self::NAMES.len(),
+        };
+        // The word with which a scene asks for a channel, where it must.
+        let asked = |channel: &Self| match channel {
+            Self::Stokes(_) => picture.asks_for("stokes"),
+            Self::ExtraordinaryShare | Self::FirstFaceReflectance => {
+                picture.asks_for(channel.name())
             }
-        }
-    }
-
-    /// The word with which a scene asks for it.
-    fn keyword(self) -> &'static str {
-        match self {
-            Self::Stokes(_) => "stokes",
-            _ => self.name(),
-        }
-    }
-}
-
-/// What the samples of a channel are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// Numbers in single precision.
-    Single,
-    /// Numbers in double precision.
-    Double,
-    /// Red, green and blue in single precision.
-    Rgb,
-}
-
-impl Form {
-    /// How many bytes a pixel takes.
-    #[must_use]
-    pub fn bytes(self) -> u64 {
-        match self {
-            Self::Single => 4,
-            Self::Double => 8,
-            Self::Rgb => 12,
-        }
+            _ => true,
+        };
+        Self::NAMES[..first].iter().map(|(channel, _)| *channel).filter(asked).collect()
     }
 }
 
@@ -204,6 +162,6 @@ mod tests {
             assert!(names(ChannelSet::Everything, &[word], MapChannel::None).len() > 16, "{word}");
         }
         let all = names(ChannelSet::Everything, OPTIONAL_CHANNELS, MapChannel::None);
-        assert_eq!(all.len(), Channel::ALWAYS.len() + Channel::OPTIONAL.len());
+        assert_eq!(all.len(), Channel::NAMES.len());
     }
 }

@@ -1,13 +1,11 @@
 //! The film: the channels of a picture while it is being exposed, band by band.
 
-use super::channels::Form;
 use super::{Channel, Tile};
 use crate::output::{Channel as FileChannel, Samples};
 
 /// The planes of a picture, row by row.
 pub(super) struct Film {
-    width: usize,
-    corner: [usize; 2],
+    tile: Tile,
     planes: Vec<(Channel, Samples)>,
 }
 
@@ -17,6 +15,8 @@ pub(super) struct Band<'f> {
     pub corner: [usize; 2],
     /// Pixels in a row.
     pub width: usize,
+    /// How many rows it has.
+    pub rows: usize,
     planes: Vec<(Channel, BandPlane<'f>)>,
 }
 
@@ -29,41 +29,31 @@ enum BandPlane<'f> {
 impl Film {
     /// For a tile of a picture.
     pub fn new(tile: Tile, channels: &[Channel]) -> Self {
-        let [width, height] = [tile.width, tile.height].map(|side| side as usize);
-        let planes = channels
-            .iter()
-            .map(|channel| {
-                let size = width * height;
-                let plane = match channel.form() {
-                    Form::Single => Samples::F32(vec![0.0; size]),
-                    Form::Double => Samples::F64(vec![0.0; size]),
-                    Form::Rgb => Samples::Rgb(vec![[0.0; 3]; size]),
-                };
-                (*channel, plane)
-            })
-            .collect();
-        Self { width, corner: [tile.left, tile.top].map(|first| first as usize), planes }
+        let pixels = tile.width as usize * tile.height as usize;
+        let planes = channels.iter().map(|channel| (*channel, channel.blank(pixels))).collect();
+        Self { tile, planes }
     }
 
     /// The film in bands of `rows` rows.
     pub fn bands(&mut self, rows: usize) -> Vec<Band<'_>> {
-        let mut bands: Vec<Band<'_>> = Vec::new();
+        let Tile { left, top, width, height } = self.tile;
+        let [left, top, width, height] = [left, top, width, height].map(|side| side as usize);
+        let band = |first: usize| Band {
+            corner: [left, top + first],
+            width,
+            rows: rows.min(height - first),
+            planes: Vec::new(),
+        };
+        let mut bands: Vec<Band<'_>> = (0..height).step_by(rows).map(band).collect();
         for (channel, plane) in &mut self.planes {
-            let size = self.width * rows;
+            let size = width * rows;
             let pieces: Vec<BandPlane<'_>> = match plane {
                 Samples::F32(values) => values.chunks_mut(size).map(BandPlane::F32).collect(),
                 Samples::Rgb(values) => values.chunks_mut(size).map(BandPlane::Rgb).collect(),
                 Samples::F64(values) => values.chunks_mut(size).map(BandPlane::F64).collect(),
             };
-            for (index, piece) in pieces.into_iter().enumerate() {
-                if index == bands.len() {
-                    bands.push(Band {
-                        corner: [self.corner[0], self.corner[1] + index * rows],
-                        width: self.width,
-                        planes: Vec::new(),
-                    });
-                }
-                bands[index].planes.push((*channel, piece));
+            for (band, piece) in bands.iter_mut().zip(pieces) {
+                band.planes.push((*channel, piece));
             }
         }
         bands
@@ -91,14 +81,5 @@ impl Band<'_> {
                 }
             }
         }
-    }
-
-    /// How many pixels the band holds.
-    pub fn len(&self) -> usize {
-        self.planes.first().map_or(0, |(_, plane)| match plane {
-            BandPlane::F32(values) => values.len(),
-            BandPlane::F64(values) => values.len(),
-            BandPlane::Rgb(values) => values.len(),
-        })
     }
 }

@@ -15,8 +15,8 @@ type Named<T> = Vec<(ImageSource, Arc<T>)>;
 /// the other mostly show the same.
 #[derive(Clone, Debug, Default)]
 pub struct Images {
-    photograph: Option<(ImageSource, Arc<Pyramid>)>,
-    surroundings: Option<(ImageSource, Arc<Equirectangular>)>,
+    photograph: Named<Pyramid>,
+    surroundings: Named<Equirectangular>,
     bodies: BodyImages,
 }
 
@@ -31,7 +31,7 @@ pub(super) struct BodyImages {
 impl Images {
     /// Hangs an image up as the photograph of that name: scenes that name it show this, and no file is read.
     pub fn hang(&mut self, name: ImageSource, image: LinearImage) {
-        self.photograph = Some((name, Arc::new(flat(image))));
+        self.photograph = vec![(name, Arc::new(flat(image)))];
     }
 
     /// The photograph of a scene.
@@ -93,15 +93,12 @@ fn flat(image: LinearImage) -> Pyramid {
 
 /// The image that was read last, if it is this one, or read now instead of it.
 fn last<T>(
-    last: &mut Option<(ImageSource, Arc<T>)>,
+    images: &mut Named<T>,
     source: &ImageSource,
     make: impl FnOnce(LinearImage) -> T,
 ) -> Result<Arc<T>, LoadError> {
-    if let Some((_, image)) = last.as_ref().filter(|(name, _)| name == source) {
-        return Ok(image.clone());
-    }
-    let image = Arc::new(make(photograph::load(source)?));
-    *last = Some((source.clone(), image.clone()));
+    let image = known(images, source, make)?;
+    images.retain(|(name, _)| name == source);
     Ok(image)
 }
 

@@ -16,7 +16,7 @@ mod sampling;
 mod studio;
 mod tile;
 
-pub use channels::{Channel, ChannelSet, Form};
+pub use channels::{Channel, ChannelSet};
 pub use images::Images;
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
 pub use studio::{PreparedScene, PreparedSceneError, assembly, limits, ray_limits};
@@ -54,19 +54,14 @@ pub enum RenderError {
     #[error("stopped")]
     Stopped,
     /// The picture would not fit into memory.
-    #[error(
-        "a picture of {width} x {height} pixels needs {needed_mb} MB of memory, but only \
-         {available_mb} MB are free; make `camera.resolution` smaller"
-    )]
+    #[error("a picture of {width} x {height} pixels {shortage}; make `camera.resolution` smaller")]
     TooLarge {
         /// Width in pixels.
         width: u32,
         /// Height in pixels.
         height: u32,
-        /// Memory needed, in 10^6 bytes.
-        needed_mb: u64,
-        /// Memory free, in 10^6 bytes.
-        available_mb: u64,
+        /// The memory needed and there.
+        shortage: crate::memory::Shortage,
     },
 }
 
@@ -167,11 +162,18 @@ fn expose_film<const N: usize>(
     supervision: &Supervision<'_>,
     detection: Detection<N>,
 ) -> Result<Rendered, RenderError> {
-    let (width, height) = (tile.width as usize, tile.height as usize);
-    check_memory(studio, wanted, tile)?;
+    let Tile { width, height, .. } = tile;
     let settings = &studio.scene.picture;
     let detection = detection.with_options(wanted, settings);
     let channels = Channel::of(wanted, settings);
+    let bytes: usize = channels.iter().map(|channel| channel.blank(1).bytes()).sum();
+    // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
+    let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2) as u64;
+    crate::memory::check(needed, u64::MAX).map_err(|shortage| RenderError::TooLarge {
+        width,
+        height,
+        shortage,
+    })?;
     let mut film = Film::new(tile, &channels);
     let stats = film
         .bands(BAND_ROWS)
@@ -181,7 +183,7 @@ fn expose_film<const N: usize>(
             |exposer, mut band| {
                 let stats =
                     exposer.expose_band(&mut band, supervision.stop).ok_or(RenderError::Stopped)?;
-                (supervision.rows_done)((band.len() / width) as u64);
+                (supervision.rows_done)(band.rows as u64);
                 Ok(stats)
             },
         )
@@ -189,6 +191,7 @@ fn expose_film<const N: usize>(
             a += b;
             Ok(a)
         })?;
+    let (width, height) = (width as usize, height as usize);
     let picture =
         Picture { width, height, channels: film.into_channels(), metadata: metadata(studio.scene) };
     Ok(Rendered { picture, stats })
@@ -234,28 +237,6 @@ pub fn metadata(scene: &Scene) -> Vec<(String, String)> {
     .to_vec()
 }
 
-/// Refuses a tile of a picture that would not fit into the memory that is free now.
-fn check_memory(
-    studio: &PreparedScene<'_>,
-    wanted: ChannelSet,
-    tile: Tile,
-) -> Result<(), RenderError> {
-    let Tile { width, height, .. } = tile;
-    let channels = Channel::of(wanted, &studio.scene.picture);
-    let bytes: u64 = channels.iter().map(|channel| channel.form().bytes()).sum();
-    // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
-    let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2);
-    match crate::memory::available() {
-        Some(available) if needed > available => Err(RenderError::TooLarge {
-            width,
-            height,
-            needed_mb: needed / 1_000_000,
-            available_mb: available / 1_000_000,
-        }),
-        _ => Ok(()),
-    }
-}
-
 /// One thread's tracers and memory.
 struct Exposer<'a, const N: usize> {
     studio: &'a PreparedScene<'a>,
@@ -279,8 +260,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
     /// Exposes a band, 2 x 2 pixels at a time; `None` if it was stopped.
     fn expose_band(&mut self, band: &mut Band<'_>, stop: &AtomicBool) -> Option<TraceStats> {
         let camera = &self.studio.scene.camera;
-        let (width, [first_column, first_row]) = (band.width, band.corner);
-        let rows = band.len() / width;
+        let Band { width, rows, corner: [first_column, first_row], .. } = *band;
         let samples = camera.samples();
         let look = if camera.adaptive() > 0.0 { first_look(samples) } else { 0 };
         let mut stats = TraceStats::default();

@@ -62,24 +62,17 @@ pub struct Landing {
     pub power: f64,
 }
 
-/// Why a pixel has no list of pulses.
+/// Why a pixel has no list of pulses: the picture has no such pixel.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PulseError {
-    /// There is no such pixel.
-    #[error(
-        "there is no pixel {column},{row}; the picture has columns 0 to {} and rows 0 to {}",
-        width - 1, height - 1
-    )]
-    OutsidePicture {
-        /// The column asked for.
-        column: u32,
-        /// The row asked for.
-        row: u32,
-        /// Width of the picture in pixels.
-        width: u32,
-        /// Height of the picture in pixels.
-        height: u32,
-    },
+#[error(
+    "there is no pixel {},{}; the picture has columns 0 to {} and rows 0 to {}",
+    pixel[0], pixel[1], resolution[0] - 1, resolution[1] - 1
+)]
+pub struct PulseError {
+    /// The column and row asked for.
+    pub pixel: [u32; 2],
+    /// Width and height of the picture in pixels.
+    pub resolution: [u32; 2],
 }
 
 /// Lists the pulses of the pixel at a column and row, counted from 0 at the top left.
@@ -90,19 +83,16 @@ pub enum PulseError {
 /// # Errors
 ///
 /// If the picture has no such pixel.
-pub fn pulses(
-    studio: &PreparedScene<'_>,
-    [column, row]: [u32; 2],
-) -> Result<PulseList, PulseError> {
+pub fn pulses(studio: &PreparedScene<'_>, pixel: [u32; 2]) -> Result<PulseList, PulseError> {
     let camera = &studio.scene.camera;
-    let [width, height] = camera.resolution();
-    if column >= width || row >= height {
-        return Err(PulseError::OutsidePicture { column, row, width, height });
+    let resolution = camera.resolution();
+    if pixel[0] >= resolution[0] || pixel[1] >= resolution[1] {
+        return Err(PulseError { pixel, resolution });
     }
     // The same trees as in a picture of every channel.
     Ok(match camera.polarizer().amplitudes() {
-        None => list(studio, [column, row], &Detection::UNPOLARIZED),
-        Some(amplitudes) => list(studio, [column, row], &Detection::through(amplitudes)),
+        None => list(studio, pixel, &Detection::UNPOLARIZED),
+        Some(amplitudes) => list(studio, pixel, &Detection::through(amplitudes)),
     })
 }
 

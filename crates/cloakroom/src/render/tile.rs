@@ -27,12 +27,9 @@ pub struct Tile {
 /// What is wrong with a tile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TileError {
-    /// It is not written as a tile.
-    #[error("`{text}` is no tile; write LEFT,TOP,WIDTH,HEIGHT in pixels, such as 0,0,512,384")]
-    Unreadable {
-        /// What is written.
-        text: String,
-    },
+    /// This is not written as a tile.
+    #[error("`{0}` is no tile; write LEFT,TOP,WIDTH,HEIGHT in pixels, such as 0,0,512,384")]
+    Unreadable(String),
     /// It has no pixels, or some that the picture has not.
     #[error("the tile {tile} is empty or reaches beyond the picture of {width} x {height} pixels")]
     Outside {
@@ -99,7 +96,7 @@ impl FromStr for Tile {
 
     fn from_str(text: &str) -> Result<Self, TileError> {
         let [left, top, width, height] =
-            numbers(text).ok_or_else(|| TileError::Unreadable { text: text.to_owned() })?;
+            numbers(text).ok_or_else(|| TileError::Unreadable(text.to_owned()))?;
         Ok(Self { left, top, width, height })
     }
 }
@@ -112,29 +109,18 @@ fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
 /// Why tiles cannot be put together.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MergeError {
-    /// A file is no tile, or not the one that it says.
-    #[error("{name} is not a tile of a picture: its metadata do not say which, or of another size")]
-    NoTile {
-        /// What the tile is called.
-        name: String,
-    },
-    /// Two tiles are not of one picture.
-    #[error("{first} and {second} are not tiles of one picture: their {what} differ")]
-    OfDifferentPictures {
+    /// A file, which is called so, is no tile, or not the one that it says.
+    #[error("{0} is not a tile of a picture: its metadata do not say which, or of another size")]
+    NoTile(String),
+    /// Two tiles are not of one picture, or have a pixel in common.
+    #[error("{first} and {second} {problem}")]
+    Pair {
         /// What one tile is called.
         first: String,
         /// What the other is called.
         second: String,
-        /// What differs.
-        what: String,
-    },
-    /// Two tiles have a pixel in common.
-    #[error("{first} and {second} overlap")]
-    Overlap {
-        /// What one tile is called.
-        first: String,
-        /// What the other is called.
-        second: String,
+        /// What is wrong with them.
+        problem: String,
     },
     /// Pixels are missing.
     #[error(
@@ -159,6 +145,12 @@ pub type Piece<T> = (String, Metadata, T);
 /// Which tiles pieces are, the resolution of their picture, and its metadata.
 type Layout = (Vec<Tile>, [u32; 2], Metadata);
 
+/// The error of two tiles of different pictures.
+fn differ(first: &str, second: &str, what: &str) -> MergeError {
+    let problem = format!("are not tiles of one picture: their {what} differ");
+    MergeError::Pair { first: first.to_owned(), second: second.to_owned(), problem }
+}
+
 /// Finds the places of pieces of one picture, which they cover; `size` is a piece's in pixels.
 fn layout<T>(pieces: &[Piece<T>], size: impl Fn(&T) -> [usize; 2]) -> Result<Layout, MergeError> {
     let mut tiles: Vec<Tile> = Vec::new();
@@ -172,8 +164,7 @@ fn layout<T>(pieces: &[Piece<T>], size: impl Fn(&T) -> [usize; 2]) -> Result<Lay
             let of_size = size(pixels) == [tile.width, tile.height].map(|side| side as usize);
             Some((tile.check(resolution).ok().filter(|_| of_size)?, resolution))
         };
-        let (tile, resolution) =
-            place().ok_or_else(|| MergeError::NoTile { name: name.clone() })?;
+        let (tile, resolution) = place().ok_or_else(|| MergeError::NoTile(name.clone()))?;
         let rest = metadata.iter().filter(|(key, _)| key != TILE && key != RESOLUTION);
         let rest: Metadata = rest.cloned().collect();
         let (known, of_first) = picture.get_or_insert_with(|| (resolution, rest.clone()));
@@ -186,12 +177,11 @@ fn layout<T>(pieces: &[Piece<T>], size: impl Fn(&T) -> [usize; 2]) -> Result<Lay
             None
         };
         if let Some(what) = what {
-            let (first, second) = (pieces[0].0.clone(), name.clone());
-            return Err(MergeError::OfDifferentPictures { first, second, what });
+            return Err(differ(&pieces[0].0, name, &what));
         }
         if let Some(other) = tiles.iter().position(|other| other.overlaps(tile)) {
             let (first, second) = (pieces[other].0.clone(), name.clone());
-            return Err(MergeError::Overlap { first, second });
+            return Err(MergeError::Pair { first, second, problem: "overlap".to_owned() });
         }
         tiles.push(tile);
     }
@@ -222,11 +212,7 @@ pub fn merge(pieces: &[Piece<Picture>]) -> Result<Picture, MergeError> {
     };
     let mut channels: Vec<Channel> = pieces[0].2.channels.iter().map(blank).collect();
     for ((name, _, piece), tile) in pieces.iter().zip(&tiles) {
-        let differ = || MergeError::OfDifferentPictures {
-            first: pieces[0].0.clone(),
-            second: name.clone(),
-            what: "channels".to_owned(),
-        };
+        let differ = || differ(&pieces[0].0, name, "channels");
         if piece.channels.len() != channels.len() {
             return Err(differ());
         }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use optics::wave::transverse_basis;
 
-use super::{CameraSettings, Polarizer, Projection};
+use super::{CameraSettings, Polarizer, Projection, across, direction};
 use crate::keys::{KeyError, Table, vector_text};
 use cloakroom_trace::key;
 use optics::geometry::Pose;
@@ -11,9 +11,6 @@ use optics::wave::unit;
 
 #[cfg(test)]
 mod tests;
-
-/// The sine of the angle between `up` and the line of sight below which they count as parallel.
-pub(super) const PARALLEL: f64 = 1e-9;
 
 /// A ray as it leaves the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,21 +83,8 @@ impl Camera {
             );
             return Err(KeyError::at(key!(CameraSettings.target), message));
         };
-        let Some(up) = unit(settings.up) else {
-            let message = "up is [0, 0, 0]; it must be a direction";
-            return Err(KeyError::at(key!(CameraSettings.up), message));
-        };
-        let right = forward.cross(up);
-        if right.length() < PARALLEL {
-            let message = format!(
-                "up is {}, along the line of sight; it must point across it",
-                vector_text(settings.up)
-            );
-            return Err(KeyError::at(key!(CameraSettings.up), message));
-        }
-        // Where up is nearly parallel, the product is not yet perpendicular to the last digit.
-        let right = right.normalize().reject_from_normalized(forward).normalize();
-
+        let up = direction(key!(CameraSettings.up), settings.up)?;
+        let right = across(forward.cross(up), (forward, "the line of sight"), settings.up)?;
         let [width, height] = settings.resolution;
         Ok(Camera {
             forward,

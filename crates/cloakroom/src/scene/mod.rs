@@ -8,7 +8,6 @@ mod polarizer;
 mod receiver;
 mod tables;
 
-use camera::PARALLEL;
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use optics::geometry::Pose;
 use optics::wave::unit;
@@ -110,16 +109,7 @@ impl PhotographSettings {
         }
         let front = direction(key!(Self.normal), self.normal)?;
         let upward = direction(key!(Self.up), self.up)?;
-        let across = upward.cross(front);
-        if across.length() < PARALLEL {
-            let message = format!(
-                "up is {}, along the normal; it must point across it",
-                vector_text(self.up)
-            );
-            return Err(KeyError::at(key!(Self.up), message));
-        }
-        // Where the two are nearly parallel, the product is not yet perpendicular to the last digit.
-        let across = across.normalize().reject_from_normalized(front).normalize();
+        let across = across(upward.cross(front), (front, "the normal"), self.up)?;
         let rotation = DMat3::from_cols(-front, front.cross(across), across);
         Ok(Pose::from_rotation(self.middle(), rotation))
     }
@@ -269,6 +259,19 @@ fn direction(key: &'static str, vector: DVec3) -> Result<DVec3, KeyError> {
     unit(vector).ok_or_else(|| {
         KeyError::at(key, format!("{key} is {}; it must be a direction", vector_text(vector)))
     })
+}
+
+/// The unit vector along a product of the direction `up`, as it is written, with another one.
+fn across(product: DVec3, (along, words): (DVec3, &str), up: DVec3) -> Result<DVec3, KeyError> {
+    /// The sine of the angle between two directions below which they count as parallel.
+    const PARALLEL: f64 = 1e-9;
+    if product.length() < PARALLEL {
+        let up = vector_text(up);
+        let message = format!("up is {up}, along {words}; it must point across it");
+        return Err(KeyError::at(key!(CameraSettings.up), message));
+    }
+    // Where the two are nearly parallel, the product is not yet perpendicular to the last digit.
+    Ok(product.normalize().reject_from_normalized(along).normalize())
 }
 
 /// An image by its name.

@@ -48,11 +48,11 @@ impl SceneFileError {
         span: Range<usize>,
         message: impl Into<String>,
     ) -> Self {
-        let place = Place::find(text, span);
+        let (line, column, excerpt) = place(text, span);
         SceneFileError {
-            line: Some(place.line),
-            column: Some(place.column),
-            excerpt: Some(place.excerpt()),
+            line: Some(line),
+            column: Some(column),
+            excerpt: Some(excerpt),
             ..SceneFileError::whole(file, message)
         }
     }
@@ -74,63 +74,44 @@ impl fmt::Display for SceneFileError {
     }
 }
 
-/// A stretch of one line of a text.
-struct Place<'a> {
-    /// Counted from 1.
-    line: u32,
-    /// Counted from 1, in characters.
-    column: u32,
-    /// How many characters to mark, at least 1.
-    length: usize,
-    /// The whole line.
-    content: &'a str,
+/// Line and column (in characters) of a stretch of a text, counted from 1, and its line with a mark under it.
+fn place(text: &str, span: Range<usize>) -> (u32, u32, String) {
+    let start = char_boundary(text, span.start);
+    let end = char_boundary(text, span.end).max(start);
+    let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+    let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
+    let content = text[line_start..line_end].trim_end_matches('\r');
+    // A byte order mark is no character of the first line.
+    let bom = if line_start == 0 { content.len() - without_bom(content).len() } else { 0 };
+    let before = text[line_start + bom.min(start - line_start)..start].chars().count();
+    let marked = &text[start..end.min(line_start + content.len()).max(start)];
+    let line = text[..line_start].matches('\n').count() + 1;
+    let excerpt = excerpt(line, without_bom(content), before, marked.chars().count());
+    (small(line), small(before + 1), excerpt)
 }
 
-impl<'a> Place<'a> {
-    fn find(text: &'a str, span: Range<usize>) -> Self {
-        let start = char_boundary(text, span.start);
-        let end = char_boundary(text, span.end).max(start);
-        let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
-        let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
-        let content = text[line_start..line_end].trim_end_matches('\r');
-        // A byte order mark is no character of the first line.
-        let bom = if line_start == 0 { content.len() - without_bom(content).len() } else { 0 };
-        let before = &text[line_start + bom.min(start - line_start)..start];
-        let marked = &text[start..end.min(line_start + content.len()).max(start)];
-        Place {
-            line: small(text[..line_start].matches('\n').count() + 1),
-            column: small(before.chars().count() + 1),
-            length: marked.chars().count().max(1),
-            content: without_bom(content),
-        }
+/// A line with its number, and a mark under so many of its characters, one at least, behind those before.
+fn excerpt(number: usize, content: &str, before: usize, marked: usize) -> String {
+    /// Of a longer line only the part around the place is shown.
+    const LONGEST: usize = 100;
+    const BEFORE: usize = 40;
+    let skipped = if content.chars().count() > LONGEST { before.saturating_sub(BEFORE) } else { 0 };
+    // One character, one column: a tab or an escape code would shift the mark.
+    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    let mut shown: String = content.chars().skip(skipped).take(LONGEST).map(plain).collect();
+    let mut indent = before - skipped;
+    if skipped > 0 {
+        shown.insert_str(0, "...");
+        indent += 3;
     }
-
-    /// The line with its number, and a mark under the place.
-    fn excerpt(&self) -> String {
-        /// Of a longer line only the part around the place is shown.
-        const LONGEST: usize = 100;
-        const BEFORE: usize = 40;
-        let before = self.column as usize - 1;
-        let skipped =
-            if self.content.chars().count() > LONGEST { before.saturating_sub(BEFORE) } else { 0 };
-        // One character, one column: a tab or an escape code would shift the mark.
-        let plain = |c: char| if c.is_control() { ' ' } else { c };
-        let mut shown: String =
-            self.content.chars().skip(skipped).take(LONGEST).map(plain).collect();
-        let mut indent = before - skipped;
-        if skipped > 0 {
-            shown.insert_str(0, "...");
-            indent += 3;
-        }
-        if self.content.chars().nth(skipped + LONGEST).is_some() {
-            shown.push_str("...");
-        }
-        let length = self.length.min(shown.chars().count().saturating_sub(indent)).max(1);
-        let number = self.line.to_string();
-        let gutter = " ".repeat(number.len());
-        let (indent, mark) = (" ".repeat(indent), "^".repeat(length));
-        format!("  {number} | {shown}\n  {gutter} | {indent}{mark}")
+    if content.chars().nth(skipped + LONGEST).is_some() {
+        shown.push_str("...");
     }
+    let length = marked.min(shown.chars().count().saturating_sub(indent)).max(1);
+    let number = number.to_string();
+    let gutter = " ".repeat(number.len());
+    let (indent, mark) = (" ".repeat(indent), "^".repeat(length));
+    format!("  {number} | {shown}\n  {gutter} | {indent}{mark}")
 }
 
 fn without_bom(text: &str) -> &str {

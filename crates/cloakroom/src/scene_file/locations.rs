@@ -42,11 +42,6 @@ pub struct Locations {
 }
 
 impl Locations {
-    /// The locations of a scene that was written nowhere; `name` stands in its messages.
-    pub fn nowhere(name: impl Into<String>) -> Self {
-        Self::new(&name.into(), "", &[])
-    }
-
     pub(super) fn new(name: &str, text: &str, overrides: &[String]) -> Self {
         let places = HashMap::new();
         Locations { name: name.to_owned(), text: text.into(), overrides: overrides.into(), places }

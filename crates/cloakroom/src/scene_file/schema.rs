@@ -13,85 +13,68 @@ pub fn schema() -> Value {
         .iter()
         .map(|&(name, keys)| {
             let mut table = closed_table(properties(keys));
-            for (word, rule) in rules(name) {
-                table.insert(word.to_owned(), rule);
-            }
-            (name.to_owned(), Value::Object(table))
+            demand(name, &mut table);
+            (name.to_owned(), table)
         })
         .collect();
-    let kinds: Vec<Value> = CATALOGUE
-        .iter()
-        .map(|entry| json!({ "$ref": format!("#/$defs/{}", entry.kind) }))
-        .collect();
-    let mut devices = json!({
-        "type": "array",
-        "description": "The devices, each a table [[device]].",
-    });
-    if !kinds.is_empty() {
-        devices["items"] = json!({ "type": "object", "required": ["kind"], "oneOf": kinds });
-    }
-    tables.insert("device".to_owned(), devices);
+    let kinds = CATALOGUE.iter().map(|entry| json!({ "$ref": format!("#/$defs/{}", entry.kind) }));
+    let kinds: Vec<Value> = kinds.collect();
+    tables.insert(
+        "device".to_owned(),
+        json!({
+            "type": "array",
+            "description": "The devices, each a table [[device]].",
+            "items": { "type": "object", "required": ["kind"], "oneOf": kinds },
+        }),
+    );
     let definitions: Map<String, Value> =
         CATALOGUE.iter().map(|entry| (entry.kind.to_owned(), device(entry))).collect();
     let mut schema = closed_table(tables);
-    schema.insert("$schema".to_owned(), "https://json-schema.org/draft/2020-12/schema".into());
-    schema.insert("title".to_owned(), "cloakroom scene".into());
-    schema.insert(
-        "description".to_owned(),
-        "A scene of cloakroom. Lengths in cm, angles in degrees.".into(),
-    );
-    schema.insert("$defs".to_owned(), definitions.into());
-    schema.into()
+    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
+    schema["title"] = "cloakroom scene".into();
+    schema["description"] = "A scene of cloakroom. Lengths in cm, angles in degrees.".into();
+    schema["$defs"] = definitions.into();
+    schema
 }
 
 fn device(entry: &Entry) -> Value {
-    let mut all = Map::new();
-    all.insert(
-        "kind".to_owned(),
-        json!({ "const": entry.kind, "description": "What the device is." }),
-    );
-    all.extend(properties(entry.keys));
+    let mut all = properties(entry.keys);
     all.extend(properties(Placement::KEYS));
+    let kind = json!({ "const": entry.kind, "description": "What the device is." });
+    all.insert("kind".to_owned(), kind);
     let mut table = closed_table(all);
-    table.insert("title".to_owned(), entry.title.into());
-    table.insert("description".to_owned(), entry.summary.into());
-    table.insert("required".to_owned(), json!(["kind"]));
-    table.into()
-}
-
-/// What the keys of a table demand of each other.
-fn rules(table: &str) -> Vec<(&'static str, Value)> {
-    match table {
-        "camera" => vec![
-            (
-                "if",
-                json!({
-                    "required": ["projection"],
-                    "properties": { "projection": { "const": "orthographic" } },
-                }),
-            ),
-            ("then", json!({ "required": ["width"], "properties": { "field_of_view": false } })),
-            ("else", json!({ "properties": { "width": false } })),
-        ],
-        "surroundings" => vec![("not", json!({ "required": ["color", "image"] }))],
-        _ => Vec::new(),
-    }
-}
-
-fn closed_table(properties: Map<String, Value>) -> Map<String, Value> {
-    let mut table = Map::new();
-    table.insert("type".to_owned(), "object".into());
-    table.insert("additionalProperties".to_owned(), false.into());
-    table.insert("properties".to_owned(), properties.into());
+    table["title"] = entry.title.into();
+    table["description"] = entry.summary.into();
+    table["required"] = json!(["kind"]);
     table
 }
 
+/// Adds to a table what its keys demand of each other.
+fn demand(name: &str, table: &mut Value) {
+    match name {
+        "camera" => {
+            table["if"] = json!({
+                "required": ["projection"],
+                "properties": { "projection": { "const": "orthographic" } },
+            });
+            table["then"] =
+                json!({ "required": ["width"], "properties": { "field_of_view": false } });
+            table["else"] = json!({ "properties": { "width": false } });
+        }
+        "surroundings" => table["not"] = json!({ "required": ["color", "image"] }),
+        _ => {}
+    }
+}
+
+fn closed_table(properties: Map<String, Value>) -> Value {
+    json!({ "type": "object", "additionalProperties": false, "properties": properties })
+}
+
 /// A table within a device's; polygons have no default.
-fn inner_table(keys: &[Key]) -> Map<String, Value> {
+fn inner_table(keys: &[Key]) -> Value {
     let mut table = closed_table(properties(keys));
     let required = keys.iter().filter(|key| matches!(key.kind, KeyKind::Polygon));
-    let required: Vec<_> = required.map(|key| key.name).collect();
-    table.insert("required".to_owned(), json!(required));
+    table["required"] = required.map(|key| key.name).collect();
     table
 }
 
@@ -117,7 +100,7 @@ fn property(key: &Key) -> Value {
             let rows = json!({ "type": "array", "items": row, "minItems": 1 });
             json!({ "anyOf": [{ "type": "string", "minLength": 1 }, rows] })
         }
-        KeyKind::Table { keys } => inner_table(keys).into(),
+        KeyKind::Table { keys } => inner_table(keys),
         KeyKind::Tables { keys } => json!({ "type": "array", "items": inner_table(keys) }),
     };
     property["description"] = key.doc.into();

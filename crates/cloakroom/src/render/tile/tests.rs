@@ -94,9 +94,9 @@ fn a_tile_is_as_large_as_it_says_or_none() {
     let small = Channel { name: "R".to_owned(), samples: Samples::F32(vec![0.0; 4]) };
     let picture = Picture { width: 2, height: 2, channels: vec![small], metadata: metadata() };
     let merged = merge(&[("a".to_owned(), metadata(), picture)]);
-    assert_eq!(merged, Err(MergeError::NoTile { name: "a".to_owned() }));
+    assert_eq!(merged, Err(MergeError::NoTile("a".to_owned())));
     let merged = merge_images(&[("a".to_owned(), metadata(), RgbImage::new(2, 2))]);
-    assert_eq!(merged, Err(MergeError::NoTile { name: "a".to_owned() }));
+    assert_eq!(merged, Err(MergeError::NoTile("a".to_owned())));
 }
 
 #[test]

@@ -206,7 +206,7 @@ fn later_checks_can_point_at_parts_of_the_scene() {
     assert_eq!(overridden.to_string(), "--set device.1.rotation=5: wrong");
     let error = crate::keys::KeyError::at("side", "too large");
     assert_eq!(locations.key_error("device.0", &error).line, line_of("side"));
-    let nowhere = Locations::nowhere("scene").error_at("device.0", "wrong");
+    let nowhere = Locations::new("scene", "", &[]).error_at("device.0", "wrong");
     assert_eq!(nowhere.to_string(), "scene: wrong");
 }
 
