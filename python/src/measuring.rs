@@ -13,7 +13,7 @@ use cloakroom::output;
 use cloakroom::photograph::ImageSource;
 use cloakroom::render::RenderError;
 use cloakroom_figures::verification::{self, VerificationError};
-use cloakroom_figures::{STANDARD_PLOT, TableError, TableFormat, write_table};
+use cloakroom_figures::{IllustrationError, STANDARD_PLOT, TableError, TableFormat, write_table};
 use ndarray::{ArrayD, IxDyn};
 use numpy::{IntoPyArray, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyFileNotFoundError, PyTypeError};
@@ -92,7 +92,7 @@ pub fn sweep(
     if let (Some(path), Some(format)) = (&path, format) {
         let plot = STANDARD_PLOT.map(str::to_owned);
         write_table(&table, format, &plot, path).map_err(|error| match error {
-            TableError::Output(error) => output_error(&error),
+            TableError::Drawing(IllustrationError::Output(error)) => output_error(&error),
             error => value_error(error),
         })?;
     }

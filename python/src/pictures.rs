@@ -6,7 +6,7 @@ use crate::supervision::supervised;
 use cloakroom::output::{self, Channel, Picture, RgbImage, Samples};
 use cloakroom::render as rendering;
 use cloakroom::render::{ChannelSet, PreparedScene, Tile};
-use cloakroom_figures::{IllustrationError, PictureFormat, scalar_map, write_picture};
+use cloakroom_figures::{IllustrationError, PictureFormat, ScalarMap, write_picture};
 use ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyFileNotFoundError, PyTypeError};
@@ -159,7 +159,9 @@ pub fn png_bytes<'py>(
 fn shown(picture: &Picture, (map, color_bar): &(Option<String>, bool)) -> PyResult<RgbImage> {
     match map {
         None => output::to_srgb(picture).map_err(|error| output_error(&error)),
-        Some(channel) => scalar_map(picture, channel, *color_bar).map_err(value_error),
+        Some(channel) => ScalarMap::new(picture, channel, None)
+            .and_then(|map| map.into_image(*color_bar))
+            .map_err(value_error),
     }
 }
 

@@ -80,10 +80,9 @@ fn rendered(
     let picture = views.picture(index, images, stop)?;
     let Subject { panel, loaded, .. } = &views.subjects[index];
     let image = rgb(&loaded.scene, &picture)?;
-    let bar = match loaded.scene.picture.map.name() {
-        Some(channel) => Some(ScalarMap::new(&picture, channel).map_err(Failure::from_error)?.bar),
-        None => None,
-    };
+    let map = loaded.scene.picture.map.name();
+    let map = map.map(|channel| ScalarMap::new(&picture, channel, None)).transpose();
+    let bar = map.map_err(Failure::from_error)?.map(|map| map.bar);
     write_png(&image, &picture.metadata, &file(panel.name, "png", arguments))?;
     Ok(Shown { image, bar, metadata: picture.metadata })
 }

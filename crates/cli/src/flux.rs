@@ -43,9 +43,8 @@ pub fn run(arguments: &FluxArguments, stop: &AtomicBool) -> Result<(), Failure> 
         write(&measured, axis, format, path)?;
     }
     if let Some((path, format)) = map
-        && let Some(map) = flux_map(&measured, axis)
+        && let Some(drawing) = flux_map(&measured, axis)
     {
-        let drawing = map.draw().map_err(Failure::from_error)?;
         save(&drawing, "Irradiance of the receiver", &measured, (path, format))?;
     }
     report::print(&table(&measured, axis))

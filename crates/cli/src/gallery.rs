@@ -47,7 +47,7 @@ fn make(
     let Rendered { picture, stats } = picture(&studio, ChannelSet::Everything, exhibit.name, stop)?;
     tell_rarities(&stats);
     let image = rgb(&loaded.scene, &picture)?;
-    let map = ScalarMap::new(&picture, MAP).map_err(Failure::from_error)?;
+    let map = ScalarMap::new(&picture, MAP, None).map_err(Failure::from_error)?;
     let file = |ending: &str| arguments.out.join(format!("{}{ending}", exhibit.name));
     write_png(&image, &picture.metadata, &file(".png"))?;
     let drawing = map.draw(true);

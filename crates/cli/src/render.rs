@@ -11,7 +11,7 @@ use cloakroom::render::{
 };
 use cloakroom::scene::Scene;
 use cloakroom::trace::TraceStats;
-use cloakroom_figures::{IllustrationError, PictureFormat, scalar_map, write_picture};
+use cloakroom_figures::{IllustrationError, PictureFormat, ScalarMap, write_picture};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -177,9 +177,9 @@ fn failed(error: RenderError) -> Failure {
 pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure> {
     match scene.picture.map.name() {
         None => output::to_srgb(picture).map_err(Failure::from_error),
-        Some(channel) => {
-            scalar_map(picture, channel, scene.picture.color_bar).map_err(Failure::from_error)
-        }
+        Some(channel) => ScalarMap::new(picture, channel, None)
+            .and_then(|map| map.into_image(scene.picture.color_bar))
+            .map_err(Failure::from_error),
     }
 }
 

@@ -60,31 +60,29 @@ impl ColorBar {
         let place = DAffine2::from_cols(DVec2::X * width, DVec2::Y * height, at);
         drawing.add("color-bar", Shape::Image { image, cells: true, place });
         frame.draw(drawing);
-        let thin = Frame::thin(text);
         let (below, above) = self.scale.is_clipped();
         for (clipped, share, up) in [(above, 1.0, -0.5), (below, 0.0, 0.5)] {
             if clipped {
                 // A point: there are numbers beyond.
                 let end = frame.place(DVec2::Y * share);
                 let tip = end + DVec2::new(0.5, up) * width;
-                let point = Shape::Area(vec![vec![end, tip, end + DVec2::X * width]]);
+                let point = drawing.add_area("color-bar-end", [end, tip, end + DVec2::X * width]);
                 let ink = Ink::new(self.scale.color_at(share).0);
-                drawing.add("color-bar-end", point).filled(ink).stroked(INK, thin);
+                point.filled(ink).stroked(INK, Frame::thin(text));
             }
         }
         // To the right, so that digits stand below each other.
         let right = at.x + LABELS * text + widest;
         for tick in &axis.ticks {
             let from = frame.place(DVec2::new(1.0, tick.place));
-            let line = vec![from, from + DVec2::X * 0.3 * text];
-            drawing.add("tick", Shape::Line(line)).stroked(INK, thin);
+            frame.draw_tick(drawing, from, DVec2::X);
             let words = Words::new(tick.label.clone(), DVec2::new(right, from.y), text);
-            drawing.add("tick-label", Shape::Words(words.anchored(1.0))).filled(INK);
+            drawing.add_words("tick-label", words.anchored(1.0));
         }
         for (line, outwards) in title.iter().zip(0..) {
             let x = right + (0.8 + LINE * f64::from(outwards)) * text;
             let words = Words::new(line.clone(), DVec2::new(x, at.y + height / 2.0), text);
-            drawing.add("color-bar-title", Shape::Words(words.turned(90.0))).filled(INK);
+            drawing.add_words("color-bar-title", words.turned(90.0));
         }
     }
 }

@@ -172,29 +172,25 @@ pub static FIGURES: &[Figure] = &[
 /// A sentence if the list names something that is not there.
 pub fn select(names: &[String]) -> Result<Vec<(&'static Figure, Vec<&'static Panel>)>, String> {
     let names: Vec<String> = names.iter().map(|name| name.trim().to_ascii_lowercase()).collect();
-    let is_figure = |name: &str, figure: &Figure| name == figure.number.to_string();
-    for name in &names {
-        let known = FIGURES.iter().any(|figure| {
-            is_figure(name, figure) || figure.panels.iter().any(|panel| panel.name == name)
-        });
-        if !known {
-            let figures: Vec<String> =
-                FIGURES.iter().map(|figure| figure.number.to_string()).collect();
-            return Err(format!(
-                "there is no figure or panel `{name}`; there are the figures {} and their panels, \
-                 as in 6c",
-                figures.join(", ")
-            ));
-        }
-    }
-    let wanted = |panel: &Panel, figure: &Figure| {
-        names.is_empty() || names.iter().any(|name| name == panel.name || is_figure(name, figure))
+    let is = |name: &str, figure: &Figure, panel: &Panel| {
+        name == panel.name || name == figure.number.to_string()
     };
-    Ok(FIGURES
+    let any = |figure: &Figure, name: &str| figure.panels.iter().any(|p| is(name, figure, p));
+    if let Some(name) = names.iter().find(|name| !FIGURES.iter().any(|f| any(f, name))) {
+        let figures: Vec<String> = FIGURES.iter().map(|figure| figure.number.to_string()).collect();
+        return Err(format!(
+            "there is no figure or panel `{name}`; there are the figures {} and their panels, \
+             as in 6c",
+            figures.join(", ")
+        ));
+    }
+    let wanted = |figure: &Figure, panel: &Panel| {
+        names.is_empty() || names.iter().any(|name| is(name, figure, panel))
+    };
+    let chosen = FIGURES
         .iter()
-        .map(|figure| (figure, figure.panels.iter().filter(|p| wanted(p, figure)).collect()))
-        .filter(|(_, panels): &(_, Vec<_>)| !panels.is_empty())
-        .collect())
+        .map(|figure| (figure, figure.panels.iter().filter(|p| wanted(figure, p)).collect()));
+    Ok(chosen.filter(|(_, panels): &(_, Vec<_>)| !panels.is_empty()).collect())
 }
 
 #[cfg(test)]

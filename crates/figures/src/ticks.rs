@@ -1,9 +1,9 @@
 //! Round numbers along a range, and how they are labelled.
 
-use super::quantity::{Quantity, exponent, power_of_ten, short};
+use super::quantity::{Quantity, exponent, power_of_ten, short, with_unit};
 
 /// The ticks of an axis and the label that says what they count.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Axis {
     /// From low to high.
     pub ticks: Vec<Tick>,
@@ -40,13 +40,13 @@ pub(super) fn axis(quantity: &Quantity, range: Option<(f64, f64)>, most: usize) 
     };
     let size = low.abs().max(high.abs());
     let unit = quantity.unit(size);
+    let title = with_unit(&quantity.title, &unit.symbol);
     if low >= high {
         let ticks = vec![Tick { place: 0.5, label: with_minus(&significant(low / unit.size)) }];
-        return Axis { ticks, title: unit.label(&quantity.title) };
+        return Axis { ticks, title };
     }
     if high - low >= NARROW * size {
-        let ticks = ticks(low / unit.size, high / unit.size, most);
-        return Axis { ticks, title: unit.label(&quantity.title) };
+        return Axis { ticks: ticks(low / unit.size, high / unit.size, most), title };
     }
     let width = high - low;
     let decimals = usize::try_from(-exponent(width / unit.size)).unwrap_or(0);
@@ -57,7 +57,7 @@ pub(super) fn axis(quantity: &Quantity, range: Option<(f64, f64)>, most: usize) 
     let title = with_minus(&format!("{} {sign} {origin} {}", quantity.title, unit.symbol));
     Axis {
         ticks: ticks((low - offset) / fine.size, (high - offset) / fine.size, most),
-        title: fine.label(title.trim_end()),
+        title: with_unit(title.trim_end(), &fine.symbol),
     }
 }
 

@@ -243,8 +243,8 @@ impl Painter<'_> {
         let (image, scale): (RgbImage, Option<Scale>) = match scene.picture.map.name() {
             None => (to_srgb(&picture)?, None),
             Some(channel) => {
-                let map = ScalarMap::new(&picture, channel)?;
-                let scale = scale(channel, map.range());
+                let map = ScalarMap::new(&picture, channel, None)?;
+                let scale = scale(channel, map.bar.scale.range());
                 (map.image, Some(scale))
             }
         };

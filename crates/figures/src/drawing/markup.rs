@@ -2,7 +2,7 @@
 
 use super::super::quantity::short;
 use super::typeface::Piece;
-use super::{Drawing, Element, Ink, Shape, Words};
+use super::{Drawing, Element, Ink, Shape, contours, line};
 use base64::Engine;
 use cloakroom::output::RgbImage;
 use glam::{DAffine2, DVec2};
@@ -43,7 +43,7 @@ impl Drawing {
         document = document.add(paper);
         for (index, element) in self.elements.iter().enumerate() {
             if let Some(clip) = &element.clip {
-                let path = Path::new().set("d", contours(clip)).set("clip-rule", "evenodd");
+                let path = path(contours(clip)).set("clip-rule", "evenodd");
                 document = document.add(ClipPath::new().set("id", clip_name(index)).add(path));
             }
             document = document.add(node(element, index, source));
@@ -68,10 +68,10 @@ fn node(
     }
     match &element.shape {
         Shape::Area(loops) => {
-            let path = Path::new().set("d", contours(loops)).set("fill-rule", "evenodd");
+            let path = path(contours(loops)).set("fill-rule", "evenodd");
             group.add(painted(path, element))
         }
-        Shape::Line(points) => group.add(painted(Path::new().set("d", line(points)), element)),
+        Shape::Line(points) => group.add(painted(path(line(points)), element)),
         Shape::Circle { centre, radius } => {
             let circle = svg::node::element::Circle::new()
                 .set("cx", number(centre.x))
@@ -84,8 +84,7 @@ fn node(
             None => group,
         },
         Shape::Words(words) => {
-            let path = Path::new().set("d", letters(words));
-            group.set("aria-label", words.text()).add(painted(path, element))
+            group.set("aria-label", words.text()).add(painted(path(words.outline()), element))
         }
     }
 }
@@ -129,20 +128,9 @@ fn point(p: DVec2) -> String {
     format!("{},{}", number(p.x), number(p.y))
 }
 
-fn line(points: &[DVec2]) -> String {
-    points.iter().enumerate().fold(String::new(), |mut data, (i, p)| {
-        let _ = write!(data, "{}{}", if i == 0 { 'M' } else { 'L' }, point(*p));
-        data
-    })
-}
-
-fn contours(loops: &[Vec<DVec2>]) -> String {
-    loops.iter().map(|points| line(points) + "Z").collect()
-}
-
-/// The outlines of a text at its place.
-fn letters(words: &Words) -> String {
-    words.outline().into_iter().fold(String::new(), |mut data, piece| {
+/// What pieces of an outline are together.
+fn path(pieces: impl IntoIterator<Item = Piece>) -> Path {
+    let data = pieces.into_iter().fold(String::new(), |mut data, piece| {
         let _ = match piece {
             Piece::Move(p) => write!(data, "M{}", point(p)),
             Piece::Line(p) => write!(data, "L{}", point(p)),
@@ -151,7 +139,8 @@ fn letters(words: &Words) -> String {
             Piece::Close => write!(data, "Z"),
         };
         data
-    })
+    });
+    Path::new().set("d", data)
 }
 
 /// An image as a PNG within the SVG; none if it has no pixels.

@@ -53,13 +53,13 @@ impl View {
 
     /// The corners of the window, counterclockwise as seen.
     #[must_use]
-    pub fn frame(&self) -> Vec<DVec2> {
+    pub fn frame(&self) -> [DVec2; 4] {
         corners(self.window)
     }
 }
 
 /// The corners of a rectangle of the sheet (top left corner and size), counterclockwise as seen.
-pub(crate) fn corners([from, size]: [DVec2; 2]) -> Vec<DVec2> {
+pub(crate) fn corners([from, size]: [DVec2; 2]) -> [DVec2; 4] {
     let to = from + size;
-    vec![from, DVec2::new(from.x, to.y), to, DVec2::new(to.x, from.y)]
+    [from, DVec2::new(from.x, to.y), to, DVec2::new(to.x, from.y)]
 }

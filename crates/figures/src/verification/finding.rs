@@ -156,6 +156,16 @@ pub(super) fn percent(share: f64, decimals: usize) -> String {
     format!("{:.decimals$} %", 100.0 * share)
 }
 
+/// Numbers for the paper's rotations, one after the other.
+pub(super) fn list(values: [f64; 3]) -> String {
+    values.map(|value| format!("{value:.2}")).join(", ")
+}
+
+/// Whether each number is above that of another list.
+pub(super) fn above(a: [f64; 3], b: [f64; 3]) -> bool {
+    a.iter().zip(b).all(|(a, b)| *a > b)
+}
+
 /// The power of ten that a number, of which what is below `least` is rounding, stays below: that is worth no more
 /// digits, and would change from machine to machine.
 pub(super) fn below(number: f64, least: f64, unit: &str) -> String {

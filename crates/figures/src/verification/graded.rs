@@ -1,9 +1,9 @@
 //! Section 4 and 5: design (iv).
 
-use super::finding::{Finding, Verdict, percent};
+use super::finding::{Finding, Verdict, above, list, percent};
 use super::laboratory::{
-    CAMERA, DESIGNS, Fixture, GAUSSIAN, Rays, fact, gaze, largest_difference, likeness, square,
-    statistics,
+    CAMERA, DESIGNS, Fixture, GAUSSIAN, Rays, fact, gaze, largest_difference, likeness, missing,
+    square, statistics, strongest,
 };
 use super::{Findings, VerificationError};
 use cloakroom::measure::Region;
@@ -16,10 +16,9 @@ const DEPTH: f64 = 50.0;
 pub(super) fn index(_: &Fixture<'_>) -> Findings {
     let exact = format!("{GAUSSIAN}w = 10.0158\nh = 4.2532\n");
     let referenced = format!("{GAUSSIAN}referenced = true\n");
-    let [from, to] = ["index_min", "index_max"].map(|name| fact(&referenced, name));
-    let (from, to) = (from?, to?);
-    let [wide, narrow] = [GAUSSIAN, &square(DESIGNS[2])].map(|d| fact(d, "mirror_width_cm"));
-    let (wide, narrow) = (wide?, narrow?);
+    let (from, to) = (fact(&referenced, "index_min")?, fact(&referenced, "index_max")?);
+    let wide = fact(GAUSSIAN, "mirror_width_cm")?;
+    let narrow = fact(&square(DESIGNS[2]), "mirror_width_cm")?;
     Ok(vec![
         Finding::number(
             "4",
@@ -56,10 +55,10 @@ pub(super) fn index(_: &Fixture<'_>) -> Findings {
 }
 
 pub(super) fn polarization(laboratory: &Fixture<'_>) -> Findings {
-    let [h, v] = ["horizontal", "vertical"].map(|polarizer| laboratory.show(GAUSSIAN, polarizer));
-    let (h, v) = (h?, v?);
-    let difference = largest_difference(&h.view, &v.view);
-    let pairs = || h.view.light.iter().zip(&v.view.light).flat_map(|(h, v)| h.iter().zip(v));
+    let h = laboratory.show(GAUSSIAN, "horizontal")?.view;
+    let v = laboratory.show(GAUSSIAN, "vertical")?.view;
+    let difference = largest_difference(&h, &v);
+    let pairs = || h.light.iter().zip(&v.light).flat_map(|(h, v)| h.iter().zip(v));
     let rms = (pairs().map(|(h, v)| (h - v).powi(2)).sum::<f64>() / pairs().count() as f64).sqrt();
     let unpolarized = laboratory.show(GAUSSIAN, "none")?;
     let [delivered, _] = statistics(&unpolarized.picture, "delivered")?;
@@ -84,9 +83,9 @@ pub(super) fn polarization(laboratory: &Fixture<'_>) -> Findings {
 
 pub(super) fn views(laboratory: &Fixture<'_>) -> Findings {
     let metal = format!("{GAUSSIAN}show = \"bare\"\n");
-    let [empty, cloaked, bare] =
-        ["", GAUSSIAN, &metal].map(|device| laboratory.show(device, "none"));
-    let (empty, cloaked, bare) = (empty?.view, cloaked?.view, bare?.view);
+    let empty = laboratory.show("", "none")?.view;
+    let cloaked = laboratory.show(GAUSSIAN, "none")?.view;
+    let bare = laboratory.show(&metal, "none")?.view;
     let silhouette = laboratory.silhouette(&metal)?;
     let whole = Region::whole(&empty);
     let like = |view, region| likeness(&empty, view, region);
@@ -100,9 +99,10 @@ pub(super) fn views(laboratory: &Fixture<'_>) -> Findings {
         let direction = gaze(right, up);
         let height = |origin: DVec3, d: DVec3| origin.y + d.y * (50.0 - origin.x) / d.x;
         let (leaves, _) = rays.trace(CAMERA, direction);
-        let leaf = leaves.iter().max_by(|a, b| a.power[0].total_cmp(&b.power[0]));
-        leaf.map(|leaf| height(leaf.position, leaf.direction) - height(CAMERA, direction))
-            .ok_or_else(|| VerificationError::Missing("a leaf".to_owned()))
+        let leaf = strongest(leaves, 0)?;
+        Ok::<_, VerificationError>(
+            height(leaf.position, leaf.direction) - height(CAMERA, direction),
+        )
     };
     let (near, far) = (raised(18.0, 0.5)?, raised(18.0, 12.0)?);
     let (middle_near, middle_far) = (raised(0.0, 0.5)?, raised(0.0, 12.0)?);
@@ -141,9 +141,11 @@ pub(super) fn views(laboratory: &Fixture<'_>) -> Findings {
 
 pub(super) fn times(laboratory: &Fixture<'_>) -> Findings {
     let shown = laboratory.show(GAUSSIAN, "none")?;
-    let missing = || VerificationError::Missing("times of flight".to_owned());
-    let differences = shown.view.time_of_flight_difference.as_ref().ok_or_else(missing)?;
-    let flights = shown.view.time_of_flight.as_ref().ok_or_else(missing)?;
+    let (Some(differences), Some(flights)) =
+        (&shown.view.time_of_flight_difference, &shown.view.time_of_flight)
+    else {
+        return Err(missing("times of flight"));
+    };
     let pairs = || differences.iter().zip(flights).filter(|(d, _)| d.is_finite());
     let largest = pairs().map(|(d, _)| d.abs()).fold(0.0, f64::max);
     let of_flight = pairs().map(|(d, t)| (d / (t - d)).abs()).fold(0.0, f64::max);
@@ -190,15 +192,13 @@ pub(super) fn reflections(laboratory: &Fixture<'_>) -> Findings {
         let shown = laboratory.show(&square(material), "none")?;
         *other = statistics(&shown.picture, "first_face_reflectance")?[0];
     }
+    let [average, largest] = [still_mean, still_most].map(|share| percent(share, 3));
+    let [one, two] = others.map(|share| percent(share, 1));
     Ok(vec![
         Finding::new(
             "4, Fig. 8",
             "Fresnel reflection along the axis is of the order of 0.01 % or less",
-            format!(
-                "first face: {} on average, at most {}",
-                percent(still_mean, 3),
-                percent(still_most, 3)
-            ),
+            format!("first face: {average} on average, at most {largest}"),
             Verdict::limit(still_most, 0.0001),
         )
         .because(
@@ -217,12 +217,7 @@ pub(super) fn reflections(laboratory: &Fixture<'_>) -> Findings {
         Finding::new(
             "4",
             "It is smaller by orders of magnitude than for (i) and (ii)",
-            format!(
-                "on average, unpolarized: (i) {}, (ii) {}, (iv) {}",
-                percent(others[0], 1),
-                percent(others[1], 1),
-                percent(still_mean, 3)
-            ),
+            format!("on average, unpolarized: (i) {one}, (ii) {two}, (iv) {average}"),
             Verdict::of(others[0].min(others[1]) > 100.0 * still_mean),
         ),
     ])
@@ -240,7 +235,6 @@ pub(super) fn turned(laboratory: &Fixture<'_>) -> Findings {
         }
     }
     let [cloak, bare] = likenesses;
-    let list = |values: [f64; 3]| values.map(|v| format!("{v:.2}")).join(", ");
     Ok(vec![Finding::new(
         "4, Fig. 9",
         "Turned by 5, 10, 20 degrees, (iv) behaves as a Gaussian carpet cloak does: as a flat mirror",
@@ -249,6 +243,6 @@ pub(super) fn turned(laboratory: &Fixture<'_>) -> Findings {
             list(cloak),
             list(bare)
         ),
-        Verdict::of(cloak.iter().zip(bare).all(|(cloak, bare)| *cloak > bare)),
+        Verdict::of(above(cloak, bare)),
     )])
 }

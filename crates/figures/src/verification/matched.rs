@@ -27,14 +27,12 @@ pub(super) fn along_the_axis(laboratory: &Fixture<'_>) -> Findings {
             lost = lost.max(1.0 - h).max(1.0 - v);
         }
     }
+    let (least, lost_at_most) = (below(difference, SINGLE, ""), below(lost, DOUBLE, ""));
     Ok(vec![
         Finding::new(
             "3, Fig. 6",
             "Bare metal distorts the view; (iii) retrieves the empty view perfectly",
-            format!(
-                "largest difference of linear light: {}, bare {bare:.2}",
-                below(difference, SINGLE, "")
-            ),
+            format!("largest difference of linear light: {least}, bare {bare:.2}"),
             Verdict::of(difference < 1e-5 && bare > 0.1),
         ),
         Finding::new(
@@ -46,10 +44,7 @@ pub(super) fn along_the_axis(laboratory: &Fixture<'_>) -> Findings {
         Finding::new(
             "3",
             "(iii) is impedance matched to air, for any polarization",
-            format!(
-                "power that is not on its own line, over the view: {}",
-                below(lost, DOUBLE, "")
-            ),
+            format!("power that is not on its own line, over the view: {lost_at_most}"),
             Verdict::of(lost < 1e-9),
         ),
     ])
