@@ -1,7 +1,7 @@
 //! Section 2: the equation of motion of rays.
 
-use super::Findings;
-use super::finding::{Finding, SINGLE, Verdict, below};
+use super::Checked;
+use super::finding::{Page, SINGLE, below};
 use super::laboratory::{CAMERA, Fixture, GAUSSIAN, Rays, gaze, missing, strongest};
 use glam::DVec3;
 use num_complex::Complex64;
@@ -12,7 +12,7 @@ use optics::transformation::{ConformalMap, GaussianMap};
 const CUT: [f64; 2] = [25.0, 28.57];
 
 /// Rays of design (iv) by the program, and by plain steps along the equation of motion in physical space.
-pub(super) fn equation(laboratory: &Fixture<'_>) -> Findings {
+pub(super) fn equation(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     let gaussian = GaussianMap::new(10.02, 4.25).map_err(|error| missing(&error.to_string()))?;
     let map = ConformalMap::from(gaussian);
     let assembly = laboratory.assembly(GAUSSIAN)?;
@@ -45,16 +45,14 @@ pub(super) fn equation(laboratory: &Fixture<'_>) -> Findings {
             .max((leaf.optical_path - path).abs())
             .max(100.0 * leaf.direction.distance(direction));
     }
-    Ok(vec![Finding::new(
-        "2",
-        "Rays follow an equation of motion derived from Fermat's principle",
-        format!(
-            "9 rays through (iv), stepped along it in physical space, differ from the program's by {} in place, optical \
-             path, and 100 cm of direction",
+    page.says("2", "Rays follow an equation of motion derived from Fermat's principle")
+        .computed(format!(
+            "9 rays through (iv), stepped along it in physical space, differ from the \
+             program's by {} in place, optical path, and 100 cm of direction",
             below(off, SINGLE, "cm")
-        ),
-        Verdict::of(off < 1e-5),
-    )])
+        ))
+        .verdict(off < 1e-5);
+    Ok(())
 }
 
 /// n² = 1/|f'|² and its gradient at a point above the floor.
