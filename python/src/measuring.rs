@@ -120,7 +120,7 @@ pub fn verify(py: Python<'_>, progress: Option<Py<PyAny>>) -> PyResult<String> {
         verification::verify(&|| watch.advance(1), watch.stop())
     })?
     .map_err(|error| match error {
-        VerificationError::Stopped => stopped(),
+        VerificationError::Render(RenderError::Stopped) => stopped(),
         error => value_error(error),
     })?;
     serde_json::to_string(&findings).map_err(value_error)

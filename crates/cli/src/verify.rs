@@ -5,6 +5,7 @@ use crate::interruption;
 use crate::progress;
 use crate::report::{self, Failure};
 use crate::scene;
+use cloakroom::render::RenderError;
 use cloakroom_figures::verification::{self, VerificationError, markdown, verify};
 use std::sync::atomic::AtomicBool;
 
@@ -17,7 +18,7 @@ pub fn run(arguments: &VerifyArguments, stop: &AtomicBool) -> Result<(), Failure
     bar.finish_and_clear();
     drop(busy);
     let findings = findings.map_err(|error| match error {
-        VerificationError::Stopped => Failure::Interrupted,
+        VerificationError::Render(RenderError::Stopped) => Failure::Interrupted,
         error => Failure::from_error(error),
     })?;
     if arguments.json {

@@ -18,15 +18,6 @@ pub struct ColorBar {
     pub quantity: Quantity,
 }
 
-/// The parts of a colour bar in type of a size.
-struct Layout {
-    axis: Axis,
-    /// The width of the widest label.
-    widest: f64,
-    /// The lines of the title.
-    title: Vec<String>,
-}
-
 /// In type of size 1: the width of the colours, and where labels begin to their right.
 const COLORS: f64 = 0.8;
 const LABELS: f64 = COLORS + 0.5;
@@ -34,24 +25,25 @@ const LABELS: f64 = COLORS + 0.5;
 const STEPS: u32 = 256;
 
 impl ColorBar {
-    fn layout(&self, height: f64, text: f64) -> Layout {
+    /// In type of a size: the axis, the width of its widest label, and the lines of its title.
+    fn layout(&self, height: f64, text: f64) -> (Axis, f64, Vec<String>) {
         let axis = axis(&self.quantity, self.scale.range(), (height / (1.6 * text)) as usize);
         let widths = axis.ticks.iter().map(|tick| Face::Regular.width(&tick.label, text));
         let widest = widths.fold(0.0, f64::max);
         let title = Face::Regular.wrap(&axis.title, text, height);
-        Layout { axis, widest, title }
+        (axis, widest, title)
     }
 
     /// The width that it takes up if it is so high, with type of that size.
     pub(super) fn width(&self, height: f64, text: f64) -> f64 {
-        let Layout { widest, title, .. } = self.layout(height, text);
+        let (_, widest, title) = self.layout(height, text);
         widest + (LABELS + 0.2 + LINE * title.len() as f64) * text
     }
 
     /// Draws it with the corner of the colours at a point. They are as high as told; labels, and the points, reach
     /// beyond them by up to half the height of the type.
     pub(super) fn draw(&self, drawing: &mut Drawing, at: DVec2, height: f64, text: f64) {
-        let Layout { axis, widest, title } = self.layout(height, text);
+        let (axis, widest, title) = self.layout(height, text);
         let width = COLORS * text;
         let frame = Frame { corner: at, size: DVec2::new(width, height), text };
         let image = RgbImage::from_fn(1, STEPS, |_, row| {

@@ -2,7 +2,7 @@
 
 use super::drawing::DrawingFormat;
 use super::{IllustrationError, ScalarMap};
-use cloakroom::output::{Format, OutputError, Picture, to_srgb, write, write_png};
+use cloakroom::output::{Format, OutputError, Picture, write, write_png};
 use std::path::Path;
 
 /// A format of files of pictures.
@@ -60,9 +60,6 @@ pub fn write_picture(
         (PictureFormat::Pixels(Format::Png), (Some(channel), color_bar)) => {
             let map = ScalarMap::new(picture, channel, None)?.into_image(color_bar)?;
             write_png(&map, &picture.metadata, path)?;
-        }
-        (PictureFormat::Pixels(Format::Png), (None, _)) => {
-            write_png(&to_srgb(picture)?, &picture.metadata, path)?;
         }
         (PictureFormat::Pixels(_), _) => write(picture, path)?,
     }

@@ -80,13 +80,9 @@ impl Plot {
     /// The plot as a drawing; its units are twentieths of a millimetre.
     #[must_use]
     pub fn draw(&self) -> Drawing {
-        let labels: Vec<&str> = match self.panels.first() {
-            Some(panel) if panel.curves.len() > 1 => {
-                panel.curves.iter().map(|curve| curve.label.as_str()).collect()
-            }
-            _ => Vec::new(),
-        };
-        let key = KEY_LINE * labels.len() as f64 + if labels.is_empty() { 0.0 } else { 1.0 };
+        let curves = self.panels.first().map_or(&[][..], |panel| &panel.curves);
+        let keyed = if curves.len() > 1 { curves } else { &[] };
+        let key = KEY_LINE * keyed.len() as f64 + if keyed.is_empty() { 0.0 } else { 1.0 };
         let size = DVec2::new(COLUMN - LEFT - RIGHT, PANEL - ABOVE) * MM;
         let frame = |number: usize| {
             let top = key + PANEL * number as f64 + ABOVE;
@@ -108,12 +104,13 @@ impl Plot {
         for (curve, at) in marks {
             mark(&mut drawing, curve, at);
         }
-        for (i, label) in labels.iter().enumerate() {
+        for (i, Curve { label, .. }) in keyed.iter().enumerate() {
             let at = DVec2::new(LEFT + 3.5, 2.6 + KEY_LINE * i as f64) * MM;
             let ends = [at - DVec2::X * 3.0 * MM, at + DVec2::X * 3.0 * MM];
             drawing.add_line("key", ends, stroke(i));
             mark(&mut drawing, i, at);
-            let words = Words::new(*label, at + DVec2::X * 4.5 * MM, TYPE * MM).anchored(0.0);
+            let words =
+                Words::new(label.as_str(), at + DVec2::X * 4.5 * MM, TYPE * MM).anchored(0.0);
             drawing.add_words("key-words", words);
         }
         drawing

@@ -101,6 +101,14 @@ pub(super) fn power_of_ten(exponent: i32) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(f64::INFINITY)
 }
 
+/// The true minus sign.
+pub(super) const MINUS: &str = "\u{2212}";
+
+/// The digits of a number with the true minus sign.
+pub(super) fn with_minus(digits: &str) -> String {
+    digits.replace('-', MINUS)
+}
+
 /// A number with so many decimals at most.
 pub(super) fn short(number: f64, decimals: usize) -> String {
     let digits = format!("{number:.decimals$}");

@@ -149,7 +149,6 @@ pub(super) struct SpaceView {
     scale: f64,
     middle: DVec3,
     centre: DVec2,
-    sheet: DVec2,
 }
 
 impl SpaceView {
@@ -174,9 +173,9 @@ impl SpaceView {
         let reach = corners.fold(DVec2::splat(1e-6), |most, corner| {
             most.max(DVec2::new(corner.dot(right), corner.dot(up)).abs())
         });
-        let room = DVec2::new(sheet.x, sheet.y - KEY) / 2.0 - MARGIN;
         let centre = DVec2::new(sheet.x, sheet.y - KEY) / 2.0;
-        Self { right, up, toward, scale: (room / reach).min_element(), middle, centre, sheet }
+        let scale = ((centre - MARGIN) / reach).min_element();
+        Self { right, up, toward, scale, middle, centre }
     }
 
     /// Where on the sheet a point is.
@@ -187,12 +186,12 @@ impl SpaceView {
 
     /// The corners of the part of the sheet that it fills.
     pub fn frame(&self) -> [DVec2; 4] {
-        corners([DVec2::ZERO, self.sheet - DVec2::Y * KEY])
+        corners([DVec2::ZERO, 2.0 * self.centre])
     }
 
     /// Draws the directions of x, y and z.
     pub fn draw_axes(&self, drawing: &mut Drawing) {
-        let origin = DVec2::new(self.sheet.x - 3.2 * TEXT, self.sheet.y - 3.2 * TEXT);
+        let origin = drawing.size - 3.2 * TEXT;
         let ground = Shape::Circle { centre: origin, radius: 2.7 * TEXT };
         drawing.add("ground", ground).filled(PAPER.faint(0.85));
         for (name, axis) in [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)] {

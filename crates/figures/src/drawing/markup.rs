@@ -44,16 +44,13 @@ impl Drawing {
         for (index, element) in self.elements.iter().enumerate() {
             if let Some(clip) = &element.clip {
                 let path = path(contours(clip)).set("clip-rule", "evenodd");
-                document = document.add(ClipPath::new().set("id", clip_name(index)).add(path));
+                let id = format!("clip{index}");
+                document = document.add(ClipPath::new().set("id", id).add(path));
             }
             document = document.add(node(element, index, source));
         }
         format!("{document}\n")
     }
-}
-
-fn clip_name(index: usize) -> String {
-    format!("clip{index}")
 }
 
 fn node(
@@ -64,7 +61,7 @@ fn node(
     let mut group = Group::new().set("class", element.class);
     if element.clip.is_some() {
         // The clip is in the coordinates of the sheet: it belongs to the group, not to an image in it.
-        group = group.set("clip-path", format!("url(#{})", clip_name(index)));
+        group = group.set("clip-path", format!("url(#clip{index})"));
     }
     match &element.shape {
         Shape::Area(loops) => {
@@ -91,20 +88,15 @@ fn node(
 
 /// Sets fill and stroke.
 fn painted<T: Node>(mut node: T, element: &Element) -> T {
-    match element.fill {
-        Some(ink) => {
-            node.assign("fill", hex(ink));
-            if ink.opacity < 1.0 {
-                node.assign("fill-opacity", number(ink.opacity));
-            }
+    node.assign("fill", "none");
+    for (name, ink) in [("fill", element.fill), ("stroke", element.stroke.map(|s| s.ink))] {
+        let Some(Ink { rgb: [r, g, b], opacity }) = ink else { continue };
+        node.assign(name, format!("#{r:02x}{g:02x}{b:02x}"));
+        if opacity < 1.0 {
+            node.assign(format!("{name}-opacity"), number(opacity));
         }
-        None => node.assign("fill", "none"),
     }
     if let Some(stroke) = element.stroke {
-        node.assign("stroke", hex(stroke.ink));
-        if stroke.ink.opacity < 1.0 {
-            node.assign("stroke-opacity", number(stroke.ink.opacity));
-        }
         node.assign("stroke-width", number(stroke.width));
         node.assign("stroke-linejoin", "round");
         if let Some([dash, gap]) = stroke.dash {
@@ -112,11 +104,6 @@ fn painted<T: Node>(mut node: T, element: &Element) -> T {
         }
     }
     node
-}
-
-fn hex(ink: Ink) -> String {
-    let [r, g, b] = ink.rgb;
-    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// A number with as many decimals as matter: a thousandth of a unit.

@@ -22,10 +22,8 @@ impl FrameFolder {
     ///
     /// If it cannot be made.
     pub fn new(folder: &Path, count: usize) -> Result<Self, FilmError> {
-        fs::create_dir_all(folder).map_err(|error| FilmError::Folder {
-            path: folder.to_owned(),
-            reason: error.to_string(),
-        })?;
+        fs::create_dir_all(folder)
+            .map_err(|error| FilmError::failed("cannot make the folder", folder, &error))?;
         Ok(Self { folder: folder.to_owned(), count })
     }
 
@@ -77,7 +75,7 @@ impl FrameFolder {
     pub fn read(&self, frame: usize) -> Result<RgbImage, FilmError> {
         let path = self.file(frame);
         let image = image::open(&path).map(image::DynamicImage::into_rgb8);
-        image.map_err(|error| FilmError::Frame { path, reason: error.to_string() })
+        image.map_err(|error| FilmError::failed("cannot read the frame", &path, &error))
     }
 
     /// Removes the frames, and the folder if nothing else is in it.

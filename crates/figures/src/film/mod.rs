@@ -21,6 +21,7 @@ use cloakroom::render::{
 use cloakroom::scene::Scene;
 use cloakroom::trace::TraceStats;
 use std::error::Error;
+use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -28,18 +29,12 @@ use std::sync::atomic::AtomicBool;
 /// Why there is no film.
 #[derive(Debug, thiserror::Error)]
 pub enum FilmError {
-    /// The folder of the frames cannot be made.
-    #[error("cannot make the folder {}: {reason}", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// Why not.
-        reason: String,
-    },
-    /// A frame cannot be read.
-    #[error("cannot read the frame {}: {reason}", path.display())]
-    Frame {
-        /// The frame.
+    /// The folder of the frames cannot be made, a frame not be read, or `ffmpeg` not make the film.
+    #[error("{what} {}: {reason}", path.display())]
+    Failed {
+        /// What has not come about, as in `cannot read the frame`.
+        what: &'static str,
+        /// The folder, the frame or the film.
         path: PathBuf,
         /// Why not.
         reason: String,
@@ -73,14 +68,6 @@ pub enum FilmError {
          .webp or a folder of frames"
     )]
     NoFfmpeg,
-    /// `ffmpeg` has failed.
-    #[error("ffmpeg could not make {}: {reason}", path.display())]
-    Ffmpeg {
-        /// The film.
-        path: PathBuf,
-        /// What it said last.
-        reason: String,
-    },
     /// The film cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -236,6 +223,12 @@ pub struct FilmSettings<'a> {
     pub frame_done: &'a (dyn Fn() + Sync),
     /// Set from outside to stop the work.
     pub stop: &'a AtomicBool,
+}
+
+impl FilmError {
+    fn failed(what: &'static str, path: &Path, reason: &dyn Display) -> Self {
+        Self::Failed { what, path: path.to_owned(), reason: reason.to_string() }
+    }
 }
 
 impl FilmSettings<'_> {

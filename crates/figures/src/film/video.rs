@@ -3,6 +3,7 @@
 use super::{FilmError, FilmSettings, FrameFolder, checked, size};
 use cloakroom::output::{OutputError, check_writable};
 use cloakroom::render::RenderError;
+use std::fmt::Display;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -56,11 +57,11 @@ pub(super) fn write(
     let inside = std::path::absolute(part.path()).map_err(unwritable)?;
     let (file, metadata) = (inside.join("film"), inside.join("metadata"));
     std::fs::write(&metadata, ffmetadata(settings.metadata)).map_err(unwritable)?;
-    let failed = |reason: String| FilmError::Ffmpeg { path: path.to_owned(), reason };
+    let failed = |reason: &dyn Display| FilmError::failed("ffmpeg could not make", path, reason);
     let command = command(frames, [&metadata, &file], codec, settings.rate).spawn();
     let mut child = command.map_err(|error| match error.kind() {
         ErrorKind::NotFound => FilmError::NoFfmpeg,
-        _ => failed(error.to_string()),
+        _ => failed(&error),
     })?;
     let done = wait(&mut child, settings.stop);
     let said = child.stderr.take().map(|mut stderr| {
@@ -69,12 +70,12 @@ pub(super) fn write(
         let _ = stderr.read_to_end(&mut said);
         String::from_utf8_lossy(&said).into_owned()
     });
-    match done.map_err(|error| failed(error.to_string()))? {
+    match done.map_err(|error| failed(&error))? {
         None => Err(RenderError::Stopped.into()),
         Some(true) => std::fs::rename(&file, path).map_err(unwritable),
         Some(false) => {
             let said = said.unwrap_or_default();
-            Err(failed(said.lines().last().unwrap_or("it has failed").to_owned()))
+            Err(failed(&said.lines().last().unwrap_or("it has failed")))
         }
     }
 }

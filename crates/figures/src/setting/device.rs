@@ -5,7 +5,7 @@ use super::super::drawing::{Drawing, Face, Ink, Shape, Words};
 use super::body;
 use super::index_map::{draw_region, on_sheet};
 use super::medium_axes::{MediumAxes, draw_cross};
-use super::subject::{Subject, bounds, sides, turn};
+use super::subject::{Subject, border, bounds, sides, turn};
 use super::view::View;
 use super::{INK, MEDIUM, METAL, PAPER, TEXT, THICK, THIN, centimetres, dimension, rounded, write};
 use cloakroom::device::{Contour, REACH, Section};
@@ -151,8 +151,7 @@ fn draw_axes(drawing: &mut Drawing, view: &View, subject: &Subject<'_>, region: 
 /// The axes of the medium of a graded cell on a lattice, if it is anisotropic, and how far apart they are, cm.
 pub(super) fn axes_of_graded(region: &Section<'_>) -> (Vec<(DVec2, MediumAxes)>, f64) {
     const STEPS: u32 = 9;
-    let points = region.border.iter().flat_map(|contour| contour.points.iter().copied());
-    let Some([low, high]) = bounds(points) else { return (Vec::new(), 0.0) };
+    let Some([low, high]) = bounds(border(region)) else { return (Vec::new(), 0.0) };
     let distance = (high - low).max_element() / f64::from(STEPS);
     let lattice = (0..STEPS * STEPS).map(|k| {
         let steps = DVec2::new(f64::from(k % STEPS), f64::from(k / STEPS));

@@ -5,7 +5,7 @@ use super::super::color_scale::ColorScale;
 use super::super::drawing::{Drawing, Shape};
 use super::super::quantity::Quantity;
 use super::medium_axes::MediumAxes;
-use super::subject::{Subject, bounds, lattice};
+use super::subject::{Subject, border, bounds, lattice};
 use super::view::View;
 use cloakroom::device::Section;
 use cloakroom::output::RgbImage;
@@ -20,10 +20,9 @@ pub(super) fn bar(subjects: &[Subject<'_>]) -> Option<ColorBar> {
     let regions = subjects.iter().flat_map(|subject| &subject.section.regions);
     for region in regions.filter(|region| region.region.is_graded()) {
         // The extremes may lie on the border.
-        let border = region.border.iter().flat_map(|contour| contour.points.iter().copied());
-        let Some([low, high]) = bounds(border.clone()) else { continue };
+        let Some([low, high]) = bounds(border(region)) else { continue };
         let inside = lattice([low, high], STEPS).filter(|p| region.holds(*p));
-        for medium in border.chain(inside).filter_map(|p| region.region.medium_at(p)) {
+        for medium in border(region).chain(inside).filter_map(|p| region.region.medium_at(p)) {
             isotropic &= MediumAxes::of(&medium).is_none();
             numbers.push(medium.mean_index());
         }
@@ -44,8 +43,7 @@ pub(super) fn draw_region(
     scale: &ColorScale,
 ) {
     const MOST: f64 = 480.0;
-    let points = region.border.iter().flat_map(|contour| contour.points.iter().copied());
-    let Some([low, high]) = bounds(points) else { return };
+    let Some([low, high]) = bounds(border(region)) else { return };
     let size = high - low;
     let step = (size.max_element() / MOST).max(0.7 / view.scale);
     let count = (size / step).ceil().max(DVec2::splat(4.0)).min(DVec2::splat(MOST));

@@ -103,7 +103,9 @@ impl Layout {
         let mut best: Option<(f64, View, [DVec2; 2])> = None;
         for share in [0.84, 0.8, 0.76, 0.72, 0.68, 0.64, 0.6, 0.56] {
             // To the right, away from the inset.
-            let view = view(share).moved_right(world[1].x);
+            let mut view = view(share);
+            let right = view.window[0].x + view.window[1].x;
+            view.origin.x += (right - view.place(world[1]).x).max(0.0);
             let taken = obstacles(&view, stage, subjects);
             for height in (4..=13).map(|k| 0.04 * f64::from(k) * sheet.y) {
                 let size = DVec2::splat(height);

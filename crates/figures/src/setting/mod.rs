@@ -20,7 +20,7 @@ pub(super) use view::corners;
 use super::color_bar::ColorBar;
 pub(super) use super::drawing::INK;
 use super::drawing::{Drawing, Ink, Shape, Words};
-use super::quantity::short;
+use super::quantity::{short, with_minus};
 use cloakroom::assembly::Assembly;
 use cloakroom::render::{PreparedScene, PreparedSceneError, metadata};
 use cloakroom::scene::Scene;
@@ -192,7 +192,7 @@ fn centimetres(length: f64) -> String {
 
 /// A number with two decimals at most.
 fn rounded(number: f64) -> String {
-    short(number, 2).replace('-', "\u{2212}")
+    with_minus(&short(number, 2))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The devices of a scene, ready to be drawn.
 
 use cloakroom::assembly::Assembly;
-use cloakroom::device::{Contour, CrossSection, REACH};
+use cloakroom::device::{Contour, CrossSection, REACH, Section};
 use glam::DVec2;
 use optics::geometry::Pose;
 
@@ -82,6 +82,11 @@ pub(super) fn lattice([low, high]: [DVec2; 2], steps: u32) -> impl Iterator<Item
         let share = DVec2::new(f64::from(k % steps), f64::from(k / steps)) + 0.5;
         low + (high - low) * share / f64::from(steps)
     })
+}
+
+/// The points of the border of a region.
+pub(super) fn border(region: &Section<'_>) -> impl Iterator<Item = DVec2> + Clone {
+    region.border.iter().flat_map(|contour| contour.points.iter().copied())
 }
 
 /// The sides of a contour that is closed: from each point to the next.

@@ -26,13 +26,6 @@ impl View {
         Self { window, scale, origin }
     }
 
-    /// The same, moved to the right until `x` is at the right edge of the window.
-    #[must_use]
-    pub(super) fn moved_right(self, x: f64) -> Self {
-        let free = self.window[0].x + self.window[1].x - self.place(DVec2::new(x, 0.0)).x;
-        Self { origin: self.origin + DVec2::X * free.max(0.0), ..self }
-    }
-
     /// Where on the sheet a point of the xy-plane is.
     #[must_use]
     pub fn place(&self, point: DVec2) -> DVec2 {

@@ -5,7 +5,7 @@ use cloakroom::assembly::Assembly;
 use cloakroom::device::FactValue;
 use cloakroom::measure::{Region, Survey, View, correlation, survey};
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, PreparedScene, Supervision, assembly, render};
+use cloakroom::render::{ChannelSet, PreparedScene, RenderError, Supervision, assembly, render};
 use cloakroom::scene::Scene;
 use cloakroom::scene_file;
 use cloakroom::trace::{Launch, Leaf, Limits, Outcome, PathSegment, Tracer};
@@ -74,8 +74,8 @@ impl Fixture<'_> {
         let [scene, ideal] = [device, ideal].map(|device| Self::scene(device, polarizer));
         let (scene, ideal) = (scene?, ideal?);
         let [studio, ideal] = [&scene, &ideal].map(PreparedScene::new);
-        survey(&studio?, &ideal?, &scene.camera, &|_| {}, self.stop)
-            .ok_or(VerificationError::Stopped)
+        let survey = survey(&studio?, &ideal?, &scene.camera, &|_| {}, self.stop);
+        Ok(survey.ok_or(RenderError::Stopped)?)
     }
 
     /// The silhouette of a device.

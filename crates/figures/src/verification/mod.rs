@@ -24,12 +24,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Why the paper could not be gone through.
 #[derive(Debug, thiserror::Error)]
 pub enum VerificationError {
-    /// The work was stopped from outside.
-    #[error("stopped")]
-    Stopped,
-    /// A picture could not be made.
+    /// A picture could not be made, or the work was stopped from outside.
     #[error("{0}")]
-    Render(RenderError),
+    Render(#[from] RenderError),
     /// A picture could not be measured.
     #[error("{0}")]
     Measure(#[from] MeasureError),
@@ -42,15 +39,6 @@ pub enum VerificationError {
     /// A number that should be there is not.
     #[error("{0} is missing")]
     Missing(String),
-}
-
-impl From<RenderError> for VerificationError {
-    fn from(error: RenderError) -> Self {
-        match error {
-            RenderError::Stopped => Self::Stopped,
-            error => Self::Render(error),
-        }
-    }
 }
 
 /// A check adds what it finds to the page.
@@ -94,7 +82,7 @@ pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Result<Vec<Finding>, V
     let mut page = Page::default();
     for check in CHECKS {
         if stop.load(Ordering::Relaxed) {
-            return Err(VerificationError::Stopped);
+            return Err(RenderError::Stopped.into());
         }
         check(&laboratory, &mut page)?;
         step_done();
