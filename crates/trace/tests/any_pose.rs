@@ -178,12 +178,12 @@ fn a_photograph_in_any_pose_is_met_where_it_is() {
         let structure = device(cloak).build(Request::default()).unwrap();
         Assembly::new(vec![Placed { pose, structure }])
     };
-    let upright =
-        Screen { pose: Pose::new(DVec3::X * 3.0, 0.0), half_width: 8.0, half_height: 5.0 };
+    let at = Pose::new(DVec3::X * 3.0, 0.0);
+    let upright = Screen::new(&at, 8.0, 5.0);
     let mut hits = 0;
     for _ in 0..300 {
         let pose = numbers.pose();
-        let screen = Screen { pose: pose.after(&upright.pose), ..upright };
+        let screen = Screen::new(&pose.after(&at), 8.0, 5.0);
         let launch = launch(&mut numbers);
         let other = turned(&launch, &pose);
         let expected = upright.hit(launch.origin, launch.direction, 0.0);

@@ -241,7 +241,7 @@ impl<'s> PreparedScene<'s> {
     /// Width and height of the photograph, cm.
     #[must_use]
     pub fn photograph_size(&self) -> [f64; 2] {
-        [2.0 * self.screen.half_width, 2.0 * self.screen.half_height]
+        self.screen.size()
     }
 
     /// The photograph.
@@ -304,5 +304,5 @@ fn screen(scene: &Scene, aspect: f64) -> Result<Screen, PreparedSceneError> {
             .covering_width(&pose, aspect)
             .ok_or_else(|| PreparedSceneError::NoCoveringWidth { plane: settings.plane() })?,
     };
-    Ok(Screen { pose, half_width: width / 2.0, half_height: width / aspect / 2.0 })
+    Ok(Screen::new(&pose, width / 2.0, width / aspect / 2.0))
 }

@@ -173,6 +173,7 @@ impl Assembly {
 
     /// The nearest surface ahead of a ray, of all devices or of the `guests` of a body. `departed` is what the ray has just
     /// left. Surfaces of other devices that rounding has put a hair behind the ray are met, too, at the distance 0.
+    #[inline(always)]
     pub(crate) fn first_hit(
         &self,
         origin: DVec3,
@@ -183,6 +184,17 @@ impl Assembly {
         if self.simple {
             return self.hit_of(0, origin, direction, departed).map(|hit| (0, hit));
         }
+        self.first_of_several(origin, direction, departed, guests)
+    }
+
+    /// As [`Self::first_hit`], where there is more than one device.
+    fn first_of_several(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        departed: Option<DepartedSurface>,
+        guests: Option<&[u16]>,
+    ) -> Option<(u16, SurfaceHit)> {
         let slack = slack_at(origin);
         let mut nearest: Option<(u16, SurfaceHit)> = None;
         let mut look = |number: u16| {
@@ -205,7 +217,7 @@ impl Assembly {
     }
 
     /// The nearest surface of one device ahead of a ray, `departed` being what the ray has just left.
-    #[inline]
+    #[inline(always)]
     fn hit_of(
         &self,
         number: u16,

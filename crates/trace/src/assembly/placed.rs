@@ -25,6 +25,7 @@ pub(crate) struct DepartedSurface {
 impl Placed {
     /// What a ray has left that runs away from this device, the `number`th: the surface that is given, or all of the
     /// device if it is convex.
+    #[inline]
     pub(crate) fn departed(&self, number: u16, surface: Option<u16>) -> Option<DepartedSurface> {
         let convex = self.structure.hull.is_convex();
         let surface = surface.filter(|_| !convex);

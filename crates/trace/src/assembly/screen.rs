@@ -1,24 +1,59 @@
 //! The opaque rectangle in space on which the photograph is.
 
 use super::{Assembly, Placed};
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::{Extent, Outline, Pose, Solid, TOUCHING};
 
 /// A rectangle where rays end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screen {
-    /// Where it is: its middle is the origin, x the way one looks straight at its front, y up, and z to the right.
-    pub pose: Pose,
-    /// Half its size along its z, cm.
-    pub half_width: f64,
-    /// Half its size along its y, cm.
-    pub half_height: f64,
+    /// Its middle, cm.
+    middle: DVec3,
+    /// The way one looks straight at its front, up, and to the right: unit vectors.
+    axes: [DVec3; 3],
+    /// Whether these are x, y and z, as in most scenes.
+    straight: bool,
+    half_width: f64,
+    half_height: f64,
 }
 
 impl Screen {
-    /// The distance at which a ray meets the plane, from zero on.
+    /// A rectangle of twice that width and height (cm) whose middle is the origin of `pose`, x being the way one looks
+    /// straight at its front, y up, and z to the right.
+    #[must_use]
+    pub fn new(pose: &Pose, half_width: f64, half_height: f64) -> Self {
+        let axes = DVec3::AXES.map(|axis| pose.vector_to_world(axis));
+        let straight = axes == DVec3::AXES;
+        Self { middle: pose.origin(), axes, straight, half_width, half_height }
+    }
+
+    /// The part of a vector along one of the axes.
+    #[inline]
+    fn along(&self, axis: usize, vector: DVec3) -> f64 {
+        if self.straight { vector[axis] } else { self.axes[axis].dot(vector) }
+    }
+
+    /// Its middle, cm.
+    #[must_use]
+    pub fn middle(&self) -> DVec3 {
+        self.middle
+    }
+
+    /// Its width and its height, cm.
+    #[must_use]
+    pub fn size(&self) -> [f64; 2] {
+        [2.0 * self.half_width, 2.0 * self.half_height]
+    }
+
+    /// How far its plane is ahead of a point as one looks straight at its front, cm.
     #[must_use]
     #[inline]
+    pub fn ahead_of(&self, point: DVec3) -> f64 {
+        self.along(0, self.middle - point)
+    }
+
+    /// The distance at which a ray meets the plane, from zero on.
+    #[must_use]
     pub fn plane_distance(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
         let t = self.distance_along(origin, direction);
         (t >= 0.0 && t.is_finite()).then_some(t)
@@ -28,27 +63,32 @@ impl Screen {
     #[must_use]
     #[inline]
     pub fn distance_along(&self, origin: DVec3, direction: DVec3) -> f64 {
-        -self.pose.to_local(origin).x / self.pose.vector_to_local(direction).x
+        self.ahead_of(origin) / self.along(0, direction)
     }
 
     /// The distance at which a ray meets the rectangle, from `least` (cm) on.
     #[must_use]
     #[inline]
     pub fn hit(&self, origin: DVec3, direction: DVec3, least: f64) -> Option<f64> {
-        let (origin, direction) =
-            (self.pose.to_local(origin), self.pose.vector_to_local(direction));
-        let t = -origin.x / direction.x;
+        let t = self.distance_along(origin, direction);
         if !(t >= least && t.is_finite()) {
             return None;
         }
-        let (y, z) = (origin.y + t * direction.y, origin.z + t * direction.z);
-        (y.abs() <= self.half_height && z.abs() <= self.half_width).then_some(t)
+        let [up, across] = self.place(origin + direction * t);
+        (up.abs() <= self.half_height && across.abs() <= self.half_width).then_some(t)
+    }
+
+    /// How far above its middle and to the right of it a point of the plane is, cm.
+    #[inline]
+    fn place(&self, point: DVec3) -> [f64; 2] {
+        let beside = point - self.middle;
+        [self.along(1, beside), self.along(2, beside)]
     }
 
     /// The point of the plane that is nearest.
     #[must_use]
     pub fn foot(&self, point: DVec3) -> DVec3 {
-        self.pose.to_world(self.pose.to_local(point).with_x(0.0))
+        point + self.axes[0] * self.ahead_of(point)
     }
 
     /// Image coordinates (u, v) of a point of the plane, from 0 to 1 to the right and down, for a ray that looks
@@ -56,15 +96,17 @@ impl Screen {
     #[must_use]
     #[inline]
     pub fn image_position(&self, point: DVec3, direction: DVec3) -> [f64; 2] {
-        let point = self.pose.to_local(point);
-        let z = point.z * self.pose.vector_to_local(direction).x.signum();
-        [0.5 + z / (2.0 * self.half_width), 0.5 - point.y / (2.0 * self.half_height)]
+        let [up, across] = self.place(point);
+        let across = across * self.along(0, direction).signum();
+        [0.5 + across / (2.0 * self.half_width), 0.5 - up / (2.0 * self.half_height)]
     }
 
     /// The point that is so many halves of its size above and to the right of its middle.
     #[must_use]
     pub fn point(&self, up: f64, across: f64) -> DVec3 {
-        self.pose.to_world(DVec3::new(0.0, up * self.half_height, across * self.half_width))
+        self.middle
+            + self.axes[1] * (up * self.half_height)
+            + self.axes[2] * (across * self.half_width)
     }
 
     /// Its middle line that is the longer one as seen along z: from below to above, or from left to right.
@@ -78,7 +120,7 @@ impl Screen {
 
     /// Whether its plane comes within rounding of the bounds of a device.
     pub(crate) fn touches(&self, assembly: &Assembly) -> bool {
-        let (origin, normal) = (self.pose.origin(), self.pose.vector_to_world(DVec3::X));
+        let (origin, normal) = (self.middle, self.axes[0]);
         let near = |[low, high]: [DVec3; 2]| {
             // The least and the greatest distance of the bounds from the plane; parts along which it runs do not matter.
             let part = |i: usize| {
@@ -98,7 +140,9 @@ impl Screen {
         let ends = [-self.half_height, self.half_height].map(|y| DVec2::new(0.0, y));
         let extent = Extent { min: -self.half_width, max: self.half_width };
         let sheet = Solid::Prism { outline: Outline::new(ends.to_vec()), extent };
-        let sheet = sheet.placed(&self.pose);
+        let [forward, up, across] = self.axes;
+        let rotation = DMat3::from_cols(forward, up, across);
+        let sheet = sheet.placed(&Pose::from_rotation(self.middle, rotation));
         assembly.devices().iter().position(|device| {
             let cuts = |solid: &Solid| solid.overlaps(&sheet, TOUCHING);
             device.body().is_none() && device.solids().iter().any(cuts)

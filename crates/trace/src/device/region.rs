@@ -140,6 +140,7 @@ impl Region {
     /// What a ray finds that enters the region at a point of its border; `None` if a conformal map has no such
     /// point: it has been lost in rounding at an edge.
     #[must_use]
+    #[inline]
     pub fn enter(&self, position: DVec3) -> Option<Entrance> {
         Some(Entrance {
             virtual_point: match self {
@@ -155,6 +156,7 @@ impl Region {
     /// passage has said of it; `None` if there is none by rounding. That of a graded region is put into
     /// `local`: media are large, and those of homogeneous regions are not copied.
     #[must_use]
+    #[inline]
     pub fn medium<'m>(
         &'m self,
         position: DVec3,

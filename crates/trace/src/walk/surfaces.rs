@@ -75,30 +75,31 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         branch.optical_path += hit.distance;
         branch.group_path += hit.distance;
         branch.met_device = true;
-        if self.assembly.is_simple() {
-            return self.enter(branch, number, &hit);
-        }
-        if !self.moves(branch, hit.distance) {
+        let (number, hit) = if self.assembly.is_simple() {
+            (number, hit)
+        } else if !self.moves(branch, hit.distance) {
             return false;
-        }
-        match self.assembly.ahead(branch.position, branch.direction, branch.departed) {
-            Ahead::Surface(number, hit) => self.enter(branch, number, &hit),
-            Ahead::Body(body) if body == number => self.enter(branch, number, &hit),
-            Ahead::Body(body) => {
-                let outward = self.assembly.device(number).pose.vector_to_world(hit.outward);
-                let event = BETWEEN_DEVICES | event(number, &hit);
-                let border =
-                    Border { onward: -outward, coating: Coating::None, event, departed: None };
-                let beyond = self.beyond(branch, Ahead::Body(body));
-                self.cross(branch, &Medium::AIR, beyond, &border)
+        } else {
+            match self.assembly.ahead(branch.position, branch.direction, branch.departed) {
+                Ahead::Surface(number, hit) => (number, hit),
+                Ahead::Body(body) if body == number => (number, hit),
+                Ahead::Body(body) => {
+                    let outward = self.assembly.device(number).pose.vector_to_world(hit.outward);
+                    let event = BETWEEN_DEVICES | event(number, &hit);
+                    let border =
+                        Border { onward: -outward, coating: Coating::None, event, departed: None };
+                    let beyond = self.beyond(branch, Ahead::Body(body));
+                    return self.cross(branch, &Medium::AIR, beyond, &border);
+                }
+                // Only grazed.
+                Ahead::Air => {
+                    let surface = Some(hit.surface);
+                    branch.departed = Some(DepartedSurface { device: number, surface });
+                    return true;
+                }
             }
-            // Only grazed.
-            Ahead::Air => {
-                let surface = Some(hit.surface);
-                branch.departed = Some(DepartedSurface { device: number, surface });
-                true
-            }
-        }
+        };
+        self.enter(branch, number, &hit)
     }
 
     /// Takes a branch in air that has come to a surface of a device into it.
@@ -162,57 +163,35 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         true
     }
 
-    /// Takes a branch to the surface to which it has passed through a region, or to what stands in the region before it;
+    /// Takes a branch to the surface to which it has passed through a region, or to what stands in a body before it;
     /// whether it goes on from there.
     pub(super) fn pass(
         &mut self,
         branch: &mut Branch<N>,
-        (number, region): (u16, u16),
+        place: (u16, u16),
         passage: Option<&Passage>,
     ) -> bool {
-        if self.assembly.device(number).body().is_some() {
-            return self.pass_through_body(branch, number, passage);
-        }
-        let Some(passage) = passage else {
-            return self.lose(branch.power);
-        };
-        let mut graded = None;
-        match self.travel(branch, (number, region), passage, &mut graded) {
-            Some(medium) => self.arrive(branch, (number, region), medium, passage),
-            None => false,
-        }
-    }
-
-    /// As [`Self::pass`] through a body, in which other devices may be met.
-    fn pass_through_body(
-        &mut self,
-        branch: &mut Branch<N>,
-        body: u16,
-        passage: Option<&Passage>,
-    ) -> bool {
-        let guest = self.guest_ahead(branch, body, passage);
+        let device = self.assembly.device(place.0);
+        let is_body = device.body().is_some();
+        let guest = if is_body { self.guest_ahead(branch, place.0, passage) } else { None };
         let Some(passage) = guest.as_ref().map(|(_, passage)| passage).or(passage) else {
-            // It runs along an endless body for ever.
+            // It is lost in rounding, or runs along an endless body for ever.
             return self.lose(branch.power);
         };
-        if !self.moves(branch, (passage.position - branch.position).length()) {
+        if is_body && !self.moves(branch, (passage.position - branch.position).length()) {
             return false;
         }
         let mut graded = None;
-        let Some(medium) = self.travel(branch, (body, 0), passage, &mut graded) else {
+        let Some(medium) = self.travel(branch, place, passage, &mut graded) else {
             return false;
         };
         let Some((met, _)) = guest else {
-            return self.arrive(branch, (body, 0), medium, passage);
+            return self.arrive(branch, place, medium, passage);
         };
-        let onward = self.assembly.device(body).pose.vector_to_world(passage.outward);
-        let event = BETWEEN_DEVICES | face_event((body, 0), passage.face);
-        self.leave(
-            branch,
-            medium,
-            met,
-            Border { onward, coating: Coating::None, event, departed: None },
-        )
+        let onward = device.pose.vector_to_world(passage.outward);
+        let event = BETWEEN_DEVICES | face_event(place, passage.face);
+        let border = Border { onward, coating: Coating::None, event, departed: None };
+        self.leave(branch, medium, met, border)
     }
 
     /// Takes a branch along a passage through a region; the medium at its end, or `None` if the branch does not come there.
@@ -593,6 +572,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     }
 
     /// The surface that a ray in air meets before the screen; `departed` is what it has just left.
+    #[inline(always)]
     fn surface_ahead(
         &self,
         position: DVec3,
@@ -600,7 +580,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         departed: Option<DepartedSurface>,
     ) -> Option<(u16, SurfaceHit)> {
         let hit = self.assembly.first_hit(position, direction, departed, None)?;
-        let screen = self.screen.and_then(|screen| screen.hit(position, direction, 0.0));
+        let screen = self.screen.as_ref();
+        let screen = screen.and_then(|screen| screen.hit(position, direction, 0.0));
         // Of two that touch, the screen is met.
         let slack = if self.screen_touches { slack_at(position) } else { 0.0 };
         screen.is_none_or(|distance| hit.1.distance + slack < distance).then_some(hit)
