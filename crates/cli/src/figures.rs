@@ -53,10 +53,9 @@ fn make(
         });
     }
     if chosen.len() == figure.panels.len() {
-        let title = format!("Figure {}. {}", figure.number, figure.title);
+        let title = format!("Figure {}. {}", figure.number(), figure.title);
         let drawing = sheet(&title, &on_sheet);
-        let files =
-            ["png", "pdf"].map(|ending| file(&figure.number.to_string(), ending, arguments));
+        let files = ["png", "pdf"].map(|ending| file(figure.number(), ending, arguments));
         write_drawing(&drawing, &title, &metadata, drawing.pixels(), &files)?;
     }
     Ok(())
