@@ -40,14 +40,16 @@ impl<E: Error + 'static> From<E> for Failure {
             || matches!(error.downcast_ref(), Some(MaterialError::Stopped))
             || matches!(error.downcast_ref(), Some(FluxError::Stopped))
             || matches!(error.downcast_ref(), Some(RayError::Stopped(_)))
-            || matches!(error.downcast_ref(), Some(VerificationError::Stopped));
+            || matches!(
+                error.downcast_ref(),
+                Some(VerificationError::Render(RenderError::Stopped))
+            );
         let too_large = matches!(error.downcast_ref(), Some(RenderError::TooLarge { .. }))
             || matches!(error.downcast_ref(), Some(MaterialError::TooLarge { .. }))
             || matches!(error.downcast_ref(), Some(RayError::TooMany { .. }));
         let unwritten = match (error.downcast_ref(), error.downcast_ref()) {
-            (Some(IllustrationError::Output(error)), _) | (_, Some(TableError::Output(error))) => {
-                Some(error)
-            }
+            (Some(IllustrationError::Output(error)), _)
+            | (_, Some(TableError::Drawing(IllustrationError::Output(error)))) => Some(error),
             _ => error.downcast_ref(),
         };
         let message = error.to_string();

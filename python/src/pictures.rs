@@ -6,7 +6,7 @@ use crate::supervision::supervised;
 use cloakroom::output::{self, Channel, Picture, RgbImage, Samples};
 use cloakroom::render as rendering;
 use cloakroom::render::{ChannelSet, Tile};
-use cloakroom_figures::{PictureFormat, scalar_map, write_picture};
+use cloakroom_figures::{PictureFormat, ScalarMap, write_picture};
 use ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
@@ -147,7 +147,7 @@ fn shown(
 ) -> Result<RgbImage, Failure> {
     Ok(match map {
         None => output::to_srgb(picture)?,
-        Some(channel) => scalar_map(picture, channel, *color_bar)?,
+        Some(channel) => ScalarMap::new(picture, channel, None)?.into_image(*color_bar)?,
     })
 }
 

@@ -49,10 +49,9 @@ fn make(
         on_sheet.push(SheetPanel { image, label, caption, bar });
     }
     if chosen.len() == figure.panels.len() {
-        let title = format!("Figure {}. {}", figure.number, figure.title);
+        let title = format!("Figure {}. {}", figure.number(), figure.title);
         let drawing = sheet(&title, &on_sheet);
-        let files =
-            ["png", "pdf"].map(|ending| file(&figure.number.to_string(), ending, arguments));
+        let files = ["png", "pdf"].map(|ending| file(figure.number(), ending, arguments));
         write_drawing(&drawing, &title, &metadata, drawing.pixels(), &files)?;
     }
     Ok(())
@@ -72,7 +71,7 @@ fn rendered(
     let Subject { panel, loaded, .. } = &views.subjects[index];
     let image = rgb(&loaded.scene, &picture)?;
     let map = loaded.scene.picture.map.name();
-    let map = map.map(|channel| ScalarMap::new(&picture, channel)).transpose()?;
+    let map = map.map(|channel| ScalarMap::new(&picture, channel, None)).transpose()?;
     write_png(&image, &picture.metadata, &file(panel.name, "png", arguments))?;
     Ok((image, map.map(|map| map.bar), picture.metadata))
 }

@@ -39,8 +39,8 @@ pub fn run(arguments: &FluxArguments) -> Result<(), Failure> {
         write(&measured, axis, format, path)?;
     }
     for (path, format) in map {
-        if let Some(map) = flux_map(&measured, axis) {
-            save(&map.draw()?, "Irradiance of the receiver", &measured, (path, format))?;
+        if let Some(drawing) = flux_map(&measured, axis) {
+            save(&drawing, "Irradiance of the receiver", &measured, (path, format))?;
         }
     }
     report::print(&table(&measured, axis))

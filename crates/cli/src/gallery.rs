@@ -44,7 +44,7 @@ fn make(
     let studio = scene::prepared(&loaded, images)?;
     let picture = picture(&studio, ChannelSet::Everything, exhibit.name)?;
     let image = rgb(&loaded.scene, &picture)?;
-    let map = ScalarMap::new(&picture, MAP)?;
+    let map = ScalarMap::new(&picture, MAP, None)?;
     let file = |ending: &str| arguments.out.join(format!("{}{ending}", exhibit.name));
     write_png(&image, &picture.metadata, &file(".png"))?;
     let drawing = map.draw(true);

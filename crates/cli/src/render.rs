@@ -10,7 +10,7 @@ use cloakroom::output::{self, Format, Picture};
 use cloakroom::render::{self, ChannelSet, Images, PreparedScene, Rendered, Tile};
 use cloakroom::scene::Scene;
 use cloakroom::trace::TraceStats;
-use cloakroom_figures::{IllustrationError, PictureFormat, scalar_map, write_picture};
+use cloakroom_figures::{IllustrationError, PictureFormat, ScalarMap, write_picture};
 use std::io;
 use std::path::Path;
 
@@ -132,7 +132,9 @@ fn told(rendered: Rendered) -> Picture {
 pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure> {
     Ok(match scene.picture.map.name() {
         None => output::to_srgb(picture)?,
-        Some(channel) => scalar_map(picture, channel, scene.picture.color_bar)?,
+        Some(channel) => {
+            ScalarMap::new(picture, channel, None)?.into_image(scene.picture.color_bar)?
+        }
     })
 }
 

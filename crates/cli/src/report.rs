@@ -46,7 +46,7 @@ impl<E: Error + 'static> From<E> for Failure {
             || matches!(of.downcast_ref(), Some(MaterialError::Stopped))
             || matches!(of.downcast_ref(), Some(FluxError::Stopped))
             || matches!(of.downcast_ref(), Some(DiagramError::Stopped))
-            || matches!(of.downcast_ref(), Some(VerificationError::Stopped));
+            || matches!(of.downcast_ref(), Some(VerificationError::Render(RenderError::Stopped)));
         if stopped { Self::Interrupted } else { Self::Failed(error.to_string()) }
     }
 }

@@ -1,7 +1,7 @@
 //! Frames with ticks, for whatever runs to the right and upwards.
 
-use super::drawing::{Drawing, Face, INK, LINE, Shape, Words};
-use super::ticks::Tick;
+use super::drawing::{Drawing, Face, INK, LINE, Words};
+use super::ticks::{Axis, Tick};
 use glam::DVec2;
 
 /// A frame on a sheet, and how it is lettered.
@@ -30,8 +30,7 @@ impl Frame {
     pub fn draw(&self, drawing: &mut Drawing) {
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
         let corners = corners.map(|share| self.place(DVec2::from(share)));
-        let frame = Shape::Area(vec![corners.to_vec()]);
-        drawing.add("frame", frame).stroked(INK, Self::thin(self.text));
+        drawing.add_area("frame", corners).stroked(INK, Self::thin(self.text));
     }
 
     /// In how many rows labels below it stand, so that none runs into its neighbour.
@@ -53,7 +52,7 @@ impl Frame {
     }
 
     /// Draws ticks at its lower side and the title below them.
-    pub fn draw_across(&self, drawing: &mut Drawing, ticks: &[Tick], title: &str) {
+    pub fn draw_across(&self, drawing: &mut Drawing, Axis { ticks, title }: &Axis) {
         let rows = self.rows(ticks);
         for (i, tick) in ticks.iter().enumerate() {
             let at = self.place(DVec2::X * tick.place);
@@ -63,15 +62,15 @@ impl Frame {
             // Words of any length stay on the sheet.
             let x = at.x.min(drawing.size.x - half).max(half);
             let words = Words::new(tick.label.clone(), DVec2::new(x, at.y + below), self.text);
-            drawing.add("tick-label", Shape::Words(words)).filled(INK);
+            drawing.add_words("tick-label", words);
         }
         let below = (1.1 + LINE * rows as f64) * self.text;
         let at = self.place(DVec2::X * 0.5) + DVec2::Y * below;
-        drawing.add("axis-title", Shape::Words(Words::new(title, at, self.text))).filled(INK);
+        drawing.add_words("axis-title", Words::new(title.as_str(), at, self.text));
     }
 
     /// Draws ticks at its left side, and the title, in as many lines as it needs, upwards beside them.
-    pub fn draw_up(&self, drawing: &mut Drawing, ticks: &[Tick], title: &str) {
+    pub fn draw_up(&self, drawing: &mut Drawing, Axis { ticks, title }: &Axis) {
         let mut widest = 0.0_f64;
         for tick in ticks {
             let at = self.place(DVec2::Y * tick.place);
@@ -79,19 +78,20 @@ impl Frame {
             let at = at - DVec2::X * 0.5 * self.text;
             let words = Words::new(tick.label.clone(), at, self.text).anchored(1.0);
             widest = widest.max(words.width());
-            drawing.add("tick-label", Shape::Words(words)).filled(INK);
+            drawing.add_words("tick-label", words);
         }
         let lines = Face::Regular.wrap(title, self.text, self.size.y);
         for (line, outwards) in lines.iter().rev().zip(0..) {
             let left = widest + (1.3 + LINE * f64::from(outwards)) * self.text;
             let at = self.place(DVec2::Y * 0.5) - DVec2::X * left;
             let words = Words::new(line.clone(), at, self.text).turned(90.0);
-            drawing.add("axis-title", Shape::Words(words)).filled(INK);
+            drawing.add_words("axis-title", words);
         }
     }
 
-    fn draw_tick(&self, drawing: &mut Drawing, at: DVec2, outwards: DVec2) {
-        let line = Shape::Line(vec![at, at + outwards * 0.3 * self.text]);
-        drawing.add("tick", line).stroked(INK, Self::thin(self.text));
+    /// Draws a tick from a point outwards.
+    pub fn draw_tick(&self, drawing: &mut Drawing, at: DVec2, outwards: DVec2) {
+        let end = at + outwards * 0.3 * self.text;
+        drawing.add_line("tick", [at, end], (INK, Self::thin(self.text)));
     }
 }

@@ -18,15 +18,6 @@ pub struct ColorBar {
     pub quantity: Quantity,
 }
 
-/// The parts of a colour bar in type of a size.
-struct Layout {
-    axis: Axis,
-    /// The width of the widest label.
-    widest: f64,
-    /// The lines of the title.
-    title: Vec<String>,
-}
-
 /// In type of size 1: the width of the colours, and where labels begin to their right.
 const COLORS: f64 = 0.8;
 const LABELS: f64 = COLORS + 0.5;
@@ -34,24 +25,25 @@ const LABELS: f64 = COLORS + 0.5;
 const STEPS: u32 = 256;
 
 impl ColorBar {
-    fn layout(&self, height: f64, text: f64) -> Layout {
+    /// In type of a size: the axis, the width of its widest label, and the lines of its title.
+    fn layout(&self, height: f64, text: f64) -> (Axis, f64, Vec<String>) {
         let axis = axis(&self.quantity, self.scale.range(), (height / (1.6 * text)) as usize);
         let widths = axis.ticks.iter().map(|tick| Face::Regular.width(&tick.label, text));
         let widest = widths.fold(0.0, f64::max);
         let title = Face::Regular.wrap(&axis.title, text, height);
-        Layout { axis, widest, title }
+        (axis, widest, title)
     }
 
     /// The width that it takes up if it is so high, with type of that size.
     pub(super) fn width(&self, height: f64, text: f64) -> f64 {
-        let Layout { widest, title, .. } = self.layout(height, text);
+        let (_, widest, title) = self.layout(height, text);
         widest + (LABELS + 0.2 + LINE * title.len() as f64) * text
     }
 
     /// Draws it with the corner of the colours at a point. They are as high as told; labels, and the points, reach
     /// beyond them by up to half the height of the type.
     pub(super) fn draw(&self, drawing: &mut Drawing, at: DVec2, height: f64, text: f64) {
-        let Layout { axis, widest, title } = self.layout(height, text);
+        let (axis, widest, title) = self.layout(height, text);
         let width = COLORS * text;
         let frame = Frame { corner: at, size: DVec2::new(width, height), text };
         let image = RgbImage::from_fn(1, STEPS, |_, row| {
@@ -60,31 +52,29 @@ impl ColorBar {
         let place = DAffine2::from_cols(DVec2::X * width, DVec2::Y * height, at);
         drawing.add("color-bar", Shape::Image { image, cells: true, place });
         frame.draw(drawing);
-        let thin = Frame::thin(text);
         let (below, above) = self.scale.is_clipped();
         for (clipped, share, up) in [(above, 1.0, -0.5), (below, 0.0, 0.5)] {
             if clipped {
                 // A point: there are numbers beyond.
                 let end = frame.place(DVec2::Y * share);
                 let tip = end + DVec2::new(0.5, up) * width;
-                let point = Shape::Area(vec![vec![end, tip, end + DVec2::X * width]]);
+                let point = drawing.add_area("color-bar-end", [end, tip, end + DVec2::X * width]);
                 let ink = Ink::new(self.scale.color_at(share).0);
-                drawing.add("color-bar-end", point).filled(ink).stroked(INK, thin);
+                point.filled(ink).stroked(INK, Frame::thin(text));
             }
         }
         // To the right, so that digits stand below each other.
         let right = at.x + LABELS * text + widest;
         for tick in &axis.ticks {
             let from = frame.place(DVec2::new(1.0, tick.place));
-            let line = vec![from, from + DVec2::X * 0.3 * text];
-            drawing.add("tick", Shape::Line(line)).stroked(INK, thin);
+            frame.draw_tick(drawing, from, DVec2::X);
             let words = Words::new(tick.label.clone(), DVec2::new(right, from.y), text);
-            drawing.add("tick-label", Shape::Words(words.anchored(1.0))).filled(INK);
+            drawing.add_words("tick-label", words.anchored(1.0));
         }
         for (line, outwards) in title.iter().zip(0..) {
             let x = right + (0.8 + LINE * f64::from(outwards)) * text;
             let words = Words::new(line.clone(), DVec2::new(x, at.y + height / 2.0), text);
-            drawing.add("color-bar-title", Shape::Words(words.turned(90.0))).filled(INK);
+            drawing.add_words("color-bar-title", words.turned(90.0));
         }
     }
 }

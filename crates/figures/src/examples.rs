@@ -43,7 +43,7 @@ pub fn all() -> Vec<Example> {
     let panels = FIGURES.iter().flat_map(|figure| {
         figure.panels.iter().map(|panel| Example {
             path: panel.file,
-            words: format!("Figure {}, {}: {}", figure.number, figure.title, panel.caption),
+            words: format!("Figure {}, {}: {}", figure.number(), figure.title, panel.caption),
             text: panel.scene,
         })
     });

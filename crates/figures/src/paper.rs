@@ -6,11 +6,9 @@
 /// A figure of the paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
-    /// Its number.
-    pub number: u8,
     /// What it shows.
     pub title: &'static str,
-    /// Its panels, in order.
+    /// Its panels, in order, one at least.
     pub panels: &'static [Panel],
 }
 
@@ -36,6 +34,14 @@ pub enum Shows {
     Picture,
     /// Camera, devices and photograph, drawn.
     Setting,
+}
+
+impl Figure {
+    /// Its number, with which the names of its panels begin.
+    #[must_use]
+    pub fn number(&self) -> &'static str {
+        self.panels[0].name.trim_end_matches(|c: char| c.is_ascii_alphabetic())
+    }
 }
 
 impl Panel {
@@ -65,7 +71,6 @@ macro_rules! panel {
 /// The figures, in the order of the paper.
 pub static FIGURES: &[Figure] = &[
     Figure {
-        number: 1,
         title: "The setting, to scale",
         panels: &[
             panel!("1a", "square cloak, designs (i)-(iii)", Shows::Setting),
@@ -73,7 +78,6 @@ pub static FIGURES: &[Figure] = &[
         ],
     },
     Figure {
-        number: 2,
         title: "Positive uniaxial square cloak (i), along the transformation axis",
         panels: &[
             panel!("2a", "empty view"),
@@ -84,7 +88,6 @@ pub static FIGURES: &[Figure] = &[
         ],
     },
     Figure {
-        number: 3,
         title: "Positive uniaxial square cloak (i), turned about its axis",
         panels: &[
             panel!("3a", "bare metal, 5°"),
@@ -96,7 +99,6 @@ pub static FIGURES: &[Figure] = &[
         ],
     },
     Figure {
-        number: 4,
         title: "Negative uniaxial square cloak (ii), along the transformation axis",
         panels: &[
             panel!("4a", "empty view"),
@@ -107,7 +109,6 @@ pub static FIGURES: &[Figure] = &[
         ],
     },
     Figure {
-        number: 5,
         title: "Negative uniaxial square cloak (ii), turned about its axis",
         panels: &[
             panel!("5a", "bare metal, 5°"),
@@ -119,7 +120,6 @@ pub static FIGURES: &[Figure] = &[
         ],
     },
     Figure {
-        number: 6,
         title: "Impedance-matched square cloak (iii), along the transformation axis",
         panels: &[
             panel!("6a", "empty view"),
@@ -129,7 +129,6 @@ pub static FIGURES: &[Figure] = &[
         ],
     },
     Figure {
-        number: 7,
         title: "Impedance-matched square cloak (iii), turned about its axis",
         panels: &[
             panel!("7a", "bare metal, 5°"),
@@ -141,7 +140,6 @@ pub static FIGURES: &[Figure] = &[
         ],
     },
     Figure {
-        number: 8,
         title: "Double-Gaussian cloak (iv), along the transformation axis",
         panels: &[
             panel!("8a", "empty view"),
@@ -151,7 +149,6 @@ pub static FIGURES: &[Figure] = &[
         ],
     },
     Figure {
-        number: 9,
         title: "Double-Gaussian cloak (iv), turned about its axis",
         panels: &[
             panel!("9a", "bare metal, 5°"),
@@ -172,29 +169,24 @@ pub static FIGURES: &[Figure] = &[
 /// A sentence if the list names something that is not there.
 pub fn select(names: &[String]) -> Result<Vec<(&'static Figure, Vec<&'static Panel>)>, String> {
     let names: Vec<String> = names.iter().map(|name| name.trim().to_ascii_lowercase()).collect();
-    let is_figure = |name: &str, figure: &Figure| name == figure.number.to_string();
-    for name in &names {
-        let known = FIGURES.iter().any(|figure| {
-            is_figure(name, figure) || figure.panels.iter().any(|panel| panel.name == name)
-        });
-        if !known {
-            let figures: Vec<String> =
-                FIGURES.iter().map(|figure| figure.number.to_string()).collect();
-            return Err(format!(
-                "there is no figure or panel `{name}`; there are the figures {} and their panels, \
-                 as in 6c",
-                figures.join(", ")
-            ));
-        }
+    let is =
+        |name: &str, figure: &Figure, panel: &Panel| name == panel.name || name == figure.number();
+    let any = |figure: &Figure, name: &str| figure.panels.iter().any(|p| is(name, figure, p));
+    if let Some(name) = names.iter().find(|name| !FIGURES.iter().any(|f| any(f, name))) {
+        let figures: Vec<&str> = FIGURES.iter().map(Figure::number).collect();
+        return Err(format!(
+            "there is no figure or panel `{name}`; there are the figures {} and their panels, \
+             as in 6c",
+            figures.join(", ")
+        ));
     }
-    let wanted = |panel: &Panel, figure: &Figure| {
-        names.is_empty() || names.iter().any(|name| name == panel.name || is_figure(name, figure))
+    let wanted = |figure: &Figure, panel: &Panel| {
+        names.is_empty() || names.iter().any(|name| is(name, figure, panel))
     };
-    Ok(FIGURES
+    let chosen = FIGURES
         .iter()
-        .map(|figure| (figure, figure.panels.iter().filter(|p| wanted(p, figure)).collect()))
-        .filter(|(_, panels): &(_, Vec<_>)| !panels.is_empty())
-        .collect())
+        .map(|figure| (figure, figure.panels.iter().filter(|p| wanted(figure, p)).collect()));
+    Ok(chosen.filter(|(_, panels): &(_, Vec<_>)| !panels.is_empty()).collect())
 }
 
 #[cfg(test)]

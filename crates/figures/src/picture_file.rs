@@ -1,8 +1,8 @@
 //! Pictures as files: data, images, and maps drawn with their colour bars.
 
 use super::drawing::DrawingFormat;
-use super::{IllustrationError, ScalarMap, scalar_map};
-use cloakroom::output::{Format, OutputError, Picture, to_srgb, write, write_png};
+use super::{IllustrationError, ScalarMap};
+use cloakroom::output::{Format, OutputError, Picture, write, write_png};
 use std::path::Path;
 
 /// A format of files of pictures.
@@ -52,16 +52,14 @@ pub fn write_picture(
             return Err(IllustrationError::NoMap { path: path.to_owned() });
         }
         (PictureFormat::Map(format), (Some(channel), color_bar)) => {
-            let map = ScalarMap::new(picture, channel)?;
+            let map = ScalarMap::new(picture, channel, None)?;
             let drawing = map.draw(color_bar);
             let title = &map.bar.quantity.title;
             drawing.write(format, title, &picture.metadata, drawing.pixels(), path)?;
         }
         (PictureFormat::Pixels(Format::Png), (Some(channel), color_bar)) => {
-            write_png(&scalar_map(picture, channel, color_bar)?, &picture.metadata, path)?;
-        }
-        (PictureFormat::Pixels(Format::Png), (None, _)) => {
-            write_png(&to_srgb(picture)?, &picture.metadata, path)?;
+            let map = ScalarMap::new(picture, channel, None)?.into_image(color_bar)?;
+            write_png(&map, &picture.metadata, path)?;
         }
         (PictureFormat::Pixels(_), _) => write(picture, path)?,
     }

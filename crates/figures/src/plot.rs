@@ -1,7 +1,7 @@
 //! Plots of curves, one panel above the other, as wide as a column of a journal.
 
 use super::axes::Frame;
-use super::drawing::{Drawing, INK, Ink, Shape, Words};
+use super::drawing::{Drawing, Ink, Shape, Words};
 use super::quantity::Quantity;
 use super::ticks::{Axis, Tick, axis};
 use glam::DVec2;
@@ -80,13 +80,9 @@ impl Plot {
     /// The plot as a drawing; its units are twentieths of a millimetre.
     #[must_use]
     pub fn draw(&self) -> Drawing {
-        let labels: Vec<&str> = match self.panels.first() {
-            Some(panel) if panel.curves.len() > 1 => {
-                panel.curves.iter().map(|curve| curve.label.as_str()).collect()
-            }
-            _ => Vec::new(),
-        };
-        let key = KEY_LINE * labels.len() as f64 + if labels.is_empty() { 0.0 } else { 1.0 };
+        let curves = self.panels.first().map_or(&[][..], |panel| &panel.curves);
+        let keyed = if curves.len() > 1 { curves } else { &[] };
+        let key = KEY_LINE * keyed.len() as f64 + if keyed.is_empty() { 0.0 } else { 1.0 };
         let size = DVec2::new(COLUMN - LEFT - RIGHT, PANEL - ABOVE) * MM;
         let frame = |number: usize| {
             let top = key + PANEL * number as f64 + ABOVE;
@@ -96,25 +92,26 @@ impl Plot {
         let ticks = self.ticks_across(&across);
         let height = (key + PANEL * self.panels.len() as f64) * MM + frame(0).below(&ticks.ticks);
         let mut drawing = Drawing::new(DVec2::new(COLUMN * MM, height).round(), TYPE * MM);
+        let bare = Axis::default();
         let mut marks = Vec::new();
         for (i, panel) in self.panels.iter().enumerate() {
             let frame = frame(i);
-            let title = if i + 1 == self.panels.len() { ticks.title.as_str() } else { "" };
-            let shown: &[Tick] = if i + 1 == self.panels.len() { &ticks.ticks } else { &[] };
-            frame.draw_across(&mut drawing, shown, title);
+            let is_last = i + 1 == self.panels.len();
+            frame.draw_across(&mut drawing, if is_last { &ticks } else { &bare });
             panel.draw(&mut drawing, &frame, &across, &mut marks);
         }
         marks.sort_by_key(|(curve, _)| *curve);
         for (curve, at) in marks {
             mark(&mut drawing, curve, at);
         }
-        for (i, label) in labels.iter().enumerate() {
+        for (i, Curve { label, .. }) in keyed.iter().enumerate() {
             let at = DVec2::new(LEFT + 3.5, 2.6 + KEY_LINE * i as f64) * MM;
-            let ends = vec![at - DVec2::X * 3.0 * MM, at + DVec2::X * 3.0 * MM];
-            drawing.add("key", Shape::Line(ends)).stroked(color(i), 0.3 * MM * size_of(i));
+            let ends = [at - DVec2::X * 3.0 * MM, at + DVec2::X * 3.0 * MM];
+            drawing.add_line("key", ends, stroke(i));
             mark(&mut drawing, i, at);
-            let words = Words::new(*label, at + DVec2::X * 4.5 * MM, TYPE * MM).anchored(0.0);
-            drawing.add("key-words", Shape::Words(words)).filled(INK);
+            let words =
+                Words::new(label.as_str(), at + DVec2::X * 4.5 * MM, TYPE * MM).anchored(0.0);
+            drawing.add_words("key-words", words);
         }
         drawing
     }
@@ -159,20 +156,19 @@ impl PlotPanel {
         let along = padded(numbers, 0.08);
         let up = axis(&Quantity::named(&self.title), Some((along.start, along.end)), 6);
         frame.draw(drawing);
-        frame.draw_up(drawing, &up.ticks, &up.title);
+        frame.draw_up(drawing, &up);
         let share =
             |value: f64, range: &Range<f64>| (value - range.start) / (range.end - range.start);
         let place = |x: f64, y: f64| frame.place(DVec2::new(share(x, across), share(y, &along)));
         for (i, curve) in self.curves.iter().enumerate() {
-            let width = 0.3 * MM * size_of(i);
             let whole = |point: &CurvePoint| point.x.is_finite() && point.y.is_finite();
             for run in curve.points.split(|point| !whole(point)) {
                 let line: Vec<DVec2> = run.iter().map(|point| place(point.x, point.y)).collect();
                 marks.extend(line.iter().map(|at| (i, *at)));
-                drawing.add("curve", Shape::Line(line)).stroked(color(i), width);
+                drawing.add_line("curve", line, stroke(i));
                 for CurvePoint { x, y, error } in run.iter().filter(|point| point.error > 0.0) {
-                    let bar = Shape::Line(vec![place(*x, y - error), place(*x, y + error)]);
-                    drawing.add("error", bar).stroked(color(i), width);
+                    let bar = [place(*x, y - error), place(*x, y + error)];
+                    drawing.add_line("error", bar, stroke(i));
                 }
             }
         }
@@ -187,6 +183,10 @@ fn color(curve: usize) -> Ink {
 /// are seen.
 fn size_of(curve: usize) -> f64 {
     0.82_f64.powi(curve.min(5) as i32) * 1.15
+}
+
+fn stroke(curve: usize) -> (Ink, f64) {
+    (color(curve), 0.3 * MM * size_of(curve))
 }
 
 /// The mark of a curve: its form tells curves apart where colour does not.

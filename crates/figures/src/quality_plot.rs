@@ -1,6 +1,7 @@
 //! Tables of quality as plots, and files of any kind.
 
-use crate::{Curve, CurvePoint, Drawing, DrawingFormat, IllustrationError, Plot, PlotPanel};
+use crate::quantity::with_unit;
+use crate::{Curve, CurvePoint, DrawingFormat, IllustrationError, Plot, PlotPanel};
 use cloakroom::measure::{QualityTable, Row, UnknownColumn, combinations, name_and_unit};
 use cloakroom::output::{OutputError, ending};
 use std::path::Path;
@@ -8,11 +9,6 @@ use std::path::Path;
 /// What a plot shows unless it is told otherwise.
 pub const STANDARD_PLOT: [&str; 3] =
     ["ideal_silhouette_correlation", "displacement_rms_cm", "delivered"];
-
-/// The pixels of a plot on paper: 600 an inch.
-fn print_pixels(drawing: &Drawing) -> [u32; 2] {
-    (drawing.size * drawing.mm * 600.0 / 25.4).round().to_array().map(|side| side as u32)
-}
 
 /// A format of files of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,21 +27,9 @@ pub enum TableError {
     /// There is no such column.
     #[error("{0}")]
     UnknownColumn(#[from] UnknownColumn),
-    /// The plot does not fit into the memory.
+    /// The plot does not fit into the memory, or the file cannot be written.
     #[error("{0}")]
-    Drawing(IllustrationError),
-    /// The file cannot be written.
-    #[error("{0}")]
-    Output(#[from] OutputError),
-}
-
-impl From<IllustrationError> for TableError {
-    fn from(error: IllustrationError) -> Self {
-        match error {
-            IllustrationError::Output(error) => Self::Output(error),
-            error => Self::Drawing(error),
-        }
-    }
+    Drawing(#[from] IllustrationError),
 }
 
 impl TableFormat {
@@ -77,17 +61,14 @@ pub fn write_table(
     path: &Path,
 ) -> Result<(), TableError> {
     match format {
-        TableFormat::Csv => table.write_csv(path)?,
-        TableFormat::Npz => table.write_npz(path)?,
+        TableFormat::Csv => table.write_csv(path).map_err(IllustrationError::from)?,
+        TableFormat::Npz => table.write_npz(path).map_err(IllustrationError::from)?,
         TableFormat::Plot(format) => {
             let drawing = quality_plot(table, plotted)?.draw();
-            drawing.write(
-                format,
-                "Cloaking quality",
-                &table.metadata,
-                print_pixels(&drawing),
-                path,
-            )?;
+            // On paper, 600 an inch.
+            let pixels = drawing.size * drawing.mm * 600.0 / 25.4;
+            let pixels = pixels.round().to_array().map(|side| side as u32);
+            drawing.write(format, "Cloaking quality", &table.metadata, pixels, path)?;
         }
     }
     Ok(())
@@ -145,21 +126,16 @@ pub fn quality_plot(table: &QualityTable, names: &[String]) -> Result<Plot, Tabl
             curves: curves.iter().map(curve).collect(),
         })
     };
+    // The name of the swept key in words, with the unit that keys of that name have.
+    let axis_title = |i: usize| {
+        let (title, unit) = name_and_unit(&table.sweeps[i].key);
+        with_unit(&title, unit)
+    };
     Ok(Plot {
-        axis: axis.map_or_else(String::new, |i| axis_title(&table.sweeps[i].key)),
+        axis: axis.map_or_else(String::new, axis_title),
         categories,
         panels: names.iter().map(panel).collect::<Result<_, TableError>>()?,
     })
-}
-
-fn with_unit(title: &str, unit: &str) -> String {
-    if unit.is_empty() { title.to_owned() } else { format!("{title} ({unit})") }
-}
-
-/// What an axis says of a swept key: its name in words, with the unit that keys of that name have.
-fn axis_title(key: &str) -> String {
-    let (title, unit) = name_and_unit(key);
-    with_unit(&title, unit)
 }
 
 #[cfg(test)]

@@ -29,20 +29,8 @@ pub struct Unit {
     pub symbol: String,
 }
 
-/// Units of time with their size in ns, from large to small (SI prefixes down to quecto).
-const TIMES: [(f64, &str); 11] = [
-    (1e9, "s"),
-    (1e6, "ms"),
-    (1e3, "µs"),
-    (1.0, "ns"),
-    (1e-3, "ps"),
-    (1e-6, "fs"),
-    (1e-9, "as"),
-    (1e-12, "zs"),
-    (1e-15, "ys"),
-    (1e-18, "rs"),
-    (1e-21, "qs"),
-];
+/// Units of time from 1e9 ns down, each a thousandth of the one before (SI prefixes down to quecto).
+const TIMES: [&str; 11] = ["s", "ms", "µs", "ns", "ps", "fs", "as", "zs", "ys", "rs", "qs"];
 
 impl Quantity {
     /// What a channel of that name holds; its name with spaces if it is none of the known ones.
@@ -79,11 +67,12 @@ impl Quantity {
         let power = exponent(size).div_euclid(3) * 3;
         match self.dimension {
             Dimension::Time => {
-                let fitting = TIMES.iter().find(|(unit, _)| size >= *unit && size < 1e12);
-                fitting.map_or_else(
-                    || Unit { size: power_of_ten(power), symbol: format!("1e{} s", power - 9) },
-                    |(size, symbol)| Unit { size: *size, symbol: (*symbol).to_owned() },
-                )
+                let symbol = usize::try_from((9 - power) / 3).ok().and_then(|k| TIMES.get(k));
+                let powers = || format!("1e{} s", power - 9);
+                Unit {
+                    size: power_of_ten(power),
+                    symbol: symbol.map_or_else(powers, |s| (*s).into()),
+                }
             }
             Dimension::Share if size >= 1e-3 => Unit { size: 1e-2, symbol: "%".to_owned() },
             Dimension::Number if (1e-3..1e4).contains(&size) => {
@@ -96,12 +85,9 @@ impl Quantity {
     }
 }
 
-impl Unit {
-    /// A label of that text with the unit in brackets.
-    #[must_use]
-    pub fn label(&self, text: &str) -> String {
-        if self.symbol.is_empty() { text.to_owned() } else { format!("{text} ({})", self.symbol) }
-    }
+/// A label of that text with the unit in brackets, if it has one.
+pub(super) fn with_unit(text: &str, unit: &str) -> String {
+    if unit.is_empty() { text.to_owned() } else { format!("{text} ({unit})") }
 }
 
 /// The exponent of a number in scientific notation: 2 for 345; 0 if it is zero or not finite.
@@ -113,6 +99,14 @@ pub(super) fn exponent(number: f64) -> i32 {
 /// The number nearest to a power of ten.
 pub(super) fn power_of_ten(exponent: i32) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(f64::INFINITY)
+}
+
+/// The true minus sign.
+pub(super) const MINUS: &str = "\u{2212}";
+
+/// The digits of a number with the true minus sign.
+pub(super) fn with_minus(digits: &str) -> String {
+    digits.replace('-', MINUS)
 }
 
 /// A number with so many decimals at most.
@@ -162,14 +156,14 @@ mod tests {
         let share = Quantity::of_channel("delivered");
         assert_eq!(share.unit(1.0), Unit { size: 0.01, symbol: "%".into() });
         assert_eq!(share.unit(2e-9), Unit { size: 1e-9, symbol: "1e-9".into() });
-        assert_eq!(share.unit(0.0).label(&share.title), "power delivered (%)");
+        assert_eq!(with_unit(&share.title, &share.unit(0.0).symbol), "power delivered (%)");
     }
 
     #[test]
     fn other_channels_are_numbers() {
         let number = Quantity::of_channel("horizontal.R_x");
         assert_eq!(number.title, "horizontal.R x");
-        assert_eq!(number.unit(0.4).label("a"), "a");
+        assert_eq!(with_unit("a", &number.unit(0.4).symbol), "a");
         assert_eq!(number.unit(5e6).symbol, "1e6");
     }
 

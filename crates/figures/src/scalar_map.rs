@@ -19,21 +19,13 @@ pub struct ScalarMap {
 }
 
 impl ScalarMap {
-    /// The map of a channel over the range of its numbers ([`ColorScale`] says which).
+    /// The map of a channel on a scale that is given, so that pictures can be compared; `None`: over the range of its
+    /// numbers ([`ColorScale`] says which).
     ///
     /// # Errors
     ///
     /// If the picture has no such channel, or the channel not one number a pixel.
-    pub fn new(picture: &Picture, channel: &str) -> Result<Self, IllustrationError> {
-        Self::with_scale(picture, channel, None)
-    }
-
-    /// The same on a scale that is given, so that pictures can be compared; `None` for that of its numbers.
-    ///
-    /// # Errors
-    ///
-    /// As [`ScalarMap::new`].
-    pub fn with_scale(
+    pub fn new(
         picture: &Picture,
         channel: &str,
         scale: Option<ColorScale>,
@@ -68,14 +60,7 @@ impl ScalarMap {
         Ok(Self { image, bar: ColorBar { scale, quantity: Quantity::of_channel(channel) } })
     }
 
-    /// The least and the greatest number that have a colour of their own, in the unit of the
-    /// channel; none if no number is finite.
-    #[must_use]
-    pub fn range(&self) -> Option<(f64, f64)> {
-        self.bar.scale.range()
-    }
-
-    /// The map in pixels, alone or with its colour bar.
+    /// The map in pixels: alone, exactly as large as the picture, or with its colour bar ([`draw`](Self::draw)).
     ///
     /// # Errors
     ///
@@ -114,20 +99,6 @@ impl ScalarMap {
     }
 }
 
-/// The map of a channel of a picture in pixels: without a colour bar exactly as large as the picture; with one,
-/// in a frame with the bar to its right ([`ScalarMap::draw`]).
-///
-/// # Errors
-///
-/// If the picture has no such channel, the channel not one number a pixel, or there is not enough memory.
-pub fn scalar_map(
-    picture: &Picture,
-    channel: &str,
-    color_bar: bool,
-) -> Result<RgbImage, IllustrationError> {
-    ScalarMap::new(picture, channel)?.into_image(color_bar)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -148,13 +119,22 @@ mod tests {
         }
     }
 
+    fn scalar_map(
+        picture: &Picture,
+        channel: &str,
+        color_bar: bool,
+    ) -> Result<RgbImage, IllustrationError> {
+        ScalarMap::new(picture, channel, None)?.into_image(color_bar)
+    }
+
     #[test]
     fn a_map_has_a_pixel_for_each_of_the_picture() {
         let picture = picture(5, 3);
         let map = scalar_map(&picture, "time_of_flight_difference", false).expect("a map");
         assert_eq!(map.dimensions(), (5, 3));
         assert_ne!(map.get_pixel(0, 0), map.get_pixel(4, 2));
-        let range = ScalarMap::new(&picture, "time_of_flight_difference").map(|map| map.range());
+        let range = ScalarMap::new(&picture, "time_of_flight_difference", None)
+            .map(|map| map.bar.scale.range());
         assert_eq!(range, Ok(Some((0.0, 14.0 * 1e-15))));
     }
 
@@ -163,7 +143,7 @@ mod tests {
         for (width, height) in [(1, 1), (320, 240), (40, 2000), (2000, 40)] {
             let picture = picture(width, height);
             for channel in ["time_of_flight_difference", "delivered"] {
-                let map = ScalarMap::new(&picture, channel).expect("a map");
+                let map = ScalarMap::new(&picture, channel, None).expect("a map");
                 let image = scalar_map(&picture, channel, true).expect("a map");
                 let margin = type_size(width as u32, height as u32) as u32;
                 let top = (image.height() - height as u32) / 2;

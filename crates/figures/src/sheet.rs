@@ -2,7 +2,7 @@
 
 use super::axes::Frame;
 use super::color_bar::ColorBar;
-use super::drawing::{Drawing, Face, INK, LINE, Shape, Words};
+use super::drawing::{Drawing, Face, LINE};
 use super::shrink::shrink;
 use super::type_size;
 use cloakroom::output::RgbImage;
@@ -49,10 +49,15 @@ pub fn sheet(title: &str, panels: &[SheetPanel]) -> Drawing {
         DVec2::new(f64::from(width), f64::from(height)).max(DVec2::new(MIN_COLUMN, 2.0) * text);
     let (columns, width) = columns(panels, cell, text);
     let margin = (MARGIN * text).round();
-    let title_type = (Face::Bold, TITLE * text);
     let title = Face::Bold.wrap(title, TITLE * text, width - 2.0 * margin);
-    let captions: Vec<Caption> =
-        panels.iter().map(|panel| Caption::new(panel, text, cell.x)).collect();
+    // How far captions stand in from their labels, and their lines.
+    let caption = |panel: &SheetPanel| {
+        let label = panel.label.trim();
+        let indent =
+            if label.is_empty() { 0.0 } else { Face::Bold.width(label, text) + 0.4 * text };
+        (indent, Face::Regular.wrap(&panel.caption, text, cell.x - indent))
+    };
+    let captions: Vec<(f64, Vec<String>)> = panels.iter().map(caption).collect();
 
     let mut bottom = margin;
     if !title.is_empty() {
@@ -62,7 +67,8 @@ pub fn sheet(title: &str, panels: &[SheetPanel]) -> Drawing {
     let mut rows = Vec::new();
     for row in captions.chunks(columns.len()) {
         rows.push(bottom);
-        let lines = row.iter().map(|caption| caption.lines()).max().unwrap_or(0);
+        let lines = |(indent, words): &(f64, Vec<String>)| words.len().max((*indent > 0.0).into());
+        let lines = row.iter().map(lines).max().unwrap_or(0);
         bottom += cell.y + ((CAPTION_GAP + LINE * lines as f64 + ROW_GAP) * text).round();
     }
     if !rows.is_empty() {
@@ -70,8 +76,10 @@ pub fn sheet(title: &str, panels: &[SheetPanel]) -> Drawing {
     }
     let mut drawing = Drawing::new(DVec2::new(width, bottom + margin).ceil(), text);
     let title_at = DVec2::new(margin, margin + 0.5 * TITLE * text);
-    drawing.add_lines("title", title_type, title_at, &title);
-    for (i, ((panel, image), caption)) in panels.iter().zip(images).zip(&captions).enumerate() {
+    drawing.add_lines("title", (Face::Bold, TITLE * text), (title_at, 0.0), &title);
+    for (i, ((panel, image), (indent, words))) in
+        panels.iter().zip(images).zip(&captions).enumerate()
+    {
         let corner = DVec2::new(columns[i % columns.len()], rows[i / columns.len()]);
         let size = DVec2::new(f64::from(image.width()), f64::from(image.height()));
         let at = corner + ((cell - size) / 2.0).floor();
@@ -79,7 +87,11 @@ pub fn sheet(title: &str, panels: &[SheetPanel]) -> Drawing {
         if let Some(bar) = &panel.bar {
             bar.draw(&mut drawing, corner + DVec2::X * (cell.x + text), cell.y, text);
         }
-        caption.draw(&mut drawing, corner + DVec2::Y * (cell.y + (CAPTION_GAP + 0.5) * text));
+        let at = corner + DVec2::Y * (cell.y + (CAPTION_GAP + 0.5) * text);
+        let label = vec![panel.label.trim().to_owned()];
+        drawing.add_lines("label", (Face::Bold, text), (at, 0.0), &label);
+        let at = at + DVec2::X * *indent;
+        drawing.add_lines("caption", (Face::Regular, text), (at, 0.0), words);
     }
     drawing
 }
@@ -97,37 +109,6 @@ fn columns(panels: &[SheetPanel], cell: DVec2, text: f64) -> (Vec<f64>, f64) {
         left = (right + 1.5 * text).round();
     }
     (columns, right + margin)
-}
-
-/// A label with what follows it, broken into lines.
-struct Caption<'a> {
-    label: &'a str,
-    text: f64,
-    /// How far the lines stand in from the label.
-    indent: f64,
-    words: Vec<String>,
-}
-
-impl<'a> Caption<'a> {
-    fn new(panel: &'a SheetPanel, text: f64, width: f64) -> Self {
-        let label = panel.label.trim();
-        let indent =
-            if label.is_empty() { 0.0 } else { Face::Bold.width(label, text) + 0.4 * text };
-        let words = Face::Regular.wrap(&panel.caption, text, width - indent);
-        Self { label, text, indent, words }
-    }
-
-    /// How many lines it takes.
-    fn lines(&self) -> usize {
-        self.words.len().max(usize::from(!self.label.is_empty()))
-    }
-
-    fn draw(&self, drawing: &mut Drawing, at: DVec2) {
-        let label = Words::of_runs(vec![(Face::Bold, self.label.to_owned())], at, self.text);
-        drawing.add("label", Shape::Words(label.anchored(0.0))).filled(INK);
-        let at = at + DVec2::X * self.indent;
-        drawing.add_lines("caption", (Face::Regular, self.text), at, &self.words);
-    }
 }
 
 #[cfg(test)]

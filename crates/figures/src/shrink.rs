@@ -3,7 +3,7 @@
 use cloakroom::output::{Channel, Picture, RgbImage, Samples, to_srgb};
 use cloakroom::photograph::decode_table;
 use image::imageops::{self, FilterType};
-use image::{ImageBuffer, Rgb};
+use image::{Rgb, Rgb32FImage};
 
 /// A copy of an image that fits into a width and a height, keeping its proportions; the image itself
 /// if it fits.
@@ -18,24 +18,23 @@ pub(super) fn shrink(image: &RgbImage, max_width: u32, max_height: u32) -> RgbIm
     }
     let scaled = |length: u32| ((f64::from(length) * factor).round() as u32).max(1);
     let table = decode_table();
-    let mut light: ImageBuffer<Rgb<f32>, Vec<f32>> = ImageBuffer::new(width, height);
-    for (linear, Rgb(codes)) in light.pixels_mut().zip(image.pixels()) {
-        *linear = Rgb(codes.map(|code| table[usize::from(code)]));
-    }
+    let light = Rgb32FImage::from_fn(width, height, |x, y| {
+        Rgb(image.get_pixel(x, y).0.map(|code| table[usize::from(code)]))
+    });
     let light = imageops::resize(&light, scaled(width), scaled(height), FilterType::CatmullRom);
-    let plane = |i: usize| Samples::F32(light.pixels().map(|pixel| pixel.0[i]).collect());
-    let picture = Picture {
-        width: light.width() as usize,
-        height: light.height() as usize,
-        channels: ["R", "G", "B"]
-            .into_iter()
-            .enumerate()
-            .map(|(i, name)| Channel { name: name.to_owned(), samples: plane(i) })
-            .collect(),
-        metadata: Vec::new(),
+    let size = [light.width(), light.height()].map(|side| side as usize);
+    srgb(size, &light.pixels().map(|pixel| pixel.0).collect::<Vec<_>>())
+}
+
+/// The image of linear light, red, green and blue, row by row.
+pub(super) fn srgb([width, height]: [usize; 2], light: &[[f32; 3]]) -> RgbImage {
+    let channel = |(i, name): (usize, &str)| {
+        let samples = Samples::F32(light.iter().map(|pixel| pixel[i]).collect());
+        Channel { name: name.to_owned(), samples }
     };
+    let channels = ["R", "G", "B"].into_iter().enumerate().map(channel).collect();
     // It has the channels of an image, all that this can fail for.
-    to_srgb(&picture).unwrap_or_else(|_| image.clone())
+    to_srgb(&Picture { width, height, channels, metadata: Vec::new() }).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::axes::Frame;
 use super::color_bar::ColorBar;
-use super::drawing::{Drawing, Face, INK, LINE, Shape, Words};
+use super::drawing::{Drawing, Face, INK, LINE, Words};
 use super::scalar_map::ScalarMap;
 use super::shrink::shrink;
 use cloakroom::output::RgbImage;
@@ -25,8 +25,8 @@ pub struct TablePicture(Content);
 
 #[derive(Clone, Debug, PartialEq)]
 enum Content {
-    Image(RgbImage),
-    Map(RgbImage, ColorBar),
+    /// With its colour bar, if it is a map.
+    Picture(RgbImage, Option<ColorBar>),
     Words(String),
 }
 
@@ -34,23 +34,24 @@ impl TablePicture {
     /// A picture, shrunk to 320 x 240 pixels.
     #[must_use]
     pub fn new(image: &RgbImage) -> Self {
-        Self(Content::Image(shrink(image, PICTURE.0, PICTURE.1)))
+        Self(Content::Picture(shrink(image, PICTURE.0, PICTURE.1), None))
     }
 
     /// A map with its colour bar, shrunk to 320 x 240 pixels; those words instead if no number of it
     /// is finite.
     #[must_use]
     pub fn of_map(map: &ScalarMap, instead: &str) -> Self {
-        Self(match map.range() {
-            Some(_) => Content::Map(shrink(&map.image, PICTURE.0, PICTURE.1), map.bar.clone()),
-            None => Content::Words(instead.to_owned()),
-        })
+        if map.bar.scale.range().is_none() {
+            return Self(Content::Words(instead.to_owned()));
+        }
+        let image = shrink(&map.image, PICTURE.0, PICTURE.1);
+        Self(Content::Picture(image, Some(map.bar.clone())))
     }
 
     /// The size of the picture itself.
     fn picture(&self) -> DVec2 {
         let (width, height) = match &self.0 {
-            Content::Image(image) | Content::Map(image, _) => image.dimensions(),
+            Content::Picture(image, _) => image.dimensions(),
             Content::Words(_) => PICTURE,
         };
         DVec2::new(f64::from(width), f64::from(height))
@@ -59,22 +60,19 @@ impl TablePicture {
     /// The size that it takes up with its colour bar.
     fn size(&self) -> DVec2 {
         let size = self.picture();
-        match &self.0 {
-            Content::Map(_, bar) => {
-                let height = size.y.max(LEAST_BAR);
-                DVec2::new((size.x + GAP + bar.width(height, BAR_TEXT)).ceil(), height)
-            }
-            Content::Image(_) | Content::Words(_) => size,
-        }
+        let Content::Picture(_, Some(bar)) = &self.0 else { return size };
+        let height = size.y.max(LEAST_BAR);
+        DVec2::new((size.x + GAP + bar.width(height, BAR_TEXT)).ceil(), height)
     }
 
     fn draw(&self, drawing: &mut Drawing, at: DVec2) {
         let size = self.picture();
         match &self.0 {
-            Content::Image(image) => drawing.add_framed(image.clone(), false, at, RULE),
-            Content::Map(image, bar) => {
-                drawing.add_framed(image.clone(), true, at, RULE);
-                bar.draw(drawing, at + DVec2::X * (size.x + GAP), self.size().y, BAR_TEXT);
+            Content::Picture(image, bar) => {
+                drawing.add_framed(image.clone(), bar.is_some(), at, RULE);
+                if let Some(bar) = bar {
+                    bar.draw(drawing, at + DVec2::X * (size.x + GAP), self.size().y, BAR_TEXT);
+                }
             }
             Content::Words(words) => {
                 let frame = Frame { corner: at, size, text: TEXT };
@@ -82,10 +80,8 @@ impl TablePicture {
                 let lines = Face::Regular.wrap(words, TEXT, size.x - 2.0 * GAP);
                 let top = frame.place(DVec2::splat(0.5)).y
                     - 0.5 * LINE * TEXT * (lines.len() as f64 - 1.0);
-                for (line, below) in lines.into_iter().zip(0..) {
-                    let at = DVec2::new(at.x + 0.5 * size.x, top + LINE * TEXT * f64::from(below));
-                    drawing.add("words", Shape::Words(Words::new(line, at, TEXT))).filled(INK);
-                }
+                let at = DVec2::new(at.x + 0.5 * size.x, top);
+                drawing.add_lines("words", (Face::Regular, TEXT), (at, 0.5), &lines);
             }
         }
     }
@@ -116,7 +112,7 @@ const MOST_ROWS: usize = 8;
 /// under the other, and beside them the pictures.
 #[must_use]
 pub fn table(title: &str, rows: &[TableRow]) -> Drawing {
-    let blocks: Vec<Vec<WordLine>> = rows.iter().map(lines).collect();
+    let blocks: Vec<_> = rows.iter().map(lines).collect();
     let halves = if rows.len() > MOST_ROWS { 2 } else { 1 };
     let count = rows.len().div_ceil(halves).max(1);
     // The left edges of the columns of pictures in a half, and its width.
@@ -128,7 +124,7 @@ pub fn table(title: &str, rows: &[TableRow]) -> Drawing {
     }
     let mut heights = vec![0.0_f64; count.min(rows.len())];
     for (i, (row, block)) in rows.iter().zip(&blocks).enumerate() {
-        let words = block.last().map_or(0.0, |line| line.below + LINE * TEXT);
+        let words = block.last().map_or(0.0, |(_, below)| below + LINE * TEXT);
         let pictures = row.pictures.iter().map(|picture| picture.size().y);
         heights[i % count] = heights[i % count].max(pictures.fold(words, f64::max).ceil());
     }
@@ -139,16 +135,16 @@ pub fn table(title: &str, rows: &[TableRow]) -> Drawing {
     let size = DVec2::new(width, first + body + RULE + MARGIN).ceil();
     let mut drawing = Drawing::new(size, PRINT);
     let at = DVec2::new(MARGIN, MARGIN + 0.5 * TITLE);
-    drawing.add_lines("title", (Face::Bold, TITLE), at, &title);
+    drawing.add_lines("title", (Face::Bold, TITLE), (at, 0.0), &title);
     for (number, (rows, blocks)) in (0..).zip(rows.chunks(count).zip(blocks.chunks(count))) {
         let mut at = DVec2::new(MARGIN + f64::from(number) * (half + MARGIN), first);
         for ((row, block), height) in rows.iter().zip(blocks).zip(&heights) {
             add_rule(&mut drawing, at, half);
             at.y += RULE + GAP;
-            for WordLine { runs, below } in block {
+            for (runs, below) in block {
                 let at = at + DVec2::Y * (0.5 * TEXT + below);
-                let words = Words::of_runs(runs.clone(), at, TEXT).anchored(0.0);
-                drawing.add("words", Shape::Words(words)).filled(INK);
+                let words = Words::of_runs(runs.clone(), at, TEXT);
+                drawing.add_words("words", words.anchored(0.0));
             }
             for (picture, column) in row.pictures.iter().zip(&columns) {
                 picture.draw(&mut drawing, at + DVec2::X * *column);
@@ -162,24 +158,15 @@ pub fn table(title: &str, rows: &[TableRow]) -> Drawing {
 
 fn add_rule(drawing: &mut Drawing, at: DVec2, width: f64) {
     let from = at + DVec2::Y * 0.5 * RULE;
-    let line = Shape::Line(vec![from, from + DVec2::X * width]);
-    drawing.add("rule", line).stroked(INK, RULE);
+    drawing.add_line("rule", [from, from + DVec2::X * width], (INK, RULE));
 }
 
-/// A line of a row's words.
-struct WordLine {
-    runs: Vec<(Face, String)>,
-    /// How far it is below the first.
-    below: f64,
-}
-
-/// The words of a row, broken into lines.
-fn lines(row: &TableRow) -> Vec<WordLine> {
-    let title = Face::Bold.wrap(&row.title, TEXT, WORDS);
-    let mut lines: Vec<WordLine> = Vec::new();
+/// The words of a row, broken into lines: each in pieces of one face, and how far it is below the first.
+fn lines(row: &TableRow) -> Vec<(Vec<(Face, String)>, f64)> {
+    let mut lines = Vec::new();
     let mut below = 0.0;
-    for line in title {
-        lines.push(WordLine { runs: vec![(Face::Bold, line)], below });
+    for line in Face::Bold.wrap(&row.title, TEXT, WORDS) {
+        lines.push((vec![(Face::Bold, line)], below));
         below += LINE * TEXT;
     }
     for (name, words) in &row.words {
@@ -191,7 +178,7 @@ fn lines(row: &TableRow) -> Vec<WordLine> {
         for (i, words) in Face::Regular.wrap(words, TEXT, WORDS - taken).into_iter().enumerate() {
             let first = if i == 0 { name.as_str() } else { indent };
             let runs = vec![(Face::Bold, first.to_owned()), (Face::Regular, words)];
-            lines.push(WordLine { runs, below });
+            lines.push((runs, below));
             below += LINE * TEXT;
         }
     }
@@ -216,7 +203,7 @@ mod tests {
         let channels =
             vec![Channel { name: "delivered".to_owned(), samples: Samples::F64(numbers) }];
         let picture = Picture { width: 160, height: 120, channels, metadata: Vec::new() };
-        ScalarMap::new(&picture, "delivered").expect("a map")
+        ScalarMap::new(&picture, "delivered", None).expect("a map")
     }
 
     fn row(title: &str, color: u8) -> TableRow {
@@ -278,8 +265,8 @@ mod tests {
             words: words.collect(),
             ..row("w ww www wwww wwwww ".repeat(9).as_str(), 1)
         };
-        for line in lines(&row) {
-            let words = Words::of_runs(line.runs, DVec2::ZERO, TEXT);
+        for (runs, _) in lines(&row) {
+            let words = Words::of_runs(runs, DVec2::ZERO, TEXT);
             assert!(words.width() <= WORDS, "{words:?}");
         }
     }
@@ -297,7 +284,7 @@ mod tests {
         let row = TableRow { title: String::new(), words: Vec::new(), pictures: vec![picture] };
         let drawing = super::table("", &[row]);
         let words = |element: &super::super::Element| match &element.shape {
-            Shape::Words(words) => Some(words.text()),
+            super::super::Shape::Words(words) => Some(words.text()),
             _ => None,
         };
         let words: Vec<String> = drawing.elements.iter().filter_map(words).collect();

@@ -1,9 +1,9 @@
 //! Round numbers along a range, and how they are labelled.
 
-use super::quantity::{Quantity, exponent, power_of_ten, short};
+use super::quantity::{MINUS, Quantity, exponent, power_of_ten, short, with_minus, with_unit};
 
 /// The ticks of an axis and the label that says what they count.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Axis {
     /// From low to high.
     pub ticks: Vec<Tick>,
@@ -40,24 +40,24 @@ pub(super) fn axis(quantity: &Quantity, range: Option<(f64, f64)>, most: usize) 
     };
     let size = low.abs().max(high.abs());
     let unit = quantity.unit(size);
+    let title = with_unit(&quantity.title, &unit.symbol);
     if low >= high {
         let ticks = vec![Tick { place: 0.5, label: with_minus(&significant(low / unit.size)) }];
-        return Axis { ticks, title: unit.label(&quantity.title) };
+        return Axis { ticks, title };
     }
     if high - low >= NARROW * size {
-        let ticks = ticks(low / unit.size, high / unit.size, most);
-        return Axis { ticks, title: unit.label(&quantity.title) };
+        return Axis { ticks: ticks(low / unit.size, high / unit.size, most), title };
     }
     let width = high - low;
     let decimals = usize::try_from(-exponent(width / unit.size)).unwrap_or(0);
     let origin = format!("{:.decimals$}", low.abs() / unit.size);
     let offset = origin.parse().map_or(low, |origin: f64| origin.copysign(low) * unit.size);
-    let sign = if low < 0.0 { '+' } else { '-' };
+    let sign = if low < 0.0 { "+" } else { MINUS };
     let fine = quantity.unit(width);
-    let title = with_minus(&format!("{} {sign} {origin} {}", quantity.title, unit.symbol));
+    let title = format!("{} {sign} {origin} {}", quantity.title, unit.symbol);
     Axis {
         ticks: ticks((low - offset) / fine.size, (high - offset) / fine.size, most),
-        title: fine.label(title.trim_end()),
+        title: with_unit(title.trim_end(), &fine.symbol),
     }
 }
 
@@ -119,19 +119,6 @@ impl Step {
 /// A number with six significant digits.
 fn significant(number: f64) -> String {
     short(number, usize::try_from(5 - exponent(number)).unwrap_or(0).min(12))
-}
-
-/// A text with true minus signs before and between its numbers.
-fn with_minus(text: &str) -> String {
-    let is_sign = |before: Option<char>| before.is_none_or(|c| c == ' ');
-    let mut before = None;
-    text.chars()
-        .map(|c| {
-            let shown = if c == '-' && is_sign(before) { '\u{2212}' } else { c };
-            before = Some(c);
-            shown
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -21,30 +21,14 @@ enum Source<'a> {
 /// Limits that are farther apart say only what is possible, not what is likely.
 const WIDE: f64 = 1e4;
 
+/// The ends of what numbers can be.
+const LARGEST: f64 = f64::MAX;
+const SMALLEST: f64 = f64::MIN_POSITIVE;
+
 /// Values at which something may change.
 const SPECIAL: [f64; 22] = [
-    0.0,
-    -0.0,
-    1.0,
-    -1.0,
-    0.5,
-    2.0,
-    3.0,
-    4.0,
-    10.0,
-    45.0,
-    90.0,
-    180.0,
-    360.0,
-    1e-9,
-    1e-16,
-    1e9,
-    1e16,
-    1e154,
-    1e300,
-    1e-300,
-    f64::MAX,
-    f64::MIN_POSITIVE,
+    0.0, -0.0, 1.0, -1.0, 0.5, 2.0, 3.0, 4.0, 10.0, 45.0, 90.0, 180.0, 360.0, 1e-9, 1e-16, 1e9,
+    1e16, 1e154, 1e300, 1e-300, LARGEST, SMALLEST,
 ];
 
 impl<'a> Draws<'a> {

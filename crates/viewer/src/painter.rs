@@ -208,8 +208,8 @@ impl Painter<'_> {
         let (image, scale) = match scene.picture.map.name() {
             None => (to_srgb(&picture)?, Value::Null),
             Some(channel) => {
-                let map = ScalarMap::new(&picture, channel)?;
-                let scale = scale(channel, map.range());
+                let map = ScalarMap::new(&picture, channel, None)?;
+                let scale = scale(channel, map.bar.scale.range());
                 (map.image, scale)
             }
         };

@@ -9,11 +9,11 @@ pub use source::Source;
 pub use view::Projected;
 
 use super::drawing::Drawing;
-use super::setting::{Devices, TEXT, sheet};
+use super::setting::{AXES, Devices, MARGIN, TEXT, draw_axes, sheet};
 use cloakroom::render::{PreparedSceneError, assembly, metadata};
 use cloakroom::scene::Scene;
 use cloakroom::trace::{Limits, Line, lines};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use view::{Scenery, SpaceView};
@@ -127,42 +127,46 @@ pub fn diagram(
         return Err(DiagramError::Inside { device });
     }
     let limits = Limits { min_power: settings.min_power, tolerance: scene.trace.tolerance };
+    // How far leaves are followed.
+    let reach = 2.0 * scenery.start();
     let trees: Vec<Vec<Line>> = launches
         .par_iter()
         .map(|launch| {
             if stop.load(Ordering::Relaxed) {
                 return Err(DiagramError::Stopped);
             }
-            let mut tree = lines(&assembly, limits, launch, settings.polarization, scenery.reach());
+            let mut tree = lines(&assembly, limits, launch, settings.polarization, reach);
             tree.retain(|line| line.power >= settings.min_power);
             Ok(tree)
         })
         .collect::<Result<_, _>>()?;
-    let mut drawing = Drawing::new(sheet(settings.size), TEXT);
+    let fronts = |trees: &[Vec<Line>]| {
+        let Some(distance) = settings.wavefronts else { return Vec::new() };
+        rays::wavefronts(trees, &assembly, [distance, scenery.apart(trees.len())])
+    };
+    let sheet = sheet(settings.size);
+    let mut drawing = Drawing::new(sheet, TEXT);
     match settings.projected {
         Projected::Section => {
-            let view = scenery.section_view(drawing.size, devices.has_bar());
+            let view = scenery.section_view(sheet, devices.has_bar());
             devices.draw(&mut drawing, &view);
             let place = |at: DVec3| view.place(at.truncate());
             let frame = view.frame();
-            if let Some(distance) = settings.wavefronts {
-                let fronts = rays::Wavefronts { distance, apart: scenery.apart(trees.len()) };
-                fronts.draw(&mut drawing, &place, &frame, &trees, &assembly);
+            for front in fronts(&trees) {
+                let front: Vec<DVec2> = front.into_iter().map(place).collect();
+                drawing.add_line("wavefront", front, rays::FRONT).within(vec![frame.to_vec()]);
             }
             rays::draw(&mut drawing, &place, &frame, &trees);
-            view::draw_around(&mut drawing, &devices, settings);
+            devices.draw_bar(&mut drawing, view::bar(sheet));
+            draw_axes(&mut drawing, sheet - AXES - DVec2::new(MARGIN, 4.0));
         }
         Projected::Space { azimuth, elevation } => {
-            let view = SpaceView::new(&scenery, drawing.size, [azimuth, elevation]);
-            let fronts: Vec<Vec<DVec3>> = settings.wavefronts.map_or_else(Vec::new, |distance| {
-                let count = settings.rays as usize;
-                let wavefronts = rays::Wavefronts { distance, apart: scenery.apart(count) };
-                trees.chunks(count).flat_map(|layer| wavefronts.lines(layer, &assembly)).collect()
-            });
+            let view = SpaceView::new(&scenery, sheet, [azimuth, elevation]);
+            let fronts: Vec<_> = trees.chunks(settings.rays as usize).flat_map(fronts).collect();
             solids::draw(&mut drawing, &view, &assembly, (&trees, &fronts), &scenery);
-            view::draw_key(&mut drawing, settings);
         }
     }
+    view::draw_key(&mut drawing, settings);
     Ok(Diagram { drawing, metadata: metadata(scene) })
 }
 

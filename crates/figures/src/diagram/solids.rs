@@ -1,6 +1,6 @@
 //! Devices and rays in space, painted from back to front.
 
-use super::super::drawing::{Drawing, Ink, Shape};
+use super::super::drawing::{Drawing, Ink};
 use super::super::setting::{INK, MEDIUM, METAL, THIN};
 use super::rays;
 use super::view::{Scenery, SpaceView};
@@ -14,17 +14,13 @@ use std::f64::consts::TAU;
 /// Pieces around a ball.
 const AROUND: u32 = 48;
 
-/// Something to be painted: its shape in space, and how.
-struct Item {
-    points: Vec<DVec3>,
-    paint: Paint,
-}
+/// Something to be painted: its points in space, and how.
+type Item = (Vec<DVec3>, Paint);
 
 enum Paint {
     Face(Ink),
-    Edge(Ink, f64),
-    Ray(f64),
-    Front,
+    /// Of a class, in a colour of a width.
+    Line(&'static str, (Ink, f64)),
 }
 
 /// Draws the devices, and the rays and wavefronts among them; what is nearer hides what is behind metal.
@@ -43,29 +39,21 @@ pub(super) fn draw(
         add_ray(&mut items, line, scenery);
     }
     for pair in fronts.iter().flat_map(|front| front.windows(2)) {
-        items.push(Item { points: pair.to_vec(), paint: Paint::Front });
+        items.push((pair.to_vec(), Paint::Line("wavefront", rays::FRONT)));
     }
-    let depth = |item: &Item| {
-        let sum: f64 = item.points.iter().map(|point| point.dot(view.toward)).sum();
-        sum / item.points.len() as f64
+    let depth = |(points, _): &Item| {
+        let sum: f64 = points.iter().map(|point| point.dot(view.toward)).sum();
+        sum / points.len() as f64
     };
     items.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
     let frame = view.frame();
-    for Item { points, paint } in items {
+    for (points, paint) in items {
         let at: Vec<DVec2> = points.iter().map(|point| view.place(*point)).collect();
         match paint {
-            Paint::Face(ink) => drawing.add("face", Shape::Area(vec![at])).filled(ink),
-            Paint::Edge(ink, width) => drawing.add("edge", Shape::Line(at)).stroked(ink, width),
-            Paint::Front => {
-                let front = drawing.add("wavefront", Shape::Line(at));
-                front.stroked(rays::FRONT, rays::FRONT_WIDTH)
-            }
-            Paint::Ray(power) => {
-                let (ink, width) = rays::stroke(power);
-                drawing.add("ray", Shape::Line(at)).stroked(ink, width)
-            }
+            Paint::Face(ink) => drawing.add_area("face", at).filled(ink),
+            Paint::Line(class, stroke) => drawing.add_line(class, at, stroke),
         }
-        .within(vec![frame.clone()]);
+        .within(vec![frame.to_vec()]);
     }
     view.draw_axes(drawing);
 }
@@ -78,7 +66,7 @@ fn add_ray(items: &mut Vec<Item>, line: &Line, scenery: &Scenery) {
         let pieces = (from.distance(to) / longest).ceil().clamp(1.0, 400.0) as u32;
         let at = |k: u32| from.lerp(to, f64::from(k) / f64::from(pieces));
         for k in 0..pieces {
-            items.push(Item { points: vec![at(k), at(k + 1)], paint: Paint::Ray(line.power) });
+            items.push((vec![at(k), at(k + 1)], Paint::Line("ray", rays::stroke(line.power))));
         }
     }
 }
@@ -140,21 +128,19 @@ fn add_prism(
             for k in 0..LAYERS {
                 let [low, high] = [level(k), level(k + 1)];
                 let face = [at(a, low), at(b, low), at(b, high), at(a, high)];
-                items.push(Item { points: face.to_vec(), paint: Paint::Face(METAL) });
+                items.push((face.to_vec(), Paint::Face(METAL)));
             }
         }
     }
-    let edge = Paint::Edge;
+    let edge = || Paint::Line("edge", (INK.faint(0.7), THIN));
     for z in ends {
         for pair in points.windows(2) {
-            let line = pair.iter().map(|point| at(*point, z)).collect();
-            items.push(Item { points: line, paint: edge(INK.faint(0.7), THIN) });
+            items.push((pair.iter().map(|point| at(*point, z)).collect(), edge()));
         }
     }
     for corner in corners {
         for k in 0..LAYERS {
-            let line = vec![at(corner, level(k)), at(corner, level(k + 1))];
-            items.push(Item { points: line, paint: edge(INK.faint(0.7), THIN) });
+            items.push((vec![at(corner, level(k)), at(corner, level(k + 1))], edge()));
         }
     }
 }
@@ -196,19 +182,19 @@ fn add_ball(
         let u = normal.any_orthonormal_vector() * (ball.rim() / radius);
         let rim = circle(u, normal.cross(u)).into_iter().map(|at| at + normal * ball.plane.offset);
         for pair in rim.collect::<Vec<_>>().windows(2) {
-            items.push(Item { points: pair.to_vec(), paint: Paint::Edge(INK.faint(0.4), THIN) });
+            items.push((pair.to_vec(), Paint::Line("edge", (INK.faint(0.4), THIN))));
         }
     }
     let ink = if metal { METAL } else { MEDIUM.faint(0.3) };
-    items.push(Item { points: outline.clone(), paint: Paint::Face(ink) });
+    items.push((outline.clone(), Paint::Face(ink)));
     for pair in outline.windows(2) {
-        items.push(Item { points: pair.to_vec(), paint: Paint::Edge(INK, THIN) });
+        items.push((pair.to_vec(), Paint::Line("edge", (INK, THIN))));
     }
     for (u, v) in [(DVec3::X, DVec3::Z), (DVec3::X, DVec3::Y)] {
         for pair in circle(u, v).windows(2).filter(|pair| is_left(pair[0]) && is_left(pair[1])) {
             let hidden = ((pair[0] + pair[1]) / 2.0 - centre).dot(toward) < 0.0;
             let ink = INK.faint(if hidden { 0.15 } else { 0.4 });
-            items.push(Item { points: pair.to_vec(), paint: Paint::Edge(ink, 0.7 * THIN) });
+            items.push((pair.to_vec(), Paint::Line("edge", (ink, 0.7 * THIN))));
         }
     }
 }

@@ -38,11 +38,11 @@ impl Source {
             let share = (f64::from(k) + 0.5) / f64::from(settings.layers) - 0.5;
             scenery.z + share * scenery.depth()
         };
-        let starts: Vec<(DVec3, DVec3)> = (0..settings.layers)
+        (0..settings.layers)
             .flat_map(|k| (0..count).map(move |i| (k, i)))
             .map(|(k, i)| {
                 let share = (f64::from(i) + 0.5) / f64::from(count) - 0.5;
-                match *self {
+                let (origin, direction) = match *self {
                     Self::Parallel { degrees } => {
                         let along = DVec2::from_angle(degrees.to_radians());
                         let across = along.perp();
@@ -70,23 +70,10 @@ impl Source {
                         let ray = scene.camera.ray(column, (0.5 - share) * height);
                         (ray.origin, ray.direction)
                     }
-                }
-            })
-            .collect();
-        starts
-            .into_iter()
-            .map(|(origin, direction)| {
+                };
                 let (horizontal, vertical) = transverse_basis(direction, DVec3::Z, DVec3::X);
                 Launch { origin, direction, electric: [horizontal.into(), vertical.into()] }
             })
             .collect()
-    }
-
-    /// The point of the plane that the view should show, too, if it is near.
-    pub(super) fn place(&self) -> Option<DVec2> {
-        match self {
-            Self::Point(point) => Some(point.truncate()),
-            Self::Parallel { .. } | Self::Camera => None,
-        }
     }
 }

@@ -1,9 +1,7 @@
 //! What part of space a diagram shows, and how.
 
 use super::super::drawing::{Drawing, Face, Shape, Words};
-use super::super::setting::{
-    AXES, BAR, Devices, INK, MARGIN, PAPER, TEXT, THIN, View, corners, draw_axes,
-};
+use super::super::setting::{BAR, INK, MARGIN, PAPER, TEXT, THIN, View, corners};
 use super::{DiagramSettings, Source, rays};
 use cloakroom::assembly::Assembly;
 use cloakroom::device::REACH;
@@ -48,6 +46,7 @@ pub(super) fn bounds(assembly: &Assembly) -> Option<[DVec2; 2]> {
 /// The devices' place, and how much around them is shown.
 pub(super) struct Scenery {
     bounds: [DVec2; 2],
+    /// Least and greatest x and y that are shown, cm.
     shown: [DVec2; 2],
     pub z: f64,
 }
@@ -62,8 +61,11 @@ impl Scenery {
         };
         let around = size * (0.06 + 0.4 * along);
         let mut shown = [low - around, high + around];
-        let near = |point: &DVec2| point.distance((low + high) / 2.0) < 4.0 * size;
-        if let Some(point) = settings.source.place().filter(near) {
+        let near = |point: DVec2| point.distance((low + high) / 2.0) < 4.0 * size;
+        if let Source::Point(point) = settings.source
+            && near(point.truncate())
+        {
+            let point = point.truncate();
             shown = [shown[0].min(point - 0.05 * size), shown[1].max(point + 0.05 * size)];
         }
         Self { bounds: [low, high], shown, z }
@@ -99,16 +101,6 @@ impl Scenery {
         6.0 * self.depth() / rays.max(4) as f64
     }
 
-    /// How far leaves are followed.
-    pub fn reach(&self) -> f64 {
-        2.0 * self.start()
-    }
-
-    /// Least and greatest x and y that are shown, cm.
-    pub fn shown(&self) -> [DVec2; 2] {
-        self.shown
-    }
-
     /// The view of the cross-section on a sheet; its window is what is shown.
     pub fn section_view(&self, sheet: DVec2, bar: bool) -> View {
         let bar = if bar { BAR } else { 0.0 };
@@ -118,18 +110,10 @@ impl Scenery {
     }
 }
 
-/// Draws what stands around a cross-section: the colour bar, the axes and the key.
-pub(super) fn draw_around(
-    drawing: &mut Drawing,
-    devices: &Devices<'_>,
-    settings: &DiagramSettings,
-) {
-    let sheet = drawing.size;
+/// Where the colour bar beside a cross-section is: its top left corner and its height.
+pub(super) fn bar(sheet: DVec2) -> (DVec2, f64) {
     let height = 0.7 * sheet.y;
-    let at = DVec2::new(sheet.x - MARGIN - BAR + 0.6 * TEXT, 0.5 * (sheet.y - KEY - height));
-    devices.draw_bar(drawing, (at, height));
-    draw_axes(drawing, sheet - AXES - DVec2::new(MARGIN, 4.0));
-    draw_key(drawing, settings);
+    (DVec2::new(sheet.x - MARGIN - BAR + 0.6 * TEXT, 0.5 * (sheet.y - KEY - height)), height)
 }
 
 /// Draws what the strokes stand for, in a row at the lower edge.
@@ -139,20 +123,18 @@ pub(super) fn draw_key(drawing: &mut Drawing, settings: &DiagramSettings) {
     let mut write = |drawing: &mut Drawing, text: String, gap: f64| {
         let words = Words::new(text, DVec2::new(x, y), 0.8 * TEXT).anchored(0.0);
         x += words.width() + gap;
-        drawing.add("key", Shape::Words(words)).filled(INK);
+        drawing.add_words("key", words);
         x
     };
+    let sample = |at: f64| [DVec2::new(at, y), DVec2::new(at + 1.8 * TEXT, y)];
     let mut at = write(drawing, "power".to_owned(), 0.6 * TEXT);
     for power in [1.0, 0.3, 0.1, 0.03].into_iter().filter(|power| *power >= settings.min_power) {
-        let line = vec![DVec2::new(at, y), DVec2::new(at + 1.8 * TEXT, y)];
-        let (ink, width) = rays::stroke(power);
-        drawing.add("key-ray", Shape::Line(line)).stroked(ink, width);
+        drawing.add_line("key-ray", sample(at), rays::stroke(power));
         write(drawing, String::new(), 2.1 * TEXT);
         at = write(drawing, format!("{} %", power * 100.0), 0.9 * TEXT);
     }
     if let Some(distance) = settings.wavefronts {
-        let line = vec![DVec2::new(at, y), DVec2::new(at + 1.8 * TEXT, y)];
-        drawing.add("key-wavefront", Shape::Line(line)).stroked(rays::FRONT, rays::FRONT_WIDTH);
+        drawing.add_line("key-wavefront", sample(at), rays::FRONT);
         write(drawing, String::new(), 2.1 * TEXT);
         write(drawing, format!("equal optical path, every {distance} cm"), 0.0);
     }
@@ -167,7 +149,6 @@ pub(super) struct SpaceView {
     scale: f64,
     middle: DVec3,
     centre: DVec2,
-    sheet: DVec2,
 }
 
 impl SpaceView {
@@ -178,7 +159,7 @@ impl SpaceView {
         let back = DVec3::new(sin, 0.0, cos);
         let toward = back * level + DVec3::Y * rise;
         let up = toward.cross(right);
-        let [low, high] = scenery.shown();
+        let [low, high] = scenery.shown;
         let half = 0.5 * scenery.depth();
         let middle = ((low + high) / 2.0).extend(scenery.z);
         let corners = (0..8).map(|k| {
@@ -192,9 +173,9 @@ impl SpaceView {
         let reach = corners.fold(DVec2::splat(1e-6), |most, corner| {
             most.max(DVec2::new(corner.dot(right), corner.dot(up)).abs())
         });
-        let room = DVec2::new(sheet.x, sheet.y - KEY) / 2.0 - MARGIN;
         let centre = DVec2::new(sheet.x, sheet.y - KEY) / 2.0;
-        Self { right, up, toward, scale: (room / reach).min_element(), middle, centre, sheet }
+        let scale = ((centre - MARGIN) / reach).min_element();
+        Self { right, up, toward, scale, middle, centre }
     }
 
     /// Where on the sheet a point is.
@@ -204,22 +185,22 @@ impl SpaceView {
     }
 
     /// The corners of the part of the sheet that it fills.
-    pub fn frame(&self) -> Vec<DVec2> {
-        corners([DVec2::ZERO, self.sheet - DVec2::Y * KEY])
+    pub fn frame(&self) -> [DVec2; 4] {
+        corners([DVec2::ZERO, 2.0 * self.centre])
     }
 
     /// Draws the directions of x, y and z.
     pub fn draw_axes(&self, drawing: &mut Drawing) {
-        let origin = DVec2::new(self.sheet.x - 3.2 * TEXT, self.sheet.y - 3.2 * TEXT);
+        let origin = drawing.size - 3.2 * TEXT;
         let ground = Shape::Circle { centre: origin, radius: 2.7 * TEXT };
         drawing.add("ground", ground).filled(PAPER.faint(0.85));
         for (name, axis) in [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)] {
             let along = DVec2::new(axis.dot(self.right), -axis.dot(self.up));
             let tip = origin + 1.9 * TEXT * along;
-            drawing.add("coordinate", Shape::Line(vec![origin, tip])).stroked(INK, THIN);
+            drawing.add_line("coordinate", [origin, tip], (INK, THIN));
             let beside = tip + 0.55 * TEXT * along.normalize_or(DVec2::Y);
-            let words = Words::of_runs(vec![(Face::Italic, name.to_owned())], beside, 0.8 * TEXT);
-            drawing.add("coordinate-name", Shape::Words(words)).filled(INK);
+            let words = Words::of(Face::Italic, name, beside, 0.8 * TEXT);
+            drawing.add_words("coordinate-name", words);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::super::quantity::short;
 use super::typeface::Piece;
-use super::{Drawing, Element, Ink, Shape, Words};
+use super::{Drawing, Element, Ink, Shape, contours, line};
 use base64::Engine;
 use cloakroom::output::RgbImage;
 use glam::{DAffine2, DVec2};
@@ -43,17 +43,14 @@ impl Drawing {
         document = document.add(paper);
         for (index, element) in self.elements.iter().enumerate() {
             if let Some(clip) = &element.clip {
-                let path = Path::new().set("d", contours(clip)).set("clip-rule", "evenodd");
-                document = document.add(ClipPath::new().set("id", clip_name(index)).add(path));
+                let path = path(contours(clip)).set("clip-rule", "evenodd");
+                let id = format!("clip{index}");
+                document = document.add(ClipPath::new().set("id", id).add(path));
             }
             document = document.add(node(element, index, source));
         }
         format!("{document}\n")
     }
-}
-
-fn clip_name(index: usize) -> String {
-    format!("clip{index}")
 }
 
 fn node(
@@ -64,14 +61,14 @@ fn node(
     let mut group = Group::new().set("class", element.class);
     if element.clip.is_some() {
         // The clip is in the coordinates of the sheet: it belongs to the group, not to an image in it.
-        group = group.set("clip-path", format!("url(#{})", clip_name(index)));
+        group = group.set("clip-path", format!("url(#clip{index})"));
     }
     match &element.shape {
         Shape::Area(loops) => {
-            let path = Path::new().set("d", contours(loops)).set("fill-rule", "evenodd");
+            let path = path(contours(loops)).set("fill-rule", "evenodd");
             group.add(painted(path, element))
         }
-        Shape::Line(points) => group.add(painted(Path::new().set("d", line(points)), element)),
+        Shape::Line(points) => group.add(painted(path(line(points)), element)),
         Shape::Circle { centre, radius } => {
             let circle = svg::node::element::Circle::new()
                 .set("cx", number(centre.x))
@@ -84,28 +81,22 @@ fn node(
             None => group,
         },
         Shape::Words(words) => {
-            let path = Path::new().set("d", letters(words));
-            group.set("aria-label", words.text()).add(painted(path, element))
+            group.set("aria-label", words.text()).add(painted(path(words.outline()), element))
         }
     }
 }
 
 /// Sets fill and stroke.
 fn painted<T: Node>(mut node: T, element: &Element) -> T {
-    match element.fill {
-        Some(ink) => {
-            node.assign("fill", hex(ink));
-            if ink.opacity < 1.0 {
-                node.assign("fill-opacity", number(ink.opacity));
-            }
+    node.assign("fill", "none");
+    for (name, ink) in [("fill", element.fill), ("stroke", element.stroke.map(|s| s.ink))] {
+        let Some(Ink { rgb: [r, g, b], opacity }) = ink else { continue };
+        node.assign(name, format!("#{r:02x}{g:02x}{b:02x}"));
+        if opacity < 1.0 {
+            node.assign(format!("{name}-opacity"), number(opacity));
         }
-        None => node.assign("fill", "none"),
     }
     if let Some(stroke) = element.stroke {
-        node.assign("stroke", hex(stroke.ink));
-        if stroke.ink.opacity < 1.0 {
-            node.assign("stroke-opacity", number(stroke.ink.opacity));
-        }
         node.assign("stroke-width", number(stroke.width));
         node.assign("stroke-linejoin", "round");
         if let Some([dash, gap]) = stroke.dash {
@@ -113,11 +104,6 @@ fn painted<T: Node>(mut node: T, element: &Element) -> T {
         }
     }
     node
-}
-
-fn hex(ink: Ink) -> String {
-    let [r, g, b] = ink.rgb;
-    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// A number with as many decimals as matter: a thousandth of a unit.
@@ -129,20 +115,9 @@ fn point(p: DVec2) -> String {
     format!("{},{}", number(p.x), number(p.y))
 }
 
-fn line(points: &[DVec2]) -> String {
-    points.iter().enumerate().fold(String::new(), |mut data, (i, p)| {
-        let _ = write!(data, "{}{}", if i == 0 { 'M' } else { 'L' }, point(*p));
-        data
-    })
-}
-
-fn contours(loops: &[Vec<DVec2>]) -> String {
-    loops.iter().map(|points| line(points) + "Z").collect()
-}
-
-/// The outlines of a text at its place.
-fn letters(words: &Words) -> String {
-    words.outline().into_iter().fold(String::new(), |mut data, piece| {
+/// What pieces of an outline are together.
+fn path(pieces: impl IntoIterator<Item = Piece>) -> Path {
+    let data = pieces.into_iter().fold(String::new(), |mut data, piece| {
         let _ = match piece {
             Piece::Move(p) => write!(data, "M{}", point(p)),
             Piece::Line(p) => write!(data, "L{}", point(p)),
@@ -151,7 +126,8 @@ fn letters(words: &Words) -> String {
             Piece::Close => write!(data, "Z"),
         };
         data
-    })
+    });
+    Path::new().set("d", data)
 }
 
 /// An image as a PNG within the SVG; none if it has no pixels.

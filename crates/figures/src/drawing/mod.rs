@@ -133,23 +133,46 @@ impl Drawing {
         let place = DAffine2::from_cols(DVec2::X * size.x, DVec2::Y * size.y, at);
         self.add("picture", Shape::Image { image, cells, place });
         let [low, high] = [at - line / 2.0, at + size + line / 2.0];
-        let frame = vec![low, DVec2::new(low.x, high.y), high, DVec2::new(high.x, low.y)];
-        self.add("frame", Shape::Area(vec![frame])).stroked(INK, line);
+        let frame = [low, DVec2::new(low.x, high.y), high, DVec2::new(high.x, low.y)];
+        self.add_area("frame", frame).stroked(INK, line);
     }
 
-    /// Writes lines of text in ink, one under the other, that begin at a point on the middle of the first one.
+    /// Writes lines of text in ink, one under the other, that part of them at a point on the middle of the first one.
     pub fn add_lines(
         &mut self,
         class: &'static str,
         (face, size): (Face, f64),
-        at: DVec2,
+        (at, anchor): (DVec2, f64),
         lines: &[String],
     ) {
         for (line, below) in lines.iter().zip(0..) {
             let at = at + DVec2::Y * LINE * size * f64::from(below);
-            let words = Words::of_runs(vec![(face, line.clone())], at, size).anchored(0.0);
-            self.add(class, Shape::Words(words)).filled(INK);
+            self.add_words(class, Words::of(face, line.as_str(), at, size).anchored(anchor));
         }
+    }
+
+    /// Adds a line of text in ink.
+    pub fn add_words(&mut self, class: &'static str, words: Words) -> &mut Element {
+        self.add(class, Shape::Words(words)).filled(INK)
+    }
+
+    /// Adds a line from point to point in a colour of a width.
+    pub fn add_line(
+        &mut self,
+        class: &'static str,
+        points: impl Into<Vec<DVec2>>,
+        (ink, width): (Ink, f64),
+    ) -> &mut Element {
+        self.add(class, Shape::Line(points.into())).stroked(ink, width)
+    }
+
+    /// Adds what is within one closed contour.
+    pub fn add_area(
+        &mut self,
+        class: &'static str,
+        contour: impl Into<Vec<DVec2>>,
+    ) -> &mut Element {
+        self.add(class, Shape::Area(vec![contour.into()]))
     }
 
     /// Adds an element in front of all others, to be coloured by what is called on it.
@@ -211,7 +234,13 @@ impl Words {
     /// A horizontal line of text in the regular face, its middle at a point.
     #[must_use]
     pub fn new(text: impl Into<String>, at: DVec2, size: f64) -> Self {
-        Self::of_runs(vec![(Face::Regular, text.into())], at, size)
+        Self::of(Face::Regular, text, at, size)
+    }
+
+    /// A horizontal line of text in a face, its middle at a point.
+    #[must_use]
+    pub fn of(face: Face, text: impl Into<String>, at: DVec2, size: f64) -> Self {
+        Self::of_runs(vec![(face, text.into())], at, size)
     }
 
     /// A horizontal line of text in several faces, its middle at a point.
@@ -266,16 +295,17 @@ impl Words {
         }
         pieces
     }
+}
 
-    /// The corners of its box.
-    #[must_use]
-    pub fn corners(&self) -> [DVec2; 4] {
-        let turn = DVec2::from_angle(-self.angle.to_radians());
-        let (left, height) = (-self.anchor * self.width(), 0.5 * self.size);
-        let right = left + self.width();
-        [(left, -height), (right, -height), (right, height), (left, height)]
-            .map(|corner| self.at + turn.rotate(DVec2::from(corner)))
-    }
+/// A line from point to point.
+fn line(points: &[DVec2]) -> impl Iterator<Item = Piece> {
+    points.iter().enumerate().map(|(i, p)| if i == 0 { Piece::Move(*p) } else { Piece::Line(*p) })
+}
+
+/// Closed contours.
+fn contours(loops: &[Vec<DVec2>]) -> impl Iterator<Item = Piece> {
+    let loops = loops.iter().filter(|points| !points.is_empty());
+    loops.flat_map(|points| line(points).chain([Piece::Close]))
 }
 
 #[cfg(test)]

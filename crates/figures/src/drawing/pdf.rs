@@ -1,7 +1,7 @@
 //! Drawings as PDF: one page, as large as the drawing is on paper.
 
 use super::typeface::Piece;
-use super::{Drawing, Element, Ink, Shape, Stroke};
+use super::{Drawing, Element, Ink, Shape, Stroke, contours, line};
 use cloakroom::output::RgbImage;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -112,7 +112,7 @@ impl<'d> Sheet<'d> {
     fn draw(&mut self, element: &'d Element) {
         self.content.save_state();
         if let Some(clip) = &element.clip {
-            self.contours(clip);
+            self.path(contours(clip));
             self.content.clip_even_odd().end_path();
         }
         if element.fill.is_some() || element.stroke.is_some() {
@@ -120,19 +120,19 @@ impl<'d> Sheet<'d> {
         }
         match &element.shape {
             Shape::Area(loops) => {
-                self.contours(loops);
+                self.path(contours(loops));
                 self.paint(element, true);
             }
             Shape::Line(points) => {
-                self.line(points);
+                self.path(line(points));
                 self.paint(element, false);
             }
             Shape::Circle { centre, radius } => {
-                self.circle(*centre, *radius);
+                self.path(circle(*centre, *radius));
                 self.paint(element, false);
             }
             Shape::Words(words) => {
-                self.outline(words.outline());
+                self.path(words.outline());
                 self.paint(element, false);
             }
             Shape::Image { image, cells, place } if image.width() > 0 && image.height() > 0 => {
@@ -186,66 +186,44 @@ impl<'d> Sheet<'d> {
         };
     }
 
-    fn move_to(&mut self, p: DVec2) {
-        self.content.move_to(p.x as f32, p.y as f32);
-    }
-
-    fn line_to(&mut self, p: DVec2) {
-        self.content.line_to(p.x as f32, p.y as f32);
-    }
-
-    fn cubic_to(&mut self, a: DVec2, b: DVec2, p: DVec2) {
-        let [a, b, p] = [a, b, p].map(DVec2::as_vec2);
-        self.content.cubic_to(a.x, a.y, b.x, b.y, p.x, p.y);
-    }
-
-    fn line(&mut self, points: &[DVec2]) {
-        for (i, point) in points.iter().enumerate() {
-            if i == 0 { self.move_to(*point) } else { self.line_to(*point) }
-        }
-    }
-
-    fn contours(&mut self, loops: &[Vec<DVec2>]) {
-        for points in loops.iter().filter(|points| !points.is_empty()) {
-            self.line(points);
-            self.content.close_path();
-        }
-    }
-
-    fn circle(&mut self, centre: DVec2, radius: f64) {
-        self.move_to(centre + DVec2::X * radius);
-        for quarter in 0..4 {
-            let from = DVec2::X.rotate(DVec2::from_angle(f64::from(quarter) * FRAC_PI_2));
-            let to = from.perp();
-            let [a, b, p] =
-                [from + QUARTER * to, to + QUARTER * from, to].map(|point| centre + radius * point);
-            self.cubic_to(a, b, p);
-        }
-        self.content.close_path();
-    }
-
-    fn outline(&mut self, pieces: Vec<Piece>) {
+    fn path(&mut self, pieces: impl IntoIterator<Item = Piece>) {
+        let content = &mut self.content;
         let mut pen = DVec2::ZERO;
         for piece in pieces {
-            match piece {
-                Piece::Move(p) => self.move_to(p),
-                Piece::Line(p) => self.line_to(p),
-                // The cubic curve that is the quadratic one.
-                Piece::Quadratic(a, p) => {
-                    self.cubic_to(pen.lerp(a, 2.0 / 3.0), p.lerp(a, 2.0 / 3.0), p);
-                }
-                Piece::Cubic(a, b, p) => self.cubic_to(a, b, p),
+            let (curve, to) = match piece {
                 Piece::Close => {
-                    self.content.close_path();
+                    content.close_path();
+                    continue;
                 }
+                Piece::Move(p) => {
+                    content.move_to(p.x as f32, p.y as f32);
+                    (None, p)
+                }
+                Piece::Line(p) => {
+                    content.line_to(p.x as f32, p.y as f32);
+                    (None, p)
+                }
+                // The cubic curve that is the quadratic one.
+                Piece::Quadratic(a, p) => (Some([pen.lerp(a, 2.0 / 3.0), p.lerp(a, 2.0 / 3.0)]), p),
+                Piece::Cubic(a, b, p) => (Some([a, b]), p),
+            };
+            if let Some(curve) = curve {
+                let [a, b, p] = [curve[0], curve[1], to].map(DVec2::as_vec2);
+                content.cubic_to(a.x, a.y, b.x, b.y, p.x, p.y);
             }
-            if let Piece::Move(p)
-            | Piece::Line(p)
-            | Piece::Quadratic(_, p)
-            | Piece::Cubic(_, _, p) = piece
-            {
-                pen = p;
-            }
+            pen = to;
         }
     }
+}
+
+/// A circle of four curves.
+fn circle(centre: DVec2, radius: f64) -> impl Iterator<Item = Piece> {
+    let quarters = (0..4).map(move |quarter| {
+        let from = DVec2::X.rotate(DVec2::from_angle(f64::from(quarter) * FRAC_PI_2));
+        let to = from.perp();
+        let [a, b, p] =
+            [from + QUARTER * to, to + QUARTER * from, to].map(|point| centre + radius * point);
+        Piece::Cubic(a, b, p)
+    });
+    [Piece::Move(centre + DVec2::X * radius)].into_iter().chain(quarters).chain([Piece::Close])
 }

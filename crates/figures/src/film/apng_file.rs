@@ -1,8 +1,7 @@
 //! Animated PNG.
 
-use super::{FilmError, FilmSettings, FrameFolder, Halt, Size, write_whole};
+use super::{FilmError, FilmSettings, FrameFolder, checked, size, write_whole};
 use cloakroom::output::png_encoder;
-use std::io;
 use std::path::Path;
 
 /// Most pixels a side of a frame.
@@ -14,19 +13,17 @@ pub(super) fn write(
     path: &Path,
     settings: &FilmSettings<'_>,
 ) -> Result<(), FilmError> {
-    let size = Size::of(frames, "PNG", MOST)?;
+    let [width, height] = size(frames, "PNG", MOST)?;
     write_whole(path, |out| {
-        let broken = |error: png::EncodingError| Halt::File(io::Error::from(error));
-        let mut encoder =
-            png_encoder((size.0[0], size.0[1]), settings.metadata, out).map_err(broken)?;
+        let mut encoder = png_encoder((width, height), settings.metadata, out)?;
         // A film has 100000 frames at most, 100 a second at most.
-        encoder.set_animated(frames.count() as u32, 0).map_err(broken)?;
-        encoder.set_frame_delay(1, settings.rate as u16).map_err(broken)?;
-        let mut writer = encoder.write_header().map_err(broken)?;
-        for frame in size.checked(frames) {
-            writer.write_image_data(frame?.as_raw()).map_err(broken)?;
+        encoder.set_animated(frames.count as u32, 0)?;
+        encoder.set_frame_delay(1, settings.rate as u16)?;
+        let mut writer = encoder.write_header()?;
+        for frame in checked(frames, [width, height]) {
+            writer.write_image_data(frame?.as_raw())?;
             settings.done()?;
         }
-        writer.finish().map_err(broken)
+        Ok(writer.finish()?)
     })
 }

@@ -9,8 +9,10 @@ use std::path::{Path, PathBuf};
 /// A folder of numbered frames.
 #[derive(Clone, Debug)]
 pub struct FrameFolder {
-    folder: PathBuf,
-    count: usize,
+    /// Where it is.
+    pub(super) folder: PathBuf,
+    /// How many frames it is for.
+    pub(super) count: usize,
 }
 
 impl FrameFolder {
@@ -20,23 +22,9 @@ impl FrameFolder {
     ///
     /// If it cannot be made.
     pub fn new(folder: &Path, count: usize) -> Result<Self, FilmError> {
-        fs::create_dir_all(folder).map_err(|error| FilmError::Folder {
-            path: folder.to_owned(),
-            reason: error.to_string(),
-        })?;
+        fs::create_dir_all(folder)
+            .map_err(|error| FilmError::failed("cannot make the folder", folder, &error))?;
         Ok(Self { folder: folder.to_owned(), count })
-    }
-
-    /// Where it is.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        &self.folder
-    }
-
-    /// How many frames it is for.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.count
     }
 
     /// The file of a frame, counted from 0: `frame-000000.png` and so on.
@@ -59,7 +47,10 @@ impl FrameFolder {
         let older = |file: &PathBuf| {
             fs::metadata(file).and_then(|file| file.modified()).is_ok_and(|time| time < made)
         };
-        files.iter().all(older) && carried(&path).is_some_and(|carried| same(&carried, metadata))
+        let same = |carried: Vec<(String, String)>| {
+            carried.len() == metadata.len() && metadata.iter().all(|pair| carried.contains(pair))
+        };
+        files.iter().all(older) && carried(&path).is_some_and(same)
     }
 
     /// Writes a frame.
@@ -83,15 +74,8 @@ impl FrameFolder {
     /// If it cannot be read.
     pub fn read(&self, frame: usize) -> Result<RgbImage, FilmError> {
         let path = self.file(frame);
-        let image = image::open(&path);
-        image
-            .map(image::DynamicImage::into_rgb8)
-            .map_err(|error| FilmError::Frame { path, reason: error.to_string() })
-    }
-
-    /// The frames, one after the other, in their order.
-    pub fn read_all(&self) -> impl Iterator<Item = Result<RgbImage, FilmError>> + '_ {
-        (0..self.count).map(|frame| self.read(frame))
+        let image = image::open(&path).map(image::DynamicImage::into_rgb8);
+        image.map_err(|error| FilmError::failed("cannot read the frame", &path, &error))
     }
 
     /// Removes the frames, and the folder if nothing else is in it.
@@ -109,11 +93,6 @@ fn carried(path: &Path) -> Option<Vec<(String, String)>> {
     let file = BufReader::new(fs::File::open(path).ok()?);
     let reader = png::Decoder::new(file).read_info().ok()?;
     png_texts(reader.info()).ok()
-}
-
-/// Whether two lists of metadata say the same.
-fn same(carried: &[(String, String)], metadata: &[(String, String)]) -> bool {
-    carried.len() == metadata.len() && metadata.iter().all(|pair| carried.contains(pair))
 }
 
 #[cfg(test)]
@@ -146,6 +125,6 @@ mod tests {
         fs::write(frames.file(0), &fs::read(frames.file(0)).expect("bytes")[..40]).expect("cut");
         assert!(!frames.is_finished(0, &say("a"), &[]));
         frames.remove();
-        assert!(!frames.path().exists());
+        assert!(!frames.folder.exists());
     }
 }

@@ -1,12 +1,11 @@
 //! Animated GIF: one palette of 255 colors for the whole film, so that what stands still does not flicker.
 
-use super::{FilmError, FilmSettings, FrameFolder, Halt, Size, stay, write_whole};
+use super::{FilmError, FilmSettings, FrameFolder, checked, size, stay, write_whole};
 use cloakroom::output::RgbImage;
 use color_quant::NeuQuant;
-use gif::{AnyExtension, Encoder, EncodingError, Extension, Frame, Repeat};
+use gif::{AnyExtension, Encoder, Extension, Frame, Repeat};
 use rayon::prelude::*;
 use std::borrow::Cow;
-use std::io;
 use std::path::Path;
 
 /// Colors of the palette; one more index stands for a pixel that stays as it is.
@@ -27,20 +26,20 @@ pub(super) fn write(
     path: &Path,
     settings: &FilmSettings<'_>,
 ) -> Result<(), FilmError> {
-    let size = Size::of(frames, "GIF", u32::from(u16::MAX))?;
-    let [width, height] = size.0.map(|side| side as u16);
-    let palette = palette(frames, &size)?;
+    let size = size(frames, "GIF", u32::from(u16::MAX))?;
+    let [width, height] = size.map(|side| side as u16);
+    let palette = palette(frames, size)?;
     write_whole(path, |out| {
         let colors = palette.color_map_rgb();
-        let mut encoder = Encoder::new(out, width, height, &colors).map_err(broken)?;
-        encoder.set_repeat(Repeat::Infinite).map_err(broken)?;
+        let mut encoder = Encoder::new(out, width, height, &colors)?;
+        encoder.set_repeat(Repeat::Infinite)?;
         for (key, text) in settings.metadata {
             let text = format!("{key}: {text}");
             let comment = AnyExtension(Extension::Comment as u8);
-            encoder.write_raw_extension(comment, &[text.as_bytes()]).map_err(broken)?;
+            encoder.write_raw_extension(comment, &[text.as_bytes()])?;
         }
         let mut shown: Vec<u8> = Vec::new();
-        for (number, frame) in size.checked(frames).enumerate() {
+        for (number, frame) in checked(frames, size).enumerate() {
             let indices = indices(&palette, &frame?);
             let changed = |(new, old): (&u8, &u8)| if new == old { UNCHANGED } else { *new };
             let buffer = match number {
@@ -55,27 +54,20 @@ pub(super) fn write(
                 buffer: Cow::Owned(buffer),
                 ..Frame::default()
             };
-            encoder.write_frame(&frame).map_err(broken)?;
+            encoder.write_frame(&frame)?;
             shown = indices;
             settings.done()?;
         }
-        encoder.into_inner().map_err(broken)?;
+        encoder.into_inner()?;
         Ok(())
     })
 }
 
-fn broken(error: EncodingError) -> Halt {
-    Halt::File(match error {
-        EncodingError::Io(error) => error,
-        error => io::Error::other(error.to_string()),
-    })
-}
-
 /// The palette of a film, from pixels spread over all its frames.
-fn palette(frames: &FrameFolder, size: &Size) -> Result<NeuQuant, FilmError> {
-    let each = (SAMPLES / frames.count()).max(64);
+fn palette(frames: &FrameFolder, size: [u32; 2]) -> Result<NeuQuant, FilmError> {
+    let each = (SAMPLES / frames.count).max(64);
     let mut pixels = Vec::new();
-    for frame in size.checked(frames) {
+    for frame in checked(frames, size) {
         let frame = frame?;
         let step = (frame.as_raw().len() / 3 / each).max(1);
         let colors = frame.as_raw().chunks_exact(3).step_by(step);

@@ -13,13 +13,15 @@ mod webp_file;
 pub use frames::FrameFolder;
 
 use crate::{ColorScale, IllustrationError, ScalarMap};
-use cloakroom::output::{self, OutputError, Picture, RgbImage};
+use cloakroom::output::{self, OutputError, RgbImage};
 use cloakroom::render::{
     ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Rendered, Supervision,
     metadata, render,
 };
 use cloakroom::scene::Scene;
 use cloakroom::trace::TraceStats;
+use std::error::Error;
+use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -27,18 +29,12 @@ use std::sync::atomic::AtomicBool;
 /// Why there is no film.
 #[derive(Debug, thiserror::Error)]
 pub enum FilmError {
-    /// The folder of the frames cannot be made.
-    #[error("cannot make the folder {}: {reason}", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// Why not.
-        reason: String,
-    },
-    /// A frame cannot be read.
-    #[error("cannot read the frame {}: {reason}", path.display())]
-    Frame {
-        /// The frame.
+    /// The folder of the frames cannot be made, a frame not be read, or `ffmpeg` not make the film.
+    #[error("{what} {}: {reason}", path.display())]
+    Failed {
+        /// What has not come about, as in `cannot read the frame`.
+        what: &'static str,
+        /// The folder, the frame or the film.
         path: PathBuf,
         /// Why not.
         reason: String,
@@ -72,14 +68,6 @@ pub enum FilmError {
          .webp or a folder of frames"
     )]
     NoFfmpeg,
-    /// `ffmpeg` has failed.
-    #[error("ffmpeg could not make {}: {reason}", path.display())]
-    Ffmpeg {
-        /// The film.
-        path: PathBuf,
-        /// What it said last.
-        reason: String,
-    },
     /// The film cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -193,13 +181,12 @@ impl Projector {
     ) -> Result<(RgbImage, TraceStats), FilmError> {
         let wanted = ChannelSet::for_image(&scene.picture);
         let Rendered { picture, stats } = render(studio, wanted, supervision)?;
-        Ok((self.shown(scene, &picture)?, stats))
-    }
-
-    fn shown(&self, scene: &Scene, picture: &Picture) -> Result<RgbImage, FilmError> {
-        let Some(channel) = scene.picture.map.name() else { return Ok(output::to_srgb(picture)?) };
-        let map = ScalarMap::with_scale(picture, channel, self.scale)?;
-        Ok(map.into_image(scene.picture.color_bar)?)
+        let image = match scene.picture.map.name() {
+            None => output::to_srgb(&picture)?,
+            Some(channel) => ScalarMap::new(&picture, channel, self.scale)?
+                .into_image(scene.picture.color_bar)?,
+        };
+        Ok((image, stats))
     }
 }
 
@@ -219,8 +206,8 @@ pub fn write_film(
         FilmFormat::Gif => gif_file::write(frames, path, settings),
         FilmFormat::Apng => apng_file::write(frames, path, settings),
         FilmFormat::WebP => webp_file::write(frames, path, settings),
-        FilmFormat::Mp4 => video::write(frames, path, video::Codec::H264, settings),
-        FilmFormat::WebM => video::write(frames, path, video::Codec::Vp9, settings),
+        FilmFormat::Mp4 => video::write(frames, path, video::H264, settings),
+        FilmFormat::WebM => video::write(frames, path, video::VP9, settings),
         FilmFormat::Frames => Ok(()),
     }
 }
@@ -238,6 +225,12 @@ pub struct FilmSettings<'a> {
     pub stop: &'a AtomicBool,
 }
 
+impl FilmError {
+    fn failed(what: &'static str, path: &Path, reason: &dyn Display) -> Self {
+        Self::Failed { what, path: path.to_owned(), reason: reason.to_string() }
+    }
+}
+
 impl FilmSettings<'_> {
     /// Says that a frame is done; an error if the work is to stop.
     fn done(&self) -> Result<(), FilmError> {
@@ -249,32 +242,28 @@ impl FilmSettings<'_> {
     }
 }
 
-/// The size of the frames, all of which must have it; the first one is read for it.
-struct Size([u32; 2]);
+/// The size of the first frame, `most` a side at most.
+fn size(frames: &FrameFolder, format: &'static str, most: u32) -> Result<[u32; 2], FilmError> {
+    let size: [u32; 2] = frames.read(0)?.dimensions().into();
+    if size.iter().any(|side| *side > most) {
+        return Err(FilmError::TooLarge { format, most, size });
+    }
+    Ok(size)
+}
 
-impl Size {
-    fn of(frames: &FrameFolder, format: &'static str, most: u32) -> Result<Self, FilmError> {
-        let size: [u32; 2] = frames.read(0)?.dimensions().into();
-        if size.iter().any(|side| *side > most) {
-            return Err(FilmError::TooLarge { format, most, size });
+/// The frames one after the other, all of which must have the size of the first.
+fn checked(
+    frames: &FrameFolder,
+    first: [u32; 2],
+) -> impl Iterator<Item = Result<RgbImage, FilmError>> + '_ {
+    (0..frames.count).map(move |number| {
+        let frame = frames.read(number)?;
+        let size: [u32; 2] = frame.dimensions().into();
+        if size != first {
+            return Err(FilmError::Size { path: frames.file(number), size, first });
         }
-        Ok(Self(size))
-    }
-
-    /// Frames that are read, and of that size.
-    fn checked<'f>(
-        &'f self,
-        frames: &'f FrameFolder,
-    ) -> impl Iterator<Item = Result<RgbImage, FilmError>> + 'f {
-        frames.read_all().enumerate().map(|(number, frame)| {
-            let frame = frame?;
-            let size: [u32; 2] = frame.dimensions().into();
-            if size != self.0 {
-                return Err(FilmError::Size { path: frames.file(number), size, first: self.0 });
-            }
-            Ok(frame)
-        })
-    }
+        Ok(frame)
+    })
 }
 
 /// How long a frame stays, in parts of a second, such that all together keep the rate.
@@ -283,37 +272,19 @@ fn stay(number: usize, rate: u32, parts: f64) -> u32 {
     (begins(number + 1) - begins(number)) as u32
 }
 
-/// What ends the writing of a file: an error of the film, or of the file.
-enum Halt {
-    Film(FilmError),
-    File(io::Error),
-}
-
-impl From<FilmError> for Halt {
-    fn from(error: FilmError) -> Self {
-        Self::Film(error)
-    }
-}
-
-impl From<io::Error> for Halt {
-    fn from(error: io::Error) -> Self {
-        Self::File(error)
-    }
-}
-
-/// Writes a file whole or not at all, by work that has errors of its own.
+/// Writes a file whole or not at all, by work that may end with an error of the film, or of the file.
 fn write_whole(
     path: &Path,
-    write: impl FnOnce(&mut dyn output::WriteSeek) -> Result<(), Halt>,
+    write: impl FnOnce(&mut dyn output::WriteSeek) -> Result<(), Box<dyn Error + Send + Sync>>,
 ) -> Result<(), FilmError> {
     let mut failure = None;
     let written = output::write_whole(path, |out| {
-        write(out).map_err(|halt| match halt {
-            Halt::File(error) => error,
-            Halt::Film(error) => {
-                failure = Some(error);
+        write(out).map_err(|error| match error.downcast::<FilmError>() {
+            Ok(error) => {
+                failure = Some(*error);
                 io::Error::other("no film")
             }
+            Err(error) => io::Error::other(error),
         })
     });
     match failure {

@@ -1,22 +1,22 @@
 //! MP4 and WebM, by the program `ffmpeg` where it is installed.
 
-use super::{FilmError, FilmSettings, FrameFolder, Size};
+use super::{FilmError, FilmSettings, FrameFolder, checked, size};
 use cloakroom::output::{OutputError, check_writable};
 use cloakroom::render::RenderError;
-use std::io::Read;
+use std::fmt::Display;
+use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How a video is coded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Codec {
-    /// H.264 in MP4.
-    H264,
-    /// VP9 in WebM.
-    Vp9,
-}
+/// How a video is coded: H.264 in MP4.
+pub(super) const H264: &[&str] =
+    &["-c:v", "libx264", "-preset", "slow", "-crf", "18", "-movflags", "+faststart", "-f", "mp4"];
+
+/// VP9 in WebM.
+pub(super) const VP9: &[&str] =
+    &["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-f", "webm"];
 
 /// The frames in their folder, as `ffmpeg` takes them: see [`FrameFolder::file`].
 const FRAMES: &str = "frame-%06d.png";
@@ -35,16 +35,16 @@ pub(super) fn ffmpeg_is_there() -> bool {
 pub(super) fn write(
     frames: &FrameFolder,
     path: &Path,
-    codec: Codec,
+    codec: &[&str],
     settings: &FilmSettings<'_>,
 ) -> Result<(), FilmError> {
     check_writable(path)?;
-    let size = Size::of(frames, "video", 16_384)?;
-    for frame in size.checked(frames) {
+    let size = size(frames, "video", 16_384)?;
+    for frame in checked(frames, size) {
         frame?;
         settings.done()?;
     }
-    let unwritable = |error: std::io::Error| {
+    let unwritable = |error: io::Error| {
         let (path, reason) = (path.to_owned(), error.to_string());
         FilmError::Output(OutputError::Write { path, reason })
     };
@@ -57,46 +57,42 @@ pub(super) fn write(
     let inside = std::path::absolute(part.path()).map_err(unwritable)?;
     let (file, metadata) = (inside.join("film"), inside.join("metadata"));
     std::fs::write(&metadata, ffmetadata(settings.metadata)).map_err(unwritable)?;
+    let failed = |reason: &dyn Display| FilmError::failed("ffmpeg could not make", path, reason);
     let command = command(frames, [&metadata, &file], codec, settings.rate).spawn();
-    let mut child = command.map_err(|error| {
-        if error.kind() == std::io::ErrorKind::NotFound {
-            FilmError::NoFfmpeg
-        } else {
-            FilmError::Ffmpeg { path: path.to_owned(), reason: error.to_string() }
-        }
+    let mut child = command.map_err(|error| match error.kind() {
+        ErrorKind::NotFound => FilmError::NoFfmpeg,
+        _ => failed(&error),
     })?;
-    let done = wait(&mut child, path, settings);
+    let done = wait(&mut child, settings.stop);
     let said = child.stderr.take().map(|mut stderr| {
         let mut said = Vec::new();
         // What cannot be read is not said.
         let _ = stderr.read_to_end(&mut said);
         String::from_utf8_lossy(&said).into_owned()
     });
-    if !done? {
-        let said = said.unwrap_or_default();
-        let reason = said.lines().last().unwrap_or("it has failed").to_owned();
-        return Err(FilmError::Ffmpeg { path: path.to_owned(), reason });
+    match done.map_err(|error| failed(&error))? {
+        None => Err(RenderError::Stopped.into()),
+        Some(true) => std::fs::rename(&file, path).map_err(unwritable),
+        Some(false) => {
+            let said = said.unwrap_or_default();
+            Err(failed(&said.lines().last().unwrap_or("it has failed")))
+        }
     }
-    std::fs::rename(&file, path).map_err(unwritable)
 }
 
-/// Waits for the end, or ends it; whether it has succeeded.
-fn wait(child: &mut Child, path: &Path, settings: &FilmSettings<'_>) -> Result<bool, FilmError> {
-    let failed = |error: std::io::Error| {
-        let (path, reason) = (path.to_owned(), error.to_string());
-        FilmError::Ffmpeg { path, reason }
-    };
+/// Waits for the end, and says whether it has succeeded; or ends it and says nothing.
+fn wait(child: &mut Child, stop: &AtomicBool) -> io::Result<Option<bool>> {
     loop {
-        let ended = child.try_wait().map_err(failed)?;
+        let ended = child.try_wait()?;
         // Ctrl-C in a terminal ends both.
-        if settings.stop.load(Ordering::Relaxed) {
+        if stop.load(Ordering::Relaxed) {
             // It may have ended by itself.
             let _ = child.kill();
             let _ = child.wait();
-            return Err(RenderError::Stopped.into());
+            return Ok(None);
         }
         if let Some(status) = ended {
-            return Ok(status.success());
+            return Ok(Some(status.success()));
         }
         std::thread::sleep(LOOK);
     }
@@ -120,15 +116,20 @@ fn ffmetadata(metadata: &[(String, String)]) -> String {
     text
 }
 
-fn command(frames: &FrameFolder, [metadata, file]: [&Path; 2], codec: Codec, rate: u32) -> Command {
+fn command(
+    frames: &FrameFolder,
+    [metadata, file]: [&Path; 2],
+    codec: &[&str],
+    rate: u32,
+) -> Command {
     let mut command = Command::new("ffmpeg");
     command.args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"]);
     // In their folder: a `%` or a `:` in its name would mean something.
-    command.current_dir(frames.path());
+    command.current_dir(&frames.folder);
     command.args(["-framerate", &rate.to_string(), "-start_number", "0", "-i"]);
     command.args([FRAMES, "-f", "ffmetadata", "-i"]).arg(metadata);
     command.args(["-map", "0:v", "-map_metadata", "1"]);
-    command.args(["-frames:v", &frames.count().to_string()]);
+    command.args(["-frames:v", &frames.count.to_string()]);
     // sRGB to BT.709, told in the file; colors are halved in size, so sides must be even.
     command.args([
         "-vf",
@@ -140,16 +141,6 @@ fn command(frames: &FrameFolder, [metadata, file]: [&Path; 2], codec: Codec, rat
         "-color_trc",
         "iec61966-2-1",
     ]);
-    match codec {
-        Codec::H264 => {
-            command.args(["-c:v", "libx264", "-preset", "slow", "-crf", "18"]);
-            command.args(["-movflags", "+faststart", "-f", "mp4"]);
-        }
-        Codec::Vp9 => {
-            command.args(["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1"]);
-            command.args(["-f", "webm"]);
-        }
-    }
-    command.arg(file).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    command.args(codec).arg(file).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
     command
 }

@@ -1,7 +1,7 @@
 //! Animated WebP, lossless: the container (RFC 9649) around frames of the encoder.
 
-use super::{FilmError, FilmSettings, FrameFolder, Halt, Size, stay, write_whole};
-use image_webp::{ColorType, EncodingError, WebPEncoder};
+use super::{FilmError, FilmSettings, FrameFolder, checked, size, stay, write_whole};
+use image_webp::{ColorType, WebPEncoder};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 
@@ -17,8 +17,7 @@ pub(super) fn write(
     path: &Path,
     settings: &FilmSettings<'_>,
 ) -> Result<(), FilmError> {
-    let size = Size::of(frames, "WebP", MOST)?;
-    let [width, height] = size.0;
+    let [width, height] = size(frames, "WebP", MOST)?;
     write_whole(path, |out| {
         out.write_all(b"RIFF\0\0\0\0WEBP")?;
         const ANIMATED: u8 = 1 << 1;
@@ -27,14 +26,10 @@ pub(super) fn write(
         chunk(out, b"VP8X", &[&[ANIMATED | DESCRIBED, 0, 0, 0], canvas.as_slice()].concat())?;
         // Black ground; round for ever.
         chunk(out, b"ANIM", &[0, 0, 0, 255, 0, 0])?;
-        for (number, frame) in size.checked(frames).enumerate() {
+        for (number, frame) in checked(frames, [width, height]).enumerate() {
             let mut still = Vec::new();
-            WebPEncoder::new(&mut still)
-                .encode(frame?.as_raw(), width, height, ColorType::Rgb8)
-                .map_err(|error| match error {
-                    EncodingError::IoError(error) => Halt::File(error),
-                    error => Halt::File(io::Error::other(error.to_string())),
-                })?;
+            let encoder = WebPEncoder::new(&mut still);
+            encoder.encode(frame?.as_raw(), width, height, ColorType::Rgb8)?;
             let place = [short(0), short(0)].concat();
             let delay = short(stay(number, settings.rate, 1000.0));
             // Each frame replaces the one before.

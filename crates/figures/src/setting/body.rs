@@ -1,13 +1,12 @@
 //! Bodies: their outlines, filled with a tint of their index.
 
-use super::super::drawing::{Drawing, Ink, Shape};
+use super::super::drawing::{Drawing, Ink};
 use super::device;
 use super::index_map::on_sheet;
 use super::medium_axes::MediumAxes;
 use super::subject::{Subject, bounds, lattice};
 use super::view::View;
 use super::{INK, OPAQUE, PAPER, TEXT, THIN};
-use cloakroom::device::Contour;
 use glam::DVec2;
 use optics::medium::Medium;
 
@@ -27,9 +26,9 @@ pub(super) fn tint(medium: Option<&Medium>) -> Ink {
 /// Draws a body.
 pub(super) fn draw(drawing: &mut Drawing, view: &View, subject: &Subject<'_>) {
     for outline in &subject.section.outlines {
-        let area = Shape::Area(vec![on_sheet(view, &subject.pose, &outline.points)]);
-        let element = drawing.add("body", area).filled(tint(subject.section.body_medium));
-        element.stroked(INK, THIN).within(vec![view.frame()]);
+        let area = drawing.add_area("body", on_sheet(view, &subject.pose, &outline.points));
+        let area = area.filled(tint(subject.section.body_medium)).stroked(INK, THIN);
+        area.within(vec![view.frame().to_vec()]);
     }
 }
 
@@ -45,13 +44,10 @@ pub(super) fn draw_medium(
         return;
     }
     let [outline] = &subject.section.outlines[..] else { return };
-    let lines: Vec<Vec<DVec2>> = std::iter::once((subject, outline))
-        .chain(
-            before.iter().flat_map(|(other, _)| other.section.outlines.iter().map(|o| (*other, o))),
-        )
-        .map(|(other, contour): (&Subject<'_>, &Contour)| {
-            on_sheet(view, &other.pose, &contour.points)
-        })
+    let devices = before.iter().map(|(other, _)| *other).chain([subject]);
+    let lines: Vec<Vec<DVec2>> = devices
+        .flat_map(|device| device.section.outlines.iter().map(|outline| (&device.pose, outline)))
+        .map(|(pose, outline)| on_sheet(view, pose, &outline.points))
         .collect();
     // The middle of what is free, or nearly so.
     let Some([low, high]) = bounds(outline.points.iter().copied()) else { return };

@@ -1,10 +1,11 @@
 //! A device in cross-section.
 
+use super::super::color_scale::ColorScale;
 use super::super::drawing::{Drawing, Face, Ink, Shape, Words};
 use super::body;
-use super::index_map::{IndexScale, on_sheet};
+use super::index_map::{draw_region, on_sheet};
 use super::medium_axes::{MediumAxes, draw_cross};
-use super::subject::{Subject, bounds};
+use super::subject::{Subject, border, bounds, sides, turn};
 use super::view::View;
 use super::{INK, MEDIUM, METAL, PAPER, TEXT, THICK, THIN, centimetres, dimension, rounded, write};
 use cloakroom::device::{Contour, REACH, Section};
@@ -24,39 +25,37 @@ pub(super) fn draw(
     drawing: &mut Drawing,
     view: &View,
     subject: &Subject<'_>,
-    scale: Option<&IndexScale>,
+    scale: Option<&ColorScale>,
 ) {
     let section = &subject.section;
     if section.body.is_some() {
         body::draw(drawing, view, subject);
     }
+    let window = || vec![view.frame().to_vec()];
     let place = |contour: &Contour| on_sheet(view, &subject.pose, &contour.points);
     let places = |contours: &[Contour]| contours.iter().map(place).collect::<Vec<_>>();
     for region in &section.regions {
         let border = places(&region.border);
         match scale {
             Some(scale) if region.region.is_graded() => {
-                scale.draw_region(drawing, view, region, &subject.pose);
+                draw_region(drawing, view, region, &subject.pose, scale);
             }
             _ => {
-                let area = Shape::Area(border.clone());
-                drawing.add("medium", area).filled(MEDIUM).within(vec![view.frame()]);
+                drawing.add("medium", Shape::Area(border.clone())).filled(MEDIUM).within(window());
             }
         }
-        let line = drawing.add("border", Shape::Area(border));
-        line.stroked(INK, THIN).within(vec![view.frame()]);
+        drawing.add("border", Shape::Area(border)).stroked(INK, THIN).within(window());
     }
     if section.is_shadow && section.body.is_none() && section.metal.is_empty() {
         let area = drawing.add("medium", Shape::Area(places(&section.outlines))).filled(MEDIUM);
-        area.stroked(INK, THIN).within(vec![view.frame()]);
+        area.stroked(INK, THIN).within(window());
     }
     for contour in &section.metal {
         if contour.closed {
-            let area = Shape::Area(vec![place(contour)]);
-            drawing.add("metal", area).filled(METAL).stroked(INK, THICK);
+            drawing.add_area("metal", place(contour)).filled(METAL).stroked(INK, THICK);
         } else {
-            let line = drawing.add("mirror", Shape::Line(place(contour)));
-            line.stroked(INK, 1.4 * THICK).within(vec![view.frame()]);
+            let stroke = (INK, 1.4 * THICK);
+            drawing.add_line("mirror", place(contour), stroke).within(window());
         }
     }
 }
@@ -142,9 +141,9 @@ fn draw_axes(drawing: &mut Drawing, view: &View, subject: &Subject<'_>, region: 
         let at = view.place(subject.pose.point_to_world(point));
         for axis in axes.drawn() {
             let along = half * axis.length * turned(&subject.pose, axis.direction);
-            let line = Shape::Line(vec![at - along, at + along]);
-            drawing.add("rim", line.clone()).stroked(PAPER.faint(0.7), 2.2 * THICK);
-            drawing.add("axis", line).stroked(axis.ink, THICK);
+            let line = [at - along, at + along];
+            drawing.add_line("rim", line, (PAPER.faint(0.7), 2.2 * THICK));
+            drawing.add_line("axis", line, (axis.ink, THICK));
         }
     }
 }
@@ -152,8 +151,7 @@ fn draw_axes(drawing: &mut Drawing, view: &View, subject: &Subject<'_>, region: 
 /// The axes of the medium of a graded cell on a lattice, if it is anisotropic, and how far apart they are, cm.
 pub(super) fn axes_of_graded(region: &Section<'_>) -> (Vec<(DVec2, MediumAxes)>, f64) {
     const STEPS: u32 = 9;
-    let points = region.border.iter().flat_map(|contour| contour.points.iter().copied());
-    let Some([low, high]) = bounds(points) else { return (Vec::new(), 0.0) };
+    let Some([low, high]) = bounds(border(region)) else { return (Vec::new(), 0.0) };
     let distance = (high - low).max_element() / f64::from(STEPS);
     let lattice = (0..STEPS * STEPS).map(|k| {
         let steps = DVec2::new(f64::from(k % STEPS), f64::from(k / STEPS));
@@ -173,11 +171,10 @@ pub(super) fn middle(region: &Section<'_>) -> Option<DVec2> {
         return None;
     }
     let (mut area, mut moment) = (0.0, DVec2::ZERO);
-    for (i, a) in points.iter().enumerate() {
-        let b = points[(i + 1) % points.len()];
-        let piece = (*a - low).perp_dot(b - low);
+    for (a, b) in sides(points) {
+        let piece = (a - low).perp_dot(b - low);
         area += piece;
-        moment += piece * ((*a - low) + (b - low)) / 3.0;
+        moment += piece * ((a - low) + (b - low)) / 3.0;
     }
     let centroid = low + moment / area;
     region.holds(centroid).then_some(centroid)
@@ -185,10 +182,9 @@ pub(super) fn middle(region: &Section<'_>) -> Option<DVec2> {
 
 /// How far one can go from a point until the first line of some contours.
 fn free_way(contours: &[Vec<DVec2>], from: DVec2, direction: DVec2) -> f64 {
-    let sides = contours.iter().flat_map(|points| {
-        (0..points.len()).map(move |i| (points[i], points[(i + 1) % points.len()]))
-    });
-    sides
+    contours
+        .iter()
+        .flat_map(|points| sides(points))
         .filter_map(|(a, b)| {
             let side = b - a;
             let across = direction.perp_dot(side);
@@ -244,29 +240,28 @@ fn measure(
     if way < 0.0 && (high - low).min_element() < 4.5 * TEXT {
         return;
     }
-    let sides = points.len() - usize::from(!contour.closed);
-    let turn: f64 =
-        (0..points.len()).map(|i| points[i].perp_dot(points[(i + 1) % points.len()])).sum();
+    let turn = turn(&points);
     // Away from the inside; below a line.
-    let outward = |i: usize| {
-        let along = points[(i + 1) % points.len()] - points[i];
+    let outward = |(a, b): (DVec2, DVec2)| {
+        let along = b - a;
         let normal = DVec2::new(along.y, -along.x).normalize_or(DVec2::Y);
         let below = normal * normal.dot(DVec2::new(0.1, 1.0)).signum();
         if contour.closed { normal * turn.signum() } else { below }
     };
     // Outside rather below and on the side with more room, inside rather opposite.
     let [left, right] = [low.x - view.window[0].x, view.window[0].x + view.window[1].x - high.x];
-    let side = if left > right + 2.0 * TEXT { -0.6 } else { 0.6 };
-    let liked = |i: usize| outward(i).dot(DVec2::new(side, 0.8) * way);
-    let mut order: Vec<usize> = (0..sides).collect();
-    order.sort_by(|&i, &j| liked(j).total_cmp(&liked(i)));
-    for i in order {
-        let length = corners[i].distance(corners[(i + 1) % corners.len()]);
-        let ends = [points[i], points[(i + 1) % points.len()]];
-        if ends[0].distance(ends[1]) > 1.5 * TEXT && is_new(length) {
-            let shift = way * SHIFT * outward(i);
+    let beside = if left > right + 2.0 * TEXT { -0.6 } else { 0.6 };
+    let liked = |side| outward(side).dot(DVec2::new(beside, 0.8) * way);
+    // On the sheet, and how long they are, cm.
+    let lengths = sides(&corners).map(|(a, b)| a.distance(b));
+    let mut order: Vec<((DVec2, DVec2), f64)> = sides(&points).zip(lengths).collect();
+    order.truncate(points.len() - usize::from(!contour.closed));
+    order.sort_by(|(a, _), (b, _)| liked(*b).total_cmp(&liked(*a)));
+    for ((a, b), length) in order {
+        if a.distance(b) > 1.5 * TEXT && is_new(length) {
+            let shift = way * SHIFT * outward((a, b));
             let ground = if way < 0.0 { METAL } else { PAPER };
-            dimension::draw(drawing, ends, shift, &centimetres(length), ground);
+            dimension::draw(drawing, [a, b], shift, &centimetres(length), ground);
         }
     }
 }
@@ -288,7 +283,7 @@ fn measure_curve(
         // Within: its height, at its middle.
         let ends = [at(middle.x, low.y), at(middle.x, high.y)];
         if ends[0].distance(ends[1]) > 1.2 * TEXT && is_new(size.y) {
-            dimension::double_arrow(drawing, "dimension", ends, INK, THIN);
+            dimension::double_arrow(drawing, "dimension", ends);
             let beside = ends[1] + DVec2::new(10.0, -0.4 * TEXT);
             let words = Words::new(centimetres(size.y), beside, TEXT).anchored(0.0);
             write(drawing, "dimension-label", words, PAPER);

@@ -18,10 +18,10 @@ pub(super) fn draw(
 ) {
     let outward = shift.normalize_or(DVec2::Y);
     for end in [a, b] {
-        let line = vec![end + 3.0 * outward, end + shift + 6.0 * outward];
-        drawing.add("extension", Shape::Line(line)).stroked(INK, 0.7 * THIN);
+        let line = [end + 3.0 * outward, end + shift + 6.0 * outward];
+        drawing.add_line("extension", line, (INK, 0.7 * THIN));
     }
-    double_arrow(drawing, "dimension", [a + shift, b + shift], INK, THIN);
+    double_arrow(drawing, "dimension", [a + shift, b + shift]);
     let words = Words::new(label, (a + b) / 2.0 + shift + 0.66 * TEXT * outward, TEXT);
     write(drawing, "dimension-label", words.turned(upright(b - a)), ground);
 }
@@ -42,25 +42,18 @@ fn upright(along: DVec2) -> f64 {
 
 /// A line with a head at either end; where it is too short for that, the heads point at it from
 /// outside.
-pub(super) fn double_arrow(
-    drawing: &mut Drawing,
-    class: &'static str,
-    [a, b]: [DVec2; 2],
-    ink: Ink,
-    width: f64,
-) {
+pub(super) fn double_arrow(drawing: &mut Drawing, class: &'static str, [a, b]: [DVec2; 2]) {
     let along = (b - a).normalize_or(DVec2::X);
-    let head = HEAD * (0.7 + 0.3 * width / THIN);
-    let inside = a.distance(b) > 2.2 * head;
+    let inside = a.distance(b) > 2.2 * HEAD;
     let inward = if inside { along } else { -along };
     let (from, to) = if inside {
-        (a + 0.8 * head * along, b - 0.8 * head * along)
+        (a + 0.8 * HEAD * along, b - 0.8 * HEAD * along)
     } else {
-        (a - 2.0 * head * along, b + 2.0 * head * along)
+        (a - 2.0 * HEAD * along, b + 2.0 * HEAD * along)
     };
-    drawing.add(class, Shape::Line(vec![from, to])).stroked(ink, width);
+    drawing.add_line(class, [from, to], (INK, THIN));
     for (tip, back) in [(a, inward), (b, -inward)] {
-        drawing.add("head", arrow_head(tip, back, head)).filled(ink);
+        drawing.add("head", arrow_head(tip, back, HEAD)).filled(INK);
     }
 }
 

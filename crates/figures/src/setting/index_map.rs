@@ -4,92 +4,79 @@ use super::super::color_bar::ColorBar;
 use super::super::color_scale::ColorScale;
 use super::super::drawing::{Drawing, Shape};
 use super::super::quantity::Quantity;
-use super::TEXT;
 use super::medium_axes::MediumAxes;
-use super::subject::{Subject, bounds, lattice};
+use super::subject::{Subject, border, bounds, lattice};
 use super::view::View;
 use cloakroom::device::Section;
 use cloakroom::output::RgbImage;
 use glam::{DAffine2, DVec2};
 use optics::geometry::Pose;
 
-/// The colours of all graded media of a scene.
-pub(super) struct IndexScale(ColorBar);
-
-impl IndexScale {
-    /// The scale for all graded cells; none if there are none.
-    pub fn of(subjects: &[Subject<'_>]) -> Option<Self> {
-        const STEPS: u32 = 64;
-        let mut numbers = Vec::new();
-        let mut isotropic = true;
-        let regions = subjects.iter().flat_map(|subject| &subject.section.regions);
-        for region in regions.filter(|region| region.region.is_graded()) {
-            // The extremes may lie on the border.
-            let border = region.border.iter().flat_map(|contour| contour.points.iter().copied());
-            let Some([low, high]) = bounds(border.clone()) else { continue };
-            let inside = lattice([low, high], STEPS).filter(|p| region.holds(*p));
-            for medium in border.chain(inside).filter_map(|p| region.region.medium_at(p)) {
-                isotropic &= MediumAxes::of(&medium).is_none();
-                numbers.push(medium.mean_index());
-            }
+/// The colours for the index of all graded cells; none if there are none.
+pub(super) fn bar(subjects: &[Subject<'_>]) -> Option<ColorBar> {
+    const STEPS: u32 = 64;
+    let mut numbers = Vec::new();
+    let mut isotropic = true;
+    let regions = subjects.iter().flat_map(|subject| &subject.section.regions);
+    for region in regions.filter(|region| region.region.is_graded()) {
+        // The extremes may lie on the border.
+        let Some([low, high]) = bounds(border(region)) else { continue };
+        let inside = lattice([low, high], STEPS).filter(|p| region.holds(*p));
+        for medium in border(region).chain(inside).filter_map(|p| region.region.medium_at(p)) {
+            isotropic &= MediumAxes::of(&medium).is_none();
+            numbers.push(medium.mean_index());
         }
-        let title = if isotropic { "refractive index" } else { "mean refractive index" };
-        (!numbers.is_empty()).then(|| {
-            let scale = ColorScale::new(numbers.into_iter(), 1e-12);
-            Self(ColorBar { scale, quantity: Quantity::named(title) })
+    }
+    let title = if isotropic { "refractive index" } else { "mean refractive index" };
+    (!numbers.is_empty()).then(|| {
+        let scale = ColorScale::new(numbers.into_iter(), 1e-12);
+        ColorBar { scale, quantity: Quantity::named(title) }
+    })
+}
+
+/// Draws a graded region: its index in colours, within its border.
+pub(super) fn draw_region(
+    drawing: &mut Drawing,
+    view: &View,
+    region: &Section<'_>,
+    pose: &Pose,
+    scale: &ColorScale,
+) {
+    const MOST: f64 = 480.0;
+    let Some([low, high]) = bounds(border(region)) else { return };
+    let size = high - low;
+    let step = (size.max_element() / MOST).max(0.7 / view.scale);
+    let count = (size / step).ceil().max(DVec2::splat(4.0)).min(DVec2::splat(MOST));
+    let (columns, rows) = (count.x as u32, count.y as u32);
+    let at = |column: u32, row: u32| {
+        let share = (DVec2::new(f64::from(column), f64::from(row)) + 0.5) / count;
+        DVec2::new(low.x + share.x * size.x, high.y - share.y * size.y)
+    };
+    let mut numbers: Vec<Option<f64>> = (0..rows)
+        .flat_map(|row| (0..columns).map(move |column| (column, row)))
+        .map(|(column, row)| {
+            let medium = region.region.medium_at(at(column, row))?;
+            Some(medium.mean_index()).filter(|index| index.is_finite())
         })
+        .collect();
+    // What lies just outside the medium shows where a pixel is cut by the border.
+    for _ in 0..3 {
+        numbers = spread(&numbers, columns as usize);
     }
-
-    /// Draws a graded region: its index in colours, within its border.
-    pub fn draw_region(
-        &self,
-        drawing: &mut Drawing,
-        view: &View,
-        region: &Section<'_>,
-        pose: &Pose,
-    ) {
-        const MOST: f64 = 480.0;
-        let points = region.border.iter().flat_map(|contour| contour.points.iter().copied());
-        let Some([low, high]) = bounds(points) else { return };
-        let size = high - low;
-        let step = (size.max_element() / MOST).max(0.7 / view.scale);
-        let count = (size / step).ceil().max(DVec2::splat(4.0)).min(DVec2::splat(MOST));
-        let (columns, rows) = (count.x as u32, count.y as u32);
-        let at = |column: u32, row: u32| {
-            let share = (DVec2::new(f64::from(column), f64::from(row)) + 0.5) / count;
-            DVec2::new(low.x + share.x * size.x, high.y - share.y * size.y)
-        };
-        let mut numbers: Vec<Option<f64>> = (0..rows)
-            .flat_map(|row| (0..columns).map(move |column| (column, row)))
-            .map(|(column, row)| {
-                let medium = region.region.medium_at(at(column, row))?;
-                Some(medium.mean_index()).filter(|index| index.is_finite())
-            })
-            .collect();
-        // What lies just outside the medium shows where a pixel is cut by the border.
-        for _ in 0..3 {
-            numbers = spread(&numbers, columns as usize);
-        }
-        let image = RgbImage::from_fn(columns, rows, |column, row| {
-            let number = numbers[(row * columns + column) as usize];
-            self.0.scale.color(number.unwrap_or(f64::NAN))
-        });
-        let corner = |x: f64, y: f64| view.place(pose.point_to_world(DVec2::new(x, y)));
-        let top_left = corner(low.x, high.y);
-        let place = DAffine2::from_cols(
-            corner(high.x, high.y) - top_left,
-            corner(low.x, low.y) - top_left,
-            top_left,
-        );
-        drawing.add("index-map", Shape::Image { image, cells: false, place }).within(
-            region.border.iter().map(|contour| on_sheet(view, pose, &contour.points)).collect(),
-        );
-    }
-
-    /// Draws the colour bar with its top left corner at a point, as high as told.
-    pub fn draw_bar(&self, drawing: &mut Drawing, (at, height): (DVec2, f64)) {
-        self.0.draw(drawing, at, height, TEXT);
-    }
+    let image = RgbImage::from_fn(columns, rows, |column, row| {
+        let number = numbers[(row * columns + column) as usize];
+        scale.color(number.unwrap_or(f64::NAN))
+    });
+    let corner = |x: f64, y: f64| view.place(pose.point_to_world(DVec2::new(x, y)));
+    let top_left = corner(low.x, high.y);
+    let place = DAffine2::from_cols(
+        corner(high.x, high.y) - top_left,
+        corner(low.x, low.y) - top_left,
+        top_left,
+    );
+    drawing.add("index-map", Shape::Image { image, cells: false, place }).within(
+        region.border.iter().map(|contour| on_sheet(view, pose, &contour.points)).collect(),
+    );
 }
 
 /// Points of a device's frame on the sheet.

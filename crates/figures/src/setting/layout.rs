@@ -1,8 +1,8 @@
 //! Where things are on the sheet.
 
-use super::super::drawing::{Drawing, Shape};
+use super::super::drawing::Drawing;
 use super::stage::{AXES, DISTANCES, EYE, Stage};
-use super::subject::{Subject, bounds};
+use super::subject::{Subject, bounds, turn};
 use super::view::{View, corners};
 use super::{BAR, GRAY, MARGIN, TEXT, THIN};
 use glam::DVec2;
@@ -31,8 +31,8 @@ pub(super) struct Layout {
     pub view: View,
     /// Devices once more, magnified.
     pub insets: Vec<Inset>,
-    /// The colour bar, if there is one: top left corner and height.
-    pub bar: Option<(DVec2, f64)>,
+    /// Where a colour bar would be: top left corner and height.
+    pub bar: (DVec2, f64),
     /// The top left corner of the axes of coordinates.
     pub axes: DVec2,
 }
@@ -65,8 +65,13 @@ impl Layout {
                 whole.scale * (*high - *low).max_element() < SMALL * sheet.min_element()
             })
             .collect();
-        let mut layout =
-            Self { sheet, view: whole, insets: Vec::new(), bar: None, axes: DVec2::ZERO };
+        let mut layout = Self {
+            sheet,
+            view: whole,
+            insets: Vec::new(),
+            bar: (DVec2::ZERO, 0.0),
+            axes: DVec2::ZERO,
+        };
         if let [group] = &small[..] {
             layout.place_one(group, world, view, stage, subjects);
         } else if !small.is_empty() {
@@ -74,7 +79,7 @@ impl Layout {
         }
         let [top, size] = layout.view.window;
         let bar_at = DVec2::new(sheet.x - MARGIN - BAR + 0.6 * TEXT, top.y + 0.08 * size.y);
-        layout.bar = (bar > 0.0).then_some((bar_at, 0.84 * size.y));
+        layout.bar = (bar_at, 0.84 * size.y);
         layout.place_axes(stage, subjects);
         layout
     }
@@ -98,16 +103,17 @@ impl Layout {
         let mut best: Option<(f64, View, [DVec2; 2])> = None;
         for share in [0.84, 0.8, 0.76, 0.72, 0.68, 0.64, 0.6, 0.56] {
             // To the right, away from the inset.
-            let view = view(share).moved_right(world[1].x);
+            let mut view = view(share);
+            let right = view.window[0].x + view.window[1].x;
+            view.origin.x += (right - view.place(world[1]).x).max(0.0);
             let taken = obstacles(&view, stage, subjects);
             for height in (4..=13).map(|k| 0.04 * f64::from(k) * sheet.y) {
                 let size = DVec2::splat(height);
                 let from = DVec2::new(MARGIN, sheet.y - MARGIN - height);
                 let frame = [from, size];
-                let is_free = taken.iter().all(|shape| !overlap(shape, &corners(frame)));
                 // The scene should be large, and so should the inset.
                 let merit = height * view.scale.powi(2);
-                if is_free && best.as_ref().is_none_or(|(most, ..)| merit > *most) {
+                if is_free(frame, &taken) && best.as_ref().is_none_or(|(most, ..)| merit > *most) {
                     best = Some((merit, view, frame));
                 }
             }
@@ -133,10 +139,8 @@ impl Layout {
                 [DVec2::new(left, top), DVec2::new(right - left, lower - top)]
             })
         });
-        let is_free =
-            |room: &[DVec2; 2]| taken.iter().all(|shape| !overlap(shape, &corners(*room)));
         rooms
-            .filter(is_free)
+            .filter(|room| is_free(*room, taken))
             .max_by(|a, b| (a[1].x * a[1].y).total_cmp(&(b[1].x * b[1].y)))
             .unwrap_or([DVec2::new(left, lower), DVec2::ZERO])
     }
@@ -170,12 +174,9 @@ impl Layout {
     /// Puts the axes of coordinates into the first corner that is free.
     fn place_axes(&mut self, stage: &Stage, subjects: &[Subject<'_>]) {
         let mut taken = obstacles(&self.view, stage, subjects);
-        for inset in &self.insets {
-            taken.push(corners(inset.frame));
-            taken.push(corners(inset.legend));
-        }
-        let [_, size] = self.view.window;
-        let view_top = self.view.window[0].y;
+        let insets = self.insets.iter().flat_map(|inset| [inset.frame, inset.legend]);
+        taken.extend(insets.map(|taken| corners(taken).to_vec()));
+        let [DVec2 { y: view_top, .. }, size] = self.view.window;
         let (left, right) = (MARGIN, self.sheet.x - MARGIN - AXES.x);
         let bottom = self.sheet.y - MARGIN - AXES.y;
         let places = [
@@ -187,11 +188,8 @@ impl Layout {
             ((left + right) / 2.0, bottom),
         ]
         .map(DVec2::from);
-        let is_free = |at: &DVec2| {
-            let own = corners([*at, AXES]);
-            taken.iter().all(|shape| !overlap(shape, &own))
-        };
-        self.axes = places.into_iter().find(is_free).unwrap_or(places[0]);
+        let free = places.into_iter().find(|at| is_free([*at, AXES], &taken));
+        self.axes = free.unwrap_or(places[0]);
     }
 }
 
@@ -203,12 +201,11 @@ impl Inset {
         let to = scene.place(DVec2::new(high.x, low.y)) + 5.0;
         let source = corners([from, to - from]);
         let frame = corners(self.frame);
-        drawing.add("magnified", Shape::Area(vec![source.clone()])).stroked(GRAY, 0.8 * THIN);
-        drawing.add("inset", Shape::Area(vec![frame.clone()])).stroked(GRAY, 0.8 * THIN);
+        drawing.add_area("magnified", source).stroked(GRAY, 0.8 * THIN);
+        drawing.add_area("inset", frame).stroked(GRAY, 0.8 * THIN);
         // From the lower corners to the upper ones of the inset.
         for (a, b) in [(source[1], frame[0]), (source[2], frame[3])] {
-            let line = drawing.add("magnification", Shape::Line(vec![a, b]));
-            line.stroked(GRAY, 0.6 * THIN).dashed(4.0, 4.0);
+            drawing.add_line("magnification", [a, b], (GRAY, 0.6 * THIN)).dashed(4.0, 4.0);
         }
     }
 }
@@ -268,7 +265,7 @@ fn obstacles(view: &View, stage: &Stage, subjects: &[Subject<'_>]) -> Vec<Vec<DV
     let mut shapes = vec![view.places(&stage.sight)];
     let boxed = |[low, high]: [DVec2; 2], around: DVec2| {
         let from = view.place(DVec2::new(low.x, high.y)) - around;
-        corners([from, view.place(DVec2::new(high.x, low.y)) + around - from])
+        corners([from, view.place(DVec2::new(high.x, low.y)) + around - from]).to_vec()
     };
     shapes.push(boxed([stage.eye; 2], DVec2::new(2.0 * EYE, EYE + 1.2 * TEXT)));
     let around = DVec2::new(2.0 * TEXT, 1.4 * TEXT);
@@ -278,14 +275,17 @@ fn obstacles(view: &View, stage: &Stage, subjects: &[Subject<'_>]) -> Vec<Vec<DV
     shapes
 }
 
+/// Whether none of some convex shapes reaches into a part of the sheet, its top left corner and size.
+fn is_free(part: [DVec2; 2], taken: &[Vec<DVec2>]) -> bool {
+    taken.iter().all(|shape| !overlap(shape, &corners(part)))
+}
+
 /// Whether two convex shapes of the sheet overlap.
 fn overlap(a: &[DVec2], b: &[DVec2]) -> bool {
     // Outlines run counterclockwise with y up.
     let outline = |shape: &[DVec2]| {
         let mut points: Vec<DVec2> = shape.iter().map(|p| DVec2::new(p.x, -p.y)).collect();
-        let turn: f64 =
-            (0..points.len()).map(|i| points[i].perp_dot(points[(i + 1) % points.len()])).sum();
-        if turn < 0.0 {
+        if turn(&points) < 0.0 {
             points.reverse();
         }
         Outline::new(points)

@@ -1,6 +1,6 @@
 //! The key to what is drawn magnified: the axes and tensors of media, and what colours and lines stand for.
 
-use super::super::drawing::{Drawing, Face, Ink, Shape, Words};
+use super::super::drawing::{Drawing, Face, Ink, Words};
 use super::body;
 use super::device::{axes_of_graded, index_label, middle, turned};
 use super::medium_axes::{MediumAxes, draw_key};
@@ -16,20 +16,18 @@ const LINE: f64 = 1.3 * TEXT;
 /// The width of a sample of a colour.
 const SAMPLE: f64 = 1.2 * TEXT;
 
-/// A colour or a line with what it stands for.
-#[derive(PartialEq)]
-struct Entry {
-    sample: Sample,
-    words: Vec<(Face, String)>,
-}
-
+/// What stands before an entry of the key.
 #[derive(PartialEq)]
 enum Sample {
+    Nothing,
     /// A colour of areas.
     Area(Ink),
     /// A line of that colour and width.
-    Line(Ink, f64),
+    Line((Ink, f64)),
 }
+
+/// A colour or a line with what it stands for.
+type Entry = (Sample, Vec<(Face, String)>);
 
 /// Draws the key to devices that are magnified together into a box of the sheet (top left corner and size),
 /// as far as there is room.
@@ -42,12 +40,12 @@ pub(super) fn draw(
         return;
     }
     let homogeneous = subjects.iter().find_map(|(subject, _)| Some((axes(subject)?, subject.pose)));
-    let mut lines = Vec::new();
+    let mut entries: Vec<Entry> = Vec::new();
     if let Some(((axes, medium), _)) = &homogeneous {
-        lines = axes.lines(medium);
+        entries.extend(axes.lines(medium).into_iter().map(|line| (Sample::Nothing, line)));
     }
-    let entries = entries(subjects);
-    let rows = lines.len() + entries.len() + 1;
+    add_entries(&mut entries, subjects);
+    let rows = entries.len() + 1;
     let radius = (0.5 * (size.y - LINE * rows as f64)).min(62.0);
     let mut y = from.y + 0.5 * LINE;
     if let Some(((axes, _), pose)) = &homogeneous
@@ -55,24 +53,30 @@ pub(super) fn draw(
     {
         y = draw_axes(drawing, from, radius, axes, pose) + 1.2 * LINE;
     }
-    let fits = |y: f64, words: &Words, left: f64| {
-        y + 0.4 * LINE <= from.y + size.y && left + words.width() <= from.x + size.x
-    };
-    for runs in lines {
-        let words = Words::of_runs(runs, DVec2::new(from.x, y), TEXT).anchored(0.0);
-        if fits(y, &words, from.x) {
-            drawing.add("tensor", Shape::Words(words)).filled(INK);
-            y += LINE;
-        }
-    }
-    for Entry { sample, words } in entries {
-        let left = from.x + SAMPLE + 0.5 * TEXT;
+    for (sample, words) in entries {
+        let (class, left) = match sample {
+            Sample::Nothing => ("tensor", from.x),
+            _ => ("key", from.x + SAMPLE + 0.5 * TEXT),
+        };
         let words = Words::of_runs(words, DVec2::new(left, y), TEXT).anchored(0.0);
-        if fits(y, &words, left) {
-            draw_sample(drawing, DVec2::new(from.x, y), &sample);
-            drawing.add("key", Shape::Words(words)).filled(INK);
-            y += LINE;
+        if y + 0.4 * LINE > from.y + size.y || left + words.width() > from.x + size.x {
+            continue;
         }
+        let at = DVec2::new(from.x, y);
+        match sample {
+            Sample::Nothing => {}
+            Sample::Area(ink) => {
+                let size = DVec2::new(SAMPLE, 0.8 * TEXT);
+                let area =
+                    drawing.add_area("sample", corners([at - DVec2::Y * 0.5 * size.y, size]));
+                area.filled(ink).stroked(INK, THIN);
+            }
+            Sample::Line(stroke) => {
+                drawing.add_line("sample", [at, at + DVec2::X * SAMPLE], stroke);
+            }
+        }
+        drawing.add_words(class, words);
+        y += LINE;
     }
 }
 
@@ -89,23 +93,9 @@ fn draw_axes(
     draw_key(drawing, axes, at, radius, |v| turned(pose, v));
     if axes.drawn().len() == 1 {
         let words = Words::new("optic axis", at + DVec2::new(radius + 4.5 * TEXT, 0.0), TEXT);
-        drawing.add("optic-axis", Shape::Words(words.anchored(0.0))).filled(INK);
+        drawing.add_words("optic-axis", words.anchored(0.0));
     }
     at.y + radius
-}
-
-fn draw_sample(drawing: &mut Drawing, at: DVec2, sample: &Sample) {
-    match sample {
-        Sample::Area(ink) => {
-            let size = DVec2::new(SAMPLE, 0.8 * TEXT);
-            let area = Shape::Area(vec![corners([at - DVec2::Y * 0.5 * size.y, size])]);
-            drawing.add("sample", area).filled(*ink).stroked(INK, THIN);
-        }
-        Sample::Line(ink, width) => {
-            let line = Shape::Line(vec![at, at + DVec2::X * SAMPLE]);
-            drawing.add("sample", line).stroked(*ink, *width);
-        }
-    }
 }
 
 /// The first homogeneous anisotropic medium of a device with its axes.
@@ -120,11 +110,10 @@ fn axes(subject: &Subject<'_>) -> Option<(MediumAxes, Medium)> {
     of_regions.chain(of_body).find_map(|medium| Some((MediumAxes::of(&medium)?, medium)))
 }
 
-/// What the colours and lines of some devices stand for, each once.
-fn entries(subjects: &[(&Subject<'_>, bool)]) -> Vec<Entry> {
-    let mut entries: Vec<Entry> = Vec::new();
+/// Adds what the colours and lines of some devices stand for, each once.
+fn add_entries(entries: &mut Vec<Entry>, subjects: &[(&Subject<'_>, bool)]) {
     let mut add = |sample: Sample, words: Vec<(Face, String)>| {
-        let entry = Entry { sample, words };
+        let entry = (sample, words);
         if !entries.contains(&entry) {
             entries.push(entry);
         }
@@ -132,14 +121,11 @@ fn entries(subjects: &[(&Subject<'_>, bool)]) -> Vec<Entry> {
     let plain = |words: &str| vec![(Face::Regular, words.to_owned())];
     for (subject, _) in subjects {
         let section = &subject.section;
-        if section.body.is_some() {
-            match section.body_medium {
-                None => add(Sample::Area(body::tint(section.body_medium)), plain("opaque")),
-                Some(medium) if MediumAxes::of(medium).is_none() => {
-                    add(Sample::Area(body::tint(section.body_medium)), index_label(medium));
-                }
-                Some(_) => {}
-            }
+        let tint = Sample::Area(body::tint(section.body_medium));
+        match section.body_medium {
+            None if section.body.is_some() => add(tint, plain("opaque")),
+            Some(medium) if MediumAxes::of(medium).is_none() => add(tint, index_label(medium)),
+            _ => {}
         }
         let graded = section.regions.iter().filter(|region| region.region.is_graded());
         if let Some((_, axes)) = graded.flat_map(|region| axes_of_graded(region).0).next() {
@@ -151,16 +137,15 @@ fn entries(subjects: &[(&Subject<'_>, bool)]) -> Vec<Entry> {
                     "u" => "larger principal value",
                     _ => "smaller principal value",
                 };
-                add(Sample::Line(axis.ink, THICK), plain(words));
+                add(Sample::Line((axis.ink, THICK)), plain(words));
             }
         }
         for contour in &section.metal {
             if contour.closed {
                 add(Sample::Area(METAL), plain("metal"));
             } else {
-                add(Sample::Line(INK, 1.4 * THICK), plain("mirror"));
+                add(Sample::Line((INK, 1.4 * THICK)), plain("mirror"));
             }
         }
     }
-    entries
 }

@@ -45,14 +45,9 @@ impl MediumAxes {
 
     /// Those to draw: the optic axis alone if there is one, else u and v.
     pub fn drawn(&self) -> Vec<Drawn> {
-        let axis = |name, axis: DVec3, length, ink| Drawn {
-            name,
-            direction: axis.truncate(),
-            length,
-            ink,
-        };
-        let u = axis("u", self.u, 1.0, VERMILION);
-        let v = axis("v", self.v, 0.6, BLUE);
+        let [u, v] = [("u", self.u, 1.0, VERMILION), ("v", self.v, 0.6, BLUE)].map(
+            |(name, axis, length, ink)| Drawn { name, direction: axis.truncate(), length, ink },
+        );
         match self.optic {
             None => vec![u, v],
             Some(optic) if optic.z.abs() > 0.9 => Vec::new(),
@@ -64,32 +59,26 @@ impl MediumAxes {
     /// What the tensors are along u, v and z, in lines of text.
     pub fn lines(&self, medium: &Medium) -> Vec<Vec<(Face, String)>> {
         let (e, m) = (medium.permittivity(), medium.permeability());
-        let mut lines = Vec::new();
         if e.abs_diff_eq(*m, 1e-9 * size(e)) {
-            lines.extend(self.tensor_lines("ε = μ", e));
-        } else {
-            lines.extend(self.tensor_lines("ε", e));
-            lines.extend(self.tensor_lines("μ", m));
+            return vec![self.line("ε = μ", e)];
         }
-        lines
+        vec![self.line("ε", e), self.line("μ", m)]
     }
 
-    fn tensor_lines(&self, name: &str, tensor: &DMat3) -> Vec<Vec<(Face, String)>> {
+    fn line(&self, name: &str, tensor: &DMat3) -> Vec<(Face, String)> {
         let name = (Face::Italic, name.to_owned());
-        let value = |axis: DVec3| axis.dot(*tensor * axis);
+        let value = |axis: DVec3| rounded(axis.dot(*tensor * axis));
         if !is_anisotropic(tensor) {
-            return vec![vec![name, (Face::Regular, format!(" = {}", rounded(value(self.u))))]];
+            return vec![name, (Face::Regular, format!(" = {}", value(self.u)))];
         }
         let mut line = vec![name, (Face::Regular, " = ".to_owned())];
-        for (i, (axis, along)) in
-            [("u", self.u), ("v", self.v), ("z", self.third)].into_iter().enumerate()
+        for (comma, name, axis) in [("", "u", self.u), (", ", "v", self.v), (", ", "z", self.third)]
         {
-            let comma = if i == 0 { "" } else { ", " };
-            line.push((Face::Regular, format!("{comma}{} (", rounded(value(along)))));
-            line.push((Face::Italic, axis.to_owned()));
+            line.push((Face::Regular, format!("{comma}{} (", value(axis))));
+            line.push((Face::Italic, name.to_owned()));
             line.push((Face::Regular, ")".to_owned()));
         }
-        vec![line]
+        line
     }
 }
 
@@ -121,8 +110,8 @@ pub(super) fn draw_cross(
         // Too small to be told from a blot.
         if head > 3.0 {
             let back = half.normalize_or(DVec2::X) * head;
-            let shaft = vec![at - half + 0.8 * back, at + half - 0.8 * back];
-            drawing.add("axis", Shape::Line(shaft)).stroked(axis.ink, THICK);
+            let shaft = [at - half + 0.8 * back, at + half - 0.8 * back];
+            drawing.add_line("axis", shaft, (axis.ink, THICK));
             for tip in [half, -half] {
                 let head = arrow_head(at + tip, -tip.normalize_or(DVec2::X), head);
                 drawing.add("head", head).filled(axis.ink);
@@ -141,30 +130,27 @@ pub(super) fn draw_key(
 ) {
     let drawn = axes.drawn();
     let level = turned(DVec2::X);
-    let line = vec![at - radius * level, at + 1.25 * radius * level];
-    drawing.add("level", Shape::Line(line)).stroked(GRAY, THIN).dashed(7.0, 5.0);
+    let line = [at - radius * level, at + 1.25 * radius * level];
+    drawing.add_line("level", line, (GRAY, THIN)).dashed(7.0, 5.0);
     draw_cross(drawing, axes, at, |_| radius, &turned);
+    // The end to the right of the device's y axis.
+    let right =
+        |axis: &Drawn| if axis.direction.x < 0.0 { -axis.direction } else { axis.direction };
     for axis in &drawn {
-        // The end to the right of the device's y axis.
-        let sense = if axis.direction.x < 0.0 { -1.0 } else { 1.0 };
-        let end = turned(sense * axis.direction) * (radius * axis.length);
-        let words = Words::of_runs(
-            vec![(Face::Italic, axis.name.to_owned())],
-            at + end + 0.6 * TEXT * end.normalize_or(DVec2::X),
-            TEXT,
-        );
-        drawing.add("axis-name", Shape::Words(words)).filled(axis.ink);
+        let end = turned(right(axis)) * (radius * axis.length);
+        let beside = at + end + 0.6 * TEXT * end.normalize_or(DVec2::X);
+        let name = Shape::Words(Words::of(Face::Italic, axis.name, beside, TEXT));
+        drawing.add("axis-name", name).filled(axis.ink);
     }
-    let Some(first) = drawn.first() else { return };
-    let direction = first.direction * if first.direction.x < 0.0 { -1.0 } else { 1.0 };
+    let Some(direction) = drawn.first().map(right) else { return };
     let angle = direction.y.atan2(direction.x);
     if angle.abs().to_degrees() < 0.005 || angle.abs().to_degrees() > 89.995 {
         return;
     }
     let at_angle = |share: f64, r: f64| at + r * turned(DVec2::from_angle(share * angle));
-    let arc = (0..=24).map(|k| at_angle(f64::from(k) / 24.0, 0.72 * radius)).collect();
-    drawing.add("angle", Shape::Line(arc)).stroked(INK, THIN);
+    let arc = (0..=24).map(|k| at_angle(f64::from(k) / 24.0, 0.72 * radius));
+    drawing.add_line("angle", arc.collect::<Vec<_>>(), (INK, THIN));
     let text = format!("{}°", rounded(angle.to_degrees().abs()));
     let words = Words::new(text, at_angle(0.5, 0.84 * radius), TEXT).anchored(0.0);
-    drawing.add("angle-label", Shape::Words(words)).filled(INK);
+    drawing.add_words("angle-label", words);
 }

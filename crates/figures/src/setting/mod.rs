@@ -17,14 +17,14 @@ pub(super) use stage::{AXES, draw_axes};
 pub use view::View;
 pub(super) use view::corners;
 
+use super::color_bar::ColorBar;
 pub(super) use super::drawing::INK;
 use super::drawing::{Drawing, Ink, Shape, Words};
-use super::quantity::short;
+use super::quantity::{short, with_minus};
 use cloakroom::assembly::Assembly;
 use cloakroom::render::{PreparedScene, PreparedSceneError, metadata};
 use cloakroom::scene::Scene;
 use glam::DVec2;
-use index_map::IndexScale;
 use layout::Layout;
 use stage::Stage;
 use subject::Subject;
@@ -84,44 +84,43 @@ const SKY: Ink = Ink::new([86, 180, 233]);
 /// ```
 pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
     let studio = PreparedScene::new(scene)?;
-    let subjects = Subject::all(studio.assembly());
+    let devices = Devices::new(studio.assembly());
+    let subjects = &devices.subjects;
     let stage = Stage::new(scene, &studio);
-    let scale = IndexScale::of(&subjects);
-    let layout = Layout::new(sheet(scene.camera.resolution()), &stage, &subjects, scale.is_some());
+    let layout = Layout::new(sheet(scene.camera.resolution()), &stage, subjects, devices.has_bar());
     let mut drawing = Drawing::new(layout.sheet, TEXT);
     stage.draw_behind(&mut drawing, &layout.view);
-    let order = Subject::from_back(&subjects);
+    let order = Subject::from_back(subjects);
     let whole: Vec<_> =
         order.iter().map(|index| (&subjects[*index], !layout.is_magnified(*index))).collect();
-    draw_devices(&mut drawing, &layout.view, &whole, scale.as_ref());
+    devices.draw_measured(&mut drawing, &layout.view, &whole);
     stage.draw_before(&mut drawing, &layout.view);
-    stage.draw_distances(&mut drawing, &layout.view, &subjects);
+    stage.draw_distances(&mut drawing, &layout.view, subjects);
     draw_axes(&mut drawing, layout.axes);
     for inset in &layout.insets {
         inset.draw_frame(&mut drawing, &layout.view);
         let is_in = |index: &&usize| inset.group.subjects.contains(*index);
         let shown: Vec<_> =
             order.iter().filter(is_in).map(|index| (&subjects[*index], true)).collect();
-        draw_devices(&mut drawing, &inset.view, &shown, scale.as_ref());
+        devices.draw_measured(&mut drawing, &inset.view, &shown);
         legend::draw(&mut drawing, inset.legend, &shown);
     }
-    if let (Some(scale), Some(place)) = (&scale, layout.bar) {
-        scale.draw_bar(&mut drawing, place);
-    }
+    devices.draw_bar(&mut drawing, layout.bar);
     Ok(Setting { drawing, view: layout.view, metadata: metadata(scene) })
 }
 
 /// The devices of a scene in cross-section, to be drawn in any view.
 pub(super) struct Devices<'s> {
     subjects: Vec<Subject<'s>>,
-    scale: Option<IndexScale>,
+    /// The colours of the index of graded media, if there are any.
+    bar: Option<ColorBar>,
 }
 
 impl<'s> Devices<'s> {
     pub fn new(assembly: &'s Assembly) -> Self {
         let subjects = Subject::all(assembly);
-        let scale = IndexScale::of(&subjects);
-        Self { subjects, scale }
+        let bar = index_map::bar(&subjects);
+        Self { subjects, bar }
     }
 
     /// Least and greatest x and y of all that has an end, cm.
@@ -131,54 +130,44 @@ impl<'s> Devices<'s> {
 
     /// Whether the index of graded media is drawn in colours, which a bar explains.
     pub fn has_bar(&self) -> bool {
-        self.scale.is_some()
+        self.bar.is_some()
     }
 
     /// Draws the devices with the axes of their media.
     pub fn draw(&self, drawing: &mut Drawing, view: &View) {
         let order = Subject::from_back(&self.subjects);
         let shown: Vec<_> = order.iter().map(|index| (&self.subjects[*index], true)).collect();
-        draw_shapes(drawing, view, &shown, self.scale.as_ref());
+        self.draw_shapes(drawing, view, &shown);
     }
 
     /// Draws the bar of the colours with its top left corner at a point, as high as told.
-    pub fn draw_bar(&self, drawing: &mut Drawing, place: (DVec2, f64)) {
-        if let Some(scale) = &self.scale {
-            scale.draw_bar(drawing, place);
+    pub fn draw_bar(&self, drawing: &mut Drawing, (at, height): (DVec2, f64)) {
+        if let Some(bar) = &self.bar {
+            bar.draw(drawing, at, height, TEXT);
         }
     }
-}
 
-/// Draws devices from back to front, and where it says so in detail: with the axes of their media and, before
-/// everything else so that they can be read, their dimensions.
-fn draw_devices(
-    drawing: &mut Drawing,
-    view: &View,
-    devices: &[(&Subject<'_>, bool)],
-    scale: Option<&IndexScale>,
-) {
-    draw_shapes(drawing, view, devices, scale);
-    for (place, (subject, _)) in devices.iter().enumerate().filter(|(_, (_, detail))| *detail) {
-        let is_inner = |(other, (around, _)): (usize, &(&Subject<'_>, bool))| {
-            other != place && subject.is_within(around, other > place)
-        };
-        if !devices.iter().enumerate().any(is_inner) {
-            device::draw_dimensions(drawing, view, subject);
+    /// Draws devices from back to front, and where it says so in detail: with the axes of their media and, before
+    /// everything else so that they can be read, their dimensions.
+    fn draw_measured(&self, drawing: &mut Drawing, view: &View, shown: &[(&Subject<'_>, bool)]) {
+        self.draw_shapes(drawing, view, shown);
+        for (place, (subject, _)) in shown.iter().enumerate().filter(|(_, (_, detail))| *detail) {
+            let is_inner = |(other, (around, _)): (usize, &(&Subject<'_>, bool))| {
+                other != place && subject.is_within(around, other > place)
+            };
+            if !shown.iter().enumerate().any(is_inner) {
+                device::draw_dimensions(drawing, view, subject);
+            }
         }
     }
-}
 
-/// Draws devices from back to front, without their dimensions.
-fn draw_shapes(
-    drawing: &mut Drawing,
-    view: &View,
-    devices: &[(&Subject<'_>, bool)],
-    scale: Option<&IndexScale>,
-) {
-    for (place, (subject, in_detail)) in devices.iter().enumerate() {
-        device::draw(drawing, view, subject, scale);
-        if *in_detail {
-            device::draw_media(drawing, view, subject, &devices[place + 1..]);
+    /// Draws devices from back to front, without their dimensions.
+    fn draw_shapes(&self, drawing: &mut Drawing, view: &View, shown: &[(&Subject<'_>, bool)]) {
+        for (place, (subject, in_detail)) in shown.iter().enumerate() {
+            device::draw(drawing, view, subject, self.bar.as_ref().map(|bar| &bar.scale));
+            if *in_detail {
+                device::draw_media(drawing, view, subject, &shown[place + 1..]);
+            }
         }
     }
 }
@@ -203,7 +192,7 @@ fn centimetres(length: f64) -> String {
 
 /// A number with two decimals at most.
 fn rounded(number: f64) -> String {
-    short(number, 2).replace('-', "\u{2212}")
+    with_minus(&short(number, 2))
 }
 
 #[cfg(test)]

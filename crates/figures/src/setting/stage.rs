@@ -1,11 +1,12 @@
 //! What stands around the devices: camera, field of view, photograph, distances and axes.
 
-use super::super::drawing::{Drawing, Face, Ink, Shape, Words};
+use super::super::drawing::{Drawing, Face, Shape, Words};
+use super::super::shrink::srgb;
 use super::subject::{Subject, bounds};
 use super::view::View;
 use super::{BLUE, GRAY, INK, PAPER, SKY, TEXT, THICK, THIN, centimetres, dimension};
 use cloakroom::assembly::Screen;
-use cloakroom::output::{Channel, Picture, RgbImage, Samples, to_srgb};
+use cloakroom::output::RgbImage;
 use cloakroom::photograph::Pyramid;
 use cloakroom::render::PreparedScene;
 use cloakroom::scene::{Camera, CameraRay, Scene};
@@ -29,7 +30,7 @@ pub(super) struct Stage {
     /// What it sees up to the plane of the photograph, counterclockwise; empty if it looks out of the page.
     pub sight: Vec<DVec2>,
     screen: Screen,
-    thumbnail: Option<RgbImage>,
+    thumbnail: RgbImage,
 }
 
 impl Stage {
@@ -66,23 +67,21 @@ impl Stage {
     /// Draws what devices stand in front of.
     pub fn draw_behind(&self, drawing: &mut Drawing, view: &View) {
         if self.sight.len() > 2 {
-            let area = Shape::Area(vec![view.places(&self.sight)]);
-            drawing.add("field-of-view", area).filled(SKY.faint(0.16)).stroked(SKY, THIN);
+            let area = drawing.add_area("field-of-view", view.places(&self.sight));
+            area.filled(SKY.faint(0.16)).stroked(SKY, THIN);
         }
-        let [top_left, top_right, _, bottom_left] = self.photograph().map(|p| view.place(p));
-        if let Some(image) = &self.thumbnail {
-            let (across, down) = (top_right - top_left, bottom_left - top_left);
-            // Seen from its edge there is nothing of it to be seen.
-            if across.perp_dot(down).abs() > 1.0 {
-                let place = DAffine2::from_cols(across, down, top_left);
-                let image = image.clone();
-                drawing.add("photograph-image", Shape::Image { image, cells: false, place });
-            }
+        let frame = self.photograph().map(|p| view.place(p));
+        let [top_left, top_right, _, bottom_left] = frame;
+        let (across, down) = (top_right - top_left, bottom_left - top_left);
+        // Seen from its edge there is nothing of it to be seen.
+        if across.perp_dot(down).abs() > 1.0 {
+            let place = DAffine2::from_cols(across, down, top_left);
+            let image = self.thumbnail.clone();
+            drawing.add("photograph-image", Shape::Image { image, cells: false, place });
         }
-        let frame = self.photograph().map(|p| view.place(p)).to_vec();
-        drawing.add("photograph-frame", Shape::Area(vec![frame])).stroked(INK, THIN);
+        drawing.add_area("photograph-frame", frame).stroked(INK, THIN);
         let line = self.screen.middle_line().map(|end| view.place(end.truncate()));
-        drawing.add("photograph", Shape::Line(line.to_vec())).stroked(INK, THIN);
+        drawing.add_line("photograph", line, (INK, THIN));
     }
 
     /// Draws what stands before everything: the camera, and what the things are called.
@@ -91,21 +90,20 @@ impl Stage {
         match self.forward {
             Some(forward) => draw_eye(drawing, eye, DVec2::new(forward.x, -forward.y)),
             None => {
-                drawing
-                    .add("camera", Shape::Circle { centre: eye, radius: 0.5 * EYE })
-                    .filled(PAPER);
-                drawing.add("pupil", Shape::Circle { centre: eye, radius: 0.3 * EYE }).filled(BLUE);
+                let circle = |share: f64| Shape::Circle { centre: eye, radius: share * EYE };
+                drawing.add("camera", circle(0.5)).filled(PAPER);
+                drawing.add("pupil", circle(0.3)).filled(BLUE);
             }
         }
         let name = |text: &str, at: DVec2| within(view, Words::new(text, at, TEXT));
         let back = self.forward.map_or(DVec2::ZERO, |f| 0.5 * EYE * DVec2::new(-f.x, f.y));
         let words = name("camera", eye + back + DVec2::Y * (0.62 * EYE + 0.6 * TEXT));
-        drawing.add("camera-label", Shape::Words(words)).filled(INK);
+        drawing.add_words("camera-label", words);
         let lowest =
             self.photograph().into_iter().map(|p| view.place(p).y).fold(f64::MIN, f64::max);
         let foot = view.place(self.screen.middle().truncate()).x;
         let words = name("photograph", DVec2::new(foot, lowest + 0.9 * TEXT));
-        drawing.add("photograph-label", Shape::Words(words)).filled(INK);
+        drawing.add_words("photograph-label", words);
     }
 
     /// Draws how far camera, axes of devices and photograph are from each other along x, in a row
@@ -129,21 +127,21 @@ impl Stage {
         });
         for (x, y) in &stations {
             let x = view.place(DVec2::new(*x, 0.0)).x;
-            let line = vec![DVec2::new(x, row - 6.0), DVec2::new(x, *y)];
-            drawing.add("extension", Shape::Line(line)).stroked(GRAY, 0.7 * THIN).dashed(9.0, 5.0);
+            let line = [DVec2::new(x, row - 6.0), DVec2::new(x, *y)];
+            drawing.add_line("extension", line, (GRAY, 0.7 * THIN)).dashed(9.0, 5.0);
         }
         // Labels without room go one line higher than the last.
         let mut raised = 0.0;
         for pair in stations.windows(2) {
             let [(from, _), (to, _)] = pair else { continue };
             let ends = [*from, *to].map(|x| DVec2::new(view.place(DVec2::new(x, 0.0)).x, row));
-            dimension::double_arrow(drawing, "distance", ends, INK, THIN);
+            dimension::double_arrow(drawing, "distance", ends);
             let words = Words::new(centimetres(to - from), (ends[0] + ends[1]) / 2.0, TEXT);
             let fits = words.width() < ends[0].distance(ends[1]);
             raised = if fits { 0.0 } else { raised + 1.0 };
             let at = words.at - DVec2::Y * (0.75 + raised) * TEXT;
             let words = within(view, Words { at, ..words });
-            drawing.add("distance-label", Shape::Words(words)).filled(INK);
+            drawing.add_words("distance-label", words);
         }
     }
 }
@@ -162,16 +160,9 @@ fn sight(camera: &Camera, forward: DVec2, screen: &Screen) -> Vec<DVec2> {
     let [width, height] = camera.resolution().map(f64::from);
     let eye = camera.position().truncate();
     let far = 1.5 * screen.ahead_of(camera.position()).abs().max(1.0);
-    let border = [
-        (0.5, 0.0),
-        (0.5, 1.0),
-        (0.0, 0.5),
-        (1.0, 0.5),
-        (0.0, 0.0),
-        (0.0, 1.0),
-        (1.0, 0.0),
-        (1.0, 1.0),
-    ];
+    // The middles of the sides of the picture, and its corners.
+    let across = [0.5, 0.5, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0];
+    let down = [0.0, 1.0, 0.5, 0.5, 0.0, 1.0, 0.0, 1.0];
     let line = |ray: CameraRay| {
         let (from, along) = (ray.origin.truncate(), ray.direction.truncate());
         let ahead = along.dot(forward);
@@ -188,8 +179,9 @@ fn sight(camera: &Camera, forward: DVec2, screen: &Screen) -> Vec<DVec2> {
         let even = from + along * ((far - (from - eye).dot(forward)) / ahead);
         Some((forward.perp_dot(even - eye), [from, from + length * along]))
     };
+    let border = across.into_iter().zip(down);
     let lines: Vec<_> =
-        border.iter().filter_map(|(u, v)| line(camera.ray(u * width, v * height))).collect();
+        border.filter_map(|(u, v)| line(camera.ray(u * width, v * height))).collect();
     let right = lines.iter().min_by(|a, b| a.0.total_cmp(&b.0));
     let left = lines.iter().max_by(|a, b| a.0.total_cmp(&b.0));
     let (Some((_, right)), Some((_, left))) = (right, left) else { return Vec::new() };
@@ -202,23 +194,15 @@ fn sight(camera: &Camera, forward: DVec2, screen: &Screen) -> Vec<DVec2> {
 }
 
 /// A small copy of the photograph.
-fn thumbnail(photograph: &Pyramid) -> Option<RgbImage> {
+fn thumbnail(photograph: &Pyramid) -> RgbImage {
     const SIZE: [usize; 2] = [160, 360];
     let [width, height] = SIZE;
     let step = SIZE.map(|n| 1.0 / n as f64);
-    let mut planes = [const { Vec::new() }; 3];
-    for k in 0..width * height {
+    let light = |k: usize| {
         let at = [((k % width) as f64 + 0.5) * step[0], ((k / width) as f64 + 0.5) * step[1]];
-        let color = photograph.sample(at, [step[0], 0.0], [0.0, step[1]]);
-        for (plane, value) in planes.iter_mut().zip(color) {
-            plane.push(value);
-        }
-    }
-    let channels = ["R", "G", "B"]
-        .into_iter()
-        .zip(planes)
-        .map(|(name, plane)| Channel { name: name.to_owned(), samples: Samples::F32(plane) });
-    to_srgb(&Picture { width, height, channels: channels.collect(), metadata: Vec::new() }).ok()
+        photograph.sample(at, [step[0], 0.0], [0.0, step[1]])
+    };
+    srgb(SIZE, &(0..width * height).map(light).collect::<Vec<_>>())
 }
 
 /// An eye whose pupil is at a point, looking along a unit vector.
@@ -237,13 +221,12 @@ fn draw_eye(drawing: &mut Drawing, at: DVec2, forward: DVec2) {
     };
     let mut ball = arc(30.0, EYE);
     ball.push(back);
-    drawing.add("camera", Shape::Area(vec![ball])).filled(PAPER);
-    drawing.add("iris", Shape::Area(vec![band(18.0, 0.76 * EYE)])).filled(BLUE);
-    drawing.add("pupil", Shape::Area(vec![band(8.0, 0.84 * EYE)])).filled(INK);
-    drawing.add("cornea", Shape::Line(arc(30.0, EYE))).stroked(INK, THIN);
+    drawing.add_area("camera", ball).filled(PAPER);
+    drawing.add_area("iris", band(18.0, 0.76 * EYE)).filled(BLUE);
+    drawing.add_area("pupil", band(8.0, 0.84 * EYE)).filled(INK);
+    drawing.add_line("cornea", arc(30.0, EYE), (INK, THIN));
     for lid in [-30.0, 30.0] {
-        let line = vec![ray(lid, 0.0), ray(lid, 1.12 * EYE)];
-        drawing.add("lid", Shape::Line(line)).stroked(INK, THICK);
+        drawing.add_line("lid", [ray(lid, 0.0), ray(lid, 1.12 * EYE)], (INK, THICK));
     }
 }
 
@@ -253,18 +236,15 @@ pub(crate) fn draw_axes(drawing: &mut Drawing, corner: DVec2) {
     let length = 0.5 * AXES.x;
     for (name, direction) in [("x", DVec2::X), ("y", -DVec2::Y)] {
         let tip = origin + length * direction;
-        let shaft = vec![origin + 7.0 * direction, tip - 8.0 * direction];
-        drawing.add("coordinate", Shape::Line(shaft)).stroked(INK, THIN);
+        let shaft = [origin + 7.0 * direction, tip - 8.0 * direction];
+        drawing.add_line("coordinate", shaft, (INK, THIN));
         drawing.add("head", dimension::arrow_head(tip, -direction, dimension::HEAD)).filled(INK);
-        name_axis(drawing, name, tip + 0.55 * TEXT * direction, INK);
+        let name = Words::of(Face::Italic, name, tip + 0.55 * TEXT * direction, TEXT);
+        drawing.add_words("coordinate-name", name);
     }
     // z comes out of the page.
     drawing.add("coordinate", Shape::Circle { centre: origin, radius: 7.0 }).stroked(INK, THIN);
     drawing.add("coordinate", Shape::Circle { centre: origin, radius: 2.2 }).filled(INK);
-    name_axis(drawing, "z", origin + DVec2::new(-0.65, 0.65) * TEXT, INK);
-}
-
-fn name_axis(drawing: &mut Drawing, name: &str, at: DVec2, ink: Ink) {
-    let words = Words::of_runs(vec![(Face::Italic, name.to_owned())], at, TEXT);
-    drawing.add("coordinate-name", Shape::Words(words)).filled(ink);
+    let name = Words::of(Face::Italic, "z", origin + DVec2::new(-0.65, 0.65) * TEXT, TEXT);
+    drawing.add_words("coordinate-name", name);
 }

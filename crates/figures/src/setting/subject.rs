@@ -1,7 +1,7 @@
 //! The devices of a scene, ready to be drawn.
 
 use cloakroom::assembly::Assembly;
-use cloakroom::device::{Contour, CrossSection, REACH};
+use cloakroom::device::{Contour, CrossSection, REACH, Section};
 use glam::DVec2;
 use optics::geometry::Pose;
 
@@ -39,14 +39,10 @@ impl<'s> Subject<'s> {
     /// The indices of the devices from back to front: of two bodies the one of the larger priority lies before
     /// the other, as it is the one that is there, else what has the larger z.
     pub fn from_back(subjects: &[Self]) -> Vec<usize> {
-        let depth = |subject: &Self| {
-            (subject.section.body.map_or(0, |body| body.priority), subject.pose.origin().z)
-        };
+        let priority = |i: usize| subjects[i].section.body.map_or(0, |body| body.priority);
+        let z = |i: usize| subjects[i].pose.origin().z;
         let mut order: Vec<usize> = (0..subjects.len()).collect();
-        order.sort_by(|&i, &j| {
-            let (a, b) = (depth(&subjects[i]), depth(&subjects[j]));
-            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-        });
+        order.sort_by(|&i, &j| priority(i).cmp(&priority(j)).then(z(i).total_cmp(&z(j))));
         order
     }
 
@@ -86,6 +82,21 @@ pub(super) fn lattice([low, high]: [DVec2; 2], steps: u32) -> impl Iterator<Item
         let share = DVec2::new(f64::from(k % steps), f64::from(k / steps)) + 0.5;
         low + (high - low) * share / f64::from(steps)
     })
+}
+
+/// The points of the border of a region.
+pub(super) fn border(region: &Section<'_>) -> impl Iterator<Item = DVec2> + Clone {
+    region.border.iter().flat_map(|contour| contour.points.iter().copied())
+}
+
+/// The sides of a contour that is closed: from each point to the next.
+pub(super) fn sides(points: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
+    points.iter().enumerate().map(|(i, point)| (*point, points[(i + 1) % points.len()]))
+}
+
+/// Twice the area within a closed contour, positive where it runs from x to y.
+pub(super) fn turn(points: &[DVec2]) -> f64 {
+    sides(points).map(|(a, b)| a.perp_dot(b)).sum()
 }
 
 /// Least and greatest x and y.

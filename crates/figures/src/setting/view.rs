@@ -26,13 +26,6 @@ impl View {
         Self { window, scale, origin }
     }
 
-    /// The same, moved to the right until `x` is at the right edge of the window.
-    #[must_use]
-    pub(super) fn moved_right(self, x: f64) -> Self {
-        let free = self.window[0].x + self.window[1].x - self.place(DVec2::new(x, 0.0)).x;
-        Self { origin: self.origin + DVec2::X * free.max(0.0), ..self }
-    }
-
     /// Where on the sheet a point of the xy-plane is.
     #[must_use]
     pub fn place(&self, point: DVec2) -> DVec2 {
@@ -53,13 +46,13 @@ impl View {
 
     /// The corners of the window, counterclockwise as seen.
     #[must_use]
-    pub fn frame(&self) -> Vec<DVec2> {
+    pub fn frame(&self) -> [DVec2; 4] {
         corners(self.window)
     }
 }
 
 /// The corners of a rectangle of the sheet (top left corner and size), counterclockwise as seen.
-pub(crate) fn corners([from, size]: [DVec2; 2]) -> Vec<DVec2> {
+pub(crate) fn corners([from, size]: [DVec2; 2]) -> [DVec2; 4] {
     let to = from + size;
-    vec![from, DVec2::new(from.x, to.y), to, DVec2::new(to.x, from.y)]
+    [from, DVec2::new(from.x, to.y), to, DVec2::new(to.x, from.y)]
 }

@@ -1,11 +1,11 @@
 //! Section 3, designs (i) and (ii).
 
-use super::finding::{DOUBLE, Finding, SINGLE, Verdict, below, percent};
+use super::finding::{DOUBLE, Page, SINGLE, Verdict, above, below, list, percent};
 use super::laboratory::{
     CAMERA, DESIGNS, Fixture, HALF_VIEW, Rays, fact, gaze, largest_difference, likeness, numbers,
     principal_values, reflected_inside, square, statistics,
 };
-use super::{Findings, VerificationError};
+use super::{Checked, VerificationError};
 use cloakroom::measure::CLOAKED_WITHIN_CM;
 use glam::{DVec2, DVec3};
 
@@ -20,8 +20,7 @@ fn heights() -> impl Iterator<Item = f64> {
     (0..40).map(|i| -9.5 + 19.0 * (f64::from(i) + 0.5) / 40.0)
 }
 
-pub(super) fn along_the_axis(laboratory: &Fixture<'_>) -> Findings {
-    let mut findings = Vec::new();
+pub(super) fn along_the_axis(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     let mut through = [[0.0; 2]; 2];
     for (material, through) in DESIGNS.iter().zip(&mut through) {
         let assembly = laboratory.assembly(&square(material))?;
@@ -40,128 +39,99 @@ pub(super) fn along_the_axis(laboratory: &Fixture<'_>) -> Findings {
             through[0] += h / 40.0;
             through[1] += v / 40.0;
         }
+        let perfect = least > 1.0 - 1e-6;
+        let (off, on) = (below(1.0 - least, DOUBLE, ""), percent(most, 1));
         if *material == DESIGNS[0] {
-            findings.push(Finding::new(
+            page.says(
                 "3, (i)",
                 "Horizontal light in the centre vertical plane is cloaked perfectly",
-                format!(
-                    "all but {} of its power is on its own line",
-                    below(1.0 - least, DOUBLE, "")
-                ),
-                Verdict::of(least > 1.0 - 1e-6),
-            ));
-            findings.push(Finding::new(
-                "3, (i)",
-                "Vertical light there is not cloaked at all",
-                format!("at most {} of its power is on its own line", percent(most, 1)),
-                Verdict::of(most < 1e-3),
-            ));
+            )
+            .computed(format!("all but {off} of its power is on its own line"))
+            .verdict(perfect);
+            page.says("3, (i)", "Vertical light there is not cloaked at all")
+                .computed(format!("at most {on} of its power is on its own line"))
+                .verdict(most < 1e-3);
         } else {
-            findings.push(Finding::new(
+            page.says(
                 "3, (ii)",
-                "So it is for (ii): horizontal light is cloaked in this plane, vertical light is not",
-                format!(
-                    "H: all but {} on its own line; V: at most {}",
-                    below(1.0 - least, DOUBLE, ""),
-                    percent(most, 1)
-                ),
-                Verdict::of(least > 1.0 - 1e-6 && most < 1e-3),
-            ));
-            break;
+                "So it is for (ii): horizontal light is cloaked in this plane, vertical light is \
+                 not",
+            )
+            .computed(format!("H: all but {off} on its own line; V: at most {on}"))
+            .verdict(perfect && most < 1e-3);
         }
     }
-    let [first, second] = through.map(|[h, v]| 0.5 * (h + v));
-    findings.push(Finding::new(
+    let through = through.map(|[h, v]| 0.5 * (h + v));
+    let [first, second] = through.map(|share| percent(share, 1));
+    page.says(
         "4",
         "Cloaks (i) and (ii) work for at most half of the unpolarized light along the axis",
-        format!(
-            "(i) {}, (ii) {} of the power goes on undisturbed",
-            percent(first, 1),
-            percent(second, 1)
-        ),
-        Verdict::limit(first.max(second), 0.5 + DOUBLE),
-    ));
-    Ok(findings)
+    )
+    .computed(format!("(i) {first}, (ii) {second} of the power goes on undisturbed"))
+    .verdict(Verdict::limit(through[0].max(through[1]), 0.5 + DOUBLE));
+    Ok(())
 }
 
-pub(super) fn views(laboratory: &Fixture<'_>) -> Findings {
+pub(super) fn views(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     let empty = laboratory.show("", "none")?.view;
     let silhouette = laboratory.silhouette(&square(DESIGNS[2]))?;
     let bare = laboratory.show(&format!("{}show = \"bare\"\n", square(DESIGNS[2])), "none")?.view;
     let bare = likeness(&empty, &bare, &silhouette)?;
-    let mut seen = [[0.0; 3]; 2];
+    let perfect = laboratory.show(&square(DESIGNS[2]), "horizontal")?.view;
     let mut admixture: f64 = 0.0;
-    let mut horizontal = Vec::new();
-    for (material, seen) in DESIGNS.iter().zip(&mut seen) {
-        let mut views = Vec::new();
-        for (polarizer, seen) in ["horizontal", "vertical", "none"].iter().zip(seen.iter_mut()) {
-            let view = laboratory.show(&square(material), polarizer)?.view;
-            *seen = likeness(&empty, &view, &silhouette)?;
-            views.push(view);
-        }
-        let mut mean = views[0].clone();
-        for (mean, vertical) in mean.light.iter_mut().zip(&views[1].light) {
+    // Of each design the likeness to the empty view, H and V, that to (iii), H, and the displacement, H.
+    let mut numbers = [[0.0; 4]; 2];
+    for (material, numbers) in DESIGNS.iter().zip(&mut numbers) {
+        let device = square(material);
+        let [h, v, none] = ["horizontal", "vertical", "none"].map(|p| laboratory.show(&device, p));
+        let (h, v, none) = (h?.view, v?.view, none?.view);
+        let mut mean = h.clone();
+        for (mean, vertical) in mean.light.iter_mut().zip(&v.light) {
             mean.iter_mut().zip(vertical).for_each(|(mean, v)| *mean = 0.5 * (*mean + v));
         }
-        admixture = admixture.max(largest_difference(&mean, &views[2]));
-        horizontal.push(views.swap_remove(0));
+        admixture = admixture.max(largest_difference(&mean, &none));
+        let like = |to, view| likeness(to, view, &silhouette);
+        let off = laboratory.displacement(&device, "horizontal", "")?;
+        *numbers = [like(&empty, &h)?, like(&empty, &v)?, like(&perfect, &h)?, off];
     }
-    let [[h1, v1, _], [h2, v2, _]] = seen;
-    let perfect = laboratory.show(&square(DESIGNS[2]), "horizontal")?.view;
-    let like = |view| likeness(&perfect, view, &silhouette);
-    let (like_1, like_2) = (like(&horizontal[0])?, like(&horizontal[1])?);
-    let off = |material: &str| laboratory.displacement(&square(material), "horizontal", "");
-    let (off_1, off_2) = (off(DESIGNS[0])?, off(DESIGNS[1])?);
-    Ok(vec![
-        Finding::new(
-            "3, Fig. 2",
-            "Unpolarized, the image is an admixture of a cloaked and an uncloaked contribution",
-            format!(
-                "it is the mean of H and V; largest difference {} of white",
-                below(admixture, SINGLE, "")
-            ),
-            Verdict::of(admixture < 1e-5),
-        ),
-        Finding::new(
-            "3, Fig. 2",
-            "(i), horizontal: cloaking is quite good, albeit not perfect",
-            format!(
-                "correlation with the empty view {h1:.2}, of bare metal {bare:.2}; RMS displacement {off_1:.1} cm"
-            ),
-            Verdict::of(h1 > bare && off_1 > CLOAKED_WITHIN_CM),
-        ),
-        Finding::new(
-            "3, Fig. 2",
-            "(i), vertical: no cloaking at all",
-            format!("correlation with the empty view {v1:.2}, of bare metal {bare:.2}"),
-            Verdict::of(v1 <= bare),
-        ),
-        Finding::new(
-            "3, Fig. 4",
-            "(ii), horizontal: the cloaking is formidable",
-            format!(
-                "correlation with the empty view {h2:.2}, of (i) {h1:.2}, of bare metal {bare:.2}; RMS displacement \
-                 {off_2:.1} cm"
-            ),
-            Verdict::of(h2 > h1 && h2 > bare),
-        ),
-        Finding::new(
-            "3, Fig. 4",
-            "(ii), vertical: not cloaked",
-            format!("correlation with the empty view {v2:.2}, of bare metal {bare:.2}"),
-            Verdict::of(v2 <= bare),
-        ),
-        Finding::new(
-            "3",
-            "(ii) is remarkably similar in performance to the ideal cloak (iii), but depends on polarization",
-            format!("correlation with (iii), H: (ii) {like_2:.2}, (i) {like_1:.2}"),
-            Verdict::of(like_2 > like_1 && h2 > v2),
-        ),
-    ])
+    let [[h1, v1, like_1, off_1], [h2, v2, like_2, off_2]] = numbers;
+    let difference = below(admixture, SINGLE, "");
+    page.says(
+        "3, Fig. 2",
+        "Unpolarized, the image is an admixture of a cloaked and an uncloaked contribution",
+    )
+    .computed(format!("it is the mean of H and V; largest difference {difference} of white"))
+    .verdict(admixture < 1e-5);
+    page.says("3, Fig. 2", "(i), horizontal: cloaking is quite good, albeit not perfect")
+        .computed(format!(
+            "correlation with the empty view {h1:.2}, of bare metal {bare:.2}; RMS \
+             displacement {off_1:.1} cm"
+        ))
+        .verdict(h1 > bare && off_1 > CLOAKED_WITHIN_CM);
+    page.says("3, Fig. 2", "(i), vertical: no cloaking at all")
+        .computed(format!("correlation with the empty view {v1:.2}, of bare metal {bare:.2}"))
+        .verdict(v1 <= bare);
+    page.says("3, Fig. 4", "(ii), horizontal: the cloaking is formidable")
+        .computed(format!(
+            "correlation with the empty view {h2:.2}, of (i) {h1:.2}, of bare metal \
+             {bare:.2}; RMS displacement {off_2:.1} cm"
+        ))
+        .verdict(h2 > h1 && h2 > bare);
+    page.says("3, Fig. 4", "(ii), vertical: not cloaked")
+        .computed(format!("correlation with the empty view {v2:.2}, of bare metal {bare:.2}"))
+        .verdict(v2 <= bare);
+    page.says(
+        "3",
+        "(ii) is remarkably similar in performance to the ideal cloak (iii), but depends \
+         on polarization",
+    )
+    .computed(format!("correlation with (iii), H: (ii) {like_2:.2}, (i) {like_1:.2}"))
+    .verdict(like_2 > like_1 && h2 > v2);
+    Ok(())
 }
 
 /// What the cloaks look like when they are turned, and the first reflection then.
-pub(super) fn turned(laboratory: &Fixture<'_>) -> Findings {
+pub(super) fn turned(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     let mut likenesses = [[0.0; 3]; 2];
     let mut bare = [0.0; 3];
     let mut reflections = [[0.0; 3]; 2];
@@ -181,43 +151,38 @@ pub(super) fn turned(laboratory: &Fixture<'_>) -> Findings {
         }
     }
     let [one, two] = likenesses;
-    let list = |values: [f64; 3]| values.map(|v| format!("{v:.2}")).join(", ");
-    let shares = |values: [f64; 3]| values.map(|v| percent(v, 2)).join(", ");
-    let largest = |values: [f64; 3]| values.into_iter().fold(0.0, f64::max);
-    let above = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| *a > b);
-    Ok(vec![
-        Finding::new(
-            "3, Fig. 3",
-            "(i), horizontal, turned by 5, 10, 20 degrees: rather good but for significant Fresnel reflections",
-            format!(
-                "correlation with the flat mirror {}, of bare metal {}; mean first reflection {}",
-                list(one),
-                list(bare),
-                shares(reflections[0])
-            ),
-            Verdict::of(above(one, bare) && largest(reflections[0]) > SEEN),
-        )
-        .because(
-            "The reflections are total ones of the ordinary wave, in the centre plane from 13.3 degrees on; at 5 degrees \
-             there are hardly any.",
-        ),
-        Finding::new(
-            "3, Fig. 5",
-            "(ii), horizontal, turned: no Fresnel reflections, in contrast to (i)",
-            format!("mean first reflection {}", shares(reflections[1])),
-            Verdict::of(largest(reflections[1]) < SEEN && largest(reflections[0]) > SEEN),
-        ),
-        Finding::new(
-            "3, Fig. 5",
-            "(ii), horizontal, turned: a very good carpet cloak, the illusion of a flat mirror turned by the same \
-             angle",
-            format!("correlation with the flat mirror {}", list(two)),
-            Verdict::of(above(two, bare) && above(two, one)),
-        ),
-    ])
+    let shares = reflections.map(|shares| shares.map(|share| percent(share, 2)).join(", "));
+    let is_seen = reflections.map(|shares| shares.into_iter().fold(0.0, f64::max) > SEEN);
+    page.says(
+        "3, Fig. 3",
+        "(i), horizontal, turned by 5, 10, 20 degrees: rather good but for significant \
+         Fresnel reflections",
+    )
+    .computed(format!(
+        "correlation with the flat mirror {}, of bare metal {}; mean first reflection {}",
+        list(one),
+        list(bare),
+        shares[0]
+    ))
+    .verdict(above(one, bare) && is_seen[0])
+    .because(
+        "The reflections are total ones of the ordinary wave, in the centre plane from \
+         13.3 degrees on; at 5 degrees there are hardly any.",
+    );
+    page.says("3, Fig. 5", "(ii), horizontal, turned: no Fresnel reflections, in contrast to (i)")
+        .computed(format!("mean first reflection {}", shares[1]))
+        .verdict(!is_seen[1] && is_seen[0]);
+    page.says(
+        "3, Fig. 5",
+        "(ii), horizontal, turned: a very good carpet cloak, the illusion of a flat \
+         mirror turned by the same angle",
+    )
+    .computed(format!("correlation with the flat mirror {}", list(two)))
+    .verdict(above(two, bare) && above(two, one));
+    Ok(())
 }
 
-pub(super) fn reflections(laboratory: &Fixture<'_>) -> Findings {
+pub(super) fn reflections(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     let reflection = |material: &str, polarizer: &str| {
         let shown = laboratory.show(&square(material), polarizer)?;
         statistics(&shown.picture, "first_face_reflectance")
@@ -244,40 +209,36 @@ pub(super) fn reflections(laboratory: &Fixture<'_>) -> Findings {
         Ok::<_, VerificationError>(1.0 - shares.into_iter().fold(1.0, f64::min))
     };
     let ordinary = [ordinary(DESIGNS[0])?, ordinary(DESIGNS[1])?];
-    Ok(vec![
-        Finding::new(
-            "3, Fig. 4",
-            "Fresnel reflection of (ii) is of the order of less than 3 %, horizontal",
-            format!(
-                "first face: at most {} in the view; all backward power at 20 degrees to the side: {} on average",
-                percent(horizontal, 2),
-                percent(backward[1], 1)
-            ),
-            Verdict::limit(horizontal.max(backward[1]), 0.03),
-        ),
-        Finding::new(
-            "3, Fig. 4",
-            "The same, vertical",
-            format!("first face: at most {} in the view", percent(vertical, 1)),
-            Verdict::limit(vertical, 0.03),
-        )
-        .because("The ordinary index of 2.78 reflects more; the paper's number holds for the polarization it cloaks."),
-        Finding::new(
-            "3",
-            "(i) has more impedance mismatch to the sides than (ii)",
-            format!(
-                "H in the ordinary wave, at most: (i) {}, (ii) {}; backward power at 20 degrees: (i) {}, (ii) {}",
-                percent(ordinary[0], 0),
-                percent(ordinary[1], 1),
-                percent(backward[0], 1),
-                percent(backward[1], 1)
-            ),
-            Verdict::of(ordinary[0] > ordinary[1] && backward[0] > backward[1]),
-        ),
-    ])
+    let [first_h, first_v] = [percent(horizontal, 2), percent(vertical, 1)];
+    let [back_1, back_2] = backward.map(|share| percent(share, 1));
+    page.says(
+        "3, Fig. 4",
+        "Fresnel reflection of (ii) is of the order of less than 3 %, horizontal",
+    )
+    .computed(format!(
+        "first face: at most {first_h} in the view; all backward power at 20 degrees to \
+         the side: {back_2} on average"
+    ))
+    .verdict(Verdict::limit(horizontal.max(backward[1]), 0.03));
+    page.says("3, Fig. 4", "The same, vertical")
+        .computed(format!("first face: at most {first_v} in the view"))
+        .verdict(Verdict::limit(vertical, 0.03))
+        .because(
+            "The ordinary index of 2.78 reflects more; the paper's number holds for the \
+             polarization it cloaks.",
+        );
+    page.says("3", "(i) has more impedance mismatch to the sides than (ii)")
+        .computed(format!(
+            "H in the ordinary wave, at most: (i) {}, (ii) {}; backward power at 20 degrees: \
+             (i) {back_1}, (ii) {back_2}",
+            percent(ordinary[0], 0),
+            percent(ordinary[1], 1)
+        ))
+        .verdict(ordinary[0] > ordinary[1] && backward[0] > backward[1]);
+    Ok(())
 }
 
-pub(super) fn trapped_light(laboratory: &Fixture<'_>) -> Findings {
+pub(super) fn trapped_light(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     // The ordinary index of a segment, sqrt(eps mu_o).
     let index = |material: &str, ordinary: usize| -> Result<f64, VerificationError> {
         let device = square(material);
@@ -288,8 +249,7 @@ pub(super) fn trapped_light(laboratory: &Fixture<'_>) -> Findings {
     let critical = [index(DESIGNS[0], 1)?.asin(), (1.0 / index(DESIGNS[1], 0)?).asin()];
     let [in_air, inside] = critical.map(f64::to_degrees);
     let assembly = laboratory.assembly(&square(DESIGNS[1]))?;
-    let (main, times) = reflected_inside(&assembly, DVec3::new(-50.0, 4.0, 0.0), DVec3::X)
-        .ok_or_else(|| VerificationError::Missing("a leaf".to_owned()))?;
+    let (main, times) = reflected_inside(&assembly, DVec3::new(-50.0, 4.0, 0.0), DVec3::X)?;
     let angle = main.direction.y.atan2(main.direction.x).to_degrees().abs();
     // The steepest incidence on a front face that the camera sees, at a rotation.
     let corner = 0.5 * fact(&square(DESIGNS[0]), "mirror_width_cm")?;
@@ -308,26 +268,23 @@ pub(super) fn trapped_light(laboratory: &Fixture<'_>) -> Findings {
         cosines.fold(1.0, f64::min).acos().to_degrees()
     };
     let [still, turned] = [steepest(0.0), steepest(20.0)];
-    Ok(vec![
-        Finding::new(
-            "3, Fig. 4",
-            "(ii), vertical: ordinary light is trapped in a segment and escapes after several total internal \
-             reflections",
-            format!(
-                "trapped beyond {inside:.2} degrees inside; in the centre plane {} leaves in one path after {times} \
-                 reflections in segments, at {angle:.2} degrees",
-                percent(main.power[1], 1)
-            ),
-            Verdict::of(main.power[1] > 0.5 && inside < 45.0 && times > 1),
-        ),
-        Finding::new(
-            "3",
-            "(i): ordinary light is reflected totally in air at the first interface",
-            format!(
-                "beyond {in_air:.2} degrees of incidence; the view has at most {still:.1} at rotation 0, {turned:.1} at 20"
-            ),
-            Verdict::of(turned > in_air),
-        )
-        .because("When turned; at rotation 0 no ray of the view is that steep."),
-    ])
+    let share = percent(main.power[1], 1);
+    page.says(
+        "3, Fig. 4",
+        "(ii), vertical: ordinary light is trapped in a segment and escapes after several \
+         total internal reflections",
+    )
+    .computed(format!(
+        "trapped beyond {inside:.2} degrees inside; in the centre plane {share} leaves in \
+         one path after {times} reflections in segments, at {angle:.2} degrees"
+    ))
+    .verdict(main.power[1] > 0.5 && inside < 45.0 && times > 1);
+    page.says("3", "(i): ordinary light is reflected totally in air at the first interface")
+        .computed(format!(
+            "beyond {in_air:.2} degrees of incidence; the view has at most {still:.1} at \
+             rotation 0, {turned:.1} at 20"
+        ))
+        .verdict(turned > in_air)
+        .because("When turned; at rotation 0 no ray of the view is that steep.");
+    Ok(())
 }

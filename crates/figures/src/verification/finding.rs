@@ -33,12 +33,14 @@ pub struct Finding {
 /// The largest factor between numbers of one order of magnitude.
 const MAGNITUDE: f64 = 3.0;
 
-impl Verdict {
+impl From<bool> for Verdict {
     /// Of a statement that comes out or does not.
-    pub(super) fn of(holds: bool) -> Self {
+    fn from(holds: bool) -> Self {
         if holds { Self::Agrees } else { Self::Differs }
     }
+}
 
+impl Verdict {
     /// Of a number, against the one that is printed with so many decimals.
     pub(super) fn number(computed: f64, printed: f64, decimals: i32) -> Self {
         // A hair more than half a digit: the border belongs to both.
@@ -73,32 +75,48 @@ impl Verdict {
     }
 }
 
+/// All that has been found.
+#[derive(Default)]
+pub(super) struct Page(pub Vec<Finding>);
+
+impl Page {
+    /// Adds what the paper says at a place, its gist; what was found about it is called on it.
+    pub fn says(&mut self, place: &'static str, statement: &'static str) -> &mut Finding {
+        let (index, computed, verdict) = (self.0.len(), String::new(), Verdict::Differs);
+        self.0.push(Finding { place, statement, computed, verdict, remark: "" });
+        &mut self.0[index]
+    }
+}
+
 impl Finding {
-    /// A finding that needs no more words.
-    pub(super) fn new(
-        place: &'static str,
-        statement: &'static str,
-        computed: String,
-        verdict: Verdict,
-    ) -> Self {
-        Self { place, statement, computed, verdict, remark: "" }
+    /// What was computed, in words and numbers.
+    pub(super) fn computed(&mut self, computed: String) -> &mut Self {
+        self.computed = computed;
+        self
     }
 
-    /// A finding that is a number, against the one that is printed with so many decimals.
+    /// Whether the statement holds.
+    pub(super) fn verdict(&mut self, verdict: impl Into<Verdict>) -> &mut Self {
+        self.verdict = verdict.into();
+        self
+    }
+
+    /// A number was computed, against the one that is printed with so many decimals.
     pub(super) fn number(
-        place: &'static str,
-        statement: &'static str,
+        &mut self,
         computed: f64,
         (printed, decimals, unit): (f64, usize, &str),
-    ) -> Self {
-        let text = format!("{computed:.decimals$}{unit}");
-        let verdict = Verdict::number(computed, printed, decimals as i32);
-        Self::new(place, statement, text, verdict)
+    ) -> &mut Self {
+        self.computed(format!("{computed:.decimals$}{unit}")).verdict(Verdict::number(
+            computed,
+            printed,
+            decimals as i32,
+        ))
     }
 
     /// The finding with a word why.
-    pub(super) fn because(self, remark: &'static str) -> Self {
-        Self { remark, ..self }
+    pub(super) fn because(&mut self, remark: &'static str) {
+        self.remark = remark;
     }
 }
 
@@ -156,6 +174,16 @@ pub(super) fn percent(share: f64, decimals: usize) -> String {
     format!("{:.decimals$} %", 100.0 * share)
 }
 
+/// Numbers for the paper's rotations, one after the other.
+pub(super) fn list(values: [f64; 3]) -> String {
+    values.map(|value| format!("{value:.2}")).join(", ")
+}
+
+/// Whether each number is above that of another list.
+pub(super) fn above(a: [f64; 3], b: [f64; 3]) -> bool {
+    a.iter().zip(b).all(|(a, b)| *a > b)
+}
+
 /// The power of ten that a number, of which what is below `least` is rounding, stays below: that is worth no more
 /// digits, and would change from machine to machine.
 pub(super) fn below(number: f64, least: f64, unit: &str) -> String {
@@ -185,11 +213,10 @@ mod tests {
 
     #[test]
     fn pages_have_a_line_for_each_finding() {
-        let findings = [
-            Finding::new("here", "it is 3", "3".to_owned(), Verdict::Agrees),
-            Finding::new("there", "it is 3", "9".to_owned(), Verdict::Differs).because("It is 9."),
-        ];
-        let page = markdown(&findings);
+        let mut page = Page::default();
+        page.says("here", "it is 3").computed("3".to_owned()).verdict(true);
+        page.says("there", "it is 3").computed("9".to_owned()).verdict(false).because("It is 9.");
+        let page = markdown(&page.0);
         assert!(page.contains("2 statements: 1 agree, 0 agree in order of magnitude, 1 differ."));
         assert!(page.contains("| there | it is 3 | 9 | **differs** | It is 9. |\n\n## Waves\n"));
         assert_eq!(below(3e-5, 1e-12, "cm"), "below 1e-4 cm");

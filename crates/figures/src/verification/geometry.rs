@@ -1,117 +1,63 @@
 //! Section 1 and 2: the trivial cloak, the setting and the materials.
 
-use super::finding::{DOUBLE, Finding, Verdict, below, percent};
-use super::laboratory::{DESIGNS, Fixture, GAUSSIAN, Rays, fact, principal_values, square};
-use super::{Findings, VerificationError};
+use super::Checked;
+use super::finding::{DOUBLE, Page, Verdict, below, percent};
+use super::laboratory::{
+    DESIGNS, Fixture, GAUSSIAN, Rays, fact, missing, principal_values, square,
+};
 use glam::DVec3;
 use optics::interface::{IncidentWave, Side, split};
 use optics::medium::Medium;
 use optics::wave::SPEED_OF_LIGHT;
 
-pub(super) fn introduction(laboratory: &Fixture<'_>) -> Findings {
+pub(super) fn introduction(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     let assembly = laboratory.assembly("[[device]]\nkind = \"mirror-detour\"\n")?;
     let mut rays = Rays::new(&assembly, 1e-9);
     let origin = DVec3::new(-60.0, 3.0, 0.0);
     let (leaves, _) = rays.trace(origin, DVec3::X);
-    let leaf = leaves
-        .first()
-        .ok_or_else(|| VerificationError::Missing("a ray through the mirrors".to_owned()))?;
+    let leaf = leaves.first().ok_or_else(|| missing("a ray through the mirrors"))?;
     let straight = leaf.position.x - origin.x;
     let delay = (leaf.optical_path - straight) / SPEED_OF_LIGHT;
     let turned = leaf.direction.distance(DVec3::X);
     let beside = (leaf.position.y - origin.y).abs();
-    Ok(vec![
-        Finding::new(
-            "1",
-            "Plane mirrors can guide rays around an object such that they leave with their direction, for any \
-             polarization",
-            format!(
-                "along x: turned by {}, {} off its line, power H {}, V {}",
-                below(turned, DOUBLE, "rad"),
-                below(beside, DOUBLE, "cm"),
-                percent(leaf.power[0], 0),
-                percent(leaf.power[1], 0)
-            ),
-            Verdict::of(
-                turned < 1e-12 && beside < 1e-9 && leaf.power.iter().all(|p| *p > 1.0 - 1e-9),
-            ),
-        ),
-        Finding::new(
-            "1",
-            "The detour makes the optical path longer: a ray cloak, no wave cloak",
-            format!("{:.2} cm longer, {delay:.3} ns late", delay * SPEED_OF_LIGHT),
-            Verdict::of(delay > 1e-6),
-        ),
-    ])
+    let whole = leaf.power.iter().all(|power| *power > 1.0 - 1e-9);
+    let (angle, off) = (below(turned, DOUBLE, "rad"), below(beside, DOUBLE, "cm"));
+    let [h, v] = leaf.power.map(|power| percent(power, 0));
+    page.says(
+        "1",
+        "Plane mirrors can guide rays around an object such that they leave with their \
+         direction, for any polarization",
+    )
+    .computed(format!("along x: turned by {angle}, {off} off its line, power H {h}, V {v}"))
+    .verdict(turned < 1e-12 && beside < 1e-9 && whole);
+    page.says("1", "The detour makes the optical path longer: a ray cloak, no wave cloak")
+        .computed(format!("{:.2} cm longer, {delay:.3} ns late", delay * SPEED_OF_LIGHT))
+        .verdict(delay > 1e-6);
+    Ok(())
 }
 
-pub(super) fn setting(_: &Fixture<'_>) -> Findings {
+pub(super) fn setting(_: &Fixture<'_>, page: &mut Page) -> Checked {
     let cloak = square(DESIGNS[2]);
     let of = |name| fact(&cloak, name);
-    Ok(vec![
-        Finding::number(
-            "Fig. 1",
-            "A square of side 14.1 cm holds a rhombus of side 11.51 cm",
-            of("rhombus_side_cm")?,
-            (11.51, 2, " cm"),
-        ),
-        Finding::number(
-            "Fig. 1",
-            "The axes of the segments are turned by 33.54 degrees",
-            of("axis_u_angle_deg")?.abs(),
-            (33.54, 2, " degrees"),
-        ),
-        Finding::number(
-            "Fig. 1",
-            "The region cloaked by (i)-(iii) has 114.83 cm²",
-            of("cloaked_area_cm2")?,
-            (114.83, 2, " cm²"),
-        )
-        .because("The side of 14.1 cm is rounded: 14.103 cm has this area."),
-        Finding::number(
-            "Fig. 1",
-            "The region cloaked by (iv) has 114.83 cm²",
-            fact(GAUSSIAN, "cloaked_area_cm2")?,
-            (114.83, 2, " cm²"),
-        ),
-        Finding::number(
-            "3",
-            "Turned, (i)-(iii) look like a flat mirror 19.94 cm wide",
-            of("mirror_width_cm")?,
-            (19.94, 2, " cm"),
-        ),
-    ])
+    page.says("Fig. 1", "A square of side 14.1 cm holds a rhombus of side 11.51 cm")
+        .number(of("rhombus_side_cm")?, (11.51, 2, " cm"));
+    page.says("Fig. 1", "The axes of the segments are turned by 33.54 degrees")
+        .number(of("axis_u_angle_deg")?.abs(), (33.54, 2, " degrees"));
+    page.says("Fig. 1", "The region cloaked by (i)-(iii) has 114.83 cm²")
+        .number(of("cloaked_area_cm2")?, (114.83, 2, " cm²"))
+        .because("The side of 14.1 cm is rounded: 14.103 cm has this area.");
+    page.says("Fig. 1", "The region cloaked by (iv) has 114.83 cm²")
+        .number(fact(GAUSSIAN, "cloaked_area_cm2")?, (114.83, 2, " cm²"));
+    page.says("3", "Turned, (i)-(iii) look like a flat mirror 19.94 cm wide")
+        .number(of("mirror_width_cm")?, (19.94, 2, " cm"));
+    Ok(())
 }
 
-pub(super) fn materials(_: &Fixture<'_>) -> Findings {
-    let mut findings = Vec::new();
-    let printed = [
-        ("(i) is positive uniaxial: µ_o = 0.31, µ_e = 3.27", DESIGNS[0]),
-        ("(ii) is negative uniaxial: µ_o = 3.27, µ_e = 0.31", DESIGNS[1]),
-    ];
-    for (statement, material) in printed {
-        let values = principal_values(&square(material), "permeability_principal_values")?;
-        let [along_u, along_v, along_z] = values[..] else {
-            return Err(VerificationError::Missing("three principal values".to_owned()));
-        };
-        let positive = material == DESIGNS[0];
-        let (ordinary, extraordinary) =
-            if positive { (along_v, along_u) } else { (along_u, along_v) };
-        let (printed_o, printed_e) = if positive { (0.31, 3.27) } else { (3.27, 0.31) };
-        let agree = [(ordinary, printed_o), (along_z, printed_o), (extraordinary, printed_e)]
-            .into_iter()
-            .all(|(value, printed)| Verdict::number(value, printed, 2) == Verdict::Agrees);
-        findings.push(Finding::new(
-            "3",
-            statement,
-            format!("µ_o = {ordinary:.4}, µ_e = {extraordinary:.4}"),
-            Verdict::of(agree),
-        ));
-    }
+pub(super) fn materials(_: &Fixture<'_>, page: &mut Page) -> Checked {
     // Normal incidence, the axis along the surface: the normal parts of p are the indices.
     let (permittivity, ordinary, extraordinary) = (2.366, 0.31, 3.27);
     let medium = Medium::uniaxial_magnetic(permittivity, ordinary, extraordinary, DVec3::Y)
-        .map_err(|error| VerificationError::Missing(error.to_string()))?;
+        .map_err(|error| missing(&error.to_string()))?;
     let wave = IncidentWave {
         wave_vector: DVec3::X,
         attenuation: DVec3::ZERO,
@@ -127,17 +73,26 @@ pub(super) fn materials(_: &Fixture<'_>) -> Findings {
     indices.sort_by(f64::total_cmp);
     let expected = [(permittivity * ordinary).sqrt(), (permittivity * extraordinary).sqrt()];
     let worst = indices.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    findings.insert(
-        0,
-        Finding::new(
-            "2",
-            "n_o = sqrt(ε µ_o) and n_e = sqrt(ε µ_e)",
-            format!(
-                "ε = {permittivity}, µ_o = {ordinary}, µ_e = {extraordinary}: the waves have {}",
-                indices.iter().map(|n| format!("{n:.4}")).collect::<Vec<_>>().join(" and ")
-            ),
-            Verdict::of(indices.len() == 2 && worst < 1e-12),
-        ),
-    );
-    Ok(findings)
+    let shown: Vec<String> = indices.iter().map(|n| format!("{n:.4}")).collect();
+    page.says("2", "n_o = sqrt(ε µ_o) and n_e = sqrt(ε µ_e)")
+        .computed(format!(
+            "ε = {permittivity}, µ_o = {ordinary}, µ_e = {extraordinary}: the waves have {}",
+            shown.join(" and ")
+        ))
+        .verdict(indices.len() == 2 && worst < 1e-12);
+    for (statement, material, [printed_o, printed_e]) in [
+        ("(i) is positive uniaxial: µ_o = 0.31, µ_e = 3.27", DESIGNS[0], [0.31, 3.27]),
+        ("(ii) is negative uniaxial: µ_o = 3.27, µ_e = 0.31", DESIGNS[1], [3.27, 0.31]),
+    ] {
+        let values = principal_values(&square(material), "permeability_principal_values")?;
+        let [u, v, z] = values[..] else { return Err(missing("three principal values")) };
+        let (ordinary, extraordinary) = if material == DESIGNS[0] { (v, u) } else { (u, v) };
+        let agree = [(ordinary, printed_o), (z, printed_o), (extraordinary, printed_e)]
+            .into_iter()
+            .all(|(value, printed)| Verdict::number(value, printed, 2) == Verdict::Agrees);
+        page.says("3", statement)
+            .computed(format!("µ_o = {ordinary:.4}, µ_e = {extraordinary:.4}"))
+            .verdict(agree);
+    }
+    Ok(())
 }

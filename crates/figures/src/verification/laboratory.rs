@@ -5,7 +5,7 @@ use cloakroom::assembly::Assembly;
 use cloakroom::device::FactValue;
 use cloakroom::measure::{Region, Survey, View, correlation, survey};
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, PreparedScene, Supervision, assembly, render};
+use cloakroom::render::{ChannelSet, PreparedScene, RenderError, Supervision, assembly, render};
 use cloakroom::scene::Scene;
 use cloakroom::scene_file;
 use cloakroom::trace::{Launch, Leaf, Limits, Outcome, PathSegment, Tracer};
@@ -74,8 +74,8 @@ impl Fixture<'_> {
         let [scene, ideal] = [device, ideal].map(|device| Self::scene(device, polarizer));
         let (scene, ideal) = (scene?, ideal?);
         let [studio, ideal] = [&scene, &ideal].map(PreparedScene::new);
-        survey(&studio?, &ideal?, &scene.camera, &|_| {}, self.stop)
-            .ok_or(VerificationError::Stopped)
+        let survey = survey(&studio?, &ideal?, &scene.camera, &|_| {}, self.stop);
+        Ok(survey.ok_or(RenderError::Stopped)?)
     }
 
     /// The silhouette of a device.
@@ -92,8 +92,7 @@ impl Fixture<'_> {
         ideal: &str,
     ) -> Result<f64, VerificationError> {
         let survey = self.survey(device, polarizer, ideal)?;
-        let missing = || VerificationError::Missing("light from the photograph".to_owned());
-        survey.displacement_rms_cm.ok_or_else(missing)
+        survey.displacement_rms_cm.ok_or_else(|| missing("light from the photograph"))
     }
 
     /// The devices of a scene.
@@ -102,12 +101,22 @@ impl Fixture<'_> {
     }
 }
 
+/// That something is not there.
+pub(super) fn missing(what: &str) -> VerificationError {
+    VerificationError::Missing(what.to_owned())
+}
+
+/// The strongest leaf of a ray's horizontal (0) or vertical (1) light.
+pub(super) fn strongest(leaves: &[Leaf<2>], light: usize) -> Result<Leaf<2>, VerificationError> {
+    let strongest = leaves.iter().max_by(|a, b| a.power[light].total_cmp(&b.power[light]));
+    strongest.copied().ok_or_else(|| missing("a leaf"))
+}
+
 /// The mean over red, green and blue of the correlation over a region.
 pub(super) fn likeness(a: &View, b: &View, region: &Region) -> Result<f64, VerificationError> {
     let mut sum = 0.0;
     for (a, b) in a.light.iter().zip(&b.light) {
-        sum += correlation(a, b, region)
-            .ok_or_else(|| VerificationError::Missing("contrast".to_owned()))?;
+        sum += correlation(a, b, region).ok_or_else(|| missing("contrast"))?;
     }
     Ok(sum / 3.0)
 }
@@ -120,14 +129,12 @@ pub(super) fn largest_difference(a: &View, b: &View) -> f64 {
 
 /// The numbers of a channel that are there, one at least.
 pub(super) fn numbers(picture: &Picture, channel: &str) -> Result<Vec<f64>, VerificationError> {
-    let samples = picture
-        .channel(channel)
-        .map(|channel| &channel.samples)
-        .ok_or_else(|| VerificationError::Missing(format!("the channel {channel}")))?;
+    let found = picture.channel(channel);
+    let samples = &found.ok_or_else(|| missing(&format!("the channel {channel}")))?.samples;
     let all = (0..samples.len()).map(|i| samples.get(i));
     let numbers: Vec<f64> = all.filter(|number| number.is_finite()).collect();
     if numbers.is_empty() {
-        return Err(VerificationError::Missing(format!("a number in {channel}")));
+        return Err(missing(&format!("a number in {channel}")));
     }
     Ok(numbers)
 }
@@ -145,14 +152,14 @@ fn fact_value(device: &str, name: &str) -> Result<FactValue, VerificationError> 
     let device = scene.devices.first();
     let facts = device.map(|device| device.facts()).unwrap_or_default();
     let found = facts.into_iter().find(|fact| fact.name == name);
-    found.map(|fact| fact.value).ok_or_else(|| VerificationError::Missing(name.to_owned()))
+    found.map(|fact| fact.value).ok_or_else(|| missing(name))
 }
 
 /// A fact that is a number.
 pub(super) fn fact(device: &str, name: &str) -> Result<f64, VerificationError> {
     match fact_value(device, name)? {
         FactValue::Number(number) => Ok(number),
-        _ => Err(VerificationError::Missing(name.to_owned())),
+        _ => Err(missing(name)),
     }
 }
 
@@ -160,7 +167,7 @@ pub(super) fn fact(device: &str, name: &str) -> Result<f64, VerificationError> {
 pub(super) fn principal_values(device: &str, name: &str) -> Result<Vec<f64>, VerificationError> {
     match fact_value(device, name)? {
         FactValue::Numbers(numbers) => Ok(numbers),
-        _ => Err(VerificationError::Missing(name.to_owned())),
+        _ => Err(missing(name)),
     }
 }
 
@@ -210,11 +217,11 @@ pub(super) fn reflected_inside(
     assembly: &Assembly,
     origin: DVec3,
     direction: DVec3,
-) -> Option<(Leaf<2>, usize)> {
+) -> Result<(Leaf<2>, usize), VerificationError> {
     let limits = Limits { min_power: 1e-6, tolerance: 1e-8 };
     let mut tracer = Tracer::new(assembly, limits).watched(Vec::new());
     let (leaves, _) = tracer.trace(&launch(origin, direction));
-    let main = *leaves.iter().max_by(|a, b| a.power[1].total_cmp(&b.power[1]))?;
+    let main = strongest(leaves, 1)?;
     let legs: &Vec<PathSegment<2>> = tracer.recorder();
     let (mut at, mut path) = (main.position, main.optical_path);
     let mut way = Vec::new();
@@ -229,7 +236,7 @@ pub(super) fn reflected_inside(
         (at, path) = (leg.path[0].position, leg.optical_path);
     }
     let reflected = way.windows(2).filter(|pair| pair[0].is_some() && pair[0] == pair[1]);
-    Some((main, reflected.count()))
+    Ok((main, reflected.count()))
 }
 
 /// A direction of view: degrees to the right and upwards.

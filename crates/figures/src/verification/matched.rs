@@ -1,7 +1,7 @@
 //! Section 3, design (iii).
 
-use super::Findings;
-use super::finding::{DOUBLE, Finding, SINGLE, Verdict, below};
+use super::Checked;
+use super::finding::{DOUBLE, Page, SINGLE, below};
 use super::laboratory::{
     CAMERA, DESIGNS, Fixture, Rays, gaze, largest_difference, square, statistics,
 };
@@ -9,7 +9,7 @@ use super::laboratory::{
 /// Yoctoseconds in a nanosecond.
 const YOCTOSECONDS: f64 = 1e15;
 
-pub(super) fn along_the_axis(laboratory: &Fixture<'_>) -> Findings {
+pub(super) fn along_the_axis(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     let device = square(DESIGNS[2]);
     let empty = laboratory.show("", "none")?.view;
     let shown = laboratory.show(&device, "none")?;
@@ -27,35 +27,26 @@ pub(super) fn along_the_axis(laboratory: &Fixture<'_>) -> Findings {
             lost = lost.max(1.0 - h).max(1.0 - v);
         }
     }
-    Ok(vec![
-        Finding::new(
-            "3, Fig. 6",
-            "Bare metal distorts the view; (iii) retrieves the empty view perfectly",
-            format!(
-                "largest difference of linear light: {}, bare {bare:.2}",
-                below(difference, SINGLE, "")
-            ),
-            Verdict::of(difference < 1e-5 && bare > 0.1),
-        ),
-        Finding::new(
-            "3, Fig. 6",
-            "The time of flight is retrieved, too, to machine precision: yoctoseconds",
-            format!("largest difference {}", below(late * YOCTOSECONDS, 20.0, "ys")),
-            Verdict::of(late * YOCTOSECONDS < 1000.0),
-        ),
-        Finding::new(
-            "3",
-            "(iii) is impedance matched to air, for any polarization",
-            format!(
-                "power that is not on its own line, over the view: {}",
-                below(lost, DOUBLE, "")
-            ),
-            Verdict::of(lost < 1e-9),
-        ),
-    ])
+    let (least, lost_at_most) = (below(difference, SINGLE, ""), below(lost, DOUBLE, ""));
+    page.says(
+        "3, Fig. 6",
+        "Bare metal distorts the view; (iii) retrieves the empty view perfectly",
+    )
+    .computed(format!("largest difference of linear light: {least}, bare {bare:.2}"))
+    .verdict(difference < 1e-5 && bare > 0.1);
+    page.says(
+        "3, Fig. 6",
+        "The time of flight is retrieved, too, to machine precision: yoctoseconds",
+    )
+    .computed(format!("largest difference {}", below(late * YOCTOSECONDS, 20.0, "ys")))
+    .verdict(late * YOCTOSECONDS < 1000.0);
+    page.says("3", "(iii) is impedance matched to air, for any polarization")
+        .computed(format!("power that is not on its own line, over the view: {lost_at_most}"))
+        .verdict(lost < 1e-9);
+    Ok(())
 }
 
-pub(super) fn turned(laboratory: &Fixture<'_>) -> Findings {
+pub(super) fn turned(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     let mut largest: f64 = 0.0;
     for rotation in [5, 10, 20] {
         let device = format!("{}rotation = {rotation}\n", square(DESIGNS[2]));
@@ -63,10 +54,12 @@ pub(super) fn turned(laboratory: &Fixture<'_>) -> Findings {
         let mirror = laboratory.show(&format!("{device}show = \"mirror\"\n"), "none")?.view;
         largest = largest.max(largest_difference(&cloaked, &mirror));
     }
-    Ok(vec![Finding::new(
+    page.says(
         "3, Fig. 7",
-        "Turned by 5, 10, 20 degrees, (iii) looks exactly as a flat mirror 19.94 cm wide does",
-        format!("largest difference of linear light: {}", below(largest, SINGLE, "")),
-        Verdict::of(largest < 1e-5),
-    )])
+        "Turned by 5, 10, 20 degrees, (iii) looks exactly as a flat mirror 19.94 cm wide \
+         does",
+    )
+    .computed(format!("largest difference of linear light: {}", below(largest, SINGLE, "")))
+    .verdict(largest < 1e-5);
+    Ok(())
 }

@@ -17,18 +17,16 @@ pub use finding::{Finding, Verdict, markdown};
 use cloakroom::measure::MeasureError;
 use cloakroom::render::{PreparedSceneError, RenderError};
 use cloakroom::scene_file::SceneFileError;
+use finding::Page;
 use laboratory::Fixture;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Why the paper could not be gone through.
 #[derive(Debug, thiserror::Error)]
 pub enum VerificationError {
-    /// The work was stopped from outside.
-    #[error("stopped")]
-    Stopped,
-    /// A picture could not be made.
+    /// A picture could not be made, or the work was stopped from outside.
     #[error("{0}")]
-    Render(RenderError),
+    Render(#[from] RenderError),
     /// A picture could not be measured.
     #[error("{0}")]
     Measure(#[from] MeasureError),
@@ -43,18 +41,9 @@ pub enum VerificationError {
     Missing(String),
 }
 
-impl From<RenderError> for VerificationError {
-    fn from(error: RenderError) -> Self {
-        match error {
-            RenderError::Stopped => Self::Stopped,
-            error => Self::Render(error),
-        }
-    }
-}
-
-/// What is found out in one go.
-type Findings = Result<Vec<Finding>, VerificationError>;
-type Check = fn(&Fixture<'_>) -> Findings;
+/// A check adds what it finds to the page.
+type Check = fn(&Fixture<'_>, &mut Page) -> Checked;
+type Checked = Result<(), VerificationError>;
 
 /// All checks, in the order of the paper.
 const CHECKS: &[Check] = &[
@@ -88,15 +77,15 @@ pub fn steps() -> u64 {
 /// # Errors
 ///
 /// If the work was stopped, or a picture could not be made.
-pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Findings {
+pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Result<Vec<Finding>, VerificationError> {
     let laboratory = Fixture { stop };
-    let mut findings = Vec::new();
+    let mut page = Page::default();
     for check in CHECKS {
         if stop.load(Ordering::Relaxed) {
-            return Err(VerificationError::Stopped);
+            return Err(RenderError::Stopped.into());
         }
-        findings.extend(check(&laboratory)?);
+        check(&laboratory, &mut page)?;
         step_done();
     }
-    Ok(findings)
+    Ok(page.0)
 }

@@ -1,8 +1,8 @@
 //! Section 2: the equation of motion of rays.
 
-use super::finding::{Finding, SINGLE, Verdict, below};
-use super::laboratory::{CAMERA, Fixture, GAUSSIAN, Rays, gaze};
-use super::{Findings, VerificationError};
+use super::Checked;
+use super::finding::{Page, SINGLE, below};
+use super::laboratory::{CAMERA, Fixture, GAUSSIAN, Rays, gaze, missing, strongest};
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::propagation::reference::{ReferenceRay, SquaredIndex, follow};
@@ -12,8 +12,7 @@ use optics::transformation::{ConformalMap, GaussianMap};
 const CUT: [f64; 2] = [25.0, 28.57];
 
 /// Rays of design (iv) by the program, and by plain steps along the equation of motion in physical space.
-pub(super) fn equation(laboratory: &Fixture<'_>) -> Findings {
-    let missing = |what: &str| VerificationError::Missing(what.to_owned());
+pub(super) fn equation(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     let gaussian = GaussianMap::new(10.02, 4.25).map_err(|error| missing(&error.to_string()))?;
     let map = ConformalMap::from(gaussian);
     let assembly = laboratory.assembly(GAUSSIAN)?;
@@ -39,26 +38,21 @@ pub(super) fn equation(laboratory: &Fixture<'_>) -> Findings {
         let direction =
             refracted(end.wave_vector, DVec3::X, 1.0).ok_or_else(|| missing("the end of a ray"))?;
         let (leaves, _) = rays.trace(CAMERA, d);
-        let leaf = leaves
-            .iter()
-            .max_by(|a, b| a.power[0].total_cmp(&b.power[0]))
-            .ok_or_else(|| missing("a leaf"))?;
+        let leaf = strongest(leaves, 0)?;
         let path = entry.distance(CAMERA) + end.optical_path;
         off = off
             .max(leaf.position.distance(end.position))
             .max((leaf.optical_path - path).abs())
             .max(100.0 * leaf.direction.distance(direction));
     }
-    Ok(vec![Finding::new(
-        "2",
-        "Rays follow an equation of motion derived from Fermat's principle",
-        format!(
-            "9 rays through (iv), stepped along it in physical space, differ from the program's by {} in place, optical \
-             path, and 100 cm of direction",
+    page.says("2", "Rays follow an equation of motion derived from Fermat's principle")
+        .computed(format!(
+            "9 rays through (iv), stepped along it in physical space, differ from the \
+             program's by {} in place, optical path, and 100 cm of direction",
             below(off, SINGLE, "cm")
-        ),
-        Verdict::of(off < 1e-5),
-    )])
+        ))
+        .verdict(off < 1e-5);
+    Ok(())
 }
 
 /// n² = 1/|f'|² and its gradient at a point above the floor.

@@ -93,14 +93,13 @@ fn soak(arguments: &Arguments) -> io::Result<bool> {
         let mut rays: u64 = lines.iter().filter_map(|line| line["rays"].as_u64()).sum();
         let record = OpenOptions::new().create(true).append(true).open(&arguments.record)?;
         let record = Arc::new(Mutex::new(record));
-        let watch = Arc::new(Watch::new());
-        watch.clone().begin(record.clone());
+        watch(start, record.clone());
         let in_time = || arguments.seconds.is_none_or(|most| start.elapsed().as_secs() < most);
         for number in (arguments.first..).filter(|number| !done.contains(number)) {
             if rays >= arguments.rays || !in_time() {
                 break;
             }
-            let line = parcel(number, &watch);
+            let line = parcel(number);
             rays += line["rays"].as_u64().unwrap_or(0);
             write_line(&record, &line)?;
             lines.push(line);
@@ -127,29 +126,29 @@ fn write_line(record: &Mutex<File>, line: &Value) -> io::Result<()> {
 }
 
 /// One random device and the rays through it.
-fn parcel(number: u64, watch: &Watch) -> Value {
+fn parcel(number: u64) -> Value {
     let entry = CATALOGUE[(number % CATALOGUE.len() as u64) as usize];
-    let mut line = json!({ "parcel": number, "kind": entry.kind });
     let mut draws = Draws::from_seed(number.wrapping_mul(0xA076_1D64_78BD_642F));
-    watch.begin_parcel(number);
+    PARCEL.store(number, Ordering::Relaxed);
+    BEGUN.fetch_add(1, Ordering::Relaxed);
     let ran = catch_unwind(AssertUnwindSafe(|| {
         let scene = trials::scene_of(&mut draws, entry).to_string();
         let loaded = scene_file::parse(&scene, "soak", Path::new("/nowhere"), &[]).ok()?;
         let assembly = render::assembly(&loaded.scene).ok()?;
         let tolerance = loaded.scene.trace.tolerance;
-        Some(trace(&assembly, Limits { min_power: LEAST_POWER, tolerance }, &mut draws, watch))
+        Some(trace(&assembly, Limits { min_power: LEAST_POWER, tolerance }, &mut draws))
     }));
-    match ran {
-        Ok(None) => line["refused"] = json!(1),
-        Ok(Some(counts)) => line.as_object_mut().into_iter().for_each(|line| {
-            line.extend(counts.as_object().cloned().unwrap_or_default());
-        }),
-        Err(_) => line["panics"] = json!(1),
-    }
+    let mut line = match ran {
+        Ok(None) => json!({ "refused": 1 }),
+        Ok(Some(counts)) => counts,
+        Err(_) => json!({ "panics": 1 }),
+    };
+    line["parcel"] = json!(number);
+    line["kind"] = json!(entry.kind);
     line
 }
 
-fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>, watch: &Watch) -> Value {
+fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>) -> Value {
     let start = Instant::now();
     let mut tracer = Tracer::new(assembly, limits);
     let reach = 10f64.powf(draws.between(0.7, 1.7));
@@ -163,7 +162,7 @@ fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>, watch: &Wat
         if rays == RAYS || last - start > LONGEST {
             break;
         }
-        watch.begin_ray();
+        BEGUN.fetch_add(1, Ordering::Relaxed);
         let (found, outcome) = tracer.trace(&launch);
         rays += 1;
         leaves += found.len() as u64;
@@ -194,57 +193,37 @@ fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>, watch: &Wat
     })
 }
 
-/// Looks whether rays end.
-#[derive(Debug)]
-struct Watch {
-    start: Instant,
-    parcel: AtomicU64,
-    /// Rays and parcels begun.
-    begun: AtomicU64,
+/// The parcel that is computed, and how many rays and parcels have been begun.
+static PARCEL: AtomicU64 = AtomicU64::new(0);
+static BEGUN: AtomicU64 = AtomicU64::new(0);
+
+/// How long the main thread has computed: on a busy machine it may wait for long. Where the system does not say, how
+/// long the program has run.
+fn computed(start: Instant) -> Duration {
+    let text = std::fs::read_to_string("/proc/self/schedstat").ok();
+    let on_cpu = text.and_then(|text| text.split_whitespace().next()?.parse().ok());
+    on_cpu.map_or_else(|| start.elapsed(), Duration::from_nanos)
 }
 
-impl Watch {
-    fn new() -> Self {
-        Self { start: Instant::now(), parcel: AtomicU64::new(0), begun: AtomicU64::new(0) }
-    }
-
-    /// How long the main thread has computed: on a busy machine it may wait for long. Where the system does not say, how
-    /// long the program has run.
-    fn now(&self) -> Duration {
-        let text = std::fs::read_to_string("/proc/self/schedstat").ok();
-        let on_cpu = text.and_then(|text| text.split_whitespace().next()?.parse().ok());
-        on_cpu.map_or_else(|| self.start.elapsed(), Duration::from_nanos)
-    }
-
-    fn begin_parcel(&self, number: u64) {
-        self.parcel.store(number, Ordering::Relaxed);
-        self.begin_ray();
-    }
-
-    fn begin_ray(&self) {
-        self.begun.fetch_add(1, Ordering::Relaxed);
-    }
-
-    /// Ends the program where a ray does not end.
-    fn begin(self: Arc<Self>, record: Arc<Mutex<File>>) {
-        std::thread::spawn(move || {
-            let (mut begun, mut since) = (0, self.now());
-            loop {
-                std::thread::sleep(Duration::from_secs(1));
-                let (last, now) = (self.begun.load(Ordering::Relaxed), self.now());
-                if last != begun {
-                    (begun, since) = (last, now);
-                } else if now.saturating_sub(since) > STUCK {
-                    let number = self.parcel.load(Ordering::Relaxed);
-                    let kind = CATALOGUE[(number % CATALOGUE.len() as u64) as usize].kind;
-                    let line = json!({ "parcel": number, "kind": kind, "stuck": 1 });
-                    let _ = write_line(&record, &line);
-                    eprintln!("error: a ray of parcel {number} does not end");
-                    std::process::exit(1);
-                }
+/// Ends the program where a ray does not end.
+fn watch(start: Instant, record: Arc<Mutex<File>>) {
+    std::thread::spawn(move || {
+        let (mut begun, mut since) = (0, computed(start));
+        loop {
+            std::thread::sleep(Duration::from_secs(1));
+            let (last, now) = (BEGUN.load(Ordering::Relaxed), computed(start));
+            if last != begun {
+                (begun, since) = (last, now);
+            } else if now.saturating_sub(since) > STUCK {
+                let number = PARCEL.load(Ordering::Relaxed);
+                let kind = CATALOGUE[(number % CATALOGUE.len() as u64) as usize].kind;
+                let line = json!({ "parcel": number, "kind": kind, "stuck": 1 });
+                let _ = write_line(&record, &line);
+                eprintln!("error: a ray of parcel {number} does not end");
+                std::process::exit(1);
             }
-        });
-    }
+        }
+    });
 }
 
 /// Prints what was counted, kind by kind, as Markdown; whether nothing was that must not be.
