@@ -67,16 +67,16 @@ impl FramedMedium {
         let [e_ff, e_fs, e_fn, e_sn, e_nn] = self.permittivity;
         // p·εE = 0 gives the normal part of E from its tangential part.
         let displacement =
-            |by_first: f64, by_normal: f64| T::from(along * by_first) + q.scaled(by_normal);
+            |by_first: f64, by_normal: f64| T::from(along * by_first) + q * by_normal;
         let scale = displacement(e_fn, e_nn);
         let lift = [-displacement(e_ff, e_fn) / scale, -displacement(e_fs, e_sn) / scale];
         // H = µ⁻¹ (p × E), with p × first = q second, p × second = along normal - q first,
         // p × normal = -along second.
         let [m_ff, m_fs, m_fn, m_ss, m_sn] = self.inverse_permeability;
-        let by_first = q - lift[0].scaled(along);
-        let by_second = -lift[1].scaled(along);
+        let by_first = q - lift[0] * along;
+        let by_second = -(lift[1] * along);
         let row = |by_e: f64, by_q: f64, rest: f64| {
-            [by_first.scaled(by_e), by_second.scaled(by_e) - q.scaled(by_q) + T::from(along * rest)]
+            [by_first * by_e, by_second * by_e - q * by_q + T::from(along * rest)]
         };
         TangentialWave { lift, admittance: [row(m_fs, m_ff, m_fn), row(m_ss, m_fs, m_sn)] }
     }

@@ -1,6 +1,7 @@
 //! Reflection at a perfect conductor.
 
 use super::matching::split_into_modes;
+use super::splitting::Splitting;
 use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
 use crate::medium::{Medium, ModeKind};
 use crate::wave::ComplexVector;
@@ -17,11 +18,10 @@ pub fn reflect_at_conductor<const N: usize>(
     normal: DVec3,
 ) -> OutgoingWaves<N> {
     let mut waves = OutgoingWaves::new();
-    match MirrorImage::new(medium, normal) {
-        Some(image) => waves.push(image.of(wave)),
-        None => {
-            split_into_modes(medium, None, wave, normal, 0.0, &mut waves);
-        }
+    if let Some(image) = MirrorImage::new(medium, normal) {
+        waves.push(image.of(wave));
+    } else {
+        split_into_modes(medium, None, Splitting::new(wave, normal, 0.0, &mut waves));
     }
     waves
 }
