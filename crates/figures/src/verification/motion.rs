@@ -15,7 +15,7 @@ const CUT: [f64; 2] = [25.0, 28.57];
 pub(super) fn equation(laboratory: &Fixture<'_>) -> Findings {
     let missing = |what: &str| VerificationError::Missing(what.to_owned());
     let gaussian = GaussianMap::new(10.02, 4.25).map_err(|error| missing(&error.to_string()))?;
-    let map = ConformalMap::from(gaussian);
+    let map = ConformalMap::Gaussian(gaussian);
     let assembly = laboratory.assembly(GAUSSIAN)?;
     let mut rays = Rays::new(&assembly, 1e-3);
     let mut off: f64 = 0.0;

@@ -2,7 +2,7 @@
 
 use super::splitting::Splitting;
 use super::{OutgoingWave, Side};
-use crate::wave::{ComplexVector, Frame};
+use crate::wave::{ComplexVector, Frame, Number};
 use num_complex::Complex64;
 
 /// Normal components that are this small coincide; they are set apart, which gives the limit.
@@ -91,17 +91,9 @@ pub(super) fn split_isotropic<const N: usize>(
 
 /// Ratios of the reflected to the incident tangential electric fields, p and s, for the normal components of
 /// the incident and the transmitted wave.
-fn reflected<T>(here: Layer, there: Layer, q: f64, onward: T) -> [T; 2]
-where
-    T: Copy
-        + std::ops::Mul<f64, Output = T>
-        + std::ops::Add<f64, Output = T>
-        + std::ops::Sub<f64, Output = T>
-        + std::ops::Neg<Output = T>
-        + std::ops::Div<Output = T>,
-{
-    let (p_here, p_there) = (there.permittivity * q, onward * here.permittivity);
-    let (s_here, s_there) = (there.permeability * q, onward * here.permeability);
+fn reflected<T: Number>(here: Layer, there: Layer, q: f64, onward: T) -> [T; 2] {
+    let (p_here, p_there) = (T::from(there.permittivity * q), onward * here.permittivity);
+    let (s_here, s_there) = (T::from(there.permeability * q), onward * here.permeability);
     [(p_there - p_here) / (p_there + p_here), -(s_there - s_here) / (s_there + s_here)]
 }
 

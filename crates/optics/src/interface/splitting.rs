@@ -6,6 +6,31 @@ use crate::wave::{ComplexVector, Frame};
 use glam::DVec3;
 use num_complex::Complex64;
 
+/// What becomes of a wave under a linear map, given what it does to wave vectors and fields, the latter times `sign`,
+/// and where it takes the ray.
+#[inline]
+pub(super) fn mapped<const N: usize>(
+    wave: &IncidentWave<N>,
+    side: Side,
+    covector: impl Fn(DVec3) -> DVec3,
+    sign: f64,
+    ray: DVec3,
+) -> OutgoingWave<N> {
+    // The normal flux is the same before and after; the beam's width need not be.
+    let length = ray.length();
+    let narrowing = sign * (1.0 / length).sqrt();
+    let image = |v: ComplexVector| ComplexVector::new(covector(v.re), covector(v.im)) * narrowing;
+    OutgoingWave {
+        side,
+        mode: ModeKind::Shared,
+        wave_vector: covector(wave.wave_vector),
+        attenuation: covector(wave.attenuation),
+        direction: ray / length,
+        electric: wave.electric.map(image),
+        power: wave.power,
+    }
+}
+
 /// A wave that is being split.
 pub(super) struct Splitting<'a, const N: usize> {
     pub wave: &'a IncidentWave<N>,

@@ -17,7 +17,7 @@ mod tensor;
 mod wave_surface;
 
 pub use error::MediumError;
-pub(crate) use modes::{BOTH_MODES, BothWays, LocalMode, LocalModes, Tangential, mutual_flux};
+pub(crate) use modes::{BOTH_MODES, LocalMode, LocalModes, Tangential, mutual_flux};
 pub use modes::{Heading, Mode, ModeKind};
 pub use principal_axes::principal_axes;
 pub(crate) use quadratic::Roots;
@@ -155,25 +155,22 @@ impl Medium {
         for (quantity, value) in names.into_iter().zip([scalar, ordinary, extraordinary]) {
             not_degenerate(quantity, value)?;
         }
+        /// ε and µ.
+        fn pair<T>(electric: bool, scalar: T, other: T) -> [T; 2] {
+            if electric { [other, scalar] } else { [scalar, other] }
+        }
         let largest = ordinary.abs().max(extraordinary.abs());
-        let [permittivity, permeability] =
-            if electric { [largest, scalar] } else { [scalar, largest] };
+        let [permittivity, permeability] = pair(electric, scalar, largest);
         not_too_dense(permittivity, permeability)?;
         let axis = axis.try_normalize().ok_or(MediumError::NoAxis)?;
         if ordinary == extraordinary {
-            return if electric {
-                Self::isotropic(ordinary, scalar)
-            } else {
-                Self::isotropic(scalar, ordinary)
-            };
+            let [permittivity, permeability] = pair(electric, scalar, ordinary);
+            return Self::isotropic(permittivity, permeability);
         }
         let tensor = Tensor::uniaxial(ordinary.into(), extraordinary.into(), axis);
+        let [permittivity, permeability] = pair(electric, scalar.into(), tensor);
         let class = Class::Uniaxial(Uniaxial { scalar, ordinary, extraordinary, axis, electric });
-        Ok(if electric {
-            Self::of_class(&tensor, &scalar.into(), class)
-        } else {
-            Self::of_class(&scalar.into(), &tensor, class)
-        })
+        Ok(Self::of_class(&permittivity, &permeability, class))
     }
 
     /// An isotropic medium of relative permittivity ε and permeability µ; both negative for a

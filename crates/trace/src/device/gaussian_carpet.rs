@@ -42,12 +42,12 @@ impl Device for GaussianCarpet {
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
-        Ok(carpet::structure(map.into(), cut, 1.0, self.size(), request))
+        Ok(carpet::structure(ConformalMap::Gaussian(map), cut, 1.0, self.size(), request))
     }
 
     fn facts(&self) -> Vec<Fact> {
         let Ok((gaussian, cut)) = self.parts() else { return Vec::new() };
-        let map = ConformalMap::from(gaussian);
+        let map = ConformalMap::Gaussian(gaussian);
         let (least, largest) = map.index_range(&cut);
         vec![
             Fact::number("index_min", least),

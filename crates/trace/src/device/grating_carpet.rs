@@ -57,12 +57,12 @@ impl Device for GratingCarpet {
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
-        Ok(carpet::structure(map.into(), cut, 1.0, self.size(), request))
+        Ok(carpet::structure(ConformalMap::Grating(map), cut, 1.0, self.size(), request))
     }
 
     fn facts(&self) -> Vec<Fact> {
         let Ok((grating, cut)) = self.parts() else { return Vec::new() };
-        let (least, largest) = ConformalMap::from(grating).index_range(&cut);
+        let (least, largest) = ConformalMap::Grating(grating).index_range(&cut);
         vec![
             Fact::number("index_min", least),
             Fact::number("index_max", largest),

@@ -8,7 +8,7 @@ use super::carpet::{self, Size};
 use super::{Device, Fact, Request, Structure};
 use crate::key;
 use crate::keys::{KeyError, Limits};
-use optics::transformation::{ConformalMap, QuasiConformalMap, QuasiConformalMapError, Truncation};
+use optics::transformation::{ConformalMap, ConformalMapError, QuasiConformalMap, Truncation};
 
 crate::table! {
     /// Hides a bump of a mirror floor, h cos^2(pi x/w), below a locally isotropic graded index, from the
@@ -32,8 +32,7 @@ impl QuasiConformalCarpet {
         let cut = carpet::cut(self.size(), self.h)?;
         let map = QuasiConformalMap::new(self.w, self.h, &cut).map_err(|error| {
             let key = match error {
-                QuasiConformalMapError::TooWide { .. }
-                | QuasiConformalMapError::TooNarrow { .. } => {
+                ConformalMapError::TooWide { .. } | ConformalMapError::TooNarrow { .. } => {
                     key!(Self.w)
                 }
                 _ => key!(Self.h),
@@ -55,14 +54,14 @@ impl Device for QuasiConformalCarpet {
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
         let strength = map.strength();
-        Ok(carpet::structure(map.into(), cut, strength, self.size(), request))
+        Ok(carpet::structure(ConformalMap::QuasiConformal(map), cut, strength, self.size(), request))
     }
 
     fn facts(&self) -> Vec<Fact> {
         let Ok((quasi_conformal, cut)) = self.parts() else { return Vec::new() };
         let c = quasi_conformal.strength();
         let anisotropy = quasi_conformal.anisotropy();
-        let map = ConformalMap::from(quasi_conformal);
+        let map = ConformalMap::QuasiConformal(quasi_conformal);
         let (least, largest) = map.index_range(&cut);
         vec![
             Fact::number("index_min", c * least),

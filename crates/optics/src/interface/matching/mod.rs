@@ -69,27 +69,20 @@ pub(super) fn amplitudes<T: Number, const R: usize>(
     reflected: &[LocalMode<T>; 2],
     transmitted: Option<&[LocalMode<T>; 2]>,
 ) -> [[T; R]; 4] {
-    let [r1, r2] = reflected;
-    let Some([t1, t2]) = transmitted else {
-        let tangential = |mode: &LocalMode<T>| [mode.electric[0], mode.electric[1]];
-        let cancelling = cancelling(tangential(r1), tangential(r2));
-        let pairs = incident.map(|mode| cancelling(tangential(mode)));
+    let fields = |mode: &LocalMode<T>| {
+        let ([e0, e1, _], [h0, h1, _]) = (mode.electric, mode.magnetic);
+        [e0, e1, h0, h1]
+    };
+    let incident = incident.map(fields);
+    let [r1, r2] = reflected.each_ref().map(fields);
+    let Some([t1, t2]) = transmitted.map(|modes| modes.each_ref().map(fields)) else {
+        let cancelling = cancelling([r1[0], r1[1]], [r2[0], r2[1]]);
+        let pairs = incident.map(|[e0, e1, ..]| cancelling([e0, e1]));
         let zero = [T::from(0.0); R];
         return [pairs.map(|[one, _]| one), pairs.map(|[_, two]| two), zero, zero];
     };
-    let matrix = [
-        [r1.electric[0], r2.electric[0], -t1.electric[0], -t2.electric[0]],
-        [r1.electric[1], r2.electric[1], -t1.electric[1], -t2.electric[1]],
-        [r1.magnetic[0], r2.magnetic[0], -t1.magnetic[0], -t2.magnetic[0]],
-        [r1.magnetic[1], r2.magnetic[1], -t1.magnetic[1], -t2.magnetic[1]],
-    ];
-    let right = [
-        incident.map(|mode| -mode.electric[0]),
-        incident.map(|mode| -mode.electric[1]),
-        incident.map(|mode| -mode.magnetic[0]),
-        incident.map(|mode| -mode.magnetic[1]),
-    ];
-    solve(matrix, right)
+    let matrix = std::array::from_fn(|i| [r1[i], r2[i], -t1[i], -t2[i]]);
+    solve(matrix, std::array::from_fn(|i| incident.map(|fields| -fields[i])))
 }
 
 /// The amplitudes of two pairs [a, c] and [b, d] that make a third one vanish in the sum.
@@ -114,7 +107,7 @@ type Incident<'m, T, const N: usize> = (&'m LocalMode<T>, [Complex64; N]);
 /// The normal fluxes of both modes on one side, for each launched polarization.
 type Fluxes<const N: usize> = [[f64; N]; 2];
 
-/// What turns outgoing fluxes into powers, and matched fields into those of rays.
+/// What turns outgoing fluxes into powers, and matched fields into those of rays but for the length of the Poynting vector.
 struct Shares<const N: usize> {
     power: [f64; N],
     /// Their square roots.
@@ -126,13 +119,6 @@ impl<const N: usize> Shares<N> {
     fn of(power: [f64; N], total: [f64; N]) -> Self {
         let power = std::array::from_fn(|i| if total[i] > 0.0 { power[i] / total[i] } else { 0.0 });
         Self { power, field: power.map(f64::sqrt) }
-    }
-
-    /// What turns matched fields into those of rays, given the length of the Poynting vector of a unit of normal
-    /// flux: the fields of a ray are scaled to its power instead.
-    fn of_rays(&self, poynting: f64) -> [f64; N] {
-        let narrowing = poynting.sqrt().recip();
-        self.field.map(|field| field * narrowing)
     }
 }
 
@@ -235,12 +221,10 @@ impl<const N: usize> Scattered<'_, N> {
                 let [ea, eb] = [a, b].map(|mode| frame.complex_vector(mode.electric));
                 // The same ray, but in absorbing media, where p's and s's part a little: their mean.
                 let ray = (frame.vector(a.poynting()) + frame.vector(b.poynting())) * 0.5;
-                let length = ray.length();
-                let fields = shares.of_rays(length);
-                let electric = std::array::from_fn(|i| {
-                    (ea.scaled(amplitudes[0][i]) + eb.scaled(amplitudes[1][i])) * fields[i]
+                let wave = (side, ModeKind::Shared, a.q.into());
+                self.push(wave, ray, power, shares, |i, scale| {
+                    (ea.scaled(amplitudes[0][i]) + eb.scaled(amplitudes[1][i])) * scale
                 });
-                self.push(side, ModeKind::Shared, a.q.into(), ray / length, electric, power);
             }
             return;
         }
@@ -249,10 +233,10 @@ impl<const N: usize> Scattered<'_, N> {
             if mode.propagating && self.is_strong(power) {
                 let field = T::vector(&frame, mode.electric);
                 let ray = frame.vector(mode.poynting());
-                let length = ray.length();
-                let fields = shares.of_rays(length);
-                let electric = std::array::from_fn(|i| T::wave(field, amplitude[i] * fields[i]));
-                self.push(side, mode.kind, mode.q.into(), ray / length, electric, power);
+                let wave = (side, mode.kind, mode.q.into());
+                self.push(wave, ray, power, shares, |i, scale| {
+                    T::wave(field, amplitude[i] * scale)
+                });
             }
         }
     }
@@ -269,15 +253,18 @@ impl<const N: usize> Scattered<'_, N> {
         strong
     }
 
+    /// Adds a wave, given the Poynting vector of a unit of normal flux, and its matched fields times a number.
     fn push(
         &mut self,
-        side: Side,
-        mode: ModeKind,
-        q: Complex64,
-        direction: DVec3,
-        electric: [ComplexVector; N],
+        (side, mode, q): (Side, ModeKind, Complex64),
+        ray: DVec3,
         power: [f64; N],
+        shares: &Shares<N>,
+        field: impl Fn(usize, f64) -> ComplexVector,
     ) {
+        let length = ray.length();
+        // The fields of a ray are scaled to its power.
+        let narrowing = length.sqrt().recip();
         let [first, second] = self.tangential.components();
         let attenuation = match self.tangential {
             Tangential::Real(_) if q.im == 0.0 => DVec3::ZERO,
@@ -289,8 +276,8 @@ impl<const N: usize> Scattered<'_, N> {
             mode,
             wave_vector,
             attenuation,
-            direction,
-            electric,
+            direction: ray / length,
+            electric: std::array::from_fn(|i| field(i, shares.field[i] * narrowing)),
             power,
         });
     }

@@ -15,7 +15,7 @@ const NO_FLUX: f64 = 1e-13;
 
 impl Medium {
     pub(super) fn absorbing_modes(&self, frame: &Frame, k: [Complex64; 2]) -> BothWays {
-        let [forward, backward] = match &self.class {
+        let modes = match &self.class {
             Class::AbsorbingIsotropic(e, m) => isotropic(*e, *m, k),
             Class::Isotropic(_) => isotropic(
                 self.real.permittivity.x_axis.x.into(),
@@ -29,10 +29,7 @@ impl Medium {
                 Berreman::modes_of(frame, &permittivity, &permeability, k)
             }
         };
-        BothWays {
-            forward: LocalModes::Complex(forward.map(normalized)),
-            backward: LocalModes::Complex(backward.map(normalized)),
-        }
+        modes.map(|pair| LocalModes::Complex(pair.map(normalized)))
     }
 }
 

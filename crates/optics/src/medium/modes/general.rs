@@ -130,7 +130,7 @@ impl Medium {
             best(|least| {
                 let problem = Berreman::new(tensors[0], tensors[1], [along, 0.0], least);
                 let found = problem.lossless_modes(known);
-                let BothWays { forward, backward } = &found.modes;
+                let [forward, backward] = &found.modes;
                 let residual =
                     problem.residual(forward.complex().iter().chain(&backward.complex()));
                 (found, residual)
@@ -291,9 +291,7 @@ fn by_heading(
     real.sort_by(|a, b| b.flux().total_cmp(&a.flux()));
     evanescent.sort_by(|a, b| b.q.im.total_cmp(&a.q.im));
     let (r, e) = (real.len() / 2, evanescent.len() / 2);
-    let forward = gathered(&real[..r], &evanescent[..e], size);
-    let backward = gathered(&real[r..], &evanescent[e..], size);
-    BothWays { forward, backward }
+    [gathered(&real[..r], &evanescent[..e], size), gathered(&real[r..], &evanescent[e..], size)]
 }
 
 /// Two modes of one heading, normalized, orthogonal in flux and in order.

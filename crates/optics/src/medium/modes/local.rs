@@ -54,12 +54,8 @@ pub(crate) enum Arriving {
     Both(LocalModes),
 }
 
-/// The four modes of a medium.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct BothWays {
-    pub forward: LocalModes,
-    pub backward: LocalModes,
-}
+/// The four modes of a medium: those that head forward and those that head back.
+pub(crate) type BothWays = [LocalModes; 2];
 
 /// The mean of E_a × H_b* and E_b* × H_a along the normal: the flux of one field, or how far from
 /// orthogonal two are.
