@@ -104,9 +104,8 @@ impl Move<'_> {
         let from = self.from.load(simd);
         let (p_z, h) = (Lanes::new(simd, self.rays.p_z), Lanes::new(simd, *self.length));
         let start = Motion { position: from.zeta, velocity: from.momentum };
-        let first = || Stage { force: from.force, jet: force.found(from.jet) };
         let mut error = p_z.all(0.0);
-        let (step, growth) = match self.pace {
+        let ((motion, stage), growth) = match self.pace {
             StepKind::Departure => {
                 let stage = force.look(from.zeta);
                 let momentum = F::map(&stage.jet).f1.conj() * from.momentum;
@@ -127,7 +126,7 @@ impl Move<'_> {
                 ((Motion { position, velocity }, force.look(position)), growth)
             }
             StepKind::Short => {
-                let first = first();
+                let first = Stage { force: from.force, jet: force.found(from.jet) };
                 let step = order_four::step(force, start, first, h);
                 // By the values and slopes at both ends, which are at hand.
                 let z0 = force.rates(&first.jet, from.momentum)[0];
@@ -147,12 +146,12 @@ impl Move<'_> {
                 quadrature[1] = weight * 0.1;
                 let velocity = weight * self.rays.lever;
                 let weight = ErrorWeight { position: weight, velocity, quadrature };
-                let (step, estimate) = order_eight::step(force, start, first(), h, &weight);
+                let first = Stage { force: from.force, jet: force.found(from.jet) };
+                let (step, estimate) = order_eight::step(force, start, first, h, &weight);
                 error = estimate;
                 ((step.end, step.stage), step.quadrature)
             }
         };
-        let (motion, stage) = step;
         // Where the index is that of the map, the optical path grows with τ.
         let path = if Q > 2 { growth[Q - 1] } else { h };
         let along = [from.tau + path, from.z + growth[0], from.theta + growth[1]];
