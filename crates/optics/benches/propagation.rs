@@ -39,12 +39,14 @@ const MAPS: [&str; 3] = ["gaussian", "grating", "quasi_conformal"];
 fn flow(name: &str) -> ConformalFlow {
     let cut = Truncation::centred(50.0, 28.57);
     let (map, strength): (ConformalMap, f64) = match name {
-        "gaussian" => (GaussianMap::new(10.02, 4.25).expect("a sound map").into(), 1.0),
-        "grating" => (GratingMap::new(20.0, 1.5).expect("a sound map").into(), 1.0),
+        "gaussian" => {
+            (ConformalMap::Gaussian(GaussianMap::new(10.02, 4.25).expect("a sound map")), 1.0)
+        }
+        "grating" => (ConformalMap::Grating(GratingMap::new(20.0, 1.5).expect("a sound map")), 1.0),
         _ => {
             let map = QuasiConformalMap::new(28.0, 4.25, &cut).expect("a sound map");
             let strength = map.strength();
-            (map.into(), strength)
+            (ConformalMap::QuasiConformal(map), strength)
         }
     };
     ConformalFlow::new(map, cut, Extent::ENDLESS, strength)

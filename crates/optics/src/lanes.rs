@@ -148,8 +148,8 @@ impl Complexes {
     }
 
     #[inline(always)]
-    pub fn store<S: Simd>(&mut self, lanes: ComplexLanes<S>) {
-        (self.re, self.im) = (lanes.re.values(), lanes.im.values());
+    pub fn of<S: Simd>(lanes: ComplexLanes<S>) -> Self {
+        Self { re: lanes.re.values(), im: lanes.im.values() }
     }
 }
 
@@ -212,6 +212,18 @@ impl<S: Simd> ComplexLanes<S> {
         Self { re: Lanes::new(simd, re), im: Lanes::new(simd, im) }
     }
 
+    /// Other numbers of the same kind.
+    #[inline(always)]
+    pub fn with(self, values: [Complex64; LANES]) -> Self {
+        Self::new(self.re.simd, values)
+    }
+
+    /// The same real number for each ray.
+    #[inline(always)]
+    pub fn real(self, value: f64) -> Self {
+        Self { re: self.re.all(value), im: self.re.all(0.0) }
+    }
+
     #[inline(always)]
     pub fn values(self) -> [Complex64; LANES] {
         let ([a, b, c, d], [e, f, g, h]) = (self.re.values(), self.im.values());
@@ -229,7 +241,7 @@ impl<S: Simd> ComplexLanes<S> {
     ) -> Self {
         let here = self.values();
         let place = |i: usize| if holds(arguments[i]) { here[i] } else { value(arguments[i]) };
-        Self::new(self.re.simd, array::from_fn(place))
+        self.with(array::from_fn(place))
     }
 
     #[inline(always)]

@@ -21,7 +21,7 @@ fn flow(square: impl Fn(DVec2) -> f64, steps: usize, extent: Extent, core: f64) 
     let samples: Vec<f64> = (0..count[0] * count[1]).map(|k| square(place(k))).collect();
     let spline = GridSpline::new(-HALF, spacing, count, &samples).unwrap();
     let cut = Truncation { x_min: -HALF.x, x_max: HALF.x, y_max: HALF.y };
-    let map = ConformalMap::from(FlatMap::new(-HALF.y, 4.0));
+    let map = ConformalMap::Flat(FlatMap::new(-HALF.y, 4.0));
     let unevenness = IndexPerturbation::within(spline, |[_, high]| high > core).unwrap();
     ConformalFlow::new(map, cut, extent, 1.0).with_unevenness(unevenness)
 }
@@ -81,7 +81,8 @@ fn first_fall(start: DVec3, p: DVec3, inside: impl Fn(DVec3) -> f64) -> f64 {
 
 fn check_swing(flow: &ConformalFlow, k: u32, inside: impl Fn(DVec3) -> f64) -> Option<FlowEnd> {
     let (start, p) = enter(k, oscillator, 0.6);
-    let end = flow.advance(Half::Upper, start, p, 1e-9).unwrap();
+    let entry = flow.virtual_point(Half::Upper, start).unwrap();
+    let end = flow.advance_from(&entry, p, 1e-9).unwrap();
     let steep = end.wave_vector.normalize().dot(end.normal).abs();
     if steep < 0.05 {
         return None;
@@ -140,7 +141,7 @@ fn flat_ends_round_borders_and_round_cores_are_met_where_they_are() {
         .map(|k| oscillator(DVec2::new(f64::from(k % 5), f64::from(k / 5)) * 4.0 - 8.0))
         .collect();
     let spline = GridSpline::new(DVec2::splat(-8.0), DVec2::splat(4.0), [5, 5], &samples).unwrap();
-    let map = ConformalMap::from(FlatMap::new(-12.0, 4.0));
+    let map = ConformalMap::Flat(FlatMap::new(-12.0, 4.0));
     let disc = ConformalFlow::new(map, cut, Extent::ENDLESS, 1.0)
         .between(None, Some(rim))
         .with_unevenness(IndexPerturbation::new(spline).unwrap());
@@ -150,7 +151,8 @@ fn flat_ends_round_borders_and_round_cores_are_met_where_they_are() {
         let start = (-inward * rim).extend(0.0);
         let d = inward.rotate(DVec2::from_angle(1.3 * (2.0 * b - 1.0))).extend(c - 0.5).normalize();
         let p = d * oscillator(start.truncate()).sqrt();
-        let end = disc.advance(Half::Upper, start, p, 1e-9).unwrap();
+        let entry = disc.virtual_point(Half::Upper, start).unwrap();
+        let end = disc.advance_from(&entry, p, 1e-9).unwrap();
         // The first points are beyond by rounding.
         let tau = first_fall(start, p, |r| rim * (1.0 + 1e-13) - far(r));
         let (at, wave, path) = swung(start, p, tau);
@@ -187,7 +189,8 @@ fn off_the_line(flow: &ConformalFlow, k: u32) -> f64 {
     let complex = |v: DVec3| Complex64::new(v.x, v.y);
     let square = |p: DVec2| unfolded(Complex64::new(p.x, p.y))[1].norm_sqr();
     let (start, p) = enter(k, square, 0.0);
-    let end = flow.advance(Half::Upper, start, p, 1e-11).unwrap();
+    let entry = flow.virtual_point(Half::Upper, start).unwrap();
+    let end = flow.advance_from(&entry, p, 1e-11).unwrap();
     assert_ne!(end.boundary, Boundary::Core);
     let [[from, bent], [to, bent_back]] = [start, end.at.position].map(|r| unfolded(complex(r)));
     // dζ = ζ' dz.

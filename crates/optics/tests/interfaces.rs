@@ -96,8 +96,8 @@ proptest! {
         let mut electric = ComplexVector::ZERO;
         let mut magnetic = ComplexVector::ZERO;
         let mut add = |medium: &Medium, p: DVec3, e: ComplexVector, sign: f64| {
-            electric += e * sign;
-            magnetic += medium.magnetic_field(p, e) * sign;
+            electric = electric + e * sign;
+            magnetic = magnetic + medium.magnetic_field(p, e) * sign;
         };
         add(&from, wave.wave_vector, wave.electric[0], 1.0);
         for w in &waves {

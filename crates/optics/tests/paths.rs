@@ -143,7 +143,7 @@ fn rays_in_anisotropic_rounds() {
 
 #[test]
 fn rays_above_a_bump() {
-    let map = ConformalMap::from(GaussianMap::new(10.02, 4.25).expect("a map"));
+    let map = ConformalMap::Gaussian(GaussianMap::new(10.02, 4.25).expect("a map"));
     let cut = Truncation::centred(50.0, 28.57);
     let flow = ConformalFlow::new(map, cut, Extent::ENDLESS, 1.0);
     for half in [Half::Upper, Half::Lower] {

@@ -14,7 +14,7 @@ const CUT: [f64; 2] = [25.0, 28.57];
 /// Rays of design (iv) by the program, and by plain steps along the equation of motion in physical space.
 pub(super) fn equation(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     let gaussian = GaussianMap::new(10.02, 4.25).map_err(|error| missing(&error.to_string()))?;
-    let map = ConformalMap::from(gaussian);
+    let map = ConformalMap::Gaussian(gaussian);
     let assembly = laboratory.assembly(GAUSSIAN)?;
     let mut rays = Rays::new(&assembly, 1e-3);
     let mut off: f64 = 0.0;

@@ -157,73 +157,61 @@ impl<'s> Convex<'s> {
     /// The greatest value of a convex function over the part of the body that lies between two z of its common
     /// frame: it is at a corner or on a rim. Rims are sampled and the greatest sample refined.
     pub fn greatest(&self, slab: Extent, value: impl Fn(DVec3) -> f64) -> f64 {
-        let mut greatest = f64::NEG_INFINITY;
-        self.for_each_extreme(slab, |extreme| {
-            let new = match extreme {
-                Extreme::Corner(at) => value(at),
-                Extreme::Curve(curve) => {
-                    let valued = |angle: f64| curve(angle).map_or(f64::NEG_INFINITY, &value);
-                    greatest_around(&valued)
-                }
-            };
-            greatest = greatest.max(new);
-        });
-        greatest
+        let Extremes { corners, curves } = self.outermost(slab);
+        let around = |curve: &Curve<'_>| {
+            greatest_around(&|angle| curve(angle).map_or(f64::NEG_INFINITY, &value))
+        };
+        let on_curves = curves.iter().map(around);
+        corners.into_iter().map(&value).chain(on_curves).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Points between which all of the part of the body lies that is between two z, curves as many points.
     pub fn extremes(&self, slab: Extent) -> Vec<DVec3> {
-        let mut points = Vec::new();
-        self.for_each_extreme(slab, |extreme| match extreme {
-            Extreme::Corner(at) => points.push(at),
-            Extreme::Curve(curve) => {
-                let angles = (0..SAMPLES).map(|k| TAU * f64::from(k) / f64::from(SAMPLES));
-                points.extend(angles.filter_map(curve));
-            }
-        });
+        let Extremes { corners: mut points, curves } = self.outermost(slab);
+        for curve in curves {
+            let angles = (0..SAMPLES).map(|k| TAU * f64::from(k) / f64::from(SAMPLES));
+            points.extend(angles.filter_map(curve));
+        }
         points
     }
 
-    fn for_each_extreme(&self, slab: Extent, mut each: impl FnMut(Extreme<'_>)) {
+    fn outermost(&self, slab: Extent) -> Extremes<'_> {
         let ends = self.ends();
-        let within = |at: &DVec3| slab.contains(at.z);
-        let level = |z: f64| z.is_finite().then_some(z);
-        let levels = || [level(slab.min), level(slab.max)].into_iter().flatten();
+        let levels = [slab.min, slab.max].into_iter().filter(|z| z.is_finite());
         // Where the line of an edge passes through a level.
         let crossing = |[a, b]: [DVec3; 2], z: f64| {
             let share = (z - a.z) / (b.z - a.z);
             (0.0..=1.0).contains(&share).then(|| (a + (b - a) * share).with_z(z))
         };
+        let mut extremes = Extremes { corners: Vec::new(), curves: Vec::new() };
         match self.section {
             Section::Outline(outline) => {
                 let place = |corner: DVec2, z: f64| self.pose.to_world(corner.extend(z));
-                let mut edge = |edge: [DVec3; 2]| {
-                    edge.iter().filter(|at| within(at)).for_each(|at| each(Extreme::Corner(*at)));
-                    for at in levels().filter_map(|z| crossing(edge, z)) {
-                        each(Extreme::Corner(at));
-                    }
-                };
                 for (a, b) in outline.sides() {
-                    edge(ends.map(|z| place(a, z)));
-                    for z in ends {
-                        edge([place(a, z), place(b, z)]);
+                    let [low, high] = ends.map(|z| [place(a, z), place(b, z)]);
+                    for edge in [ends.map(|z| place(a, z)), low, high] {
+                        let inside = edge.into_iter().filter(|at| slab.contains(at.z));
+                        extremes.corners.extend(inside);
+                        extremes.corners.extend(levels.clone().filter_map(|z| crossing(edge, z)));
                     }
                 }
             }
             Section::Disc { centre, radius } => {
-                let place = |angle: f64, z: f64| {
+                let place = move |angle: f64, z: f64| {
                     let beside = centre + radius * DVec2::from_angle(angle);
                     self.pose.to_world(beside.extend(z))
                 };
                 for end in ends {
-                    each(Extreme::Curve(&|angle| Some(place(angle, end)).filter(&within)));
+                    let rim = move |angle| Some(place(angle, end)).filter(|at| slab.contains(at.z));
+                    extremes.curves.push(Box::new(rim));
                 }
-                for z in levels() {
-                    let cut = |angle| crossing(ends.map(|end| place(angle, end)), z);
-                    each(Extreme::Curve(&cut));
+                for z in levels {
+                    let cut = move |angle| crossing(ends.map(|end| place(angle, end)), z);
+                    extremes.curves.push(Box::new(cut));
                 }
             }
         }
+        extremes
     }
 
     /// Whether a body of which the support function (the greatest n·p over its points p) and the greatest
@@ -327,10 +315,13 @@ pub(super) const SAME_AXIS: f64 = 1e-14;
 /// How many samples of a curve are looked at.
 const SAMPLES: u32 = 96;
 
-/// An extreme point of a body, or a closed curve of such points; part of it may be missing.
-enum Extreme<'f> {
-    Corner(DVec3),
-    Curve(&'f dyn Fn(f64) -> Option<DVec3>),
+/// A closed curve by an angle; part of it may be missing.
+type Curve<'c> = Box<dyn Fn(f64) -> Option<DVec3> + 'c>;
+
+/// Extreme points of a body, and curves of such points.
+struct Extremes<'c> {
+    corners: Vec<DVec3>,
+    curves: Vec<Curve<'c>>,
 }
 
 /// The greatest value over all angles of a function that is smooth between samples.

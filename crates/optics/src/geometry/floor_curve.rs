@@ -43,6 +43,14 @@ enum Sense {
     Leaving,
 }
 
+/// A ray, and the least t that counts of its points origin + t direction.
+#[derive(Clone, Copy)]
+struct Ray {
+    origin: DVec2,
+    direction: DVec2,
+    t_min: f64,
+}
+
 /// Where a ray meets the metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FloorHit {
@@ -83,6 +91,12 @@ impl FloorCurve {
         [&self.knots[0], &self.knots[self.knots.len() - 1]]
     }
 
+    /// The parameter at a share of the way from end to end.
+    fn parameter_at(&self, share: f64) -> f64 {
+        let [first, last] = self.ends();
+        first.parameter + (last.parameter - first.parameter) * share
+    }
+
     /// Whether a point lies inside the metal.
     #[must_use]
     pub fn contains(&self, point: DVec2) -> bool {
@@ -101,11 +115,9 @@ impl FloorCurve {
     /// A curved side from left to right in that many straight pieces.
     #[must_use]
     pub fn side_line(&self, side: CurvedSide, pieces: u32) -> Vec<DVec2> {
-        let [first, last] = self.ends();
         let point = |k: u32| {
             let share = f64::from(k) / f64::from(pieces.max(1));
-            let parameter = first.parameter + (last.parameter - first.parameter) * share;
-            let point = self.map.profile(parameter).f;
+            let point = self.map.profile(self.parameter_at(share)).f;
             match side {
                 CurvedSide::Floor => DVec2::new(point.re, point.im),
                 CurvedSide::Image => DVec2::new(point.re, -point.im),
@@ -136,20 +148,17 @@ impl FloorCurve {
     /// far out, only a positive `t_min` keeps such a ray off the other side). None if there is none.
     #[must_use]
     pub fn first_hit(&self, origin: DVec2, direction: DVec2, t_min: f64) -> Option<FloorHit> {
-        if !self.may_hit(origin, direction) {
+        let ray = Ray { origin, direction, t_min };
+        if !self.may_hit(ray) {
             return None;
         }
-        let upper = self.first_on_curve(origin, direction, t_min, Sense::Entering);
+        let upper = self.first_on_curve(ray, Sense::Entering);
         let lower = match self.back {
-            MetalBack::MirrorImage => {
-                self.first_on_image(origin, direction, t_min, Sense::Entering)
-            }
-            MetalBack::Flat(y) => self.first_on_plane(y, origin, direction, t_min),
+            MetalBack::MirrorImage => self.first_on_image(ray, Sense::Entering),
+            MetalBack::Flat(y) => self.first_on_plane(y, ray),
         };
-        [upper, lower, self.first_on_ends(origin, direction, t_min)]
-            .into_iter()
-            .flatten()
-            .min_by(|a, b| a.t.total_cmp(&b.t))
+        let hits = [upper, lower, self.first_on_ends(ray)];
+        hits.into_iter().flatten().min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
     /// The first point with t >= `t_min` where a ray leaves the outline through its floor, or through the mirror
@@ -162,12 +171,13 @@ impl FloorCurve {
         direction: DVec2,
         t_min: f64,
     ) -> Option<FloorHit> {
-        if !self.may_hit(origin, direction) {
+        let ray = Ray { origin, direction, t_min };
+        if !self.may_hit(ray) {
             return None;
         }
         match side {
-            CurvedSide::Floor => self.first_on_curve(origin, direction, t_min, Sense::Leaving),
-            CurvedSide::Image => self.first_on_image(origin, direction, t_min, Sense::Leaving),
+            CurvedSide::Floor => self.first_on_curve(ray, Sense::Leaving),
+            CurvedSide::Image => self.first_on_image(ray, Sense::Leaving),
         }
     }
 
@@ -191,10 +201,7 @@ impl FloorCurve {
             let way = jet.f - here;
             ((jet.f1.conj() * way).re, jet.f1.norm_sqr() + (jet.f2.conj() * way).re)
         };
-        let sample = |k: u32| {
-            let share = f64::from(k) / f64::from(SAMPLES);
-            first.parameter + (last.parameter - first.parameter) * share
-        };
+        let sample = |k: u32| self.parameter_at(f64::from(k) / f64::from(SAMPLES));
         let distance = |parameter: f64| (self.map.profile(parameter).f - here).norm();
         let ends = distance(first.parameter).min(distance(last.parameter));
         (0..SAMPLES)
@@ -208,7 +215,7 @@ impl FloorCurve {
     }
 
     /// Whether it is a ray, and its line meets the bounding box.
-    fn may_hit(&self, origin: DVec2, direction: DVec2) -> bool {
+    fn may_hit(&self, Ray { origin, direction, .. }: Ray) -> bool {
         let inverse_square = direction.length_squared().recip();
         if !(inverse_square.is_finite() && origin.is_finite()) {
             return false;
@@ -224,15 +231,10 @@ impl FloorCurve {
     }
 
     /// The first crossing of the floor's mirror image.
-    fn first_on_image(
-        &self,
-        origin: DVec2,
-        direction: DVec2,
-        t_min: f64,
-        sense: Sense,
-    ) -> Option<FloorHit> {
+    fn first_on_image(&self, ray: Ray, sense: Sense) -> Option<FloorHit> {
         let mirrored = |v: DVec2| DVec2::new(v.x, -v.y);
-        self.first_on_curve(mirrored(origin), mirrored(direction), t_min, sense)
+        let [origin, direction] = [ray.origin, ray.direction].map(mirrored);
+        self.first_on_curve(Ray { origin, direction, ..ray }, sense)
             .map(|hit| FloorHit { normal: mirrored(hit.normal), ..hit })
     }
 
@@ -243,9 +245,7 @@ impl FloorCurve {
     /// no root can be missed.
     fn first_on_curve(
         &self,
-        origin: DVec2,
-        direction: DVec2,
-        t_min: f64,
+        Ray { origin, direction, t_min }: Ray,
         sense: Sense,
     ) -> Option<FloorHit> {
         let along = Complex64::new(direction.x, direction.y);
@@ -295,13 +295,7 @@ impl FloorCurve {
     }
 
     /// A hit of the flat back from below.
-    fn first_on_plane(
-        &self,
-        y: f64,
-        origin: DVec2,
-        direction: DVec2,
-        t_min: f64,
-    ) -> Option<FloorHit> {
+    fn first_on_plane(&self, y: f64, Ray { origin, direction, t_min }: Ray) -> Option<FloorHit> {
         let [first, last] = self.ends();
         let t = (y - origin.y) / direction.y;
         let x = origin.x + t * direction.x;
@@ -311,7 +305,7 @@ impl FloorCurve {
     }
 
     /// A hit of the vertical cuts through the metal.
-    fn first_on_ends(&self, origin: DVec2, direction: DVec2, t_min: f64) -> Option<FloorHit> {
+    fn first_on_ends(&self, Ray { origin, direction, t_min }: Ray) -> Option<FloorHit> {
         let [first, last] = self.ends();
         [(first, -1.0), (last, 1.0)]
             .into_iter()

@@ -80,8 +80,9 @@ impl Polygon {
     #[must_use]
     pub fn convex_parts(&self) -> Vec<ConvexPart> {
         let n = self.corners.len();
-        if (0..n).all(|i| self.turns_left([(i + n - 1) % n, i, (i + 1) % n])) {
-            return vec![(0..n).collect()];
+        let whole: ConvexPart = (0..n).collect();
+        if self.is_convex(&whole) {
+            return vec![whole];
         }
         let mut parts = self.ears();
         let is_cut = |i: usize, j: usize| (i + 1) % n != j && (j + 1) % n != i;
@@ -115,7 +116,7 @@ impl Polygon {
         let mut parts = Vec::new();
         while rest.len() > 3 {
             let n = rest.len();
-            let around = |at: usize| [rest[(at + n - 1) % n], rest[at], rest[(at + 1) % n]];
+            let around = |at: usize| around(n, at).map(|k| rest[k]);
             // A simple polygon has two ears at least; where rounding hides them, the corner that bends
             // most is as good.
             let at = (0..n).find(|&at| self.is_ear(around(at), &rest)).unwrap_or_else(|| {
@@ -132,9 +133,7 @@ impl Polygon {
     fn is_ear(&self, triangle: [usize; 3], rest: &[usize]) -> bool {
         let [a, b, c] = triangle.map(|i| self.corners[i]);
         let holds = |p: DVec2| {
-            (b - a).perp_dot(p - a) >= 0.0
-                && (c - b).perp_dot(p - b) >= 0.0
-                && (a - c).perp_dot(p - c) >= 0.0
+            [(a, b), (b, c), (c, a)].iter().all(|(from, to)| (to - from).perp_dot(p - from) >= 0.0)
         };
         self.turns_left(triangle)
             && !rest.iter().any(|i| !triangle.contains(i) && holds(self.corners[*i]))
@@ -142,7 +141,7 @@ impl Polygon {
 
     fn is_convex(&self, part: &[usize]) -> bool {
         let n = part.len();
-        (0..n).all(|i| self.turns_left([part[(i + n - 1) % n], part[i], part[(i + 1) % n]]))
+        (0..n).all(|i| self.turns_left(around(n, i).map(|k| part[k])))
     }
 
     fn turns_left(&self, corners: [usize; 3]) -> bool {
@@ -153,6 +152,11 @@ impl Polygon {
         let [a, b, c] = corners.map(|i| self.corners[i]);
         (b - a).perp_dot(c - b)
     }
+}
+
+/// A corner of `n`, with the one before and the one after.
+fn around(n: usize, at: usize) -> [usize; 3] {
+    [(at + n - 1) % n, at, (at + 1) % n]
 }
 
 fn edges(part: &[usize]) -> impl Iterator<Item = [usize; 2]> + '_ {
@@ -178,9 +182,8 @@ fn joined(one: &[usize], other: &[usize], [i, j]: [usize; 2]) -> ConvexPart {
 fn superfluous(corners: &[(usize, DVec2)]) -> Option<usize> {
     let n = corners.len();
     (0..n).find(|&i| {
-        let [a, b, c] = [(i + n - 1) % n, i, (i + 1) % n].map(|k| corners[k].1);
-        let distance = segment_distance(b, [a, c]);
-        n > 1 && (a.distance(b) <= SAME_POINT || distance <= SAME_POINT)
+        let [a, b, c] = around(n, i).map(|k| corners[k].1);
+        n > 1 && (a.distance(b) <= SAME_POINT || segment_distance(b, [a, c]) <= SAME_POINT)
     })
 }
 
@@ -188,14 +191,10 @@ fn superfluous(corners: &[(usize, DVec2)]) -> Option<usize> {
 fn crossing(corners: &[(usize, DVec2)]) -> Option<(usize, usize)> {
     let n = corners.len();
     let side = |i: usize| [corners[i].1, corners[(i + 1) % n].1];
-    for j in 2..n {
-        for i in 0..j - 1 {
-            if (j + 1) % n != i && segments_meet(side(i), side(j)) {
-                return Some((corners[i].0, corners[j].0));
-            }
-        }
-    }
-    None
+    let mut pairs = (2..n).flat_map(|j| (0..j - 1).map(move |i| (i, j)));
+    pairs
+        .find(|&(i, j)| (j + 1) % n != i && segments_meet(side(i), side(j)))
+        .map(|(i, j)| (corners[i].0, corners[j].0))
 }
 
 fn segments_meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
@@ -203,10 +202,9 @@ fn segments_meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
         let along = b - a;
         (along.perp_dot(c - a) < 0.0) != (along.perp_dot(d - a) < 0.0)
     };
-    let near = [segment_distance(a, [c, d]), segment_distance(b, [c, d])]
+    let near = [(a, [c, d]), (b, [c, d]), (c, [a, b]), (d, [a, b])]
         .into_iter()
-        .chain([segment_distance(c, [a, b]), segment_distance(d, [a, b])])
-        .any(|distance| distance <= SAME_POINT);
+        .any(|(corner, side)| segment_distance(corner, side) <= SAME_POINT);
     near || (straddles([a, b], [c, d]) && straddles([c, d], [a, b]))
 }
 

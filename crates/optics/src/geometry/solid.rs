@@ -81,41 +81,35 @@ impl Solid {
     /// Whether a point lies inside, border excluded.
     #[must_use]
     pub fn holds(&self, point: DVec3) -> bool {
-        let between = |extent: &Extent| extent.min < point.z && point.z < extent.max;
-        match self {
-            Self::Nothing => false,
-            Self::Prism { outline, extent } => {
-                let p = point.truncate();
-                between(extent)
-                    && !outline.corners().is_empty()
-                    && outline.sides().all(|(a, b)| (b - a).perp_dot(p - a) > 0.0)
-            }
-            Self::Cylinder { centre, radius, extent } => {
-                between(extent) && point.truncate().distance_squared(*centre) < radius * radius
-            }
-            Self::Ball { centre, radius } => point.distance_squared(*centre) < radius * radius,
-            Self::CutBall { centre, ball } => ball.height(point - centre) < 0.0,
-            Self::Hollow { whole, hole } => whole.holds(point) && !hole.holds(point),
-            Self::Tilted { solid, pose } => solid.holds(pose.to_local(point)),
-        }
+        self.has(point, |less, more| less < more)
     }
 
     /// Whether a point lies inside or on the border; never in a sheet.
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
+        self.has(point, |less, more| less <= more)
+    }
+
+    /// Whether a point lies inside, `below` telling of two numbers that are alike whether it is.
+    fn has(&self, point: DVec3, below: impl Fn(f64, f64) -> bool + Copy) -> bool {
+        let between = |extent: &Extent| below(extent.min, point.z) && below(point.z, extent.max);
+        let at = point.truncate();
         match self {
             Self::Nothing => false,
             Self::Prism { outline, extent } => {
-                extent.contains(point.z) && outline.contains(point.truncate())
+                between(extent)
+                    && outline.corners().len() > 2
+                    && outline.sides().all(|(a, b)| below(0.0, (b - a).perp_dot(at - a)))
             }
             Self::Cylinder { centre, radius, extent } => {
-                let beside = point.truncate().distance_squared(*centre);
-                extent.contains(point.z) && beside <= radius * radius
+                between(extent) && below(at.distance_squared(*centre), radius * radius)
             }
-            Self::Ball { centre, radius } => point.distance_squared(*centre) <= radius * radius,
-            Self::CutBall { centre, ball } => ball.height(point - centre) <= 0.0,
-            Self::Hollow { whole, hole } => whole.contains(point) && !hole.holds(point),
-            Self::Tilted { solid, pose } => solid.contains(pose.to_local(point)),
+            Self::CutBall { centre, ball } => below(ball.height(point - centre), 0.0),
+            Self::Ball { centre, radius } => {
+                below(point.distance_squared(*centre), radius * radius)
+            }
+            Self::Hollow { whole, hole } => whole.has(point, below) && !hole.holds(point),
+            Self::Tilted { solid, pose } => solid.has(pose.to_local(point), below),
         }
     }
 
@@ -128,12 +122,8 @@ impl Solid {
         match self {
             Self::Nothing => None,
             Self::Prism { outline, extent } => {
-                let first = *outline.corners().first()?;
-                let ends = outline
-                    .corners()
-                    .iter()
-                    .fold([first; 2], |[low, high], corner| [low.min(*corner), high.max(*corner)]);
-                Some(boxed(ends, extent))
+                let corners = || outline.corners().iter().copied();
+                Some(boxed([corners().reduce(DVec2::min)?, corners().reduce(DVec2::max)?], extent))
             }
             Self::Cylinder { centre, radius, extent } => {
                 Some(boxed([*centre - *radius, *centre + *radius], extent))
@@ -427,7 +417,7 @@ mod tests {
 
     #[test]
     fn others_may_be_in_a_hole_with_a_curved_border() {
-        let map = ConformalMap::from(GaussianMap::new(10.0, 4.0).expect("a map"));
+        let map = ConformalMap::Gaussian(GaussianMap::new(10.0, 4.0).expect("a map"));
         let curve = FloorCurve::new(map.clone(), MetalBack::MirrorImage, -25.0, 25.0);
         let extent = Extent::ENDLESS;
         let outline = Outline::rectangle(25.0, 30.0);

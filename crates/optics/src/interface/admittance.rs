@@ -29,7 +29,6 @@ pub(super) struct FramedMedium {
 
 impl FramedMedium {
     pub fn new(medium: &Medium, frame: &Frame, along: f64) -> Self {
-        let Frame { first, second, normal } = *frame;
         if let Some((permittivity, permeability)) = medium.scalars() {
             let inverse = 1.0 / permeability;
             return Self {
@@ -38,26 +37,12 @@ impl FramedMedium {
                 inverse_permeability: [inverse, 0.0, 0.0, inverse, 0.0],
             };
         }
-        let (of_first, of_normal) =
-            (*medium.permittivity() * first, *medium.permittivity() * normal);
-        let inverse = *medium.inverse_permeability();
-        let (mu_first, mu_second) = (inverse * first, inverse * second);
+        let [[e_ff, e_fs, e_fn], _, [_, e_sn, e_nn]] = frame.tensor(medium.permittivity());
+        let [[m_ff, m_fs, m_fn], [_, m_ss, m_sn], _] = frame.tensor(medium.inverse_permeability());
         Self {
             along,
-            permittivity: [
-                of_first.dot(first),
-                of_first.dot(second),
-                of_first.dot(normal),
-                of_normal.dot(second),
-                of_normal.dot(normal),
-            ],
-            inverse_permeability: [
-                mu_first.dot(first),
-                mu_first.dot(second),
-                mu_first.dot(normal),
-                mu_second.dot(second),
-                mu_second.dot(normal),
-            ],
+            permittivity: [e_ff, e_fs, e_fn, e_sn, e_nn],
+            inverse_permeability: [m_ff, m_fs, m_fn, m_ss, m_sn],
         }
     }
 
@@ -67,16 +52,16 @@ impl FramedMedium {
         let [e_ff, e_fs, e_fn, e_sn, e_nn] = self.permittivity;
         // p·εE = 0 gives the normal part of E from its tangential part.
         let displacement =
-            |by_first: f64, by_normal: f64| T::from(along * by_first) + q.scaled(by_normal);
+            |by_first: f64, by_normal: f64| T::from(along * by_first) + q * by_normal;
         let scale = displacement(e_fn, e_nn);
         let lift = [-displacement(e_ff, e_fn) / scale, -displacement(e_fs, e_sn) / scale];
         // H = µ⁻¹ (p × E), with p × first = q second, p × second = along normal - q first,
         // p × normal = -along second.
         let [m_ff, m_fs, m_fn, m_ss, m_sn] = self.inverse_permeability;
-        let by_first = q - lift[0].scaled(along);
-        let by_second = -lift[1].scaled(along);
+        let by_first = q - lift[0] * along;
+        let by_second = -(lift[1] * along);
         let row = |by_e: f64, by_q: f64, rest: f64| {
-            [by_first.scaled(by_e), by_second.scaled(by_e) - q.scaled(by_q) + T::from(along * rest)]
+            [by_first * by_e, by_second * by_e - q * by_q + T::from(along * rest)]
         };
         TangentialWave { lift, admittance: [row(m_fs, m_ff, m_fn), row(m_ss, m_fs, m_sn)] }
     }

@@ -1,7 +1,7 @@
 //! Interfaces with a perfect antireflection coating.
 
 use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side, split};
-use crate::medium::{Medium, ModeKind, NormalComponent};
+use crate::medium::{Medium, ModeKind, Roots};
 use crate::wave::turn_transverse;
 use glam::DVec3;
 
@@ -21,28 +21,25 @@ pub fn transmit_antireflection<const N: usize>(
     let Some(surface) = transmitted_medium.wave_surface() else {
         return split();
     };
-    let NormalComponent::Propagating { forward, .. } = surface.normal_component(tangential, normal)
-    else {
+    let Roots::Real { plus, .. } = surface.roots(tangential, normal) else {
         return split();
     };
-    let wave_vector = tangential + normal * forward;
+    let wave_vector = tangential + normal * plus;
     let direction = surface.ray_direction(wave_vector);
-    let mut waves = OutgoingWaves::new();
     let mut electric = wave.electric;
     for (field, power) in electric.iter_mut().zip(wave.power) {
         let turned = turn_transverse(*field, wave.direction, direction);
         let carried = transmitted_medium.poynting(wave_vector, turned).length();
         *field = if carried > 0.0 { turned * (power / carried).sqrt() } else { turned };
     }
-    let power = wave.power;
-    waves.push(OutgoingWave {
+    std::iter::once(OutgoingWave {
         side: Side::Transmitted,
         mode: ModeKind::Shared,
         wave_vector,
         attenuation: DVec3::ZERO,
         direction,
         electric,
-        power,
-    });
-    waves
+        power: wave.power,
+    })
+    .collect()
 }

@@ -1,9 +1,9 @@
 //! Reflection at a perfect conductor.
 
 use super::matching::split_into_modes;
+use super::splitting::{Splitting, mapped};
 use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
-use crate::medium::{Medium, ModeKind};
-use crate::wave::ComplexVector;
+use crate::medium::Medium;
 use glam::DVec3;
 
 /// Reflects a wave at a perfect conductor, on which the tangential electric field vanishes.
@@ -17,53 +17,31 @@ pub fn reflect_at_conductor<const N: usize>(
     normal: DVec3,
 ) -> OutgoingWaves<N> {
     let mut waves = OutgoingWaves::new();
-    match MirrorImage::new(medium, normal) {
-        Some(image) => waves.push(image.of(wave)),
-        None => {
-            split_into_modes(medium, None, wave, normal, 0.0, &mut waves);
-        }
+    if let Some(image) = mirror_image(medium, wave, normal) {
+        waves.push(image);
+    } else {
+        split_into_modes(medium, None, Splitting::new(wave, normal, 0.0, &mut waves));
     }
     waves
 }
 
-/// The mirror image at a plane in a medium with the wave surface p·Ap = c, ε and µ being multiples of A.
+/// The mirror image at a plane in a medium with the wave surface p·Ap = c, ε and µ being multiples of A. `None` if the
+/// medium is not of that kind, or nearly has no wave along the normal: the asymptotic cone of a hyperbolic one.
 ///
 /// The map J = 1 - 2 (An) nᵀ/(n·An) leaves the plane where it is and A as it is, but its determinant is
 /// -1: it takes ε and µ to -ε and -µ, where J⁻ᵀE and J⁻ᵀH solve Maxwell's equations. So do -J⁻ᵀE and
 /// J⁻ᵀH in the medium itself, with the wave vector J⁻ᵀp: the reflected wave.
-struct MirrorImage {
+fn mirror_image<const N: usize>(
+    medium: &Medium,
+    wave: &IncidentWave<N>,
     normal: DVec3,
-    /// 2 An/(n·An).
-    through: DVec3,
-}
-
-impl MirrorImage {
-    /// `None` if the medium is not of that kind, or nearly has no wave along the normal: the asymptotic cone of
-    /// a hyperbolic one.
-    fn new(medium: &Medium, normal: DVec3) -> Option<Self> {
-        let conjugate = medium.wave_surface()?.ray(normal);
-        let height = normal.dot(conjugate);
-        let sound = height * height > 1e-20 * conjugate.length_squared();
-        sound.then(|| Self { normal, through: conjugate * (2.0 / height) })
-    }
-
-    fn of<const N: usize>(&self, wave: &IncidentWave<N>) -> OutgoingWave<N> {
-        let Self { normal, through } = *self;
-        let image = |vector: DVec3| vector - normal * through.dot(vector);
-        let ray = wave.direction - through * normal.dot(wave.direction);
-        // |S·n| is the same before and after; the beam's width need not be.
-        let length = ray.length();
-        let narrowing = (1.0 / length).sqrt();
-        OutgoingWave {
-            side: Side::Reflected,
-            mode: ModeKind::Shared,
-            wave_vector: image(wave.wave_vector),
-            attenuation: image(wave.attenuation),
-            direction: ray / length,
-            electric: wave
-                .electric
-                .map(|field| ComplexVector::new(image(field.re), image(field.im)) * -narrowing),
-            power: wave.power,
-        }
-    }
+) -> Option<OutgoingWave<N>> {
+    let conjugate = medium.wave_surface()?.ray(normal);
+    let height = normal.dot(conjugate);
+    let sound = height * height > 1e-20 * conjugate.length_squared();
+    // 2 An/(n·An).
+    let through = conjugate * (2.0 / height);
+    let image = |vector: DVec3| vector - normal * through.dot(vector);
+    let ray = wave.direction - through * normal.dot(wave.direction);
+    sound.then(|| mapped(wave, Side::Reflected, image, -1.0, ray))
 }

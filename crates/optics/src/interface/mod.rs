@@ -18,6 +18,7 @@ mod matching;
 mod reflectionless;
 mod scattering;
 mod single_wave;
+mod splitting;
 
 pub use coating::transmit_antireflection;
 pub use conductor::reflect_at_conductor;
@@ -28,6 +29,10 @@ use crate::medium::{Medium, ModeKind};
 use crate::wave::ComplexVector;
 use arrayvec::ArrayVec;
 use glam::DVec3;
+use isotropic::split_isotropic;
+use matching::split_into_modes;
+use single_wave::split_single_wave;
+use splitting::Splitting;
 
 /// The share of the power that rounding leaves in a wave that is not there: matched media reflect nothing.
 const ROUNDING: f64 = 1e-28;
@@ -132,18 +137,19 @@ pub fn split_down_to<const N: usize>(
     least_power: f64,
     waves: &mut OutgoingWaves<N>,
 ) -> [f64; N] {
-    if let (Some(here), Some(there)) = (incident_medium.scalars(), transmitted_medium.scalars())
-        && wave.attenuation == DVec3::ZERO
-    {
-        return isotropic::split_isotropic([here, there], wave, normal, least_power, waves);
+    let splitting = Splitting::new(wave, normal, least_power, waves);
+    if wave.attenuation == DVec3::ZERO {
+        let scalars = (incident_medium.scalars(), transmitted_medium.scalars());
+        if let (Some(here), Some(there)) = scalars {
+            return split_isotropic([here, there], splitting);
+        }
+        let surfaces = (incident_medium.wave_surface(), transmitted_medium.wave_surface());
+        if let (Some(from), Some(to)) = surfaces {
+            return split_single_wave(
+                [(incident_medium, from), (transmitted_medium, to)],
+                splitting,
+            );
+        }
     }
-    let surfaces = (incident_medium.wave_surface(), transmitted_medium.wave_surface());
-    if let (Some(from), Some(to)) = surfaces
-        && wave.attenuation == DVec3::ZERO
-    {
-        let media = [(incident_medium, from), (transmitted_medium, to)];
-        return single_wave::split_single_wave(media, wave, normal, least_power, waves);
-    }
-    let beyond = Some(transmitted_medium);
-    matching::split_into_modes(incident_medium, beyond, wave, normal, least_power, waves)
+    split_into_modes(incident_medium, Some(transmitted_medium), splitting)
 }

@@ -1,8 +1,8 @@
 //! Interfaces that reflect nothing, at any angle and in any polarization.
 
+use super::splitting::mapped;
 use super::{IncidentWave, OutgoingWave, Side};
-use crate::medium::{Medium, ModeKind, largest};
-use crate::wave::ComplexVector;
+use crate::medium::{Medium, largest};
 use glam::{DMat3, DVec3};
 
 /// An interface beyond which the medium is that of incidence behind a coordinate map that leaves the
@@ -59,18 +59,6 @@ impl Reflectionless {
         let bent = |vector: DVec3| vector - normal * (shift.dot(vector) * inverse);
         // The Poynting vector of a unit one.
         let ray = (wave.direction + shift * normal.dot(wave.direction)) * inverse;
-        let length = ray.length();
-        let narrowing = (1.0 / length).sqrt();
-        OutgoingWave {
-            side: Side::Transmitted,
-            mode: ModeKind::Shared,
-            wave_vector: bent(wave.wave_vector),
-            attenuation: bent(wave.attenuation),
-            direction: ray / length,
-            electric: wave
-                .electric
-                .map(|field| ComplexVector::new(bent(field.re), bent(field.im)) * narrowing),
-            power: wave.power,
-        }
+        mapped(wave, Side::Transmitted, bent, 1.0, ray)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Side;
 use super::matching::{amplitudes, fluxes};
-use crate::medium::{BothWays, LocalMode, Medium, Mode, Tangential};
+use crate::medium::{LocalMode, Medium, Mode, Tangential};
 use crate::wave::Frame;
 use glam::DVec3;
 use num_complex::Complex64;
@@ -41,8 +41,8 @@ impl Scattering {
         let across = tangential - normal * tangential.dot(normal);
         let frame = Frame::new(normal, across);
         let along = Tangential::Real(across.dot(frame.first));
-        let BothWays { forward, backward } = incident_medium.both_ways(&frame, along, None);
-        let (forward, backward) = (forward.complex(), backward.complex());
+        let [forward, backward] =
+            incident_medium.both_ways(&frame, along, None).map(|modes| modes.complex());
         let onward = transmitted_medium.map(|medium| medium.onward(&frame, along).complex());
         let [a, b] = &forward;
         let amplitudes = amplitudes([a, b], &backward, onward.as_ref());

@@ -62,7 +62,11 @@ impl Class {
             _ => return Self::matched(permittivity, permeability).unwrap_or(Self::General),
         };
         let absorbing = Uniaxial { scalar, ordinary: across, extraordinary: along, axis, electric };
-        absorbing.lossless().map_or(Self::AbsorbingUniaxial(absorbing), Self::Uniaxial)
+        if [scalar, across, along].iter().all(|value| value.im == 0.0) {
+            Self::Uniaxial(absorbing.map(|value| value.re))
+        } else {
+            Self::AbsorbingUniaxial(absorbing)
+        }
     }
 
     /// ε = z µ, unless the two polarizations would carry power opposite ways.
@@ -88,33 +92,16 @@ impl Class {
             (false, true) => -1.0,
             (false, false) => return None,
         };
-        let constant = ratio * permeability.re.determinant();
-        Some(Self::Matched(WaveSurface::new(permeability.re * sign, constant * sign)))
+        let constant = ratio * permeability.re.determinant() * sign;
+        Some(Self::Matched(WaveSurface { form: permeability.re * sign, constant }))
     }
 }
 
-impl Uniaxial<Complex64> {
-    fn lossless(&self) -> Option<Uniaxial<f64>> {
+impl<T: Copy> Uniaxial<T> {
+    /// The same of other numbers.
+    pub fn map<U>(&self, number: impl Fn(T) -> U) -> Uniaxial<U> {
         let Self { scalar, ordinary, extraordinary, axis, electric } = *self;
-        let lossless = [scalar, ordinary, extraordinary].iter().all(|value| value.im == 0.0);
-        lossless.then_some(Uniaxial {
-            scalar: scalar.re,
-            ordinary: ordinary.re,
-            extraordinary: extraordinary.re,
-            axis,
-            electric,
-        })
-    }
-}
-
-impl From<Uniaxial<f64>> for Uniaxial<Complex64> {
-    fn from(medium: Uniaxial<f64>) -> Self {
-        Self {
-            scalar: medium.scalar.into(),
-            ordinary: medium.ordinary.into(),
-            extraordinary: medium.extraordinary.into(),
-            axis: medium.axis,
-            electric: medium.electric,
-        }
+        let [scalar, ordinary, extraordinary] = [scalar, ordinary, extraordinary].map(number);
+        Uniaxial { scalar, ordinary, extraordinary, axis, electric }
     }
 }

@@ -17,14 +17,15 @@ mod tensor;
 mod wave_surface;
 
 pub use error::MediumError;
-pub(crate) use modes::{BOTH_MODES, BothWays, LocalMode, Tangential, mutual_flux};
+pub(crate) use modes::{BOTH_MODES, LocalMode, LocalModes, Tangential, mutual_flux};
 pub use modes::{Heading, Mode, ModeKind};
 pub use principal_axes::principal_axes;
+pub(crate) use quadratic::Roots;
 pub use ray_waves::RayWave;
 use tensor::MAGNITUDES;
 pub use tensor::Tensor;
 pub(crate) use tensor::largest;
-pub(crate) use wave_surface::{NormalComponent, WaveSurface};
+pub(crate) use wave_surface::WaveSurface;
 
 use crate::wave::{ComplexVector, poynting};
 use class::{Class, Uniaxial};
@@ -33,16 +34,15 @@ use glam::{DMat3, DVec3};
 /// A homogeneous medium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
-    permittivity: DMat3,
-    permeability: DMat3,
-    inverse_permeability: DMat3,
-    absorption: Option<Absorption>,
+    real: Tensors,
+    /// The imaginary parts, if it absorbs.
+    absorption: Option<Tensors>,
     class: Class,
 }
 
-/// The imaginary parts of an absorbing medium's tensors.
+/// The real or the imaginary parts of a medium's tensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Absorption {
+struct Tensors {
     permittivity: DMat3,
     permeability: DMat3,
     inverse_permeability: DMat3,
@@ -50,13 +50,10 @@ struct Absorption {
 
 impl Medium {
     /// Air, taken as vacuum.
-    pub const AIR: Self = Self {
-        permittivity: DMat3::IDENTITY,
-        permeability: DMat3::IDENTITY,
-        inverse_permeability: DMat3::IDENTITY,
-        absorption: None,
-        class: Class::Isotropic(WaveSurface::AIR),
-    };
+    pub const AIR: Self = Self::lossless(
+        [DMat3::IDENTITY; 3],
+        Class::Isotropic(WaveSurface { form: DMat3::IDENTITY, constant: 1.0 }),
+    );
 
     /// A medium of any relative permittivity and permeability tensors.
     ///
@@ -92,19 +89,23 @@ impl Medium {
 
     fn of_class(permittivity: &Tensor, permeability: &Tensor, class: Class) -> Self {
         let inverse = permeability.inverse();
-        let lossless = permittivity.im == DMat3::ZERO && permeability.im == DMat3::ZERO;
-        let absorption = (!lossless).then_some(Absorption {
+        let absorbs = permittivity.im != DMat3::ZERO || permeability.im != DMat3::ZERO;
+        let absorption = absorbs.then_some(Tensors {
             permittivity: permittivity.im,
             permeability: permeability.im,
             inverse_permeability: inverse.im,
         });
-        Self {
-            permittivity: permittivity.re,
-            permeability: permeability.re,
-            inverse_permeability: inverse.re,
-            absorption,
-            class,
-        }
+        let real = [permittivity.re, permeability.re, inverse.re];
+        Self { absorption, ..Self::lossless(real, class) }
+    }
+
+    /// From ε, µ and µ⁻¹.
+    const fn lossless(
+        [permittivity, permeability, inverse_permeability]: [DMat3; 3],
+        class: Class,
+    ) -> Self {
+        let real = Tensors { permittivity, permeability, inverse_permeability };
+        Self { real, absorption: None, class }
     }
 
     /// A medium of scalar permittivity whose permeability is µ_o across and µ_e along `axis` (of
@@ -154,25 +155,22 @@ impl Medium {
         for (quantity, value) in names.into_iter().zip([scalar, ordinary, extraordinary]) {
             not_degenerate(quantity, value)?;
         }
+        /// ε and µ.
+        fn pair<T>(electric: bool, scalar: T, other: T) -> [T; 2] {
+            if electric { [other, scalar] } else { [scalar, other] }
+        }
         let largest = ordinary.abs().max(extraordinary.abs());
-        let [permittivity, permeability] =
-            if electric { [largest, scalar] } else { [scalar, largest] };
+        let [permittivity, permeability] = pair(electric, scalar, largest);
         not_too_dense(permittivity, permeability)?;
         let axis = axis.try_normalize().ok_or(MediumError::NoAxis)?;
         if ordinary == extraordinary {
-            return if electric {
-                Self::isotropic(ordinary, scalar)
-            } else {
-                Self::isotropic(scalar, ordinary)
-            };
+            let [permittivity, permeability] = pair(electric, scalar, ordinary);
+            return Self::isotropic(permittivity, permeability);
         }
         let tensor = Tensor::uniaxial(ordinary.into(), extraordinary.into(), axis);
+        let [permittivity, permeability] = pair(electric, scalar.into(), tensor);
         let class = Class::Uniaxial(Uniaxial { scalar, ordinary, extraordinary, axis, electric });
-        Ok(if electric {
-            Self::of_class(&tensor, &scalar.into(), class)
-        } else {
-            Self::of_class(&scalar.into(), &tensor, class)
-        })
+        Ok(Self::of_class(&permittivity, &permeability, class))
     }
 
     /// An isotropic medium of relative permittivity ε and permeability µ; both negative for a
@@ -197,13 +195,10 @@ impl Medium {
     }
 
     fn isotropic_unchecked(permittivity: f64, permeability: f64) -> Self {
-        Self {
-            permittivity: DMat3::from_diagonal(DVec3::splat(permittivity)),
-            permeability: DMat3::from_diagonal(DVec3::splat(permeability)),
-            inverse_permeability: DMat3::from_diagonal(DVec3::splat(1.0 / permeability)),
-            absorption: None,
-            class: Class::Isotropic(WaveSurface::isotropic(permittivity, permeability)),
-        }
+        let tensors = [permittivity, permeability, 1.0 / permeability]
+            .map(|value| DMat3::from_diagonal(DVec3::splat(value)));
+        let surface = WaveSurface { form: tensors[2], constant: permittivity };
+        Self::lossless(tensors, Class::Isotropic(surface))
     }
 
     /// An impedance-matched medium, ε = µ = `tensor`.
@@ -221,25 +216,20 @@ impl Medium {
     #[must_use]
     pub fn transformed(tensor: DMat3, inverse: DMat3, determinant: f64) -> Self {
         debug_assert!(determinant.is_finite() && determinant > 0.0, "determinant {determinant}");
-        Self {
-            permittivity: tensor,
-            permeability: tensor,
-            inverse_permeability: inverse,
-            absorption: None,
-            class: Class::Matched(WaveSurface::new(tensor, determinant)),
-        }
+        let surface = WaveSurface { form: tensor, constant: determinant };
+        Self::lossless([tensor, tensor, inverse], Class::Matched(surface))
     }
 
     /// The relative permittivity tensor ε, its real part if the medium absorbs.
     #[must_use]
     pub fn permittivity(&self) -> &DMat3 {
-        &self.permittivity
+        &self.real.permittivity
     }
 
     /// The relative permeability tensor µ, its real part if the medium absorbs.
     #[must_use]
     pub fn permeability(&self) -> &DMat3 {
-        &self.permeability
+        &self.real.permeability
     }
 
     /// The permittivity and permeability tensors with their imaginary parts.
@@ -248,7 +238,7 @@ impl Medium {
         let (e, m) = self
             .absorption
             .map_or((DMat3::ZERO, DMat3::ZERO), |a| (a.permittivity, a.permeability));
-        (Tensor { re: self.permittivity, im: e }, Tensor { re: self.permeability, im: m })
+        (Tensor { re: self.real.permittivity, im: e }, Tensor { re: self.real.permeability, im: m })
     }
 
     /// The same medium, its waves found by the general eigenproblem instead of a closed form: slower,
@@ -284,7 +274,7 @@ impl Medium {
     /// the real parts.
     #[must_use]
     pub fn mean_index(&self) -> f64 {
-        let (e, m) = (self.permittivity.determinant(), self.permeability.determinant());
+        let (e, m) = (self.real.permittivity.determinant(), self.real.permeability.determinant());
         let size = (e * m).abs().powf(1.0 / 6.0);
         if e < 0.0 && m < 0.0 { -size } else { size }
     }
@@ -316,7 +306,7 @@ impl Medium {
     }
 
     fn magnetic_of_curl(&self, curl: ComplexVector) -> ComplexVector {
-        let lossless = curl.transformed(&self.inverse_permeability);
+        let lossless = curl.transformed(&self.real.inverse_permeability);
         self.absorption.map_or(lossless, |absorption| {
             let lossy = curl.transformed(&absorption.inverse_permeability);
             lossless + ComplexVector::new(-lossy.im, lossy.re)
@@ -332,12 +322,12 @@ impl Medium {
     /// ε and µ, if the medium is lossless and known to be isotropic.
     pub(crate) fn scalars(&self) -> Option<(f64, f64)> {
         matches!(self.class, Class::Isotropic(_))
-            .then_some((self.permittivity.x_axis.x, self.permeability.x_axis.x))
+            .then_some((self.real.permittivity.x_axis.x, self.real.permeability.x_axis.x))
     }
 
     /// µ⁻¹, its real part if the medium absorbs.
     pub(crate) fn inverse_permeability(&self) -> &DMat3 {
-        &self.inverse_permeability
+        &self.real.inverse_permeability
     }
 }
 

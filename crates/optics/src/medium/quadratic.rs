@@ -13,10 +13,10 @@ pub(super) struct Quadratic<T> {
 
 /// The roots of a real quadratic equation; `root` is the square root of the magnitude of b² - ac.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Roots {
-    /// (root - b)/a and (-root - b)/a.
+pub(crate) enum Roots {
+    /// (root - b)/a and (-root - b)/a: waves that carry power.
     Real { plus: f64, minus: f64, root: f64 },
-    /// re ± i im, im > 0.
+    /// re ± i im, im > 0: waves that decay.
     Complex { re: f64, im: f64, root: f64 },
 }
 
@@ -88,9 +88,16 @@ impl Roots {
     /// The roots of waves that are known to propagate, which by rounding at grazing incidence may
     /// seem evanescent: they then coincide, but for a hair.
     pub fn propagating(self) -> Self {
+        let (Self::Real { root, .. } | Self::Complex { root, .. }) = self;
+        let (plus, minus) = self.real_pair();
+        Self::Real { plus, minus, root }
+    }
+
+    /// The two roots of [`Self::propagating`].
+    pub fn real_pair(self) -> (f64, f64) {
         match self {
-            Self::Real { .. } => self,
-            Self::Complex { re, im, root } => Self::Real { plus: re + im, minus: re - im, root },
+            Self::Real { plus, minus, .. } => (plus, minus),
+            Self::Complex { re, im, .. } => (re + im, re - im),
         }
     }
 }

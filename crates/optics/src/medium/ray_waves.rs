@@ -132,9 +132,8 @@ impl Uniaxial<f64> {
 impl super::WaveSurface {
     /// The wave vector p of the wave whose ray runs along a unit vector: Ap along it, p·Ap = c.
     fn wave_of_ray(&self, direction: DVec3) -> Option<DVec3> {
-        let (form, constant) = self.parts();
-        let wave = form.inverse() * direction;
-        let square = constant / direction.dot(wave);
+        let wave = self.form.inverse() * direction;
+        let square = self.constant / direction.dot(wave);
         (square > 0.0 && square.is_finite()).then(|| wave * square.sqrt())
     }
 }

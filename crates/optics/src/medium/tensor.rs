@@ -2,6 +2,7 @@
 
 use super::MediumError;
 use super::principal_axes::principal_axes;
+use crate::wave::{cross, dot};
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 
@@ -30,12 +31,14 @@ impl Tensor {
     /// The tensor of a medium that has been turned by a rotation.
     #[must_use]
     pub fn turned(&self, rotation: &DMat3) -> Self {
-        let part = |m: &DMat3| {
-            let m = *rotation * *m * rotation.transpose();
-            // Symmetric to the last bit.
-            (m + m.transpose()) * 0.5
-        };
-        Self { re: part(&self.re), im: part(&self.im) }
+        let [re, im] = [self.re, self.im].map(|m| *rotation * m * rotation.transpose());
+        Self { re, im }.symmetric()
+    }
+
+    /// Made symmetric to the last bit.
+    fn symmetric(self) -> Self {
+        let [re, im] = [self.re, self.im].map(|m| (m + m.transpose()) * 0.5);
+        Self { re, im }
     }
 
     /// The tensor, made symmetric to the last bit, if it can be that of a medium.
@@ -49,8 +52,7 @@ impl Tensor {
         if skew > 1e-12 * size {
             return Err(MediumError::NotSymmetric { quantity });
         }
-        let symmetric = |m: DMat3| (m + m.transpose()) * 0.5;
-        let tensor = Self { re: symmetric(self.re), im: symmetric(self.im) };
+        let tensor = self.symmetric();
         // The largest entry of the inverse is that of its largest principal value, but for rounding and a small factor.
         let inverse = tensor.inverse();
         let largest_inverse = 2.0 * MAGNITUDES.end() / size.max(1.0);
@@ -75,18 +77,13 @@ impl Tensor {
         largest(&self.re).max(largest(&self.im))
     }
 
-    pub(super) fn determinant(&self) -> Complex64 {
-        let [a, b, c] = self.rows();
-        crate::wave::dot(a, crate::wave::cross(b, c))
-    }
-
     /// The inverse of a tensor that passed [`Self::checked`].
     pub(super) fn inverse(&self) -> Self {
         let [a, b, c] = self.rows();
-        let scale = Complex64::ONE / self.determinant();
+        let scale = Complex64::ONE / dot(a, cross(b, c));
         // The rows of a symmetric matrix are its columns, and so are those of its inverse.
-        let columns = [(b, c), (c, a), (a, b)]
-            .map(|(x, y)| crate::wave::cross(x, y).map(|component| component * scale));
+        let columns =
+            [(b, c), (c, a), (a, b)].map(|(x, y)| cross(x, y).map(|component| component * scale));
         let part = |of: fn(Complex64) -> f64| {
             let [x, y, z] = columns.map(|column| DVec3::from_array(column.map(of)));
             DMat3::from_cols(x, y, z)

@@ -10,55 +10,16 @@ use glam::{DMat3, DVec3};
 /// The signs of negative-index media follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WaveSurface {
-    form: DMat3,
-    constant: f64,
-}
-
-/// The wave-vector component along a surface's normal, for a given tangential part.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum NormalComponent {
-    /// Waves that carry power.
-    Propagating {
-        /// p·n of the wave whose power flows along +n.
-        forward: f64,
-        /// p·n of the wave whose power flows along -n.
-        backward: f64,
-    },
-    /// Waves that decay: the normal component is `re` ± i `im`, with `im` > 0 decaying along +n.
-    Evanescent {
-        /// Real part.
-        re: f64,
-        /// Magnitude of the imaginary part.
-        im: f64,
-    },
-}
-
-impl NormalComponent {
-    /// The components (forward, backward) in a medium that is known to carry such a wave, which by
-    /// rounding at grazing incidence may seem evanescent: the two then coincide, but for a hair.
-    pub fn real_pair(self) -> (f64, f64) {
-        match self {
-            Self::Propagating { forward, backward } => (forward, backward),
-            Self::Evanescent { re, im } => (re + im, re - im),
-        }
-    }
+    /// A.
+    pub(super) form: DMat3,
+    /// c.
+    pub(super) constant: f64,
 }
 
 impl WaveSurface {
-    pub(super) const AIR: Self = Self { form: DMat3::IDENTITY, constant: 1.0 };
-
     pub(super) fn isotropic(permittivity: f64, permeability: f64) -> Self {
         let form = DMat3::from_diagonal(DVec3::splat(1.0 / permeability));
         Self { form, constant: permittivity }
-    }
-
-    pub(super) fn new(form: DMat3, constant: f64) -> Self {
-        Self { form, constant }
-    }
-
-    /// A and c.
-    pub(super) fn parts(&self) -> (DMat3, f64) {
-        (self.form, self.constant)
     }
 
     /// The unit vector of the Poynting vector of a wave with wave vector `p`.
@@ -72,28 +33,17 @@ impl WaveSurface {
     }
 
     /// The normal components of the waves with the tangential part `tangential` (perpendicular to
-    /// the unit vector `normal`).
+    /// the unit vector `normal`). S·n is proportional to a q + b, hence positive for the root of the positive sign.
     ///
     /// At exact grazing, where the two coincide, they are set apart by about 1e-15, which gives the limit.
-    pub fn normal_component(&self, tangential: DVec3, normal: DVec3) -> NormalComponent {
-        match self.roots(tangential, normal) {
-            Roots::Real { plus: forward, minus: backward, .. } => {
-                NormalComponent::Propagating { forward, backward }
-            }
-            Roots::Complex { re, im, .. } => NormalComponent::Evanescent { re, im },
-        }
-    }
-
-    /// The same with the square root of the discriminant. S·n is proportional to a q + b, hence
-    /// positive for the root of the positive sign.
-    pub(super) fn roots(&self, tangential: DVec3, normal: DVec3) -> Roots {
+    pub fn roots(&self, tangential: DVec3, normal: DVec3) -> Roots {
         let form_normal = self.form * normal;
-        let quadratic = Quadratic {
+        Quadratic {
             a: normal.dot(form_normal),
             b: tangential.dot(form_normal),
             c: tangential.dot(self.form * tangential) - self.constant,
-        };
-        quadratic.roots()
+        }
+        .roots()
     }
 }
 
@@ -104,8 +54,8 @@ mod tests {
     #[test]
     fn negative_index_sends_power_against_the_wave_vector() {
         let surface = WaveSurface::isotropic(-1.0, -1.0);
-        let NormalComponent::Propagating { forward, backward } =
-            surface.normal_component(DVec3::new(0.0, 0.6, 0.0), DVec3::X)
+        let Roots::Real { plus: forward, minus: backward, .. } =
+            surface.roots(DVec3::new(0.0, 0.6, 0.0), DVec3::X)
         else {
             panic!("propagating expected");
         };

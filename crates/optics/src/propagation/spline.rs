@@ -8,7 +8,8 @@ use glam::DVec2;
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridSpline {
     corner: DVec2,
-    spacing: DVec2,
+    /// The distances between neighbouring samples, cm.
+    pub(super) spacing: DVec2,
     /// How many basis functions there are along x and y: two more than samples.
     count: [usize; 2],
     /// Their coefficients, those along x side by side.
@@ -138,11 +139,6 @@ impl GridSpline {
             }
         }
         bounds
-    }
-
-    /// The distance between neighbouring samples along the side where it is smaller, cm.
-    pub(super) fn finest_spacing(&self) -> f64 {
-        self.spacing.min_element()
     }
 }
 

@@ -3,24 +3,25 @@
 use glam::DVec2;
 use num_complex::Complex64;
 use pulp::Simd;
+use thiserror::Error;
 
 use super::flat::FlatMap;
 use super::gaussian::GaussianMap;
 use super::grating::GratingMap;
-use super::quasi_conformal::QuasiConformalMap;
+use super::quasi_conformal::{MOST_WIDTHS, QuasiConformalMap};
 use crate::lanes::ComplexLanes;
 
 mod inversion;
 
 /// Value and derivatives of a conformal map at one virtual point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapJet {
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MapJet<C = Complex64> {
     /// f(ζ) = x + iy, cm.
-    pub f: Complex64,
+    pub f: C,
     /// f'(ζ).
-    pub f1: Complex64,
+    pub f1: C,
     /// f''(ζ), 1/cm.
-    pub f2: Complex64,
+    pub f2: C,
 }
 
 impl MapJet {
@@ -34,15 +35,7 @@ impl MapJet {
 }
 
 /// Value and derivatives at four virtual points.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct JetLanes<S: Simd> {
-    /// f(ζ).
-    pub f: ComplexLanes<S>,
-    /// f'(ζ).
-    pub f1: ComplexLanes<S>,
-    /// f''(ζ).
-    pub f2: ComplexLanes<S>,
-}
+pub(crate) type JetLanes<S> = MapJet<ComplexLanes<S>>;
 
 /// A map that can be evaluated at four points at once. What is not used of the jets is not computed.
 pub(crate) trait LaneMap {
@@ -85,27 +78,73 @@ pub enum ConformalMap {
     Flat(FlatMap),
 }
 
-impl From<GaussianMap> for ConformalMap {
-    fn from(map: GaussianMap) -> Self {
-        Self::Gaussian(map)
-    }
+/// Why there is no such map.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ConformalMapError {
+    /// A length is not a finite positive number.
+    #[error("the {name} of a {map} must be a finite positive length, not {value}")]
+    Length {
+        /// Which map it was to be.
+        map: &'static str,
+        /// Which length.
+        name: &'static str,
+        /// What it was, cm.
+        value: f64,
+    },
+    /// The floor is so steep that the map folds over.
+    #[error("a {map} needs {limit}, not {ratio}")]
+    Folds {
+        /// Which map it was to be.
+        map: &'static str,
+        /// What must hold.
+        limit: &'static str,
+        /// The ratio that does not keep to it.
+        ratio: f64,
+    },
+    /// The bump does not fit into the box.
+    #[error("the bump is {width} cm wide; it must fit into the device, {box_width} cm")]
+    TooWide {
+        /// w, cm.
+        width: f64,
+        /// 2A, cm.
+        box_width: f64,
+    },
+    /// The bump is so narrow that its map would take too many terms.
+    #[error(
+        "the bump is {width} cm wide; it must be at least {least} cm, 1/{MOST_WIDTHS} of the device"
+    )]
+    TooNarrow {
+        /// w, cm.
+        width: f64,
+        /// The least w, cm.
+        least: f64,
+    },
+    /// The bump reaches the top of the box.
+    #[error("the bump is {height} cm high; it must be lower than the device, {box_height} cm")]
+    TooHigh {
+        /// h, cm.
+        height: f64,
+        /// H, cm.
+        box_height: f64,
+    },
+    /// The bump is too steep for the map to be found.
+    #[error(
+        "the bump is too steep: h/w is {ratio}, and no map of it was found; below 0.5 there is one"
+    )]
+    TooSteep {
+        /// h/w.
+        ratio: f64,
+    },
 }
 
-impl From<GratingMap> for ConformalMap {
-    fn from(map: GratingMap) -> Self {
-        Self::Grating(map)
-    }
-}
-
-impl From<QuasiConformalMap> for ConformalMap {
-    fn from(map: QuasiConformalMap) -> Self {
-        Self::QuasiConformal(map)
-    }
-}
-
-impl From<FlatMap> for ConformalMap {
-    fn from(map: FlatMap) -> Self {
-        Self::Flat(map)
+impl ConformalMapError {
+    /// If one of some named values is no finite positive length.
+    pub(super) fn unless_lengths(
+        map: &'static str,
+        lengths: &[(&'static str, f64)],
+    ) -> Result<(), Self> {
+        let wrong = lengths.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0));
+        wrong.map_or(Ok(()), |&(name, value)| Err(Self::Length { map, name, value }))
     }
 }
 
@@ -126,10 +165,10 @@ impl ConformalMap {
     #[must_use]
     pub fn scale(&self) -> f64 {
         match self {
-            Self::Gaussian(map) => map.width(),
+            Self::Gaussian(map) => map.width,
             Self::Grating(map) => map.scale(),
             Self::QuasiConformal(map) => map.scale(),
-            Self::Flat(map) => map.scale(),
+            Self::Flat(map) => map.scale,
         }
     }
 
@@ -159,7 +198,7 @@ impl ConformalMap {
             Self::Gaussian(map) => map.height(),
             Self::Grating(map) => map.height(),
             Self::QuasiConformal(map) => map.peak(),
-            Self::Flat(map) => map.level(),
+            Self::Flat(map) => map.level,
         }
     }
 
@@ -169,7 +208,7 @@ impl ConformalMap {
         match self {
             Self::Gaussian(_) | Self::QuasiConformal(_) => 0.0,
             Self::Grating(map) => -map.height(),
-            Self::Flat(map) => map.level(),
+            Self::Flat(map) => map.level,
         }
     }
 
@@ -178,7 +217,7 @@ impl ConformalMap {
     pub fn level(&self) -> f64 {
         match self {
             Self::Gaussian(_) | Self::Grating(_) | Self::QuasiConformal(_) => 0.0,
-            Self::Flat(map) => map.level(),
+            Self::Flat(map) => map.level,
         }
     }
 
@@ -200,7 +239,7 @@ impl ConformalMap {
             Self::Gaussian(map) => map.floor_height_at(x),
             Self::Grating(map) => map.floor_height_at(x),
             Self::QuasiConformal(map) => map.floor_height_at(x),
-            Self::Flat(map) => map.level(),
+            Self::Flat(map) => map.level,
         }
     }
 
@@ -273,7 +312,7 @@ impl ConformalMap {
             Self::Gaussian(map) => map.area_from_middle_to(x),
             Self::Grating(map) => map.area_from_middle_to(x),
             Self::QuasiConformal(map) => map.area_from_middle_to(x),
-            Self::Flat(map) => map.level() * x,
+            Self::Flat(map) => map.level * x,
         };
         from_middle(cut.x_max) - from_middle(cut.x_min)
     }
@@ -291,14 +330,16 @@ impl ConformalMap {
         };
         let index = |zeta: Complex64| self.jet(zeta).stretch().recip();
         let samples = samples_over((cut.x_max - cut.x_min).max(cut.y_max) / self.scale());
-        let floor = |s: f64| Some(index(between(start, end, s).into()));
-        let left = |s: f64| side(cut.x_min, s).map(index);
-        let right = |s: f64| side(cut.x_max, s).map(index);
-        let top = |s: f64| {
-            self.invert(Complex64::new(between(cut.x_min, cut.x_max, s), cut.y_max)).map(index)
-        };
-        let over = |index: &dyn Fn(f64) -> Option<f64>| range_over(samples, index);
-        [over(&floor), over(&left), over(&right), over(&top)]
+        let border: [&dyn Fn(f64) -> Option<f64>; 4] = [
+            &|s| Some(index(between(start, end, s).into())),
+            &|s| side(cut.x_min, s).map(index),
+            &|s| side(cut.x_max, s).map(index),
+            &|s| {
+                self.invert(Complex64::new(between(cut.x_min, cut.x_max, s), cut.y_max)).map(index)
+            },
+        ];
+        border
+            .map(|side| range_over(samples, side))
             .into_iter()
             .fold((f64::INFINITY, 0.0), |a, b| (b.0.min(a.0), b.1.max(a.1)))
     }
@@ -325,11 +366,7 @@ fn range_over(samples: u32, function: &dyn Fn(f64) -> Option<f64>) -> (f64, f64)
         // Shortening the bracket by thirds narrows it below the flatness of an extremum.
         for _ in 0..50 {
             let (p, q) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
-            if value(p) < value(q) {
-                b = q;
-            } else {
-                a = p;
-            }
+            if value(p) < value(q) { b = q } else { a = p }
         }
         sign * value(0.5 * (a + b)).min(least)
     };

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use pulp::Simd;
 
 use super::conformal::{JetLanes, LaneMap, MapJet};
-use crate::lanes::{ComplexLanes, Lanes};
+use crate::lanes::ComplexLanes;
 
 /// The map f(ζ) = ζ + i y0 of the upper half plane: a flat floor at the height y0.
 ///
@@ -12,8 +12,10 @@ use crate::lanes::{ComplexLanes, Lanes};
 /// [`IndexPerturbation`](crate::propagation::IndexPerturbation).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatMap {
-    level: f64,
-    scale: f64,
+    /// y0, cm.
+    pub(super) level: f64,
+    /// The length over which the medium varies, cm.
+    pub(super) scale: f64,
 }
 
 impl FlatMap {
@@ -21,21 +23,6 @@ impl FlatMap {
     #[must_use]
     pub fn new(level: f64, scale: f64) -> Self {
         Self { level, scale }
-    }
-
-    /// The height y of the floor, cm.
-    #[must_use]
-    pub fn level(&self) -> f64 {
-        self.level
-    }
-
-    pub(super) fn scale(&self) -> f64 {
-        self.scale
-    }
-
-    /// The virtual point of a physical one (cm).
-    pub(super) fn inverse(&self, z: Complex64) -> Complex64 {
-        z - Complex64::new(0.0, self.level)
     }
 
     /// Value and derivatives at a virtual point (cm).
@@ -50,8 +37,7 @@ impl FlatMap {
 impl LaneMap for FlatMap {
     #[inline(always)]
     fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S> {
-        let real = |value: f64| ComplexLanes { re: zeta.re.all(value), im: zeta.re.all(0.0) };
-        let raised: Lanes<S> = zeta.im + zeta.im.all(self.level);
-        JetLanes { f: ComplexLanes { im: raised, ..zeta }, f1: real(1.0), f2: real(0.0) }
+        let im = zeta.im + zeta.im.all(self.level);
+        JetLanes { f: ComplexLanes { im, ..zeta }, f1: zeta.real(1.0), f2: zeta.real(0.0) }
     }
 }

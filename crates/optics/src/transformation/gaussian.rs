@@ -4,9 +4,8 @@ use std::f64::consts::{FRAC_2_SQRT_PI, PI};
 
 use num_complex::Complex64;
 use pulp::Simd;
-use thiserror::Error;
 
-use super::conformal::{JetLanes, LaneMap, MapJet};
+use super::conformal::{ConformalMapError, JetLanes, LaneMap, MapJet};
 use super::faddeeva::{faddeeva, faddeeva_jet, faddeeva_lanes};
 use super::monotone_root::root_between;
 use crate::lanes::ComplexLanes;
@@ -18,28 +17,10 @@ use crate::lanes::ComplexLanes;
 /// (2010); design (iv) of Halimeh & Wegener, Opt. Express 21, 9457 (2013).)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussianMap {
-    width: f64,
+    /// w, cm.
+    pub(super) width: f64,
     height: f64,
     inverse_width: f64,
-}
-
-/// Why there is no such [`GaussianMap`].
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum GaussianMapError {
-    /// A length is not a finite positive number.
-    #[error("the {name} of a Gaussian map must be a finite positive length, not {value}")]
-    Length {
-        /// Which length.
-        name: &'static str,
-        /// What it was, cm.
-        value: f64,
-    },
-    /// The bump is so high that the map folds over.
-    #[error("a Gaussian map needs h/w < sqrt(pi)/2 = 0.886, not {ratio}")]
-    TooSteep {
-        /// h/w.
-        ratio: f64,
-    },
 }
 
 impl GaussianMap {
@@ -48,25 +29,19 @@ impl GaussianMap {
     /// # Errors
     ///
     /// If a length is not finite and positive, or the bump too steep.
-    pub fn new(w: f64, h: f64) -> Result<Self, GaussianMapError> {
-        for (name, value) in [("width w", w), ("height h", h)] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(GaussianMapError::Length { name, value });
-            }
-        }
+    pub fn new(w: f64, h: f64) -> Result<Self, ConformalMapError> {
+        ConformalMapError::unless_lengths("Gaussian map", &[("width w", w), ("height h", h)])?;
         let inverse_width = w.recip();
         let ratio = h / w;
         if ratio < PI.sqrt() / 2.0 && inverse_width.is_normal() {
             Ok(Self { width: w, height: h, inverse_width })
         } else {
-            Err(GaussianMapError::TooSteep { ratio })
+            Err(ConformalMapError::Folds {
+                map: "Gaussian map",
+                limit: "h/w < sqrt(pi)/2 = 0.886",
+                ratio,
+            })
         }
-    }
-
-    /// w, cm.
-    #[must_use]
-    pub fn width(&self) -> f64 {
-        self.width
     }
 
     /// h, cm: the height of the metal above Y = 0 in the middle.
@@ -79,13 +54,13 @@ impl GaussianMap {
     #[inline]
     #[must_use]
     pub fn jet(&self, zeta: Complex64) -> MapJet {
-        let jet = faddeeva_jet(zeta * self.inverse_width);
+        let [w, w1, w2] = faddeeva_jet(zeta * self.inverse_width);
         let times_i = |c: Complex64, factor: f64| Complex64::new(-factor * c.im, factor * c.re);
         let slope = self.height * self.inverse_width;
         MapJet {
-            f: zeta + times_i(jet.w, self.height),
-            f1: 1.0 + times_i(jet.w1, slope),
-            f2: times_i(jet.w2, slope * self.inverse_width),
+            f: zeta + times_i(w, self.height),
+            f1: 1.0 + times_i(w1, slope),
+            f2: times_i(w2, slope * self.inverse_width),
         }
     }
 

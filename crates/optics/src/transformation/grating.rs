@@ -4,9 +4,8 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 use pulp::Simd;
-use thiserror::Error;
 
-use super::conformal::{JetLanes, LaneMap, MapJet};
+use super::conformal::{ConformalMapError, JetLanes, LaneMap, MapJet};
 use super::monotone_root::root_between;
 use crate::lanes::ComplexLanes;
 
@@ -21,25 +20,6 @@ pub struct GratingMap {
     wave_number: f64,
 }
 
-/// Why there is no such [`GratingMap`].
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum GratingMapError {
-    /// A length is not a finite positive number.
-    #[error("the {name} of a grating must be a finite positive length, not {value}")]
-    Length {
-        /// Which length.
-        name: &'static str,
-        /// What it was, cm.
-        value: f64,
-    },
-    /// The grating is so high that the map folds over.
-    #[error("a grating needs 2 pi h/period < 1, not {ratio}")]
-    TooSteep {
-        /// hk.
-        ratio: f64,
-    },
-}
-
 impl GratingMap {
     /// The map of the given `period` Λ that swings by `h` up and down, both in cm. It is one to one for
     /// hk < 1.
@@ -47,18 +27,14 @@ impl GratingMap {
     /// # Errors
     ///
     /// If a length is not finite and positive, or the grating too steep.
-    pub fn new(period: f64, h: f64) -> Result<Self, GratingMapError> {
-        for (name, value) in [("period", period), ("height h", h)] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(GratingMapError::Length { name, value });
-            }
-        }
+    pub fn new(period: f64, h: f64) -> Result<Self, ConformalMapError> {
+        ConformalMapError::unless_lengths("grating", &[("period", period), ("height h", h)])?;
         let wave_number = TAU / period;
         let ratio = h * wave_number;
         if ratio < 1.0 && wave_number.is_normal() {
             Ok(Self { height: h, wave_number })
         } else {
-            Err(GratingMapError::TooSteep { ratio })
+            Err(ConformalMapError::Folds { map: "grating", limit: "2 pi h/period < 1", ratio })
         }
     }
 
@@ -151,11 +127,7 @@ impl GratingMap {
 impl LaneMap for GratingMap {
     #[inline(always)]
     fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S> {
-        let waves = zeta.values().map(|zeta| self.wave(zeta));
-        let wave = ComplexLanes {
-            re: zeta.re.with(waves.map(|wave| wave.re)),
-            im: zeta.re.with(waves.map(|wave| wave.im)),
-        };
+        let wave = zeta.with(zeta.values().map(|zeta| self.wave(zeta)));
         let (k, slope) = (self.wave_number, self.height * self.wave_number);
         let f1 = -(wave * slope);
         JetLanes {
@@ -206,10 +178,10 @@ mod tests {
     fn index_goes_from_trough_to_crest() {
         let grating = map(20.0, 0.47);
         let cut = Truncation::centred(60.0, 28.57);
-        let (least, largest) = ConformalMap::from(grating).index_range(&cut);
+        let (least, largest) = ConformalMap::Grating(grating).index_range(&cut);
         assert!((least - 1.0 / 1.47).abs() < 1e-12 && (largest - 1.0 / 0.53).abs() < 1e-12);
         // Hundreds of periods miss neither.
-        let (least, largest) = ConformalMap::from(map(0.2, 0.47)).index_range(&cut);
+        let (least, largest) = ConformalMap::Grating(map(0.2, 0.47)).index_range(&cut);
         assert!((least - 1.0 / 1.47).abs() < 1e-9 && (largest - 1.0 / 0.53).abs() < 1e-9);
     }
 
@@ -228,9 +200,9 @@ mod tests {
     #[test]
     fn refuses_what_is_not_a_map() {
         for (period, h) in [(0.0, 1.0), (1.0, 0.0), (-1.0, 0.1), (f64::NAN, 1.0), (1.0, f64::NAN)] {
-            assert!(matches!(GratingMap::new(period, h), Err(GratingMapError::Length { .. })));
+            assert!(matches!(GratingMap::new(period, h), Err(ConformalMapError::Length { .. })));
         }
-        assert!(matches!(GratingMap::new(TAU, 1.0), Err(GratingMapError::TooSteep { .. })));
+        assert!(matches!(GratingMap::new(TAU, 1.0), Err(ConformalMapError::Folds { .. })));
         assert!(GratingMap::new(TAU, 0.999).is_ok());
     }
 
@@ -242,7 +214,7 @@ mod tests {
             let grating = map(period, slope);
             let zeta = period * Complex64::new(x, y);
             let z = grating.jet(zeta).f;
-            let back = ConformalMap::from(grating).invert(z).expect("above the floor");
+            let back = ConformalMap::Grating(grating).invert(z).expect("above the floor");
             // With v = -hk exp(ikζ): v exp(v) = -hk exp(ikz), and ζ = z + iv/k.
             let v = lambert_w(-slope * (Complex64::i() * z * TAU / period).exp());
             let closed = z + Complex64::i() * v * period / TAU;

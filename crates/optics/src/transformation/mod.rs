@@ -10,12 +10,12 @@ mod quasi_conformal;
 mod radial;
 mod strip_to_rhombus;
 
-pub use conformal::{ConformalMap, MapJet, Truncation};
+pub use conformal::{ConformalMap, ConformalMapError, MapJet, Truncation};
 pub(crate) use conformal::{JetLanes, LaneMap};
 pub use flat::FlatMap;
-pub use gaussian::{GaussianMap, GaussianMapError};
-pub use grating::{GratingMap, GratingMapError};
+pub use gaussian::GaussianMap;
+pub use grating::GratingMap;
 pub(crate) use monotone_root::root_in_bracket;
-pub use quasi_conformal::{QuasiConformalMap, QuasiConformalMapError};
+pub use quasi_conformal::QuasiConformalMap;
 pub use radial::{RadialMap, Symmetry};
 pub use strip_to_rhombus::StripToRhombus;

@@ -8,11 +8,10 @@ use std::sync::Arc;
 
 use num_complex::Complex64;
 use pulp::Simd;
-use thiserror::Error;
 
 use self::series::Series;
 use self::table::Table;
-use super::conformal::{JetLanes, LaneMap, MapJet, Truncation};
+use super::conformal::{ConformalMapError, JetLanes, LaneMap, MapJet, Truncation};
 use super::monotone_root::root_between;
 use crate::lanes::ComplexLanes;
 
@@ -55,55 +54,8 @@ impl PartialEq for QuasiConformalMap {
     }
 }
 
-/// Why there is no such [`QuasiConformalMap`].
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum QuasiConformalMapError {
-    /// A length is not a finite positive number.
-    #[error("the {name} of a carpet must be a finite positive length, not {value}")]
-    Length {
-        /// Which length.
-        name: &'static str,
-        /// What it was, cm.
-        value: f64,
-    },
-    /// The bump does not fit into the box.
-    #[error("the bump is {width} cm wide; it must fit into the device, {box_width} cm")]
-    TooWide {
-        /// w, cm.
-        width: f64,
-        /// 2A, cm.
-        box_width: f64,
-    },
-    /// The bump is so narrow that its map would take too many terms.
-    #[error(
-        "the bump is {width} cm wide; it must be at least {least} cm, 1/{MOST_WIDTHS} of the device"
-    )]
-    TooNarrow {
-        /// w, cm.
-        width: f64,
-        /// The least w, cm.
-        least: f64,
-    },
-    /// The bump reaches the top of the box.
-    #[error("the bump is {height} cm high; it must be lower than the device, {box_height} cm")]
-    TooHigh {
-        /// h, cm.
-        height: f64,
-        /// H, cm.
-        box_height: f64,
-    },
-    /// The bump is too steep for the map to be found.
-    #[error(
-        "the bump is too steep: h/w is {ratio}, and no map of it was found; below 0.5 there is one"
-    )]
-    TooSteep {
-        /// h/w.
-        ratio: f64,
-    },
-}
-
 /// The widest box, in widths of the bump.
-const MOST_WIDTHS: f64 = 30.0;
+pub(super) const MOST_WIDTHS: f64 = 30.0;
 
 impl Bump {
     /// The floor as a curve over x, with its derivatives by x.
@@ -134,45 +86,29 @@ impl QuasiConformalMap {
     /// # Errors
     ///
     /// If a length is not finite and positive, or the bump too wide, narrow, high or steep for the device.
-    pub fn new(w: f64, h: f64, cut: &Truncation) -> Result<Self, QuasiConformalMapError> {
+    pub fn new(w: f64, h: f64, cut: &Truncation) -> Result<Self, ConformalMapError> {
         let [half_width, box_height] = [cut.x_max, cut.y_max];
         let lengths =
             [("width w", w), ("height h", h), ("width", half_width), ("height", box_height)];
-        for (name, value) in lengths {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(QuasiConformalMapError::Length { name, value });
-            }
-        }
+        ConformalMapError::unless_lengths("carpet", &lengths)?;
         let box_width = 2.0 * half_width;
         if w > box_width {
-            return Err(QuasiConformalMapError::TooWide { width: w, box_width });
+            return Err(ConformalMapError::TooWide { width: w, box_width });
         }
         if w * MOST_WIDTHS < box_width {
             let least = box_width / MOST_WIDTHS;
-            return Err(QuasiConformalMapError::TooNarrow { width: w, least });
+            return Err(ConformalMapError::TooNarrow { width: w, least });
         }
         if h >= box_height {
-            return Err(QuasiConformalMapError::TooHigh { height: h, box_height });
+            return Err(ConformalMapError::TooHigh { height: h, box_height });
         }
         let bump = Bump { height: h, width: w };
         let series = Series::solve(bump, half_width, box_height)
-            .ok_or(QuasiConformalMapError::TooSteep { ratio: h / w })?;
+            .ok_or(ConformalMapError::TooSteep { ratio: h / w })?;
         let table = Table::new(&series);
         let peak = h.max(table.jet(Complex64::ZERO).f.im);
         let box_size = [half_width, box_height];
         Ok(Self { bump, solved: Arc::new(Solved { box_size, series, table, peak }) })
-    }
-
-    /// h, cm: the height of the bump.
-    #[must_use]
-    pub fn height(&self) -> f64 {
-        self.bump.height
-    }
-
-    /// w, cm: the whole width of the bump.
-    #[must_use]
-    pub fn width(&self) -> f64 {
-        self.bump.width
     }
 
     /// The largest height of the floor of the series, cm.

@@ -18,7 +18,8 @@ pub enum Symmetry {
 pub struct RadialMap {
     inner: f64,
     outer: f64,
-    symmetry: Symmetry,
+    /// What it turns about.
+    pub(crate) symmetry: Symmetry,
 }
 
 /// Closer to the hole than this share of the radius the medium is that of here: at its border the
@@ -43,12 +44,6 @@ impl RadialMap {
     #[must_use]
     pub fn outer(&self) -> f64 {
         self.outer
-    }
-
-    /// What it turns about.
-    #[must_use]
-    pub fn symmetry(&self) -> Symmetry {
-        self.symmetry
     }
 
     /// k = b/(b - a): the virtual lengths along r over the physical ones.

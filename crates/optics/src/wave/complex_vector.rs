@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
-use std::ops::{Add, AddAssign, Mul, Neg, Sub};
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// A complex vector in three dimensions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -110,12 +110,6 @@ impl Add for ComplexVector {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self { re: self.re + other.re, im: self.im + other.im }
-    }
-}
-
-impl AddAssign for ComplexVector {
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
     }
 }
 

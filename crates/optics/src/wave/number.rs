@@ -13,6 +13,8 @@ pub(crate) trait Number:
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
+    + Mul<f64, Output = Self>
+    + Mul<Complex64, Output = Complex64>
     + Div<Output = Self>
     + Neg<Output = Self>
     + AddAssign
@@ -20,17 +22,11 @@ pub(crate) trait Number:
     + From<f64>
     + Into<Complex64>
 {
-    /// The product with a complex number.
-    fn times(self, amplitude: Complex64) -> Complex64;
-
     /// The squared magnitude.
     fn magnitude_squared(self) -> f64;
 
     /// The complex conjugate.
     fn conjugate(self) -> Self;
-
-    /// The product with a real number.
-    fn scaled(self, factor: f64) -> Self;
 
     /// The real part.
     fn real(self) -> f64;
@@ -46,20 +42,12 @@ pub(crate) trait Number:
 }
 
 impl Number for f64 {
-    fn times(self, amplitude: Complex64) -> Complex64 {
-        amplitude * self
-    }
-
     fn magnitude_squared(self) -> f64 {
         self * self
     }
 
     fn conjugate(self) -> Self {
         self
-    }
-
-    fn scaled(self, factor: f64) -> Self {
-        self * factor
     }
 
     fn real(self) -> f64 {
@@ -78,20 +66,12 @@ impl Number for f64 {
 }
 
 impl Number for Complex64 {
-    fn times(self, amplitude: Complex64) -> Complex64 {
-        amplitude * self
-    }
-
     fn magnitude_squared(self) -> f64 {
         self.norm_sqr()
     }
 
     fn conjugate(self) -> Self {
         self.conj()
-    }
-
-    fn scaled(self, factor: f64) -> Self {
-        self * factor
     }
 
     fn real(self) -> f64 {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use optics::geometry::Extent;
 use optics::propagation::{Boundary, ConformalFlow, FlowEnd, Half, VirtualPoint};
-use optics::transformation::{GaussianMap, Truncation};
+use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
 pub const W: f64 = 10.02;
 pub const H: f64 = 4.25;
@@ -11,7 +11,7 @@ pub const CUT: Truncation = Truncation { x_min: -25.0, x_max: 25.0, y_max: 28.57
 
 pub fn flow(extent: Extent, strength: f64) -> ConformalFlow {
     let map = GaussianMap::new(W, H).expect("a valid map");
-    ConformalFlow::new(map.into(), CUT, extent, strength)
+    ConformalFlow::new(ConformalMap::Gaussian(map), CUT, extent, strength)
 }
 
 /// Numbers from 0 to 1, always the same (xorshift).

@@ -157,8 +157,8 @@ pub fn jump(scattering: &Scattering, column: usize, normal: DVec3) -> f64 {
     let mut add = |mode: &Mode, amplitude: num_complex::Complex64| {
         let (e, h) = (mode.electric.scaled(amplitude), mode.magnetic.scaled(amplitude));
         largest = largest.max(norm(e)).max(norm(h));
-        electric += e.crossed_by(normal);
-        magnetic += h.crossed_by(normal);
+        electric = electric + e.crossed_by(normal);
+        magnetic = magnetic + h.crossed_by(normal);
     };
     add(&scattering.incident[column], 1.0.into());
     let amplitude = |row: usize| scattering.amplitudes[row][column];

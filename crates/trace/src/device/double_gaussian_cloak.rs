@@ -70,7 +70,7 @@ impl Device for DoubleGaussianCloak {
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
-        let map = ConformalMap::from(map);
+        let map = ConformalMap::Gaussian(map);
         let extent = Extent::centred(request.length);
         Ok(match request.show {
             Show::Cloak => {
@@ -90,7 +90,7 @@ impl Device for DoubleGaussianCloak {
 
     fn facts(&self) -> Vec<Fact> {
         let Ok((gaussian, cut)) = self.parts() else { return Vec::new() };
-        let map = ConformalMap::from(gaussian);
+        let map = ConformalMap::Gaussian(gaussian);
         let c = self.strength(&map, &cut);
         let areas = [
             Fact::number("cloaked_area_cm2", 2.0 * gaussian.area()),

@@ -37,12 +37,12 @@ impl Device for GaussianCarpet {
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
-        Ok(carpet::structure(map.into(), cut, 1.0, self.floor, request))
+        Ok(carpet::structure(ConformalMap::Gaussian(map), cut, 1.0, self.floor, request))
     }
 
     fn facts(&self) -> Vec<Fact> {
         let Ok((gaussian, cut)) = self.parts() else { return Vec::new() };
-        let map = ConformalMap::from(gaussian);
+        let map = ConformalMap::Gaussian(gaussian);
         let areas = [
             Fact::number("cloaked_area_cm2", gaussian.area()),
             Fact::number("cloaked_area_within_cut_cm2", map.area_within(&cut)),

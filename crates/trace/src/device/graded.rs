@@ -111,7 +111,7 @@ impl Site {
         // Beyond a round border, its box is not there.
         let margin = if self.rim.is_some() { 1.5 } else { 1.0 };
         let cut = Truncation { x_min: -margin * x, x_max: margin * x, y_max: margin * y };
-        let map = ConformalMap::from(FlatMap::new(-margin * y, VARIES * (2.0 * x.max(y))));
+        let map = ConformalMap::Flat(FlatMap::new(-margin * y, VARIES * (2.0 * x.max(y))));
         let reach = |[nearest, farthest]: [f64; 2]| {
             self.core.is_none_or(|core| farthest >= core)
                 && self.rim.is_none_or(|rim| nearest <= rim)

@@ -52,12 +52,12 @@ impl Device for GratingCarpet {
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
-        Ok(carpet::structure(map.into(), cut, 1.0, self.floor, request))
+        Ok(carpet::structure(ConformalMap::Grating(map), cut, 1.0, self.floor, request))
     }
 
     fn facts(&self) -> Vec<Fact> {
         let Ok((grating, cut)) = self.parts() else { return Vec::new() };
         let area = Fact::number("cloaked_area_per_period_cm2", grating.area_of_a_period());
-        carpet::facts(&ConformalMap::from(grating), &cut, 1.0, &[area])
+        carpet::facts(&ConformalMap::Grating(grating), &cut, 1.0, &[area])
     }
 }

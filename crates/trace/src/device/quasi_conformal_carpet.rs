@@ -7,7 +7,7 @@
 use super::{Device, Fact, Request, Structure, carpet};
 use crate::key;
 use crate::keys::{KeyError, Limits};
-use optics::transformation::{ConformalMap, QuasiConformalMap, QuasiConformalMapError, Truncation};
+use optics::transformation::{ConformalMap, ConformalMapError, QuasiConformalMap, Truncation};
 
 crate::table! {
     /// Hides a bump of a mirror floor, h cos^2(pi x/w), below a locally isotropic graded index, from the
@@ -31,8 +31,7 @@ impl QuasiConformalCarpet {
         let cut = carpet::cut([self.width, self.height], self.floor, self.h)?;
         let map = QuasiConformalMap::new(self.w, self.h, &cut).map_err(|error| {
             let key = match error {
-                QuasiConformalMapError::TooWide { .. }
-                | QuasiConformalMapError::TooNarrow { .. } => {
+                ConformalMapError::TooWide { .. } | ConformalMapError::TooNarrow { .. } => {
                     key!(Self.w)
                 }
                 _ => key!(Self.h),
@@ -50,14 +49,14 @@ impl Device for QuasiConformalCarpet {
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
         let strength = map.strength();
-        Ok(carpet::structure(map.into(), cut, strength, self.floor, request))
+        Ok(carpet::structure(ConformalMap::QuasiConformal(map), cut, strength, self.floor, request))
     }
 
     fn facts(&self) -> Vec<Fact> {
         let Ok((quasi_conformal, cut)) = self.parts() else { return Vec::new() };
         let c = quasi_conformal.strength();
         let anisotropy = quasi_conformal.anisotropy();
-        let map = ConformalMap::from(quasi_conformal);
+        let map = ConformalMap::QuasiConformal(quasi_conformal);
         let own = [
             Fact::number("neglected_anisotropy", anisotropy),
             Fact::number("cloaked_area_cm2", map.area_within(&cut)),

@@ -4,7 +4,7 @@ use super::*;
 use crate::transformation::GaussianMap;
 
 fn map(w: f64, h: f64) -> ConformalMap {
-    GaussianMap::new(w, h).expect("a valid map").into()
+    ConformalMap::Gaussian(GaussianMap::new(w, h).expect("a valid map"))
 }
 
 /// The first entry into the metal by walking: slow, and blind to what is thinner than a step.

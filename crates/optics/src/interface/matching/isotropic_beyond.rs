@@ -1,8 +1,8 @@
 //! From a medium of two waves into an isotropic one, where H follows from E: two unknowns instead of four.
 
-use super::{Incident, Scattered, Shares, fluxes};
+use super::{Incident, Scattered, Shares, cancelling, fluxes};
 use crate::interface::Side;
-use crate::interface::isotropic::{Layer, Outgoing, flux};
+use crate::interface::isotropic::{Layer, flux};
 use crate::medium::LocalMode;
 use crate::wave::Number;
 use num_complex::Complex64;
@@ -13,18 +13,14 @@ impl<const N: usize> Scattered<'_, N> {
         &mut self,
         incident: &[Incident<'_, f64, N>],
         backward: &[LocalMode<f64>; 2],
-        along: f64,
         layer: Layer,
     ) {
-        let (onward, amplitudes) = match layer.decay() {
-            Some(decay) => {
-                let q = Complex64::new(0.0, decay);
-                (None, self.reflected(incident, backward, layer, q))
-            }
-            None => {
-                let q = layer.forward();
-                (Some(q), self.reflected(incident, backward, layer, q))
-            }
+        let (onward, amplitudes) = if let Some(decay) = layer.decay() {
+            let q = Complex64::new(0.0, decay);
+            (None, self.reflected(incident, backward, layer, q))
+        } else {
+            let q = layer.forward();
+            (Some(q), self.reflected(incident, backward, layer, q))
         };
         let back = fluxes(Side::Reflected, backward, [&amplitudes[0], &amplitudes[1]], false);
         let fields: [[Complex64; 2]; N] = std::array::from_fn(|i| {
@@ -39,14 +35,14 @@ impl<const N: usize> Scattered<'_, N> {
         let on = onward.map_or([0.0; N], |q| fields.map(|field| flux(layer.fluxes(q), field)));
         // Over the sum, not over the incident flux: the same, but for rounding near grazing incidence.
         let total: [f64; N] = std::array::from_fn(|i| back[0][i] + back[1][i] + on[i]);
-        let shares = Shares::of(self.wave.power, total);
+        let shares = Shares::of(self.splitting.wave.power, total);
         let amplitudes = [&amplitudes[0], &amplitudes[1]];
         self.one_side(Side::Reflected, backward, amplitudes, &back, &shares);
         let Some(q) = onward else { return };
         let power: [f64; N] = std::array::from_fn(|i| on[i] * shares.power[i]);
         if self.is_strong(power) {
-            let outgoing = Outgoing { wave: self.wave, frame: *self.frame, along };
-            self.waves.push(outgoing.wave(Side::Transmitted, layer, q, &fields, &on, &total));
+            let wave = layer.wave(&self.splitting, Side::Transmitted, q, &fields, [on, total]);
+            self.splitting.waves.push(wave);
         }
     }
 
@@ -59,22 +55,18 @@ impl<const N: usize> Scattered<'_, N> {
         layer: Layer,
         q: T,
     ) -> [[Complex64; N]; 2] {
-        let (ratio, permittivity) = (q.scaled(layer.permeability.recip()), layer.permittivity);
+        let (ratio, permittivity) = (q * layer.permeability.recip(), layer.permittivity);
         let misfit = |mode: &LocalMode<f64>| {
             let ([e0, e1, _], [h0, h1, _]) = (mode.electric, mode.magnetic);
-            [T::from(h0) + ratio.scaled(e1), q.scaled(h1) - T::from(permittivity * e0)]
+            [T::from(h0) + ratio * e1, q * h1 - T::from(permittivity * e0)]
         };
-        let ([a, c], [b, d]) = (misfit(r1), misfit(r2));
-        let determinant = a * d - b * c;
-        let least = determinant.magnitude_squared() < 1e-60;
-        let inverse = T::from(1.0) / if least { T::from(1e-30) } else { determinant };
+        let cancelling = cancelling(misfit(r1), misfit(r2));
         let mut amplitudes = [[Complex64::ZERO; N]; 2];
         for (mode, parts) in incident {
-            let [x, y] = misfit(mode);
-            let with = [inverse * (b * y - d * x), inverse * (c * x - a * y)];
+            let with = cancelling(misfit(mode));
             for (sum, with) in amplitudes.iter_mut().zip(with) {
                 for (sum, part) in sum.iter_mut().zip(parts) {
-                    *sum += with.times(*part);
+                    *sum += with * *part;
                 }
             }
         }

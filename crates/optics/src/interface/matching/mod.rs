@@ -3,9 +3,10 @@
 mod isotropic_beyond;
 
 use super::isotropic::Layer;
-use super::{IncidentWave, OutgoingWave, OutgoingWaves, Side};
-use crate::medium::{BOTH_MODES, LocalMode, Medium, ModeKind, Tangential, mutual_flux};
-use crate::wave::{ComplexVector, Frame, Number, solve};
+use super::splitting::Splitting;
+use super::{OutgoingWave, Side};
+use crate::medium::{BOTH_MODES, LocalMode, LocalModes, Medium, ModeKind, Tangential, mutual_flux};
+use crate::wave::{ComplexVector, Number, solve};
 use arrayvec::ArrayVec;
 use glam::DVec3;
 use num_complex::Complex64;
@@ -13,56 +14,47 @@ use num_complex::Complex64;
 /// Normal components closer than this are those of one wave, that both modes are.
 const ONE_WAVE: f64 = 1e-12;
 
-/// Splits a wave at the interface of any two media, or at a conductor: adds the outgoing waves of at least
-/// `least_power` to `waves`; the power of the others.
+/// Splits a wave at the interface of any two media, or at a conductor: adds the outgoing waves that are strong enough;
+/// the power of the others.
 pub(super) fn split_into_modes<const N: usize>(
     incident_medium: &Medium,
     transmitted_medium: Option<&Medium>,
-    wave: &IncidentWave<N>,
-    normal: DVec3,
-    least_power: f64,
-    waves: &mut OutgoingWaves<N>,
+    splitting: Splitting<'_, N>,
 ) -> [f64; N] {
-    let normal_component = wave.wave_vector.dot(normal);
-    let across = wave.wave_vector - normal * normal_component;
-    let frame = Frame::new(normal, across);
+    let Splitting { wave, frame, along, .. } = splitting;
+    let normal_component = wave.wave_vector.dot(frame.normal);
     let tangential = if wave.attenuation == DVec3::ZERO {
-        Tangential::Real(across.dot(frame.first))
+        Tangential::Real(along)
     } else {
         let decay = [wave.attenuation.dot(frame.first), wave.attenuation.dot(frame.second)];
-        Tangential::Complex([
-            Complex64::new(across.dot(frame.first), decay[0]),
-            Complex64::new(0.0, decay[1]),
-        ])
+        Tangential::Complex([Complex64::new(along, decay[0]), Complex64::new(0.0, decay[1])])
     };
     // Modes are large, and stay where they are made.
     let (arriving, backward) =
         &incident_medium.arriving_and_back(&frame, tangential, normal_component);
-    let mut scattered =
-        Scattered { wave, frame: &frame, tangential, least_power, waves, weak: [0.0; N] };
+    let mut scattered = Scattered { splitting, tangential, weak: [0.0; N] };
+    let arriving_real = arriving.real().zip(backward.real());
     if let (Some(medium), Tangential::Real(along)) =
         (transmitted_medium.and_then(Medium::scalars), tangential)
-        && let (Some(arriving), Some(backward)) = (arriving.real(), backward.real())
+        && let Some((arriving, backward)) = arriving_real
         && !incident_medium.absorbs()
     {
         let incident = scattered.incident(arriving, normal_component);
-        scattered.match_isotropic(&incident, backward, along, Layer::new(medium, along));
+        scattered.match_isotropic(&incident, backward, Layer::new(medium, along));
         return scattered.weak;
     }
     let onward = &transmitted_medium.map(|medium| medium.onward(&frame, tangential));
-    let absorbs = |medium: Option<&Medium>| medium.is_some_and(Medium::absorbs);
-    let absorbing = [incident_medium.absorbs(), absorbs(transmitted_medium)];
-    let onward_real = onward.as_ref().map(|onward| onward.real());
-    match (arriving.real(), backward.real(), onward_real) {
-        (Some(arriving), Some(backward), None) => {
-            scattered.scatter(arriving, backward, None, normal_component, absorbing);
-        }
-        (Some(arriving), Some(backward), Some(Some(onward))) => {
-            scattered.scatter(arriving, backward, Some(onward), normal_component, absorbing);
+    let absorbing = [Some(incident_medium), transmitted_medium]
+        .map(|medium| medium.is_some_and(Medium::absorbs));
+    let onward_real = onward.as_ref().map(LocalModes::real);
+    match (arriving_real, onward_real) {
+        (Some((arriving, backward)), None | Some(Some(_))) => {
+            let onward = onward_real.flatten();
+            scattered.scatter(arriving, backward, onward, normal_component, absorbing);
         }
         _ => {
             let (arriving, backward) = (arriving.complex(), backward.complex());
-            let onward = onward.as_ref().map(|onward| onward.complex());
+            let onward = onward.as_ref().map(LocalModes::complex);
             let onward = onward.as_ref();
             scattered.scatter(&arriving, &backward, onward, normal_component, absorbing);
         }
@@ -77,50 +69,34 @@ pub(super) fn amplitudes<T: Number, const R: usize>(
     reflected: &[LocalMode<T>; 2],
     transmitted: Option<&[LocalMode<T>; 2]>,
 ) -> [[T; R]; 4] {
-    let [r1, r2] = reflected;
-    let Some([t1, t2]) = transmitted else {
-        return conductor_amplitudes(incident, reflected);
+    let fields = |mode: &LocalMode<T>| {
+        let ([e0, e1, _], [h0, h1, _]) = (mode.electric, mode.magnetic);
+        [e0, e1, h0, h1]
     };
-    let matrix = [
-        [r1.electric[0], r2.electric[0], -t1.electric[0], -t2.electric[0]],
-        [r1.electric[1], r2.electric[1], -t1.electric[1], -t2.electric[1]],
-        [r1.magnetic[0], r2.magnetic[0], -t1.magnetic[0], -t2.magnetic[0]],
-        [r1.magnetic[1], r2.magnetic[1], -t1.magnetic[1], -t2.magnetic[1]],
-    ];
-    let right = [
-        incident.map(|mode| -mode.electric[0]),
-        incident.map(|mode| -mode.electric[1]),
-        incident.map(|mode| -mode.magnetic[0]),
-        incident.map(|mode| -mode.magnetic[1]),
-    ];
-    solve(matrix, right)
+    let incident = incident.map(fields);
+    let [r1, r2] = reflected.each_ref().map(fields);
+    let Some([t1, t2]) = transmitted.map(|modes| modes.each_ref().map(fields)) else {
+        let cancelling = cancelling([r1[0], r1[1]], [r2[0], r2[1]]);
+        let pairs = incident.map(|[e0, e1, ..]| cancelling([e0, e1]));
+        let zero = [T::from(0.0); R];
+        return [pairs.map(|[one, _]| one), pairs.map(|[_, two]| two), zero, zero];
+    };
+    let matrix = std::array::from_fn(|i| [r1[i], r2[i], -t1[i], -t2[i]]);
+    solve(matrix, std::array::from_fn(|i| incident.map(|fields| -fields[i])))
 }
 
-fn conductor_amplitudes<T: Number, const R: usize>(
-    incident: [&LocalMode<T>; R],
-    [r1, r2]: &[LocalMode<T>; 2],
-) -> [[T; R]; 4] {
-    let ([a, c, _], [b, d, _]) = (r1.electric, r2.electric);
+/// The amplitudes of two pairs [a, c] and [b, d] that make a third one vanish in the sum.
+fn cancelling<T: Number>([a, c]: [T; 2], [b, d]: [T; 2]) -> impl Fn([T; 2]) -> [T; 2] {
     let determinant = a * d - b * c;
-    let scale = if determinant.magnitude_squared() < 1e-60 { T::from(1e-30) } else { determinant };
-    let inverse = T::from(1.0) / scale;
-    let right = [incident.map(|mode| mode.electric[0]), incident.map(|mode| mode.electric[1])];
-    let zero = [T::from(0.0); R];
-    [
-        std::array::from_fn(|i| inverse * (b * right[1][i] - d * right[0][i])),
-        std::array::from_fn(|i| inverse * (c * right[0][i] - a * right[1][i])),
-        zero,
-        zero,
-    ]
+    let least = determinant.magnitude_squared() < 1e-60;
+    let inverse = T::from(1.0) / if least { T::from(1e-30) } else { determinant };
+    move |[x, y]| [inverse * (b * y - d * x), inverse * (c * x - a * y)]
 }
 
 /// A wave being scattered.
 struct Scattered<'a, const N: usize> {
-    wave: &'a IncidentWave<N>,
-    frame: &'a Frame,
+    splitting: Splitting<'a, N>,
     tangential: Tangential,
-    least_power: f64,
-    waves: &'a mut OutgoingWaves<N>,
     /// The power of the waves that are too weak.
     weak: [f64; N],
 }
@@ -131,7 +107,7 @@ type Incident<'m, T, const N: usize> = (&'m LocalMode<T>, [Complex64; N]);
 /// The normal fluxes of both modes on one side, for each launched polarization.
 type Fluxes<const N: usize> = [[f64; N]; 2];
 
-/// What turns outgoing fluxes into powers, and matched fields into those of rays.
+/// What turns outgoing fluxes into powers, and matched fields into those of rays but for the length of the Poynting vector.
 struct Shares<const N: usize> {
     power: [f64; N],
     /// Their square roots.
@@ -143,13 +119,6 @@ impl<const N: usize> Shares<N> {
     fn of(power: [f64; N], total: [f64; N]) -> Self {
         let power = std::array::from_fn(|i| if total[i] > 0.0 { power[i] / total[i] } else { 0.0 });
         Self { power, field: power.map(f64::sqrt) }
-    }
-
-    /// What turns matched fields into those of rays, given the length of the Poynting vector of a unit of normal
-    /// flux: the fields of a ray are scaled to its power instead.
-    fn of_rays(&self, poynting: f64) -> [f64; N] {
-        let narrowing = poynting.sqrt().recip();
-        self.field.map(|field| field * narrowing)
     }
 }
 
@@ -178,10 +147,10 @@ impl<const N: usize> Scattered<'_, N> {
             [mode] => mode,
             _ => return ArrayVec::new(),
         };
-        let field = mode.electric_in_world(self.frame);
+        let field = self.splitting.frame.complex_vector(mode.electric);
         let conjugate = field.conj();
         let scale = 1.0 / field.norm_squared();
-        let parts = self.wave.electric.map(|electric| conjugate.dot(electric) * scale);
+        let parts = self.splitting.wave.electric.map(|electric| conjugate.dot(electric) * scale);
         std::iter::once((mode, parts)).collect()
     }
 
@@ -198,47 +167,38 @@ impl<const N: usize> Scattered<'_, N> {
             [(a, in_a), (b, in_b)] => {
                 let with = amplitudes([*a, *b], backward, onward);
                 with.map(|[with_a, with_b]| {
-                    std::array::from_fn(|i| with_a.times(in_a[i]) + with_b.times(in_b[i]))
+                    std::array::from_fn(|i| with_a * in_a[i] + with_b * in_b[i])
                 })
             }
-            [(mode, parts)] => amplitudes([*mode], backward, onward)
-                .map(|[with]| parts.map(|part| with.times(part))),
+            [(mode, parts)] => {
+                amplitudes([*mode], backward, onward).map(|[with]| parts.map(|part| with * part))
+            }
             _ => return,
         };
-        self.collect(backward, onward, &outgoing, absorbing);
-    }
-
-    /// The amplitudes of two modes in the launched fields, by least squares.
-    fn parts<T: Number>(&self, a: &LocalMode<T>, b: &LocalMode<T>) -> [[Complex64; 2]; N] {
-        let [a, b] = [a, b].map(|mode| mode.electric_in_world(self.frame));
-        let (aa, bb, ab) = (a.norm_squared(), b.norm_squared(), a.conj().dot(b));
-        let inverse = 1.0 / (aa * bb - ab.norm_sqr());
-        self.wave.electric.map(|electric| {
-            let (on_a, on_b) = (a.conj().dot(electric), b.conj().dot(electric));
-            [(on_a * bb - ab * on_b) * inverse, (on_b * aa - ab.conj() * on_a) * inverse]
-        })
-    }
-
-    fn collect<T: Number>(
-        &mut self,
-        backward: &[LocalMode<T>; 2],
-        onward: Option<&[LocalMode<T>; 2]>,
-        outgoing: &[[Complex64; N]; 4],
-        [absorbing, absorbing_beyond]: [bool; 2],
-    ) {
-        let [r1, r2, t1, t2] = outgoing;
-        let back = fluxes(Side::Reflected, backward, [r1, r2], absorbing);
+        let [r1, r2, t1, t2] = &outgoing;
+        let back = fluxes(Side::Reflected, backward, [r1, r2], absorbing[0]);
         let on = onward.map_or([[0.0; N]; 2], |onward| {
-            fluxes(Side::Transmitted, onward, [t1, t2], absorbing_beyond)
+            fluxes(Side::Transmitted, onward, [t1, t2], absorbing[1])
         });
         // Over the sum, not over the incident flux: the same in a lossless medium, but for rounding
         // near grazing incidence, which would show in the account of the power.
         let total = std::array::from_fn(|i| back[0][i] + back[1][i] + on[0][i] + on[1][i]);
-        let shares = Shares::of(self.wave.power, total);
+        let shares = Shares::of(self.splitting.wave.power, total);
         self.one_side(Side::Reflected, backward, [r1, r2], &back, &shares);
         if let Some(onward) = onward {
             self.one_side(Side::Transmitted, onward, [t1, t2], &on, &shares);
         }
+    }
+
+    /// The amplitudes of two modes in the launched fields, by least squares.
+    fn parts<T: Number>(&self, a: &LocalMode<T>, b: &LocalMode<T>) -> [[Complex64; 2]; N] {
+        let [a, b] = [a, b].map(|mode| self.splitting.frame.complex_vector(mode.electric));
+        let (aa, bb, ab) = (a.norm_squared(), b.norm_squared(), a.conj().dot(b));
+        let inverse = 1.0 / (aa * bb - ab.norm_sqr());
+        self.splitting.wave.electric.map(|electric| {
+            let (on_a, on_b) = (a.conj().dot(electric), b.conj().dot(electric));
+            [(on_a * bb - ab * on_b) * inverse, (on_b * aa - ab.conj() * on_a) * inverse]
+        })
     }
 
     fn one_side<T: Number>(
@@ -249,7 +209,7 @@ impl<const N: usize> Scattered<'_, N> {
         fluxes: &Fluxes<N>,
         shares: &Shares<N>,
     ) {
-        let [a, b] = modes;
+        let ([a, b], frame) = (modes, self.splitting.frame);
         let apart: Complex64 = a.q.into() - b.q.into();
         let one_wave = a.propagating
             && b.propagating
@@ -258,27 +218,25 @@ impl<const N: usize> Scattered<'_, N> {
             let power: [f64; N] =
                 std::array::from_fn(|i| (fluxes[0][i] + fluxes[1][i]) * shares.power[i]);
             if self.is_strong(power) {
-                let [ea, eb] = [a, b].map(|mode| mode.electric_in_world(self.frame));
+                let [ea, eb] = [a, b].map(|mode| frame.complex_vector(mode.electric));
                 // The same ray, but in absorbing media, where p's and s's part a little: their mean.
-                let ray = (a.ray_in_world(self.frame) + b.ray_in_world(self.frame)) * 0.5;
-                let length = ray.length();
-                let fields = shares.of_rays(length);
-                let electric = std::array::from_fn(|i| {
-                    (ea.scaled(amplitudes[0][i]) + eb.scaled(amplitudes[1][i])) * fields[i]
+                let ray = (frame.vector(a.poynting()) + frame.vector(b.poynting())) * 0.5;
+                let wave = (side, ModeKind::Shared, a.q.into());
+                self.push(wave, ray, power, shares, |i, scale| {
+                    (ea.scaled(amplitudes[0][i]) + eb.scaled(amplitudes[1][i])) * scale
                 });
-                self.push(side, ModeKind::Shared, a.q.into(), ray / length, electric, power);
             }
             return;
         }
         for ((mode, amplitude), flux) in modes.iter().zip(amplitudes).zip(fluxes) {
             let power: [f64; N] = std::array::from_fn(|i| flux[i] * shares.power[i]);
             if mode.propagating && self.is_strong(power) {
-                let field = T::vector(self.frame, mode.electric);
-                let ray = mode.ray_in_world(self.frame);
-                let length = ray.length();
-                let fields = shares.of_rays(length);
-                let electric = std::array::from_fn(|i| T::wave(field, amplitude[i] * fields[i]));
-                self.push(side, mode.kind, mode.q.into(), ray / length, electric, power);
+                let field = T::vector(&frame, mode.electric);
+                let ray = frame.vector(mode.poynting());
+                let wave = (side, mode.kind, mode.q.into());
+                self.push(wave, ray, power, shares, |i, scale| {
+                    T::wave(field, amplitude[i] * scale)
+                });
             }
         }
     }
@@ -286,7 +244,7 @@ impl<const N: usize> Scattered<'_, N> {
     /// Whether a wave of that power goes on; else its power is counted.
     fn is_strong(&mut self, power: [f64; N]) -> bool {
         let largest = power.iter().copied().fold(0.0, f64::max);
-        let strong = largest > 0.0 && largest >= self.least_power;
+        let strong = largest > 0.0 && largest >= self.splitting.least_power;
         if !strong {
             for (sum, power) in self.weak.iter_mut().zip(power) {
                 *sum += power;
@@ -295,28 +253,31 @@ impl<const N: usize> Scattered<'_, N> {
         strong
     }
 
+    /// Adds a wave, given the Poynting vector of a unit of normal flux, and its matched fields times a number.
     fn push(
         &mut self,
-        side: Side,
-        mode: ModeKind,
-        q: Complex64,
-        direction: DVec3,
-        electric: [ComplexVector; N],
+        (side, mode, q): (Side, ModeKind, Complex64),
+        ray: DVec3,
         power: [f64; N],
+        shares: &Shares<N>,
+        field: impl Fn(usize, f64) -> ComplexVector,
     ) {
+        let length = ray.length();
+        // The fields of a ray are scaled to its power.
+        let narrowing = length.sqrt().recip();
         let [first, second] = self.tangential.components();
         let attenuation = match self.tangential {
             Tangential::Real(_) if q.im == 0.0 => DVec3::ZERO,
-            _ => self.frame.vector([first.im, second.im, q.im]),
+            _ => self.splitting.frame.vector([first.im, second.im, q.im]),
         };
-        let wave_vector = self.frame.vector([first.re, second.re, q.re]);
-        self.waves.push(OutgoingWave {
+        let wave_vector = self.splitting.frame.vector([first.re, second.re, q.re]);
+        self.splitting.waves.push(OutgoingWave {
             side,
             mode,
             wave_vector,
             attenuation,
-            direction,
-            electric,
+            direction: ray / length,
+            electric: std::array::from_fn(|i| field(i, shares.field[i] * narrowing)),
             power,
         });
     }

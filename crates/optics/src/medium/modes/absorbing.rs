@@ -1,7 +1,7 @@
 //! Modes of absorbing media, and of any medium under a wave that decays along the surface.
 
 use super::general::Berreman;
-use super::uniaxial::{across_axis, out_of_plane};
+use super::uniaxial::{field_direction, out_of_plane};
 use super::{BothWays, LocalMode, LocalModes, ModeKind};
 use crate::medium::Medium;
 use crate::medium::class::{Class, Uniaxial};
@@ -15,22 +15,21 @@ const NO_FLUX: f64 = 1e-13;
 
 impl Medium {
     pub(super) fn absorbing_modes(&self, frame: &Frame, k: [Complex64; 2]) -> BothWays {
-        let [forward, backward] = match &self.class {
+        let modes = match &self.class {
             Class::AbsorbingIsotropic(e, m) => isotropic(*e, *m, k),
-            Class::Isotropic(_) => {
-                isotropic(self.permittivity.x_axis.x.into(), self.permeability.x_axis.x.into(), k)
-            }
+            Class::Isotropic(_) => isotropic(
+                self.real.permittivity.x_axis.x.into(),
+                self.real.permeability.x_axis.x.into(),
+                k,
+            ),
             Class::AbsorbingUniaxial(medium) => uniaxial(medium, frame, k),
-            Class::Uniaxial(medium) => uniaxial(&(*medium).into(), frame, k),
+            Class::Uniaxial(medium) => uniaxial(&medium.map(Complex64::from), frame, k),
             Class::Matched(_) | Class::General => {
                 let (permittivity, permeability) = self.tensors();
                 Berreman::modes_of(frame, &permittivity, &permeability, k)
             }
         };
-        BothWays {
-            forward: LocalModes::Complex(forward.map(normalized)),
-            backward: LocalModes::Complex(backward.map(normalized)),
-        }
+        modes.map(|pair| LocalModes::Complex(pair.map(normalized)))
     }
 }
 
@@ -88,10 +87,7 @@ fn uniaxial(
     let axis = frame.components(medium.axis);
     let [ordinary, extraordinary] = medium.equations(k, axis).map(|e| e.complex_roots());
     // Close to the axis rounding makes p × a of each wave what it likes; one of them serves both.
-    let direction = |q: Complex64| {
-        let (u, angle) = across_axis([k[0], k[1], q], axis);
-        if angle < 1e-28 { (out_of_plane(), true) } else { (u, false) }
-    };
+    let direction = |q: Complex64| field_direction([k[0], k[1], q], axis);
     let sorted = |modes: [(ComplexMode, bool); 2]| {
         let [a, b] = modes;
         if forwardness(&a.0) >= forwardness(&b.0) { [a, b] } else { [b, a] }

@@ -49,5 +49,5 @@ fn norm<T: Number>(vector: &[T]) -> f64 {
 
 fn normalized<T: Number>(vector: [T; 4]) -> [T; 4] {
     let scale = 1.0 / norm(&vector).max(1e-300);
-    vector.map(|c| c.scaled(scale))
+    vector.map(|c| c * scale)
 }

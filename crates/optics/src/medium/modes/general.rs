@@ -9,7 +9,7 @@ use crate::medium::{Medium, Tensor};
 use crate::wave::{Frame, Number, dot};
 use arrayvec::ArrayVec;
 use faer::Mat;
-use faer::linalg::solvers::Eigen;
+use faer::traits::ComplexField;
 use num_complex::Complex64;
 use std::ops::Mul;
 
@@ -55,23 +55,35 @@ impl<T: Number> Berreman<T> {
     }
 
     /// How far the worst of some modes is from solving Maxwell's equations.
-    fn residual<'m>(&self, modes: impl Iterator<Item = &'m LocalMode<Complex64>>) -> f64
-    where
-        Maxwell<Complex64>: From<Maxwell<T>>,
-    {
-        let maxwell = Maxwell::<Complex64>::from(self.maxwell);
-        let residual = modes.map(|mode| {
-            let size = mode.norm_squared().sqrt();
-            maxwell.residual_size(&mode.scaled(size.recip()))
-        });
+    fn residual<'m>(&self, modes: impl Iterator<Item = &'m LocalMode<Complex64>>) -> f64 {
+        let maxwell = self.maxwell.map(Into::<Complex64>::into);
+        let residual = modes.map(|mode| maxwell.residual_size(&mode.normalized()));
         residual.fold(0.0, |worst, one| if one.is_nan() { f64::INFINITY } else { one.max(worst) })
     }
 
-    /// The mode of an eigenpair, made better where the eigenvalues differ much in size.
-    fn mode<U: Number + Mul<T, Output = U>>(&self, q: U, field: [U; 4]) -> LocalMode<U>
+    fn eigenpairs(&self) -> [Eigenpair; 4]
     where
-        Maxwell<U>: From<Maxwell<T>>,
+        T: ComplexField<Real = f64>,
     {
+        let matrix = self.complex_matrix();
+        Mat::from_fn(4, 4, |i, j| self.matrix[i][j]).eigen().map_or(FALLBACK, |eigen| {
+            let (values, vectors) = (eigen.S().column_vector(), eigen.U());
+            std::array::from_fn(|j| {
+                let field: [Complex64; 4] = std::array::from_fn(|i| vectors[(i, j)]);
+                // Of a double root the eigensolver may return a vector of zeros or a wrong one.
+                let sound = is_eigenvector(&matrix, values[j], &field);
+                let found = if sound { None } else { eigenvector_across(&matrix, values[j], None) };
+                (values[j], found.unwrap_or(field))
+            })
+        })
+    }
+
+    fn complex_matrix(&self) -> [[Complex64; 4]; 4] {
+        self.matrix.map(|row| row.map(Into::into))
+    }
+
+    /// The mode of an eigenpair, made better where the eigenvalues differ much in size.
+    fn mode<U: Number + From<T> + Mul<T, Output = U>>(&self, q: U, field: [U; 4]) -> LocalMode<U> {
         let [normal_e, normal_h] = self
             .lift
             .map(|row| row.into_iter().zip(field).fold(U::default(), |sum, (a, b)| sum + b * a));
@@ -82,7 +94,7 @@ impl<T: Number> Berreman<T> {
             electric: [field[0], field[1], normal_e],
             magnetic: [field[2], field[3], normal_h],
         };
-        Maxwell::from(self.maxwell).refined(mode)
+        self.maxwell.map(U::from).refined(mode)
     }
 }
 
@@ -113,12 +125,12 @@ struct Lossless {
 impl Medium {
     /// The modes of a lossless medium without a closed form.
     pub(super) fn general_modes(&self, frame: &Frame, along: f64, known: Option<f64>) -> BothWays {
-        let tensors = [&self.permittivity, &self.permeability].map(|t| frame.tensor(t));
+        let tensors = [&self.real.permittivity, &self.real.permeability].map(|t| frame.tensor(t));
         let at = |along| {
             best(|least| {
                 let problem = Berreman::new(tensors[0], tensors[1], [along, 0.0], least);
                 let found = problem.lossless_modes(known);
-                let BothWays { forward, backward } = &found.modes;
+                let [forward, backward] = &found.modes;
                 let residual =
                     problem.residual(forward.complex().iter().chain(&backward.complex()));
                 (found, residual)
@@ -157,10 +169,7 @@ impl Berreman<Complex64> {
     }
 
     fn complex_modes(&self) -> [[LocalMode<Complex64>; 2]; 2] {
-        let matrix = Mat::from_fn(4, 4, |i, j| self.matrix[i][j]);
-        let pairs =
-            matrix.eigen().map_or_else(|_| FALLBACK, |eigen| pairs_of(&eigen, &self.matrix));
-        let mut pairs = pairs;
+        let mut pairs = self.eigenpairs();
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         separate_double_roots(&self.matrix, &mut pairs, size);
         let mut modes = pairs.map(|(q, field)| self.mode(q, field));
@@ -171,18 +180,9 @@ impl Berreman<Complex64> {
 }
 
 impl Berreman<f64> {
-    fn eigenpairs(&self) -> [Eigenpair; 4] {
-        let matrix = Mat::from_fn(4, 4, |i, j| self.matrix[i][j]);
-        matrix.eigen().map_or(FALLBACK, |eigen| {
-            let matrix = self.matrix.map(|row| row.map(Complex64::from));
-            pairs_of(&eigen, &matrix)
-        })
-    }
-
     fn lossless_modes(&self, known: Option<f64>) -> Lossless {
         let mut pairs = self.eigenpairs();
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
-        let mut sorted = Sorted::default();
         // Evanescent ones come as conjugates; the real ones in order show which are double.
         pairs.sort_by(|(a, _), (b, _)| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
         let mut decaying: ArrayVec<Eigenpair, 4> = ArrayVec::new();
@@ -218,23 +218,11 @@ impl Berreman<f64> {
             along_the_surface |= i > 1 && real[i].0 - real[i - 2].0 < DOUBLE * size;
         }
         let propagating = real.len();
-        let matrix = self.matrix.map(|row| row.map(Complex64::from));
-        separate_double_roots(&matrix, &mut decaying, size);
-        sorted.real.extend(real.into_iter().map(|(q, field)| self.mode(q, field)));
-        sorted.evanescent.extend(decaying.into_iter().map(|(q, field)| self.mode(q, field)));
-        Lossless { modes: sorted.into_modes(size), propagating, along_the_surface }
+        separate_double_roots(&self.complex_matrix(), &mut decaying, size);
+        let running = real.into_iter().map(|(q, field)| self.mode(q, field).normalized()).collect();
+        let decaying = decaying.into_iter().map(|(q, field)| self.mode(q, field)).collect();
+        Lossless { modes: by_heading(running, decaying, size), propagating, along_the_surface }
     }
-}
-
-fn pairs_of(eigen: &Eigen<f64>, matrix: &[[Complex64; 4]; 4]) -> [Eigenpair; 4] {
-    let (values, vectors) = (eigen.S().column_vector(), eigen.U());
-    std::array::from_fn(|j| {
-        let field: [Complex64; 4] = std::array::from_fn(|i| vectors[(i, j)]);
-        // Of a double root the eigensolver may return a vector of zeros or a wrong one.
-        let sound = is_eigenvector(matrix, values[j], &field);
-        let found = if sound { None } else { eigenvector_across(matrix, values[j], None) };
-        (values[j], found.unwrap_or(field))
-    })
 }
 
 /// Roots closer than this, relative to the largest, are one.
@@ -285,35 +273,25 @@ fn real_part(field: [Complex64; 4]) -> [f64; 4] {
     field.map(|c| (c * turn).re)
 }
 
-/// The eigenvectors of a lossless medium, by whether they propagate.
-#[derive(Default)]
-struct Sorted {
-    real: ArrayVec<LocalMode<f64>, 4>,
-    evanescent: ArrayVec<LocalMode<Complex64>, 4>,
-}
-
-impl Sorted {
-    fn into_modes(mut self, size: f64) -> BothWays {
-        for mode in &mut self.real {
-            *mode = mode.scaled(mode.norm_squared().sqrt().recip());
+/// The modes of a lossless medium that propagate, of norm 1, and those that do not, each where it heads.
+fn by_heading(
+    mut real: ArrayVec<LocalMode<f64>, 4>,
+    mut evanescent: ArrayVec<LocalMode<Complex64>, 4>,
+    size: f64,
+) -> BothWays {
+    // Vectors of a double root are any basis of their plane: take the one orthogonal in flux.
+    real.sort_by(|a, b| a.q.total_cmp(&b.q));
+    for i in 1..real.len() {
+        if real[i].q - real[i - 1].q < DOUBLE * size {
+            [real[i - 1], real[i]] = diagonal_in_flux(real[i - 1], real[i]);
         }
-        // Vectors of a double root are any basis of their plane: take the one orthogonal in flux.
-        self.real.sort_by(|a, b| a.q.total_cmp(&b.q));
-        for i in 1..self.real.len() {
-            if self.real[i].q - self.real[i - 1].q < DOUBLE * size {
-                let pair = diagonal_in_flux(self.real[i - 1], self.real[i]);
-                [self.real[i - 1], self.real[i]] = pair;
-            }
-        }
-        // Half of the propagating ones head each way; the rank, where rounding at grazing incidence
-        // hides the sign.
-        self.real.sort_by(|a, b| b.flux().total_cmp(&a.flux()));
-        self.evanescent.sort_by(|a, b| b.q.im.total_cmp(&a.q.im));
-        let (r, e) = (self.real.len() / 2, self.evanescent.len() / 2);
-        let forward = gathered(&self.real[..r], &self.evanescent[..e], size);
-        let backward = gathered(&self.real[r..], &self.evanescent[e..], size);
-        BothWays { forward, backward }
     }
+    // Half of the propagating ones head each way; the rank, where rounding at grazing incidence
+    // hides the sign.
+    real.sort_by(|a, b| b.flux().total_cmp(&a.flux()));
+    evanescent.sort_by(|a, b| b.q.im.total_cmp(&a.q.im));
+    let (r, e) = (real.len() / 2, evanescent.len() / 2);
+    [gathered(&real[..r], &evanescent[..e], size), gathered(&real[r..], &evanescent[e..], size)]
 }
 
 /// Two modes of one heading, normalized, orthogonal in flux and in order.
@@ -322,10 +300,8 @@ fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>], size: 
         let flux = mode.flux().abs().max(1e-15);
         mode.scaled(flux.sqrt().recip())
     };
-    let decaying = |mode: &LocalMode<Complex64>| {
-        let mode = LocalMode { propagating: false, ..*mode };
-        mode.scaled(mode.norm_squared().sqrt().recip())
-    };
+    let decaying =
+        |mode: &LocalMode<Complex64>| LocalMode { propagating: false, ..mode.normalized() };
     match (real, evanescent) {
         ([a, b], _) => {
             let (a, b) = (normalized(a), normalized(b));

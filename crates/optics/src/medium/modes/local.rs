@@ -1,9 +1,8 @@
 //! Modes in the frame of an interface, as the matching of fields wants them.
 
 use super::{Mode, ModeKind};
-use crate::wave::{ComplexVector, Frame, Number, cross};
+use crate::wave::{Frame, Number, cross};
 use arrayvec::ArrayVec;
-use glam::DVec3;
 use num_complex::Complex64;
 use std::{iter, slice};
 
@@ -55,19 +54,15 @@ pub(crate) enum Arriving {
     Both(LocalModes),
 }
 
-/// The four modes of a medium.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct BothWays {
-    pub forward: LocalModes,
-    pub backward: LocalModes,
-}
+/// The four modes of a medium: those that head forward and those that head back.
+pub(crate) type BothWays = [LocalModes; 2];
 
 /// The mean of E_a × H_b* and E_b* × H_a along the normal: the flux of one field, or how far from
 /// orthogonal two are.
 pub(crate) fn mutual_flux<T: Number>(a: &LocalMode<T>, b: &LocalMode<T>) -> T {
     let [ea, ha] = [a.electric, a.magnetic];
     let [eb, hb] = [b.electric, b.magnetic].map(|field| field.map(T::conjugate));
-    (ea[0] * hb[1] - ea[1] * hb[0] + eb[0] * ha[1] - eb[1] * ha[0]).scaled(0.5)
+    (ea[0] * hb[1] - ea[1] * hb[0] + eb[0] * ha[1] - eb[1] * ha[0]) * 0.5
 }
 
 impl<T: Number> LocalMode<T> {
@@ -88,9 +83,14 @@ impl<T: Number> LocalMode<T> {
     }
 
     pub fn scaled(mut self, factor: f64) -> Self {
-        self.electric = self.electric.map(|component| component.scaled(factor));
-        self.magnetic = self.magnetic.map(|component| component.scaled(factor));
+        self.electric = self.electric.map(|component| component * factor);
+        self.magnetic = self.magnetic.map(|component| component * factor);
         self
+    }
+
+    /// With |E|² + |H|² = 1.
+    pub fn normalized(self) -> Self {
+        self.scaled(self.norm_squared().sqrt().recip())
     }
 
     pub fn complex(&self) -> LocalMode<Complex64> {
@@ -113,16 +113,6 @@ impl<T: Number> LocalMode<T> {
             magnetic: frame.complex_vector(self.magnetic),
             ray: if self.propagating { ray.try_normalize() } else { None },
         }
-    }
-
-    /// The electric field as a vector.
-    pub fn electric_in_world(&self, frame: &Frame) -> ComplexVector {
-        frame.complex_vector(self.electric)
-    }
-
-    /// The Poynting vector as a vector.
-    pub fn ray_in_world(&self, frame: &Frame) -> DVec3 {
-        frame.vector(self.poynting())
     }
 }
 

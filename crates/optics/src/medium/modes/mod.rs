@@ -110,11 +110,8 @@ impl Medium {
         let tangential = tangential - normal * tangential.dot(normal);
         let frame = Frame::new(normal, tangential);
         let along = Tangential::Real(tangential.dot(frame.first));
-        let BothWays { forward, backward } = self.both_ways(&frame, along, None);
-        let modes = match heading {
-            Heading::Forward => forward,
-            Heading::Backward => backward,
-        };
+        let [forward, backward] = self.both_ways(&frame, along, None);
+        let modes = if heading == Heading::Forward { forward } else { backward };
         modes.complex().map(|mode| mode.in_world(&frame, along))
     }
 
@@ -147,11 +144,11 @@ impl Medium {
         match (&self.class, tangential) {
             (Class::Isotropic(surface) | Class::Matched(surface), Tangential::Real(along)) => {
                 let waves = self.single_wave_modes(surface, frame, along, known.is_some());
-                BothWays { forward: waves.modes(true), backward: waves.modes(false) }
+                [true, false].map(|forward| waves.modes(forward))
             }
             (Class::Uniaxial(medium), Tangential::Real(along)) => {
                 let waves = medium.waves(frame, along, known);
-                BothWays { forward: waves.modes(true), backward: waves.modes(false) }
+                [true, false].map(|forward| waves.modes(forward))
             }
             (Class::General, Tangential::Real(along)) if !self.absorbs() => {
                 self.general_modes(frame, along, known)
@@ -171,7 +168,7 @@ impl Medium {
             let waves = medium.waves(frame, along, Some(q));
             return (waves.arriving(q), waves.modes(false));
         }
-        let BothWays { forward, backward } = self.both_ways(frame, tangential, Some(q));
+        let [forward, backward] = self.both_ways(frame, tangential, Some(q));
         (Arriving::Both(forward), backward)
     }
 
@@ -184,7 +181,7 @@ impl Medium {
             (Class::Uniaxial(medium), Tangential::Real(along)) => {
                 medium.waves(frame, along, None).modes(true)
             }
-            _ => self.both_ways(frame, tangential, None).forward,
+            _ => self.both_ways(frame, tangential, None)[0],
         }
     }
 }

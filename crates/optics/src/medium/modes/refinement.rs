@@ -6,7 +6,6 @@
 
 use super::LocalMode;
 use crate::wave::{Number, cross, dot, solve};
-use num_complex::Complex64;
 
 /// Maxwell's equations p × E = µH, p × H = -εE in the frame of an interface.
 #[derive(Clone, Copy)]
@@ -34,21 +33,20 @@ pub(super) fn best<M>(of: impl Fn(f64) -> (M, f64)) -> M {
     if smaller < residual { others } else { modes }
 }
 
-impl From<Maxwell<f64>> for Maxwell<Complex64> {
-    fn from(real: Maxwell<f64>) -> Self {
-        let complex = |tensor: [[f64; 3]; 3]| tensor.map(|row| row.map(Complex64::from));
-        Self {
-            permittivity: complex(real.permittivity),
-            permeability: complex(real.permeability),
-            tangential: real.tangential.map(Complex64::from),
+impl<T: Number> Maxwell<T> {
+    /// The same of other numbers.
+    pub fn map<U>(&self, number: impl Fn(T) -> U + Copy) -> Maxwell<U> {
+        let tensor = |tensor: [[T; 3]; 3]| tensor.map(|row| row.map(number));
+        Maxwell {
+            permittivity: tensor(self.permittivity),
+            permeability: tensor(self.permeability),
+            tangential: self.tangential.map(number),
         }
     }
-}
 
-impl<T: Number> Maxwell<T> {
     /// The mode after as many steps of Newton's method as it needs, normally none.
     pub fn refined(&self, mode: LocalMode<T>) -> LocalMode<T> {
-        let mut best = mode.scaled(mode.norm_squared().sqrt().recip());
+        let mut best = mode.normalized();
         let mut least = self.residual_size(&best);
         for _ in 0..3 {
             if least < ROUNDING {

@@ -25,17 +25,17 @@ impl Medium {
         known: bool,
     ) -> SingleWave {
         let roots = surface.roots(frame.first * along, frame.normal);
-        let mu = self.permeability.x_axis;
+        let mu = self.real.permeability.x_axis;
         let (form, determinant) = if let Class::Isotropic(_) = self.class {
             ([[mu.x, 0.0, 0.0], [0.0, mu.x, 0.0], [0.0, 0.0, mu.x]], mu.x * mu.x * mu.x)
         } else {
-            (frame.tensor(&self.permeability), self.permeability.determinant())
+            (frame.tensor(&self.real.permeability), self.real.permeability.determinant())
         };
         SingleWave {
             along,
             form,
             determinant,
-            ratio: self.permittivity.x_axis.dot(mu) / mu.length_squared(),
+            ratio: self.real.permittivity.x_axis.dot(mu) / mu.length_squared(),
             roots: if known { roots.propagating() } else { roots },
         }
     }
@@ -56,9 +56,8 @@ impl SingleWave {
             }
             Roots::Complex { re, im, .. } => {
                 let q = Complex64::new(re, if forward { im } else { -im });
-                let modes = self.pair(q).map(|mode| LocalMode { propagating: false, ..mode });
                 LocalModes::Complex(
-                    modes.map(|mode| mode.scaled(mode.norm_squared().sqrt().recip())),
+                    self.pair(q).map(|mode| LocalMode { propagating: false, ..mode.normalized() }),
                 )
             }
         }
@@ -75,11 +74,11 @@ impl SingleWave {
         if across <= 1e-28 * ray[2].magnitude_squared() {
             v = [T::from(0.0), T::from(1.0), T::from(0.0)];
         }
-        let curl = cross(ray, apply(v)).map(|c| c.scaled(1.0 / self.determinant));
+        let curl = cross(ray, apply(v)).map(|c| c * (1.0 / self.determinant));
         let s = LocalMode { kind: ModeKind::S, propagating: true, q, electric: v, magnetic: curl };
         let p = LocalMode {
             kind: ModeKind::P,
-            electric: curl.map(|c| c.scaled(-1.0 / self.ratio)),
+            electric: curl.map(|c| c * (-1.0 / self.ratio)),
             magnetic: v,
             ..s
         };

@@ -29,13 +29,13 @@ impl<T: Number> Uniaxial<T> {
         let Self { scalar, ordinary, extraordinary, .. } = *self;
         let squared = k1 * k1 + k2 * k2;
         let excess = extraordinary - ordinary;
-        let on_axis = k1.scaled(axis[0]) + k2.scaled(axis[1]);
+        let on_axis = k1 * axis[0] + k2 * axis[1];
         let index = scalar * ordinary;
         [
             Quadratic { a: T::from(1.0), b: T::from(0.0), c: squared - index },
             Quadratic {
-                a: ordinary + excess.scaled(axis[2] * axis[2]),
-                b: excess.scaled(axis[2]) * on_axis,
+                a: ordinary + excess * (axis[2] * axis[2]),
+                b: excess * axis[2] * on_axis,
                 c: ordinary * squared + excess * on_axis * on_axis - index * extraordinary,
             },
         ]
@@ -82,10 +82,17 @@ impl<T: Number> Uniaxial<T> {
 }
 
 /// The direction of one field of both waves, p × a, and its square relative to |p|².
-pub(super) fn across_axis<T: Number>(p: [T; 3], axis: [f64; 3]) -> ([T; 3], f64) {
+fn across_axis<T: Number>(p: [T; 3], axis: [f64; 3]) -> ([T; 3], f64) {
     let u = cross(p, axis.map(T::from));
     let square = |v: [T; 3]| v.into_iter().map(T::magnitude_squared).sum::<f64>();
     (u, square(u) / square(p))
+}
+
+/// The direction of one field of a wave; any that is across the plane of incidence where p is along the axis, and whether
+/// it is.
+pub(super) fn field_direction<T: Number>(p: [T; 3], axis: [f64; 3]) -> ([T; 3], bool) {
+    let (u, angle) = across_axis(p, axis);
+    if angle < ONE_WAVE { (out_of_plane(), true) } else { (u, false) }
 }
 
 /// Any vector across the plane of incidence.
@@ -122,30 +129,17 @@ impl UniaxialWaves<'_> {
 
     /// The modes of one heading.
     pub fn modes(&self, forward: bool) -> LocalModes {
-        match (self.ordinary, self.extraordinary) {
-            (
-                Roots::Real { plus: o_plus, minus: o_minus, root: o_root },
-                Roots::Real { plus: e_plus, minus: e_minus, root: e_root },
-            ) => {
-                let [o_sign, e_sign] = self.signs(forward);
-                let q = [pick(o_sign, o_plus, o_minus), pick(e_sign, e_plus, e_minus)];
-                LocalModes::Real(self.propagating(q, o_root, e_sign * e_root))
-            }
-            _ => LocalModes::Complex(self.evanescent(forward)),
+        match self.running(forward) {
+            Some(waves) => LocalModes::Real(self.propagating(waves)),
+            None => LocalModes::Complex(self.evanescent(forward)),
         }
     }
 
     /// The modes of the wave that arrives with the normal component `q`.
     pub fn arriving(&self, q: f64) -> Arriving {
-        let (
-            Roots::Real { plus: o_plus, minus: o_minus, .. },
-            Roots::Real { plus: e_plus, minus: e_minus, root: e_root },
-        ) = (self.ordinary, self.extraordinary)
-        else {
+        let Some([(qo, _), (qe, e_root)]) = self.running(true) else {
             return Arriving::Both(self.modes(true));
         };
-        let [o_sign, e_sign] = self.signs(true);
-        let (qo, qe) = (pick(o_sign, o_plus, o_minus), pick(e_sign, e_plus, e_minus));
         let (to_o, to_e) = ((qo - q).abs(), (qe - q).abs());
         if to_o.max(to_e) < BOTH_MODES * (1.0 + q.abs()) {
             return Arriving::Both(self.modes(true));
@@ -153,12 +147,22 @@ impl UniaxialWaves<'_> {
         let po = [self.along, 0.0, qo];
         let (u, angle) = across_axis(po, self.axis);
         Arriving::One(if to_o <= to_e {
-            let u = if angle < ONE_WAVE { out_of_plane() } else { u };
-            self.medium.ordinary_mode(po, u)
+            self.medium.ordinary_mode(po, field_direction(po, self.axis).0)
         } else {
-            let (qe, ue) = self.extraordinary(qo, qe, e_sign * e_root, u, angle);
+            let (qe, ue) = self.extraordinary(qo, qe, e_root, u, angle);
             self.medium.extraordinary_mode(self.axis, [self.along, 0.0, qe], ue)
         })
+    }
+
+    /// The normal component of the ordinary and of the extraordinary wave that run the given way, and the square roots
+    /// in them with their signs, if both run.
+    fn running(&self, forward: bool) -> Option<[(f64, f64); 2]> {
+        let [o_sign, e_sign] = self.signs(forward);
+        let wave = |roots: Roots, sign: f64| match roots {
+            Roots::Real { plus, minus, root } => Some((pick(sign, plus, minus), sign * root)),
+            Roots::Complex { .. } => None,
+        };
+        Some([wave(self.ordinary, o_sign)?, wave(self.extraordinary, e_sign)?])
     }
 
     /// The sign of the root of each wave's equation that carries power the given way:
@@ -169,7 +173,7 @@ impl UniaxialWaves<'_> {
         [heading * scalar.signum(), heading * (ordinary * extraordinary).signum()]
     }
 
-    fn propagating(&self, [qo, qe]: [f64; 2], o_root: f64, e_root: f64) -> [LocalMode<f64>; 2] {
+    fn propagating(&self, [(qo, o_root), (qe, e_root)]: [(f64, f64); 2]) -> [LocalMode<f64>; 2] {
         let Self { medium, along, axis, .. } = *self;
         let Uniaxial { scalar, ordinary, extraordinary, .. } = *medium;
         let po = [along, 0.0, qo];
@@ -188,6 +192,9 @@ impl UniaxialWaves<'_> {
 
     /// q and p × a of the extraordinary wave, from its own q and from those of the ordinary one, whose angle
     /// to the axis has the sin² `angle`.
+    ///
+    /// Close to the axis the two directions p × a must agree better than each is known. With q_e = q_o + d and
+    /// G = µp_o·n, a d² + 2 G d = (µ_e - µ_o) (p_o × a)² and µp_e·n = a d + G.
     fn extraordinary(
         &self,
         qo: f64,
@@ -196,24 +203,16 @@ impl UniaxialWaves<'_> {
         u: [f64; 3],
         angle: f64,
     ) -> (f64, [f64; 3]) {
-        if angle < 1e-3 {
-            self.near_axis(qo, qe, e_root, u, angle)
-        } else {
-            (qe, across_axis([self.along, 0.0, qe], self.axis).0)
-        }
-    }
-
-    /// The extraordinary wave close to the axis, q and p × a, from the ordinary one: the two
-    /// directions p × a must agree better than each is known. With q_e = q_o + d and G = µp_o·n,
-    /// a d² + 2 G d = (µ_e - µ_o) (p_o × a)² and µp_e·n = a d + G.
-    fn near_axis(&self, qo: f64, qe: f64, e_root: f64, u: [f64; 3], angle: f64) -> (f64, [f64; 3]) {
         let Self { medium, along, axis, .. } = *self;
+        let near = angle < 1e-3;
+        if !near {
+            return (qe, across_axis([along, 0.0, qe], axis).0);
+        }
         let excess = medium.extraordinary - medium.ordinary;
         let g = medium.ordinary * qo + excess * (along * axis[0] + qo * axis[2]) * axis[2];
         if g * e_root <= 0.0 {
             // The extraordinary wave of the other heading, near grazing.
-            let (ue, own_angle) = across_axis([along, 0.0, qe], axis);
-            return (qe, if own_angle < ONE_WAVE { out_of_plane() } else { ue });
+            return (qe, field_direction([along, 0.0, qe], axis).0);
         }
         if angle < ONE_WAVE {
             return (qo, u);
@@ -224,7 +223,7 @@ impl UniaxialWaves<'_> {
 
     fn evanescent(&self, forward: bool) -> [LocalMode<Complex64>; 2] {
         let Self { medium, along, axis, .. } = *self;
-        let medium = Uniaxial::<Complex64>::from(*medium);
+        let medium = medium.map(Complex64::from);
         let q = |roots: Roots, sign: f64| match roots {
             Roots::Real { plus, minus, .. } => (Complex64::from(pick(sign, plus, minus)), true),
             Roots::Complex { re, im, .. } => {
@@ -236,22 +235,14 @@ impl UniaxialWaves<'_> {
         let (qe, e_runs) = q(self.extraordinary, e_sign);
         let po = [along.into(), Complex64::ZERO, qo];
         let pe = [along.into(), Complex64::ZERO, qe];
-        let (mut uo, angle) = across_axis(po, axis);
-        let (mut ue, e_angle) = across_axis(pe, axis);
-        if angle < ONE_WAVE {
-            uo = out_of_plane();
-        }
-        if e_angle < ONE_WAVE {
-            ue = out_of_plane();
-        }
+        let [(uo, o_on_axis), (ue, e_on_axis)] = [po, pe].map(|p| field_direction(p, axis));
         let normalized = |mode: LocalMode<Complex64>, runs: bool| {
             let size = if runs { mode.flux().abs() } else { mode.norm_squared() };
             LocalMode { propagating: runs, ..mode.scaled(size.sqrt().recip()) }
         };
         let o = normalized(medium.ordinary_mode(po, uo), o_runs);
         let e = normalized(medium.extraordinary_mode(axis, pe, ue), e_runs);
-        let shared = angle < ONE_WAVE && e_angle < ONE_WAVE;
-        if shared { medium.named_along_axis(o, e) } else { [o, e] }
+        if o_on_axis && e_on_axis { medium.named_along_axis(o, e) } else { [o, e] }
     }
 }
 

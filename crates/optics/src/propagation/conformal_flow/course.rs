@@ -22,22 +22,16 @@ pub(super) struct StepControl {
     pub short: f64,
 }
 
-/// How exactly rays through a map are followed.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Demands {
-    allowed: f64,
-    longest: f64,
-    short: f64,
-}
-
-impl Demands {
-    /// For a medium that varies over `scale` (cm), whose `smoothness` is that of [`ConformalMap::smoothness`], and a largest
+impl StepControl {
+    /// For rays across z in a medium that varies over `scale` (cm), whose `smoothness` is that of [`ConformalMap::smoothness`], and a largest
     /// error at the end of `tolerance`, cm.
     ///
     /// [`ConformalMap::smoothness`]: crate::transformation::ConformalMap::smoothness
     pub fn new(scale: f64, smoothness: f64, tolerance: f64) -> Self {
         let tolerance = tolerance.max(1e-12);
         Self {
+            p_z: 0.0,
+            even: false,
             allowed: smoothness * tolerance,
             // Where the estimate is low by chance, the order of the method still keeps a shorter step right.
             longest: 1.5 * scale * (tolerance / 1e-6).min(1.0).sqrt().sqrt().sqrt(),
@@ -47,14 +41,12 @@ impl Demands {
             short: 0.69 * scale * (0.1 * smoothness * tolerance / scale).sqrt().sqrt(),
         }
     }
-}
 
-impl StepControl {
-    pub fn new(p_z: f64, strength: f64, demands: &Demands) -> Self {
+    /// The same for a ray with a wave vector along z.
+    pub fn along_z(self, p_z: f64, strength: f64) -> Self {
         // Steep rays take long ways, on which errors have time to grow.
         let flatness = (1.0 - (p_z / strength).powi(2)).max(0.05);
-        let Demands { allowed, longest, short } = *demands;
-        Self { p_z, allowed: flatness.powi(3) * allowed, longest, even: false, short }
+        Self { p_z, allowed: flatness.powi(3) * self.allowed, ..self }
     }
 
     /// `momentum` with its length made to fit |P|² = c² - p_z² |f'|².

@@ -33,10 +33,10 @@ const MAX_CORRECTIONS: u32 = 12;
 
 /// A coordinate's value and its first two derivatives by τ.
 #[derive(Clone, Copy, Debug)]
-struct Motion {
-    value: f64,
-    rate: f64,
-    bend: f64,
+struct Motion<T = f64> {
+    value: T,
+    rate: T,
+    bend: T,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +81,7 @@ impl EventFunction {
     }
 
     #[inline(always)]
-    fn motions<S: Simd>(&self, at: &PointLanes<S>, p_z: Lanes<S>) -> MotionLanes<S> {
+    fn motions<S: Simd>(&self, at: &PointLanes<S>, p_z: Lanes<S>) -> Motion<Lanes<S>> {
         let (value, rate, bend) = match self.coordinate {
             Coordinate::X => (at.jet.f.re, at.velocity.re, at.bend.re),
             Coordinate::Y => (at.jet.f.im, at.velocity.im, at.bend.im),
@@ -95,7 +95,7 @@ impl EventFunction {
             }
         };
         let sign = self.sign;
-        MotionLanes {
+        Motion {
             value: (value - value.all(self.limit)) * sign,
             rate: rate * sign,
             bend: bend * sign,
@@ -103,14 +103,7 @@ impl EventFunction {
     }
 }
 
-/// The same of four rays.
-struct MotionLanes<S: Simd> {
-    value: Lanes<S>,
-    rate: Lanes<S>,
-    bend: Lanes<S>,
-}
-
-impl<S: Simd> MotionLanes<S> {
+impl<S: Simd> Motion<Lanes<S>> {
     /// When the value next falls through zero, by extrapolation; infinity for never.
     #[inline(always)]
     fn time_ahead(&self) -> Lanes<S> {
@@ -139,14 +132,6 @@ impl Motion {
             -rate / bend
         }
     }
-}
-
-/// What can be seen of the border at both ends of a move.
-pub(super) struct Outlook<S: Simd> {
-    /// When the ray next meets the border, by extrapolation from the end; infinity for never.
-    pub ahead: Lanes<S>,
-    /// Not zero if it may have crossed the border on the way: see [`Gauges::first_crossing`].
-    pub crossed: Lanes<S>,
 }
 
 /// What a step has to do with the border.
@@ -220,14 +205,16 @@ impl Gauges {
             .map(|(gauge, _)| gauge.boundary)
     }
 
-    /// What can be seen of the border at both ends of a move of four rays.
+    /// What can be seen of the border at both ends of a move of four rays: when they next meet it, by extrapolation from
+    /// the end, infinity for never; and numbers that are not zero if they may have crossed it on the way: see
+    /// [`Self::first_crossing`].
     #[inline(always)]
     pub fn outlook<S: Simd>(
         &self,
         from: &PointLanes<S>,
         to: &PointLanes<S>,
         p_z: Lanes<S>,
-    ) -> Outlook<S> {
+    ) -> [Lanes<S>; 2] {
         let zero = p_z.all(0.0);
         let (mut ahead, mut crossed) = (p_z.all(f64::INFINITY), zero);
         for gauge in &self.all {
@@ -241,7 +228,7 @@ impl Gauges {
             let leaves = after.value.less_than(zero);
             crossed = dips.or(leaves).choose(zero.all(1.0), crossed);
         }
-        Outlook { ahead, crossed }
+        [ahead, crossed]
     }
 
     /// The first crossing of the border in a step of length `reach` from `a` to `b`.
@@ -249,7 +236,7 @@ impl Gauges {
         let (mut first, mut earliest) = (Crossing::None, f64::INFINITY);
         for &gauge in self.finite() {
             let (from, to) = (gauge.at(a, p_z), gauge.at(b, p_z));
-            let (share, found) = if to.value < 0.0 {
+            let (share, clear) = if to.value < 0.0 {
                 let back = to.time_to_zero();
                 let near = from.rate < 0.0 && to.rate < 0.0 && -back < NEAR * self.scale.min(reach);
                 let share = if near && from.value > 0.0 {
@@ -257,30 +244,26 @@ impl Gauges {
                 } else {
                     Hermite::new(from, to, reach).first_fall()
                 };
-                (share, Crossing::At { gauge, share })
+                (share, true)
             } else if from.rate < 0.0 && to.rate > 0.0 {
                 let hermite = Hermite::new(from, to, reach);
                 let (share, least) = hermite.minimum();
-                // The interpolation is not trusted beyond this.
                 let relative = reach / self.scale;
-                let margin = 2e-3 * self.scale * relative.powi(4);
-                if share * relative > SHORTEST_SPLIT {
-                    // At its end it has been looked at: it is not beyond.
-                    if least >= margin || share > AT_END {
-                        continue;
-                    }
-                    (share, Crossing::Unclear { share })
-                } else {
-                    if least >= 0.0 {
-                        continue;
-                    }
-                    (share, Crossing::At { gauge, share })
+                let unclear = share * relative > SHORTEST_SPLIT;
+                // The interpolation is not trusted beyond this.
+                let margin = if unclear { 2e-3 * self.scale * relative.powi(4) } else { 0.0 };
+                // At its end it has been looked at: it is not beyond.
+                if least >= margin || unclear && share > AT_END {
+                    continue;
                 }
+                (share, !unclear)
             } else {
                 continue;
             };
             if share < earliest {
-                (first, earliest) = (found, share);
+                earliest = share;
+                let at = Crossing::At { gauge, share };
+                first = if clear { at } else { Crossing::Unclear { share } };
             }
         }
         first

@@ -12,11 +12,9 @@ use crate::transformation::MapJet;
 
 /// A frame bound to a ray's direction in virtual space, and how that space is turned physically.
 pub(super) struct Frame {
-    /// The smallest rotation that takes the z-axis (-z for p_z < 0) into the ray; it is regular both for
-    /// rays along z and for rays across.
+    /// The smallest rotation that takes the z-axis (-z for p_z < 0) into the ray (it is regular both for
+    /// rays along z and for rays across), and then one by arg f' about z, from virtual to physical components.
     rotation: DMat3,
-    /// Rotation by arg f' about z, from virtual to physical components.
-    local: DMat3,
     side: f64,
 }
 
@@ -33,7 +31,7 @@ impl Frame {
             DVec3::new(side * tx, side * ty, sine),
         );
         let turn = jet.f1 / jet.stretch();
-        Self { rotation, local: about_z(turn.re, turn.im), side }
+        Self { rotation: about_z(turn.re, turn.im) * rotation, side }
     }
 }
 
@@ -41,8 +39,7 @@ impl Frame {
 /// ray against the frames.
 pub(super) fn transport(start: &Frame, end: &Frame, theta: f64) -> DMat3 {
     let (sin, cos) = (end.side * theta).sin_cos();
-    let (before, after) = (start.local * start.rotation, end.local * end.rotation);
-    after * about_z(cos, sin) * before.transpose()
+    end.rotation * about_z(cos, sin) * start.rotation.transpose()
 }
 
 fn about_z(cos: f64, sin: f64) -> DMat3 {

@@ -8,15 +8,15 @@
 //! These are Hamilton's equations of H = (|P|² + p_z² |f'|² - c²)/2, that is of p² = n². For p_z = 0 the
 //! path in ζ is a straight line; else the force is small and smooth, and the method of order 8 takes a
 //! handful of steps. Where the index is ρ(x, y) times that ([`IndexPerturbation`]), it is c² ρ² that |P|² + p_z² |f'|² must be,
-//! and another force comes in: see the module `uneven_strides`. Lengths are in cm, wave vectors in units of the vacuum wave number.
+//! and another force comes in: see the module `forces`. Lengths are in cm, wave vectors in units of the vacuum wave number.
 
 mod course;
 mod crossing;
+mod forces;
 mod frame;
 mod path;
 mod points;
 mod strides;
-mod uneven_strides;
 mod unevenness;
 mod walk;
 
@@ -239,39 +239,20 @@ impl ConformalFlow {
             jet = self.map.jet(zeta);
         }
         let index = self.index_at(&jet);
+        let (cut, radius, slack) = (&self.cut, z.norm(), self.slack);
+        let between =
+            |value: f64, low: f64, high: f64| value >= low - slack && value <= high + slack;
         let inside = zeta.im >= 0.0
-            && z.re >= self.cut.x_min - self.slack
-            && z.re <= self.cut.x_max + self.slack
-            && z.im <= self.cut.y_max + self.slack
-            && local.z >= self.extent.min - self.slack
-            && local.z <= self.extent.max + self.slack
-            && self.is_between(z.norm());
+            && between(z.re, cut.x_min, cut.x_max)
+            && z.im <= cut.y_max + slack
+            && between(local.z, self.extent.min, self.extent.max)
+            && (self.core.is_infinite() || radius >= self.core - slack)
+            && radius <= self.rim + slack;
         if inside && index.is_finite() {
             Ok(VirtualPoint { half, position, virtual_position: zeta, index })
         } else {
             Err(FlowError::Outside)
         }
-    }
-
-    /// Whether a distance from the z axis is within the round border and beyond the core.
-    fn is_between(&self, radius: f64) -> bool {
-        let beyond_core = self.core.is_infinite() || radius >= self.core - self.slack;
-        beyond_core && radius <= self.rim + self.slack
-    }
-
-    /// Follows a ray from a physical point to the border; see [`Self::advance_from`].
-    ///
-    /// # Errors
-    ///
-    /// As [`Self::virtual_point`] and [`Self::advance_from`].
-    pub fn advance(
-        &self,
-        half: Half,
-        position: DVec3,
-        wave_vector: DVec3,
-        tolerance: f64,
-    ) -> Result<FlowEnd, FlowError> {
-        self.advance_from(&self.virtual_point(half, position)?, wave_vector, tolerance)
     }
 
     /// Follows a ray from a point inside or on the border to the next point of the border.
@@ -340,28 +321,20 @@ impl ConformalFlow {
         let inward = Complex64::i() * end.jet.f1 / end.jet.stretch();
         let radial = DVec3::new(position.x, position.y, 0.0).normalize_or(DVec3::X);
         let on_circle = |radius: f64| (radial * radius).with_z(end.z);
-        let normal = match boundary {
-            Boundary::XMin => DVec3::NEG_X,
-            Boundary::XMax => DVec3::X,
-            Boundary::YMax => DVec3::Y,
-            Boundary::ZMin => DVec3::NEG_Z,
-            Boundary::ZMax => DVec3::Z,
-            Boundary::Floor => DVec3::new(-inward.re, -inward.im, 0.0),
-            Boundary::Rim => radial,
-            Boundary::Core => -radial,
-        };
+        let into_metal = DVec3::new(-inward.re, -inward.im, 0.0);
+        let normal;
         // What is left of the distance to the border is rounding.
         match boundary {
-            Boundary::XMin => position.x = self.cut.x_min,
-            Boundary::XMax => position.x = self.cut.x_max,
-            Boundary::YMax => position.y = self.cut.y_max,
-            Boundary::ZMin => position.z = self.extent.min,
-            Boundary::ZMax => position.z = self.extent.max,
-            Boundary::Floor => end.zeta.im = 0.0,
-            Boundary::Rim => position = on_circle(self.rim),
-            Boundary::Core => position = on_circle(self.core),
+            Boundary::XMin => (position.x, normal) = (self.cut.x_min, DVec3::NEG_X),
+            Boundary::XMax => (position.x, normal) = (self.cut.x_max, DVec3::X),
+            Boundary::YMax => (position.y, normal) = (self.cut.y_max, DVec3::Y),
+            Boundary::ZMin => (position.z, normal) = (self.extent.min, DVec3::NEG_Z),
+            Boundary::ZMax => (position.z, normal) = (self.extent.max, DVec3::Z),
+            Boundary::Floor => (end.zeta.im, normal) = (0.0, into_metal),
+            Boundary::Rim => (position, normal) = (on_circle(self.rim), radial),
+            Boundary::Core => (position, normal) = (on_circle(self.core), -radial),
         }
-        let strength = self.strength * self.factor(end.jet.f).square.sqrt();
+        let strength = self.strength_at(end.jet.f);
         end.momentum = course.on_shell(strength, end.momentum, &end.jet);
         let p = end.momentum / end.jet.f1.conj();
         let turn = course.transport(&begin, &end);

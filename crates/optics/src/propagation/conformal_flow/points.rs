@@ -7,60 +7,62 @@ use crate::lanes::{ComplexLanes, Complexes, LANES, Lanes};
 use crate::propagation::nystrom::Motion;
 use crate::transformation::{JetLanes, MapJet};
 
-/// Where a ray is, with the map there.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Point {
+/// Where a ray is, with the map there; of real and of complex numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place<R, C> {
     /// Optical path since the start over c².
-    pub tau: f64,
+    pub tau: R,
     /// Virtual position.
-    pub zeta: Complex64,
+    pub zeta: C,
     /// P = dζ/dτ.
-    pub momentum: Complex64,
+    pub momentum: C,
     /// Position along z.
-    pub z: f64,
+    pub z: R,
     /// Angle about the ray by which the field has turned against the frame of
     /// [`Frame`](super::frame::Frame).
-    pub theta: f64,
+    pub theta: R,
     /// The map at ζ.
-    pub jet: MapJet,
+    pub jet: MapJet<C>,
     /// dP/dτ.
-    pub force: Complex64,
+    pub force: C,
     /// d(x + iy)/dτ.
-    pub velocity: Complex64,
+    pub velocity: C,
     /// d²(x + iy)/dτ².
-    pub bend: Complex64,
+    pub bend: C,
 }
 
-/// Where four rays are: see [`Point`].
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Points {
-    pub tau: [f64; LANES],
-    pub zeta: Complexes,
-    pub momentum: Complexes,
-    pub z: [f64; LANES],
-    pub theta: [f64; LANES],
-    pub f: Complexes,
-    pub f1: Complexes,
-    pub f2: Complexes,
-    pub force: Complexes,
-    pub velocity: Complexes,
-    pub bend: Complexes,
+/// Where one ray is.
+pub(super) type Point = Place<f64, Complex64>;
+
+/// Where four rays are, in memory.
+pub(super) type Points = Place<[f64; LANES], Complexes>;
+
+/// Where four rays are, in the processor.
+pub(super) type PointLanes<S> = Place<Lanes<S>, ComplexLanes<S>>;
+
+impl<R: Copy, C: Copy> Place<R, C> {
+    /// The same of other numbers.
+    #[inline(always)]
+    fn map<Q, D>(&self, real: impl Fn(R) -> Q, complex: impl Fn(C) -> D) -> Place<Q, D> {
+        let MapJet { f, f1, f2 } = self.jet;
+        Place {
+            tau: real(self.tau),
+            zeta: complex(self.zeta),
+            momentum: complex(self.momentum),
+            z: real(self.z),
+            theta: real(self.theta),
+            jet: MapJet { f: complex(f), f1: complex(f1), f2: complex(f2) },
+            force: complex(self.force),
+            velocity: complex(self.velocity),
+            bend: complex(self.bend),
+        }
+    }
 }
 
 impl Points {
     /// One of them.
     pub fn at(&self, i: usize) -> Point {
-        Point {
-            tau: self.tau[i],
-            zeta: self.zeta.at(i),
-            momentum: self.momentum.at(i),
-            z: self.z[i],
-            theta: self.theta[i],
-            jet: MapJet { f: self.f.at(i), f1: self.f1.at(i), f2: self.f2.at(i) },
-            force: self.force.at(i),
-            velocity: self.velocity.at(i),
-            bend: self.bend.at(i),
-        }
+        self.map(|numbers| numbers[i], |numbers| numbers.at(i))
     }
 
     /// Moves one of them to where it is in `other`.
@@ -70,9 +72,9 @@ impl Points {
         self.theta[i] = other.theta[i];
         self.zeta.put(i, other.zeta.at(i));
         self.momentum.put(i, other.momentum.at(i));
-        self.f.put(i, other.f.at(i));
-        self.f1.put(i, other.f1.at(i));
-        self.f2.put(i, other.f2.at(i));
+        self.jet.f.put(i, other.jet.f.at(i));
+        self.jet.f1.put(i, other.jet.f1.at(i));
+        self.jet.f2.put(i, other.jet.f2.at(i));
         self.force.put(i, other.force.at(i));
         self.velocity.put(i, other.velocity.at(i));
         self.bend.put(i, other.bend.at(i));
@@ -80,47 +82,13 @@ impl Points {
 
     #[inline(always)]
     pub fn load<S: Simd>(&self, simd: S) -> PointLanes<S> {
-        PointLanes {
-            tau: Lanes::new(simd, self.tau),
-            zeta: self.zeta.load(simd),
-            momentum: self.momentum.load(simd),
-            z: Lanes::new(simd, self.z),
-            theta: Lanes::new(simd, self.theta),
-            jet: JetLanes { f: self.f.load(simd), f1: self.f1.load(simd), f2: self.f2.load(simd) },
-            force: self.force.load(simd),
-            velocity: self.velocity.load(simd),
-            bend: self.bend.load(simd),
-        }
+        self.map(|numbers| Lanes::new(simd, numbers), |numbers| numbers.load(simd))
     }
 
     #[inline(always)]
     pub fn store<S: Simd>(&mut self, lanes: &PointLanes<S>) {
-        self.tau = lanes.tau.values();
-        self.zeta.store(lanes.zeta);
-        self.momentum.store(lanes.momentum);
-        self.z = lanes.z.values();
-        self.theta = lanes.theta.values();
-        self.f.store(lanes.jet.f);
-        self.f1.store(lanes.jet.f1);
-        self.f2.store(lanes.jet.f2);
-        self.force.store(lanes.force);
-        self.velocity.store(lanes.velocity);
-        self.bend.store(lanes.bend);
+        *self = lanes.map(Lanes::values, Complexes::of);
     }
-}
-
-/// Where four rays are: see [`Point`].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PointLanes<S: Simd> {
-    pub tau: Lanes<S>,
-    pub zeta: ComplexLanes<S>,
-    pub momentum: ComplexLanes<S>,
-    pub z: Lanes<S>,
-    pub theta: Lanes<S>,
-    pub jet: JetLanes<S>,
-    pub force: ComplexLanes<S>,
-    pub velocity: ComplexLanes<S>,
-    pub bend: ComplexLanes<S>,
 }
 
 impl<S: Simd> PointLanes<S> {

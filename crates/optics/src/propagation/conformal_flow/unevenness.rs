@@ -5,12 +5,8 @@ use std::sync::Arc;
 use glam::DVec2;
 use num_complex::Complex64;
 
-use super::course::Demands;
-use super::points::Points;
-use super::strides::{Rays, StepKind, StepResult, stride};
-use super::uneven_strides::uneven_stride;
+use super::course::StepControl;
 use super::{ConformalFlow, MIRROR_MAGNIFIES};
-use crate::lanes::LANES;
 use crate::propagation::GridSpline;
 use crate::transformation::MapJet;
 
@@ -21,15 +17,6 @@ pub struct IndexPerturbation {
     /// Of the square, where it counts.
     bounds: [f64; 2],
     scale: f64,
-}
-
-/// The square of the factor at one place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Factor {
-    /// ρ².
-    pub square: f64,
-    /// ∂ρ²/∂x + i ∂ρ²/∂y, 1/cm.
-    pub gradient: Complex64,
 }
 
 /// Grid cells over which an unevenness is taken to vary.
@@ -54,7 +41,7 @@ impl IndexPerturbation {
     }
 
     fn bounded(square: GridSpline, bounds: [f64; 2]) -> Option<Self> {
-        let scale = CELLS_A_SCALE * square.finest_spacing();
+        let scale = CELLS_A_SCALE * square.spacing.min_element();
         (bounds[0] > 0.0).then_some(Self { square, bounds, scale })
     }
 
@@ -63,10 +50,11 @@ impl IndexPerturbation {
         self.bounds.map(f64::sqrt)
     }
 
+    /// ρ² and ∂ρ²/∂x + i ∂ρ²/∂y, 1/cm, at one place.
     #[inline]
-    pub(super) fn look(&self, z: Complex64) -> Factor {
+    pub(super) fn look(&self, z: Complex64) -> (f64, Complex64) {
         let (square, gradient) = self.square.look(DVec2::new(z.re, z.im));
-        Factor { square, gradient: Complex64::new(gradient.x, gradient.y) }
+        (square, Complex64::new(gradient.x, gradient.y))
     }
 }
 
@@ -91,38 +79,26 @@ impl ConformalFlow {
     }
 
     /// How exactly rays are to be followed for a tolerance, cm, that meet the mirror or do not.
-    pub(super) fn demands(&self, tolerance: f64, to_mirror: bool) -> Demands {
+    pub(super) fn demands(&self, tolerance: f64, to_mirror: bool) -> StepControl {
         // Of a spline, nothing can be counted on, nor that a ray meets the mirror where a straight one would; and the
         // errors of many short steps add up.
         let uneven = self.is_uneven();
         let smoothness = if uneven { 0.3 } else { self.map.smoothness() };
         let share = if uneven || to_mirror { MIRROR_MAGNIFIES } else { 1.0 };
-        Demands::new(self.scale(), smoothness, share * tolerance)
+        StepControl {
+            even: uneven,
+            ..StepControl::new(self.scale(), smoothness, share * tolerance)
+        }
     }
 
-    /// How uneven the medium is at a physical point of the upper half.
-    pub(super) fn factor(&self, z: Complex64) -> Factor {
-        let none = Factor { square: 1.0, gradient: Complex64::ZERO };
-        self.unevenness.as_ref().map_or(none, |unevenness| unevenness.look(z))
+    /// c ρ at a physical point of the upper half.
+    pub(super) fn strength_at(&self, z: Complex64) -> f64 {
+        let square = self.unevenness.as_ref().map_or(1.0, |unevenness| unevenness.look(z).0);
+        self.strength * square.sqrt()
     }
 
     /// The index at a virtual point.
     pub(super) fn index_at(&self, jet: &MapJet) -> f64 {
-        self.strength * self.factor(jet.f).square.sqrt() / jet.stretch()
-    }
-
-    /// Moves four rays by the lengths (of any sign) into `to`.
-    pub(super) fn stride(
-        &self,
-        rays: &Rays,
-        pace: StepKind,
-        from: &Points,
-        length: &[f64; LANES],
-        to: &mut StepResult,
-    ) {
-        match &self.unevenness {
-            None => stride(&self.map, &self.gauges, rays, pace, from, length, to),
-            Some(unevenness) => uneven_stride(self, unevenness, rays, pace, from, length, to),
-        }
+        self.strength_at(jet.f) / jet.stretch()
     }
 }

@@ -3,10 +3,10 @@
 use glam::DVec3;
 use num_complex::Complex64;
 
-use super::course::{Demands, StepControl};
+use super::course::StepControl;
 use super::crossing::{Crossing, Look, RootRefinement};
 use super::points::Points;
-use super::strides::{Rays, StepKind, StepResult};
+use super::strides::{Move, Rays, StepKind, StepResult};
 use super::{Arrival, Boundary, ConformalFlow, FlowError, MAX_STEPS, VirtualPoint};
 use crate::lanes::LANES;
 
@@ -66,15 +66,10 @@ impl RayPacket {
     ) -> Self {
         let walk = Walk { state: State::Absent, stride: 0.0, steps: 0 };
         let demands = flow.demands(tolerance, false);
-        let rays = Rays {
-            p_z: [0.0; LANES],
-            weight: [0.0; LANES],
-            strength: flow.strength,
-            lever: flow.lever(),
-        };
+        let weight = [0.0; LANES];
         let mut convoy = Self {
-            rays,
-            courses: [StepControl::new(0.0, flow.strength, &demands); LANES],
+            rays: Rays { p_z: [0.0; LANES], weight, lever: flow.lever() },
+            courses: [demands; LANES],
             walks: [walk; LANES],
             begin: Points::default(),
             here: Points::default(),
@@ -82,27 +77,22 @@ impl RayPacket {
         };
         for (i, start) in starts.iter().enumerate() {
             let Some((start, wave_vector)) = start else { continue };
-            match flow.sets_out(start, *wave_vector) {
-                Ok(()) => convoy.put(i, start, *wave_vector),
-                Err(error) => convoy.walks[i].state = State::Failed(error),
-            }
+            convoy.walks[i].state = match flow.sets_out(start, *wave_vector) {
+                Ok(()) => State::Stepping(0.0),
+                Err(error) => State::Failed(error),
+            };
+            let p = start.half.mirrored(*wave_vector);
+            convoy.rays.p_z[i] = p.z;
+            convoy.here.zeta.put(i, start.virtual_position);
+            convoy.here.momentum.put(i, Complex64::new(p.x, p.y));
+            convoy.here.z[i] = start.half.mirrored(start.position).z;
         }
         convoy.set_out(flow, &demands, tolerance);
         convoy
     }
 
-    /// Puts a ray at its start.
-    fn put(&mut self, i: usize, start: &VirtualPoint, wave_vector: DVec3) {
-        let p = start.half.mirrored(wave_vector);
-        self.walks[i].state = State::Stepping(0.0);
-        self.rays.p_z[i] = p.z;
-        self.here.zeta.put(i, start.virtual_position);
-        self.here.momentum.put(i, Complex64::new(p.x, p.y));
-        self.here.z[i] = start.half.mirrored(start.position).z;
-    }
-
     /// Looks where the rays are, and how far they may go.
-    fn set_out(&mut self, flow: &ConformalFlow, demands: &Demands, tolerance: f64) {
+    fn set_out(&mut self, flow: &ConformalFlow, demands: &StepControl, tolerance: f64) {
         let Some(any) = (0..LANES).find(|&i| self.walks[i].state.ahead().is_some()) else {
             return;
         };
@@ -125,8 +115,7 @@ impl RayPacket {
             }
             let aims_at_floor = flow.aims_at_floor(self.here.zeta.at(i), self.here.momentum.at(i));
             let demands = if aims_at_floor { &nearer } else { demands };
-            let mut course = StepControl::new(self.rays.p_z[i], flow.strength, demands);
-            course.even = flow.is_uneven();
+            let course = demands.along_z(self.rays.p_z[i], flow.strength);
             self.courses[i] = course;
             self.rays.weight[i] = course.allowed.recip();
             self.walks[i].stride = 0.8 * course.longest;
@@ -167,7 +156,7 @@ impl RayPacket {
 
     fn stride(&mut self, flow: &ConformalFlow, pace: StepKind, length: &[f64; LANES]) {
         let Self { rays, here, trials, .. } = self;
-        flow.stride(rays, pace, here, length, trials);
+        Move { flow, rays, pace, from: here, length, to: trials }.take();
     }
 
     /// How a ray moves by `length`.
@@ -194,7 +183,7 @@ impl RayPacket {
     /// Where a ray is, if that is on its way and not beyond the border, which it looks for: x + iy, z and τ.
     pub fn waypoint(&self, i: usize) -> Option<(Complex64, f64, f64)> {
         let on_its_way = matches!(self.walks[i].state, State::Stepping(_) | State::Arrived(_));
-        on_its_way.then(|| (self.here.f.at(i), self.here.z[i], self.here.tau[i]))
+        on_its_way.then(|| (self.here.jet.f.at(i), self.here.z[i], self.here.tau[i]))
     }
 
     /// The end of a ray's way.
@@ -241,7 +230,8 @@ impl RayPacket {
             return;
         }
         if !good {
-            self.shorten(i);
+            // The same step again, shorter.
+            walk.state = State::Stepping(walk.stride);
             return;
         }
         let crossing = if self.trials.crossed[i] == 0.0 {
@@ -279,11 +269,5 @@ impl RayPacket {
         } / flow.strength;
         let beyond = self.trials.ahead[i] + OVERSHOOT * flow.scale();
         walk.state = State::Stepping(walk.stride.min(usual).min(beyond));
-    }
-
-    /// Takes the same step again, shorter.
-    fn shorten(&mut self, i: usize) {
-        let walk = &mut self.walks[i];
-        walk.state = State::Stepping(walk.stride);
     }
 }

@@ -26,6 +26,17 @@ pub(crate) struct Stage<S: Simd, J> {
     pub jet: J,
 }
 
+/// The end of a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step<S: Simd, J, const Q: usize> {
+    /// Where the step ends.
+    pub end: Motion<S>,
+    /// The field of force there.
+    pub stage: Stage<S, J>,
+    /// The growth of the quadratures ∫ g(y, y') over the step.
+    pub quadrature: [Lanes<S>; Q],
+}
+
 /// A field of force, and what is to be integrated along the way.
 pub(crate) trait Field<S: Simd, const Q: usize> {
     /// What is found at a place.

@@ -5,7 +5,7 @@
 
 use pulp::Simd;
 
-use super::{Field, Motion, Stage, sum};
+use super::{Field, Motion, Stage, Step, sum};
 use crate::lanes::Lanes;
 
 /// One over the largest errors allowed in a step, to weigh the estimates with.
@@ -17,19 +17,6 @@ pub(crate) struct ErrorWeight<S: Simd, const Q: usize> {
     pub velocity: Lanes<S>,
     /// Of each quadrature; zero for those that do not count.
     pub quadrature: [Lanes<S>; Q],
-}
-
-/// The end of a step that may be taken.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Step<S: Simd, J, const Q: usize> {
-    /// Where the step ends, of order 8.
-    pub end: Motion<S>,
-    /// The field of force there.
-    pub stage: Stage<S, J>,
-    /// The growth of the quadratures ∫ g(y, y') over the step.
-    pub quadrature: [Lanes<S>; Q],
-    /// The estimated error over the allowed one: take the step if this is at most 1.
-    pub error: Lanes<S>,
 }
 
 /// The largest and the smallest change of the step size from one step to the next.
@@ -62,7 +49,8 @@ fn weighted<S: Simd, const Q: usize>(
     sum
 }
 
-/// Steps of length `h` (negative: backwards) from `start`, where the force is known.
+/// Steps of length `h` (negative: backwards) from `start`, where the force is known, and the estimated errors over the
+/// allowed ones: take a step if this is at most 1.
 #[inline(always)]
 pub(crate) fn step<S: Simd, F: Field<S, Q>, const Q: usize>(
     field: &F,
@@ -70,7 +58,7 @@ pub(crate) fn step<S: Simd, F: Field<S, Q>, const Q: usize>(
     first: Stage<S, F::Jet>,
     h: Lanes<S>,
     weight: &ErrorWeight<S, Q>,
-) -> Step<S, F::Jet, Q> {
+) -> (Step<S, F::Jet, Q>, Lanes<S>) {
     let square = h * h;
     let f0 = first.force;
     let f1 = field.look(start.coasted(h, 0.05).plus_real(f0, square * A1)).force;
@@ -113,7 +101,7 @@ pub(crate) fn step<S: Simd, F: Field<S, Q>, const Q: usize>(
         *growth = weighted(&DB, &g, k) * h;
     }
     let end = Motion { position, velocity };
-    Step { end, stage: last, quadrature, error: error.sqrt() }
+    (Step { end, stage: last, quadrature }, error.sqrt())
 }
 
 const A1: f64 = 1.0 / 800.0;
@@ -146,25 +134,21 @@ const A7: [f64; 7] = [
     1_645.0 / 57_088.0,
 ];
 
+/// Fractions of one denominator.
+const fn over<const N: usize>(denominator: f64, mut numerators: [f64; N]) -> [f64; N] {
+    let mut k = 0;
+    while k < N {
+        numerators[k] /= denominator;
+        k += 1;
+    }
+    numerators
+}
+
 /// Weights of the position at the nodes 0, 0.1, 0.3, 0.5, 0.7, 0.9.
-const B: [f64; 6] = [
-    223.0 / 7_938.0,
-    1_175.0 / 8_064.0,
-    925.0 / 6_048.0,
-    41.0 / 448.0,
-    925.0 / 14_112.0,
-    1_175.0 / 72_576.0,
-];
+const B: [f64; 6] = over(508_032.0, [14_272.0, 74_025.0, 77_700.0, 46_494.0, 33_300.0, 8_225.0]);
 /// Weights of the velocity at the nodes 0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.
-const DB: [f64; 7] = [
-    223.0 / 7_938.0,
-    5_875.0 / 36_288.0,
-    4_625.0 / 21_168.0,
-    41.0 / 224.0,
-    4_625.0 / 21_168.0,
-    5_875.0 / 36_288.0,
-    223.0 / 7_938.0,
-];
+const DB: [f64; 7] =
+    over(254_016.0, [7_136.0, 41_125.0, 55_500.0, 46_494.0, 55_500.0, 41_125.0, 7_136.0]);
 /// B less the weights of order 6.
 const E: [f64; 6] = [
     B[0] - 7_987_313.0 / 109_941_300.0,
@@ -187,51 +171,18 @@ const DE: [f64; 7] = [
 const LAST: f64 = 3.0 / 20.0;
 
 /// Weights that integrate the polynomial through the seven nodes up to 0.1, 0.3, 0.5, 0.7, 0.9.
-const V2: [f64; 7] = [
-    148_679.0 / 3_969_000.0,
-    267_469.0 / 3_628_800.0,
-    -83_207.0 / 4_233_600.0,
-    773.0 / 56_000.0,
-    -32_177.0 / 4_233_600.0,
-    12_319.0 / 3_628_800.0,
-    -4_411.0 / 3_969_000.0,
-];
-const V3: [f64; 7] = [
-    737.0 / 29_400.0,
-    7_757.0 / 44_800.0,
-    19_307.0 / 156_800.0,
-    -351.0 / 11_200.0,
-    2_157.0 / 156_800.0,
-    -739.0 / 134_400.0,
-    17.0 / 9_800.0,
-];
-const V4: [f64; 7] = [
-    305.0 / 10_584.0,
-    23_125.0 / 145_152.0,
-    12_875.0 / 56_448.0,
-    41.0 / 448.0,
-    -1_625.0 / 169_344.0,
-    125.0 / 48_384.0,
-    -23.0 / 31_752.0,
-];
-const V5: [f64; 7] = [
-    427.0 / 16_200.0,
-    86_779.0 / 518_400.0,
-    17_689.0 / 86_400.0,
-    343.0 / 1_600.0,
-    8_239.0 / 86_400.0,
-    -5_831.0 / 518_400.0,
-    49.0 / 16_200.0,
-];
-const V6: [f64; 7] = [
-    1_431.0 / 49_000.0,
-    7_101.0 / 44_800.0,
-    35_451.0 / 156_800.0,
-    9_477.0 / 56_000.0,
-    37_341.0 / 156_800.0,
-    3_951.0 / 44_800.0,
-    -459.0 / 49_000.0,
-];
+const V2: [f64; 7] = over(
+    127_008_000.0,
+    [4_757_728.0, 9_361_415.0, -2_496_210.0, 1_753_164.0, -965_310.0, 431_165.0, -141_152.0],
+);
+const V3: [f64; 7] =
+    over(940_800.0, [23_584.0, 162_897.0, 115_842.0, -29_484.0, 12_942.0, -5_173.0, 1_632.0]);
+const V4: [f64; 7] =
+    over(1_016_064.0, [29_280.0, 161_875.0, 231_750.0, 92_988.0, -9_750.0, 2_625.0, -736.0]);
+const V5: [f64; 7] =
+    over(518_400.0, [13_664.0, 86_779.0, 106_134.0, 111_132.0, 49_434.0, -5_831.0, 1_568.0]);
+const V6: [f64; 7] =
+    over(1_568_000.0, [45_792.0, 248_535.0, 354_510.0, 265_356.0, 373_410.0, 138_285.0, -14_688.0]);
 
 #[cfg(test)]
 mod tests {
@@ -259,8 +210,8 @@ mod tests {
             let weight = ErrorWeight { position: one, velocity: one, quadrature: [one] };
             let h = Lanes::new(simd, self.h);
             let start = together(simd, self.start);
-            let step = step(&Sun, start, Sun.look(start.position), h, &weight);
-            (apart(step.end), step.quadrature[0].values(), step.error.values())
+            let (step, error) = step(&Sun, start, Sun.look(start.position), h, &weight);
+            (apart(step.end), step.quadrature[0].values(), error.values())
         }
     }
 

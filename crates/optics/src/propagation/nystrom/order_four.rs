@@ -2,22 +2,11 @@
 
 use pulp::Simd;
 
-use super::{Field, Motion, Stage};
+use super::{Field, Motion, Stage, Step};
 use crate::lanes::{ComplexLanes, Lanes};
 
-/// The end of a step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Step<S: Simd, J, const Q: usize> {
-    /// Where the step ends.
-    pub end: Motion<S>,
-    /// The field of force there.
-    pub stage: Stage<S, J>,
-    /// The growth of the quadratures over the step, by Simpson's rule with the place and velocity in its middle
-    /// known to order 2.
-    pub quadrature: [Lanes<S>; Q],
-}
-
-/// Steps of length `h` (negative: backwards) from `start`, where the force is known; three evaluations of it.
+/// Steps of length `h` (negative: backwards) from `start`, where the force is known; three evaluations of it. The
+/// quadratures are by Simpson's rule with the place and velocity in the middle known to order 2.
 #[inline(always)]
 pub(crate) fn step<S: Simd, F: Field<S, Q>, const Q: usize>(
     field: &F,

@@ -1,17 +1,5 @@
 //! The radial integrals of rays that turn back before a core.
 
-/// The integrals over dρ/√Q, Q = A ρ² + B ρ + C, from the turning point (the larger root of Q), with
-/// the weights ρ, 1 and 1/ρ. Negative on the way in.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct CoreIntegrals {
-    /// ∫ ρ dρ/√Q.
-    pub first: f64,
-    /// ∫ dρ/√Q.
-    pub zeroth: f64,
-    /// ∫ dρ/(ρ √Q).
-    pub inverse: f64,
-}
-
 /// Q with A > 0 and B <= 0, and the square root of its discriminant B² - 4AC.
 ///
 /// Its radii have the parameter η of either sign, 2 A ρ + B = √D cosh η, √Q = √(D/4A) sinh η: smooth
@@ -49,28 +37,25 @@ impl RadialQuadratic {
         (rho, self.root * eta.sinh() / (2.0 * self.a.sqrt()))
     }
 
-    /// The integrals up to a parameter.
-    pub fn integrals(&self, eta: f64) -> CoreIntegrals {
+    /// The integrals ∫ ρ dρ/√Q, ∫ dρ/√Q and ∫ dρ/(ρ √Q) from the turning point (the larger root of Q) up to a
+    /// parameter. Negative on the way in.
+    pub fn integrals(&self, eta: f64) -> [f64; 3] {
         let Self { a, b, c, root } = *self;
         let (rho, q) = self.radius(eta);
         let zeroth = eta / a.sqrt();
         let y = 2.0 * q;
         // ∫ dρ/(ρ√Q) = atan(√-C y/w)/√-C or its hyperbolic likeness, w = -(2C + Bρ) > 0 and
         // w² = D ρ² + C y².
-        let inverse = if c < 0.0 {
-            let s = (-c).sqrt();
-            let w = -2.0 * c - b * rho;
-            if s * y.abs() < 1e-4 * w { series(y / w, c) } else { (s * y).atan2(w) / s }
+        let s = c.abs().sqrt();
+        let w = if c < 0.0 { -2.0 * c - b * rho } else { (root * rho).hypot(s * y) };
+        let inverse = if s * y.abs() < 1e-4 * w {
+            series(y / w, c)
+        } else if c < 0.0 {
+            (s * y).atan2(w) / s
         } else {
-            let s = c.sqrt();
-            let w = (root * rho).hypot(s * y);
-            if s * y.abs() < 1e-4 * w {
-                series(y / w, c)
-            } else {
-                (s * y / (root * rho)).asinh() / s
-            }
+            (s * y / (root * rho)).asinh() / s
         };
-        CoreIntegrals { first: (q - 0.5 * b * zeroth) / a, zeroth, inverse }
+        [(q - 0.5 * b * zeroth) / a, zeroth, inverse]
     }
 }
 
@@ -117,7 +102,6 @@ mod tests {
                 for eta in [eta, -eta] {
                     let found = quadratic.integrals(eta);
                     let expected = by_simpson(&quadratic, eta);
-                    let found = [found.first, found.zeroth, found.inverse];
                     for (found, expected) in found.iter().zip(expected) {
                         let error = (found - expected).abs();
                         assert!(

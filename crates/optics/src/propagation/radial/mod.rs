@@ -83,21 +83,17 @@ impl RadialFlow {
     /// The unit vector away from the axis or the centre.
     #[must_use]
     pub fn outward(&self, position: DVec3) -> DVec3 {
-        let outward = match self {
-            Self::Lens(_) | Self::Transmuted(_) => position.try_normalize(),
-            Self::Transformed(shell) => Some(shell.map().radial(position)),
-            Self::Uniaxial(cylinder) => Some(cylinder.map().radial(position)),
-        };
-        outward.unwrap_or(DVec3::X)
+        match self {
+            Self::Lens(_) | Self::Transmuted(_) => position.try_normalize().unwrap_or(DVec3::X),
+            Self::Transformed(shell) => shell.map().radial(position),
+            Self::Uniaxial(cylinder) => cylinder.map().radial(position),
+        }
     }
 
     /// Whether a wave of the medium never comes to the hole: at its border the medium is singular.
     #[must_use]
     pub fn closes_core(&self, mode: ModeKind) -> bool {
-        match self {
-            Self::Lens(_) | Self::Transmuted(_) | Self::Transformed(_) => true,
-            Self::Uniaxial(cylinder) => !cylinder.comes_to_core(mode),
-        }
+        !matches!(self, Self::Uniaxial(cylinder) if cylinder.comes_to_core(mode))
     }
 
     /// The local medium at a point of the medium or its border.
@@ -134,28 +130,23 @@ impl RadialFlow {
         pieces: u32,
     ) -> Vec<PathPoint> {
         let end = self.advance(position, wave_vector, mode);
-        let shares = (0..=pieces).map(|k| f64::from(k) / f64::from(pieces.max(1)));
-        match self {
-            Self::Lens(lens) => {
-                shares.map(|share| lens.way_point(position, wave_vector, share)).collect()
+        let turning = match self {
+            Self::Uniaxial(cylinder) => cylinder.turning_course(position, wave_vector, mode),
+            _ => None,
+        };
+        let point = |share: f64| match (self, &turning) {
+            (_, Some(course)) => course.way_point(position, share),
+            (Self::Lens(lens), _) => lens.way_point(position, wave_vector, share),
+            (Self::Transmuted(sphere), _) if mode == ModeKind::Extraordinary => {
+                sphere.way_point(position, wave_vector, share)
             }
-            Self::Transmuted(sphere) if mode == ModeKind::Extraordinary => {
-                shares.map(|share| sphere.way_point(position, wave_vector, share)).collect()
+            (Self::Transformed(shell), _) => straight_in(shell.map(), position, &end, share),
+            (Self::Uniaxial(cylinder), _) if !cylinder.comes_to_core(mode) => {
+                straight_in(cylinder.map(), position, &end, share)
             }
-            Self::Transmuted(_) => shares.map(|share| straight(position, &end, share)).collect(),
-            Self::Transformed(shell) => {
-                shares.map(|share| straight_in(shell.map(), position, &end, share)).collect()
-            }
-            Self::Uniaxial(cylinder) => {
-                let turning = cylinder.turning_course(position, wave_vector, mode);
-                let way_point = |share| match (&turning, cylinder.comes_to_core(mode)) {
-                    (Some(course), _) => course.way_point(position, share),
-                    (None, true) => straight(position, &end, share),
-                    (None, false) => straight_in(cylinder.map(), position, &end, share),
-                };
-                shares.map(way_point).collect()
-            }
-        }
+            _ => straight(position, &end, share),
+        };
+        (0..=pieces).map(|k| point(f64::from(k) / f64::from(pieces.max(1)))).collect()
     }
 
     /// Where both waves of the medium start as one, along the optic axis, and then part: their

@@ -4,7 +4,7 @@ use super::{Border, RadialEnd};
 use crate::geometry::{Cylinder, Extent, Sphere};
 use crate::medium::Medium;
 use crate::transformation::{RadialMap, Symmetry};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// The shell ε = µ = J Jᵀ/det J of a radial map. In virtual space, X and P = Jᵀ p, rays are straight
 /// lines, and fields are those of empty space: E = J⁻ᵀ E', H = J⁻ᵀ H'.
@@ -56,14 +56,13 @@ impl TransformedShell {
         // S = J S'/det J, and |S| is to stay.
         let power = |at: DVec3| (map.jacobian(at) * momentum).length() / map.determinant(at);
         let factor = (power(position) / power(line.position)).sqrt();
-        let transport: DMat3 = inverse * map.jacobian(position) * factor;
         RadialEnd {
             border: line.border,
             position: line.position,
             wave_vector: inverse * momentum,
             direction: (map.jacobian(line.position) * momentum).normalize(),
             optical_path: line.time * momentum.length_squared(),
-            transport,
+            transport: inverse * map.jacobian(position) * factor,
             outward: line.outward,
         }
     }
@@ -86,7 +85,7 @@ impl VirtualLine {
     pub fn new(map: &RadialMap, extent: Extent, position: DVec3, velocity: DVec3) -> Self {
         let start = map.to_virtual(position);
         let radius = map.outer();
-        match map.symmetry() {
+        match map.symmetry {
             Symmetry::Centre => {
                 let sphere = Sphere { radius };
                 let time = sphere.time_to_leave(start, velocity);

@@ -1,6 +1,6 @@
 //! Cylindrical cloaks of graded uniaxial dielectric.
 
-use super::core_integrals::{CoreIntegrals, RadialQuadratic};
+use super::core_integrals::RadialQuadratic;
 use super::transformed_shell::VirtualLine;
 use super::uniaxial_wave::{UniaxialPoint, transport};
 use super::{Border, PathPoint, RadialEnd};
@@ -67,16 +67,11 @@ impl UniaxialCylinder {
         let s = self.map.shrinkage(position).max(LEAST_S);
         let small = large * s * s;
         let radial = self.map.radial(position);
-        match self.axis {
-            OpticAxis::Radial => {
-                UniaxialPoint { ordinary: large, extraordinary: small, axis: radial }
-            }
-            OpticAxis::Azimuthal => UniaxialPoint {
-                ordinary: small,
-                extraordinary: large,
-                axis: DVec3::Z.cross(radial),
-            },
-        }
+        let (ordinary, extraordinary, axis) = match self.axis {
+            OpticAxis::Radial => (large, small, radial),
+            OpticAxis::Azimuthal => (small, large, DVec3::Z.cross(radial)),
+        };
+        UniaxialPoint { ordinary, extraordinary, axis }
     }
 
     /// The local medium.
@@ -97,15 +92,13 @@ impl UniaxialCylinder {
     /// Follows a ray of either wave from a point of the border to the next point of it.
     #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
-        let leg = match (self.axis, mode == ModeKind::Extraordinary) {
-            (OpticAxis::Radial, false) => self.straight(position, wave_vector),
-            (OpticAxis::Azimuthal, true) => self.virtually_straight(position, wave_vector),
-            (OpticAxis::Radial, true) if self.aims_at_axis(position, wave_vector) => {
-                // As its neighbours in the plane, which run as in the other cloak.
-                self.virtually_straight(position, wave_vector)
-            }
-            (OpticAxis::Radial, true) => self.turning(position, wave_vector),
-            (OpticAxis::Azimuthal, false) => self.turning(position, wave_vector),
+        let leg = if self.comes_to_core(mode) {
+            self.straight(position, wave_vector)
+        } else if let Some(course) = self.turning_course(position, wave_vector, mode) {
+            self.turning(position, wave_vector, course)
+        } else {
+            // Those of the other axis that are aimed at the axis, too, as their neighbours in the plane.
+            self.virtually_straight(position, wave_vector)
         };
         let (here, there) = (self.point(position), self.point(leg.position));
         let direction = if mode == ModeKind::Extraordinary {
@@ -113,21 +106,16 @@ impl UniaxialCylinder {
         } else {
             leg.wave_vector
         };
-        let fields = (here.field(wave_vector, mode), there.field(leg.wave_vector, mode));
+        let field = there.field(leg.wave_vector, mode);
         RadialEnd {
             border: leg.border,
             position: leg.position,
             wave_vector: leg.wave_vector,
             direction: direction.normalize(),
             optical_path: leg.optical_path,
-            transport: transport(fields.0, fields.1),
+            transport: transport(here.field(wave_vector, mode), field),
             outward: leg.outward,
         }
-    }
-
-    fn aims_at_axis(&self, position: DVec3, wave_vector: DVec3) -> bool {
-        let momentum = position.truncate().perp_dot(wave_vector.truncate());
-        momentum.hypot(wave_vector.z * self.map.inner()) < CENTRAL * self.map.outer()
     }
 
     /// The course of a wave that turns back before the core, if it is one.
@@ -138,9 +126,13 @@ impl UniaxialCylinder {
         mode: ModeKind,
     ) -> Option<TurningCourse> {
         let turns = match (self.axis, mode == ModeKind::Extraordinary) {
-            (OpticAxis::Radial, true) => !self.aims_at_axis(position, wave_vector),
-            (OpticAxis::Azimuthal, false) => true,
-            _ => false,
+            (OpticAxis::Radial, true) => {
+                // Unless it is aimed at the axis.
+                let momentum = position.truncate().perp_dot(wave_vector.truncate());
+                let off = momentum.hypot(wave_vector.z * self.map.inner());
+                off.is_nan() || off >= CENTRAL * self.map.outer()
+            }
+            (axis, extraordinary) => axis == OpticAxis::Azimuthal && !extraordinary,
         };
         turns.then(|| TurningCourse::new(self, position, wave_vector))
     }
@@ -148,29 +140,20 @@ impl UniaxialCylinder {
     /// The ordinary wave of the radial axis.
     fn straight(&self, position: DVec3, wave_vector: DVec3) -> PathSegment {
         let direction = wave_vector.normalize();
-        let shell = |radius: f64| Cylinder { radius, extent: self.extent };
-        let (distance, part) = shell(self.map.outer()).time_to_leave(position, direction);
-        let core = shell(self.map.inner());
-        let leg = |distance: f64, border: Border, outward: DVec3, end: DVec3| PathSegment {
-            border,
-            position: end,
-            outward,
-            wave_vector,
-            optical_path: distance * wave_vector.length(),
+        let [core, whole] = [self.map.inner(), self.map.outer()]
+            .map(|radius| Cylinder { radius, extent: self.extent });
+        let (distance, part) = whole.time_to_leave(position, direction);
+        let to_core = core.hit_side(position, direction).filter(|to_core| *to_core < distance);
+        let distance = to_core.unwrap_or(distance);
+        let end = position + direction * distance;
+        let (border, outward, position) = if to_core.is_some() {
+            let radial = core.outward(CylinderPart::Side, end);
+            (Border::Inner, -radial, radial * self.map.inner() + DVec3::Z * end.z)
+        } else {
+            (part.into(), whole.outward(part, end), self.on_border(part.into(), end))
         };
-        let end = |distance: f64| position + direction * distance;
-        match core.hit_side(position, direction).filter(|to_core| *to_core < distance) {
-            Some(to_core) => {
-                let radial = core.outward(CylinderPart::Side, end(to_core));
-                let on_core = radial * self.map.inner() + DVec3::Z * end(to_core).z;
-                leg(to_core, Border::Inner, -radial, on_core)
-            }
-            None => {
-                let outward = shell(self.map.outer()).outward(part, end(distance));
-                let on_border = self.on_border(part.into(), end(distance));
-                leg(distance, part.into(), outward, on_border)
-            }
-        }
+        let optical_path = distance * wave_vector.length();
+        PathSegment { border, position, outward, wave_vector, optical_path }
     }
 
     /// The extraordinary wave of the azimuthal axis.
@@ -189,9 +172,8 @@ impl UniaxialCylinder {
     }
 
     /// Waves that turn back before the core.
-    fn turning(&self, position: DVec3, wave_vector: DVec3) -> PathSegment {
-        let TurningCourse { course, radial, border, etas: [start, eta] } =
-            TurningCourse::new(self, position, wave_vector);
+    fn turning(&self, position: DVec3, wave_vector: DVec3, course: TurningCourse) -> PathSegment {
+        let TurningCourse { course, radial, border, etas: [start, eta] } = course;
         let momentum = course.momentum;
         let (begin, end) = (course.place(start), course.place(eta));
         let (rho, root) = course.quadratic.radius(eta);
@@ -200,7 +182,7 @@ impl UniaxialCylinder {
         let outward_radial = turned.normalize().extend(0.0);
         let z = position.z + end.z - begin.z;
         let place = self.on_border(border, outward_radial * radius + DVec3::Z * z);
-        let p_r = root / rho * course.radial_scale;
+        let p_r = root / rho * course.scale;
         let around = DVec3::Z.cross(outward_radial) * (momentum / radius);
         PathSegment {
             border,
@@ -220,10 +202,7 @@ impl UniaxialCylinder {
         match border {
             Border::Bottom => point.with_z(self.extent.min),
             Border::Top => point.with_z(self.extent.max),
-            Border::Outer => {
-                let radial = self.map.radial(point) * self.map.outer();
-                radial.with_z(point.z)
-            }
+            Border::Outer => (self.map.radial(point) * self.map.outer()).with_z(point.z),
             Border::Inner => point,
         }
     }
@@ -297,11 +276,9 @@ struct Place {
 /// The course of a ray that turns: in τ with dr/dτ = ∂H/∂p_r, ρ dρ/dτ = √Q.
 struct StepControl {
     quadratic: RadialQuadratic,
-    /// ρ = scale (r - origin).
+    /// ρ = scale (r - origin), p_r = scale √Q/ρ.
     scale: f64,
     origin: f64,
-    /// p_r = radial_scale √Q/ρ.
-    radial_scale: f64,
     momentum: f64,
     /// Weights of the integrals for z and for the optical path: first, zeroth, inverse.
     z: [f64; 3],
@@ -322,7 +299,6 @@ impl StepControl {
                     quadratic: RadialQuadratic::new(rest, -2.0 * pz2 * a / k, -pull, discriminant),
                     scale: k,
                     origin: a,
-                    radial_scale: k,
                     momentum,
                     z: [p_z / k2, 2.0 * p_z * a / k, p_z * a * a],
                     path: [1.0, 0.0, 0.0],
@@ -332,16 +308,14 @@ impl StepControl {
             OpticAxis::Azimuthal => {
                 let ka2 = k2 * a * a;
                 let discriminant = 4.0 * (l2 * (k2 - pz2) + pz2 * ka2);
-                let quadratic =
-                    RadialQuadratic::new(k2 - pz2, -2.0 * k2 * a, ka2 - l2, discriminant);
+                let b = -2.0 * k2 * a;
                 Self {
-                    quadratic,
+                    quadratic: RadialQuadratic::new(k2 - pz2, b, ka2 - l2, discriminant),
                     scale: 1.0,
                     origin: 0.0,
-                    radial_scale: 1.0,
                     momentum,
                     z: [p_z, 0.0, 0.0],
-                    path: [k2, -2.0 * k2 * a, ka2],
+                    path: [k2, b, ka2],
                 }
             }
         }
@@ -356,7 +330,7 @@ impl StepControl {
     }
 
     fn place(&self, eta: f64) -> Place {
-        let CoreIntegrals { first, zeroth, inverse } = self.quadratic.integrals(eta);
+        let [first, zeroth, inverse] = self.quadratic.integrals(eta);
         let sum = |[f, z, i]: [f64; 3]| f * first + z * zeroth + i * inverse;
         Place { angle: self.momentum * inverse, z: sum(self.z), optical_path: sum(self.path) }
     }

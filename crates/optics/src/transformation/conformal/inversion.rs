@@ -19,7 +19,7 @@ impl ConformalMap {
             Self::Grating(map) => map.first_guess(z),
             Self::QuasiConformal(map) => map.first_guess(z),
             Self::Flat(map) => {
-                let zeta = map.inverse(z);
+                let zeta = z - Complex64::new(0.0, map.level);
                 return Some((zeta, map.jet(zeta)));
             }
         };

@@ -94,7 +94,7 @@ impl Series {
         self.terms.len() as f64 * PI / self.half_width
     }
 
-    /// The first Taylor coefficients of f about a point.
+    /// The first Taylor coefficients of f about a point, two or more.
     pub fn taylor<const N: usize>(&self, zeta: Complex64) -> [Complex64; N] {
         let rate = Complex64::new(0.0, PI / self.half_width);
         let q = (rate * zeta).exp();
@@ -114,10 +114,8 @@ impl Series {
             }
         }
         let mut taylor = sums.map(|sum| Complex64::i() * sum);
-        for (n, coefficient) in taylor.iter_mut().enumerate().take(2) {
-            *coefficient +=
-                if n == 0 { zeta + Complex64::new(0.0, self.mean) } else { Complex64::ONE };
-        }
+        taylor[0] += zeta + Complex64::new(0.0, self.mean);
+        taylor[1] += Complex64::ONE;
         taylor
     }
 }

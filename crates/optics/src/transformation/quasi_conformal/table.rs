@@ -8,7 +8,7 @@ use pulp::Simd;
 
 use super::super::conformal::{JetLanes, MapJet};
 use super::series::Series;
-use crate::lanes::{ComplexLanes, LANES};
+use crate::lanes::ComplexLanes;
 
 /// Taylor terms of f' in a patch.
 const TERMS: usize = 11;
@@ -63,16 +63,13 @@ impl Table {
     pub fn new(series: &Series) -> Self {
         let (half_width, virtual_height) = (series.half_width, series.virtual_height);
         let mut spacing = 1.0 / series.highest_wave_number();
-        let mut bands = vec![Band::new(
-            series,
-            spacing,
-            -(BELOW as f64) * spacing,
-            (2.0 * DISTANCE * spacing).min(virtual_height),
-        )];
+        let band = |spacing: f64, bottom: f64| {
+            Band::new(series, spacing, bottom, (2.0 * DISTANCE * spacing).min(virtual_height))
+        };
+        let mut bands = vec![band(spacing, -(BELOW as f64) * spacing)];
         while 2.0 * DISTANCE * spacing < virtual_height {
             spacing *= 2.0;
-            let top = (2.0 * DISTANCE * spacing).min(virtual_height);
-            bands.push(Band::new(series, spacing, DISTANCE * spacing, top));
+            bands.push(band(spacing, DISTANCE * spacing));
         }
         let [top, ..] = series.taylor::<2>(Complex64::new(0.0, virtual_height));
         Self { half_width, virtual_height, height: top.im, bands }
@@ -93,18 +90,12 @@ impl Table {
         let [a, b, c, d] = zeta.values();
         let (a, b, c, d) = (self.place(a), self.place(b), self.place(c), self.place(d));
         let like = zeta.re;
-        let complex = |[a, b, c, d]: [Complex64; LANES]| ComplexLanes {
-            re: like.with([a.re, b.re, c.re, d.re]),
-            im: like.with([a.im, b.im, c.im, d.im]),
-        };
-        let off = complex([a.d, b.d, c.d, d.d]);
+        let off = zeta.with([a.d, b.d, c.d, d.d]);
         let mut slopes = [off; TERMS];
         for (n, slope) in slopes.iter_mut().enumerate() {
-            let [a, b, c, d] = [&a, &b, &c, &d].map(|place| place.patch.slopes[n]);
-            slope.re = like.with([a.re, b.re, c.re, d.re]);
-            slope.im = like.with([a.im, b.im, c.im, d.im]);
+            *slope = zeta.with([&a, &b, &c, &d].map(|place| place.patch.slopes[n]));
         }
-        let mut f2 = ComplexLanes { re: like.all(0.0), im: like.all(0.0) };
+        let mut f2 = zeta.real(0.0);
         let mut f1 = slopes[TERMS - 1];
         let mut f = f1 * INVERSE[TERMS - 1];
         for n in (0..TERMS - 1).rev() {
@@ -112,7 +103,7 @@ impl Table {
             f1 = f1 * off + slopes[n];
             f = f * off + slopes[n] * INVERSE[n];
         }
-        f = f * off + complex([a.patch.value, b.patch.value, c.patch.value, d.patch.value]);
+        f = f * off + zeta.with([a.patch.value, b.patch.value, c.patch.value, d.patch.value]);
         let side = like.with([a.side, b.side, c.side, d.side]);
         let mirror = like.with([a.mirror, b.mirror, c.mirror, d.mirror]);
         let shift = like.with([a.shift, b.shift, c.shift, d.shift]);

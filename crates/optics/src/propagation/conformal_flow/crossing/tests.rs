@@ -15,7 +15,7 @@ impl WithSimd for Fall {
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let Motion { value, rate, bend } = self.0;
         let [value, rate, bend] = [value, rate, bend].map(|x| Lanes::splat(simd, x));
-        MotionLanes { value, rate, bend }.time_ahead().values()[2]
+        Motion { value, rate, bend }.time_ahead().values()[2]
     }
 }
 
