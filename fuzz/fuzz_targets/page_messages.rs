@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| trials::run("page_messages", bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| robustness::run("page_messages", bytes));

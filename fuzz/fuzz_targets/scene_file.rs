@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| trials::run("scene_file", bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| robustness::run("scene_file", bytes));

@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| trials::run("trace_json", bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| robustness::run("trace_json", bytes));

@@ -4,7 +4,7 @@ use cloakroom::flux::FluxError;
 use cloakroom::material::MaterialError;
 use cloakroom::measure::QualityError;
 use cloakroom::output::OutputError;
-use cloakroom::ray_exchange::RayError;
+use cloakroom::ray_json::RayError;
 use cloakroom::render::RenderError;
 use cloakroom::scene_file::SceneFileError;
 use cloakroom_figures::verification::VerificationError;

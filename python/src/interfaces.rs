@@ -2,7 +2,7 @@
 
 use crate::errors::{Failure, value_error};
 use crate::supervision::supervised;
-use cloakroom::interface_exchange::{InterfaceReport, InterfaceRequest, ModeReport};
+use cloakroom::interface_json::{InterfaceReport, InterfaceRequest, ModeReport};
 use glam::DVec3;
 use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis};
 use num_complex::Complex64;

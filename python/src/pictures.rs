@@ -38,11 +38,11 @@ pub fn render<'py>(
     let tile = tile.transpose()?;
     let wanted = if image_only { ChannelSet::Image } else { ChannelSet::Everything };
     let rendered = supervised(py, progress.as_ref(), |watch, supervision| {
-        let studio = scene.prepared()?;
-        watch.begin(tile.map_or(studio.rows(), |tile| tile.height.into()));
+        let prepared = scene.prepared()?;
+        watch.begin(tile.map_or(prepared.rows(), |tile| tile.height.into()));
         Ok(match tile {
-            Some(tile) => rendering::render_tile(&studio, wanted, tile, supervision)?,
-            None => rendering::render(&studio, wanted, supervision)?,
+            Some(tile) => rendering::render_tile(&prepared, wanted, tile, supervision)?,
+            None => rendering::render(&prepared, wanted, supervision)?,
         })
     })?;
     let stats = (rendered.stats.endless, rendered.stats.lost);

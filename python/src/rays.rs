@@ -3,7 +3,7 @@
 use crate::errors::Failure;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
-use cloakroom::ray_exchange::{Polarization, RayRequest, leaf_table};
+use cloakroom::ray_json::{Polarization, RayRequest, leaf_table};
 use cloakroom::render::ray_limits;
 use ndarray::{Array2, ArrayView2, Axis, ShapeError};
 use num_complex::Complex64;

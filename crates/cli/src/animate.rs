@@ -69,7 +69,7 @@ fn scenes(
     let mut scenes: Vec<Loaded> = Vec::new();
     for frame in range {
         let loaded = scene::load(&arguments.scene, &timeline.overrides(frame))?;
-        projector.studio(&loaded.scene).map_err(|error| scene::located(&loaded, &error))?;
+        projector.prepared(&loaded.scene).map_err(|error| scene::located(&loaded, &error))?;
         if loaded.scene.picture.map.name().is_some() && arguments.map_range.is_none() {
             return Err(Failure::Failed(
                 "a film of a map needs one scale for all frames; give --map-range LOW,HIGH, in ns for times \
@@ -100,7 +100,8 @@ fn render(
     supervised(rows * scenes.len() as u64, "rendering", |bar, supervision| {
         for (loaded, frame) in scenes.iter().zip(range) {
             let scene = &loaded.scene;
-            let studio = projector.studio(scene).map_err(|error| scene::located(loaded, &error))?;
+            let prepared =
+                projector.prepared(scene).map_err(|error| scene::located(loaded, &error))?;
             let metadata = projector.metadata(scene);
             let files: Vec<_> = scene.files().into_iter().map(|(_, file)| file).collect();
             if frames.is_finished(frame, &metadata, &files) {
@@ -108,7 +109,7 @@ fn render(
                 bar.inc(rows);
                 continue;
             }
-            let (image, rare) = projector.frame(scene, &studio, supervision)?;
+            let (image, rare) = projector.frame(scene, &prepared, supervision)?;
             stats += rare;
             frames.write(frame, &image, &metadata)?;
         }

@@ -12,15 +12,15 @@ use std::fmt::Write;
 /// Validates a scene and prints facts about it.
 pub fn run(arguments: &SceneArguments) -> Result<(), Failure> {
     let loaded = scene::load(arguments, &[])?;
-    let studio = scene::prepared(&loaded, &mut Images::default())?;
-    report::print(&described(&studio, &loaded.scene)?)
+    let prepared = scene::prepared(&loaded, &mut Images::default())?;
+    report::print(&described(&prepared, &loaded.scene)?)
 }
 
-fn described(studio: &PreparedScene<'_>, scene: &Scene) -> Result<String, std::fmt::Error> {
+fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     let camera = &scene.camera;
     let [width, height] = camera.resolution();
-    let [photo_width, photo_height] = studio.photograph_size();
+    let [photo_width, photo_height] = prepared.photograph_size();
     writeln!(text, "The scene is sound.")?;
     writeln!(
         text,
@@ -41,7 +41,7 @@ fn described(studio: &PreparedScene<'_>, scene: &Scene) -> Result<String, std::f
             writeln!(text, "             {line}")?;
         }
     }
-    let seconds = estimated_seconds(studio);
+    let seconds = estimated_seconds(prepared);
     writeln!(text, "estimate     {seconds:.1} s to render on {} threads", threads::count())?;
     Ok(text)
 }

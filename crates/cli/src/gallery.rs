@@ -41,8 +41,8 @@ fn make(
     metadata: &mut Vec<(String, String)>,
 ) -> Result<TableRow, Failure> {
     let loaded = panels::load(exhibit.scene, exhibit.name, &arguments.panels, &[])?;
-    let studio = scene::prepared(&loaded, images)?;
-    let picture = picture(&studio, ChannelSet::Everything, exhibit.name)?;
+    let prepared = scene::prepared(&loaded, images)?;
+    let picture = picture(&prepared, ChannelSet::Everything, exhibit.name)?;
     let image = rgb(&loaded.scene, &picture)?;
     let map = ScalarMap::new(&picture, MAP, None)?;
     let file = |ending: &str| arguments.out.join(format!("{}{ending}", exhibit.name));

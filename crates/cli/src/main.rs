@@ -18,8 +18,8 @@ mod input;
 mod interruption;
 mod manual;
 mod merge;
-mod mistake;
 mod panels;
+mod panic_report;
 mod progress;
 mod pulses;
 mod quality;
@@ -40,7 +40,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    match mistake::caught(|| run(&arguments.command)) {
+    match panic_report::caught(|| run(&arguments.command)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.tell(),
     }

@@ -9,8 +9,8 @@ use std::fmt::Write;
 /// Lists the pulses of a pixel.
 pub fn run(arguments: &PulsesArguments) -> Result<(), Failure> {
     let loaded = scene::load(&arguments.scene, &[])?;
-    let studio = scene::prepared(&loaded, &mut Images::default())?;
-    let list = render::pulses(&studio, arguments.pixel)
+    let prepared = scene::prepared(&loaded, &mut Images::default())?;
+    let list = render::pulses(&prepared, arguments.pixel)
         .map_err(|error| Failure::Usage(format!("--pixel: {error}")))?;
     if arguments.json {
         return report::print_json(&list);

@@ -20,7 +20,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     scene::use_threads(&arguments.threads)?;
     let data = formats.iter().any(|(_, format)| !format.is_shown());
     let loaded = scene::load(&arguments.scene, channels(&arguments.channels, data)?.as_slice())?;
-    let studio = scene::prepared(&loaded, &mut Images::default())?;
+    let prepared = scene::prepared(&loaded, &mut Images::default())?;
     let shown = &loaded.scene.picture;
     let wanted = if data { ChannelSet::Everything } else { ChannelSet::for_image(shown) };
     for (path, format) in &formats {
@@ -33,18 +33,18 @@ pub fn run(arguments: &RenderArguments) -> Result<(), Failure> {
     if let Some(tile) = arguments.tile {
         let tile = check_tile(tile, &loaded.scene, &formats)?;
         let picture = supervised(tile.height.into(), "rendering", |_, supervision| {
-            render::render_tile(&studio, wanted, tile, supervision)
+            render::render_tile(&prepared, wanted, tile, supervision)
         });
         let picture = told(picture?);
         return formats.iter().try_for_each(|(path, _)| Ok(output::write(&picture, path)?));
     }
     if let [(path, PictureFormat::Pixels(Format::Png))] = formats[..]
         && shown.map.name().is_none()
-        && render::strips(&studio).nth(1).is_some()
+        && render::strips(&prepared).nth(1).is_some()
     {
-        return in_strips(&studio, &loaded.scene, path);
+        return in_strips(&prepared, &loaded.scene, path);
     }
-    let picture = picture(&studio, wanted, "rendering")?;
+    let picture = picture(&prepared, wanted, "rendering")?;
     for (path, format) in formats {
         write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)?;
     }
@@ -73,11 +73,11 @@ fn check_tile(
 }
 
 /// Renders a large image strip by strip into its file.
-fn in_strips(studio: &PreparedScene<'_>, scene: &Scene, path: &Path) -> Result<(), Failure> {
+fn in_strips(prepared: &PreparedScene<'_>, scene: &Scene, path: &Path) -> Result<(), Failure> {
     let (mut stats, mut failure) = (TraceStats::default(), None);
-    let written = supervised(studio.rows(), "rendering", |_, supervision| {
-        let images = render::strips(studio).map(|rows| {
-            let strip = render::render_rows(studio, ChannelSet::Image, rows, supervision);
+    let written = supervised(prepared.rows(), "rendering", |_, supervision| {
+        let images = render::strips(prepared).map(|rows| {
+            let strip = render::render_rows(prepared, ChannelSet::Image, rows, supervision);
             let image = strip.map_err(Failure::from).and_then(|strip| {
                 stats += strip.stats;
                 Ok(output::to_srgb(&strip.picture)?)
@@ -112,12 +112,12 @@ fn channels(names: &[String], data: bool) -> Result<Option<String>, Failure> {
 
 /// Renders with a progress bar, and says what was rare.
 pub fn picture(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     wanted: ChannelSet,
     what: &str,
 ) -> Result<Picture, Failure> {
-    let rendered = supervised(studio.rows(), what, |_, supervision| {
-        render::render(studio, wanted, supervision)
+    let rendered = supervised(prepared.rows(), what, |_, supervision| {
+        render::render(prepared, wanted, supervision)
     });
     Ok(told(rendered?))
 }

@@ -5,8 +5,8 @@ use crate::input;
 use crate::interruption::{self, STOP};
 use crate::report::{self, Failure};
 use crate::scene;
-use cloakroom::interface_exchange::solve_interfaces;
-use cloakroom::ray_exchange::{RayError, RayRequest, trace_rays};
+use cloakroom::interface_json::solve_interfaces;
+use cloakroom::ray_json::{RayError, RayRequest, trace_rays};
 use cloakroom::render;
 use std::path::Path;
 

@@ -38,17 +38,17 @@ fn scene(name: &str, resolution: u32) -> Scene {
     scene_file::parse(&text, name, Path::new(""), &[]).expect("a sound scene").scene
 }
 
-fn picture(studio: &PreparedScene<'_>) {
+fn picture(prepared: &PreparedScene<'_>) {
     let stop = AtomicBool::new(false);
     let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-    divan::black_box(render(studio, ChannelSet::Image, &supervision).expect("a picture"));
+    divan::black_box(render(prepared, ChannelSet::Image, &supervision).expect("a picture"));
 }
 
 #[divan::bench(args = SCENES.map(|(name, ..)| name))]
 fn frame(bencher: Bencher, name: &str) {
     let scene = scene(name, 256);
-    let studio = PreparedScene::new(&scene).expect("a sound scene");
-    bencher.counter(ItemsCount::new(256u32 * 256)).bench(|| picture(&studio));
+    let prepared = PreparedScene::new(&scene).expect("a sound scene");
+    bencher.counter(ItemsCount::new(256u32 * 256)).bench(|| picture(&prepared));
 }
 
 /// From the text of a scene to a picture of 64 x 64 pixels, the photograph read on the way.

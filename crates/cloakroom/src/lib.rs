@@ -13,14 +13,14 @@
 pub mod flux;
 mod index_file;
 pub mod input;
-pub mod interface_exchange;
+pub mod interface_json;
 pub mod json;
 pub mod material;
 pub mod measure;
 pub mod memory;
 pub mod output;
 pub mod photograph;
-pub mod ray_exchange;
+pub mod ray_json;
 pub mod render;
 pub mod scene;
 pub mod scene_file;

@@ -30,14 +30,14 @@ fn lists_of_pulses_are_what_the_channels_sum_up() {
         for polarizer in ["\"none\"", "30"] {
             let loaded =
                 scene_file::parse(&text(device, polarizer), "test", Path::new(""), &[]).unwrap();
-            let studio = PreparedScene::new(&loaded.scene).unwrap();
+            let prepared = PreparedScene::new(&loaded.scene).unwrap();
             let stop = AtomicBool::new(false);
             let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-            let picture = render(&studio, ChannelSet::Everything, &supervision).unwrap().picture;
+            let picture = render(&prepared, ChannelSet::Everything, &supervision).unwrap().picture;
             let mut most = 0;
             for row in 0..SIZE[1] {
                 for column in 0..SIZE[0] {
-                    let list = pulses(&studio, [column, row]).unwrap();
+                    let list = pulses(&prepared, [column, row]).unwrap();
                     let index = (row * SIZE[0] + column) as usize;
                     let channel = |name: &str| picture.channel(name).unwrap().samples.get(index);
                     compare(&list, channel);
@@ -93,13 +93,13 @@ fn compare(list: &PulseList, channel: impl Fn(&str) -> f64) {
 #[test]
 fn the_empty_view_has_one_pulse_on_time() {
     let loaded = scene_file::parse(&text("", "\"none\""), "test", Path::new(""), &[]).unwrap();
-    let studio = PreparedScene::new(&loaded.scene).unwrap();
-    let list = pulses(&studio, [3, 4]).unwrap();
+    let prepared = PreparedScene::new(&loaded.scene).unwrap();
+    let list = pulses(&prepared, [3, 4]).unwrap();
     let [pulse] = list.pulses.as_slice() else { panic!("{list:?}") };
     assert_eq!((pulse.power, pulse.delay_ns), (1.0, Some(0.0)));
     let landing = glam::DVec3::from_array(pulse.landings[0].position_cm);
     let distance = landing.distance(glam::DVec3::new(-100.0, 0.0, 0.0));
     assert!((pulse.time_of_flight_ns - distance / 29.979_245_8).abs() < 1e-14);
-    let error = pulses(&studio, [12, 0]).unwrap_err().to_string();
+    let error = pulses(&prepared, [12, 0]).unwrap_err().to_string();
     assert_eq!(error, "there is no pixel 12,0; the picture has columns 0 to 11 and rows 0 to 8");
 }

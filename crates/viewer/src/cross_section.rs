@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 const FAR: f64 = 1e4;
 
 /// The shapes of all devices, the photograph and the camera, in world coordinates, cm.
-pub(crate) fn cross_section(scene: &Scene, studio: &PreparedScene<'_>) -> Value {
-    let devices = scene.devices.iter().zip(studio.assembly().devices());
+pub(crate) fn cross_section(scene: &Scene, prepared: &PreparedScene<'_>) -> Value {
+    let devices = scene.devices.iter().zip(prepared.assembly().devices());
     let devices: Vec<Value> = devices.map(|(settings, placed)| device(settings, placed)).collect();
-    let photograph = studio.screen().middle_line().map(|end| point(end.x, end.y));
+    let photograph = prepared.screen().middle_line().map(|end| point(end.x, end.y));
     let camera = &scene.camera;
     let [width_px, height_px] = camera.resolution().map(f64::from);
     let ray = |y: f64| {

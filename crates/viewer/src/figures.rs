@@ -25,8 +25,8 @@ pub(crate) fn figures(
     let supervision = Supervision { rows_done: &|_| {}, stop };
     let scene = small(scene);
     let mut picture = |scene: &Scene| -> Result<Picture, Box<dyn Error>> {
-        let studio = prepared(scene, images)?;
-        Ok(render(&studio, ChannelSet::Everything, &supervision)?.picture)
+        let prepared = prepared(scene, images)?;
+        Ok(render(&prepared, ChannelSet::Everything, &supervision)?.picture)
     };
     let wanted_scene = ideal(&scene);
     let shown = picture(&scene)?;
@@ -35,8 +35,9 @@ pub(crate) fn figures(
     let bare = bare(&scene).map(|bare| picture(&bare)).transpose()?;
     let bare = bare.as_ref().map(View::of).transpose()?;
     let view = View::of(&shown)?;
-    let (studio, ideal) = (prepared(&scene, images)?, prepared(&wanted_scene, images)?);
-    let rays = survey(&studio, &ideal, &scene.camera, &|_| {}, stop).ok_or(RenderError::Stopped)?;
+    let (prepared, ideal) = (prepared(&scene, images)?, prepared(&wanted_scene, images)?);
+    let rays =
+        survey(&prepared, &ideal, &scene.camera, &|_| {}, stop).ok_or(RenderError::Stopped)?;
     let silhouette = Region::new(view.width, rays.silhouette.clone()).ok();
     let likeness = |of: &View, to: &View| -> Result<Value, MeasureError> {
         let comparison = compare(to, of, silhouette.as_ref())?;

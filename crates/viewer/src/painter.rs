@@ -133,8 +133,8 @@ impl Painter<'_> {
         let look = &wish.look;
         let full = resized(scene, look.size, 1);
         {
-            let studio = PreparedScene::with_images(&full, images)?;
-            let section = cross_section(&full, &studio);
+            let prepared = PreparedScene::with_images(&full, images)?;
+            let section = cross_section(&full, &prepared);
             if section != self.section {
                 self.outbox.say(&json!({ "section": section }))?;
                 self.section = section;
@@ -188,12 +188,12 @@ impl Painter<'_> {
             scene.trace.tolerance = scene.trace.tolerance.max(COARSE_TOLERANCE);
         }
         let start = Instant::now();
-        let studio = PreparedScene::with_images(&scene, images)?;
+        let prepared = PreparedScene::with_images(&scene, images)?;
         let progress = Progress {
             outbox: self.outbox,
             id: wish.look.id,
             samples: pass.samples,
-            rows: studio.rows(),
+            rows: prepared.rows(),
             done: AtomicU64::new(0),
             told: Mutex::new(Instant::now()),
         };
@@ -204,7 +204,7 @@ impl Painter<'_> {
             stop: &wish.stop,
         };
         let wanted = ChannelSet::for_image(&scene.picture);
-        let picture = render(&studio, wanted, &supervision)?.picture;
+        let picture = render(&prepared, wanted, &supervision)?.picture;
         let (image, scale) = match scene.picture.map.name() {
             None => (to_srgb(&picture)?, Value::Null),
             Some(channel) => {

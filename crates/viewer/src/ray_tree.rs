@@ -33,12 +33,12 @@ pub(crate) fn follow(slot: &Slot<Wish>, outbox: &Outbox) {
     while let Some((_, shown)) = next.clone() {
         images.clone_from(&shown.images);
         // The devices are built once for all points of one picture.
-        let studio = PreparedScene::with_images(&shown.scene, &mut images);
+        let prepared = PreparedScene::with_images(&shown.scene, &mut images);
         while let Some((ray, same)) = &next
             && Arc::ptr_eq(same, &shown)
         {
-            if let Ok(studio) = &studio {
-                let answer = json!({ "rays": answer(&shown.scene, studio, ray) });
+            if let Ok(prepared) = &prepared {
+                let answer = json!({ "rays": answer(&shown.scene, prepared, ray) });
                 if outbox.say(&answer).is_err() {
                     return;
                 }
@@ -48,7 +48,7 @@ pub(crate) fn follow(slot: &Slot<Wish>, outbox: &Outbox) {
     }
 }
 
-fn answer(scene: &Scene, studio: &PreparedScene<'_>, ray: &Ray) -> Value {
+fn answer(scene: &Scene, prepared: &PreparedScene<'_>, ray: &Ray) -> Value {
     let camera = &scene.camera;
     let size = camera.resolution();
     let pixel: [u32; 2] = std::array::from_fn(|i| {
@@ -59,10 +59,10 @@ fn answer(scene: &Scene, studio: &PreparedScene<'_>, ray: &Ray) -> Value {
     let sight = camera.ray(x, y);
     let (h, v) = camera.polarization_basis(sight.direction);
     let limits = Limits {
-        min_power: studio.limits().min_power.max(LEAST_POWER),
-        tolerance: studio.limits().tolerance.max(1e-4),
+        min_power: prepared.limits().min_power.max(LEAST_POWER),
+        tolerance: prepared.limits().tolerance.max(1e-4),
     };
-    let (origin, direction, assembly) = (sight.origin, sight.direction, studio.assembly());
+    let (origin, direction, assembly) = (sight.origin, sight.direction, prepared.assembly());
     let mut tree = match camera.polarizer().amplitudes() {
         None => {
             let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
@@ -75,8 +75,8 @@ fn answer(scene: &Scene, studio: &PreparedScene<'_>, ray: &Ray) -> Value {
     };
     tree.sort_by(|a, b| b.power.total_cmp(&a.power));
     tree.truncate(MOST_LINES);
-    let drawn: Vec<Value> = tree.iter().map(|line| drawn(line, studio)).collect();
-    let list = pulses(studio, pixel).ok().and_then(|mut list| {
+    let drawn: Vec<Value> = tree.iter().map(|line| drawn(line, prepared)).collect();
+    let list = pulses(prepared, pixel).ok().and_then(|mut list| {
         list.pulses.truncate(MOST_PULSES);
         serde_json::to_value(list).ok()
     });
@@ -84,13 +84,13 @@ fn answer(scene: &Scene, studio: &PreparedScene<'_>, ray: &Ray) -> Value {
 }
 
 /// A piece of the tree; a leaf ends on the photograph if it gets there.
-fn drawn(line: &Line, studio: &PreparedScene<'_>) -> Value {
+fn drawn(line: &Line, prepared: &PreparedScene<'_>) -> Value {
     let mut points: Vec<[f64; 2]> =
         line.points.iter().map(|at| point(at.position.x, at.position.y)).collect();
     let mut lands = false;
     if let (true, [from, to]) = (line.leaves, &line.points[..]) {
         let direction = (to.position - from.position).normalize_or_zero();
-        if let Some(distance) = studio.screen().hit(from.position, direction, 0.0) {
+        if let Some(distance) = prepared.screen().hit(from.position, direction, 0.0) {
             let end = from.position + direction * distance;
             points[1] = point(end.x, end.y);
             lands = true;

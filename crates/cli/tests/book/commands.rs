@@ -34,7 +34,10 @@ const ELSEWHERE: [(&str, &str); 14] = [
     ("cd python", "the same"),
     ("../venv/bin", "the same"),
     ("cd fuzz", "by hand: nightly Rust and cargo-fuzz"),
-    ("cargo +nightly fuzz", "the same; the tests of crates/trials run each target for a moment"),
+    (
+        "cargo +nightly fuzz",
+        "the same; the tests of crates/robustness run each target for a moment",
+    ),
     ("benches/", "by hand: other programs, a quiet machine"),
     ("target/full_wave/venv", "by hand: full-wave solvers"),
 ];

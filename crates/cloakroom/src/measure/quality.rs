@@ -124,7 +124,7 @@ fn same_view(one: &Scene, other: &Scene) -> bool {
         && one.surroundings == other.surroundings
 }
 
-fn studio<'s>(scene: &'s Scene, loaded: &Loaded) -> Result<PreparedScene<'s>, QualityError> {
+fn prepared<'s>(scene: &'s Scene, loaded: &Loaded) -> Result<PreparedScene<'s>, QualityError> {
     PreparedScene::new(scene).map_err(|error| located(loaded, &error))
 }
 
@@ -141,8 +141,8 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
     let mut last_empty: Option<(Scene, View)> = None;
     for Combination { settings, held, loaded } in &plan.scenes {
         let scene = &loaded.scene;
-        let mut picture = |studio: &PreparedScene<'_>| {
-            let rendered = render(studio, ChannelSet::Everything, supervision)?;
+        let mut picture = |prepared: &PreparedScene<'_>| {
+            let rendered = render(prepared, ChannelSet::Everything, supervision)?;
             stats += rendered.stats;
             Ok::<_, QualityError>(rendered.picture)
         };
@@ -151,24 +151,24 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
                 (supervision.rows_done)(u64::from(scene.camera.resolution()[1]));
                 view
             }
-            _ => View::of(&picture(&studio(&empty(scene), loaded)?)?)?,
+            _ => View::of(&picture(&prepared(&empty(scene), loaded)?)?)?,
         };
         let wanted_scene = ideal(scene);
-        let wanted_studio = studio(&wanted_scene, loaded)?;
+        let wanted_prepared = prepared(&wanted_scene, loaded)?;
         let wanted = if wanted_scene.devices.is_empty() {
             (supervision.rows_done)(u64::from(scene.camera.resolution()[1]));
             empty.clone()
         } else {
-            View::of(&picture(&wanted_studio)?)?
+            View::of(&picture(&wanted_prepared)?)?
         };
         let mut statistics = Statistics::default();
         for draw in 0..plan.draws_of(scene) {
             let scene = &drawn(scene, draw);
-            let drawn = studio(scene, loaded)?;
+            let drawn = prepared(scene, loaded)?;
             let shown = picture(&drawn)?;
             let view = View::of(&shown)?;
             let (rows_done, stop) = (supervision.rows_done, supervision.stop);
-            let rays = survey(&drawn, &wanted_studio, &scene.camera, rows_done, stop)
+            let rays = survey(&drawn, &wanted_prepared, &scene.camera, rows_done, stop)
                 .ok_or(RenderError::Stopped)?;
             let measured = Measured::of(&shown, &view, [&wanted, &empty], rays)?;
             statistics.add(&measured.numbers().numbers);

@@ -49,20 +49,20 @@ struct Sight {
 /// rows finished since the last call.
 #[must_use]
 pub fn survey(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     ideal: &PreparedScene<'_>,
     camera: &Camera,
     rows_done: &(dyn Fn(u64) + Sync),
     stop: &AtomicBool,
 ) -> Option<Survey> {
     match camera.polarizer().amplitudes() {
-        Some(amplitudes) => launched(studio, ideal, camera, [amplitudes], rows_done, stop),
-        None => launched(studio, ideal, camera, [[1.0, 0.0], [0.0, 1.0]], rows_done, stop),
+        Some(amplitudes) => launched(prepared, ideal, camera, [amplitudes], rows_done, stop),
+        None => launched(prepared, ideal, camera, [[1.0, 0.0], [0.0, 1.0]], rows_done, stop),
     }
 }
 
 fn launched<const N: usize>(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     ideal: &PreparedScene<'_>,
     camera: &Camera,
     amplitudes: [[f64; 2]; N],
@@ -70,13 +70,13 @@ fn launched<const N: usize>(
     stop: &AtomicBool,
 ) -> Option<Survey> {
     let [width, height] = camera.resolution();
-    fn tracer<'b, const N: usize>(studio: &'b PreparedScene<'_>) -> Tracer<'b, N> {
-        Tracer::new(studio.assembly(), studio.limits()).with_screen(studio.screen())
+    fn tracer<'b, const N: usize>(prepared: &'b PreparedScene<'_>) -> Tracer<'b, N> {
+        Tracer::new(prepared.assembly(), prepared.limits()).with_screen(prepared.screen())
     }
     let rows: Option<Vec<Vec<Sight>>> = (0..height)
         .into_par_iter()
         .map_init(
-            || (tracer::<N>(studio), tracer::<N>(ideal)),
+            || (tracer::<N>(prepared), tracer::<N>(ideal)),
             |(tracer, ideal), row| {
                 if stop.load(Ordering::Relaxed) {
                     return None;
@@ -89,7 +89,7 @@ fn launched<const N: usize>(
                     let (wanted, _) = ideal.trace(&launch);
                     let wanted = strongest(wanted).copied();
                     let (leaves, outcome) = tracer.trace(&launch);
-                    sight(&studio.screen(), leaves, outcome, wanted.as_ref())
+                    sight(&prepared.screen(), leaves, outcome, wanted.as_ref())
                 });
                 let sights = sights.collect();
                 rows_done(1);
@@ -98,7 +98,7 @@ fn launched<const N: usize>(
         )
         .collect();
     let sights: Vec<Sight> = rows?.into_iter().flatten().collect();
-    Some(summary(&sights, camera, &studio.screen()))
+    Some(summary(&sights, camera, &prepared.screen()))
 }
 
 fn power<const N: usize>(leaf: &Leaf<N>) -> f64 {

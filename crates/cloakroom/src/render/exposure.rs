@@ -2,7 +2,7 @@
 
 use super::detection::Detection;
 use super::pixel::{Pixel, Pulses};
-use super::studio::{PreparedScene, Surroundings};
+use super::prepared_scene::{PreparedScene, Surroundings};
 use crate::scene::CameraRay;
 use crate::trace::{FirstFace, Leaf, Outcome};
 use glam::{DQuat, DVec3};
@@ -21,7 +21,7 @@ pub(super) struct Traced<'t, const N: usize> {
 /// Adds to a pixel what one camera ray sees. `across` and `down` are its neighbours one pixel away
 /// along the picture's axes; `spacing` is the spacing of samples in pixels.
 pub(super) fn expose<const N: usize>(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     detection: &Detection<N>,
     [here, across, down]: [&Traced<'_, N>; 3],
     spacing: f64,
@@ -33,7 +33,7 @@ pub(super) fn expose<const N: usize>(
     pixel.pruned += detection.detected(&here.outcome.pruned);
     for leaf in here.leaves {
         let power = detection.detected(&leaf.power);
-        let screen = leaf.distance_to(&studio.screen);
+        let screen = leaf.distance_to(&prepared.screen);
         match (leaf.body(), screen) {
             (Some(_), _) => pixel.absorbed += power,
             (None, Some(distance)) => {
@@ -47,7 +47,7 @@ pub(super) fn expose<const N: usize>(
         let beside =
             |alone| [across, down].map(|neighbour| Neighbour { here, leaf, neighbour, alone });
         let among_all = beside(None);
-        let light = light(studio, leaf, screen, &among_all, spacing);
+        let light = light(prepared, leaf, screen, &among_all, spacing);
         add(&mut pixel.image, power, light);
         if detection.separate {
             for (i, sum) in [&mut pixel.horizontal, &mut pixel.vertical].into_iter().enumerate() {
@@ -57,7 +57,7 @@ pub(super) fn expose<const N: usize>(
                     let light = if same {
                         light
                     } else {
-                        self::light(studio, leaf, screen, &beside(Some(i)), spacing)
+                        self::light(prepared, leaf, screen, &beside(Some(i)), spacing)
                     };
                     add(sum, leaf.power[i], light);
                 }
@@ -77,7 +77,7 @@ pub(super) fn expose<const N: usize>(
         pixel.extraordinary += detection.detected(&face.extraordinary);
     }
     if detection.times {
-        pixel.add_pulses(pulses, empty_time_of_flight(studio, &here.ray));
+        pixel.add_pulses(pulses, empty_time_of_flight(prepared, &here.ray));
     }
 }
 
@@ -85,13 +85,13 @@ pub(super) fn expose<const N: usize>(
 /// photograph; whether they do. The same as [`expose`] with those rays as leaves, but for what is worked
 /// out once for the block.
 pub(super) fn expose_unhindered<const N: usize>(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     detection: &Detection<N>,
     rays: &[CameraRay; 4],
     spacing: f64,
     pixels: &mut [Pixel; 4],
 ) -> bool {
-    let screen = &studio.screen;
+    let screen = &prepared.screen;
     let mut places = [[0.0; 2]; 4];
     for (place, ray) in places.iter_mut().zip(rays) {
         let Some(distance) = screen.hit(ray.origin, ray.direction, 0.0) else { return false };
@@ -103,7 +103,7 @@ pub(super) fn expose_unhindered<const N: usize>(
         let [u, v] = places[i];
         let [dx, dy] = [places[i ^ 1], places[i ^ 2]]
             .map(|[beside_u, beside_v]| [(beside_u - u) * spacing, (beside_v - v) * spacing]);
-        let light = studio.image.sample(places[i], dx, dy).map(f64::from);
+        let light = prepared.image.sample(places[i], dx, dy).map(f64::from);
         pixel.delivered += power;
         add(&mut pixel.image, power, light);
         if detection.separate {
@@ -120,8 +120,8 @@ pub(super) fn time_of_flight<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f
 }
 
 /// Time of flight (ns) of a camera ray in the empty scene, if it meets the photograph.
-pub(super) fn empty_time_of_flight(studio: &PreparedScene<'_>, ray: &CameraRay) -> Option<f64> {
-    studio.screen.hit(ray.origin, ray.direction, 0.0).map(|distance| distance / SPEED_OF_LIGHT)
+pub(super) fn empty_time_of_flight(prepared: &PreparedScene<'_>, ray: &CameraRay) -> Option<f64> {
+    prepared.screen.hit(ray.origin, ray.direction, 0.0).map(|distance| distance / SPEED_OF_LIGHT)
 }
 
 fn add(sum: &mut [f64; 3], power: f64, light: [f64; 3]) {
@@ -211,27 +211,27 @@ fn footprint<const N: usize>(
 
 /// The light of a leaf, which meets the photograph at the distance `screen` (cm), if it does.
 fn light<const N: usize>(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     leaf: &Leaf<N>,
     screen: Option<f64>,
     beside: &[Neighbour<'_, N>; 2],
     spacing: f64,
 ) -> [f64; 3] {
     match (leaf.body(), screen) {
-        (Some(body), _) => body_light(studio, body, leaf, beside, spacing),
-        (None, Some(distance)) => photograph_light(studio, leaf, distance, beside, spacing),
-        (None, None) => surroundings_light(studio, leaf, beside, spacing),
+        (Some(body), _) => body_light(prepared, body, leaf, beside, spacing),
+        (None, Some(distance)) => photograph_light(prepared, leaf, distance, beside, spacing),
+        (None, None) => surroundings_light(prepared, leaf, beside, spacing),
     }
 }
 
 fn photograph_light<const N: usize>(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     leaf: &Leaf<N>,
     distance: f64,
     beside: &[Neighbour<'_, N>; 2],
     spacing: f64,
 ) -> [f64; 3] {
-    let screen = &studio.screen;
+    let screen = &prepared.screen;
     let at = |line: &Line, distance: f64| {
         screen.image_position(line.origin + line.direction * distance, leaf.direction)
     };
@@ -241,16 +241,16 @@ fn photograph_light<const N: usize>(
         t.is_finite().then(|| at(line, t))
     };
     let [dx, dy] = footprint(place, here, beside).map(|step| step.map(|change| change * spacing));
-    studio.image.sample(here, dx, dy).map(f64::from)
+    prepared.image.sample(here, dx, dy).map(f64::from)
 }
 
 fn surroundings_light<const N: usize>(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     leaf: &Leaf<N>,
     beside: &[Neighbour<'_, N>; 2],
     spacing: f64,
 ) -> [f64; 3] {
-    match &studio.surroundings {
+    match &prepared.surroundings {
         Surroundings::Color(color) => *color,
         Surroundings::Image(image) => {
             let steps = [0, 1].map(|i| {
@@ -263,13 +263,13 @@ fn surroundings_light<const N: usize>(
 }
 
 fn body_light<const N: usize>(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     body: u16,
     leaf: &Leaf<N>,
     beside: &[Neighbour<'_, N>; 2],
     spacing: f64,
 ) -> [f64; 3] {
-    let Some(surface) = studio.body_surface(body) else { return [0.0; 3] };
+    let Some(surface) = prepared.body_surface(body) else { return [0.0; 3] };
     surface.light(leaf.position, |normal| {
         let steps = beside.each_ref().map(|neighbour| {
             let line = neighbour.twin_line().unwrap_or_else(|| neighbour.moved());

@@ -1,7 +1,7 @@
 //! Images that have been read, kept for the next scene that shows them.
 
 use super::PreparedSceneError;
-use super::studio::Surroundings;
+use super::prepared_scene::Surroundings;
 use crate::photograph::{
     self, Edges, Equirectangular, ImageSource, LinearImage, LoadError, Pyramid,
 };

@@ -11,15 +11,15 @@ mod exposure;
 mod film;
 mod images;
 mod pixel;
+mod prepared_scene;
 mod pulses;
 mod sampling;
-mod studio;
 mod tile;
 
 pub use channels::{Channel, ChannelSet};
 pub use images::Images;
+pub use prepared_scene::{PreparedScene, PreparedSceneError, assembly, limits, ray_limits};
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
-pub use studio::{PreparedScene, PreparedSceneError, assembly, limits, ray_limits};
 pub use tile::{MergeError, Tile, TileError, merge, merge_images};
 
 use crate::output::Picture;
@@ -80,11 +80,11 @@ pub struct Rendered {
 ///
 /// If the picture would not fit into memory, or the work was stopped.
 pub fn render(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     wanted: ChannelSet,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
-    render_rows(studio, wanted, 0..studio.rows() as usize, supervision)
+    render_rows(prepared, wanted, 0..prepared.rows() as usize, supervision)
 }
 
 /// Pixels in a strip: enough for all threads to be busy nearly all the time.
@@ -92,8 +92,8 @@ const STRIP_PIXELS: usize = 1 << 22;
 
 /// The rows of a picture in strips of equal height, from top to bottom: what is rendered strip by strip needs
 /// no more memory than one of them.
-pub fn strips(studio: &PreparedScene<'_>) -> impl Iterator<Item = Range<usize>> + use<> {
-    let [width, height] = studio.scene.camera.resolution().map(|size| size as usize);
+pub fn strips(prepared: &PreparedScene<'_>) -> impl Iterator<Item = Range<usize>> + use<> {
+    let [width, height] = prepared.scene.camera.resolution().map(|size| size as usize);
     let rows = (STRIP_PIXELS / width / BAND_ROWS).max(1) * BAND_ROWS;
     (0..height).step_by(rows).map(move |first| first..height.min(first + rows))
 }
@@ -104,15 +104,15 @@ pub fn strips(studio: &PreparedScene<'_>) -> impl Iterator<Item = Range<usize>> 
 ///
 /// If they would not fit into memory, or the work was stopped.
 pub fn render_rows(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     wanted: ChannelSet,
     rows: Range<usize>,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
-    let width = studio.scene.camera.resolution()[0];
+    let width = prepared.scene.camera.resolution()[0];
     // A camera has at most 65536 rows.
     let tile = Tile { left: 0, top: rows.start as u32, width, height: rows.len() as u32 };
-    expose_tile(studio, wanted, tile, supervision)
+    expose_tile(prepared, wanted, tile, supervision)
 }
 
 /// Renders a tile of a picture: the picture has these pixels alone, and its metadata say which they are. They are
@@ -126,44 +126,44 @@ pub fn render_rows(
 ///
 /// If the tile is not [checked](Tile::check) against the picture's resolution.
 pub fn render_tile(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     wanted: ChannelSet,
     tile: Tile,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
-    let resolution = studio.scene.camera.resolution();
+    let resolution = prepared.scene.camera.resolution();
     assert!(tile.check(resolution).is_ok(), "the tile is not of this picture");
-    let mut rendered = expose_tile(studio, wanted, tile, supervision)?;
+    let mut rendered = expose_tile(prepared, wanted, tile, supervision)?;
     rendered.picture.metadata.extend(tile.metadata(resolution));
     Ok(rendered)
 }
 
 fn expose_tile(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     wanted: ChannelSet,
     tile: Tile,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
-    match (wanted, studio.scene.camera.polarizer().amplitudes()) {
-        (_, None) => expose_film(studio, wanted, tile, supervision, Detection::UNPOLARIZED),
+    match (wanted, prepared.scene.camera.polarizer().amplitudes()) {
+        (_, None) => expose_film(prepared, wanted, tile, supervision, Detection::UNPOLARIZED),
         (ChannelSet::Image, Some(amplitudes)) => {
-            expose_film(studio, wanted, tile, supervision, Detection::image(amplitudes))
+            expose_film(prepared, wanted, tile, supervision, Detection::image(amplitudes))
         }
         (ChannelSet::Polarizers | ChannelSet::Everything, Some(amplitudes)) => {
-            expose_film(studio, wanted, tile, supervision, Detection::through(amplitudes))
+            expose_film(prepared, wanted, tile, supervision, Detection::through(amplitudes))
         }
     }
 }
 
 fn expose_film<const N: usize>(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     wanted: ChannelSet,
     tile: Tile,
     supervision: &Supervision<'_>,
     detection: Detection<N>,
 ) -> Result<Rendered, RenderError> {
     let Tile { width, height, .. } = tile;
-    let settings = &studio.scene.picture;
+    let settings = &prepared.scene.picture;
     let detection = detection.with_options(wanted, settings);
     let channels = Channel::of(wanted, settings);
     let bytes: usize = channels.iter().map(|channel| channel.blank(1).bytes()).sum();
@@ -179,7 +179,7 @@ fn expose_film<const N: usize>(
         .bands(BAND_ROWS)
         .into_par_iter()
         .map_init(
-            || Exposer::new(studio, &detection),
+            || Exposer::new(prepared, &detection),
             |exposer, mut band| {
                 let stats =
                     exposer.expose_band(&mut band, supervision.stop).ok_or(RenderError::Stopped)?;
@@ -192,24 +192,28 @@ fn expose_film<const N: usize>(
             Ok(a)
         })?;
     let (width, height) = (width as usize, height as usize);
-    let picture =
-        Picture { width, height, channels: film.into_channels(), metadata: metadata(studio.scene) };
+    let picture = Picture {
+        width,
+        height,
+        channels: film.into_channels(),
+        metadata: metadata(prepared.scene),
+    };
     Ok(Rendered { picture, stats })
 }
 
 /// How long rendering the image will take on the threads there are, in seconds: a few thousand rays, spread
 /// over the picture, are traced and timed, or as many as two seconds or a block of four pixels take.
 #[must_use]
-pub fn estimated_seconds(studio: &PreparedScene<'_>) -> f64 {
+pub fn estimated_seconds(prepared: &PreparedScene<'_>) -> f64 {
     const GRID: [u32; 2] = [64, 48];
     const LONGEST: Duration = Duration::from_secs(2);
     // A prime above the number of blocks: its multiples visit them all, here and there in the picture.
     const STRIDE: u32 = 7919;
-    let camera = &studio.scene.camera;
+    let camera = &prepared.scene.camera;
     let [width, height] = camera.resolution();
     let [columns, rows] = [GRID[0].min(width), GRID[1].min(height)];
-    let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &studio.scene.picture);
-    let mut exposer = Exposer::new(studio, &detection);
+    let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &prepared.scene.picture);
+    let mut exposer = Exposer::new(prepared, &detection);
     let start = Instant::now();
     let mut blocks = 0;
     while blocks < columns * rows && (blocks == 0 || start.elapsed() < LONGEST) {
@@ -239,19 +243,19 @@ pub fn metadata(scene: &Scene) -> Vec<(String, String)> {
 
 /// One thread's tracers and memory.
 struct Exposer<'a, const N: usize> {
-    studio: &'a PreparedScene<'a>,
+    prepared: &'a PreparedScene<'a>,
     detection: &'a Detection<N>,
     tracers: FourTracers<'a, N>,
     pulses: Pulses,
 }
 
 impl<'a, const N: usize> Exposer<'a, N> {
-    fn new(studio: &'a PreparedScene<'a>, detection: &'a Detection<N>) -> Self {
+    fn new(prepared: &'a PreparedScene<'a>, detection: &'a Detection<N>) -> Self {
         Self {
-            studio,
+            prepared,
             detection,
             tracers: FourTracers::new(
-                &Tracer::new(&studio.assembly, studio.limits).with_screen(studio.screen),
+                &Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen),
             ),
             pulses: Vec::new(),
         }
@@ -259,7 +263,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
 
     /// Exposes a band, 2 x 2 pixels at a time; `None` if it was stopped.
     fn expose_band(&mut self, band: &mut Band<'_>, stop: &AtomicBool) -> Option<TraceStats> {
-        let camera = &self.studio.scene.camera;
+        let camera = &self.prepared.scene.camera;
         let Band { width, rows, corner: [first_column, first_row], .. } = *band;
         let samples = camera.samples();
         let look = if camera.adaptive() > 0.0 { first_look(samples) } else { 0 };
@@ -308,7 +312,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
         sample: u32,
         pixels: &mut [Pixel; 4],
     ) -> TraceStats {
-        let camera = &self.studio.scene.camera;
+        let camera = &self.prepared.scene.camera;
         let samples = camera.samples();
         let block = [column as u32 / 2, row as u32 / 2];
         let offset = sampling::offset(sample, samples, block, camera.seed());
@@ -320,7 +324,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
         let any = &self.tracers.each()[0];
         if self.detection.images_alone()
             && rays.iter().all(|ray| any.meets_nothing(ray.origin, ray.direction))
-            && expose_unhindered(self.studio, self.detection, &rays, spacing, pixels)
+            && expose_unhindered(self.prepared, self.detection, &rays, spacing, pixels)
         {
             return stats;
         }
@@ -336,7 +340,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
         });
         for (i, pixel) in pixels.iter_mut().enumerate() {
             let rays = [&block[i], &block[i ^ 1], &block[i ^ 2]];
-            expose(self.studio, self.detection, rays, spacing, pixel, &mut self.pulses);
+            expose(self.prepared, self.detection, rays, spacing, pixel, &mut self.pulses);
         }
         stats
     }

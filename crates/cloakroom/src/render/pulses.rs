@@ -83,28 +83,28 @@ pub struct PulseError {
 /// # Errors
 ///
 /// If the picture has no such pixel.
-pub fn pulses(studio: &PreparedScene<'_>, pixel: [u32; 2]) -> Result<PulseList, PulseError> {
-    let camera = &studio.scene.camera;
+pub fn pulses(prepared: &PreparedScene<'_>, pixel: [u32; 2]) -> Result<PulseList, PulseError> {
+    let camera = &prepared.scene.camera;
     let resolution = camera.resolution();
     if pixel[0] >= resolution[0] || pixel[1] >= resolution[1] {
         return Err(PulseError { pixel, resolution });
     }
     // The same trees as in a picture of every channel.
     Ok(match camera.polarizer().amplitudes() {
-        None => list(studio, pixel, &Detection::UNPOLARIZED),
-        Some(amplitudes) => list(studio, pixel, &Detection::through(amplitudes)),
+        None => list(prepared, pixel, &Detection::UNPOLARIZED),
+        Some(amplitudes) => list(prepared, pixel, &Detection::through(amplitudes)),
     })
 }
 
 fn list<const N: usize>(
-    studio: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     pixel: [u32; 2],
     detection: &Detection<N>,
 ) -> PulseList {
-    let camera = &studio.scene.camera;
+    let camera = &prepared.scene.camera;
     let [x, y] = pixel.map(|i| f64::from(i) + 0.5);
     let ray = camera.ray(x, y);
-    let mut tracer = Tracer::new(&studio.assembly, studio.limits).with_screen(studio.screen);
+    let mut tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
     let (leaves, outcome) = tracer.trace(&detection.launch(camera, &ray));
     let (mut arrivals, mut escaped) = (Vec::new(), 0.0);
     let mut ended = 0.0;
@@ -114,22 +114,22 @@ fn list<const N: usize>(
             ended += power;
             continue;
         }
-        match leaf.distance_to(&studio.screen) {
+        match leaf.distance_to(&prepared.screen) {
             Some(distance) if power > 0.0 => arrivals.push(Arrival {
                 time: time_of_flight(leaf, distance),
                 power,
                 // On the plane to the last digit.
-                position: studio.screen.foot(leaf.position + leaf.direction * distance),
+                position: prepared.screen.foot(leaf.position + leaf.direction * distance),
             }),
             Some(_) => {}
             None => escaped += power,
         }
     }
-    let empty = empty_time_of_flight(studio, &ray);
+    let empty = empty_time_of_flight(prepared, &ray);
     let mut sums = Pixel::default();
     sums.add_pulses(&arrivals.iter().map(|a| (a.time, a.power)).collect::<Vec<_>>(), empty);
     let number = |channel| Some(sums.value(channel, 0, 1.0)).filter(|value| value.is_finite());
-    let tolerance = studio.limits.tolerance;
+    let tolerance = prepared.limits.tolerance;
     let resolution_ns = tolerance / SPEED_OF_LIGHT;
     arrivals.sort_by(|a, b| a.time.total_cmp(&b.time));
     let mut pulses: Vec<Pulse> = Vec::new();

@@ -9,10 +9,10 @@ use std::sync::atomic::AtomicBool;
 /// The picture of a scene whose files are in a folder, with the channels that are wanted.
 pub fn rendered(folder: &Path, scene: &str, wanted: ChannelSet) -> Picture {
     let loaded = scene_file::parse(scene, "test", folder, &[]).unwrap();
-    let studio = PreparedScene::new(&loaded.scene).unwrap();
+    let prepared = PreparedScene::new(&loaded.scene).unwrap();
     let stop = AtomicBool::new(false);
     let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-    render(&studio, wanted, &supervision).unwrap().picture
+    render(&prepared, wanted, &supervision).unwrap().picture
 }
 
 /// The picture of a scene whose files are in a folder, with all channels.

@@ -152,7 +152,7 @@ impl Projector {
     /// # Errors
     ///
     /// As [`PreparedScene::new`].
-    pub fn studio<'s>(
+    pub fn prepared<'s>(
         &mut self,
         scene: &'s Scene,
     ) -> Result<PreparedScene<'s>, PreparedSceneError> {
@@ -176,11 +176,11 @@ impl Projector {
     pub fn frame(
         &self,
         scene: &Scene,
-        studio: &PreparedScene<'_>,
+        prepared: &PreparedScene<'_>,
         supervision: &Supervision<'_>,
     ) -> Result<(RgbImage, TraceStats), FilmError> {
         let wanted = ChannelSet::for_image(&scene.picture);
-        let Rendered { picture, stats } = render(studio, wanted, supervision)?;
+        let Rendered { picture, stats } = render(prepared, wanted, supervision)?;
         let image = match scene.picture.map.name() {
             None => output::to_srgb(&picture)?,
             Some(channel) => ScalarMap::new(&picture, channel, self.scale)?

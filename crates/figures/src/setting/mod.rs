@@ -83,10 +83,10 @@ const SKY: Ink = Ink::new([86, 180, 233]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
-    let studio = PreparedScene::new(scene)?;
-    let devices = Devices::new(studio.assembly());
+    let prepared = PreparedScene::new(scene)?;
+    let devices = Devices::new(prepared.assembly());
     let subjects = &devices.subjects;
-    let stage = Stage::new(scene, &studio);
+    let stage = Stage::new(scene, &prepared);
     let layout = Layout::new(sheet(scene.camera.resolution()), &stage, subjects, devices.has_bar());
     let mut drawing = Drawing::new(layout.sheet, TEXT);
     stage.draw_behind(&mut drawing, &layout.view);

@@ -34,18 +34,18 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    pub fn new(scene: &Scene, studio: &PreparedScene<'_>) -> Self {
+    pub fn new(scene: &Scene, prepared: &PreparedScene<'_>) -> Self {
         let camera = &scene.camera;
         let eye = camera.position().truncate();
         let forward = camera.forward().truncate();
         let forward = (forward.length() > 0.2).then(|| forward.normalize());
-        let screen = studio.screen();
+        let screen = prepared.screen();
         Self {
             eye,
             forward,
             sight: forward.map(|forward| sight(camera, forward, &screen)).unwrap_or_default(),
             screen,
-            thumbnail: thumbnail(studio.photograph()),
+            thumbnail: thumbnail(prepared.photograph()),
         }
     }
 

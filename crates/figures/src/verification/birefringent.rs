@@ -1,9 +1,9 @@
 //! Section 3, designs (i) and (ii).
 
 use super::finding::{DOUBLE, Page, SINGLE, Verdict, above, below, list, percent};
-use super::laboratory::{
-    CAMERA, DESIGNS, Fixture, HALF_VIEW, Rays, fact, gaze, largest_difference, likeness, numbers,
-    principal_values, reflected_inside, square, statistics,
+use super::fixture::{
+    CAMERA, DESIGNS, Fixture, HALF_VIEW, Rays, camera_direction, fact, largest_difference,
+    likeness, numbers, principal_values, reflected_inside, square, statistics,
 };
 use super::{Checked, VerificationError};
 use cloakroom::measure::CLOAKED_WITHIN_CM;
@@ -20,17 +20,17 @@ fn heights() -> impl Iterator<Item = f64> {
     (0..40).map(|i| -9.5 + 19.0 * (f64::from(i) + 0.5) / 40.0)
 }
 
-pub(super) fn along_the_axis(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn along_the_axis(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     let mut through = [[0.0; 2]; 2];
     for (material, through) in DESIGNS.iter().zip(&mut through) {
-        let assembly = laboratory.assembly(&square(material))?;
+        let assembly = fixture.assembly(&square(material))?;
         let mut rays = Rays::new(&assembly, 1e-7);
         // In the centre vertical plane, from the camera.
         let mut least: f64 = 1.0;
         let mut most: f64 = 0.0;
         for i in 0..40 {
             let up = 5.6 * ((f64::from(i) + 0.5) / 20.0 - 1.0);
-            let [h, v] = rays.undisturbed(CAMERA, gaze(0.0, up), ON_ITS_LINE);
+            let [h, v] = rays.undisturbed(CAMERA, camera_direction(0.0, up), ON_ITS_LINE);
             least = least.min(h);
             most = most.max(v);
         }
@@ -72,18 +72,18 @@ pub(super) fn along_the_axis(laboratory: &Fixture<'_>, page: &mut Page) -> Check
     Ok(())
 }
 
-pub(super) fn views(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
-    let empty = laboratory.show("", "none")?.view;
-    let silhouette = laboratory.silhouette(&square(DESIGNS[2]))?;
-    let bare = laboratory.show(&format!("{}show = \"bare\"\n", square(DESIGNS[2])), "none")?.view;
+pub(super) fn views(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+    let empty = fixture.show("", "none")?.view;
+    let silhouette = fixture.silhouette(&square(DESIGNS[2]))?;
+    let bare = fixture.show(&format!("{}show = \"bare\"\n", square(DESIGNS[2])), "none")?.view;
     let bare = likeness(&empty, &bare, &silhouette)?;
-    let perfect = laboratory.show(&square(DESIGNS[2]), "horizontal")?.view;
+    let perfect = fixture.show(&square(DESIGNS[2]), "horizontal")?.view;
     let mut admixture: f64 = 0.0;
     // Of each design the likeness to the empty view, H and V, that to (iii), H, and the displacement, H.
     let mut numbers = [[0.0; 4]; 2];
     for (material, numbers) in DESIGNS.iter().zip(&mut numbers) {
         let device = square(material);
-        let [h, v, none] = ["horizontal", "vertical", "none"].map(|p| laboratory.show(&device, p));
+        let [h, v, none] = ["horizontal", "vertical", "none"].map(|p| fixture.show(&device, p));
         let (h, v, none) = (h?.view, v?.view, none?.view);
         let mut mean = h.clone();
         for (mean, vertical) in mean.light.iter_mut().zip(&v.light) {
@@ -91,7 +91,7 @@ pub(super) fn views(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
         }
         admixture = admixture.max(largest_difference(&mean, &none));
         let like = |to, view| likeness(to, view, &silhouette);
-        let off = laboratory.displacement(&device, "horizontal", "")?;
+        let off = fixture.displacement(&device, "horizontal", "")?;
         *numbers = [like(&empty, &h)?, like(&empty, &v)?, like(&perfect, &h)?, off];
     }
     let [[h1, v1, like_1, off_1], [h2, v2, like_2, off_2]] = numbers;
@@ -131,21 +131,21 @@ pub(super) fn views(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
 }
 
 /// What the cloaks look like when they are turned, and the first reflection then.
-pub(super) fn turned(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     let mut likenesses = [[0.0; 3]; 2];
     let mut bare = [0.0; 3];
     let mut reflections = [[0.0; 3]; 2];
     for (i, rotation) in [5, 10, 20].into_iter().enumerate() {
         let turned = |material| format!("{}rotation = {rotation}\n", square(material));
         let perfect = turned(DESIGNS[2]);
-        let silhouette = laboratory.silhouette(&perfect)?;
-        let show = |what| laboratory.show(&format!("{perfect}show = \"{what}\"\n"), "horizontal");
+        let silhouette = fixture.silhouette(&perfect)?;
+        let show = |what| fixture.show(&format!("{perfect}show = \"{what}\"\n"), "horizontal");
         let mirror = show("mirror")?.view;
         bare[i] = likeness(&mirror, &show("bare")?.view, &silhouette)?;
         for (material, (likenesses, reflections)) in
             DESIGNS.iter().zip(likenesses.iter_mut().zip(&mut reflections))
         {
-            let shown = laboratory.show(&turned(material), "horizontal")?;
+            let shown = fixture.show(&turned(material), "horizontal")?;
             likenesses[i] = likeness(&mirror, &shown.view, &silhouette)?;
             reflections[i] = statistics(&shown.picture, "first_face_reflectance")?[0];
         }
@@ -182,9 +182,9 @@ pub(super) fn turned(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn reflections(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn reflections(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     let reflection = |material: &str, polarizer: &str| {
-        let shown = laboratory.show(&square(material), polarizer)?;
+        let shown = fixture.show(&square(material), polarizer)?;
         statistics(&shown.picture, "first_face_reflectance")
     };
     let [[_, horizontal], [_, vertical]] =
@@ -194,17 +194,17 @@ pub(super) fn reflections(laboratory: &Fixture<'_>, page: &mut Page) -> Checked 
     const STRAIGHT_UP: f64 = 1e-9;
     let mut backward = [0.0; 2];
     for (material, backward) in DESIGNS.iter().zip(&mut backward) {
-        let assembly = laboratory.assembly(&square(material))?;
+        let assembly = fixture.assembly(&square(material))?;
         let mut rays = Rays::new(&assembly, 1e-5);
         for y in heights() {
-            let direction = gaze(HALF_VIEW, 0.0);
+            let direction = camera_direction(HALF_VIEW, 0.0);
             let (leaves, _) = rays.trace(DVec3::new(0.0, y, 0.0) - direction * 60.0, direction);
             let back = leaves.iter().filter(|leaf| leaf.direction.x < STRAIGHT_UP);
             *backward += back.map(|leaf| leaf.power[0]).sum::<f64>() / 40.0;
         }
     }
     let ordinary = |material: &str| {
-        let shown = laboratory.show(&square(material), "horizontal")?;
+        let shown = fixture.show(&square(material), "horizontal")?;
         let shares = numbers(&shown.picture, "extraordinary_share")?;
         Ok::<_, VerificationError>(1.0 - shares.into_iter().fold(1.0, f64::min))
     };
@@ -238,7 +238,7 @@ pub(super) fn reflections(laboratory: &Fixture<'_>, page: &mut Page) -> Checked 
     Ok(())
 }
 
-pub(super) fn trapped_light(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn trapped_light(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     // The ordinary index of a segment, sqrt(eps mu_o).
     let index = |material: &str, ordinary: usize| -> Result<f64, VerificationError> {
         let device = square(material);
@@ -248,7 +248,7 @@ pub(super) fn trapped_light(laboratory: &Fixture<'_>, page: &mut Page) -> Checke
     };
     let critical = [index(DESIGNS[0], 1)?.asin(), (1.0 / index(DESIGNS[1], 0)?).asin()];
     let [in_air, inside] = critical.map(f64::to_degrees);
-    let assembly = laboratory.assembly(&square(DESIGNS[1]))?;
+    let assembly = fixture.assembly(&square(DESIGNS[1]))?;
     let (main, times) = reflected_inside(&assembly, DVec3::new(-50.0, 4.0, 0.0), DVec3::X)?;
     let angle = main.direction.y.atan2(main.direction.x).to_degrees().abs();
     // The steepest incidence on a front face that the camera sees, at a rotation.

@@ -2,16 +2,14 @@
 
 use super::Checked;
 use super::finding::{DOUBLE, Page, Verdict, below, percent};
-use super::laboratory::{
-    DESIGNS, Fixture, GAUSSIAN, Rays, fact, missing, principal_values, square,
-};
+use super::fixture::{DESIGNS, Fixture, GAUSSIAN, Rays, fact, missing, principal_values, square};
 use glam::DVec3;
 use optics::interface::{IncidentWave, Side, split};
 use optics::medium::Medium;
 use optics::wave::SPEED_OF_LIGHT;
 
-pub(super) fn introduction(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
-    let assembly = laboratory.assembly("[[device]]\nkind = \"mirror-detour\"\n")?;
+pub(super) fn introduction(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+    let assembly = fixture.assembly("[[device]]\nkind = \"mirror-detour\"\n")?;
     let mut rays = Rays::new(&assembly, 1e-9);
     let origin = DVec3::new(-60.0, 3.0, 0.0);
     let (leaves, _) = rays.trace(origin, DVec3::X);

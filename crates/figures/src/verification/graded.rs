@@ -1,9 +1,9 @@
 //! Section 4 and 5: design (iv).
 
 use super::finding::{Page, Verdict, above, list, percent};
-use super::laboratory::{
-    CAMERA, DESIGNS, Fixture, GAUSSIAN, Rays, fact, gaze, largest_difference, likeness, missing,
-    square, statistics, strongest,
+use super::fixture::{
+    CAMERA, DESIGNS, Fixture, GAUSSIAN, Rays, camera_direction, fact, largest_difference, likeness,
+    missing, square, statistics, strongest,
 };
 use super::{Checked, VerificationError};
 use cloakroom::measure::Region;
@@ -38,13 +38,13 @@ pub(super) fn index(_: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn polarization(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
-    let h = laboratory.show(GAUSSIAN, "horizontal")?.view;
-    let v = laboratory.show(GAUSSIAN, "vertical")?.view;
+pub(super) fn polarization(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+    let h = fixture.show(GAUSSIAN, "horizontal")?.view;
+    let v = fixture.show(GAUSSIAN, "vertical")?.view;
     let difference = largest_difference(&h, &v);
     let pairs = || h.light.iter().zip(&v.light).flat_map(|(h, v)| h.iter().zip(v));
     let rms = (pairs().map(|(h, v)| (h - v).powi(2)).sum::<f64>() / pairs().count() as f64).sqrt();
-    let unpolarized = laboratory.show(GAUSSIAN, "none")?;
+    let unpolarized = fixture.show(GAUSSIAN, "none")?;
     let [delivered, _] = statistics(&unpolarized.picture, "delivered")?;
     page.says("4", "(iv) is polarization insensitive")
         .computed(format!(
@@ -61,22 +61,22 @@ pub(super) fn polarization(laboratory: &Fixture<'_>, page: &mut Page) -> Checked
     Ok(())
 }
 
-pub(super) fn views(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn views(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     let metal = format!("{GAUSSIAN}show = \"bare\"\n");
-    let empty = laboratory.show("", "none")?.view;
-    let cloaked = laboratory.show(GAUSSIAN, "none")?.view;
-    let bare = laboratory.show(&metal, "none")?.view;
-    let silhouette = laboratory.silhouette(&metal)?;
+    let empty = fixture.show("", "none")?.view;
+    let cloaked = fixture.show(GAUSSIAN, "none")?.view;
+    let bare = fixture.show(&metal, "none")?.view;
+    let silhouette = fixture.silhouette(&metal)?;
     let whole = Region::whole(&empty);
     let like = |view, region| likeness(&empty, view, region);
     let [with, without] = [like(&cloaked, &silhouette)?, like(&bare, &silhouette)?];
     let [all_with, all_without] = [like(&cloaked, &whole)?, like(&bare, &whole)?];
-    let off = laboratory.displacement(GAUSSIAN, "none", "")?;
+    let off = fixture.displacement(GAUSSIAN, "none", "")?;
     // How much higher than without the cloak light comes from that is seen at an angle upwards, cm.
-    let assembly = laboratory.assembly(GAUSSIAN)?;
+    let assembly = fixture.assembly(GAUSSIAN)?;
     let mut rays = Rays::new(&assembly, 1e-3);
     let mut raised = |right: f64, up: f64| {
-        let direction = gaze(right, up);
+        let direction = camera_direction(right, up);
         let height = |origin: DVec3, d: DVec3| origin.y + d.y * (50.0 - origin.x) / d.x;
         let (leaves, _) = rays.trace(CAMERA, direction);
         let leaf = strongest(leaves, 0)?;
@@ -120,8 +120,8 @@ pub(super) fn views(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn times(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
-    let shown = laboratory.show(GAUSSIAN, "none")?;
+pub(super) fn times(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+    let shown = fixture.show(GAUSSIAN, "none")?;
     let (Some(differences), Some(flights)) =
         (&shown.view.time_of_flight_difference, &shown.view.time_of_flight)
     else {
@@ -150,9 +150,9 @@ pub(super) fn times(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn reflections(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn reflections(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     let reflection = |rotation: i32, polarizer: &str| {
-        let shown = laboratory.show(&format!("{GAUSSIAN}rotation = {rotation}\n"), polarizer)?;
+        let shown = fixture.show(&format!("{GAUSSIAN}rotation = {rotation}\n"), polarizer)?;
         statistics(&shown.picture, "first_face_reflectance")
     };
     let [still_mean, still_most] = reflection(0, "none")?;
@@ -167,7 +167,7 @@ pub(super) fn reflections(laboratory: &Fixture<'_>, page: &mut Page) -> Checked 
     }
     let mut others = [0.0; 2];
     for (material, other) in DESIGNS.iter().zip(&mut others) {
-        let shown = laboratory.show(&square(material), "none")?;
+        let shown = fixture.show(&square(material), "none")?;
         *other = statistics(&shown.picture, "first_face_reflectance")?[0];
     }
     let [average, largest] = [still_mean, still_most].map(|share| percent(share, 3));
@@ -193,12 +193,12 @@ pub(super) fn reflections(laboratory: &Fixture<'_>, page: &mut Page) -> Checked 
     Ok(())
 }
 
-pub(super) fn turned(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     let mut likenesses = [[0.0; 3]; 2];
     for (i, rotation) in [5, 10, 20].into_iter().enumerate() {
         let device = format!("{GAUSSIAN}rotation = {rotation}\n");
-        let silhouette = laboratory.silhouette(&format!("{device}show = \"bare\"\n"))?;
-        let show = |what| laboratory.show(&format!("{device}show = \"{what}\"\n"), "none");
+        let silhouette = fixture.silhouette(&format!("{device}show = \"bare\"\n"))?;
+        let show = |what| fixture.show(&format!("{device}show = \"{what}\"\n"), "none");
         let mirror = show("mirror")?.view;
         for (likenesses, what) in likenesses.iter_mut().zip(["cloak", "bare"]) {
             likenesses[i] = likeness(&mirror, &show(what)?.view, &silhouette)?;

@@ -2,28 +2,28 @@
 
 use super::Checked;
 use super::finding::{DOUBLE, Page, SINGLE, below};
-use super::laboratory::{
-    CAMERA, DESIGNS, Fixture, Rays, gaze, largest_difference, square, statistics,
+use super::fixture::{
+    CAMERA, DESIGNS, Fixture, Rays, camera_direction, largest_difference, square, statistics,
 };
 
 /// Yoctoseconds in a nanosecond.
 const YOCTOSECONDS: f64 = 1e15;
 
-pub(super) fn along_the_axis(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn along_the_axis(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     let device = square(DESIGNS[2]);
-    let empty = laboratory.show("", "none")?.view;
-    let shown = laboratory.show(&device, "none")?;
-    let bare = laboratory.show(&format!("{device}show = \"bare\"\n"), "none")?.view;
+    let empty = fixture.show("", "none")?.view;
+    let shown = fixture.show(&device, "none")?;
+    let bare = fixture.show(&format!("{device}show = \"bare\"\n"), "none")?.view;
     let difference = largest_difference(&empty, &shown.view);
     let bare = largest_difference(&empty, &bare);
     let [_, late] = statistics(&shown.picture, "time_of_flight_difference")?;
-    let assembly = laboratory.assembly(&device)?;
+    let assembly = fixture.assembly(&device)?;
     let mut rays = Rays::new(&assembly, 1e-12);
     let mut lost: f64 = 0.0;
     for right in [0.0, 7.0, 14.0, 20.0] {
         for step in -12..=12 {
             let up = 0.43 * f64::from(step) + 0.1;
-            let [h, v] = rays.undisturbed(CAMERA, gaze(right, up), [1e-6, 1e-6]);
+            let [h, v] = rays.undisturbed(CAMERA, camera_direction(right, up), [1e-6, 1e-6]);
             lost = lost.max(1.0 - h).max(1.0 - v);
         }
     }
@@ -46,12 +46,12 @@ pub(super) fn along_the_axis(laboratory: &Fixture<'_>, page: &mut Page) -> Check
     Ok(())
 }
 
-pub(super) fn turned(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     let mut largest: f64 = 0.0;
     for rotation in [5, 10, 20] {
         let device = format!("{}rotation = {rotation}\n", square(DESIGNS[2]));
-        let cloaked = laboratory.show(&device, "none")?.view;
-        let mirror = laboratory.show(&format!("{device}show = \"mirror\"\n"), "none")?.view;
+        let cloaked = fixture.show(&device, "none")?.view;
+        let mirror = fixture.show(&format!("{device}show = \"mirror\"\n"), "none")?.view;
         largest = largest.max(largest_difference(&cloaked, &mirror));
     }
     page.says(

@@ -6,9 +6,9 @@
 
 mod birefringent;
 mod finding;
+mod fixture;
 mod geometry;
 mod graded;
-mod laboratory;
 mod matched;
 mod motion;
 
@@ -18,7 +18,7 @@ use cloakroom::measure::MeasureError;
 use cloakroom::render::{PreparedSceneError, RenderError};
 use cloakroom::scene_file::SceneFileError;
 use finding::Page;
-use laboratory::Fixture;
+use fixture::Fixture;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Why the paper could not be gone through.
@@ -78,13 +78,13 @@ pub fn steps() -> u64 {
 ///
 /// If the work was stopped, or a picture could not be made.
 pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Result<Vec<Finding>, VerificationError> {
-    let laboratory = Fixture { stop };
+    let fixture = Fixture { stop };
     let mut page = Page::default();
     for check in CHECKS {
         if stop.load(Ordering::Relaxed) {
             return Err(RenderError::Stopped.into());
         }
-        check(&laboratory, &mut page)?;
+        check(&fixture, &mut page)?;
         step_done();
     }
     Ok(page.0)

@@ -2,7 +2,7 @@
 
 use super::Checked;
 use super::finding::{Page, SINGLE, below};
-use super::laboratory::{CAMERA, Fixture, GAUSSIAN, Rays, gaze, missing, strongest};
+use super::fixture::{CAMERA, Fixture, GAUSSIAN, Rays, camera_direction, missing, strongest};
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::propagation::reference::{ReferenceRay, SquaredIndex, follow};
@@ -12,16 +12,16 @@ use optics::transformation::{ConformalMap, GaussianMap};
 const CUT: [f64; 2] = [25.0, 28.57];
 
 /// Rays of design (iv) by the program, and by plain steps along the equation of motion in physical space.
-pub(super) fn equation(laboratory: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn equation(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     let gaussian = GaussianMap::new(10.02, 4.25).map_err(|error| missing(&error.to_string()))?;
     let map = ConformalMap::Gaussian(gaussian);
-    let assembly = laboratory.assembly(GAUSSIAN)?;
+    let assembly = fixture.assembly(GAUSSIAN)?;
     let mut rays = Rays::new(&assembly, 1e-3);
     let mut off: f64 = 0.0;
-    let gazes =
+    let directions =
         [2.0, 5.0, 9.0].into_iter().flat_map(|up| [0.0, 10.0, 20.0].map(|right| (right, up)));
-    for (right, up) in gazes {
-        let d = gaze(right, up);
+    for (right, up) in directions {
+        let d = camera_direction(right, up);
         let entry = CAMERA + d * ((-CUT[0] - CAMERA.x) / d.x);
         let p =
             refracted(d, DVec3::X, medium(&map, entry).value).ok_or_else(|| missing("a ray"))?;

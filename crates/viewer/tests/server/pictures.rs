@@ -11,10 +11,10 @@ use std::sync::atomic::AtomicBool;
 /// The picture of a scene file as RGBA.
 fn rendered(text: &str) -> Vec<u8> {
     let loaded = scene_file::parse(text, "a", Path::new(""), &[]).unwrap();
-    let studio = PreparedScene::new(&loaded.scene).unwrap();
+    let prepared = PreparedScene::new(&loaded.scene).unwrap();
     let stop = AtomicBool::new(false);
     let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
-    let picture = render(&studio, ChannelSet::Image, &supervision).unwrap().picture;
+    let picture = render(&prepared, ChannelSet::Image, &supervision).unwrap().picture;
     let image = to_srgb(&picture).unwrap();
     image.pixels().flat_map(|pixel| [pixel.0[0], pixel.0[1], pixel.0[2], 255]).collect()
 }

@@ -9,18 +9,18 @@ use std::sync::atomic::AtomicBool;
 const SCENE: &str = "[camera]\nresolution = [37, 23]\nsamples = 2\n[picture]\nchannels = [\"stokes\"]\n\
                      [[device]]\nkind = \"square-cloak\"\nmaterial = \"negative-uniaxial\"\nrotation = 10\n";
 
-fn with_studio<T>(work: impl FnOnce(&PreparedScene<'_>, &Supervision<'_>) -> T) -> T {
+fn with_prepared<T>(work: impl FnOnce(&PreparedScene<'_>, &Supervision<'_>) -> T) -> T {
     let loaded = scene_file::parse(SCENE, "scene", Path::new(""), &[]).expect("a scene");
-    let studio = PreparedScene::new(&loaded.scene).expect("a studio");
+    let prepared = PreparedScene::new(&loaded.scene).expect("a sound scene");
     let stop = AtomicBool::new(false);
-    work(&studio, &Supervision { rows_done: &|_| {}, stop: &stop })
+    work(&prepared, &Supervision { rows_done: &|_| {}, stop: &stop })
 }
 
 fn pieces(tiles: &[&str]) -> Vec<Piece<Picture>> {
-    with_studio(|studio, supervision| {
+    with_prepared(|prepared, supervision| {
         let piece = |text: &&str| {
             let tile = text.parse().expect("a tile");
-            let rendered = render_tile(studio, ChannelSet::Everything, tile, supervision);
+            let rendered = render_tile(prepared, ChannelSet::Everything, tile, supervision);
             let picture = rendered.expect("a picture").picture;
             ((*text).to_owned(), picture.metadata.clone(), picture)
         };
@@ -36,8 +36,8 @@ fn bits(picture: &Picture) -> Vec<u64> {
 
 #[test]
 fn tiles_with_even_and_odd_edges_make_the_whole_picture() {
-    let whole = with_studio(|studio, supervision| {
-        render(studio, ChannelSet::Everything, supervision).expect("a picture").picture
+    let whole = with_prepared(|prepared, supervision| {
+        render(prepared, ChannelSet::Everything, supervision).expect("a picture").picture
     });
     let merged = merge(&pieces(&["0,0,11,7", "11,0,26,7", "0,7,20,16", "20,7,17,16"]));
     let merged = merged.expect("tiles of one picture");

@@ -21,7 +21,7 @@ fn sound(keys: &str, origin: DVec3, direction: DVec3, tolerance: f64) -> TraceSt
     let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
     let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
     let (leaves, outcome) = tracer.trace(&launch);
-    assert!(trials::examine(leaves, outcome).is_ok(), "{keys}: {leaves:?} {outcome:?}");
+    assert!(robustness::examine(leaves, outcome).is_ok(), "{keys}: {leaves:?} {outcome:?}");
     outcome.stats
 }
 

@@ -58,9 +58,9 @@ impl Fixture<'_> {
     /// The picture of a device.
     pub fn show(&self, device: &str, polarizer: &str) -> Result<Shown, VerificationError> {
         let scene = Self::scene(device, polarizer)?;
-        let studio = PreparedScene::new(&scene)?;
+        let prepared = PreparedScene::new(&scene)?;
         let supervision = Supervision { rows_done: &|_| {}, stop: self.stop };
-        let picture = render(&studio, ChannelSet::Everything, &supervision)?.picture;
+        let picture = render(&prepared, ChannelSet::Everything, &supervision)?.picture;
         Ok(Shown { view: View::of(&picture)?, picture })
     }
 
@@ -73,8 +73,8 @@ impl Fixture<'_> {
     ) -> Result<Survey, VerificationError> {
         let [scene, ideal] = [device, ideal].map(|device| Self::scene(device, polarizer));
         let (scene, ideal) = (scene?, ideal?);
-        let [studio, ideal] = [&scene, &ideal].map(PreparedScene::new);
-        let survey = survey(&studio?, &ideal?, &scene.camera, &|_| {}, self.stop);
+        let [prepared, ideal] = [&scene, &ideal].map(PreparedScene::new);
+        let survey = survey(&prepared?, &ideal?, &scene.camera, &|_| {}, self.stop);
         Ok(survey.ok_or(RenderError::Stopped)?)
     }
 
@@ -240,7 +240,7 @@ pub(super) fn reflected_inside(
 }
 
 /// A direction of view: degrees to the right and upwards.
-pub(super) fn gaze(right: f64, up: f64) -> DVec3 {
+pub(super) fn camera_direction(right: f64, up: f64) -> DVec3 {
     let (right, up) = (right.to_radians(), up.to_radians());
     DVec3::new(right.cos() * up.cos(), up.sin(), right.sin() * up.cos())
 }

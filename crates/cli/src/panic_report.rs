@@ -57,7 +57,7 @@ mod tests {
         let here = caught(|| panic!("two\n  lines"));
         let here = message(here);
         assert!(here.starts_with("a mistake in cloakroom") && !here.contains('\n'), "{here}");
-        assert!(here.contains("two lines") && here.contains("mistake.rs, line "), "{here}");
+        assert!(here.contains("two lines") && here.contains("panic_report.rs, line "), "{here}");
         let elsewhere = caught(|| {
             (0..8).into_par_iter().for_each(|number| assert!(number != 5, "five of eight"));
             Ok(())

@@ -3,10 +3,10 @@
 use crate::draws::Draws;
 use crate::{page, rays, scenes};
 use cloakroom::assembly::Assembly;
-use cloakroom::interface_exchange::{InterfaceRequest, solve_interfaces};
+use cloakroom::interface_json::{InterfaceRequest, solve_interfaces};
 use cloakroom::output::{read_npz, read_png};
 use cloakroom::photograph::{Edges, ImageSource, Pyramid, Texels, load_bytes};
-use cloakroom::ray_exchange::{RayRequest, trace_rays};
+use cloakroom::ray_json::{RayRequest, trace_rays};
 use cloakroom::render;
 use cloakroom::scene_file::{self, Loaded};
 use cloakroom::trace::{FourTracers, Launch, Limits, Tracer};
@@ -343,10 +343,10 @@ fn picture_bytes() -> Vec<Vec<u8>> {
     let scene = "[camera]\nresolution = [6, 4]\nsamples = 1\n[[device]]\nkind = 'square-cloak'\n";
     let Ok(loaded) = scene_file::parse(scene, "a.toml", nowhere(), &[]) else { return Vec::new() };
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let studio = render::PreparedScene::new(&loaded.scene).expect("a studio");
+    let prepared = render::PreparedScene::new(&loaded.scene).expect("a sound scene");
     let stop = AtomicBool::new(false);
     let supervision = render::Supervision { rows_done: &|_| {}, stop: &stop };
-    let rendered = render::render(&studio, render::ChannelSet::Everything, &supervision);
+    let rendered = render::render(&prepared, render::ChannelSet::Everything, &supervision);
     let picture = rendered.expect("a picture").picture;
     let file = |name: &str| {
         let path = folder.path().join(name);

@@ -1,4 +1,4 @@
-//! The studio: a scene made ready to be looked at, images read and devices built.
+//! The prepared: a scene made ready to be looked at, images read and devices built.
 
 use super::Images;
 use super::body_surface::BodySurface;

@@ -5,7 +5,7 @@
 //! computing is recorded, too, and ends the program.
 //!
 //! ```sh
-//! cargo run --release -p cloakroom-trials --bin soak -- --rays 100000000 --record soak.jsonl
+//! cargo run --release -p cloakroom-robustness --bin soak -- --rays 100000000 --record soak.jsonl
 //! ```
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program for people")]
 
@@ -15,6 +15,7 @@ use cloakroom::device::CATALOGUE;
 use cloakroom::render;
 use cloakroom::scene_file;
 use cloakroom::trace::{Limits, Tracer};
+use robustness::{Draws, Fault};
 use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::fs::{File, OpenOptions};
@@ -25,7 +26,6 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
-use trials::{Draws, Fault};
 
 /// Most rays of a parcel.
 const RAYS: u64 = 20_000;
@@ -132,7 +132,7 @@ fn parcel(number: u64) -> Value {
     PARCEL.store(number, Ordering::Relaxed);
     BEGUN.fetch_add(1, Ordering::Relaxed);
     let ran = catch_unwind(AssertUnwindSafe(|| {
-        let scene = trials::scene_of(&mut draws, entry).to_string();
+        let scene = robustness::scene_of(&mut draws, entry).to_string();
         let loaded = scene_file::parse(&scene, "soak", Path::new("/nowhere"), &[]).ok()?;
         let assembly = render::assembly(&loaded.scene).ok()?;
         let tolerance = loaded.scene.trace.tolerance;
@@ -157,8 +157,8 @@ fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>) -> Value {
     let (mut worst, mut slowest) = (0.0f64, Duration::ZERO);
     let mut last = start;
     // A device may be so large that rays begin in it: others are taken, but not for ever.
-    let launches = (0..2 * RAYS).map(|_| trials::launch(draws, reach));
-    for launch in launches.filter(|launch| trials::starts_in_air(assembly, launch)) {
+    let launches = (0..2 * RAYS).map(|_| robustness::launch(draws, reach));
+    for launch in launches.filter(|launch| robustness::starts_in_air(assembly, launch)) {
         if rays == RAYS || last - start > LONGEST {
             break;
         }
@@ -168,7 +168,7 @@ fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>) -> Value {
         leaves += found.len() as u64;
         lost += outcome.stats.lost;
         endless += u64::from(outcome.stats.endless > 0);
-        match trials::examine(found, outcome) {
+        match robustness::examine(found, outcome) {
             Ok(off) => worst = worst.max(off),
             Err(fault) => {
                 match fault {

@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "a test may")]
 
 use crate::long;
+use robustness::{Draws, TRIALS, Trial};
 use std::fs;
 use std::path::{Path, PathBuf};
-use trials::{Draws, TRIALS, Trial};
 
 /// How many changed inputs each trial gets.
 fn count(trial: &Trial) -> u64 {
@@ -88,7 +88,7 @@ fn every_trial_has_a_target_of_its_own() {
     for Trial { name, .. } in TRIALS {
         assert!(manifest.contains(&format!("path = \"fuzz_targets/{name}.rs\"")), "{name}");
         let target = fs::read_to_string(folder.join("fuzz_targets").join(format!("{name}.rs")));
-        assert!(target.unwrap().contains(&format!("trials::run(\"{name}\", bytes)")), "{name}");
+        assert!(target.unwrap().contains(&format!("robustness::run(\"{name}\", bytes)")), "{name}");
     }
     assert_eq!(manifest.matches("[[bin]]").count(), TRIALS.len());
     assert_eq!(fs::read_dir(folder.join("fuzz_targets")).unwrap().count(), TRIALS.len());
