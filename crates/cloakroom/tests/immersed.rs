@@ -193,7 +193,7 @@ fn nothing_starts_in_metal() {
         cloakroom::scene_file::parse(scene, "test", std::path::Path::new(""), &[]).unwrap();
     let error =
         cloakroom::render::PreparedScene::new(&loaded.scene).map(|_| ()).unwrap_err().to_string();
-    assert!(error.contains("in metal or an opaque body"), "{error}");
+    assert!(error.contains("in metal, an opaque body or a round birefringent medium"), "{error}");
     // The closed forms of round birefringent media go from border to border.
     let regularized = "[[device]]\nkind = \"invisible-sphere\"\nmaterial = \"regularized\"\n";
     let lens = assembly(regularized);

@@ -26,14 +26,25 @@ pub(crate) fn scene(draws: &mut Draws<'_>) -> Table {
     scene
 }
 
-/// A scene of one device of a kind, at the origin.
+/// A scene of one device of a kind, at the origin; some stand in a block of glass, which may be too small for them: such a
+/// scene is refused.
 #[must_use]
 pub fn scene_of(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
     let mut device = device(draws, entry);
     device.remove("position");
+    let mut devices = vec![Value::Table(device)];
+    if draws.chance(50) {
+        let size: Vec<Value> = (0..3).map(|_| draws.between(15.0, 80.0).into()).collect();
+        devices.push(Value::Table(Table::from_iter([
+            ("kind".to_owned(), "body".into()),
+            ("shape".to_owned(), "box".into()),
+            ("size".to_owned(), size.into()),
+            ("permittivity".to_owned(), draws.between(1.2, 4.0).into()),
+        ])));
+    }
     let trace = Table::from_iter([("tolerance".to_owned(), tolerance(draws).into())]);
     Table::from_iter([
-        ("device".to_owned(), vec![Value::Table(device)].into()),
+        ("device".to_owned(), devices.into()),
         ("trace".to_owned(), Value::Table(trace)),
     ])
 }

@@ -52,8 +52,8 @@ pub enum PreparedSceneError {
     },
     /// The camera is where there is no light.
     #[error(
-        "the camera stands inside device {device} (counted from 0), in metal or an opaque body; it must stand in air or \
-         in a medium"
+        "the camera stands inside device {device} (counted from 0), in metal, an opaque body or a round birefringent medium; \
+         it must stand in air or in another medium"
     )]
     CameraInside {
         /// Which device, counted from 0.
