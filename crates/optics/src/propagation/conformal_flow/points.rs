@@ -62,7 +62,17 @@ impl<R: Copy, C: Copy> Place<R, C> {
 impl Points {
     /// One of them.
     pub fn at(&self, i: usize) -> Point {
-        self.map(|numbers| numbers[i], |numbers| numbers.at(i))
+        Point {
+            tau: self.tau[i],
+            zeta: self.zeta.at(i),
+            momentum: self.momentum.at(i),
+            z: self.z[i],
+            theta: self.theta[i],
+            jet: MapJet { f: self.jet.f.at(i), f1: self.jet.f1.at(i), f2: self.jet.f2.at(i) },
+            force: self.force.at(i),
+            velocity: self.velocity.at(i),
+            bend: self.bend.at(i),
+        }
     }
 
     /// Moves one of them to where it is in `other`.
