@@ -82,6 +82,7 @@ impl<T: Number> Uniaxial<T> {
 }
 
 /// The direction of one field of both waves, p × a, and its square relative to |p|².
+#[inline]
 fn across_axis<T: Number>(p: [T; 3], axis: [f64; 3]) -> ([T; 3], f64) {
     let u = cross(p, axis.map(T::from));
     let square = |v: [T; 3]| v.into_iter().map(T::magnitude_squared).sum::<f64>();
@@ -90,6 +91,7 @@ fn across_axis<T: Number>(p: [T; 3], axis: [f64; 3]) -> ([T; 3], f64) {
 
 /// The direction of one field of a wave; any that is across the plane of incidence where p is along the axis, and whether
 /// it is.
+#[inline]
 pub(super) fn field_direction<T: Number>(p: [T; 3], axis: [f64; 3]) -> ([T; 3], bool) {
     let (u, angle) = across_axis(p, axis);
     if angle < ONE_WAVE { (out_of_plane(), true) } else { (u, false) }
@@ -147,7 +149,8 @@ impl UniaxialWaves<'_> {
         let po = [self.along, 0.0, qo];
         let (u, angle) = across_axis(po, self.axis);
         Arriving::One(if to_o <= to_e {
-            self.medium.ordinary_mode(po, field_direction(po, self.axis).0)
+            let u = if angle < ONE_WAVE { out_of_plane() } else { u };
+            self.medium.ordinary_mode(po, u)
         } else {
             let (qe, ue) = self.extraordinary(qo, qe, e_root, u, angle);
             self.medium.extraordinary_mode(self.axis, [self.along, 0.0, qe], ue)
@@ -156,6 +159,7 @@ impl UniaxialWaves<'_> {
 
     /// The normal component of the ordinary and of the extraordinary wave that run the given way, and the square roots
     /// in them with their signs, if both run.
+    #[inline]
     fn running(&self, forward: bool) -> Option<[(f64, f64); 2]> {
         let [o_sign, e_sign] = self.signs(forward);
         let wave = |roots: Roots, sign: f64| match roots {
