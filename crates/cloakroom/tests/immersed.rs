@@ -3,7 +3,7 @@
 use crate::rays::{Numbers, assembly, launch, refusal};
 use cloakroom::assembly::Assembly;
 use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 const LIMITS: Limits = Limits { min_power: 1e-9, tolerance: 1e-8 };
 
@@ -59,6 +59,48 @@ fn a_block_of_nothing_around_a_device_changes_nothing() {
             }
         }
     }
+}
+
+#[test]
+fn a_pane_with_air_in_it_is_two_panes() {
+    // Light that goes to and fro in one of them comes to the air again and again, which it has left.
+    let slab = |rotation: f64, middle: f64, keys: &str| {
+        let DVec2 { x, y } = DVec2::from_angle(rotation.to_radians()) * middle;
+        format!(
+            "[[device]]\nkind = \"body\"\nshape = \"slab\"\nrotation = {rotation}\nposition = [{x}, {y}, 0]\n{keys}"
+        )
+    };
+    let mut numbers = Numbers(3);
+    let mut compared = 0;
+    for _ in 0..20 {
+        let rotation = numbers.between(-40.0, 40.0);
+        let glass = |thickness: f64| format!("thickness = {thickness}\npermittivity = 6\n");
+        let hollow = slab(rotation, 0.0, &glass(6.0))
+            + &slab(rotation, 0.0, "thickness = 4\npriority = 1\n");
+        let panes = slab(rotation, -2.5, &glass(1.0)) + &slab(rotation, 2.5, &glass(1.0));
+        let (hollow, panes) = (assembly(&hollow), assembly(&panes));
+        for _ in 0..10 {
+            let from = DVec3::new(-40.0, 10.0 * numbers.next(), 10.0 * numbers.next());
+            let ray = launch(from, 10.0 * numbers.direction() - from);
+            let [(one, lost), (other, also_lost)] = [&hollow, &panes].map(|assembly| {
+                let mut tracer = Tracer::new(assembly, LIMITS);
+                let (leaves, outcome) = tracer.trace(&ray);
+                (leaves.to_vec(), outcome.stats.lost)
+            });
+            assert_eq!((lost, also_lost), (0, 0), "{ray:?}");
+            for leaf in one.iter().filter(|leaf| leaf.power[0] > 1e-6) {
+                compared += 1;
+                let same = |other: &&Leaf<2>| {
+                    other.position.distance(leaf.position) < 1e-9
+                        && other.direction.distance(leaf.direction) < 1e-12
+                        && (other.optical_path - leaf.optical_path).abs() < 1e-9
+                        && (0..2).all(|i| (other.power[i] - leaf.power[i]).abs() < 1e-12)
+                };
+                assert!(other.iter().any(|other| same(&other)), "{ray:?} {leaf:?} {other:?}");
+            }
+        }
+    }
+    assert!(compared > 2000, "{compared}");
 }
 
 #[test]

@@ -186,6 +186,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             return false;
         };
         let Some((met, _)) = guest else {
+            // Sent back from here, it may come again to what it has left.
+            branch.departed = None;
             return self.arrive(branch, place, medium, passage);
         };
         let onward = device.pose.vector_to_world(passage.outward);
