@@ -144,7 +144,7 @@ def test_bad_settings_are_told(scene: Scene) -> None:
 
 def test_more_rays_than_memory_are_refused(scene: Scene) -> None:
     for count in (10**9, 10**13):
-        with pytest.raises(MemoryError, match=f"the leaves of {count} rays need"):
+        with pytest.raises(MemoryError, match=f"tracing {count} rays needs"):
             trace(scene, np.broadcast_to(np.array(ORIGIN, dtype=float), (count, 3)), FORWARD)
 
 
