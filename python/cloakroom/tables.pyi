@@ -455,8 +455,8 @@ class Graded(Device):
         rotation: float | None = ...,
         shape: Literal["rectangle", "circle"] | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
-        spacing: float | None = ...,
         width: float | None = ...,
+        spacing: float | None = ...,
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
@@ -828,4 +828,4 @@ class TraceSettings(Table):
     @property
     def tolerance(self) -> float: ...
 
-__all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name", "SquareCloak", "DoubleGaussianCloak", "CylinderCloak", "SphereCloak", "InvisibleSphere", "BendingSphere", "EatonLens", "LuneburgLens", "FisheyeLens", "MirrorDetour", "Prisms", "Graded", "Body", "GaussianCarpet", "GratingCarpet", "QuasiConformalCarpet", "Camera", "Light", "Photograph", "PictureSettings", "Receiver", "Surroundings", "TraceSettings"]
+__all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name", "SquareCloak", "DoubleGaussianCloak", "CylinderCloak", "SphereCloak", "InvisibleSphere", "BendingSphere", "EatonLens", "LuneburgLens", "FisheyeLens", "FisheyeHemisphere", "MirrorDetour", "Prisms", "Graded", "GradedBox", "Body", "GaussianCarpet", "GratingCarpet", "QuasiConformalCarpet", "Camera", "Light", "Photograph", "PictureSettings", "Receiver", "Surroundings", "TraceSettings"]

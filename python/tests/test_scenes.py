@@ -110,7 +110,7 @@ def test_devices_and_photographs_in_any_pose() -> None:
     assert cloak.axis == [0, 0, 3] and SquareCloak().axis == [0, 0, 1]
     same = Scene(camera=camera, devices=cloak, photograph=photograph).render()
     np.testing.assert_array_equal(same.linear, upright.linear)
-    tilted = Scene(camera=camera, devices=SquareCloak(axis=[1, 1, 1]), photograph=photograph).render()
+    tilted = Scene(camera=camera, devices=SquareCloak(axis=[1, 1, 1], length=10), photograph=photograph).render()
     assert not np.array_equal(tilted.linear, upright.linear)
     with pytest.raises(ValueError, match="axis is .0, 0, 0.; it must be a direction"):
         Scene(devices=SquareCloak(axis=[0, 0, 0])).render()
