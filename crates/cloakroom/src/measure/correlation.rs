@@ -4,7 +4,9 @@
 use super::{MeasureError, Region, View};
 use num_complex::Complex64;
 use rayon::prelude::*;
-use rustfft::{Fft, FftDirection, FftPlanner};
+use rustfft::algorithm::butterflies::Butterfly3;
+use rustfft::algorithm::{MixedRadix, Radix4};
+use rustfft::{Fft, FftDirection};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -104,10 +106,7 @@ impl Transform {
             height,
             shortage,
         })?;
-        let mut planner = FftPlanner::new();
-        let mut plan = |side: usize| {
-            [FftDirection::Forward, FftDirection::Inverse].map(|way| planner.plan_fft(side, way))
-        };
+        let plan = |side| [FftDirection::Forward, FftDirection::Inverse].map(|way| fft(side, way));
         let (rows, columns) = (plan(field[0]), plan(field[1]));
         Ok(Self { width, height, field, rows, columns })
     }
@@ -242,18 +241,18 @@ fn transposed(field: &[Complex64], width: usize) -> Vec<Complex64> {
     turned
 }
 
-/// The least number from `n` on without prime factors above 5: transforms of such sizes are fast.
+/// The least number from `n` on that is a power of two, or three times one: [`fft`] transforms such sizes.
 fn smooth(n: usize) -> usize {
-    let is_smooth = |&n: &usize| {
-        let rest = [2, 3, 5].iter().fold(n, |mut rest, factor| {
-            while rest % factor == 0 {
-                rest /= factor;
-            }
-            rest
-        });
-        rest == 1
-    };
-    (n.max(1)..).find(is_smooth).unwrap_or(n)
+    n.next_power_of_two().min(3 * n.div_ceil(3).next_power_of_two())
+}
+
+/// The transform of a size that [`smooth`] gives. (The library's planner knows all sizes; compiling it takes longer than all
+/// else here.)
+fn fft(size: usize, way: FftDirection) -> Arc<dyn Fft<f64>> {
+    if size % 3 != 0 {
+        return Arc::new(Radix4::new(size, way));
+    }
+    Arc::new(MixedRadix::new(Arc::new(Radix4::new(size / 3, way)), Arc::new(Butterfly3::new(way))))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A device at its place.
 
-use crate::device::{Body, InnerRay, Region, Structure};
+use crate::device::{Body, InnerRay, Region, Structure, SurfaceHit};
 use glam::DVec3;
 use optics::geometry::{Pose, Solid};
 use optics::medium::Medium;
@@ -20,6 +20,13 @@ pub(crate) struct DepartedSurface {
     pub device: u16,
     /// Which of the device's surfaces; the whole device if it is convex.
     pub surface: Option<u16>,
+}
+
+impl DepartedSurface {
+    /// The surface of the `device`th device that a ray has met.
+    pub fn met(device: u16, hit: &SurfaceHit) -> Self {
+        Self { device, surface: Some(hit.surface) }
+    }
 }
 
 impl Placed {
