@@ -78,11 +78,9 @@ impl Device for SolidBody {
         let shape = self.convex(request.length)?;
         let medium = self.medium()?;
         let pictured = self.surface.as_ref().is_some_and(|surface| surface.image.is_some());
-        if pictured && shape.is_endless() {
-            let message = "an endless body has no place for an image; give a cylinder its `length`, and take a \
-                           box instead of a slab";
-            return Err(KeyError::at(key!(Self.surface), message));
-        }
+        let message = "an endless body has no place for an image; give a cylinder its `length`, and take a \
+                       box instead of a slab";
+        KeyError::refuse_if(pictured && shape.is_endless(), key!(Self.surface), message)?;
         let body = Body { shape, priority: self.priority };
         let far = if medium.is_some() { FarSide::Region(0) } else { FarSide::Opaque };
         let group_index = self.group_index;
@@ -91,7 +89,7 @@ impl Device for SolidBody {
         Ok(Structure {
             regions: medium.into_iter().map(region).map(Region::Homogeneous).collect(),
             surfaces: vec![Surface::new(Shape::Convex(shape), far)],
-            hull: Hull::new(shape.solid()).of_body(body),
+            hull: Hull { body: Some(body), ..Hull::new(shape.solid()) },
         })
     }
 
@@ -160,10 +158,8 @@ impl SolidBody {
             let message = format!("a body with a surface of its own is opaque; it has no {key}");
             return Err(KeyError::at(key, message));
         }
-        if surface.image.is_some() && surface.color.given {
-            let message = "color and image are both given; a surface takes one of them";
-            return Err(KeyError::at(key!(Self.surface), message));
-        }
-        Ok(None)
+        let both = surface.image.is_some() && surface.color.given;
+        let message = "color and image are both given; a surface takes one of them";
+        KeyError::refuse_if(both, key!(Self.surface), message).map(|()| None)
     }
 }

@@ -55,7 +55,7 @@ pub struct CrossSection<'s> {
     /// The medium that fills the outlines, if the device is a body of one.
     pub body_medium: Option<&'s Medium>,
     /// The body that fills the outlines, if the device is one.
-    pub body: Option<&'s Body>,
+    pub body: Option<Body>,
     /// Whether it is only seen from afar: its outlines are projections, and nothing is known of within.
     pub is_shadow: bool,
 }
@@ -68,11 +68,10 @@ impl Structure {
         let regions: Vec<Vec<Line>> = self.regions.iter().map(Region::lines).collect();
         let metal = regions.iter().flatten().chain(&outside);
         let metal = metal.filter(|line| line.far == FarSide::Conductor);
-        let is_body = self.hull.body().is_some();
-        let sections = self.regions.iter().zip(&regions).filter(|_| !is_body);
+        let sections = self.regions.iter().zip(&regions).filter(|_| self.hull.body.is_none());
         CrossSection {
             body_medium: self.body_medium(),
-            body: self.hull.body(),
+            body: self.hull.body,
             is_shadow: false,
             metal: joined(metal.map(|line| line.points.clone())),
             regions: sections
@@ -89,7 +88,7 @@ impl Structure {
     #[must_use]
     pub fn body_medium(&self) -> Option<&Medium> {
         match self.regions.first() {
-            Some(Region::Homogeneous(region)) => self.hull.body().map(|_| &region.medium),
+            Some(Region::Homogeneous(region)) => self.hull.body.map(|_| &region.medium),
             _ => None,
         }
     }
@@ -110,7 +109,7 @@ impl Structure {
         let parts: Vec<Vec<DVec2>> = self.hull.solids().iter().map(shadow).collect();
         let whole = Outline::hull(parts.concat());
         // What has neither regions nor is a body is metal.
-        let body = self.hull.body();
+        let body = self.hull.body;
         let is_metal = self.regions.is_empty() && body.is_none();
         let mirror = self.hull.thin_mirror().map(shadow);
         let metal = parts.iter().filter(|_| is_metal).chain(&mirror);
@@ -155,9 +154,7 @@ impl Region {
     /// medium has none elsewhere.
     #[must_use]
     pub fn medium_at(&self, point: DVec2) -> Option<Medium> {
-        let point = point.extend(0.0);
-        let entrance = self.enter(point)?;
-        self.medium(point, entrance.virtual_point.as_ref(), &mut None).copied()
+        self.enter(point.extend(0.0), &mut None).map(|(_, medium)| *medium)
     }
 }
 
@@ -165,9 +162,10 @@ impl Surface {
     /// The surface in the plane z = 0: nothing for the ends of a device.
     fn lines(&self) -> Vec<Line> {
         let points = match &self.shape {
-            Shape::Wall(wall) => wall.ends().to_vec(),
+            Shape::Wall(wall) | Shape::Sheet(wall) => wall.ends().to_vec(),
             Shape::Convex(shape) => shape.around(),
-            Shape::Round(cylinder) => circle(cylinder.radius),
+            Shape::BallHole(sphere) => circle(sphere.radius),
+            Shape::Round(cylinder) | Shape::RoundHole(cylinder) => circle(cylinder.radius),
             Shape::Curve { curve, side: Some(side), .. } => curve.side_line(*side, PIECES),
             Shape::Curve { curve, side: None, .. } => {
                 // Back to its beginning.

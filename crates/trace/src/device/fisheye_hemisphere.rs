@@ -36,11 +36,9 @@ impl FisheyeHemisphere {
         let normal = unit(self.cut_normal);
         let normal = normal.ok_or_else(|| KeyError::at(key!(Self.cut_normal), nowhere))?;
         let (offset, most) = (self.cut_distance, (1.0 - THINNEST) * self.radius);
-        if offset.abs() > most {
-            let range = format!("it must be from -{most} to {most} cm, within the ball");
-            let message = format!("cut_distance is {offset} cm; {range}");
-            return Err(KeyError::at(key!(Self.cut_distance), message));
-        }
+        let range = format!("it must be from -{most} to {most} cm, within the ball");
+        let message = format!("cut_distance is {offset} cm; {range}");
+        KeyError::refuse_if(offset.abs() > most, key!(Self.cut_distance), message)?;
         Ok(Plane { normal, offset })
     }
 }
@@ -90,8 +88,7 @@ impl Fisheye {
 impl ClosedForm for Fisheye {
     fn squared_index(&self, at: DVec3) -> SquaredIndex {
         let x = at / self.radius;
-        let index = 2.0 * self.border_index / (1.0 + x.length_squared());
-        let value = index * index;
+        let value = (2.0 * self.border_index / (1.0 + x.length_squared())).powi(2);
         let gradient = x * (-4.0 * value / (self.radius * (1.0 + x.length_squared())));
         SquaredIndex { value, gradient }
     }
@@ -103,8 +100,8 @@ impl ClosedForm for Fisheye {
         let slope = (linear * self.radius).extend(square - constant);
         let [cos, sin] = self.on_sphere(start).map(|at| at.dot(slope));
         let level = constant + square;
-        let [over, under] = first_way_out([level + cos, 2.0 * sin, level - cos])?;
-        Some(2.0 * over.atan2(under))
+        let tangent = first_way_out([level + cos, 2.0 * sin, level - cos]);
+        tangent.map(|[over, under]| 2.0 * over.atan2(under))
     }
 
     fn way_point(&self, start: &CurvedRay, angle: f64) -> (CurvedRay, f64) {

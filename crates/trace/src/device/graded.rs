@@ -5,14 +5,14 @@
 //! followed through that, to the tolerance. At the border the index steps to that of air, with refraction and Fresnel
 //! reflection.
 
-use super::round::{metal_cylinder, pierced, round_hole, upright};
+use super::round::{self, metal_cylinder, pierced, upright};
 use super::{
-    ConformalRegion, Device, Fact, FarSide, Hull, Region, Request, Shape, Show, Structure, Surface,
+    ConformalRegion, Device, Fact, FarSide, Region, Request, Shape, Show, Structure, Surface,
 };
 use crate::key;
 use crate::keys::{KeyError, Limits, Sampled, Samples};
 use glam::DVec2;
-use optics::geometry::{Cap, Extent, Hole, Outline, Solid, Wall};
+use optics::geometry::{Cap, Extent, Outline, Solid, Wall};
 use optics::propagation::{ConformalFlow, GridSpline, Half, IndexPerturbation};
 use optics::transformation::{ConformalMap, FlatMap, Truncation};
 use std::f64::consts::PI;
@@ -71,11 +71,9 @@ impl Site {
         let rim = (device.shape == Border::Circle).then_some(nearest);
         let inner = device.inner;
         let most = (1.0 - THINNEST) * nearest;
-        if inner > most {
-            let message =
-                format!("inner is {inner} cm; it must be at most {most} cm, within the border");
-            return Err(KeyError::at(key!(Graded.inner), message));
-        }
+        let message =
+            format!("inner is {inner} cm; it must be at most {most} cm, within the border");
+        KeyError::refuse_if(inner > most, key!(Graded.inner), message)?;
         Ok(Self { half, rim, core: (inner > 0.0).then_some(inner) })
     }
 
@@ -133,13 +131,7 @@ impl Site {
             Some(rim) => (upright(core, rim, extent, far), Solid::cylinder(rim, extent)),
             None => (upright_box(core, &outline, extent, far), Solid::Prism { outline, extent }),
         };
-        let hull = match self.core {
-            Some(radius) if open_core => {
-                surfaces.push(round_hole(radius, extent));
-                Hull::around(Hole::Round(Solid::cylinder(radius, extent)), whole)
-            }
-            _ => Hull::new(whole),
-        };
+        let hull = round::hull(core, whole, extent, &mut surfaces);
         Ok(Structure { regions, surfaces, hull })
     }
 }
@@ -190,10 +182,8 @@ impl Device for Graded {
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let site = Site::new(self)?;
         let extent = Extent::centred(request.length);
-        if request.open_core && site.core.is_none() {
-            let message = "there is no core to open; `inner` is its radius";
-            return Err(KeyError::at("core", message));
-        }
+        let message = "there is no core to open; `inner` is its radius";
+        KeyError::refuse_if(request.open_core && site.core.is_none(), "core", message)?;
         match (request.show, site.core) {
             (Show::Cloak, _) => {
                 site.structure(square(&site, self.samples()?)?, extent, request.open_core)

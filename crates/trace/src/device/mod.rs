@@ -62,13 +62,12 @@ pub use optics::geometry::REACH;
 pub use prisms::{PrismOfMedium, Prisms};
 pub use quasi_conformal_carpet::QuasiConformalCarpet;
 pub use region::{
-    ConformalRegion, Entrance, Face, HomogeneousRegion, InnerRay, Passage, RadialRegion, Region,
-    RegionBorder,
+    ConformalRegion, Face, HomogeneousRegion, InnerRay, Passage, RadialRegion, Region, RegionBorder,
 };
 pub use sphere_cloak::SphereCloak;
 pub use square_cloak::{SegmentMaterial, SquareCloak};
 pub use structure::{Body, Coating, FarSide, Hull, Structure, SurfaceHit};
-pub use surface::{Part, Shape, Side, Surface};
+pub use surface::{Part, Shape, Surface};
 
 use crate::key;
 use crate::keys::{Key, KeyError, Table};
@@ -271,11 +270,8 @@ fn medium(permittivity: Tensor, permeability: Tensor) -> Result<Medium, KeyError
 
 /// Refuses to show a device otherwise than as it is; `reason` says what it is: "a body is no cloak".
 fn refuse_other_views(request: Request, reason: &str) -> Result<(), KeyError> {
-    if request.show == Show::Cloak {
-        return Ok(());
-    }
     let message = format!("{reason}; it can be shown as it is, with show = \"cloak\", only");
-    Err(KeyError::at(key!(Request.show), message))
+    KeyError::refuse_if(request.show != Show::Cloak, key!(Request.show), message)
 }
 
 /// A two-sided flat metal strip on the x axis, |x| <= `half_width` (cm): what a cloak that opens a

@@ -3,13 +3,13 @@
 use super::branch::{Branch, Place};
 use super::{LeafEnd, PathRecorder, PathSegment, Tracer};
 use crate::assembly::{Ahead, DepartedSurface, slack_at};
-use crate::device::{Coating, Entrance, FarSide, InnerRay, Passage, Region, SurfaceHit};
+use crate::device::{Coating, FarSide, Passage, Region, SurfaceHit};
 use glam::DVec3;
 use optics::interface::{
     OutgoingWave, OutgoingWaves, Side, reflect_at_conductor, split_down_to, transmit_antireflection,
 };
 use optics::medium::{Medium, ModeKind};
-use optics::propagation::PathPoint;
+use optics::propagation::{PathPoint, VirtualPoint};
 
 /// The square of the largest wave vector that is followed, a billion times the largest index of refraction. Light
 /// that runs into a corner of a hyperbolic medium gets there: each face makes it shorter, and it never comes out.
@@ -32,7 +32,7 @@ enum Beyond {
     Region {
         device: u16,
         region: u16,
-        entrance: Entrance,
+        virtual_point: Option<VirtualPoint>,
         medium: Medium,
     },
 }
@@ -132,8 +132,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             });
         }
         let mut graded = None;
-        let found = entered(device.region(region), branch.position, &mut graded);
-        let Some((entrance, medium)) = found else {
+        let found = device.region(region).enter(branch.position, &mut graded);
+        let Some((virtual_point, medium)) = found else {
             return self.lose(branch.power);
         };
         let mut waves = OutgoingWaves::new();
@@ -143,7 +143,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 branch.leave_frame(&device.pose);
                 branch.departed = departed();
             }
-            Side::Transmitted => branch.enter_region(number, region, entrance.virtual_point),
+            Side::Transmitted => branch.enter_region(number, region, virtual_point),
         })
     }
 
@@ -269,15 +269,15 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                     });
                 }
                 let mut graded = None;
-                let beyond = entered(device.region(next), branch.position, &mut graded);
-                let Some((entrance, beyond)) = beyond else {
+                let beyond = device.region(next).enter(branch.position, &mut graded);
+                let Some((virtual_point, beyond)) = beyond else {
                     return self.lose(branch.power);
                 };
                 let mut waves = OutgoingWaves::new();
                 self.split(medium, beyond, branch, passage.outward, passage.coating, &mut waves);
                 self.go_on(branch, &waves, event, |branch, side| {
                     if side == Side::Transmitted {
-                        branch.enter_region(number, next, entrance.virtual_point);
+                        branch.enter_region(number, next, virtual_point);
                     }
                 })
             }
@@ -343,8 +343,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let direction = pose.vector_to_world(branch.direction);
         let slack = slack_at(origin);
         let end = passage.map_or(f64::INFINITY, |p| (p.position - branch.position).length());
-        let guests = self.assembly.guests(body);
-        let hit = self.assembly.first_hit(origin, direction, branch.departed, Some(guests));
+        let hit = self.assembly.first_guest(body, origin, direction, branch.departed);
         let hit = hit.filter(|(_, hit)| hit.distance < end - slack);
         let reach = hit.map_or(end - slack, |(_, hit)| hit.distance + slack);
         let screen = self.screen.and_then(|screen| screen.hit(origin, direction, -slack));
@@ -373,11 +372,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
 
     /// Takes a branch from a region, in its frame, across a border beyond which is not air.
     fn leave(&mut self, branch: &mut Branch<N>, medium: &Medium, met: Met, border: Border) -> bool {
-        let Place::Region { device: number, region } = branch.place else { return false };
+        let Place::Region { device: number, .. } = branch.place else { return false };
         let device = self.assembly.device(number);
-        let turned = (!medium.is_isotropic())
-            .then(|| device.medium_in_world(region, &branch.inner_ray()))
-            .flatten();
+        let turned = (!medium.is_isotropic()).then(|| device.medium_in_world(medium));
         let ahead = match met {
             Met::Grazed(departed) => {
                 branch.departed = Some(departed);
@@ -429,14 +426,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             FarSide::Region(region) | FarSide::Seam(region) => {
                 let device = self.assembly.device(number);
                 let position = device.pose.to_local(branch.position);
-                let entrance = device.region(region).enter(position)?;
-                let ray = InnerRay {
-                    position,
-                    virtual_point: entrance.virtual_point,
-                    ..branch.inner_ray()
-                };
-                let medium = device.medium_in_world(region, &ray)?;
-                Beyond::Region { device: number, region, entrance, medium }
+                let mut graded = None;
+                let (virtual_point, medium) = device.region(region).enter(position, &mut graded)?;
+                let medium = device.medium_in_world(medium);
+                Beyond::Region { device: number, region, virtual_point, medium }
             }
         })
     }
@@ -460,9 +453,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             }
         };
         let on = |branch: &mut Branch<N>| match &beyond {
-            Beyond::Region { device, region, entrance, .. } => {
+            Beyond::Region { device, region, virtual_point, .. } => {
                 branch.enter_frame(&assembly.device(*device).pose);
-                branch.enter_region(*device, *region, entrance.virtual_point);
+                branch.enter_region(*device, *region, *virtual_point);
             }
             _ => branch.come_out(match place {
                 Place::Region { device, .. } => assembly.device(device).departed(device, None),
@@ -581,7 +574,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         direction: DVec3,
         departed: Option<DepartedSurface>,
     ) -> Option<(u16, SurfaceHit)> {
-        let hit = self.assembly.first_hit(position, direction, departed, None)?;
+        let hit = self.assembly.first_hit(position, direction, departed)?;
         let screen = self.screen.as_ref();
         let screen = screen.and_then(|screen| screen.hit(position, direction, 0.0));
         // Of two that touch, the screen is met.
@@ -625,17 +618,6 @@ enum Met {
     Device(Ahead),
     /// A surface within rounding, which it does not cross.
     Grazed(DepartedSurface),
-}
-
-/// What a ray finds that enters a region, and the medium there.
-fn entered<'m>(
-    region: &'m Region,
-    position: DVec3,
-    graded: &'m mut Option<Medium>,
-) -> Option<(Entrance, &'m Medium)> {
-    let entrance = region.enter(position)?;
-    let medium = region.medium(position, entrance.virtual_point.as_ref(), graded)?;
-    Some((entrance, medium))
 }
 
 /// Entering a device through a surface, for the fingerprint of a path.

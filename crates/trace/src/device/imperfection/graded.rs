@@ -36,25 +36,16 @@ pub(super) fn apply(
     region: &mut ConformalRegion,
 ) -> Result<(), KeyError> {
     region.loss_tangent = imperfection.loss_tangent;
-    let limited = imperfection.limits_values();
-    if !limited && !imperfection.is_random() {
-        return Ok(());
-    }
-    if region.flow.is_uneven() {
-        let message = "this index is given on a grid; what is made of it is to be given so, too. Loss alone can be asked for";
-        return Err(KeyError::at(TABLE, message));
-    }
-    let finest = |spacing: f64, needed: bool| if needed { spacing } else { f64::INFINITY };
-    let for_limits = finest(imperfection.resolution / SAMPLES_A_RESOLUTION, limited);
-    let for_errors =
-        finest(imperfection.correlation / SAMPLES_A_CORRELATION, imperfection.is_random());
-    let spacing = for_limits.min(for_errors);
+    let (limited, random) = (imperfection.limits_values(), imperfection.is_random());
+    let spacings = [
+        (limited, imperfection.resolution / SAMPLES_A_RESOLUTION, "imperfection.resolution"),
+        (random, imperfection.correlation / SAMPLES_A_CORRELATION, "imperfection.correlation"),
+    ];
+    let needed = spacings.into_iter().filter(|(needed, ..)| *needed);
+    let Some((_, spacing, key)) = needed.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
+    let message = "this index is given on a grid; what is made of it is to be given so, too. Loss alone can be asked for";
+    KeyError::refuse_if(region.flow.is_uneven(), TABLE, message)?;
     let grid = Grid::over(region, spacing).ok_or_else(|| {
-        let key = if for_limits <= for_errors {
-            "imperfection.resolution"
-        } else {
-            "imperfection.correlation"
-        };
         let message = format!(
             "on a grid of {spacing} cm the device has more than {MOST_SAMPLES:.0e} samples; make it larger"
         );
@@ -62,7 +53,7 @@ pub(super) fn apply(
     })?;
     let mut factor =
         if limited { grid.limited(imperfection, region) } else { vec![1.0; grid.len()] };
-    if imperfection.is_random() {
+    if random {
         let field = grid.random_field(imperfection.correlation, deviates, region.half);
         for (factor, deviate) in factor.iter_mut().zip(field) {
             *factor *= (1.0 + imperfection.error * deviate).max(LEAST);

@@ -63,16 +63,16 @@ fn groups(regions: &[Region]) -> Vec<u64> {
             })
         })
         .collect();
-    let mut changed = true;
-    while changed {
-        changed = false;
+    loop {
+        let before = group.clone();
         for &(a, b) in &seams {
             let least = group[a].min(group[b]);
-            changed |= group[a] != least || group[b] != least;
             (group[a], group[b]) = (least, least);
         }
+        if group == before {
+            return group;
+        }
     }
-    group
 }
 
 fn is_vacuum(tensor: &Tensor) -> bool {
@@ -100,11 +100,7 @@ fn made(
         );
     }
     let changed = values * factors;
-    let built = |values: DVec3| {
-        let tensor = axes * DMat3::from_diagonal(values) * axes.transpose();
-        // Symmetric to the last bit.
-        (tensor + tensor.transpose()) * 0.5
-    };
+    let built = |values: DVec3| Tensor::from(DMat3::from_diagonal(values)).turned(&axes).re;
     let re = if factors == DVec3::ONE { tensor.re } else { built(changed) };
     let loss = imperfection.loss_tangent;
     let im = if loss > 0.0 { tensor.im + built(changed.abs() * loss) } else { tensor.im };
