@@ -29,9 +29,10 @@ pub struct Assembly {
     bodies: Vec<u16>,
     /// For each body the devices that rays in it may meet: those that come before it and reach into its bounds.
     guests: Vec<Vec<u16>>,
-    /// Whether there is one device at most, and no body.
-    simple: bool,
-    vacuum_wave_number: f64,
+    /// Whether there is one device at most, and no body: around it is air, and nothing touches it.
+    pub(crate) simple: bool,
+    /// k0, the wave number in vacuum, 1/cm.
+    pub(crate) vacuum_wave_number: f64,
 }
 
 /// What is ahead of a ray at a point that may lie on the borders of several devices.
@@ -42,12 +43,6 @@ pub(crate) enum Ahead {
     Surface(u16, SurfaceHit),
     /// The inside of a body.
     Body(u16),
-}
-
-impl Default for Assembly {
-    fn default() -> Self {
-        Self::new(Vec::new())
-    }
 }
 
 /// Borders that are no further than this from a point, cm, go through it: what rounding makes of coordinates.
@@ -95,12 +90,6 @@ impl Assembly {
         Self { vacuum_wave_number, ..self }
     }
 
-    /// k0, the wave number in vacuum, 1/cm.
-    #[must_use]
-    pub fn vacuum_wave_number(&self) -> f64 {
-        self.vacuum_wave_number
-    }
-
     /// The devices, in the order of the scene.
     #[must_use]
     pub fn devices(&self) -> &[Placed] {
@@ -115,11 +104,6 @@ impl Assembly {
     /// The interfaces of a device, by its number.
     pub(crate) fn interfaces(&self, device: u16) -> &Interfaces {
         &self.interfaces[usize::from(device)]
-    }
-
-    /// Whether there is one device at most, and no body: around it is air, and nothing touches it.
-    pub(crate) fn is_simple(&self) -> bool {
-        self.simple
     }
 
     /// The first two devices that overlap, if any do. Bodies may, unless their priorities are equal; and a device may

@@ -80,7 +80,9 @@ impl Device for SolidBody {
         let pictured = self.surface.as_ref().is_some_and(|surface| surface.image.is_some());
         let message = "an endless body has no place for an image; give a cylinder its `length`, and take a \
                        box instead of a slab";
-        KeyError::refuse_if(pictured && shape.is_endless(), key!(Self.surface), message)?;
+        let endless = self.shape == BodyShape::Slab
+            || (self.shape == BodyShape::Cylinder && request.length.is_none());
+        KeyError::refuse_if(pictured && endless, key!(Self.surface), message)?;
         let body = Body { shape, priority: self.priority };
         let far = if medium.is_some() { FarSide::Region(0) } else { FarSide::Opaque };
         let group_index = self.group_index;
@@ -116,32 +118,32 @@ impl Device for SolidBody {
 
 impl SolidBody {
     fn convex(&self, length: Option<f64>) -> Result<Convex, KeyError> {
-        let shape = self.shape.word();
-        let sizes = [
-            (key!(Self.thickness), self.thickness.given, &[BodyShape::Slab][..]),
-            (key!(Self.size), self.size.given, &[BodyShape::Box]),
-            (key!(Self.radius), self.radius.given, &[BodyShape::Sphere, BodyShape::Cylinder]),
-        ];
-        let is_own = |shapes: &[BodyShape]| shapes.contains(&self.shape);
-        let own = sizes.iter().find(|(.., shapes)| is_own(shapes)).map_or("", |(key, ..)| key);
-        let length_given =
-            length.is_some() && matches!(self.shape, BodyShape::Box | BodyShape::Sphere);
-        let foreign = sizes.iter().find(|(_, given, shapes)| *given && !is_own(shapes));
-        let foreign = foreign.map(|(key, ..)| *key);
-        if let Some(key) = foreign.or(length_given.then_some(key!(Request.length))) {
-            return Err(KeyError::at(key, format!("a {shape} has no {key}; it has {own}")));
-        }
-        let extent = Extent::centred(length);
-        let radius = self.radius.value;
-        Ok(match self.shape {
+        let (extent, radius) = (Extent::centred(length), self.radius.value);
+        let (own, convex) = match self.shape {
             BodyShape::Slab => {
-                let half = 0.5 * self.thickness.value;
-                Convex::Box { half: DVec3::new(half, f64::INFINITY, extent.max) }
+                let half = DVec3::new(0.5 * self.thickness.value, f64::INFINITY, extent.max);
+                (key!(Self.thickness), Convex::Box { half })
             }
-            BodyShape::Box => Convex::Box { half: self.size.value * 0.5 },
-            BodyShape::Sphere => Convex::Ball(Sphere { radius }),
-            BodyShape::Cylinder => Convex::Cylinder(Cylinder { radius, extent }),
-        })
+            BodyShape::Box => (key!(Self.size), Convex::Box { half: self.size.value * 0.5 }),
+            BodyShape::Sphere => (key!(Self.radius), Convex::Ball(Sphere { radius })),
+            BodyShape::Cylinder => {
+                (key!(Self.radius), Convex::Cylinder(Cylinder { radius, extent }))
+            }
+        };
+        let has_no_length = matches!(self.shape, BodyShape::Box | BodyShape::Sphere);
+        let given = [
+            (key!(Self.thickness), self.thickness.given),
+            (key!(Self.size), self.size.given),
+            (key!(Self.radius), self.radius.given),
+            (key!(Request.length), length.is_some() && has_no_length),
+        ];
+        let shape = self.shape.word();
+        match given.into_iter().find(|(key, given)| *given && *key != own) {
+            Some((key, _)) => {
+                Err(KeyError::at(key, format!("a {shape} has no {key}; it has {own}")))
+            }
+            None => Ok(convex),
+        }
     }
 
     /// What fills it; nothing that light could enter if it has a surface of its own.

@@ -12,7 +12,7 @@ use super::{
 use crate::key;
 use crate::keys::KeyError;
 use glam::DVec2;
-use optics::geometry::{Cap, Extent, FloorCurve, MetalBack, Outline, Wall};
+use optics::geometry::{Cap, Extent, FloorCurve, MetalBack, Outline, Solid, Wall};
 use optics::propagation::{ConformalFlow, Half};
 use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
@@ -75,7 +75,7 @@ pub(super) fn metal(curve: FloorCurve, around: Outline, extent: Extent) -> Struc
     for cap in extent.ends().into_iter().flat_map(|ends| Cap::both(&around, ends)) {
         surfaces.push(Surface { part: Part::Metal(curve.clone()), ..metal(Shape::Cap(cap)) });
     }
-    let hull = Hull { metal: Some(curve), ..Hull::prism(around, extent) };
+    let hull = Hull { metal: Some(curve), ..Hull::new(Solid::Prism { outline: around, extent }) };
     Structure { regions: Vec::new(), surfaces, hull }
 }
 
@@ -115,7 +115,7 @@ impl Site {
             surfaces.push(cap(medium, Part::AboveFloor(map.clone(), Half::Upper)));
         }
         let region = ConformalRegion::new(flow, Half::Upper, FarSide::Conductor);
-        let hull = Hull::prism(outline, self.extent);
+        let hull = Hull::new(Solid::Prism { outline, extent: self.extent });
         self.on_floor(vec![Region::Conformal(region)], surfaces, hull)
     }
 

@@ -38,10 +38,6 @@ crate::table! {
     }
 }
 
-/// The regions of the two halves.
-const UPPER: u16 = 0;
-const LOWER: u16 = 1;
-
 impl DoubleGaussianCloak {
     /// The map and the cut of the upper half.
     fn parts(&self) -> Result<(GaussianMap, Truncation), KeyError> {
@@ -106,7 +102,7 @@ fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool
         let wall = Wall::new(DVec2::from(from), DVec2::from(to), extent);
         Surface { coating, ..Surface::wall(wall, far) }
     };
-    let (upper, lower) = (FarSide::Region(UPPER), FarSide::Region(LOWER));
+    let (upper, lower) = (FarSide::Region(0), FarSide::Region(1));
     let mut surfaces = vec![
         wall([x, -y], [x, -tip], lower),
         wall([x, tip], [x, y], upper),
@@ -136,8 +132,9 @@ fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool
             Region::Conformal(ConformalRegion { coating, ..region })
         })
         .to_vec();
+    let whole = Solid::Prism { outline, extent };
     if !open_core {
-        return Structure { regions, surfaces, hull: Hull::prism(outline, extent) };
+        return Structure { regions, surfaces, hull: Hull::new(whole) };
     }
     let curve = FloorCurve::new(flow.map().clone(), MetalBack::MirrorImage, cut.x_min, x);
     for (side, far) in [(CurvedSide::Floor, upper), (CurvedSide::Image, lower)] {
@@ -145,6 +142,5 @@ fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool
         surfaces.push(Surface { coating, ..Surface::new(shape, far) });
     }
     let hole = Hole::Lens { curve, pose: Pose::new(DVec3::ZERO, 0.0), extent };
-    let hull = Hull::around(hole, Solid::Prism { outline, extent });
-    Structure { regions, surfaces, hull }
+    Structure { regions, surfaces, hull: Hull::around(hole, whole) }
 }

@@ -2,7 +2,7 @@
 
 use super::closed_form::filled;
 use super::round::lens_alone;
-use super::{Convex, Device, Fact, Request, Structure};
+use super::{ClosedFormBorder, Device, Fact, Request, Structure};
 use crate::key;
 use crate::keys::{KeyError, Limits};
 use glam::{DVec3, DVec4};
@@ -51,7 +51,7 @@ impl Device for FisheyeHemisphere {
         lens_alone(request)?;
         let ball = CutBall { sphere: Sphere { radius: self.radius }, plane: self.cut()? };
         let medium = Fisheye { radius: self.radius, border_index: self.index };
-        Ok(filled(Convex::CutBall(ball), medium))
+        Ok(filled(ClosedFormBorder::CutBall(ball), medium))
     }
 
     fn facts(&self) -> Vec<Fact> {

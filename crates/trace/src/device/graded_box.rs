@@ -1,7 +1,7 @@
 //! A box in which the square of the index grows evenly along a direction.
 
 use super::closed_form::filled;
-use super::{Convex, Device, Fact, Request, Structure};
+use super::{ClosedFormBorder, Device, Fact, Request, Structure};
 use crate::key;
 use crate::keys::{KeyError, Limits, vector_text};
 use glam::DVec3;
@@ -51,7 +51,7 @@ impl Device for GradedBox {
             vector_text(self.gradient)
         );
         KeyError::refuse_if(least < LEAST, key!(Self.gradient), message)?;
-        Ok(filled(Convex::Box { half: 0.5 * self.sides }, self.medium()))
+        Ok(filled(ClosedFormBorder::Box(0.5 * self.sides), self.medium()))
     }
 
     fn facts(&self) -> Vec<Fact> {

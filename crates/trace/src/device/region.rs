@@ -262,12 +262,8 @@ impl Region {
         match self {
             Self::Homogeneous(_) => ends(),
             Self::Conformal(region) => {
-                let virtual_point = ray
-                    .virtual_point
-                    .or_else(|| region.flow.virtual_point(region.half, ray.position).ok());
-                let path = virtual_point
-                    .and_then(|start| region.flow.path(&start, ray.wave_vector, tolerance).ok());
-                path.unwrap_or_else(ends)
+                let path = |start| region.flow.path(&start, ray.wave_vector, tolerance).ok();
+                region.start(ray).and_then(path).unwrap_or_else(ends)
             }
             Self::Radial(region) if region.inner == FarSide::Outside && region.turns_back(ray) => {
                 ends()
@@ -348,12 +344,14 @@ impl ConformalRegion {
         Self { flow, half, floor, core, coating, loss_tangent: 0.0 }
     }
 
+    /// Where a ray is in virtual space.
+    fn start(&self, ray: &InnerRay) -> Option<VirtualPoint> {
+        let here = || self.flow.virtual_point(self.half, ray.position).ok();
+        ray.virtual_point.or_else(here)
+    }
+
     fn advance_four(&self, rays: &[Option<InnerRay>; 4], tolerance: f64) -> [Option<Passage>; 4] {
-        let starts = rays.map(|ray| {
-            let ray = ray?;
-            let here = || self.flow.virtual_point(self.half, ray.position).ok();
-            Some((ray.virtual_point.or_else(here)?, ray.wave_vector))
-        });
+        let starts = rays.map(|ray| Some((self.start(&ray?)?, ray?.wave_vector)));
         let ends = self.flow.advance_four(&starts, tolerance);
         std::array::from_fn(|i| {
             let end = ends[i].as_ref()?.as_ref().ok()?;

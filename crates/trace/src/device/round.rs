@@ -37,7 +37,7 @@ pub(super) fn lens_alone(request: Request) -> Result<(), KeyError> {
 /// A ball filled with a medium: solid, around a metal core that no light comes to, or around an open core of a radius.
 pub(super) fn ball(radius: f64, flow: RadialFlow, open_core: Option<f64>) -> Structure {
     let border = |shape| Surface::new(shape, FarSide::Region(0));
-    let mut surfaces = vec![border(Shape::Convex(Convex::Ball(Sphere { radius })))];
+    let mut surfaces = vec![border(sphere(radius))];
     let solid = Solid::ball(radius);
     let (inner, hull) = match open_core {
         None => (FarSide::Conductor, Hull::new(solid)),
@@ -49,16 +49,15 @@ pub(super) fn ball(radius: f64, flow: RadialFlow, open_core: Option<f64>) -> Str
     Structure { regions: vec![Region::Radial(RadialRegion { flow, inner })], surfaces, hull }
 }
 
+/// The border of a ball.
+fn sphere(radius: f64) -> Shape {
+    Shape::Convex(Convex::Ball(Sphere { radius }))
+}
+
 /// A metal ball.
 pub(super) fn metal_ball(radius: f64) -> Structure {
-    Structure {
-        regions: Vec::new(),
-        surfaces: vec![Surface::new(
-            Shape::Convex(Convex::Ball(Sphere { radius })),
-            FarSide::Conductor,
-        )],
-        hull: Hull::new(Solid::ball(radius)),
-    }
+    let surfaces = vec![Surface::new(sphere(radius), FarSide::Conductor)];
+    Structure { regions: Vec::new(), surfaces, hull: Hull::new(Solid::ball(radius)) }
 }
 
 /// A round cylinder filled with a medium around a core of metal, or around an open one.

@@ -117,11 +117,9 @@ fn square(
     let structure = polygonal(&parts, extent)
         .map_err(|_| of_kappa("the segments overlap by rounding".to_owned()))?;
     let outline = Outline::new(if recipe.is_some() { square } else { rhombus }.to_vec());
-    let hull = if open_core {
-        Hull { filled: Some(Solid::Prism { outline, extent }), ..structure.hull }
-    } else {
-        Hull::prism(outline, extent)
-    };
+    let whole = Solid::Prism { outline, extent };
+    let hull =
+        if open_core { Hull { filled: Some(whole), ..structure.hull } } else { Hull::new(whole) };
     Ok(Structure { hull, ..structure })
 }
 

@@ -117,12 +117,6 @@ impl Hull {
         Self { solids, reach, thin_mirror: None, metal: None, body: None, filled: None }
     }
 
-    /// The hull of a device with a polygonal cross-section that extends along z.
-    #[must_use]
-    pub fn prism(outline: Outline, extent: Extent) -> Self {
-        Self::new(Solid::Prism { outline, extent })
-    }
-
     /// The hull with a thin mirror as well, such as a floor, on a line of two corners: it holds nothing, and
     /// the photograph may stand across it.
     #[must_use]

@@ -119,20 +119,20 @@ impl Surface {
     #[must_use]
     #[inline]
     pub fn hit(&self, origin: DVec3, direction: DVec3, departed: bool) -> Option<(f64, DVec3)> {
-        let least = if departed { AGAIN } else { 0.0 };
+        let at = |distance: f64| origin + direction * distance;
         let (distance, normal) = match &self.shape {
             Shape::Curve { curve, side, extent } => {
+                let least = if departed { AGAIN } else { 0.0 };
                 return curve_hit(curve, *side, *extent, origin, direction, least);
             }
             // The border of a hole is curved inwards: a ray meets it again.
             Shape::BallHole(sphere) => {
                 let distance = sphere.hit_within(origin, direction)?;
-                (distance, -sphere.outward(origin + direction * distance))
+                (distance, -sphere.outward(at(distance)))
             }
             Shape::RoundHole(cylinder) => {
                 let distance = cylinder.hit_side_within(origin, direction)?;
-                let point = origin + direction * distance;
-                (distance, -cylinder.outward(CylinderPart::Side, point))
+                (distance, -cylinder.outward(CylinderPart::Side, at(distance)))
             }
             _ if departed => return None,
             Shape::Wall(wall) if direction.dot(wall.normal()) >= 0.0 => return None,
@@ -146,12 +146,11 @@ impl Surface {
             Shape::Convex(shape) => shape.entry(origin, direction)?,
             Shape::Round(cylinder) => {
                 let distance = cylinder.hit_side(origin, direction)?;
-                let point = origin + direction * distance;
-                (distance, cylinder.outward(CylinderPart::Side, point))
+                (distance, cylinder.outward(CylinderPart::Side, at(distance)))
             }
         };
         let whole = matches!(self.part, Part::Whole);
-        (whole || self.part.holds(origin + direction * distance)).then_some((distance, normal))
+        (whole || self.part.holds(at(distance))).then_some((distance, normal))
     }
 }
 

@@ -75,7 +75,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         branch.optical_path += hit.distance;
         branch.group_path += hit.distance;
         branch.met_device = true;
-        let (number, hit) = if self.assembly.is_simple() {
+        let (number, hit) = if self.assembly.simple {
             (number, hit)
         } else if !self.moves(branch, hit.distance) {
             return false;
@@ -285,7 +285,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             FarSide::Outside => {
                 // It has met no surface from outside, which it may meet next unless the device is convex.
                 let departed = device.departed(number, None);
-                if !self.assembly.is_simple() || self.screen_touches {
+                if !self.assembly.simple || self.screen_touches {
                     let position = device.pose.to_world(branch.position);
                     let direction = device.pose.vector_to_world(branch.direction);
                     let met = self.met_at(position, direction, departed);

@@ -16,15 +16,12 @@ pub(super) fn apply(
     structure: &mut Structure,
 ) -> Result<(), KeyError> {
     let groups = groups(&structure.regions);
-    let mut media: Vec<(u64, &mut Medium)> = structure
-        .regions
-        .iter_mut()
-        .zip(groups)
-        .filter_map(|(region, group)| match region {
-            Region::Homogeneous(region) => Some((group, &mut region.medium)),
-            Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) => None,
-        })
-        .collect();
+    let regions = structure.regions.iter_mut().zip(groups);
+    let media = regions.filter_map(|(region, group)| match region {
+        Region::Homogeneous(region) => Some((group, &mut region.medium)),
+        Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) => None,
+    });
+    let mut media: Vec<(u64, &mut Medium)> = media.collect();
     let values = media.iter().flat_map(|(_, medium)| {
         let (permittivity, permeability) = medium.tensors();
         [permittivity, permeability].into_iter().filter(|tensor| !is_vacuum(tensor))
