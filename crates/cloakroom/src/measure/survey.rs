@@ -158,7 +158,7 @@ fn summary(sights: &[Sight], camera: &Camera, screen: &Screen) -> Survey {
             let (column, row) = ((index % width) as f64 + right, (index / width) as f64 + down);
             let ray = camera.ray(column, row);
             screen
-                .plane_distance(ray.origin, ray.direction)
+                .plane_distance(ray.origin, ray.direction, 0.0)
                 .map(|distance| ray.origin + ray.direction * distance)
         };
         let sides = corner(0.0, 0.0).zip(corner(1.0, 0.0)).zip(corner(0.0, 1.0));

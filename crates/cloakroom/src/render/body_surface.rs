@@ -54,7 +54,7 @@ impl BodySurface {
         placed: &Placed,
         images: &mut BodyImages,
     ) -> Result<Option<Self>, LoadError> {
-        let (Some(body), Some(appearance)) = (placed.structure.hull.body(), device.appearance())
+        let (Some(body), Some(appearance)) = (placed.structure.hull.body, device.appearance())
         else {
             return Ok(None);
         };

@@ -137,7 +137,7 @@ pub fn assembly(scene: &Scene) -> Result<Assembly, PreparedSceneError> {
         placed.push(Placed { pose, structure });
     }
     let assembly = Assembly::new(placed).with_wavelength(scene.light.wavelength_nm);
-    let is_body = |index: usize| assembly.devices()[index].structure.hull.body().is_some();
+    let is_body = |index: usize| assembly.devices()[index].structure.hull.body.is_some();
     match assembly.overlap() {
         Some((first, second)) if is_body(first) && is_body(second) => {
             Err(PreparedSceneError::EqualPriority { first, second })

@@ -197,7 +197,7 @@ impl DeviceSettings {
     pub fn structure(&self, number: usize) -> Result<Structure, KeyError> {
         let Placement { show, imperfection, .. } = &self.placement;
         let structure = self.built(*show)?;
-        if self.has_open_core() && !structure.hull.has_open_core() {
+        if self.has_open_core() && structure.hull.filled.is_none() {
             let message = format!("{} with these keys has no core that could be open", self.kind());
             return Err(KeyError::at(key!(Placement.core), message));
         }

@@ -51,7 +51,7 @@ impl Stage {
 
     /// The corners of the photograph as it is drawn: top left, top right, bottom right, bottom left.
     pub fn photograph(&self) -> [DVec2; 4] {
-        let middle = self.screen.middle();
+        let middle = self.screen.middle;
         [(1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(up, across)| {
             let corner = self.screen.point(up, across);
             corner.truncate() + (corner.z - middle.z) * SLANT
@@ -101,7 +101,7 @@ impl Stage {
         drawing.add_words("camera-label", words);
         let lowest =
             self.photograph().into_iter().map(|p| view.place(p).y).fold(f64::MIN, f64::max);
-        let foot = view.place(self.screen.middle().truncate()).x;
+        let foot = view.place(self.screen.middle.truncate()).x;
         let words = name("photograph", DVec2::new(foot, lowest + 0.9 * TEXT));
         drawing.add_words("photograph-label", words);
     }
@@ -110,7 +110,7 @@ impl Stage {
     /// above the view. Opaque bodies are scenery, and left out.
     pub fn draw_distances(&self, drawing: &mut Drawing, view: &View, subjects: &[Subject<'_>]) {
         let row = view.window[0].y - 0.8 * TEXT;
-        let (x, top) = (self.screen.middle().x, self.screen.point(1.0, 0.0).truncate());
+        let (x, top) = (self.screen.middle.x, self.screen.point(1.0, 0.0).truncate());
         let eye = view.place(self.eye) - DVec2::Y * 0.6 * EYE;
         let mut stations = vec![(self.eye.x, eye.y), (x, view.place(top).y)];
         let measured = |subject: &&Subject<'_>| subject.bounds().is_some() && !subject.is_opaque();

@@ -4,7 +4,7 @@ use super::branch::{Branch, Place};
 use super::surfaces::Interface;
 use super::{LeafEnd, PathRecorder, Tracer};
 use crate::assembly::{Ahead, DepartedSurface, slack_at};
-use crate::device::{Coating, FarSide, InnerRay, Passage};
+use crate::device::{Coating, FarSide, Passage};
 use glam::DVec3;
 use optics::interface::{OutgoingWaves, Side};
 use optics::medium::Medium;
@@ -62,8 +62,7 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
         let direction = pose.vector_to_world(branch.direction);
         let slack = slack_at(origin);
         let end = passage.map_or(f64::INFINITY, |p| (p.position - branch.position).length());
-        let guests = self.assembly.guests(body);
-        let hit = self.assembly.first_hit(origin, direction, branch.departed, Some(guests));
+        let hit = self.assembly.first_guest(body, origin, direction, branch.departed);
         let hit = hit.filter(|(_, hit)| hit.distance < end - slack);
         let reach = hit.map_or(end - slack, |(_, hit)| hit.distance + slack);
         let screen = self.screen.and_then(|screen| screen.hit(origin, direction, -slack));
@@ -94,7 +93,7 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
         met: Met,
         interface: Interface,
     ) -> bool {
-        let Place::Region { device: number, region } = branch.place else { return false };
+        let Place::Region { device: number, .. } = branch.place else { return false };
         let device = self.assembly.device(number);
         let ahead = match met {
             Met::Grazed(departed) => {
@@ -107,9 +106,7 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
             }
             Met::Device(ahead) => ahead,
         };
-        let turned = (!medium.is_isotropic())
-            .then(|| device.medium_in_world(region, &branch.inner_ray()))
-            .flatten();
+        let turned = (!medium.is_isotropic()).then(|| device.medium_in_world(medium));
         branch.leave_frame(&device.pose);
         let onward = device.pose.vector_to_world(interface.onward);
         let coating = match ahead {
@@ -148,9 +145,9 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
             FarSide::Region(region) | FarSide::Seam(region) => {
                 let device = self.assembly.device(number);
                 let position = device.pose.to_local(branch.position);
-                let virtual_point = device.region(region).enter(position)?.virtual_point;
-                let ray = InnerRay { position, virtual_point, ..branch.inner_ray() };
-                let medium = device.medium_in_world(region, &ray)?;
+                let mut graded = None;
+                let (virtual_point, medium) = device.region(region).enter(position, &mut graded)?;
+                let medium = device.medium_in_world(medium);
                 Destination::Region { place: (number, region), virtual_point, medium }
             }
         })

@@ -5,7 +5,7 @@ use super::branch::{Branch, Place};
 use super::event::Event;
 use super::{LeafEnd, PathRecorder, PathSegment, Tracer};
 use crate::assembly::{Ahead, DepartedSurface, slack_at};
-use crate::device::{Coating, Entrance, FarSide, Passage, Region, SurfaceHit};
+use crate::device::{Coating, FarSide, Passage, Region, SurfaceHit};
 use glam::DVec3;
 use optics::interface::{
     OutgoingWave, OutgoingWaves, Reflectionless, Side, reflect_at_conductor, split_down_to,
@@ -59,7 +59,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         branch.optical_path += hit.distance;
         branch.group_path += hit.distance;
         branch.met_device = true;
-        if self.assembly.is_simple() {
+        if self.assembly.simple {
             return self.enter(branch, number, &hit);
         }
         if !self.moves(branch, hit.distance) {
@@ -232,7 +232,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             FarSide::Outside => {
                 // It has met no surface from outside, which it may meet next unless the device is convex.
                 let departed = device.departed(number, None);
-                if !self.assembly.is_simple() || self.screen_touches {
+                if !self.assembly.simple || self.screen_touches {
                     let position = device.pose.to_world(branch.position);
                     let direction = device.pose.vector_to_world(branch.direction);
                     let met = self.met_at(position, direction, departed);
@@ -277,11 +277,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 branch.enter_region(number, region, None);
             });
         }
-        let to = self.assembly.device(number).region(region);
         let mut graded = None;
-        let found = to.enter(branch.position).and_then(|Entrance { virtual_point }| {
-            Some((virtual_point, to.medium(branch.position, virtual_point.as_ref(), &mut graded)?))
-        });
+        let found = self.assembly.device(number).region(region).enter(branch.position, &mut graded);
         let Some((virtual_point, medium)) = found else {
             return self.lose(branch.power);
         };
@@ -389,7 +386,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         direction: DVec3,
         departed: Option<DepartedSurface>,
     ) -> Option<(u16, SurfaceHit)> {
-        let hit = self.assembly.first_hit(position, direction, departed, None)?;
+        let hit = self.assembly.first_hit(position, direction, departed)?;
         let screen = self.screen.as_ref();
         let screen = screen.and_then(|screen| screen.hit(position, direction, 0.0));
         // Of two that touch, the screen is met.
