@@ -33,7 +33,7 @@ pub fn render<'py>(
     progress: Option<Py<PyAny>>,
 ) -> Result<Rendered<'py>, Failure> {
     let tile = tile.map(|[left, top, width, height]| {
-        Tile { left, top, width, height }.check(scene.scene().camera.resolution())
+        Tile { left, top, width, height }.check(scene.scene().camera.resolution)
     });
     let tile = tile.transpose()?;
     let wanted = if image_only { ChannelSet::Image } else { ChannelSet::Everything };

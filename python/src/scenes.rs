@@ -185,7 +185,7 @@ impl Scene {
     /// Width and height of its picture.
     #[getter]
     fn resolution(&self) -> (u32, u32) {
-        self.scene().camera.resolution().into()
+        self.scene().camera.resolution.into()
     }
 
     /// The kinds of its devices.

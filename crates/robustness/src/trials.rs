@@ -88,7 +88,7 @@ fn look_at(loaded: &Loaded) {
         }
     };
     let camera = &loaded.scene.camera;
-    let [width, height] = camera.resolution().map(f64::from);
+    let [width, height] = camera.resolution.map(f64::from);
     let mut launches = Vec::new();
     for (x, y) in [(0.5, 0.5), (0.3, 0.6), (0.01, 0.99)] {
         let ray = camera.ray(x * width, y * height);

@@ -3,6 +3,7 @@
 use super::MaterialError;
 use crate::assembly::Placed;
 use crate::device::REACH;
+use crate::output::Grid;
 use glam::DVec3;
 use optics::geometry::Pose;
 
@@ -25,17 +26,6 @@ pub enum Resolution {
     Spacing(f64),
     /// Cubic cells, 64 along the longest side.
     Default,
-}
-
-/// A regular grid of cells; what is said of a cell is so in its middle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
-    /// The corner of the least coordinates, cm.
-    pub corner: DVec3,
-    /// The sides of a cell, cm.
-    pub spacing: DVec3,
-    /// Cells along x, y and z.
-    pub cells: [usize; 3],
 }
 
 /// Cells along the longest side where nothing is asked for.
@@ -97,26 +87,6 @@ impl Grid {
         });
         let corner = DVec3::from(middle) - spacing * DVec3::from(cells) * 0.5;
         Ok(Self { corner, spacing, cells: cells.map(|count| count as usize) })
-    }
-
-    /// How many cells there are.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.cells.iter().product()
-    }
-
-    /// The middle of a cell, the cells being counted along x, then y, then z.
-    #[must_use]
-    pub fn middle(&self, index: usize) -> DVec3 {
-        let [nx, ny, _] = self.cells;
-        let at = [index % nx, index / nx % ny, index / (nx * ny)];
-        DVec3::from([0, 1, 2].map(|axis| self.coordinate(axis, at[axis])))
-    }
-
-    /// The coordinate of the middles of the cells of that number along an axis, cm.
-    #[must_use]
-    pub fn coordinate(&self, axis: usize, number: usize) -> f64 {
-        self.corner[axis] + (number as f64 + 0.5) * self.spacing[axis]
     }
 }
 

@@ -80,13 +80,7 @@ pub fn sample(
         })
         .collect::<Result<_, _>>()?;
     let points: Vec<Point> = points.into_iter().flatten().collect();
-    Ok(GridFile {
-        corner: grid.corner.to_array(),
-        spacing: grid.spacing.to_array(),
-        cells: grid.cells,
-        arrays: arrays(&points),
-        metadata: described(scene, device, frame),
-    })
+    Ok(GridFile { grid, arrays: arrays(&points), metadata: described(scene, device, frame) })
 }
 
 fn point(placed: &Placed, frame: Frame, at: glam::DVec3) -> Point {

@@ -107,7 +107,7 @@ impl Plan {
         let steps = |one: &Combination| {
             let scene = &one.loaded.scene;
             let pictures = FIXED_PICTURES + PICTURES_A_DRAW * u64::from(self.draws_of(scene));
-            pictures * u64::from(scene.camera.resolution()[1])
+            pictures * u64::from(scene.camera.resolution[1])
         };
         self.scenes.iter().map(steps).sum()
     }

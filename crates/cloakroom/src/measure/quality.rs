@@ -148,7 +148,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
         };
         let empty = match last_empty.take() {
             Some((known, view)) if same_view(&known, scene) => {
-                (supervision.rows_done)(u64::from(scene.camera.resolution()[1]));
+                (supervision.rows_done)(u64::from(scene.camera.resolution[1]));
                 view
             }
             _ => View::of(&picture(&prepared(&empty(scene), loaded)?)?)?,
@@ -156,7 +156,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
         let wanted_scene = ideal(scene);
         let wanted_prepared = prepared(&wanted_scene, loaded)?;
         let wanted = if wanted_scene.devices.is_empty() {
-            (supervision.rows_done)(u64::from(scene.camera.resolution()[1]));
+            (supervision.rows_done)(u64::from(scene.camera.resolution[1]));
             empty.clone()
         } else {
             View::of(&picture(&wanted_prepared)?)?
@@ -167,9 +167,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
             let drawn = prepared(scene, loaded)?;
             let shown = picture(&drawn)?;
             let view = View::of(&shown)?;
-            let (rows_done, stop) = (supervision.rows_done, supervision.stop);
-            let rays = survey(&drawn, &wanted_prepared, &scene.camera, rows_done, stop)
-                .ok_or(RenderError::Stopped)?;
+            let rays = survey(&drawn, &wanted_prepared, supervision)?;
             let measured = Measured::of(&shown, &view, [&wanted, &empty], rays)?;
             statistics.add(&measured.numbers().numbers);
             if metadata.is_empty() {

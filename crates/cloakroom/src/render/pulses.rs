@@ -85,12 +85,12 @@ pub struct PulseError {
 /// If the picture has no such pixel.
 pub fn pulses(prepared: &PreparedScene<'_>, pixel: [u32; 2]) -> Result<PulseList, PulseError> {
     let camera = &prepared.scene.camera;
-    let resolution = camera.resolution();
+    let resolution = camera.resolution;
     if pixel[0] >= resolution[0] || pixel[1] >= resolution[1] {
         return Err(PulseError { pixel, resolution });
     }
     // The same trees as in a picture of every channel.
-    Ok(match camera.polarizer().amplitudes() {
+    Ok(match camera.polarizer.amplitudes() {
         None => list(prepared, pixel, &Detection::UNPOLARIZED),
         Some(amplitudes) => list(prepared, pixel, &Detection::through(amplitudes)),
     })

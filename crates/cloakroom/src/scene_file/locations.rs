@@ -35,8 +35,8 @@ pub(super) fn join(path: &str, key: &str) -> String {
 #[derive(Clone, Debug)]
 pub struct Locations {
     name: String,
-    text: Arc<str>,
-    overrides: Arc<[String]>,
+    pub(super) text: Arc<str>,
+    pub(super) overrides: Arc<[String]>,
     /// By path, such as `device.1.side`.
     places: HashMap<String, Place>,
 }
@@ -45,11 +45,6 @@ impl Locations {
     pub(super) fn new(name: &str, text: &str, overrides: &[String]) -> Self {
         let places = HashMap::new();
         Locations { name: name.to_owned(), text: text.into(), overrides: overrides.into(), places }
-    }
-
-    /// The text that the places are in.
-    pub(super) fn text(&self) -> Arc<str> {
-        Arc::clone(&self.text)
     }
 
     /// Keeps the place of the key at a path.
@@ -109,15 +104,14 @@ impl Locations {
         self.error_at(&error.path_in(table), &error.message)
     }
 
-    fn error(&self, origin: &Origin, message: impl Into<String>) -> SceneFileError {
+    /// An error of what is written at a place.
+    pub(super) fn error(&self, origin: &Origin, message: impl Into<String>) -> SceneFileError {
+        let error = SceneFileError::whole(&self.name, message);
         match origin {
-            Origin::File(span) => {
-                SceneFileError::in_text(&self.name, &self.text, span.clone(), message)
+            Origin::File(span) => error.in_text(&self.text, span.clone()),
+            Origin::Override(number) => {
+                SceneFileError { override_text: Some(self.overrides[*number].clone()), ..error }
             }
-            Origin::Override(number) => match self.overrides.get(*number) {
-                Some(text) => SceneFileError::in_override(&self.name, text, message),
-                None => SceneFileError::whole(&self.name, message),
-            },
         }
     }
 }

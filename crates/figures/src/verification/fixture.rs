@@ -74,8 +74,8 @@ impl Fixture<'_> {
         let [scene, ideal] = [device, ideal].map(|device| Self::scene(device, polarizer));
         let (scene, ideal) = (scene?, ideal?);
         let [prepared, ideal] = [&scene, &ideal].map(PreparedScene::new);
-        let survey = survey(&prepared?, &ideal?, &scene.camera, &|_| {}, self.stop);
-        Ok(survey.ok_or(RenderError::Stopped)?)
+        let supervision = Supervision { rows_done: &|_| {}, stop: self.stop };
+        Ok(survey(&prepared?, &ideal?, &supervision)?)
     }
 
     /// The silhouette of a device.
