@@ -56,7 +56,6 @@ impl<'a> Media<'a> {
 /// Solves interfaces with normals and tangential wave vectors of shape (N, 3). Gives the arrays of an `Interface`
 /// by their names.
 #[pyfunction]
-#[pyo3(signature = (incident, transmitted, normals, tangentials, progress=None))]
 pub fn interface<'py>(
     py: Python<'py>,
     incident: Tensors<'py>,

@@ -56,25 +56,19 @@ impl Grid {
         let has_ends = |axis: usize| size[axis] < REACH;
         let longest = (0..3).filter(|axis| has_ends(*axis)).map(|axis| size[axis]);
         let longest = longest.reduce(f64::max).ok_or(MaterialError::Endless)?;
-        let side = match resolution {
-            Resolution::Spacing(side) => side,
-            _ => longest / DEFAULT_CELLS,
-        };
+        let default = longest / DEFAULT_CELLS;
+        let side = if let Resolution::Spacing(side) = resolution { side } else { default };
         let (spacing, cells) = match resolution {
+            Resolution::Cells(cells) if cells.contains(&0) => return Err(MaterialError::EmptyGrid),
             Resolution::Cells(cells) => {
-                if cells.contains(&0) {
-                    return Err(MaterialError::EmptyGrid);
-                }
                 let side = |axis: usize| size[axis] / f64::from(cells[axis]);
                 let sides = (0..3).filter(|axis| has_ends(*axis)).map(side);
                 let least = sides.reduce(f64::min).unwrap_or(longest);
                 let spacing = [0, 1, 2].map(|axis| if has_ends(axis) { side(axis) } else { least });
                 (DVec3::from(spacing), cells.map(f64::from))
             }
+            _ if !(side > 0.0 && side.is_finite()) => return Err(MaterialError::EmptyGrid),
             Resolution::Spacing(_) | Resolution::Default => {
-                if !(side > 0.0 && side.is_finite()) {
-                    return Err(MaterialError::EmptyGrid);
-                }
                 // A side that divides the size but for rounding does.
                 let count = |axis: usize| (size[axis] / side - 1e-9).ceil().max(1.0);
                 let cells = [0, 1, 2].map(|axis| if has_ends(axis) { count(axis) } else { 1.0 });

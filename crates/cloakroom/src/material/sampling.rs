@@ -1,9 +1,9 @@
 //! The material of a device on a grid.
 
-use super::{Frame, Grid, MaterialError, Resolution, chosen};
+use super::{Frame, MaterialError, Resolution, chosen};
 use crate::assembly::{Assembly, Placed};
 use crate::device::MaterialAt;
-use crate::output::{GridArray, GridFile, GridValues};
+use crate::output::{Grid, GridArray, GridFile, GridValues};
 use crate::render::{Supervision, metadata};
 use crate::scene::Scene;
 use glam::DMat3;

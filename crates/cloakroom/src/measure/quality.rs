@@ -21,7 +21,8 @@ pub enum QualityError {
     #[error("{0}")]
     Sweep(#[from] SweepError),
     /// A scene cannot be read or built.
-    #[error("{}", in_sweep(.0))]
+    // What is said to be wrong with an override may be so with a swept value.
+    #[error("{}", .0.to_string().replacen("--set ", "--set or --sweep ", 1))]
     Scene(Box<SceneFileError>),
     /// A picture cannot be made, or the work was stopped.
     #[error("{0}")]
@@ -38,11 +39,6 @@ pub enum QualityError {
          --set device.0.imperfection.error=0.01"
     )]
     NothingRandom(u32),
-}
-
-/// The message of an error in an override: here, those are the swept values.
-fn in_sweep(error: &SceneFileError) -> String {
-    error.to_string().replacen("--set ", "--set or --sweep ", 1)
 }
 
 /// There is no such figure.
