@@ -4,7 +4,7 @@ use cloakroom::measure::{
     FlightFigures, MeasureError, Region, View, bare, compare, empty, ideal, survey,
 };
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, Images, PreparedScene, RenderError, Supervision, render};
+use cloakroom::render::{ChannelSet, Images, PreparedScene, Supervision, render};
 use cloakroom::scene::{Camera, CameraSettings, Scene};
 use serde_json::{Value, json};
 use std::error::Error;

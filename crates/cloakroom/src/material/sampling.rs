@@ -133,10 +133,7 @@ fn arrays(points: &[Point]) -> Vec<GridArray> {
 
 /// What the numbers are, for files.
 fn described(scene: &Scene, device: usize, frame: Frame) -> Vec<(String, String)> {
-    let frame = match frame {
-        Frame::Device => "device",
-        Frame::World => "world",
-    };
+    let frame = if frame == Frame::World { "world" } else { "device" };
     let codes: Vec<String> =
         (0..).zip(Region::WORDS).map(|(i, word)| format!("{i} {word}")).collect();
     let own = [

@@ -68,7 +68,7 @@ pub fn best_shift(
 ) -> Result<[Option<BestShift>; 3], MeasureError> {
     let transform = Transform::new(a)?;
     let everywhere = transform.forward(|_| Complex64::ONE);
-    let inside = transform.forward(|i| f64::from(u8::from(region.mask()[i])).into());
+    let inside = transform.forward(|i| f64::from(u8::from(region.mask[i])).into());
     let count = transform.correlate(&everywhere, &inside);
     let best = |color: usize| {
         transform.best(&a.light[color], &b.light[color], region, &everywhere, &inside, &count)
@@ -143,7 +143,7 @@ impl Transform {
     ) -> Option<BestShift> {
         let mean = |plane: &[f64]| plane.iter().sum::<f64>() / plane.len() as f64;
         let (mean_a, mean_b) = (mean(a), mean(b));
-        let in_region = |i: usize| if region.mask()[i] { b[i] - mean_b } else { 0.0 };
+        let in_region = |i: usize| if region.mask[i] { b[i] - mean_b } else { 0.0 };
         let a_once = self.forward(|i| (a[i] - mean_a).into());
         let b_once = self.forward(|i| in_region(i).into());
         let cross = self.correlate(&a_once, &b_once);

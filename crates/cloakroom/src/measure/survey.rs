@@ -156,9 +156,8 @@ fn summary(sights: &[Sight], camera: &Camera, screen: &Screen) -> Survey {
         let corner = |right: f64, down: f64| {
             let (column, row) = ((index % width) as f64 + right, (index / width) as f64 + down);
             let ray = camera.ray(column, row);
-            screen
-                .plane_distance(ray.origin, ray.direction)
-                .map(|distance| ray.origin + ray.direction * distance)
+            let distance = screen.plane_distance(ray.origin, ray.direction)?;
+            Some(ray.origin + ray.direction * distance)
         };
         let sides = corner(0.0, 0.0).zip(corner(1.0, 0.0)).zip(corner(0.0, 1.0));
         sides.map_or(0.0, |((at, right), below)| (right - at).cross(below - at).length())

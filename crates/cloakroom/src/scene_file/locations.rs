@@ -84,18 +84,15 @@ impl Locations {
     /// An error that points at a part of the scene: `camera.up`, `device.1` (its header) or
     /// `device.1.side` (its value); at the nearest part around it where that one is not written.
     pub fn error_at(&self, path: &str, message: impl Into<String>) -> SceneFileError {
-        let mut around = path;
-        loop {
-            match self.places.get(around).map(|place| &place.value) {
-                // An override that has made the table around is not to blame for what it does not say.
-                Some(Origin::Override(_)) if around != path && !around.starts_with("device") => {}
-                Some(origin) => return self.error(origin, message),
-                None => {}
-            }
-            match around.rsplit_once('.') {
-                Some((outer, _)) => around = outer,
-                None => return SceneFileError::whole(&self.name, message),
-            }
+        let around = std::iter::successors(Some(path), |inner| Some(inner.rsplit_once('.')?.0));
+        let written = around.filter_map(|at| Some((at, &self.places.get(at)?.value)));
+        // An override that has made the table around is not to blame for what it does not say.
+        let mut to_blame = written.filter(|(at, origin)| {
+            !matches!(origin, Origin::Override(_)) || *at == path || at.starts_with("device")
+        });
+        match to_blame.next() {
+            Some((_, origin)) => self.error(origin, message),
+            None => SceneFileError::whole(&self.name, message),
         }
     }
 

@@ -5,7 +5,7 @@ use cloakroom::assembly::Assembly;
 use cloakroom::device::FactValue;
 use cloakroom::measure::{Region, Survey, View, correlation, survey};
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, PreparedScene, RenderError, Supervision, assembly, render};
+use cloakroom::render::{ChannelSet, PreparedScene, Supervision, assembly, render};
 use cloakroom::scene::Scene;
 use cloakroom::scene_file;
 use cloakroom::trace::{Launch, Leaf, Limits, Outcome, PathSegment, Tracer};
