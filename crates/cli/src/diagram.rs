@@ -5,7 +5,7 @@ use crate::files::{check_writable, formats};
 use crate::interruption::{self, STOP};
 use crate::report::Failure;
 use crate::scene;
-use cloakroom::scene::Camera;
+use cloakroom::scene::{Camera, CameraSettings};
 use cloakroom_figures::{
     Diagram, DiagramError, DiagramSettings, DrawingFormat, Projected, Setting, Source,
 };
@@ -18,7 +18,7 @@ pub fn run(arguments: &DiagramArguments) -> Result<(), Failure> {
     let _busy = interruption::busy();
     let (drawing, metadata, title) = if arguments.setting {
         let mut scene = loaded.scene.clone();
-        let mut settings = scene.camera.settings().clone();
+        let mut settings = CameraSettings::clone(&scene.camera);
         // The sheet has the aspect of the picture.
         settings.resolution = arguments.size;
         scene.camera = Camera::new(settings)?;

@@ -84,7 +84,7 @@ fn look_at(loaded: &Loaded) {
         }
     };
     let camera = &loaded.scene.camera;
-    let [width, height] = camera.resolution().map(f64::from);
+    let [width, height] = camera.resolution.map(f64::from);
     let launches = [(0.5, 0.5), (0.3, 0.6), (0.01, 0.99)].map(|(x, y)| {
         let ray = camera.ray(x * width, y * height);
         let (h, v) = camera.polarization_basis(ray.direction);

@@ -70,17 +70,12 @@ pub fn best_shift(
 ) -> Result<[Option<BestShift>; 3], MeasureError> {
     let transform = Transform::new(a)?;
     let everywhere = transform.forward(|_| Complex64::ONE);
-    let inside = transform.forward(|i| real(f64::from(u8::from(region.mask()[i]))));
+    let inside = transform.forward(|i| f64::from(u8::from(region.mask[i])).into());
     let count = transform.correlate(&everywhere, &inside);
-    let mut best = [None; 3];
-    for (best, (a_plane, b_plane)) in best.iter_mut().zip(a.light.iter().zip(&b.light)) {
-        *best = transform.best(a_plane, b_plane, region, &everywhere, &inside, &count);
-    }
-    Ok(best)
-}
-
-fn real(value: f64) -> Complex64 {
-    Complex64::new(value, 0.0)
+    let best = |color: usize| {
+        transform.best(&a.light[color], &b.light[color], region, &everywhere, &inside, &count)
+    };
+    Ok([0, 1, 2].map(best))
 }
 
 /// Fourier transforms of planes laid into a field of zeros so large that no shift wraps around. Spectra are
@@ -101,11 +96,8 @@ impl Transform {
         let field = [width, height].map(|side| smooth(2 * side));
         // Two masks, four spectra and three correlations of a channel, and a copy.
         let needed = 10 * 16 * field[0] as u64 * field[1] as u64;
-        crate::memory::check(needed, u64::MAX).map_err(|shortage| MeasureError::TooLarge {
-            width,
-            height,
-            shortage,
-        })?;
+        let too_large = |shortage| MeasureError::TooLarge { width, height, shortage };
+        crate::memory::check(needed, u64::MAX).map_err(too_large)?;
         let plan = |side| [FftDirection::Forward, FftDirection::Inverse].map(|way| fft(side, way));
         let (rows, columns) = (plan(field[0]), plan(field[1]));
         Ok(Self { width, height, field, rows, columns })
@@ -150,9 +142,9 @@ impl Transform {
     ) -> Option<BestShift> {
         let mean = |plane: &[f64]| plane.iter().sum::<f64>() / plane.len() as f64;
         let (mean_a, mean_b) = (mean(a), mean(b));
-        let in_region = |i: usize| if region.mask()[i] { b[i] - mean_b } else { 0.0 };
-        let a_once = self.forward(|i| real(a[i] - mean_a));
-        let b_once = self.forward(|i| real(in_region(i)));
+        let in_region = |i: usize| if region.mask[i] { b[i] - mean_b } else { 0.0 };
+        let a_once = self.forward(|i| (a[i] - mean_a).into());
+        let b_once = self.forward(|i| in_region(i).into());
         let cross = self.correlate(&a_once, &b_once);
         drop((a_once, b_once));
         // Sums and sums of squares in one: of real planes, they are the two parts. The conjugate of the first
@@ -189,11 +181,8 @@ impl Transform {
         let still = correlation(a, b, region)
             .map(|correlation| BestShift { correlation, shift_pixels: [0; 2] });
         let moved = found.and_then(|(i, _)| self.shifted(a, b, region, self.shift(i)));
-        match (still, moved) {
-            (Some(still), Some(moved)) if moved.correlation > still.correlation => Some(moved),
-            (None, moved) => moved,
-            (still, _) => still,
-        }
+        let better = |moved: &BestShift| still.is_none_or(|s| moved.correlation > s.correlation);
+        moved.filter(better).or(still)
     }
 
     /// The shift that an entry of a correlation stands for.

@@ -84,10 +84,10 @@ const SKY: Ink = Ink::new([86, 180, 233]);
 /// ```
 pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
     let prepared = PreparedScene::new(scene)?;
-    let devices = Devices::new(prepared.assembly());
+    let devices = Devices::new(&prepared.assembly);
     let subjects = &devices.subjects;
     let stage = Stage::new(scene, &prepared);
-    let layout = Layout::new(sheet(scene.camera.resolution()), &stage, subjects, devices.has_bar());
+    let layout = Layout::new(sheet(scene.camera.resolution), &stage, subjects, devices.has_bar());
     let mut drawing = Drawing::new(layout.sheet, TEXT);
     stage.draw_behind(&mut drawing, &layout.view);
     let order = Subject::from_back(subjects);

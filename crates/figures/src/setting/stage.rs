@@ -36,16 +36,16 @@ pub(super) struct Stage {
 impl Stage {
     pub fn new(scene: &Scene, prepared: &PreparedScene<'_>) -> Self {
         let camera = &scene.camera;
-        let eye = camera.position().truncate();
+        let eye = camera.position.truncate();
         let forward = camera.forward().truncate();
         let forward = (forward.length() > 0.2).then(|| forward.normalize());
-        let screen = prepared.screen();
+        let screen = prepared.screen;
         Self {
             eye,
             forward,
             sight: forward.map(|forward| sight(camera, forward, &screen)).unwrap_or_default(),
             screen,
-            thumbnail: thumbnail(prepared.photograph()),
+            thumbnail: thumbnail(&prepared.image),
         }
     }
 
@@ -157,9 +157,9 @@ fn within(view: &View, words: Words) -> Words {
 
 /// The field of view in the xy-plane: what its projection covers, up to the plane of the photograph.
 fn sight(camera: &Camera, forward: DVec2, screen: &Screen) -> Vec<DVec2> {
-    let [width, height] = camera.resolution().map(f64::from);
-    let eye = camera.position().truncate();
-    let far = 1.5 * screen.ahead_of(camera.position()).abs().max(1.0);
+    let [width, height] = camera.resolution.map(f64::from);
+    let eye = camera.position.truncate();
+    let far = 1.5 * screen.ahead_of(camera.position).abs().max(1.0);
     // The middles of the sides of the picture, and its corners.
     let across = [0.5, 0.5, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0];
     let down = [0.0, 1.0, 0.5, 0.5, 0.0, 1.0, 0.0, 1.0];

@@ -5,7 +5,7 @@ use cloakroom::assembly::Assembly;
 use cloakroom::device::FactValue;
 use cloakroom::measure::{Region, Survey, View, correlation, survey};
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, PreparedScene, RenderError, Supervision, assembly, render};
+use cloakroom::render::{ChannelSet, PreparedScene, Supervision, assembly, render};
 use cloakroom::scene::Scene;
 use cloakroom::scene_file;
 use cloakroom::trace::{Launch, Leaf, Limits, Outcome, PathSegment, Tracer};
@@ -74,8 +74,8 @@ impl Fixture<'_> {
         let [scene, ideal] = [device, ideal].map(|device| Self::scene(device, polarizer));
         let (scene, ideal) = (scene?, ideal?);
         let [prepared, ideal] = [&scene, &ideal].map(PreparedScene::new);
-        let survey = survey(&prepared?, &ideal?, &scene.camera, &|_| {}, self.stop);
-        Ok(survey.ok_or(RenderError::Stopped)?)
+        let supervision = Supervision { rows_done: &|_| {}, stop: self.stop };
+        Ok(survey(&prepared?, &ideal?, &supervision)?)
     }
 
     /// The silhouette of a device.
