@@ -196,7 +196,7 @@ fn a_photograph_in_any_pose_is_met_where_it_is() {
                 |(screen, launch, distance)| {
                     let at = launch.origin + launch.direction * distance;
                     assert!(screen.foot(at).distance(at) < 1e-10);
-                    screen.image_position(at, launch.direction)
+                    screen.image_position(launch.direction)(at)
                 },
             );
             assert!((0..2).all(|i| (a[i] - b[i]).abs() < 1e-11), "{a:?} {b:?}");

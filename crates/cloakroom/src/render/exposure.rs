@@ -96,7 +96,7 @@ pub(super) fn expose_unhindered<const N: usize>(
     for (place, ray) in places.iter_mut().zip(rays) {
         let Some(distance) = screen.hit(ray.origin, ray.direction, 0.0) else { return false };
         let point = ray.origin + ray.direction * distance;
-        *place = screen.image_position(point, ray.direction);
+        *place = screen.image_position(ray.direction)(point);
     }
     let power = detection.detected(&[1.0; N]);
     for (i, pixel) in pixels.iter_mut().enumerate() {
@@ -233,13 +233,11 @@ fn light<const N: usize>(
         }
         (None, Some(distance)) => {
             let screen = &prepared.screen;
-            let at = |line: &Line, distance: f64| {
-                screen.image_position(line.origin + line.direction * distance, leaf.direction)
-            };
-            let here = at(&Line { origin: leaf.position, direction: leaf.direction }, distance);
+            let at = screen.image_position(leaf.direction);
+            let here = at(leaf.position + leaf.direction * distance);
             let place = |line: &Line| {
                 let t = screen.distance_along(line.origin, line.direction);
-                t.is_finite().then(|| at(line, t))
+                t.is_finite().then(|| at(line.origin + line.direction * t))
             };
             let steps = footprint(place, here, beside);
             let [dx, dy] = steps.map(|step| step.map(|change| change * spacing));

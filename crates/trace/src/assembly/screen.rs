@@ -27,10 +27,10 @@ impl Screen {
         Self { middle: pose.origin(), axes, straight, half_width, half_height }
     }
 
-    /// The part of a vector along one of the axes.
+    /// The parts of a vector along the axes.
     #[inline]
-    fn along(&self, axis: usize, vector: DVec3) -> f64 {
-        if self.straight { vector[axis] } else { self.axes[axis].dot(vector) }
+    fn parts(&self, vector: DVec3) -> DVec3 {
+        if self.straight { vector } else { self.axes.map(|axis| axis.dot(vector)).into() }
     }
 
     /// Its width and its height, cm.
@@ -43,7 +43,7 @@ impl Screen {
     #[must_use]
     #[inline]
     pub fn ahead_of(&self, point: DVec3) -> f64 {
-        self.along(0, self.middle - point)
+        self.parts(self.middle - point).x
     }
 
     /// The distance at which a ray meets the plane, from `least` (cm) on.
@@ -58,7 +58,7 @@ impl Screen {
     #[must_use]
     #[inline]
     pub fn distance_along(&self, origin: DVec3, direction: DVec3) -> f64 {
-        self.ahead_of(origin) / self.along(0, direction)
+        self.ahead_of(origin) / self.parts(direction).x
     }
 
     /// The distance at which a ray meets the rectangle, from `least` (cm) on.
@@ -66,15 +66,8 @@ impl Screen {
     #[inline]
     pub fn hit(&self, origin: DVec3, direction: DVec3, least: f64) -> Option<f64> {
         let t = self.plane_distance(origin, direction, least)?;
-        let [up, across] = self.place(origin + direction * t);
+        let DVec3 { y: up, z: across, .. } = self.parts(origin + direction * t - self.middle);
         (up.abs() <= self.half_height && across.abs() <= self.half_width).then_some(t)
-    }
-
-    /// How far above its middle and to the right of it a point of the plane is, cm.
-    #[inline]
-    fn place(&self, point: DVec3) -> [f64; 2] {
-        let beside = point - self.middle;
-        [self.along(1, beside), self.along(2, beside)]
     }
 
     /// The point of the plane that is nearest.
@@ -83,14 +76,16 @@ impl Screen {
         point + self.axes[0] * self.ahead_of(point)
     }
 
-    /// Image coordinates (u, v) of a point of the plane, from 0 to 1 to the right and down, for a ray that looks
+    /// Image coordinates (u, v) of points of the plane, from 0 to 1 to the right and down, for a ray that looks
     /// along `direction`: upright and unmirrored from either side.
     #[must_use]
     #[inline]
-    pub fn image_position(&self, point: DVec3, direction: DVec3) -> [f64; 2] {
-        let [up, across] = self.place(point);
-        let across = across * self.along(0, direction).signum();
-        [0.5 + across / (2.0 * self.half_width), 0.5 - up / (2.0 * self.half_height)]
+    pub fn image_position(&self, direction: DVec3) -> impl Fn(DVec3) -> [f64; 2] {
+        let front = self.parts(direction).x.signum();
+        move |point| {
+            let DVec3 { y: up, z: across, .. } = self.parts(point - self.middle);
+            [0.5 + across * front / (2.0 * self.half_width), 0.5 - up / (2.0 * self.half_height)]
+        }
     }
 
     /// The point that is so many halves of its size above and to the right of its middle.

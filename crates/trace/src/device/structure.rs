@@ -2,7 +2,7 @@
 
 use super::{Convex, Region, Surface};
 use glam::DVec3;
-use optics::geometry::{Extent, FloorCurve, Hole, Outline, Pose, Solid, first_along};
+use optics::geometry::{Extent, FloorCurve, Hole, Outline, Pose, Solid};
 
 /// What lies on the other side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -227,11 +227,17 @@ impl Structure {
         if !self.hull.may_be_met(origin, direction) {
             return None;
         }
-        let hits = (0u16..).zip(&self.surfaces).filter_map(|(index, surface)| {
-            let (distance, outward) = surface.hit(origin, direction, departed == Some(index))?;
-            Some((distance, (index, surface, outward)))
-        });
-        let (distance, (surface, &Surface { far, coating, .. }, outward)) = first_along(hits)?;
+        // A loop: here it takes fewer instructions than `first_along`.
+        let mut nearest: Option<(u16, &Surface, f64, DVec3)> = None;
+        for (index, surface) in (0u16..).zip(&self.surfaces) {
+            if let Some((distance, outward)) =
+                surface.hit(origin, direction, departed == Some(index))
+                && nearest.is_none_or(|(_, _, least, _)| distance < least)
+            {
+                nearest = Some((index, surface, distance, outward));
+            }
+        }
+        let (surface, &Surface { far, coating, .. }, distance, outward) = nearest?;
         Some(SurfaceHit { surface, distance, outward, far, coating })
     }
 }

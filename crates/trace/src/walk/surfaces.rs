@@ -31,6 +31,14 @@ pub(super) struct Interface {
     pub event: Event,
 }
 
+impl Interface {
+    /// At the end of a passage through a region of a device.
+    fn at_end((device, region): (u16, u16), passage: &Passage) -> Self {
+        let event = Event::Face { device, region, face: passage.face };
+        Self { onward: passage.outward, coating: passage.coating, event }
+    }
+}
+
 impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// Whether a ray in air runs on through air to the screen, or for ever.
     #[must_use]
@@ -85,11 +93,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// Takes a branch in air that has come to a surface of a device into it.
     fn enter(&mut self, branch: &mut Branch<N>, number: u16, hit: &SurfaceHit) -> bool {
         let device = self.assembly.device(number);
-        let interface = Interface {
-            onward: -hit.outward,
-            coating: hit.coating,
-            event: Event::Surface { device: number, surface: hit.surface },
-        };
+        let event = Event::Surface { device: number, surface: hit.surface };
+        let interface = || Interface { onward: -hit.outward, coating: hit.coating, event };
         let back = |branch: &mut Branch<N>| {
             branch.leave_frame(&device.pose);
             branch.departed = device.departed(number, Some(hit.surface));
@@ -97,12 +102,16 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         match hit.far {
             FarSide::Region(region) | FarSide::Seam(region) => {
                 branch.enter_frame(&device.pose);
-                let known = self.assembly.interfaces(number).entrance(hit.surface);
-                self.refract(branch, &Medium::AIR, known, (number, region), &interface, back)
+                if let Some(known) = self.assembly.interfaces(number).entrance(hit.surface) {
+                    return self.go_on_alone(branch, known, event, |branch| {
+                        branch.enter_region(number, region, None);
+                    });
+                }
+                self.refract(branch, &Medium::AIR, (number, region), &interface(), back)
             }
             FarSide::Conductor => {
                 branch.enter_frame(&device.pose);
-                self.reflect(branch, &Medium::AIR, &interface, back)
+                self.reflect(branch, &Medium::AIR, &interface(), back)
             }
             FarSide::Opaque => self.end(branch, LeafEnd::Body(number)),
             FarSide::Outside => {
@@ -121,7 +130,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let Some([(a, in_a), (b, in_b)]) = parted else { return false };
         for mut part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
             if self.follows(part.power) {
-                part.update_survival(self.least_power());
+                part.update_survival(self.limits.min_power);
                 self.waiting.push(part);
             }
         }
@@ -143,21 +152,20 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             // It is lost in rounding, or runs along an endless body for ever.
             return self.lose(branch.power);
         };
-        if is_body && !self.moves(branch, (passage.position - branch.position).length()) {
-            return false;
+        if is_body {
+            if !self.moves(branch, (passage.position - branch.position).length()) {
+                return false;
+            }
+            // From here on it may come again to what it has left.
+            branch.departed = None;
         }
         let mut graded = None;
         let Some(medium) = self.travel(branch, place, passage, &mut graded) else {
             return false;
         };
-        let interface = Interface {
-            onward: passage.outward,
-            coating: passage.coating,
-            event: Event::Face { device: place.0, region: place.1, face: passage.face },
-        };
         match guest {
-            Some((met, _)) => self.leave(branch, medium, met, interface),
-            None => self.arrive(branch, place, medium, passage, &interface),
+            Some((met, _)) => self.leave(branch, medium, met, Interface::at_end(place, passage)),
+            None => self.arrive(branch, place, medium, passage),
         }
     }
 
@@ -199,8 +207,6 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         branch.optical_path += passage.optical_path;
         branch.group_path += region.group_path(passage.optical_path, way);
         branch.virtual_point = passage.virtual_point;
-        // From here on it may come again to what it has left.
-        branch.departed = None;
         if let Some(transport) = passage.transport {
             branch.electric = branch.electric.map(|field| field.transformed(&transport));
         }
@@ -215,29 +221,33 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         (number, region): (u16, u16),
         medium: &Medium,
         passage: &Passage,
-        interface: &Interface,
     ) -> bool {
         let device = self.assembly.device(number);
+        let interface = || Interface::at_end((number, region), passage);
+        let event = Event::Face { device: number, region, face: passage.face };
         let known = self.assembly.interfaces(number).exit(region, passage.face);
         match passage.far {
-            FarSide::Conductor => self.reflect(branch, medium, interface, |_| ()),
+            FarSide::Conductor => self.reflect(branch, medium, &interface(), |_| ()),
             FarSide::Seam(next) => {
                 branch.place = Place::Region { device: number, region: next };
                 true
             }
-            FarSide::Region(next) => {
-                self.refract(branch, medium, known, (number, next), interface, |_| ())
-            }
+            FarSide::Region(next) => match known {
+                Some(known) => self.go_on_alone(branch, known, event, |branch| {
+                    branch.enter_region(number, next, None);
+                }),
+                None => self.refract(branch, medium, (number, next), &interface(), |_| ()),
+            },
             FarSide::Opaque => self.end(branch, LeafEnd::Body(number)),
             FarSide::Outside => {
                 // It has met no surface from outside, which it may meet next unless the device is convex.
                 let departed = device.departed(number, None);
-                if !self.assembly.simple || self.screen_touches {
+                if !self.stands_alone {
                     let position = device.pose.to_world(branch.position);
                     let direction = device.pose.vector_to_world(branch.direction);
                     let met = self.met_at(position, direction, departed);
                     if met != Met::Device(Ahead::Air) {
-                        return self.leave(branch, medium, met, *interface);
+                        return self.leave(branch, medium, met, interface());
                     }
                 }
                 let leave = |branch: &mut Branch<N>| {
@@ -245,12 +255,11 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                     branch.leave_frame(&device.pose);
                 };
                 if let Some(known) = known {
-                    let wave = known.transmit(&branch.incident());
-                    return self.go_on_alone(branch, &wave, interface.event, leave);
+                    return self.go_on_alone(branch, known, event, leave);
                 }
                 let mut waves = OutgoingWaves::new();
-                self.split(medium, &Medium::AIR, branch, interface, &mut waves);
-                self.go_on(branch, &waves, interface.event, |branch, side| {
+                self.split(medium, &Medium::AIR, branch, &interface(), &mut waves);
+                self.go_on(branch, &waves, event, |branch, side| {
                     if side == Side::Transmitted {
                         leave(branch);
                     }
@@ -259,24 +268,16 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
     }
 
-    /// Splits a branch, in the frame of a device, where it comes to a region of it; `known` is the interface if it reflects
-    /// nothing. What is sent back is put into its place by `back`.
-    #[inline]
+    /// Splits a branch, in the frame of a device, where it comes to a region of it. What is sent back is put into its place by
+    /// `back`.
     fn refract(
         &mut self,
         branch: &mut Branch<N>,
         from: &Medium,
-        known: Option<&Reflectionless>,
         (number, region): (u16, u16),
         interface: &Interface,
         back: impl Fn(&mut Branch<N>),
     ) -> bool {
-        if let Some(known) = known {
-            let wave = known.transmit(&branch.incident());
-            return self.go_on_alone(branch, &wave, interface.event, |branch| {
-                branch.enter_region(number, region, None);
-            });
-        }
         let mut graded = None;
         let found = self.assembly.device(number).region(region).enter(branch.position, &mut graded);
         let Some((virtual_point, medium)) = found else {
@@ -325,19 +326,22 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         true
     }
 
-    /// Lets the one wave that leaves a surface go on as the branch itself, put into its place.
+    /// Takes a branch through an interface that reflects nothing: the one wave that leaves it goes on as the branch itself,
+    /// put into its place.
+    #[inline]
     fn go_on_alone(
         &mut self,
         branch: &mut Branch<N>,
-        wave: &OutgoingWave<N>,
+        known: &Reflectionless,
         event: Event,
         put: impl Fn(&mut Branch<N>),
     ) -> bool {
+        let wave = known.transmit(&branch.incident());
         if W::STOPS_AT_SURFACE {
-            self.recorder.stopped(std::slice::from_ref(wave));
+            self.recorder.stopped(std::slice::from_ref(&wave));
             return false;
         }
-        branch.go_on_as(wave, event);
+        branch.go_on_as(&wave, event);
         put(branch);
         true
     }
@@ -355,7 +359,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             self.recorder.stopped(waves);
             return false;
         }
-        let least_power = self.least_power();
+        let least_power = self.limits.min_power;
         let mut last: Option<&OutgoingWave<N>> = None;
         for wave in waves {
             if !self.follows(wave.power) {
@@ -412,7 +416,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let normal = interface.onward;
         match interface.coating {
             Coating::None => {
-                weak = split_down_to(from, to, &wave, normal, self.least_power(), waves);
+                weak = split_down_to(from, to, &wave, normal, self.limits.min_power, waves);
             }
             Coating::Antireflection => {
                 waves.extend(transmit_antireflection(from, to, &wave, normal));

@@ -57,6 +57,8 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     pub(super) recorder: W,
     /// Whether the screen touches a device.
     pub(super) screen_touches: bool,
+    /// Whether nothing touches what rays leave: there is one device at most, no body, and the screen is apart.
+    pub(super) stands_alone: bool,
     /// Where the last rays have started, and in which region of which device.
     pub(super) started: (DVec3, Option<(u16, u16)>),
 }
@@ -71,8 +73,11 @@ impl<'a, const N: usize> Tracer<'a, N> {
     /// The same tracer, watched.
     #[must_use]
     pub fn watched<W: PathRecorder<N>>(self, recorder: W) -> Tracer<'a, N, W> {
-        let Self { assembly, limits, screen, screen_touches, .. } = self;
-        Tracer { screen, screen_touches, ..Tracer::watching(assembly, limits, recorder) }
+        let tracer = Tracer::watching(self.assembly, self.limits, recorder);
+        match self.screen {
+            Some(screen) => tracer.with_screen(screen),
+            None => tracer,
+        }
     }
 }
 
@@ -80,9 +85,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     fn watching(assembly: &'a Assembly, limits: Limits, recorder: W) -> Self {
         Self {
             assembly,
-            limits,
+            limits: Limits { min_power: limits.min_power.max(NO_POWER), ..limits },
             screen: None,
             screen_touches: false,
+            stands_alone: assembly.simple,
             waiting: Vec::new(),
             leaves: Vec::new(),
             outcome: Outcome::default(),
@@ -101,7 +107,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// Ends branches that meet a screen.
     #[must_use]
     pub fn with_screen(self, screen: Screen) -> Self {
-        Self { screen_touches: screen.touches(self.assembly), screen: Some(screen), ..self }
+        let screen_touches = screen.touches(self.assembly);
+        let stands_alone = self.assembly.simple && !screen_touches;
+        Self { screen_touches, stands_alone, screen: Some(screen), ..self }
     }
 
     /// Follows one ray to the end of every branch: the leaves, in the order the tree was walked,
@@ -130,7 +138,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.leaves.clear();
         self.outcome = Outcome::default();
         self.waiting.clear();
-        (self.events, self.threshold) = (0, self.least_power());
+        (self.events, self.threshold) = (0, self.limits.min_power);
         if !self.start(branch) {
             *branch = self.waiting.pop()?;
         }
@@ -210,7 +218,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             *power = left;
             branch.electric[i] = branch.electric[i] * amplitude;
         }
-        branch.update_survival(self.least_power());
+        branch.update_survival(self.limits.min_power);
         self.follows(branch.power)
     }
 
@@ -241,15 +249,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.outcome.stats.lost += u64::from(lost);
     }
 
-    /// The least power of branches that are followed.
-    pub(super) fn least_power(&self) -> f64 {
-        self.limits.min_power.max(NO_POWER)
-    }
-
     /// Whether a branch of that power is followed; else it is pruned, and need not be made.
     pub(super) fn follows(&mut self, power: [f64; N]) -> bool {
         let largest = power.iter().copied().fold(0.0, f64::max);
-        let follows = largest >= self.least_power();
+        let follows = largest >= self.limits.min_power;
         if !follows {
             self.prune(power);
         }
