@@ -38,18 +38,18 @@ const MAPS: [&str; 3] = ["gaussian", "grating", "quasi_conformal"];
 
 fn flow(name: &str) -> ConformalFlow {
     let cut = Truncation::centred(50.0, 28.57);
-    let (map, strength): (ConformalMap, f64) = match name {
+    let (map, index_scale): (ConformalMap, f64) = match name {
         "gaussian" => {
             (ConformalMap::Gaussian(GaussianMap::new(10.02, 4.25).expect("a sound map")), 1.0)
         }
         "grating" => (ConformalMap::Grating(GratingMap::new(20.0, 1.5).expect("a sound map")), 1.0),
         _ => {
             let map = QuasiConformalMap::new(28.0, 4.25, &cut).expect("a sound map");
-            let strength = map.strength();
-            (ConformalMap::QuasiConformal(map), strength)
+            let index_scale = map.index_scale();
+            (ConformalMap::QuasiConformal(map), index_scale)
         }
     };
-    ConformalFlow::new(map, cut, Extent::ENDLESS, strength)
+    ConformalFlow::new(map, cut, Extent::ENDLESS, index_scale)
 }
 
 /// Rays just inside the face at the least x, up to 20 degrees off the axis, neighbours being alike as

@@ -129,7 +129,7 @@ impl QuasiConformalMap {
 
     /// c = √(H/H_c) of the index c/|f'|.
     #[must_use]
-    pub fn strength(&self) -> f64 {
+    pub fn index_scale(&self) -> f64 {
         self.anisotropy().sqrt()
     }
 

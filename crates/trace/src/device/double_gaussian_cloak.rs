@@ -59,7 +59,7 @@ impl DoubleGaussianCloak {
     }
 
     /// The factor c of the index n = c/|f'|.
-    fn strength(&self, map: &ConformalMap, cut: &Truncation) -> f64 {
+    fn index_scale(&self, map: &ConformalMap, cut: &Truncation) -> f64 {
         if self.referenced { 1.0 / map.index_range(cut).0 } else { 1.0 }
     }
 }
@@ -75,8 +75,8 @@ impl Device for DoubleGaussianCloak {
         Ok(match request.show {
             Show::Cloak => {
                 let coating = if self.fresnel { Coating::None } else { Coating::Antireflection };
-                let strength = self.strength(&map, &cut);
-                let flow = ConformalFlow::new(map, cut, extent, strength);
+                let index_scale = self.index_scale(&map, &cut);
+                let flow = ConformalFlow::new(map, cut, extent, index_scale);
                 cloak(&flow, coating, extent, request.open_core)
             }
             Show::Bare => {
@@ -91,7 +91,7 @@ impl Device for DoubleGaussianCloak {
     fn facts(&self) -> Vec<Fact> {
         let Ok((gaussian, cut)) = self.parts() else { return Vec::new() };
         let map = ConformalMap::Gaussian(gaussian);
-        let c = self.strength(&map, &cut);
+        let c = self.index_scale(&map, &cut);
         let areas = [
             Fact::number("cloaked_area_cm2", 2.0 * gaussian.area()),
             Fact::number("cloaked_area_within_cut_cm2", 2.0 * map.area_within(&cut)),

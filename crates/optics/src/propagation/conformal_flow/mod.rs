@@ -156,21 +156,21 @@ pub struct ConformalFlow {
     /// The radii of the round border and of the core, cm; infinite without them.
     rim: f64,
     core: f64,
-    strength: f64,
+    index_scale: f64,
     gauges: Gauges,
     slack: f64,
     unevenness: Option<Arc<IndexPerturbation>>,
 }
 
 impl ConformalFlow {
-    /// The medium n = c/|f'| of `map` inside `cut` and between the z of `extent`; `strength` is c, 1 for
+    /// The medium n = c/|f'| of `map` inside `cut` and between the z of `extent`; `index_scale` is c, 1 for
     /// the cloak that needs no reference medium.
     #[must_use]
-    pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, strength: f64) -> Self {
+    pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, index_scale: f64) -> Self {
         let slack = BORDER_SLACK * map.scale();
         let (rim, core) = (f64::INFINITY, f64::INFINITY);
         let gauges = Gauges::new(&cut, extent, rim, core, map.scale());
-        Self { map, cut, extent, rim, core, strength, gauges, slack, unevenness: None }
+        Self { map, cut, extent, rim, core, index_scale, gauges, slack, unevenness: None }
     }
 
     /// The same medium (all of it in the upper half) within the radius `rim` about the z axis and beyond the radius
@@ -210,7 +210,7 @@ impl ConformalFlow {
     pub fn index_range(&self) -> (f64, f64) {
         let (least, largest) = self.map.index_range(&self.cut);
         let [low, high] = self.unevenness.as_ref().map_or([1.0; 2], |uneven| uneven.bounds());
-        (self.strength * least * low, self.strength * largest * high)
+        (self.index_scale * least * low, self.index_scale * largest * high)
     }
 
     /// The index at a point of one half; None deep inside the metal, where the map has no inverse.
@@ -334,8 +334,8 @@ impl ConformalFlow {
             Boundary::Rim => (position, normal) = (on_circle(self.rim), radial),
             Boundary::Core => (position, normal) = (on_circle(self.core), -radial),
         }
-        let strength = self.strength_at(end.jet.f);
-        end.momentum = course.on_shell(strength, end.momentum, &end.jet);
+        let index_scale = self.index_scale_at(end.jet.f);
+        end.momentum = course.on_shell(index_scale, end.momentum, &end.jet);
         let p = end.momentum / end.jet.f1.conj();
         let turn = course.transport(&begin, &end);
         let transport = match half {
@@ -351,10 +351,10 @@ impl ConformalFlow {
                 half,
                 position: half.mirrored(position),
                 virtual_position: end.zeta,
-                index: strength / end.jet.stretch(),
+                index: index_scale / end.jet.stretch(),
             },
             wave_vector: half.mirrored(DVec3::new(p.re, p.im, course.p_z)),
-            optical_path: self.strength * self.strength * end.tau,
+            optical_path: self.index_scale * self.index_scale * end.tau,
             transport,
             normal: half.mirrored(normal),
         }

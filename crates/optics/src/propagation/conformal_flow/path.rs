@@ -23,7 +23,7 @@ impl ConformalFlow {
         tolerance: f64,
     ) -> Result<Vec<PathPoint>, FlowError> {
         let half = start.half;
-        let speed = self.strength * self.strength;
+        let speed = self.index_scale * self.index_scale;
         let point = |at: Complex64, z: f64, tau: f64| PathPoint {
             position: half.mirrored(DVec3::new(at.re, at.im, z)),
             optical_path: speed * tau,

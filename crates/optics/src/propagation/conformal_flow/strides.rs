@@ -170,7 +170,7 @@ impl<M: LaneMap> WithSimd for Through<'_, M> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self(map, step) = self;
         let p_z = Lanes::new(simd, step.rays.p_z);
-        let even = EvenForce { map, p_z, strength: Lanes::splat(simd, step.flow.strength) };
+        let even = EvenForce { map, p_z, index_scale: Lanes::splat(simd, step.flow.index_scale) };
         match &step.flow.unevenness {
             None => step.under(simd, &even),
             Some(unevenness) => step.under(simd, &UnevenForce { even, unevenness }),

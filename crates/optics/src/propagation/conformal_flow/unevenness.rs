@@ -92,13 +92,13 @@ impl ConformalFlow {
     }
 
     /// c ρ at a physical point of the upper half.
-    pub(super) fn strength_at(&self, z: Complex64) -> f64 {
+    pub(super) fn index_scale_at(&self, z: Complex64) -> f64 {
         let square = self.unevenness.as_ref().map_or(1.0, |unevenness| unevenness.look(z).0);
-        self.strength * square.sqrt()
+        self.index_scale * square.sqrt()
     }
 
     /// The index at a virtual point.
     pub(super) fn index_at(&self, jet: &MapJet) -> f64 {
-        self.strength_at(jet.f) / jet.stretch()
+        self.index_scale_at(jet.f) / jet.stretch()
     }
 }

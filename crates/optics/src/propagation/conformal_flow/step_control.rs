@@ -43,16 +43,16 @@ impl StepControl {
     }
 
     /// The same for a ray with a wave vector along z.
-    pub fn along_z(self, p_z: f64, strength: f64) -> Self {
+    pub fn along_z(self, p_z: f64, index_scale: f64) -> Self {
         // Steep rays take long ways, on which errors have time to grow.
-        let flatness = (1.0 - (p_z / strength).powi(2)).max(0.05);
+        let flatness = (1.0 - (p_z / index_scale).powi(2)).max(0.05);
         Self { p_z, allowed: flatness.powi(3) * self.allowed, ..self }
     }
 
     /// `momentum` with its length made to fit |P|² = c² - p_z² |f'|².
-    pub fn on_shell(&self, strength: f64, momentum: Complex64, jet: &MapJet) -> Complex64 {
+    pub fn on_shell(&self, index_scale: f64, momentum: Complex64, jet: &MapJet) -> Complex64 {
         let axial = self.p_z * self.p_z * jet.f1.norm_sqr();
-        let square = (strength * strength - axial).max(0.0);
+        let square = (index_scale * index_scale - axial).max(0.0);
         let present = momentum.norm_sqr();
         if present > 0.0 { momentum * (square / present).sqrt() } else { momentum }
     }

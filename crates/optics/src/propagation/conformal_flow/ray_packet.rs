@@ -115,7 +115,7 @@ impl RayPacket {
             }
             let aims_at_floor = flow.aims_at_floor(self.here.zeta.at(i), self.here.momentum.at(i));
             let demands = if aims_at_floor { &nearer } else { demands };
-            let course = demands.along_z(self.rays.p_z[i], flow.strength);
+            let course = demands.along_z(self.rays.p_z[i], flow.index_scale);
             self.courses[i] = course;
             self.rays.weight[i] = course.allowed.recip();
             self.walks[i].stride = 0.8 * course.longest;
@@ -176,7 +176,7 @@ impl RayPacket {
         let course = &mut self.courses[i];
         (course.longest, course.even) = (course.longest.min(longest), true);
         if let State::Stepping(length) = &mut self.walks[i].state {
-            *length = length.min(longest / flow.strength);
+            *length = length.min(longest / flow.index_scale);
         }
     }
 
@@ -266,7 +266,7 @@ impl RayPacket {
             course.longest
         } else {
             flow.map.longest_stride(self.here.zeta.at(i), course.longest)
-        } / flow.strength;
+        } / flow.index_scale;
         let beyond = self.trials.ahead[i] + OVERSHOOT * flow.scale();
         walk.state = State::Stepping(walk.stride.min(usual).min(beyond));
     }
