@@ -30,8 +30,9 @@ fn carpets() -> [(&'static str, GradedHalf); 3] {
         [jet.f, jet.f1, jet.f2]
     };
     // The grating is the finest of the three.
-    let half =
-        |jet, index_scale, half_width| GradedHalf::new(jet, index_scale, [half_width, HEIGHT], 0.012);
+    let half = |jet, index_scale, half_width| {
+        GradedHalf::new(jet, index_scale, [half_width, HEIGHT], 0.012)
+    };
     [
         ("gaussian-carpet", half(gaussian(10.02, 4.25), 1.0, 25.0)),
         ("grating-carpet", half(Box::new(grating), 1.0, 30.0)),

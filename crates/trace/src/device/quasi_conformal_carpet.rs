@@ -49,7 +49,13 @@ impl Device for QuasiConformalCarpet {
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
         let index_scale = map.index_scale();
-        Ok(carpet::structure(ConformalMap::QuasiConformal(map), cut, index_scale, self.floor, request))
+        Ok(carpet::structure(
+            ConformalMap::QuasiConformal(map),
+            cut,
+            index_scale,
+            self.floor,
+            request,
+        ))
     }
 
     fn facts(&self) -> Vec<Fact> {
