@@ -11,34 +11,34 @@ use num_complex::Complex64;
 use crate::transformation::MapJet;
 
 /// A frame bound to a ray's direction in virtual space, and how that space is turned physically.
-pub(super) struct Frame {
+pub(super) struct RayFrame {
     /// The smallest rotation that takes the z-axis (-z for p_z < 0) into the ray (it is regular both for
     /// rays along z and for rays across), and then one by arg f' about z, from virtual to physical components.
     rotation: DMat3,
-    side: f64,
+    sign: f64,
 }
 
-impl Frame {
+impl RayFrame {
     pub fn new(momentum: Complex64, p_z: f64, jet: &MapJet) -> Self {
         let axial = p_z * jet.stretch();
         let length = (momentum.norm_sqr() + axial * axial).sqrt();
         let (tx, ty, sine) = (momentum.re / length, momentum.im / length, axial.abs() / length);
-        let side = 1.0_f64.copysign(p_z);
+        let sign = 1.0_f64.copysign(p_z);
         let bend = 1.0 / (1.0 + sine);
         let rotation = DMat3::from_cols(
-            DVec3::new(1.0 - tx * tx * bend, -tx * ty * bend, -side * tx),
-            DVec3::new(-tx * ty * bend, 1.0 - ty * ty * bend, -side * ty),
-            DVec3::new(side * tx, side * ty, sine),
+            DVec3::new(1.0 - tx * tx * bend, -tx * ty * bend, -sign * tx),
+            DVec3::new(-tx * ty * bend, 1.0 - ty * ty * bend, -sign * ty),
+            DVec3::new(sign * tx, sign * ty, sine),
         );
         let turn = jet.f1 / jet.stretch();
-        Self { rotation: about_z(turn.re, turn.im) * rotation, side }
+        Self { rotation: about_z(turn.re, turn.im) * rotation, sign }
     }
 }
 
 /// The rotation of physical vectors from `start` to `end`, the field having turned by `theta` about the
 /// ray against the frames.
-pub(super) fn transport(start: &Frame, end: &Frame, theta: f64) -> DMat3 {
-    let (sin, cos) = (end.side * theta).sin_cos();
+pub(super) fn transport(start: &RayFrame, end: &RayFrame, theta: f64) -> DMat3 {
+    let (sin, cos) = (end.sign * theta).sin_cos();
     end.rotation * about_z(cos, sin) * start.rotation.transpose()
 }
 

@@ -10,15 +10,15 @@
 //! handful of steps. Where the index is ρ(x, y) times that ([`IndexPerturbation`]), it is c² ρ² that |P|² + p_z² |f'|² must be,
 //! and another force comes in: see the module `forces`. Lengths are in cm, wave vectors in units of the vacuum wave number.
 
-mod course;
 mod crossing;
 mod forces;
 mod frame;
 mod path;
 mod points;
+mod ray_packet;
+mod step_control;
 mod strides;
 mod unevenness;
-mod walk;
 
 use std::sync::Arc;
 
@@ -26,11 +26,11 @@ use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 use thiserror::Error;
 
-use self::course::StepControl;
-use self::crossing::Gauges;
+use self::crossing::EventFunctions;
 use self::points::Point;
+use self::ray_packet::RayPacket;
+use self::step_control::StepControl;
 pub use self::unevenness::IndexPerturbation;
-use self::walk::RayPacket;
 use crate::geometry::Extent;
 use crate::lanes::LANES;
 use crate::transformation::{ConformalMap, Truncation};
@@ -141,7 +141,7 @@ const BORDER_SLACK: f64 = 1e-9;
 
 /// A ray at its end.
 struct Arrival {
-    course: StepControl,
+    control: StepControl,
     begin: Point,
     end: Point,
     boundary: Boundary,
@@ -157,7 +157,7 @@ pub struct ConformalFlow {
     rim: f64,
     core: f64,
     index_scale: f64,
-    gauges: Gauges,
+    events: EventFunctions,
     slack: f64,
     unevenness: Option<Arc<IndexPerturbation>>,
 }
@@ -169,8 +169,8 @@ impl ConformalFlow {
     pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, index_scale: f64) -> Self {
         let slack = BORDER_SLACK * map.scale();
         let (rim, core) = (f64::INFINITY, f64::INFINITY);
-        let gauges = Gauges::new(&cut, extent, rim, core, map.scale());
-        Self { map, cut, extent, rim, core, index_scale, gauges, slack, unevenness: None }
+        let events = EventFunctions::new(&cut, extent, rim, core, map.scale());
+        Self { map, cut, extent, rim, core, index_scale, events, slack, unevenness: None }
     }
 
     /// The same medium (all of it in the upper half) within the radius `rim` about the z axis and beyond the radius
@@ -178,7 +178,7 @@ impl ConformalFlow {
     #[must_use]
     pub fn between(self, core: Option<f64>, rim: Option<f64>) -> Self {
         let [rim, core] = [rim, core].map(|radius| radius.unwrap_or(f64::INFINITY));
-        Self { rim, core, ..self }.with_gauges()
+        Self { rim, core, ..self }.with_events()
     }
 
     /// The radii of its round core and of its round border, if it has them.
@@ -187,10 +187,10 @@ impl ConformalFlow {
         [self.core, self.rim].map(|radius| radius.is_finite().then_some(radius))
     }
 
-    /// The same with the gauges that follow from the rest.
-    fn with_gauges(self) -> Self {
-        let gauges = Gauges::new(&self.cut, self.extent, self.rim, self.core, self.scale());
-        Self { gauges, ..self }
+    /// The same with the event functions that follow from the rest.
+    fn with_events(self) -> Self {
+        let events = EventFunctions::new(&self.cut, self.extent, self.rim, self.core, self.scale());
+        Self { events, ..self }
     }
 
     /// The map.
@@ -283,11 +283,11 @@ impl ConformalFlow {
         starts: &[Option<(VirtualPoint, DVec3)>; LANES],
         tolerance: f64,
     ) -> [Option<Result<FlowEnd, FlowError>>; LANES] {
-        let mut convoy = RayPacket::new(self, starts, tolerance);
-        while convoy.moves(self) {}
+        let mut packet = RayPacket::new(self, starts, tolerance);
+        while packet.moves(self) {}
         std::array::from_fn(|i| {
             let (start, _) = starts[i].as_ref()?;
-            Some(convoy.arrival(i).map(|arrival| self.end(start, &arrival)))
+            Some(packet.arrival(i).map(|arrival| self.end(start, &arrival)))
         })
     }
 
@@ -315,7 +315,7 @@ impl ConformalFlow {
     }
 
     fn end(&self, start: &VirtualPoint, arrival: &Arrival) -> FlowEnd {
-        let Arrival { course, begin, mut end, boundary } = *arrival;
+        let Arrival { control, begin, mut end, boundary } = *arrival;
         let half = start.half;
         let mut position = DVec3::new(end.jet.f.re, end.jet.f.im, end.z);
         let inward = Complex64::i() * end.jet.f1 / end.jet.stretch();
@@ -335,9 +335,9 @@ impl ConformalFlow {
             Boundary::Core => (position, normal) = (on_circle(self.core), -radial),
         }
         let index_scale = self.index_scale_at(end.jet.f);
-        end.momentum = course.on_shell(index_scale, end.momentum, &end.jet);
+        end.momentum = control.on_shell(index_scale, end.momentum, &end.jet);
         let p = end.momentum / end.jet.f1.conj();
-        let turn = course.transport(&begin, &end);
+        let turn = control.transport(&begin, &end);
         let transport = match half {
             Half::Upper => turn,
             Half::Lower => {
@@ -353,7 +353,7 @@ impl ConformalFlow {
                 virtual_position: end.zeta,
                 index: index_scale / end.jet.stretch(),
             },
-            wave_vector: half.mirrored(DVec3::new(p.re, p.im, course.p_z)),
+            wave_vector: half.mirrored(DVec3::new(p.re, p.im, control.p_z)),
             optical_path: self.index_scale * self.index_scale * end.tau,
             transport,
             normal: half.mirrored(normal),

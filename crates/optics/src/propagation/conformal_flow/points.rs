@@ -9,7 +9,7 @@ use crate::transformation::{JetLanes, MapJet};
 
 /// Where a ray is, with the map there; of real and of complex numbers.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Place<R, C> {
+pub(super) struct RayPoint<R, C> {
     /// Optical path since the start over c².
     pub tau: R,
     /// Virtual position.
@@ -19,7 +19,7 @@ pub(super) struct Place<R, C> {
     /// Position along z.
     pub z: R,
     /// Angle about the ray by which the field has turned against the frame of
-    /// [`Frame`](super::frame::Frame).
+    /// [`RayFrame`](super::frame::RayFrame).
     pub theta: R,
     /// The map at ζ.
     pub jet: MapJet<C>,
@@ -32,20 +32,20 @@ pub(super) struct Place<R, C> {
 }
 
 /// Where one ray is.
-pub(super) type Point = Place<f64, Complex64>;
+pub(super) type Point = RayPoint<f64, Complex64>;
 
 /// Where four rays are, in memory.
-pub(super) type Points = Place<[f64; LANES], Complexes>;
+pub(super) type Points = RayPoint<[f64; LANES], Complexes>;
 
 /// Where four rays are, in the processor.
-pub(super) type PointLanes<S> = Place<Lanes<S>, ComplexLanes<S>>;
+pub(super) type PointLanes<S> = RayPoint<Lanes<S>, ComplexLanes<S>>;
 
-impl<R: Copy, C: Copy> Place<R, C> {
+impl<R: Copy, C: Copy> RayPoint<R, C> {
     /// The same of other numbers.
     #[inline(always)]
-    fn map<Q, D>(&self, real: impl Fn(R) -> Q, complex: impl Fn(C) -> D) -> Place<Q, D> {
+    fn map<Q, D>(&self, real: impl Fn(R) -> Q, complex: impl Fn(C) -> D) -> RayPoint<Q, D> {
         let MapJet { f, f1, f2 } = self.jet;
-        Place {
+        RayPoint {
             tau: real(self.tau),
             zeta: complex(self.zeta),
             momentum: complex(self.momentum),

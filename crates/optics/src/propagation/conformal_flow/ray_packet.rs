@@ -1,11 +1,11 @@
-//! The walk of four rays to the border.
+//! Four rays on their way to the border.
 
 use glam::DVec3;
 use num_complex::Complex64;
 
-use super::course::StepControl;
-use super::crossing::{Crossing, Look, RootRefinement};
+use super::crossing::{Crossing, RootRefinement, RootStatus};
 use super::points::Points;
+use super::step_control::StepControl;
 use super::strides::{Move, Rays, StepKind, StepResult};
 use super::{Arrival, Boundary, ConformalFlow, FlowError, MAX_STEPS, VirtualPoint};
 use crate::lanes::LANES;
@@ -19,39 +19,39 @@ const OVERSHOOT: f64 = 0.012;
 /// Four rays on their way, or fewer: each goes where it would go alone.
 pub(super) struct RayPacket {
     rays: Rays,
-    courses: [StepControl; LANES],
-    walks: [Walk; LANES],
+    controls: [StepControl; LANES],
+    states: [RayState; LANES],
     begin: Points,
     here: Points,
-    trials: StepResult,
+    result: StepResult,
 }
 
 /// How far one of them has come.
 #[derive(Clone, Copy, Debug)]
-struct Walk {
-    state: State,
+struct RayState {
+    status: RayStatus,
     stride: f64,
     steps: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum State {
+enum RayStatus {
     /// There is no such ray.
     Absent,
     /// A step of this length is to be taken.
     Stepping(f64),
     /// It moves onto the border.
-    RootRefinement(RootRefinement),
+    RefiningRoot(RootRefinement),
     Arrived(Boundary),
     Failed(FlowError),
 }
 
-impl State {
+impl RayStatus {
     /// The next move, if there is one.
     fn ahead(&self) -> Option<f64> {
         match self {
             Self::Stepping(length) => Some(*length),
-            Self::RootRefinement(landing) => Some(landing.ahead),
+            Self::RefiningRoot(refinement) => Some(refinement.ahead),
             Self::Absent | Self::Arrived(_) | Self::Failed(_) => None,
         }
     }
@@ -64,41 +64,41 @@ impl RayPacket {
         starts: &[Option<(VirtualPoint, DVec3)>; LANES],
         tolerance: f64,
     ) -> Self {
-        let walk = Walk { state: State::Absent, stride: 0.0, steps: 0 };
-        let demands = flow.demands(tolerance, false);
+        let ray = RayState { status: RayStatus::Absent, stride: 0.0, steps: 0 };
+        let control = flow.step_control(tolerance, false);
         let weight = [0.0; LANES];
-        let mut convoy = Self {
+        let mut packet = Self {
             rays: Rays { p_z: [0.0; LANES], weight, lever: flow.lever() },
-            courses: [demands; LANES],
-            walks: [walk; LANES],
+            controls: [control; LANES],
+            states: [ray; LANES],
             begin: Points::default(),
             here: Points::default(),
-            trials: StepResult::default(),
+            result: StepResult::default(),
         };
         for (i, start) in starts.iter().enumerate() {
             let Some((start, wave_vector)) = start else { continue };
-            convoy.walks[i].state = match flow.sets_out(start, *wave_vector) {
-                Ok(()) => State::Stepping(0.0),
-                Err(error) => State::Failed(error),
+            packet.states[i].status = match flow.sets_out(start, *wave_vector) {
+                Ok(()) => RayStatus::Stepping(0.0),
+                Err(error) => RayStatus::Failed(error),
             };
             let p = start.half.mirrored(*wave_vector);
-            convoy.rays.p_z[i] = p.z;
-            convoy.here.zeta.put(i, start.virtual_position);
-            convoy.here.momentum.put(i, Complex64::new(p.x, p.y));
-            convoy.here.z[i] = start.half.mirrored(start.position).z;
+            packet.rays.p_z[i] = p.z;
+            packet.here.zeta.put(i, start.virtual_position);
+            packet.here.momentum.put(i, Complex64::new(p.x, p.y));
+            packet.here.z[i] = start.half.mirrored(start.position).z;
         }
-        convoy.set_out(flow, &demands, tolerance);
-        convoy
+        packet.set_out(flow, &control, tolerance);
+        packet
     }
 
     /// Looks where the rays are, and how far they may go.
-    fn set_out(&mut self, flow: &ConformalFlow, demands: &StepControl, tolerance: f64) {
-        let Some(any) = (0..LANES).find(|&i| self.walks[i].state.ahead().is_some()) else {
+    fn set_out(&mut self, flow: &ConformalFlow, control: &StepControl, tolerance: f64) {
+        let Some(any) = (0..LANES).find(|&i| self.states[i].status.ahead().is_some()) else {
             return;
         };
         // In the places of those that are not there, something that does no harm.
         for i in 0..LANES {
-            if self.walks[i].state.ahead().is_none() {
+            if self.states[i].status.ahead().is_none() {
                 self.rays.p_z[i] = self.rays.p_z[any];
                 self.here.zeta.put(i, self.here.zeta.at(any));
                 self.here.momentum.put(i, self.here.momentum.at(any));
@@ -106,22 +106,22 @@ impl RayPacket {
             }
         }
         self.stride(flow, StepKind::Departure, &[0.0; LANES]);
-        self.begin = self.trials.end;
-        self.here = self.trials.end;
-        let nearer = flow.demands(tolerance, true);
+        self.begin = self.result.end;
+        self.here = self.result.end;
+        let nearer = flow.step_control(tolerance, true);
         for i in 0..LANES {
-            if self.walks[i].state.ahead().is_none() {
+            if self.states[i].status.ahead().is_none() {
                 continue;
             }
             let aims_at_floor = flow.aims_at_floor(self.here.zeta.at(i), self.here.momentum.at(i));
-            let demands = if aims_at_floor { &nearer } else { demands };
-            let course = demands.along_z(self.rays.p_z[i], flow.index_scale);
-            self.courses[i] = course;
-            self.rays.weight[i] = course.allowed.recip();
-            self.walks[i].stride = 0.8 * course.longest;
-            let leaving = flow.gauges.leaving_at(course.p_z, &self.here.at(i), flow.slack);
+            let control = if aims_at_floor { &nearer } else { control };
+            let control = control.along_z(self.rays.p_z[i], flow.index_scale);
+            self.controls[i] = control;
+            self.rays.weight[i] = control.allowed.recip();
+            self.states[i].stride = 0.8 * control.longest;
+            let leaving = flow.events.leaving_at(control.p_z, &self.here.at(i), flow.slack);
             match leaving {
-                Some(boundary) => self.walks[i].state = State::Arrived(boundary),
+                Some(boundary) => self.states[i].status = RayStatus::Arrived(boundary),
                 None => self.go_on(flow, i),
             }
         }
@@ -130,12 +130,12 @@ impl RayPacket {
     /// Moves each ray that is not at its end once, or more often if that is cheap; whether one has moved.
     pub fn moves(&mut self, flow: &ConformalFlow) -> bool {
         let mut any = false;
-        for pace in [StepKind::Full, StepKind::Short, StepKind::Coast] {
+        for kind in [StepKind::Full, StepKind::Short, StepKind::Coast] {
             let mut length = [0.0; LANES];
             let mut moves = [false; LANES];
             for i in 0..LANES {
-                if let Some(ahead) = self.walks[i].state.ahead()
-                    && self.pace(flow, i, ahead) == pace
+                if let Some(ahead) = self.states[i].status.ahead()
+                    && self.kind(flow, i, ahead) == kind
                 {
                     (length[i], moves[i]) = (ahead, true);
                 }
@@ -144,7 +144,7 @@ impl RayPacket {
                 continue;
             }
             any = true;
-            self.stride(flow, pace, &length);
+            self.stride(flow, kind, &length);
             for (i, moves) in moves.into_iter().enumerate() {
                 if moves {
                     self.moved(flow, i);
@@ -154,17 +154,17 @@ impl RayPacket {
         any
     }
 
-    fn stride(&mut self, flow: &ConformalFlow, pace: StepKind, length: &[f64; LANES]) {
-        let Self { rays, here, trials, .. } = self;
-        Move { flow, rays, pace, from: here, length, to: trials }.take();
+    fn stride(&mut self, flow: &ConformalFlow, kind: StepKind, length: &[f64; LANES]) {
+        let Self { rays, here, result, .. } = self;
+        Move { flow, rays, kind, from: here, length, to: result }.take();
     }
 
     /// How a ray moves by `length`.
-    fn pace(&self, flow: &ConformalFlow, i: usize, length: f64) -> StepKind {
-        let (course, length) = (&self.courses[i], length.abs());
-        if course.p_z == 0.0 && !flow.is_uneven() || length <= COASTING * flow.scale() {
+    fn kind(&self, flow: &ConformalFlow, i: usize, length: f64) -> StepKind {
+        let (control, length) = (&self.controls[i], length.abs());
+        if control.p_z == 0.0 && !flow.is_uneven() || length <= COASTING * flow.scale() {
             StepKind::Coast
-        } else if length <= course.short && !flow.is_uneven() {
+        } else if length <= control.short && !flow.is_uneven() {
             StepKind::Short
         } else {
             StepKind::Full
@@ -173,101 +173,102 @@ impl RayPacket {
 
     /// Makes all steps of one ray short enough for a smooth drawing.
     pub fn even_out(&mut self, flow: &ConformalFlow, i: usize, longest: f64) {
-        let course = &mut self.courses[i];
-        (course.longest, course.even) = (course.longest.min(longest), true);
-        if let State::Stepping(length) = &mut self.walks[i].state {
+        let control = &mut self.controls[i];
+        (control.longest, control.even) = (control.longest.min(longest), true);
+        if let RayStatus::Stepping(length) = &mut self.states[i].status {
             *length = length.min(longest / flow.index_scale);
         }
     }
 
     /// Where a ray is, if that is on its way and not beyond the border, which it looks for: x + iy, z and τ.
     pub fn waypoint(&self, i: usize) -> Option<(Complex64, f64, f64)> {
-        let on_its_way = matches!(self.walks[i].state, State::Stepping(_) | State::Arrived(_));
+        let on_its_way =
+            matches!(self.states[i].status, RayStatus::Stepping(_) | RayStatus::Arrived(_));
         on_its_way.then(|| (self.here.jet.f.at(i), self.here.z[i], self.here.tau[i]))
     }
 
     /// The end of a ray's way.
     pub fn arrival(&self, i: usize) -> Result<Arrival, FlowError> {
-        match self.walks[i].state {
-            State::Arrived(boundary) => Ok(Arrival {
-                course: self.courses[i],
+        match self.states[i].status {
+            RayStatus::Arrived(boundary) => Ok(Arrival {
+                control: self.controls[i],
                 begin: self.begin.at(i),
                 end: self.here.at(i),
                 boundary,
             }),
-            State::Failed(error) => Err(error),
+            RayStatus::Failed(error) => Err(error),
             _ => Err(FlowError::StepLimit),
         }
     }
 
     fn moved(&mut self, flow: &ConformalFlow, i: usize) {
-        let walk = &mut self.walks[i];
-        match &mut walk.state {
-            State::Stepping(length) => {
+        let ray = &mut self.states[i];
+        match &mut ray.status {
+            RayStatus::Stepping(length) => {
                 let length = *length;
                 self.stepped(flow, i, length);
             }
-            State::RootRefinement(landing) => {
-                self.here.take(i, &self.trials.end);
-                match landing.look(&self.here.at(i), &flow.gauges, self.courses[i].p_z) {
-                    Look::Move => {}
-                    Look::Landed(boundary) => walk.state = State::Arrived(boundary),
-                    Look::Missed => walk.state = State::Failed(FlowError::StepLimit),
+            RayStatus::RefiningRoot(refinement) => {
+                self.here.take(i, &self.result.end);
+                match refinement.check(&self.here.at(i), &flow.events, self.controls[i].p_z) {
+                    RootStatus::Continue => {}
+                    RootStatus::Found(boundary) => ray.status = RayStatus::Arrived(boundary),
+                    RootStatus::Lost => ray.status = RayStatus::Failed(FlowError::StepLimit),
                 }
             }
-            State::Absent | State::Arrived(_) | State::Failed(_) => {}
+            RayStatus::Absent | RayStatus::Arrived(_) | RayStatus::Failed(_) => {}
         }
     }
 
     fn stepped(&mut self, flow: &ConformalFlow, i: usize, length: f64) {
-        let error = self.trials.error[i];
-        let walk = &mut self.walks[i];
-        walk.stride = length * self.trials.factor[i];
-        walk.steps += 1;
+        let error = self.result.error[i];
+        let ray = &mut self.states[i];
+        ray.stride = length * self.result.factor[i];
+        ray.steps += 1;
         let good = error <= 1.0;
-        if walk.steps > MAX_STEPS || !(good || walk.stride >= 1e-9 * flow.slack) {
-            walk.state = State::Failed(FlowError::StepLimit);
+        if ray.steps > MAX_STEPS || !(good || ray.stride >= 1e-9 * flow.slack) {
+            ray.status = RayStatus::Failed(FlowError::StepLimit);
             return;
         }
         if !good {
             // The same step again, shorter.
-            walk.state = State::Stepping(walk.stride);
+            ray.status = RayStatus::Stepping(ray.stride);
             return;
         }
-        let crossing = if self.trials.crossed[i] == 0.0 {
+        let crossing = if self.result.crossed[i] == 0.0 {
             Crossing::None
         } else {
-            let (from, to) = (self.here.at(i), self.trials.end.at(i));
-            flow.gauges.first_crossing(self.courses[i].p_z, &from, &to, length)
+            let (from, to) = (self.here.at(i), self.result.end.at(i));
+            flow.events.first_crossing(self.controls[i].p_z, &from, &to, length)
         };
         match crossing {
             Crossing::None => {
-                self.here.take(i, &self.trials.end);
+                self.here.take(i, &self.result.end);
                 self.go_on(flow, i);
             }
-            Crossing::Unclear { share } => walk.state = State::Stepping(share * length),
-            Crossing::At { gauge, share } => {
+            Crossing::Unclear { share } => ray.status = RayStatus::Stepping(share * length),
+            Crossing::At { event, share } => {
                 // From the nearer end.
                 let ahead = if share < 0.5 {
                     share * length
                 } else {
-                    self.here.take(i, &self.trials.end);
+                    self.here.take(i, &self.result.end);
                     (share - 1.0) * length
                 };
-                walk.state = State::RootRefinement(RootRefinement::new(ahead, gauge, length));
+                ray.status = RayStatus::RefiningRoot(RootRefinement::new(ahead, event, length));
             }
         }
     }
 
     /// Sets out for the next step, from where the last move has led.
     fn go_on(&mut self, flow: &ConformalFlow, i: usize) {
-        let (course, walk) = (&self.courses[i], &mut self.walks[i]);
-        let usual = if course.even {
-            course.longest
+        let (control, ray) = (&self.controls[i], &mut self.states[i]);
+        let usual = if control.even {
+            control.longest
         } else {
-            flow.map.longest_stride(self.here.zeta.at(i), course.longest)
+            flow.map.longest_stride(self.here.zeta.at(i), control.longest)
         } / flow.index_scale;
-        let beyond = self.trials.ahead[i] + OVERSHOOT * flow.scale();
-        walk.state = State::Stepping(walk.stride.min(usual).min(beyond));
+        let beyond = self.result.ahead[i] + OVERSHOOT * flow.scale();
+        ray.status = RayStatus::Stepping(ray.stride.min(usual).min(beyond));
     }
 }

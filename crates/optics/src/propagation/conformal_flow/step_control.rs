@@ -3,7 +3,7 @@
 use glam::DMat3;
 use num_complex::Complex64;
 
-use super::frame::{Frame, transport};
+use super::frame::{RayFrame, transport};
 use super::points::Point;
 use crate::transformation::MapJet;
 
@@ -59,7 +59,7 @@ impl StepControl {
 
     /// The rotation of the transverse field between two points of the path.
     pub fn transport(&self, start: &Point, end: &Point) -> DMat3 {
-        let frame = |point: &Point| Frame::new(point.momentum, self.p_z, &point.jet);
+        let frame = |point: &Point| RayFrame::new(point.momentum, self.p_z, &point.jet);
         transport(&frame(start), &frame(end), end.theta - start.theta)
     }
 }

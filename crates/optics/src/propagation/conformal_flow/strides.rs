@@ -3,7 +3,7 @@
 use pulp::{Simd, WithSimd};
 
 use super::ConformalFlow;
-use super::crossing::Gauges;
+use super::crossing::EventFunctions;
 use super::forces::{EvenForce, Force, UnevenForce};
 use super::points::{PointLanes, Points};
 use crate::lanes::{ComplexLanes, LANES, Lanes, side_by_side};
@@ -57,12 +57,12 @@ impl StepResult {
         end: &PointLanes<S>,
         p_z: Lanes<S>,
         error: Lanes<S>,
-        gauges: &Gauges,
+        events: &EventFunctions,
     ) {
         self.end.store(end);
         self.error = error.values();
         self.factor = order_eight::step_factor(error).values();
-        let [ahead, crossed] = gauges.outlook(from, end, p_z);
+        let [ahead, crossed] = events.outlook(from, end, p_z);
         (self.ahead, self.crossed) = (ahead.values(), crossed.values());
     }
 }
@@ -81,7 +81,7 @@ fn of_square<S: Simd>(momentum: ComplexLanes<S>, square: Lanes<S>) -> ComplexLan
 pub(super) struct Move<'w> {
     pub flow: &'w ConformalFlow,
     pub rays: &'w Rays,
-    pub pace: StepKind,
+    pub kind: StepKind,
     pub from: &'w Points,
     pub length: &'w [f64; LANES],
     /// What comes of it.
@@ -105,7 +105,7 @@ impl Move<'_> {
         let (p_z, h) = (Lanes::new(simd, self.rays.p_z), Lanes::new(simd, *self.length));
         let start = Motion { position: from.zeta, velocity: from.momentum };
         let mut error = p_z.all(0.0);
-        let ((motion, stage), growth) = match self.pace {
+        let ((motion, stage), growth) = match self.kind {
             StepKind::Departure => {
                 let stage = force.look(from.zeta);
                 let momentum = F::map(&stage.jet).f1.conj() * from.momentum;
@@ -156,7 +156,7 @@ impl Move<'_> {
         let path = if Q > 2 { growth[Q - 1] } else { h };
         let along = [from.tau + path, from.z + growth[0], from.theta + growth[1]];
         let end = PointLanes::new(motion, along, F::map(&stage.jet), stage.force);
-        self.to.arrive(&from, &end, p_z, error, &self.flow.gauges);
+        self.to.arrive(&from, &end, p_z, error, &self.flow.events);
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use num_complex::Complex64;
 
-use super::course::StepControl;
+use super::step_control::StepControl;
 use super::{ConformalFlow, MIRROR_MAGNIFIES};
 use crate::propagation::GridSpline;
 use crate::transformation::MapJet;
@@ -63,7 +63,7 @@ impl ConformalFlow {
     /// plane, in which the lower half is looked at as its mirror image.
     #[must_use]
     pub fn with_unevenness(self, unevenness: IndexPerturbation) -> Self {
-        Self { unevenness: Some(Arc::new(unevenness)), ..self }.with_gauges()
+        Self { unevenness: Some(Arc::new(unevenness)), ..self }.with_events()
     }
 
     /// Whether the index is not that of the map alone.
@@ -79,7 +79,7 @@ impl ConformalFlow {
     }
 
     /// How exactly rays are to be followed for a tolerance, cm, that meet the mirror or do not.
-    pub(super) fn demands(&self, tolerance: f64, to_mirror: bool) -> StepControl {
+    pub(super) fn step_control(&self, tolerance: f64, to_mirror: bool) -> StepControl {
         // Of a spline, nothing can be counted on, nor that a ray meets the mirror where a straight one would; and the
         // errors of many short steps add up.
         let uneven = self.is_uneven();
