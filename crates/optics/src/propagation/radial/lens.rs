@@ -88,7 +88,7 @@ impl CentralLens {
         let (x, d) = (position.normalize(), wave_vector.normalize());
         let normal = plane_normal(x, d);
         let cosine = x.dot(d);
-        let (place, path) = match self.profile {
+        let (position, path) = match self.profile {
             Profile::Eaton(angle) => {
                 let way = EatonWay::new(x, d, angle / PI, share);
                 (x.rotate_axis(normal, way.swept) * eaton_radius(angle / PI, way.c), way.path)
@@ -105,7 +105,7 @@ impl CentralLens {
                 (across / (1.0 - cosine * sin), PI * share)
             }
         };
-        PathPoint { position: place * self.radius, optical_path: path * self.radius }
+        PathPoint { position: position * self.radius, optical_path: path * self.radius }
     }
 
     /// Whether a point is not one of the surface.

@@ -131,11 +131,11 @@ impl RadialFlow {
     ) -> Vec<PathPoint> {
         let end = self.advance(position, wave_vector, mode);
         let turning = match self {
-            Self::Uniaxial(cylinder) => cylinder.turning_course(position, wave_vector, mode),
+            Self::Uniaxial(cylinder) => cylinder.turning_path(position, wave_vector, mode),
             _ => None,
         };
         let point = |share: f64| match (self, &turning) {
-            (_, Some(course)) => course.way_point(position, share),
+            (_, Some(path)) => path.way_point(position, share),
             (Self::Lens(lens), _) => lens.way_point(position, wave_vector, share),
             (Self::Transmuted(sphere), _) if mode == ModeKind::Extraordinary => {
                 sphere.way_point(position, wave_vector, share)
@@ -178,7 +178,7 @@ fn straight_in(map: &RadialMap, from: DVec3, end: &RadialEnd, share: f64) -> Pat
 impl From<CylinderPart> for Border {
     fn from(part: CylinderPart) -> Self {
         match part {
-            CylinderPart::Side => Self::Outer,
+            CylinderPart::Lateral => Self::Outer,
             CylinderPart::Bottom => Self::Bottom,
             CylinderPart::Top => Self::Top,
         }
