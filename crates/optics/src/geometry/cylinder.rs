@@ -16,8 +16,8 @@ pub struct Cylinder {
 /// A part of the surface of a cylinder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CylinderPart {
-    /// The round side.
-    Side,
+    /// The round lateral surface.
+    Lateral,
     /// The end at the least z.
     Bottom,
     /// The end at the largest z.
@@ -63,7 +63,7 @@ impl Cylinder {
         let inside = self.radius * self.radius - x.length_squared();
         let side = time_to_leave(v.length_squared(), x.dot(v), inside);
         let (end, part) = self.time_to_end(position.z, velocity.z);
-        if end < side { (end, part) } else { (side, CylinderPart::Side) }
+        if end < side { (end, part) } else { (side, CylinderPart::Lateral) }
     }
 
     /// How long it takes to an end at a velocity along z.
@@ -81,7 +81,7 @@ impl Cylinder {
     #[must_use]
     pub fn outward(&self, part: CylinderPart, position: DVec3) -> DVec3 {
         match part {
-            CylinderPart::Side => position.with_z(0.0).try_normalize().unwrap_or(DVec3::X),
+            CylinderPart::Lateral => position.with_z(0.0).try_normalize().unwrap_or(DVec3::X),
             CylinderPart::Bottom => DVec3::NEG_Z,
             CylinderPart::Top => DVec3::Z,
         }
@@ -159,7 +159,7 @@ mod tests {
     fn points_leave_through_the_part_ahead() {
         let cylinder = Cylinder { radius: 2.0, extent: Extent::centred(Some(6.0)) };
         let from = DVec3::new(1.0, 0.0, 0.0);
-        assert_eq!(cylinder.time_to_leave(from, DVec3::X), (1.0, CylinderPart::Side));
+        assert_eq!(cylinder.time_to_leave(from, DVec3::X), (1.0, CylinderPart::Lateral));
         let steep = DVec3::new(1.0, 0.0, -6.0);
         assert_eq!(cylinder.time_to_leave(from, steep), (0.5, CylinderPart::Bottom));
         assert_eq!(cylinder.time_to_leave(from, DVec3::Z * 2.0), (1.5, CylinderPart::Top));

@@ -78,7 +78,7 @@ impl Convex {
             Self::Cylinder(cylinder) => {
                 if let Some(distance) = cylinder.hit_side(origin, direction) {
                     let point = origin + direction * distance;
-                    return Some((distance, cylinder.outward(CylinderPart::Side, point)));
+                    return Some((distance, cylinder.outward(CylinderPart::Lateral, point)));
                 }
                 let hit = |end: &Disc| Some((end.hit(origin, direction)?, end.normal));
                 cylinder.ends()?.iter().find_map(hit)

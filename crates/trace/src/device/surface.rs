@@ -162,7 +162,7 @@ impl Surface {
             (Shape::Round(cylinder), Side::Back) => {
                 let distance = cylinder.hit_side_within(origin, direction)?;
                 let point = origin + direction * distance;
-                (distance, -cylinder.outward(CylinderPart::Side, point))
+                (distance, -cylinder.outward(CylinderPart::Lateral, point))
             }
             _ if departed => return None,
             (Shape::Wall(wall), side) => {
@@ -187,7 +187,7 @@ impl Surface {
             (Shape::Round(cylinder), _) => {
                 let distance = cylinder.hit_side(origin, direction)?;
                 let point = origin + direction * distance;
-                (distance, cylinder.outward(CylinderPart::Side, point))
+                (distance, cylinder.outward(CylinderPart::Lateral, point))
             }
         };
         let whole = matches!(self.part, Part::Whole);
