@@ -75,9 +75,9 @@ impl GaussianMap {
     /// The virtual X of the floor point at physical `x` (cm).
     pub(super) fn floor_parameter(&self, x: f64) -> f64 {
         // x = X - h (2/√π) D(X/w) with Dawson's function 0 <= D < 0.542 for X >= 0.
-        let (side, x) = (1.0_f64.copysign(x), x.abs());
+        let (sign, x) = (1.0_f64.copysign(x), x.abs());
         let far = x + 0.542 * FRAC_2_SQRT_PI * self.height;
-        side * root_between(x, far, |virtual_x| {
+        sign * root_between(x, far, |virtual_x| {
             let jet = self.jet(Complex64::new(virtual_x, 0.0));
             (jet.f.re - x, jet.f1.re)
         })
