@@ -130,7 +130,7 @@ fn map_jet(bencher: Bencher, map: &str) {
         .collect();
     bencher.counter(ItemsCount::new(LEGS)).bench(|| {
         for zeta in black_box(&points) {
-            black_box(flow.map().jet(*zeta));
+            let _ = black_box(flow.map().jet(*zeta));
         }
     });
 }
@@ -157,7 +157,10 @@ fn radial(name: &str) -> (RadialFlow, ModeKind) {
     let lens = |lens| (RadialFlow::Lens(lens), ModeKind::Shared);
     let shell = |symmetry| {
         let map = RadialMap::new(CORE, RADIUS, symmetry);
-        (RadialFlow::Transformed(TransformedShell::new(map, Extent::ENDLESS)), ModeKind::Shared)
+        (
+            RadialFlow::Transformed(TransformedShell { map, extent: Extent::ENDLESS }),
+            ModeKind::Shared,
+        )
     };
     let mode = if name.ends_with("_o") { ModeKind::Ordinary } else { ModeKind::Extraordinary };
     let cylinder = |axis| {
@@ -201,7 +204,7 @@ fn radial_flow(bencher: Bencher, name: &str) {
     let starts = radial_starts(&flow, mode);
     bencher.counter(ItemsCount::new(LEGS)).bench(|| {
         for (position, wave_vector) in black_box(&starts) {
-            black_box(flow.advance(*position, *wave_vector, mode));
+            let _ = black_box(flow.advance(*position, *wave_vector, mode));
         }
     });
 }

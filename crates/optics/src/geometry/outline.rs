@@ -5,33 +5,30 @@ use std::f64::consts::TAU;
 
 /// A convex polygon, its corners in counterclockwise order; two corners make a line.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Outline {
     corners: Vec<DVec2>,
 }
 
 impl Outline {
     /// The convex polygon with the given corners, counterclockwise.
-    #[must_use]
     pub fn new(corners: Vec<DVec2>) -> Self {
         Self { corners }
     }
 
     /// A rectangle centred on the origin.
-    #[must_use]
     pub fn rectangle(half_width: f64, half_height: f64) -> Self {
         let (w, h) = (half_width, half_height);
         Self::new([(-w, -h), (w, -h), (w, h), (-w, h)].map(DVec2::from).to_vec())
     }
 
     /// A circle, with corners on it.
-    #[must_use]
     pub fn circle(centre: DVec2, radius: f64) -> Self {
         let corner = |k: u32| centre + radius * DVec2::from_angle(TAU * f64::from(k) / 96.0);
         Self::new((0..96).map(corner).collect())
     }
 
     /// The smallest convex polygon around points.
-    #[must_use]
     pub fn hull(mut points: Vec<DVec2>) -> Self {
         // Andrew's monotone chain: the lower side from left to right, then the upper one back.
         points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));

@@ -105,7 +105,6 @@ impl Polygon {
     }
 
     /// A convex part as an outline.
-    #[must_use]
     pub fn outline(&self, part: &ConvexPart) -> Outline {
         Outline::new(part.iter().map(|&i| self.corners[i]).collect())
     }

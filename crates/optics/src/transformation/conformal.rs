@@ -15,6 +15,7 @@ mod inversion;
 
 /// Value and derivatives of a conformal map at one virtual point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[must_use]
 pub struct MapJet<C = Complex64> {
     /// f(ζ) = x + iy, cm.
     pub f: C,
@@ -151,7 +152,6 @@ impl ConformalMapError {
 impl ConformalMap {
     /// Value and derivatives at a virtual point.
     #[inline]
-    #[must_use]
     pub fn jet(&self, zeta: Complex64) -> MapJet {
         match self {
             Self::Gaussian(map) => map.jet(zeta),
@@ -166,8 +166,8 @@ impl ConformalMap {
     pub fn scale(&self) -> f64 {
         match self {
             Self::Gaussian(map) => map.width,
-            Self::Grating(map) => map.scale(),
-            Self::QuasiConformal(map) => map.scale(),
+            Self::Grating(map) => map.wave_number.recip(),
+            Self::QuasiConformal(map) => 0.25 * map.bump.width,
             Self::Flat(map) => map.scale,
         }
     }
@@ -195,9 +195,9 @@ impl ConformalMap {
     #[must_use]
     pub fn peak(&self) -> f64 {
         match self {
-            Self::Gaussian(map) => map.height(),
-            Self::Grating(map) => map.height(),
-            Self::QuasiConformal(map) => map.peak(),
+            Self::Gaussian(map) => map.height,
+            Self::Grating(map) => map.height,
+            Self::QuasiConformal(map) => map.solved.peak,
             Self::Flat(map) => map.level,
         }
     }
@@ -207,7 +207,7 @@ impl ConformalMap {
     pub fn trough(&self) -> f64 {
         match self {
             Self::Gaussian(_) | Self::QuasiConformal(_) => 0.0,
-            Self::Grating(map) => -map.height(),
+            Self::Grating(map) => -map.height,
             Self::Flat(map) => map.level,
         }
     }
@@ -261,7 +261,7 @@ impl ConformalMap {
     pub(crate) fn profile(&self, parameter: f64) -> MapJet {
         match self {
             Self::Gaussian(_) | Self::Grating(_) | Self::Flat(_) => self.jet(parameter.into()),
-            Self::QuasiConformal(map) => map.profile(parameter),
+            Self::QuasiConformal(map) => map.bump.profile(parameter),
         }
     }
 

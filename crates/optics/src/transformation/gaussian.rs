@@ -19,7 +19,8 @@ use crate::lanes::ComplexLanes;
 pub struct GaussianMap {
     /// w, cm.
     pub(super) width: f64,
-    height: f64,
+    /// The height h of the metal above Y = 0 in the middle, cm.
+    pub height: f64,
     inverse_width: f64,
 }
 
@@ -44,15 +45,8 @@ impl GaussianMap {
         }
     }
 
-    /// h, cm: the height of the metal above Y = 0 in the middle.
-    #[must_use]
-    pub fn height(&self) -> f64 {
-        self.height
-    }
-
     /// Value and derivatives at a virtual point (cm).
     #[inline]
-    #[must_use]
     pub fn jet(&self, zeta: Complex64) -> MapJet {
         let [w, w1, w2] = faddeeva_jet(zeta * self.inverse_width);
         let times_i = |c: Complex64, factor: f64| Complex64::new(-factor * c.im, factor * c.re);

@@ -23,7 +23,9 @@ pub(crate) trait Number:
     + Into<Complex64>
 {
     /// The squared magnitude.
-    fn magnitude_squared(self) -> f64;
+    fn magnitude_squared(self) -> f64 {
+        (self * self.conjugate()).real()
+    }
 
     /// The complex conjugate.
     fn conjugate(self) -> Self;
@@ -42,10 +44,6 @@ pub(crate) trait Number:
 }
 
 impl Number for f64 {
-    fn magnitude_squared(self) -> f64 {
-        self * self
-    }
-
     fn conjugate(self) -> Self {
         self
     }
@@ -66,10 +64,6 @@ impl Number for f64 {
 }
 
 impl Number for Complex64 {
-    fn magnitude_squared(self) -> f64 {
-        self.norm_sqr()
-    }
-
     fn conjugate(self) -> Self {
         self.conj()
     }

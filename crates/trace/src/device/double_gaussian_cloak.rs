@@ -46,7 +46,7 @@ impl DoubleGaussianCloak {
     /// The map and the cut of the upper half.
     fn parts(&self) -> Result<(GaussianMap, Truncation), KeyError> {
         let map = carpet::gaussian_map(self.w, self.h)?;
-        let h = map.height();
+        let h = map.height;
         let height = self.height;
         if height <= 2.0 * h {
             let message = format!(

@@ -39,7 +39,8 @@ impl Device for SphereCloak {
         Ok(match request.show {
             Show::Cloak => {
                 let map = RadialMap::new(inner, outer, Symmetry::Centre);
-                let flow = RadialFlow::Transformed(TransformedShell::new(map, Extent::ENDLESS));
+                let flow =
+                    RadialFlow::Transformed(TransformedShell { map, extent: Extent::ENDLESS });
                 ball(outer, flow, request.open_core.then_some(inner))
             }
             Show::Bare => metal_ball(inner),

@@ -217,10 +217,7 @@ impl EventFunctions {
     ) -> [Lanes<S>; 2] {
         let zero = p_z.all(0.0);
         let (mut ahead, mut crossed) = (p_z.all(f64::INFINITY), zero);
-        for event in &self.all {
-            if event.limit.is_infinite() {
-                continue;
-            }
+        for event in self.finite() {
             let (before, after) = (event.motions(from, p_z), event.motions(to, p_z));
             let time = after.time_ahead();
             ahead = time.less_than(ahead).choose(time, ahead);

@@ -149,6 +149,7 @@ struct Arrival {
 
 /// One half of a conformal cloak cut to a box, and its mirror image under y -> -y.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct ConformalFlow {
     map: ConformalMap,
     cut: Truncation,
@@ -165,7 +166,6 @@ pub struct ConformalFlow {
 impl ConformalFlow {
     /// The medium n = c/|f'| of `map` inside `cut` and between the z of `extent`; `index_scale` is c, 1 for
     /// the cloak that needs no reference medium.
-    #[must_use]
     pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, index_scale: f64) -> Self {
         let slack = BORDER_SLACK * map.scale();
         let (rim, core) = (f64::INFINITY, f64::INFINITY);
@@ -175,7 +175,6 @@ impl ConformalFlow {
 
     /// The same medium (all of it in the upper half) within the radius `rim` about the z axis and beyond the radius
     /// `core`, both in cm, the latter less than the former.
-    #[must_use]
     pub fn between(self, core: Option<f64>, rim: Option<f64>) -> Self {
         let [rim, core] = [rim, core].map(|radius| radius.unwrap_or(f64::INFINITY));
         Self { rim, core, ..self }.with_events()

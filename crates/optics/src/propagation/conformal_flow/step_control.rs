@@ -27,11 +27,11 @@ impl StepControl {
     /// error at the end of `tolerance`, cm.
     ///
     /// [`ConformalMap::smoothness`]: crate::transformation::ConformalMap::smoothness
-    pub fn new(scale: f64, smoothness: f64, tolerance: f64) -> Self {
+    pub fn new(scale: f64, smoothness: f64, tolerance: f64, even: bool) -> Self {
         let tolerance = tolerance.max(1e-12);
         Self {
             p_z: 0.0,
-            even: false,
+            even,
             allowed: smoothness * tolerance,
             // Where the estimate is low by chance, the order of the method still keeps a shorter step right.
             longest: 1.5 * scale * (tolerance / 1e-6).min(1.0).sqrt().sqrt().sqrt(),

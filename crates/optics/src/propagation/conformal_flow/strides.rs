@@ -3,7 +3,6 @@
 use pulp::{Simd, WithSimd};
 
 use super::ConformalFlow;
-use super::crossing::EventFunctions;
 use super::forces::{EvenForce, Force, UnevenForce};
 use super::points::{PointLanes, Points};
 use crate::lanes::{ComplexLanes, LANES, Lanes, side_by_side};
@@ -46,25 +45,6 @@ pub(super) struct StepResult {
     pub ahead: [f64; LANES],
     /// Not zero if the ray may have crossed the border on the way.
     pub crossed: [f64; LANES],
-}
-
-impl StepResult {
-    /// Takes down what has come of a move.
-    #[inline(always)]
-    pub fn arrive<S: Simd>(
-        &mut self,
-        from: &PointLanes<S>,
-        end: &PointLanes<S>,
-        p_z: Lanes<S>,
-        error: Lanes<S>,
-        events: &EventFunctions,
-    ) {
-        self.end.store(end);
-        self.error = error.values();
-        self.factor = order_eight::step_factor(error).values();
-        let [ahead, crossed] = events.outlook(from, end, p_z);
-        (self.ahead, self.crossed) = (ahead.values(), crossed.values());
-    }
 }
 
 /// A momentum with its length made to fit |P|² = `square`, or 0 where that is negative.
@@ -156,7 +136,11 @@ impl Move<'_> {
         let path = if Q > 2 { growth[Q - 1] } else { h };
         let along = [from.tau + path, from.z + growth[0], from.theta + growth[1]];
         let end = PointLanes::new(motion, along, F::map(&stage.jet), stage.force);
-        self.to.arrive(&from, &end, p_z, error, &self.flow.events);
+        self.to.end = end.store();
+        self.to.error = error.values();
+        self.to.factor = order_eight::step_factor(error).values();
+        let [ahead, crossed] = self.flow.events.outlook(&from, &end, p_z);
+        (self.to.ahead, self.to.crossed) = (ahead.values(), crossed.values());
     }
 }
 

@@ -61,7 +61,6 @@ impl IndexPerturbation {
 impl ConformalFlow {
     /// The same medium with an index that is uneven: ρ times that of the map. The unevenness is that of the upper half
     /// plane, in which the lower half is looked at as its mirror image.
-    #[must_use]
     pub fn with_unevenness(self, unevenness: IndexPerturbation) -> Self {
         Self { unevenness: Some(Arc::new(unevenness)), ..self }.with_events()
     }
@@ -85,10 +84,7 @@ impl ConformalFlow {
         let uneven = self.is_uneven();
         let smoothness = if uneven { 0.3 } else { self.map.smoothness() };
         let share = if uneven || to_mirror { MIRROR_MAGNIFIES } else { 1.0 };
-        StepControl {
-            even: uneven,
-            ..StepControl::new(self.scale(), smoothness, share * tolerance)
-        }
+        StepControl::new(self.scale(), smoothness, share * tolerance, uneven)
     }
 
     /// c ρ at a physical point of the upper half.

@@ -51,6 +51,7 @@ pub enum Border {
 
 /// How a ray arrives at the border of a radial medium, still inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct RadialEnd {
     /// The part of the border.
     pub border: Border,
@@ -73,10 +74,10 @@ impl RadialFlow {
     #[must_use]
     pub fn radii(&self) -> [f64; 2] {
         match self {
-            Self::Lens(lens) => [0.0, lens.radius()],
-            Self::Transmuted(sphere) => [0.0, sphere.radius()],
-            Self::Transformed(shell) => [shell.map().inner(), shell.map().outer()],
-            Self::Uniaxial(cylinder) => [cylinder.map().inner(), cylinder.map().outer()],
+            Self::Lens(lens) => [0.0, lens.radius],
+            Self::Transmuted(sphere) => [0.0, sphere.radius],
+            Self::Transformed(shell) => [shell.map.inner, shell.map.outer],
+            Self::Uniaxial(cylinder) => [cylinder.map.inner, cylinder.map.outer],
         }
     }
 
@@ -85,8 +86,8 @@ impl RadialFlow {
     pub fn outward(&self, position: DVec3) -> DVec3 {
         match self {
             Self::Lens(_) | Self::Transmuted(_) => position.try_normalize().unwrap_or(DVec3::X),
-            Self::Transformed(shell) => shell.map().radial(position),
-            Self::Uniaxial(cylinder) => cylinder.map().radial(position),
+            Self::Transformed(shell) => shell.map.radial(position),
+            Self::Uniaxial(cylinder) => cylinder.map.radial(position),
         }
     }
 
@@ -110,7 +111,6 @@ impl RadialFlow {
     /// Follows a ray from a point of the border, where it has the given wave vector and is the given
     /// wave of the medium, to the next point of the border. It must run into the medium or along its
     /// border. In an isotropic medium it may start within, too.
-    #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
         match self {
             Self::Lens(lens) => lens.advance(position, wave_vector),
@@ -140,9 +140,9 @@ impl RadialFlow {
             (Self::Transmuted(sphere), _) if mode == ModeKind::Extraordinary => {
                 sphere.way_point(position, wave_vector, share)
             }
-            (Self::Transformed(shell), _) => straight_in(shell.map(), position, &end, share),
+            (Self::Transformed(shell), _) => straight_in(&shell.map, position, &end, share),
             (Self::Uniaxial(cylinder), _) if !cylinder.comes_to_core(mode) => {
-                straight_in(cylinder.map(), position, &end, share)
+                straight_in(&cylinder.map, position, &end, share)
             }
             _ => straight(position, &end, share),
         };

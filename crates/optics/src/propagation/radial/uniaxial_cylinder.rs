@@ -32,7 +32,8 @@ pub enum OpticAxis {
 /// - radial axis, ordinary: straight, of index k; it comes to the core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UniaxialCylinder {
-    map: RadialMap,
+    /// The map that gives its refraction in the plane.
+    pub map: RadialMap,
     axis: OpticAxis,
     extent: Extent,
 }
@@ -49,12 +50,6 @@ impl UniaxialCylinder {
     #[must_use]
     pub fn new(inner: f64, outer: f64, axis: OpticAxis, extent: Extent) -> Self {
         Self { map: RadialMap::new(inner, outer, Symmetry::Axis), axis, extent }
-    }
-
-    /// The map that gives its refraction in the plane.
-    #[must_use]
-    pub fn map(&self) -> &RadialMap {
-        &self.map
     }
 
     /// Whether a wave comes to the core: the ordinary one of the radial axis.
@@ -90,7 +85,6 @@ impl UniaxialCylinder {
     }
 
     /// Follows a ray of either wave from a point of the border to the next point of it.
-    #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
         let leg = if self.comes_to_core(mode) {
             self.straight(position, wave_vector)
@@ -129,8 +123,8 @@ impl UniaxialCylinder {
             (OpticAxis::Radial, true) => {
                 // Unless it is aimed at the axis.
                 let momentum = position.truncate().perp_dot(wave_vector.truncate());
-                let off = momentum.hypot(wave_vector.z * self.map.inner());
-                off.is_nan() || off >= CENTRAL * self.map.outer()
+                let off = momentum.hypot(wave_vector.z * self.map.inner);
+                off.is_nan() || off >= CENTRAL * self.map.outer
             }
             (axis, extraordinary) => axis == OpticAxis::Azimuthal && !extraordinary,
         };
@@ -140,15 +134,15 @@ impl UniaxialCylinder {
     /// The ordinary wave of the radial axis.
     fn straight(&self, position: DVec3, wave_vector: DVec3) -> PathSegment {
         let direction = wave_vector.normalize();
-        let [core, whole] = [self.map.inner(), self.map.outer()]
-            .map(|radius| Cylinder { radius, extent: self.extent });
+        let [core, whole] =
+            [self.map.inner, self.map.outer].map(|radius| Cylinder { radius, extent: self.extent });
         let (distance, part) = whole.time_to_leave(position, direction);
         let to_core = core.hit_side(position, direction).filter(|to_core| *to_core < distance);
         let distance = to_core.unwrap_or(distance);
         let end = position + direction * distance;
         let (border, outward, position) = if to_core.is_some() {
             let radial = core.outward(CylinderPart::Lateral, end);
-            (Border::Inner, -radial, radial * self.map.inner() + DVec3::Z * end.z)
+            (Border::Inner, -radial, radial * self.map.inner + DVec3::Z * end.z)
         } else {
             (part.into(), whole.outward(part, end), self.on_border(part.into(), end))
         };
@@ -177,7 +171,7 @@ impl UniaxialCylinder {
         let momentum = motion.momentum;
         let (begin, end) = (motion.integrals(start), motion.integrals(eta));
         let (rho, root) = motion.quadratic.radius(eta);
-        let radius = if border == Border::Outer { self.map.outer() } else { motion.radius(rho) };
+        let radius = if border == Border::Outer { self.map.outer } else { motion.radius(rho) };
         let turned = DVec2::from_angle(end.angle - begin.angle).rotate(radial.truncate());
         let outward_radial = turned.normalize().extend(0.0);
         let z = position.z + end.z - begin.z;
@@ -202,7 +196,7 @@ impl UniaxialCylinder {
         match border {
             Border::Bottom => point.with_z(self.extent.min),
             Border::Top => point.with_z(self.extent.max),
-            Border::Outer => (self.map.radial(point) * self.map.outer()).with_z(point.z),
+            Border::Outer => (self.map.radial(point) * self.map.outer).with_z(point.z),
             Border::Inner => point,
         }
     }
@@ -237,11 +231,11 @@ impl TurningPath {
         let start = motion.quadratic.parameter(motion.rho(radius));
         let start = if wave_vector.dot(radial) < 0.0 { -start } else { start };
         let begin = motion.integrals(start);
-        let last = motion.quadratic.parameter(motion.rho(cylinder.map.outer()));
+        let last = motion.quadratic.parameter(motion.rho(cylinder.map.outer));
         let mut border = Border::Outer;
         let mut eta = last.max(start);
         let end = motion.integrals(eta);
-        let whole = Cylinder { radius: cylinder.map.outer(), extent: cylinder.extent };
+        let whole = Cylinder { radius: cylinder.map.outer, extent: cylinder.extent };
         let (share, part) = whole.time_to_end(position.z, end.z - begin.z);
         if share < 1.0 {
             border = part.into();
@@ -287,7 +281,7 @@ struct RadialMotion {
 
 impl RadialMotion {
     fn new(cylinder: &UniaxialCylinder, momentum: f64, p_z: f64) -> Self {
-        let (a, k) = (cylinder.map.inner(), cylinder.map.stretch());
+        let (a, k) = (cylinder.map.inner, cylinder.map.stretch());
         let (k2, l2, pz2) = (k * k, momentum * momentum, p_z * p_z);
         match cylinder.axis {
             // Extraordinary: ρ = r', r'² P_r'² = r'² - L² - p_z² (r'/k + a)².

@@ -76,12 +76,24 @@ impl Table {
     }
 
     /// Value and derivatives anywhere: beyond X = ±A and Y = H_c by the symmetries of the series.
-    ///
-    /// The steps of a ray need the derivatives alone; inlined, the value is computed only where it is used.
-    #[inline]
     pub fn jet(&self, zeta: Complex64) -> MapJet {
-        let local = self.local(zeta);
-        MapJet { f: local.value(self.height), f1: local.f1, f2: local.f2 }
+        let TablePoint { patch, d, shift, sign, mirror } = self.find(zeta);
+        let (mut f1, mut f2) = (patch.slopes[TERMS - 1], Complex64::ZERO);
+        for c in patch.slopes[..TERMS - 1].iter().rev() {
+            f2 = f2 * d + f1;
+            f1 = f1 * d + c;
+        }
+        let mut f = Complex64::ZERO;
+        for (c, inverse) in patch.slopes.iter().zip(INVERSE).rev() {
+            f = f * d + c * inverse;
+        }
+        f = f * d + patch.value;
+        let im = if mirror < 0.0 { 2.0 * self.height - f.im } else { f.im };
+        MapJet {
+            f: Complex64::new(sign * f.re + shift, im),
+            f1: Complex64::new(f1.re, sign * mirror * f1.im),
+            f2: Complex64::new(sign * f2.re, mirror * f2.im),
+        }
     }
 
     /// As [`Self::jet`] at four points.
@@ -113,22 +125,6 @@ impl Table {
             f: ComplexLanes { re: sign * f.re + shift, im: height + mirror * f.im },
             f1: ComplexLanes { re: f1.re, im: sign * mirror * f1.im },
             f2: ComplexLanes { re: sign * f2.re, im: mirror * f2.im },
-        }
-    }
-
-    #[inline(never)]
-    fn local(&self, zeta: Complex64) -> Local<'_> {
-        let point = self.find(zeta);
-        let TablePoint { patch, d, sign, mirror, .. } = point;
-        let (mut f1, mut f2) = (patch.slopes[TERMS - 1], Complex64::ZERO);
-        for c in patch.slopes[..TERMS - 1].iter().rev() {
-            f2 = f2 * d + f1;
-            f1 = f1 * d + c;
-        }
-        Local {
-            point,
-            f1: Complex64::new(f1.re, sign * mirror * f1.im),
-            f2: Complex64::new(sign * f2.re, mirror * f2.im),
         }
     }
 
@@ -177,28 +173,6 @@ struct TablePoint<'a> {
     sign: f64,
     /// -1 for a point above Y = H_c, of which the table holds the mirror image.
     mirror: f64,
-}
-
-/// The map about a point, but for its value.
-struct Local<'a> {
-    point: TablePoint<'a>,
-    f1: Complex64,
-    f2: Complex64,
-}
-
-impl Local<'_> {
-    /// f, `height` being H.
-    #[inline]
-    fn value(&self, height: f64) -> Complex64 {
-        let TablePoint { patch, d, shift, sign, mirror } = self.point;
-        let mut f = Complex64::ZERO;
-        for (c, inverse) in patch.slopes.iter().zip(INVERSE).rev() {
-            f = f * d + c * inverse;
-        }
-        f = f * d + patch.value;
-        let im = if mirror < 0.0 { 2.0 * height - f.im } else { f.im };
-        Complex64::new(sign * f.re + shift, im)
-    }
 }
 
 impl Band {
