@@ -1,6 +1,6 @@
-//! Convex outlines in the xy-plane.
+//! Convex outlines in the xy-plane, and flat ends of bodies that extend along z.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
 /// A convex polygon, its corners in counterclockwise order; two corners make a line.
@@ -109,6 +109,39 @@ impl Outline {
             })
         };
         !separated_by(self, other) && !separated_by(other, self)
+    }
+}
+
+/// The flat end of a prism: an outline in a plane of constant z.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cap {
+    /// The shape of the end.
+    pub outline: Outline,
+    /// Where it lies, cm.
+    pub z: f64,
+    /// Outward unit normal, z or -z.
+    pub normal: DVec3,
+}
+
+impl Cap {
+    /// The two ends of a prism.
+    #[must_use]
+    pub fn both(outline: &Outline, ends: [f64; 2]) -> [Self; 2] {
+        [(ends[0], -DVec3::Z), (ends[1], DVec3::Z)].map(|(z, normal)| Self {
+            outline: outline.clone(),
+            z,
+            normal,
+        })
+    }
+
+    /// The distance at which a ray meets the cap, from zero on.
+    #[must_use]
+    pub fn hit(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        if direction.z == 0.0 {
+            return None;
+        }
+        let t = (self.z - origin.z) / direction.z;
+        (t >= 0.0 && self.outline.contains((origin + direction * t).truncate())).then_some(t)
     }
 }
 

@@ -206,9 +206,8 @@ impl ConformalMap {
     #[must_use]
     pub fn trough(&self) -> f64 {
         match self {
-            Self::Gaussian(_) | Self::QuasiConformal(_) => 0.0,
             Self::Grating(map) => -map.height,
-            Self::Flat(map) => map.level,
+            _ => self.level(),
         }
     }
 
@@ -216,8 +215,8 @@ impl ConformalMap {
     #[must_use]
     pub fn level(&self) -> f64 {
         match self {
-            Self::Gaussian(_) | Self::Grating(_) | Self::QuasiConformal(_) => 0.0,
             Self::Flat(map) => map.level,
+            _ => 0.0,
         }
     }
 

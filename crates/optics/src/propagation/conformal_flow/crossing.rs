@@ -149,10 +149,10 @@ pub(super) enum Crossing {
 pub(super) struct RootRefinement {
     /// How far to move next.
     pub ahead: f64,
-    event: EventFunction,
+    pub event: EventFunction,
     /// The limit of each correction.
-    reach: f64,
-    corrections: u32,
+    pub reach: f64,
+    pub corrections: u32,
 }
 
 /// Where the refinement is after a move.
@@ -268,11 +268,6 @@ impl EventFunctions {
 }
 
 impl RootRefinement {
-    /// On a border that is `ahead`, at the given event, as far as interpolation can tell.
-    pub fn new(ahead: f64, event: EventFunction, reach: f64) -> Self {
-        Self { ahead, event, reach, corrections: 0 }
-    }
-
     /// What is left to do after a move, the ray being `here`.
     pub fn check(&mut self, here: &Point, events: &EventFunctions, p_z: f64) -> RootStatus {
         self.corrections += 1;

@@ -6,12 +6,11 @@
 //! turns likewise, so relative to a frame that is bound to the ray's direction only one angle is left.
 
 use glam::{DMat3, DVec3};
-use num_complex::Complex64;
 
-use crate::transformation::MapJet;
+use super::points::Point;
 
 /// A frame bound to a ray's direction in virtual space, and how that space is turned physically.
-pub(super) struct RayFrame {
+struct RayFrame {
     /// The smallest rotation that takes the z-axis (-z for p_z < 0) into the ray (it is regular both for
     /// rays along z and for rays across), and then one by arg f' about z, from virtual to physical components.
     rotation: DMat3,
@@ -19,7 +18,7 @@ pub(super) struct RayFrame {
 }
 
 impl RayFrame {
-    pub fn new(momentum: Complex64, p_z: f64, jet: &MapJet) -> Self {
+    fn new(p_z: f64, Point { momentum, jet, .. }: &Point) -> Self {
         let axial = p_z * jet.stretch();
         let length = (momentum.norm_sqr() + axial * axial).sqrt();
         let (tx, ty, sine) = (momentum.re / length, momentum.im / length, axial.abs() / length);
@@ -35,10 +34,11 @@ impl RayFrame {
     }
 }
 
-/// The rotation of physical vectors from `start` to `end`, the field having turned by `theta` about the
-/// ray against the frames.
-pub(super) fn transport(start: &RayFrame, end: &RayFrame, theta: f64) -> DMat3 {
-    let (sin, cos) = (end.sign * theta).sin_cos();
+/// The rotation of the transverse field between two points of a ray's path.
+pub(super) fn transport(p_z: f64, from: &Point, to: &Point) -> DMat3 {
+    let [start, end] = [from, to].map(|point| RayFrame::new(p_z, point));
+    // By how much it has turned about the ray against the frames.
+    let (sin, cos) = (end.sign * (to.theta - from.theta)).sin_cos();
     end.rotation * about_z(cos, sin) * start.rotation.transpose()
 }
 

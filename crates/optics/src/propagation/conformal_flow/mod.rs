@@ -27,6 +27,7 @@ use num_complex::Complex64;
 use thiserror::Error;
 
 use self::crossing::EventFunctions;
+use self::frame::transport;
 use self::points::Point;
 use self::ray_packet::RayPacket;
 use self::step_control::StepControl;
@@ -336,7 +337,7 @@ impl ConformalFlow {
         let index_scale = self.index_scale_at(end.jet.f);
         end.momentum = control.on_shell(index_scale, end.momentum, &end.jet);
         let p = end.momentum / end.jet.f1.conj();
-        let turn = control.transport(&begin, &end);
+        let turn = transport(control.p_z, &begin, &end);
         let transport = match half {
             Half::Upper => turn,
             Half::Lower => {

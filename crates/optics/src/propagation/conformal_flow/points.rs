@@ -18,8 +18,7 @@ pub(super) struct RayPoint<R, C> {
     pub momentum: C,
     /// Position along z.
     pub z: R,
-    /// Angle about the ray by which the field has turned against the frame of
-    /// [`RayFrame`](super::frame::RayFrame).
+    /// Angle about the ray by which the field has turned against the frame of the module `frame`.
     pub theta: R,
     /// The map at ζ.
     pub jet: MapJet<C>,

@@ -255,7 +255,8 @@ impl RayPacket {
                     self.here.take(i, &self.result.end);
                     (share - 1.0) * length
                 };
-                ray.status = RayStatus::RefiningRoot(RootRefinement::new(ahead, event, length));
+                let root = RootRefinement { ahead, event, reach: length, corrections: 0 };
+                ray.status = RayStatus::RefiningRoot(root);
             }
         }
     }

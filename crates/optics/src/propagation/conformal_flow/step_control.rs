@@ -1,10 +1,7 @@
 //! One ray's constants, and how accurately it is followed.
 
-use glam::DMat3;
 use num_complex::Complex64;
 
-use super::frame::{RayFrame, transport};
-use super::points::Point;
 use crate::transformation::MapJet;
 
 /// A ray's constants, and how accurately to follow it.
@@ -55,11 +52,5 @@ impl StepControl {
         let square = (index_scale * index_scale - axial).max(0.0);
         let present = momentum.norm_sqr();
         if present > 0.0 { momentum * (square / present).sqrt() } else { momentum }
-    }
-
-    /// The rotation of the transverse field between two points of the path.
-    pub fn transport(&self, start: &Point, end: &Point) -> DMat3 {
-        let frame = |point: &Point| RayFrame::new(point.momentum, self.p_z, &point.jet);
-        transport(&frame(start), &frame(end), end.theta - start.theta)
     }
 }
