@@ -21,7 +21,7 @@ mod wall;
 
 pub use convex::REACH;
 pub use cut_ball::CutBall;
-pub use cylinder::{Cylinder, CylinderPart, Disc};
+pub use cylinder::{Border, Cylinder, Disc};
 pub use flat_or_round::FlatOrRound;
 pub use floor_curve::{CurvedSide, FloorCurve, FloorHit, MetalBack};
 pub use hollow::Hole;

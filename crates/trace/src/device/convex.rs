@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 use optics::geometry::{
-    CutBall, Cylinder, CylinderPart, Disc, Extent, FlatOrRound, Outline, Plane, REACH, Solid,
-    Sphere,
+    Border, CutBall, Cylinder, Disc, Extent, FlatOrRound, Outline, Plane, REACH, Solid, Sphere,
 };
 
 /// A convex shape about the origin.
@@ -78,7 +77,7 @@ impl Convex {
             Self::Cylinder(cylinder) => {
                 if let Some(distance) = cylinder.hit_side(origin, direction) {
                     let point = origin + direction * distance;
-                    return Some((distance, cylinder.outward(CylinderPart::Lateral, point)));
+                    return Some((distance, cylinder.outward(Border::Outer, point)));
                 }
                 let hit = |end: &Disc| Some((end.hit(origin, direction)?, end.normal));
                 cylinder.ends()?.iter().find_map(hit)

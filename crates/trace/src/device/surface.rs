@@ -2,9 +2,7 @@
 
 use super::{Coating, Convex, FarSide};
 use glam::DVec3;
-use optics::geometry::{
-    Cap, CurvedSide, Cylinder, CylinderPart, Disc, Extent, FloorCurve, Sphere, Wall,
-};
+use optics::geometry::{Border, Cap, CurvedSide, Cylinder, Disc, Extent, FloorCurve, Sphere, Wall};
 use optics::propagation::Half;
 use optics::transformation::ConformalMap;
 
@@ -162,7 +160,7 @@ impl Surface {
             (Shape::Round(cylinder), Side::Back) => {
                 let distance = cylinder.hit_side_within(origin, direction)?;
                 let point = origin + direction * distance;
-                (distance, -cylinder.outward(CylinderPart::Lateral, point))
+                (distance, -cylinder.outward(Border::Outer, point))
             }
             _ if departed => return None,
             (Shape::Wall(wall), side) => {
@@ -187,7 +185,7 @@ impl Surface {
             (Shape::Round(cylinder), _) => {
                 let distance = cylinder.hit_side(origin, direction)?;
                 let point = origin + direction * distance;
-                (distance, cylinder.outward(CylinderPart::Lateral, point))
+                (distance, cylinder.outward(Border::Outer, point))
             }
         };
         let whole = matches!(self.part, Part::Whole);

@@ -18,7 +18,7 @@ pub use transmuted_sphere::TransmutedSphere;
 pub use uniaxial_cylinder::{OpticAxis, UniaxialCylinder};
 
 use super::{PathPoint, first_way_out, turn_in_plane};
-use crate::geometry::CylinderPart;
+pub use crate::geometry::Border;
 use crate::medium::{Medium, ModeKind};
 use crate::transformation::RadialMap;
 use glam::{DMat3, DVec3};
@@ -34,19 +34,6 @@ pub enum RadialFlow {
     Transformed(TransformedShell),
     /// A cylindrical shell of graded uniaxial dielectric.
     Uniaxial(UniaxialCylinder),
-}
-
-/// A part of the border of a radial medium.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Border {
-    /// The outer radius.
-    Outer,
-    /// The radius of the hole.
-    Inner,
-    /// The end at the least z.
-    Bottom,
-    /// The end at the largest z.
-    Top,
 }
 
 /// How a ray arrives at the border of a radial medium, still inside.
@@ -172,16 +159,6 @@ fn straight_in(map: &RadialMap, from: DVec3, end: &RadialEnd, share: f64) -> Pat
     PathPoint {
         position: map.to_physical(start.lerp(stop, share)),
         optical_path: share * end.optical_path,
-    }
-}
-
-impl From<CylinderPart> for Border {
-    fn from(part: CylinderPart) -> Self {
-        match part {
-            CylinderPart::Lateral => Self::Outer,
-            CylinderPart::Bottom => Self::Bottom,
-            CylinderPart::Top => Self::Top,
-        }
     }
 }
 

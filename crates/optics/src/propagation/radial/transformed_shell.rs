@@ -85,12 +85,12 @@ impl VirtualLine {
                 let (time, part) = cylinder.time_to_leave(start, velocity);
                 let end = start + velocity * time;
                 let outward = cylinder.outward(part, end);
-                let position = match Border::from(part) {
+                let position = match part {
                     Border::Outer | Border::Inner => outward * radius + DVec3::Z * end.z,
                     Border::Bottom => map.to_physical(end).with_z(extent.min),
                     Border::Top => map.to_physical(end).with_z(extent.max),
                 };
-                Self { time, border: part.into(), position, outward }
+                Self { time, border: part, position, outward }
             }
         }
     }

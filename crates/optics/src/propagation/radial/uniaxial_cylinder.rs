@@ -3,8 +3,8 @@
 use super::core_integrals::RadialQuadratic;
 use super::transformed_shell::VirtualLine;
 use super::uniaxial_wave::{UniaxialPoint, transport};
-use super::{Border, PathPoint, RadialEnd};
-use crate::geometry::{Cylinder, CylinderPart, Extent};
+use super::{PathPoint, RadialEnd};
+use crate::geometry::{Border, Cylinder, Extent};
 use crate::medium::{Medium, ModeKind};
 use crate::transformation::{RadialMap, Symmetry, root_in_bracket};
 use glam::{DVec2, DVec3};
@@ -141,10 +141,10 @@ impl UniaxialCylinder {
         let distance = to_core.unwrap_or(distance);
         let end = position + direction * distance;
         let (border, outward, position) = if to_core.is_some() {
-            let radial = core.outward(CylinderPart::Lateral, end);
+            let radial = core.outward(Border::Inner, end);
             (Border::Inner, -radial, radial * self.map.inner + DVec3::Z * end.z)
         } else {
-            (part.into(), whole.outward(part, end), self.on_border(part.into(), end))
+            (part, whole.outward(part, end), self.on_border(part, end))
         };
         let optical_path = distance * wave_vector.length();
         PathSegment { border, position, outward, wave_vector, optical_path }
@@ -238,7 +238,7 @@ impl TurningPath {
         let whole = Cylinder { radius: cylinder.map.outer, extent: cylinder.extent };
         let (share, part) = whole.time_to_end(position.z, end.z - begin.z);
         if share < 1.0 {
-            border = part.into();
+            border = part;
             let goal = begin.z + share * (end.z - begin.z);
             let off = |eta: f64| (motion.integrals(eta).z - goal, motion.z_slope(eta));
             eta = root_in_bracket((start, begin.z - goal), (eta, end.z - goal), off);
