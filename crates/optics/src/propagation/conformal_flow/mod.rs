@@ -291,27 +291,10 @@ impl ConformalFlow {
         })
     }
 
-    /// Whether a ray can set out so.
-    fn sets_out(&self, start: &VirtualPoint, wave_vector: DVec3) -> Result<(), FlowError> {
-        if !wave_vector.is_finite() {
-            return Err(FlowError::NotFinite);
-        }
-        let length = wave_vector.length();
-        if (length - start.index).abs() > 1e-6 * start.index {
-            return Err(FlowError::WaveVector { length, index: start.index });
-        }
-        Ok(())
-    }
-
     /// Whether a straight line in virtual space leads to the mirror.
     fn aims_at_floor(&self, zeta: Complex64, momentum: Complex64) -> bool {
         let x = zeta.re - momentum.re / momentum.im * zeta.im;
         momentum.im < 0.0 && x > self.cut.x_min && x < self.cut.x_max
-    }
-
-    /// The distance over which an error of direction grows into one of position.
-    fn lever(&self) -> f64 {
-        0.5 * (self.cut.x_max - self.cut.x_min).max(self.cut.y_max - self.map.level())
     }
 
     fn end(&self, start: &VirtualPoint, arrival: &Arrival) -> FlowEnd {

@@ -47,6 +47,18 @@ enum RayStatus {
 }
 
 impl RayStatus {
+    /// That of a ray that is to set out so.
+    fn at_start(&VirtualPoint { index, .. }: &VirtualPoint, wave_vector: DVec3) -> Self {
+        let length = wave_vector.length();
+        if !wave_vector.is_finite() {
+            Self::Failed(FlowError::NotFinite)
+        } else if (length - index).abs() > 1e-6 * index {
+            Self::Failed(FlowError::WaveVector { length, index })
+        } else {
+            Self::Stepping(0.0)
+        }
+    }
+
     /// The next move, if there is one.
     fn ahead(&self) -> Option<f64> {
         match self {
@@ -66,9 +78,10 @@ impl RayPacket {
     ) -> Self {
         let ray = RayState { status: RayStatus::Absent, stride: 0.0, steps: 0 };
         let control = flow.step_control(tolerance, false);
-        let weight = [0.0; LANES];
+        let (cut, zeros) = (&flow.cut, [0.0; LANES]);
+        let lever = 0.5 * (cut.x_max - cut.x_min).max(cut.y_max - flow.map.level());
         let mut packet = Self {
-            rays: Rays { p_z: [0.0; LANES], weight, lever: flow.lever() },
+            rays: Rays { p_z: zeros, weight: zeros, lever },
             controls: [control; LANES],
             states: [ray; LANES],
             begin: Points::default(),
@@ -77,10 +90,7 @@ impl RayPacket {
         };
         for (i, start) in starts.iter().enumerate() {
             let Some((start, wave_vector)) = start else { continue };
-            packet.states[i].status = match flow.sets_out(start, *wave_vector) {
-                Ok(()) => RayStatus::Stepping(0.0),
-                Err(error) => RayStatus::Failed(error),
-            };
+            packet.states[i].status = RayStatus::at_start(start, *wave_vector);
             let p = start.half.mirrored(*wave_vector);
             packet.rays.p_z[i] = p.z;
             packet.here.zeta.put(i, start.virtual_position);
@@ -204,10 +214,7 @@ impl RayPacket {
     fn moved(&mut self, flow: &ConformalFlow, i: usize) {
         let ray = &mut self.states[i];
         match &mut ray.status {
-            RayStatus::Stepping(length) => {
-                let length = *length;
-                self.stepped(flow, i, length);
-            }
+            &mut RayStatus::Stepping(length) => self.stepped(flow, i, length),
             RayStatus::RefiningRoot(refinement) => {
                 self.here.take(i, &self.result.end);
                 match refinement.check(&self.here.at(i), &flow.events, self.controls[i].p_z) {
