@@ -60,9 +60,7 @@ impl<'s> Convex<'s> {
             Solid::Tilted { solid, pose } => {
                 Self::of(solid).map(|own| Self { pose: pose.after(&own.pose), ..own })
             }
-            Solid::Nothing | Solid::Ball { .. } | Solid::CutBall { .. } | Solid::Hollow { .. } => {
-                None
-            }
+            _ => None,
         }
     }
 

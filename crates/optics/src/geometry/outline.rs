@@ -127,11 +127,8 @@ impl Cap {
     /// The two ends of a prism.
     #[must_use]
     pub fn both(outline: &Outline, ends: [f64; 2]) -> [Self; 2] {
-        [(ends[0], -DVec3::Z), (ends[1], DVec3::Z)].map(|(z, normal)| Self {
-            outline: outline.clone(),
-            z,
-            normal,
-        })
+        let cap = |z: f64, normal: DVec3| Self { outline: outline.clone(), z, normal };
+        [cap(ends[0], -DVec3::Z), cap(ends[1], DVec3::Z)]
     }
 
     /// The distance at which a ray meets the cap, from zero on.

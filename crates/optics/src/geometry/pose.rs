@@ -5,7 +5,6 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// A rotation followed by a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[must_use]
 pub struct Pose {
     origin: DVec3,
     turn: Turn,
@@ -27,6 +26,7 @@ impl Pose {
 
     /// A device whose origin is at `origin` (cm), turned counterclockwise seen from +z by
     /// `rotation` degrees. Quarter turns are exact.
+    #[must_use]
     pub fn new(origin: DVec3, rotation: f64) -> Self {
         let turn = rotation.rem_euclid(360.0);
         let (sin, cos) = match turn {
@@ -44,6 +44,7 @@ impl Pose {
     /// x. For the zero vector, which is no direction, its axis stays z.
     ///
     /// Along z it is [`Pose::new`]; axes along x, y and -z are exact, too.
+    #[must_use]
     pub fn with_axis(origin: DVec3, rotation: f64, axis: DVec3) -> Self {
         let upright = Self::new(origin, rotation);
         let axis = unit(axis).unwrap_or(DVec3::Z);
@@ -64,6 +65,7 @@ impl Pose {
     }
 
     /// The frame at `origin` whose axes are the columns of a rotation matrix.
+    #[must_use]
     pub fn from_rotation(origin: DVec3, rotation: DMat3) -> Self {
         let turn = if rotation.z_axis == DVec3::Z {
             Turn::Upright { cos: rotation.x_axis.x, sin: rotation.x_axis.y }
@@ -74,6 +76,7 @@ impl Pose {
     }
 
     /// The place of what is at `first` in the frame that is at this pose.
+    #[must_use]
     pub fn after(&self, first: &Self) -> Self {
         let origin = self.to_world(first.origin);
         let turn = match (self.turn, first.turn) {
@@ -86,6 +89,7 @@ impl Pose {
     }
 
     /// The world in the device's frame: what undoes the pose.
+    #[must_use]
     pub fn inverse(&self) -> Self {
         let turn = match self.turn {
             Turn::Upright { cos, sin } => Turn::Upright { cos, sin: -sin },

@@ -77,15 +77,10 @@ pub fn follow(
     start: &CurvedRay,
     surfaces: impl Iterator<Item = FlatOrRound>,
 ) -> Option<WayOut> {
-    let mut nearest: Option<(u16, FlatOrRound, f64)> = None;
-    for (number, surface) in (0u16..).zip(surfaces) {
-        if let Some(parameter) = medium.way_out(start, &surface)
-            && nearest.is_none_or(|(.., least)| parameter < least)
-        {
-            nearest = Some((number, surface, parameter));
-        }
-    }
-    let (number, surface, parameter) = nearest?;
+    let ways = (0u16..)
+        .zip(surfaces)
+        .filter_map(|(number, surface)| Some((number, surface, medium.way_out(start, &surface)?)));
+    let (number, surface, parameter) = ways.reduce(|a, b| if b.2 < a.2 { b } else { a })?;
     let (mut ray, optical_path) = medium.way_point(start, parameter);
     ray.position = surface.project(ray.position);
     let before = medium.squared_index(start.position);

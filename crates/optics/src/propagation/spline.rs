@@ -176,21 +176,17 @@ fn coefficients(samples: impl Iterator<Item = f64>, c: &mut [f64], factors: &mut
     let far = (8.0 * c[m - 3] - c[m - 2] - c[m - 4]) / 6.0;
     let (second, next_to_last) = (c[2], c[m - 3]);
     // Thomas's algorithm for what lies between.
-    let unknowns = 3..m - 3;
-    if !unknowns.is_empty() {
-        let mut above = 0.0;
-        let mut before = near;
-        for i in unknowns.clone() {
-            let pivot = 4.0 - above;
-            let end = if i + 1 == m - 3 { far } else { 0.0 };
-            c[i] = (6.0 * c[i] - end - before) / pivot;
-            above = pivot.recip();
-            factors[i] = above;
-            before = c[i];
-        }
-        for i in (3..m - 4).rev() {
-            c[i] -= factors[i] * c[i + 1];
-        }
+    let (mut above, mut before) = (0.0, near);
+    for i in 3..m - 3 {
+        let pivot = 4.0 - above;
+        let end = if i + 1 == m - 3 { far } else { 0.0 };
+        c[i] = (6.0 * c[i] - end - before) / pivot;
+        above = pivot.recip();
+        factors[i] = above;
+        before = c[i];
+    }
+    for i in (3..m - 4).rev() {
+        c[i] -= factors[i] * c[i + 1];
     }
     (c[2], c[m - 3]) = (near, far);
     c[1] = 6.0 * second - 4.0 * c[2] - c[3];

@@ -323,19 +323,15 @@ impl ConformalMap {
     pub fn index_range(&self, cut: &Truncation) -> (f64, f64) {
         let (start, end) = (self.floor_parameter(cut.x_min), self.floor_parameter(cut.x_max));
         let between = |a: f64, b: f64, s: f64| a + (b - a) * s;
-        let side = |x: f64, s: f64| {
-            let y = between(self.floor_height_at(x), cut.y_max, s);
-            self.invert(Complex64::new(x, y))
-        };
         let index = |zeta: Complex64| self.jet(zeta).stretch().recip();
+        let at = |x: f64, y: f64| self.invert(Complex64::new(x, y)).map(index);
+        let side = |x: f64, s: f64| at(x, between(self.floor_height_at(x), cut.y_max, s));
         let samples = samples_over((cut.x_max - cut.x_min).max(cut.y_max) / self.scale());
         let border: [&dyn Fn(f64) -> Option<f64>; 4] = [
             &|s| Some(index(between(start, end, s).into())),
-            &|s| side(cut.x_min, s).map(index),
-            &|s| side(cut.x_max, s).map(index),
-            &|s| {
-                self.invert(Complex64::new(between(cut.x_min, cut.x_max, s), cut.y_max)).map(index)
-            },
+            &|s| side(cut.x_min, s),
+            &|s| side(cut.x_max, s),
+            &|s| at(between(cut.x_min, cut.x_max, s), cut.y_max),
         ];
         border
             .map(|side| range_over(samples, side))

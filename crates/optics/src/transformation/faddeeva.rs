@@ -62,7 +62,8 @@ pub(super) fn faddeeva(t: Complex64) -> Complex64 {
         // w_F(-conj t) = conj w_F(t)
         return Complex64::new(w.re, w.im * 1.0_f64.copysign(t.re));
     }
-    if t.im <= -0.6 { reflected(t) } else { continued_fraction(t) }
+    // In the lower half plane w_F(t) = 2 exp(-t²) - w_F(-t).
+    if t.im <= -0.6 { 2.0 * (-t * t).exp() - faddeeva(-t) } else { continued_fraction(t) }
 }
 
 /// The Faddeeva function of four arguments.
@@ -169,11 +170,6 @@ fn continued_fraction(t: Complex64) -> Complex64 {
     let polynomial = |c: &[f64]| c.iter().rev().fold(Complex64::ZERO, |sum, c| sum * v + c);
     let ratio = polynomial(&NUMERATOR) / polynomial(&DENOMINATOR);
     Complex64::new(0.0, 0.5 * FRAC_2_SQRT_PI) * inverse * ratio
-}
-
-/// w_F(t) = 2 exp(-t²) - w_F(-t), for the lower half plane.
-fn reflected(t: Complex64) -> Complex64 {
-    2.0 * (-t * t).exp() - faddeeva(-t)
 }
 
 /// c_n of w_F(t0 + d) = Σ c_n d^n; from w_F'' = -2 t w_F' - 2 w_F follows the recurrence

@@ -31,7 +31,9 @@ pub(crate) trait Number:
     fn conjugate(self) -> Self;
 
     /// The real part.
-    fn real(self) -> f64;
+    fn real(self) -> f64 {
+        Into::<Complex64>::into(self).re
+    }
 
     /// A vector of such numbers in the world.
     type Vector: Copy;
@@ -45,10 +47,6 @@ pub(crate) trait Number:
 
 impl Number for f64 {
     fn conjugate(self) -> Self {
-        self
-    }
-
-    fn real(self) -> f64 {
         self
     }
 
@@ -66,10 +64,6 @@ impl Number for f64 {
 impl Number for Complex64 {
     fn conjugate(self) -> Self {
         self.conj()
-    }
-
-    fn real(self) -> f64 {
-        self.re
     }
 
     type Vector = ComplexVector;
