@@ -24,18 +24,19 @@ fn carpets() -> [(&'static str, GradedHalf); 3] {
     // The map itself is held against its definition in the tests of the optics crate.
     let cut = Truncation::centred(50.0, HEIGHT);
     let map = QuasiConformalMap::new(28.0, 4.25, &cut).unwrap();
-    let strength = map.strength();
+    let index_scale = map.index_scale();
     let quasi_conformal = move |zeta| {
         let jet = map.jet(zeta);
         [jet.f, jet.f1, jet.f2]
     };
     // The grating is the finest of the three.
-    let half =
-        |jet, strength, half_width| GradedHalf::new(jet, strength, [half_width, HEIGHT], 0.012);
+    let half = |jet, index_scale, half_width| {
+        GradedHalf::new(jet, index_scale, [half_width, HEIGHT], 0.012)
+    };
     [
         ("gaussian-carpet", half(gaussian(10.02, 4.25), 1.0, 25.0)),
         ("grating-carpet", half(Box::new(grating), 1.0, 30.0)),
-        ("quasi-conformal-carpet", half(Box::new(quasi_conformal), strength, 25.0)),
+        ("quasi-conformal-carpet", half(Box::new(quasi_conformal), index_scale, 25.0)),
     ]
 }
 

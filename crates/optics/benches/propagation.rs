@@ -38,18 +38,18 @@ const MAPS: [&str; 3] = ["gaussian", "grating", "quasi_conformal"];
 
 fn flow(name: &str) -> ConformalFlow {
     let cut = Truncation::centred(50.0, 28.57);
-    let (map, strength): (ConformalMap, f64) = match name {
+    let (map, index_scale): (ConformalMap, f64) = match name {
         "gaussian" => {
             (ConformalMap::Gaussian(GaussianMap::new(10.02, 4.25).expect("a sound map")), 1.0)
         }
         "grating" => (ConformalMap::Grating(GratingMap::new(20.0, 1.5).expect("a sound map")), 1.0),
         _ => {
             let map = QuasiConformalMap::new(28.0, 4.25, &cut).expect("a sound map");
-            let strength = map.strength();
-            (ConformalMap::QuasiConformal(map), strength)
+            let index_scale = map.index_scale();
+            (ConformalMap::QuasiConformal(map), index_scale)
         }
     };
-    ConformalFlow::new(map, cut, Extent::ENDLESS, strength)
+    ConformalFlow::new(map, cut, Extent::ENDLESS, index_scale)
 }
 
 /// Rays just inside the face at the least x, up to 20 degrees off the axis, neighbours being alike as
@@ -130,7 +130,7 @@ fn map_jet(bencher: Bencher, map: &str) {
         .collect();
     bencher.counter(ItemsCount::new(LEGS)).bench(|| {
         for zeta in black_box(&points) {
-            black_box(flow.map().jet(*zeta));
+            let _ = black_box(flow.map().jet(*zeta));
         }
     });
 }
@@ -157,7 +157,10 @@ fn radial(name: &str) -> (RadialFlow, ModeKind) {
     let lens = |lens| (RadialFlow::Lens(lens), ModeKind::Shared);
     let shell = |symmetry| {
         let map = RadialMap::new(CORE, RADIUS, symmetry);
-        (RadialFlow::Transformed(TransformedShell::new(map, Extent::ENDLESS)), ModeKind::Shared)
+        (
+            RadialFlow::Transformed(TransformedShell { map, extent: Extent::ENDLESS }),
+            ModeKind::Shared,
+        )
     };
     let mode = if name.ends_with("_o") { ModeKind::Ordinary } else { ModeKind::Extraordinary };
     let cylinder = |axis| {
@@ -201,7 +204,7 @@ fn radial_flow(bencher: Bencher, name: &str) {
     let starts = radial_starts(&flow, mode);
     bencher.counter(ItemsCount::new(LEGS)).bench(|| {
         for (position, wave_vector) in black_box(&starts) {
-            black_box(flow.advance(*position, *wave_vector, mode));
+            let _ = black_box(flow.advance(*position, *wave_vector, mode));
         }
     });
 }

@@ -153,32 +153,23 @@ impl Complexes {
     }
 }
 
-impl<S: Simd> Add for Lanes<S> {
-    type Output = Self;
+/// An operator on the numbers of two `Lanes`, by the instruction for it.
+macro_rules! operator {
+    ($operator:ident, $method:ident, $instruction:ident) => {
+        impl<S: Simd> $operator for Lanes<S> {
+            type Output = Self;
 
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self { values: self.simd.add_f64s(self.values, other.values), ..self }
-    }
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self { values: self.simd.$instruction(self.values, other.values), ..self }
+            }
+        }
+    };
 }
 
-impl<S: Simd> Sub for Lanes<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self { values: self.simd.sub_f64s(self.values, other.values), ..self }
-    }
-}
-
-impl<S: Simd> Mul for Lanes<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Self { values: self.simd.mul_f64s(self.values, other.values), ..self }
-    }
-}
+operator!(Add, add, add_f64s);
+operator!(Sub, sub, sub_f64s);
+operator!(Mul, mul, mul_f64s);
 
 impl<S: Simd> Mul<f64> for Lanes<S> {
     type Output = Self;

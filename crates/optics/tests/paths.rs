@@ -75,10 +75,10 @@ fn rays_in_anisotropic_rounds() {
     let cylinder =
         |axis| RadialFlow::Uniaxial(UniaxialCylinder::new(4.0, 10.0, axis, Extent::ENDLESS));
     let shell = |symmetry| {
-        RadialFlow::Transformed(TransformedShell::new(
-            RadialMap::new(4.0, 10.0, symmetry),
-            Extent::ENDLESS,
-        ))
+        RadialFlow::Transformed(TransformedShell {
+            map: RadialMap::new(4.0, 10.0, symmetry),
+            extent: Extent::ENDLESS,
+        })
     };
     for (name, flow) in [
         ("transmuted", RadialFlow::Transmuted(TransmutedSphere::new(10.0))),

@@ -11,7 +11,7 @@ use crate::device::Convex;
 use crate::photograph::{Equirectangular, LoadError, Pyramid};
 use crate::scene::{Appearance, DeviceSettings};
 use glam::DVec3;
-use optics::geometry::{Cylinder, CylinderPart, Pose};
+use optics::geometry::{Border, Cylinder, Pose};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -116,7 +116,7 @@ fn on_cylinder(point: DVec3, cylinder: &Cylinder) -> Spot {
         let normal = DVec3::Z * point.z.signum();
         return on_face(point, normal, DVec3::Y, DVec3::new(radius, radius, end));
     }
-    let normal = cylinder.outward(CylinderPart::Side, point);
+    let normal = cylinder.outward(Border::Outer, point);
     Spot {
         normal,
         position: [0.5 + (-normal.y).atan2(-normal.x) / TAU, 0.5 - point.z / (2.0 * end)],

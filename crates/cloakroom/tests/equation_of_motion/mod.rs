@@ -17,7 +17,7 @@ pub struct GradedHalf {
     /// The map.
     pub jet: Jet,
     /// c.
-    pub strength: f64,
+    pub index_scale: f64,
     /// Half its size along x, cm.
     pub half_width: f64,
     /// Its size along y from the floor's level, cm.
@@ -54,9 +54,9 @@ pub fn gaussian(w: f64, h: f64) -> Jet {
 
 impl GradedHalf {
     /// The medium of a map cut at half a width and a height, followed in steps of a length.
-    pub fn new(jet: Jet, strength: f64, [half_width, height]: [f64; 2], step: f64) -> Self {
+    pub fn new(jet: Jet, index_scale: f64, [half_width, height]: [f64; 2], step: f64) -> Self {
         let nearby = Cell::new(Complex64::I * height);
-        Self { jet, strength, half_width, height, step, nearby }
+        Self { jet, index_scale, half_width, height, step, nearby }
     }
 
     /// The virtual point of a physical one by Newton's method, from the last one found.
@@ -81,7 +81,7 @@ impl GradedHalf {
     /// n² = c²/|f'|² and its gradient.
     pub fn squared_index(&self, r: DVec3) -> SquaredIndex {
         let [_, f1, f2] = (self.jet)(self.invert(r));
-        let value = self.strength.powi(2) / f1.norm_sqr();
+        let value = self.index_scale.powi(2) / f1.norm_sqr();
         // The gradient of ln n in virtual space is -conj(f''/f'); one more conj(f') takes it to physical space.
         let slope = -2.0 * value * (f2 / (f1 * f1)).conj();
         SquaredIndex { value, gradient: DVec3::new(slope.re, slope.im, 0.0) }

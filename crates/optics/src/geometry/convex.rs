@@ -35,19 +35,15 @@ enum Bound {
 impl Bound {
     /// How deep a point lies, and the gradient of that.
     fn depth(&self, at: DVec3) -> (f64, DVec3) {
-        match *self {
-            Self::Plane { normal, offset } => (offset - normal.dot(at), -normal),
+        let (aside, radius) = match *self {
+            Self::Plane { normal, offset } => return (offset - normal.dot(at), -normal),
             Self::Tube { point, axis, radius } => {
-                let aside = (at - point).reject_from_normalized(axis);
-                let distance = aside.length();
-                (radius - distance, -aside / distance.max(f64::MIN_POSITIVE))
+                ((at - point).reject_from_normalized(axis), radius)
             }
-            Self::Ball { centre, radius } => {
-                let aside = at - centre;
-                let distance = aside.length();
-                (radius - distance, -aside / distance.max(f64::MIN_POSITIVE))
-            }
-        }
+            Self::Ball { centre, radius } => (at - centre, radius),
+        };
+        let distance = aside.length();
+        (radius - distance, -aside / distance.max(f64::MIN_POSITIVE))
     }
 }
 
@@ -64,9 +60,7 @@ impl<'s> Convex<'s> {
             Solid::Tilted { solid, pose } => {
                 Self::of(solid).map(|own| Self { pose: pose.after(&own.pose), ..own })
             }
-            Solid::Nothing | Solid::Ball { .. } | Solid::CutBall { .. } | Solid::Hollow { .. } => {
-                None
-            }
+            _ => None,
         }
     }
 
@@ -251,18 +245,17 @@ impl<'s> Convex<'s> {
 
 /// Whether two bodies, one of them a cut ball, press into each other by more than `slack`.
 pub(super) fn press(one: &Solid, other: &Solid, slack: f64) -> bool {
-    let bounded = |solid: &Solid| match solid {
-        Solid::Ball { centre, radius } => {
-            let ellipsoid = (*centre, DMat3::from_diagonal(DVec3::splat(*radius)));
-            Some((vec![Bound::Ball { centre: *centre, radius: *radius }], ellipsoid))
-        }
-        Solid::CutBall { centre, ball: CutBall { sphere, plane } } => {
-            let offset = plane.offset + plane.normal.dot(*centre);
-            let cut = Bound::Plane { normal: plane.normal, offset };
-            let ellipsoid = (*centre, DMat3::from_diagonal(DVec3::splat(sphere.radius)));
-            Some((vec![cut, Bound::Ball { centre: *centre, radius: sphere.radius }], ellipsoid))
-        }
-        _ => Convex::of(solid).map(|convex| (convex.bounds(slack), convex.ellipsoid())),
+    let bounded = |solid: &Solid| {
+        let (mut bounds, centre, radius) = match solid {
+            Solid::Ball { centre, radius } => (Vec::new(), *centre, *radius),
+            Solid::CutBall { centre, ball: CutBall { sphere, plane } } => {
+                let offset = plane.offset + plane.normal.dot(*centre);
+                (vec![Bound::Plane { normal: plane.normal, offset }], *centre, sphere.radius)
+            }
+            _ => return Convex::of(solid).map(|own| (own.bounds(slack), own.ellipsoid())),
+        };
+        bounds.push(Bound::Ball { centre, radius });
+        Some((bounds, (centre, DMat3::from_diagonal(DVec3::splat(radius)))))
     };
     let (Some(one), Some(other)) = (bounded(one), bounded(other)) else { return false };
     let first = one.1.1.determinant() < other.1.1.determinant();

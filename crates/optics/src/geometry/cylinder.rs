@@ -13,11 +13,13 @@ pub struct Cylinder {
     pub extent: Extent,
 }
 
-/// A part of the surface of a cylinder.
+/// A part of the border of a cylinder or a ball, or of a shell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CylinderPart {
-    /// The round side.
-    Side,
+pub enum Border {
+    /// The outer radius.
+    Outer,
+    /// The radius of the hole.
+    Inner,
     /// The end at the least z.
     Bottom,
     /// The end at the largest z.
@@ -58,32 +60,34 @@ impl Cylinder {
     /// How long a point inside or on the cylinder takes to leave it with a velocity, and through
     /// which part; infinitely long if it never does.
     #[must_use]
-    pub fn time_to_leave(&self, position: DVec3, velocity: DVec3) -> (f64, CylinderPart) {
+    pub fn time_to_leave(&self, position: DVec3, velocity: DVec3) -> (f64, Border) {
         let (x, v) = (position.truncate(), velocity.truncate());
         let inside = self.radius * self.radius - x.length_squared();
         let side = time_to_leave(v.length_squared(), x.dot(v), inside);
         let (end, part) = self.time_to_end(position.z, velocity.z);
-        if end < side { (end, part) } else { (side, CylinderPart::Side) }
+        if end < side { (end, part) } else { (side, Border::Outer) }
     }
 
     /// How long it takes to an end at a velocity along z.
-    pub(crate) fn time_to_end(&self, z: f64, velocity: f64) -> (f64, CylinderPart) {
+    pub(crate) fn time_to_end(&self, z: f64, velocity: f64) -> (f64, Border) {
         let (end, part) = if velocity < 0.0 {
-            (self.extent.min, CylinderPart::Bottom)
+            (self.extent.min, Border::Bottom)
         } else {
-            (self.extent.max, CylinderPart::Top)
+            (self.extent.max, Border::Top)
         };
         let time = if velocity == 0.0 { f64::INFINITY } else { ((end - z) / velocity).max(0.0) };
         (time, part)
     }
 
-    /// The outward unit normal of a part at a point near it.
+    /// The unit normal of a part at a point near it, away from the axis or the middle.
     #[must_use]
-    pub fn outward(&self, part: CylinderPart, position: DVec3) -> DVec3 {
+    pub fn outward(&self, part: Border, position: DVec3) -> DVec3 {
         match part {
-            CylinderPart::Side => position.with_z(0.0).try_normalize().unwrap_or(DVec3::X),
-            CylinderPart::Bottom => DVec3::NEG_Z,
-            CylinderPart::Top => DVec3::Z,
+            Border::Outer | Border::Inner => {
+                position.with_z(0.0).try_normalize().unwrap_or(DVec3::X)
+            }
+            Border::Bottom => DVec3::NEG_Z,
+            Border::Top => DVec3::Z,
         }
     }
 
@@ -91,12 +95,8 @@ impl Cylinder {
     #[must_use]
     pub fn ends(&self) -> Option<[Disc; 2]> {
         let [bottom, top] = self.extent.ends()?;
-        let radius = self.radius;
-        Some([(bottom, DVec3::NEG_Z), (top, DVec3::Z)].map(|(z, normal)| Disc {
-            radius,
-            z,
-            normal,
-        }))
+        let disc = |z: f64, normal: DVec3| Disc { radius: self.radius, z, normal };
+        Some([disc(bottom, DVec3::NEG_Z), disc(top, DVec3::Z)])
     }
 }
 
@@ -159,9 +159,9 @@ mod tests {
     fn points_leave_through_the_part_ahead() {
         let cylinder = Cylinder { radius: 2.0, extent: Extent::centred(Some(6.0)) };
         let from = DVec3::new(1.0, 0.0, 0.0);
-        assert_eq!(cylinder.time_to_leave(from, DVec3::X), (1.0, CylinderPart::Side));
+        assert_eq!(cylinder.time_to_leave(from, DVec3::X), (1.0, Border::Outer));
         let steep = DVec3::new(1.0, 0.0, -6.0);
-        assert_eq!(cylinder.time_to_leave(from, steep), (0.5, CylinderPart::Bottom));
-        assert_eq!(cylinder.time_to_leave(from, DVec3::Z * 2.0), (1.5, CylinderPart::Top));
+        assert_eq!(cylinder.time_to_leave(from, steep), (0.5, Border::Bottom));
+        assert_eq!(cylinder.time_to_leave(from, DVec3::Z * 2.0), (1.5, Border::Top));
     }
 }

@@ -36,19 +36,13 @@ pub enum CurvedSide {
     Image,
 }
 
-/// Which way a ray crosses the outline of the metal.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Sense {
-    Entering,
-    Leaving,
-}
-
-/// A ray, and the least t that counts of its points origin + t direction.
+/// A ray, the least t that counts of its points origin + t direction, and which way it is to cross the outline.
 #[derive(Clone, Copy)]
 struct Ray {
     origin: DVec2,
     direction: DVec2,
     t_min: f64,
+    leaving: bool,
 }
 
 /// Where a ray meets the metal.
@@ -148,16 +142,15 @@ impl FloorCurve {
     /// far out, only a positive `t_min` keeps such a ray off the other side). None if there is none.
     #[must_use]
     pub fn first_hit(&self, origin: DVec2, direction: DVec2, t_min: f64) -> Option<FloorHit> {
-        let ray = Ray { origin, direction, t_min };
+        let ray = Ray { origin, direction, t_min, leaving: false };
         if !self.may_hit(ray) {
             return None;
         }
-        let upper = self.first_on_curve(ray, Sense::Entering);
         let lower = match self.back {
-            MetalBack::MirrorImage => self.first_on_image(ray, Sense::Entering),
+            MetalBack::MirrorImage => self.first_on_side(CurvedSide::Image, ray),
             MetalBack::Flat(y) => self.first_on_plane(y, ray),
         };
-        let hits = [upper, lower, self.first_on_ends(ray)];
+        let hits = [self.first_on_curve(ray), lower, self.first_on_ends(ray)];
         hits.into_iter().flatten().min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
@@ -171,14 +164,8 @@ impl FloorCurve {
         direction: DVec2,
         t_min: f64,
     ) -> Option<FloorHit> {
-        let ray = Ray { origin, direction, t_min };
-        if !self.may_hit(ray) {
-            return None;
-        }
-        match side {
-            CurvedSide::Floor => self.first_on_curve(ray, Sense::Leaving),
-            CurvedSide::Image => self.first_on_image(ray, Sense::Leaving),
-        }
+        let ray = Ray { origin, direction, t_min, leaving: true };
+        self.may_hit(ray).then(|| self.first_on_side(side, ray))?
     }
 
     /// Whether an outline lies inside as a whole.
@@ -230,11 +217,14 @@ impl FloorCurve {
         sides.iter().any(|s| *s >= -slack) && sides.iter().any(|s| *s <= slack)
     }
 
-    /// The first crossing of the floor's mirror image.
-    fn first_on_image(&self, ray: Ray, sense: Sense) -> Option<FloorHit> {
+    /// The first crossing of the floor or of its mirror image.
+    fn first_on_side(&self, side: CurvedSide, ray: Ray) -> Option<FloorHit> {
+        if side == CurvedSide::Floor {
+            return self.first_on_curve(ray);
+        }
         let mirrored = |v: DVec2| DVec2::new(v.x, -v.y);
         let [origin, direction] = [ray.origin, ray.direction].map(mirrored);
-        self.first_on_curve(Ray { origin, direction, ..ray }, sense)
+        self.first_on_curve(Ray { origin, direction, ..ray })
             .map(|hit| FloorHit { normal: mirrored(hit.normal), ..hit })
     }
 
@@ -243,11 +233,8 @@ impl FloorCurve {
     /// On the ray, F(X) = cross(f(X) - origin, direction) vanishes. Its slope vanishes where the curve is
     /// parallel to the ray: at most once between two knots. So F is monotone on known intervals, and
     /// no root can be missed.
-    fn first_on_curve(
-        &self,
-        Ray { origin, direction, t_min }: Ray,
-        sense: Sense,
-    ) -> Option<FloorHit> {
+    fn first_on_curve(&self, ray: Ray) -> Option<FloorHit> {
+        let Ray { origin, direction, t_min, leaving } = ray;
         let along = Complex64::new(direction.x, direction.y);
         let cross = |v: Complex64| (v.conj() * along).im;
         let offset = Complex64::new(origin.x, origin.y);
@@ -266,10 +253,7 @@ impl FloorCurve {
             let t = ((here.point - offset) * along.conj()).re / along.norm_sqr();
             let normal = Complex64::i() * here.tangent / here.tangent.norm();
             let outward = (normal.conj() * along).re;
-            let counts = match sense {
-                Sense::Entering => outward < 0.0,
-                Sense::Leaving => outward > 0.0,
-            };
+            let counts = if leaving { outward > 0.0 } else { outward < 0.0 };
             if counts && t >= t_min && best.is_none_or(|hit| t < hit.t) {
                 let normal = DVec2::new(normal.re, normal.im);
                 best = Some(FloorHit { t, normal });
@@ -295,7 +279,11 @@ impl FloorCurve {
     }
 
     /// A hit of the flat back from below.
-    fn first_on_plane(&self, y: f64, Ray { origin, direction, t_min }: Ray) -> Option<FloorHit> {
+    fn first_on_plane(
+        &self,
+        y: f64,
+        Ray { origin, direction, t_min, .. }: Ray,
+    ) -> Option<FloorHit> {
         let [first, last] = self.ends();
         let t = (y - origin.y) / direction.y;
         let x = origin.x + t * direction.x;
@@ -305,7 +293,7 @@ impl FloorCurve {
     }
 
     /// A hit of the vertical cuts through the metal.
-    fn first_on_ends(&self, Ray { origin, direction, t_min }: Ray) -> Option<FloorHit> {
+    fn first_on_ends(&self, Ray { origin, direction, t_min, .. }: Ray) -> Option<FloorHit> {
         let [first, last] = self.ends();
         [(first, -1.0), (last, 1.0)]
             .into_iter()

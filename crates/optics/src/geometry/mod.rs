@@ -5,7 +5,6 @@
 //! Inside a convex cell a ray leaves through the first [`Plane`] ahead. A [`Solid`] is the space that
 //! something takes up.
 
-mod cap;
 mod convex;
 mod cut_ball;
 mod cylinder;
@@ -20,14 +19,13 @@ mod solid;
 mod sphere;
 mod wall;
 
-pub use cap::Cap;
 pub use convex::REACH;
 pub use cut_ball::CutBall;
-pub use cylinder::{Cylinder, CylinderPart, Disc};
+pub use cylinder::{Border, Cylinder, Disc};
 pub use flat_or_round::FlatOrRound;
 pub use floor_curve::{CurvedSide, FloorCurve, FloorHit, MetalBack};
 pub use hollow::Hole;
-pub use outline::Outline;
+pub use outline::{Cap, Outline};
 pub use plane::Plane;
 pub use polygon::{ConvexPart, Polygon, PolygonError, SAME_POINT};
 pub use pose::Pose;

@@ -1,37 +1,34 @@
-//! Convex outlines in the xy-plane.
+//! Convex outlines in the xy-plane, and flat ends of bodies that extend along z.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
 /// A convex polygon, its corners in counterclockwise order; two corners make a line.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Outline {
     corners: Vec<DVec2>,
 }
 
 impl Outline {
     /// The convex polygon with the given corners, counterclockwise.
-    #[must_use]
     pub fn new(corners: Vec<DVec2>) -> Self {
         Self { corners }
     }
 
     /// A rectangle centred on the origin.
-    #[must_use]
     pub fn rectangle(half_width: f64, half_height: f64) -> Self {
         let (w, h) = (half_width, half_height);
         Self::new([(-w, -h), (w, -h), (w, h), (-w, h)].map(DVec2::from).to_vec())
     }
 
     /// A circle, with corners on it.
-    #[must_use]
     pub fn circle(centre: DVec2, radius: f64) -> Self {
         let corner = |k: u32| centre + radius * DVec2::from_angle(TAU * f64::from(k) / 96.0);
         Self::new((0..96).map(corner).collect())
     }
 
     /// The smallest convex polygon around points.
-    #[must_use]
     pub fn hull(mut points: Vec<DVec2>) -> Self {
         // Andrew's monotone chain: the lower side from left to right, then the upper one back.
         points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
@@ -112,6 +109,36 @@ impl Outline {
             })
         };
         !separated_by(self, other) && !separated_by(other, self)
+    }
+}
+
+/// The flat end of a prism: an outline in a plane of constant z.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cap {
+    /// The shape of the end.
+    pub outline: Outline,
+    /// Where it lies, cm.
+    pub z: f64,
+    /// Outward unit normal, z or -z.
+    pub normal: DVec3,
+}
+
+impl Cap {
+    /// The two ends of a prism.
+    #[must_use]
+    pub fn both(outline: &Outline, ends: [f64; 2]) -> [Self; 2] {
+        let cap = |z: f64, normal: DVec3| Self { outline: outline.clone(), z, normal };
+        [cap(ends[0], -DVec3::Z), cap(ends[1], DVec3::Z)]
+    }
+
+    /// The distance at which a ray that comes from outside meets the cap, from zero on.
+    #[must_use]
+    pub fn hit(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        if direction.dot(self.normal) >= 0.0 {
+            return None;
+        }
+        let t = (self.z - origin.z) / direction.z;
+        (t >= 0.0 && self.outline.contains((origin + direction * t).truncate())).then_some(t)
     }
 }
 

@@ -105,7 +105,6 @@ impl Polygon {
     }
 
     /// A convex part as an outline.
-    #[must_use]
     pub fn outline(&self, part: &ConvexPart) -> Outline {
         Outline::new(part.iter().map(|&i| self.corners[i]).collect())
     }
@@ -166,10 +165,9 @@ fn edges(part: &[usize]) -> impl Iterator<Item = [usize; 2]> + '_ {
 /// Two parts as one, without the cut [i, j] of the first, which is [j, i] in the second.
 fn joined(one: &[usize], other: &[usize], [i, j]: [usize; 2]) -> ConvexPart {
     let from = |part: &[usize], start: usize| {
-        let at = part.iter().position(|&corner| corner == start).unwrap_or(0);
-        let mut turned = part.to_vec();
-        turned.rotate_left(at);
-        turned
+        let (before, after) =
+            part.split_at(part.iter().position(|&corner| corner == start).unwrap_or(0));
+        [after, before].concat()
     };
     // j ... i of the first, then what lies between i and j in the second.
     let mut corners = from(one, j);

@@ -168,14 +168,12 @@ impl Pose {
     }
 
     /// A field of the world in the device's frame.
-    #[must_use]
     #[inline]
     pub fn field_to_local(&self, field: ComplexVector) -> ComplexVector {
         ComplexVector::new(self.vector_to_local(field.re), self.vector_to_local(field.im))
     }
 
     /// A field of the device's frame in the world.
-    #[must_use]
     #[inline]
     pub fn field_to_world(&self, field: ComplexVector) -> ComplexVector {
         ComplexVector::new(self.vector_to_world(field.re), self.vector_to_world(field.im))

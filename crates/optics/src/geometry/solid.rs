@@ -10,6 +10,7 @@ pub const TOUCHING: f64 = 1e-9;
 
 /// A convex body, or one with a hole.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub enum Solid {
     /// Nothing at all.
     Nothing,
@@ -61,19 +62,16 @@ pub enum Solid {
 
 impl Solid {
     /// A round cylinder about the z axis.
-    #[must_use]
     pub fn cylinder(radius: f64, extent: Extent) -> Self {
         Self::Cylinder { centre: DVec2::ZERO, radius, extent }
     }
 
     /// A ball about the origin.
-    #[must_use]
     pub fn ball(radius: f64) -> Self {
         Self::Ball { centre: DVec3::ZERO, radius }
     }
 
     /// The body with a hole in it.
-    #[must_use]
     pub fn with_hole(self, hole: Hole) -> Self {
         Self::Hollow { whole: Box::new(self), hole: Box::new(hole) }
     }
@@ -145,7 +143,6 @@ impl Solid {
     }
 
     /// The body at its place in the world.
-    #[must_use]
     pub fn placed(&self, pose: &Pose) -> Self {
         let axis = pose.axis();
         let aside = axis.truncate().abs().max_element();
@@ -298,7 +295,6 @@ impl Solid {
 
     /// The outline of what it hides of the xy-plane, seen along z; round ones with corners. What has no end is cut
     /// at [`REACH`].
-    #[must_use]
     pub fn shadow(&self) -> Outline {
         match self {
             Self::Nothing => Outline::new(Vec::new()),

@@ -17,12 +17,10 @@ pub fn transmit_antireflection<const N: usize>(
     normal: DVec3,
 ) -> OutgoingWaves<N> {
     let tangential = wave.wave_vector - normal * wave.wave_vector.dot(normal);
-    let split = || split(incident_medium, transmitted_medium, wave, normal);
-    let Some(surface) = transmitted_medium.wave_surface() else {
-        return split();
-    };
-    let Roots::Real { plus, .. } = surface.roots(tangential, normal) else {
-        return split();
+    let surface = transmitted_medium.wave_surface();
+    let waves = surface.map(|surface| (surface, surface.roots(tangential, normal)));
+    let Some((surface, Roots::Real { plus, .. })) = waves else {
+        return split(incident_medium, transmitted_medium, wave, normal);
     };
     let wave_vector = tangential + normal * plus;
     let direction = surface.ray_direction(wave_vector);

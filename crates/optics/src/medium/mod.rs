@@ -33,6 +33,7 @@ use glam::{DMat3, DVec3};
 
 /// A homogeneous medium.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Medium {
     real: Tensors,
     /// The imaginary parts, if it absorbs.
@@ -188,7 +189,6 @@ impl Medium {
 
     /// A dielectric of refractive index `index` (µ = 1), for indices known to be positive and
     /// finite: the local medium of a graded index.
-    #[must_use]
     pub fn dielectric(index: f64) -> Self {
         debug_assert!(index.is_finite() && index > 0.0, "index {index}");
         Self::isotropic_unchecked(index * index, 1.0)
@@ -213,7 +213,6 @@ impl Medium {
     /// The impedance-matched medium ε = µ = `tensor` of a coordinate map, given with its inverse and
     /// its determinant, for tensors known to be symmetric and positive definite: the local medium of
     /// a transformation. Near a singular point only its maker knows the latter two.
-    #[must_use]
     pub fn transformed(tensor: DMat3, inverse: DMat3, determinant: f64) -> Self {
         debug_assert!(determinant.is_finite() && determinant > 0.0, "determinant {determinant}");
         let surface = WaveSurface { form: tensor, constant: determinant };
@@ -235,15 +234,12 @@ impl Medium {
     /// The permittivity and permeability tensors with their imaginary parts.
     #[must_use]
     pub fn tensors(&self) -> (Tensor, Tensor) {
-        let (e, m) = self
-            .absorption
-            .map_or((DMat3::ZERO, DMat3::ZERO), |a| (a.permittivity, a.permeability));
+        let [e, m] = self.absorption.map_or([DMat3::ZERO; 2], |a| [a.permittivity, a.permeability]);
         (Tensor { re: self.real.permittivity, im: e }, Tensor { re: self.real.permeability, im: m })
     }
 
     /// The same medium, its waves found by the general eigenproblem instead of a closed form: slower,
     /// and a check on the closed forms.
-    #[must_use]
     pub fn without_closed_form(self) -> Self {
         Self { class: Class::General, ..self }
     }
@@ -290,13 +286,11 @@ impl Medium {
     }
 
     /// The magnetic field H = µ⁻¹ (p × E) of a wave with wave vector `p` and electric field `electric`.
-    #[must_use]
     pub fn magnetic_field(&self, wave_vector: DVec3, electric: ComplexVector) -> ComplexVector {
         self.magnetic_of_curl(electric.crossed_by(wave_vector))
     }
 
     /// The magnetic field of a wave with a complex wave vector.
-    #[must_use]
     pub fn decaying_magnetic_field(
         &self,
         wave_vector: ComplexVector,

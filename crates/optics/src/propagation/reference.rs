@@ -68,35 +68,22 @@ fn runge_kutta(
     h: f64,
     medium: &mut impl FnMut(DVec3) -> SquaredIndex,
 ) -> ReferenceRay {
-    let mut slope = |y: &[f64; 10]| {
-        let [position, p, field] = from_fn(|k| DVec3::from_slice(&y[3 * k..3 * k + 3]));
+    type State = ([DVec3; 3], f64);
+    let mut slope = |&([position, p, field], _): &State| {
         let index = medium(position);
         let turn = -0.5 * field.dot(index.gradient) / index.value * p;
-        let mut rate = [0.0; 10];
-        p.write_to_slice(&mut rate[0..]);
-        (0.5 * index.gradient).write_to_slice(&mut rate[3..]);
-        turn.write_to_slice(&mut rate[6..]);
-        rate[9] = index.value;
-        rate
+        ([p, 0.5 * index.gradient, turn], index.value)
     };
-    let mut y = [0.0; 10];
-    ray.position.write_to_slice(&mut y[0..]);
-    ray.wave_vector.write_to_slice(&mut y[3..]);
-    ray.electric_field.write_to_slice(&mut y[6..]);
-    y[9] = ray.optical_path;
-    let moved = |k: &[f64; 10], h: f64| from_fn(|i| y[i] + h * k[i]);
+    let y = ([ray.position, ray.wave_vector, ray.electric_field], ray.optical_path);
+    let moved = |k: &State, h: f64| (from_fn(|i| y.0[i] + h * k.0[i]), y.1 + h * k.1);
     let k1 = slope(&y);
     let k2 = slope(&moved(&k1, 0.5 * h));
     let k3 = slope(&moved(&k2, 0.5 * h));
     let k4 = slope(&moved(&k3, h));
-    let mean: [f64; 10] = from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
-    let end = moved(&mean, h);
-    ReferenceRay {
-        position: DVec3::from_slice(&end[0..]),
-        wave_vector: DVec3::from_slice(&end[3..]),
-        electric_field: DVec3::from_slice(&end[6..]),
-        optical_path: end[9],
-    }
+    let mean = from_fn(|i| (k1.0[i] + 2.0 * (k2.0[i] + k3.0[i]) + k4.0[i]) / 6.0);
+    let mean_rate = (k1.1 + 2.0 * (k2.1 + k3.1) + k4.1) / 6.0;
+    let ([position, wave_vector, electric_field], optical_path) = moved(&(mean, mean_rate), h);
+    ReferenceRay { position, wave_vector, electric_field, optical_path }
 }
 
 #[cfg(test)]

@@ -68,16 +68,16 @@ impl GridSpline {
             return Err(GridSplineError::NotFinite);
         }
         let (mx, my) = (nx + 2, ny + 2);
-        let mut line = vec![0.0; mx.max(my)];
+        let mut factors = vec![0.0; mx.max(my)];
         let mut along_x = vec![0.0; mx * ny];
         for (row, samples) in along_x.chunks_exact_mut(mx).zip(samples.chunks_exact(nx)) {
-            coefficients(samples.iter().copied(), row, &mut line);
+            coefficients(samples.iter().copied(), row, &mut factors);
         }
         let mut coefficients_xy = vec![0.0; mx * my];
         let mut column = vec![0.0; my];
         for i in 0..mx {
             let samples = (0..ny).map(|j| along_x[j * mx + i]);
-            coefficients(samples, &mut column, &mut line);
+            coefficients(samples, &mut column, &mut factors);
             for (j, value) in column.iter().enumerate() {
                 coefficients_xy[j * mx + i] = *value;
             }
@@ -165,7 +165,7 @@ fn basis(t: f64) -> ([f64; 4], [f64; 4]) {
 /// The coefficients of the spline in one dimension through samples, of which there are two fewer: with f the samples,
 /// (c[i] + 4 c[i+1] + c[i+2])/6 = f[i], and the fourth differences at both ends are zero, which gives the coefficients at the
 /// second samples from the ends at once.
-fn coefficients(samples: impl Iterator<Item = f64>, c: &mut [f64], line: &mut [f64]) {
+fn coefficients(samples: impl Iterator<Item = f64>, c: &mut [f64], factors: &mut [f64]) {
     let m = c.len();
     for (place, sample) in c[1..m - 1].iter_mut().zip(samples) {
         *place = sample;
@@ -176,21 +176,17 @@ fn coefficients(samples: impl Iterator<Item = f64>, c: &mut [f64], line: &mut [f
     let far = (8.0 * c[m - 3] - c[m - 2] - c[m - 4]) / 6.0;
     let (second, next_to_last) = (c[2], c[m - 3]);
     // Thomas's algorithm for what lies between.
-    let unknowns = 3..m - 3;
-    if !unknowns.is_empty() {
-        let mut above = 0.0;
-        let mut before = near;
-        for i in unknowns.clone() {
-            let pivot = 4.0 - above;
-            let end = if i + 1 == m - 3 { far } else { 0.0 };
-            c[i] = (6.0 * c[i] - end - before) / pivot;
-            above = pivot.recip();
-            line[i] = above;
-            before = c[i];
-        }
-        for i in (3..m - 4).rev() {
-            c[i] -= line[i] * c[i + 1];
-        }
+    let (mut above, mut before) = (0.0, near);
+    for i in 3..m - 3 {
+        let pivot = 4.0 - above;
+        let end = if i + 1 == m - 3 { far } else { 0.0 };
+        c[i] = (6.0 * c[i] - end - before) / pivot;
+        above = pivot.recip();
+        factors[i] = above;
+        before = c[i];
+    }
+    for i in (3..m - 4).rev() {
+        c[i] -= factors[i] * c[i + 1];
     }
     (c[2], c[m - 3]) = (near, far);
     c[1] = 6.0 * second - 4.0 * c[2] - c[3];

@@ -15,6 +15,7 @@ mod inversion;
 
 /// Value and derivatives of a conformal map at one virtual point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[must_use]
 pub struct MapJet<C = Complex64> {
     /// f(ζ) = x + iy, cm.
     pub f: C,
@@ -151,7 +152,6 @@ impl ConformalMapError {
 impl ConformalMap {
     /// Value and derivatives at a virtual point.
     #[inline]
-    #[must_use]
     pub fn jet(&self, zeta: Complex64) -> MapJet {
         match self {
             Self::Gaussian(map) => map.jet(zeta),
@@ -166,8 +166,8 @@ impl ConformalMap {
     pub fn scale(&self) -> f64 {
         match self {
             Self::Gaussian(map) => map.width,
-            Self::Grating(map) => map.scale(),
-            Self::QuasiConformal(map) => map.scale(),
+            Self::Grating(map) => map.wave_number.recip(),
+            Self::QuasiConformal(map) => 0.25 * map.bump.width,
             Self::Flat(map) => map.scale,
         }
     }
@@ -195,9 +195,9 @@ impl ConformalMap {
     #[must_use]
     pub fn peak(&self) -> f64 {
         match self {
-            Self::Gaussian(map) => map.height(),
-            Self::Grating(map) => map.height(),
-            Self::QuasiConformal(map) => map.peak(),
+            Self::Gaussian(map) => map.height,
+            Self::Grating(map) => map.height,
+            Self::QuasiConformal(map) => map.solved.peak,
             Self::Flat(map) => map.level,
         }
     }
@@ -206,9 +206,8 @@ impl ConformalMap {
     #[must_use]
     pub fn trough(&self) -> f64 {
         match self {
-            Self::Gaussian(_) | Self::QuasiConformal(_) => 0.0,
-            Self::Grating(map) => -map.height(),
-            Self::Flat(map) => map.level,
+            Self::Grating(map) => -map.height,
+            _ => self.level(),
         }
     }
 
@@ -216,8 +215,8 @@ impl ConformalMap {
     #[must_use]
     pub fn level(&self) -> f64 {
         match self {
-            Self::Gaussian(_) | Self::Grating(_) | Self::QuasiConformal(_) => 0.0,
             Self::Flat(map) => map.level,
+            _ => 0.0,
         }
     }
 
@@ -261,7 +260,7 @@ impl ConformalMap {
     pub(crate) fn profile(&self, parameter: f64) -> MapJet {
         match self {
             Self::Gaussian(_) | Self::Grating(_) | Self::Flat(_) => self.jet(parameter.into()),
-            Self::QuasiConformal(map) => map.profile(parameter),
+            Self::QuasiConformal(map) => map.bump.profile(parameter),
         }
     }
 
@@ -324,19 +323,15 @@ impl ConformalMap {
     pub fn index_range(&self, cut: &Truncation) -> (f64, f64) {
         let (start, end) = (self.floor_parameter(cut.x_min), self.floor_parameter(cut.x_max));
         let between = |a: f64, b: f64, s: f64| a + (b - a) * s;
-        let side = |x: f64, s: f64| {
-            let y = between(self.floor_height_at(x), cut.y_max, s);
-            self.invert(Complex64::new(x, y))
-        };
         let index = |zeta: Complex64| self.jet(zeta).stretch().recip();
+        let at = |x: f64, y: f64| self.invert(Complex64::new(x, y)).map(index);
+        let side = |x: f64, s: f64| at(x, between(self.floor_height_at(x), cut.y_max, s));
         let samples = samples_over((cut.x_max - cut.x_min).max(cut.y_max) / self.scale());
         let border: [&dyn Fn(f64) -> Option<f64>; 4] = [
             &|s| Some(index(between(start, end, s).into())),
-            &|s| side(cut.x_min, s).map(index),
-            &|s| side(cut.x_max, s).map(index),
-            &|s| {
-                self.invert(Complex64::new(between(cut.x_min, cut.x_max, s), cut.y_max)).map(index)
-            },
+            &|s| side(cut.x_min, s),
+            &|s| side(cut.x_max, s),
+            &|s| at(between(cut.x_min, cut.x_max, s), cut.y_max),
         ];
         border
             .map(|side| range_over(samples, side))

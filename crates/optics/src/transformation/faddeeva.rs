@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 use num_complex::Complex64;
 use pulp::Simd;
 
-use crate::lanes::{ComplexLanes, LANES, Lanes};
+use crate::lanes::{ComplexLanes, LANES};
 
 /// Grid points per unit length.
 const DENSITY: f64 = 8.0;
@@ -62,7 +62,8 @@ pub(super) fn faddeeva(t: Complex64) -> Complex64 {
         // w_F(-conj t) = conj w_F(t)
         return Complex64::new(w.re, w.im * 1.0_f64.copysign(t.re));
     }
-    if t.im <= -0.6 { reflected(t) } else { continued_fraction(t) }
+    // In the lower half plane w_F(t) = 2 exp(-t²) - w_F(-t).
+    if t.im <= -0.6 { 2.0 * (-t * t).exp() - faddeeva(-t) } else { continued_fraction(t) }
 }
 
 /// The Faddeeva function of four arguments.
@@ -86,51 +87,25 @@ pub(super) fn faddeeva_lanes<S: Simd>(t: ComplexLanes<S>) -> ComplexLanes<S> {
     let first = patches[0];
     let w = if patches.iter().all(|patch| std::ptr::eq(*patch, first)) {
         // As a rule: rays that go side by side are near each other.
-        taylor(d, OnePatch(first))
+        taylor(d, |k| ComplexLanes { re: d.re.all(first.re[k]), im: d.re.all(first.im[k]) })
     } else {
-        taylor(d, Patches(patches))
+        let [p, q, r, s] = patches;
+        taylor(d, |k| ComplexLanes {
+            re: d.re.with([p.re[k], q.re[k], r.re[k], s.re[k]]),
+            im: d.re.with([p.im[k], q.im[k], r.im[k], s.im[k]]),
+        })
     };
     // w_F(-conj t) = conj w_F(t)
     let w = ComplexLanes { re: w.re, im: w.im * t.re.signs() };
     if inside { w } else { w.elsewhere(arguments, is_tabulated, faddeeva) }
 }
 
-/// Where the coefficients of four rays come from.
-trait Coefficients {
-    /// The `k`th of them, in the order in which they are summed.
-    fn term<S: Simd>(&self, lanes: Lanes<S>, k: usize) -> ComplexLanes<S>;
-}
-
-/// The same patch for all.
-struct OnePatch<'t>(&'t Patch);
-
-impl Coefficients for OnePatch<'_> {
-    #[inline(always)]
-    fn term<S: Simd>(&self, lanes: Lanes<S>, k: usize) -> ComplexLanes<S> {
-        ComplexLanes { re: lanes.all(self.0.re[k]), im: lanes.all(self.0.im[k]) }
-    }
-}
-
-/// A patch for each.
-struct Patches<'t>([&'t Patch; LANES]);
-
-impl Coefficients for Patches<'_> {
-    #[inline(always)]
-    fn term<S: Simd>(&self, lanes: Lanes<S>, k: usize) -> ComplexLanes<S> {
-        let [p, q, r, s] = self.0;
-        ComplexLanes {
-            re: lanes.with([p.re[k], q.re[k], r.re[k], s.re[k]]),
-            im: lanes.with([p.im[k], q.im[k], r.im[k], s.im[k]]),
-        }
-    }
-}
-
-/// Σ c_n d^n by Estrin's scheme, as in [`tabulated`].
+/// Σ c_n d^n by Estrin's scheme, as in [`tabulated`]; the coefficients `c` in the order in which they are summed.
 #[inline(always)]
-fn taylor<S: Simd, C: Coefficients>(d: ComplexLanes<S>, c: C) -> ComplexLanes<S> {
+fn taylor<S: Simd>(d: ComplexLanes<S>, c: impl Fn(usize) -> ComplexLanes<S>) -> ComplexLanes<S> {
     let (mut pairs, mut fours) = ([d; 6], [d; 3]);
     for (k, pair) in pairs.iter_mut().enumerate() {
-        *pair = c.term(d.re, k).plus(c.term(d.re, k + 6), d);
+        *pair = c(k).plus(c(k + 6), d);
     }
     let d2 = d * d;
     for (k, four) in fours.iter_mut().enumerate() {
@@ -195,11 +170,6 @@ fn continued_fraction(t: Complex64) -> Complex64 {
     let polynomial = |c: &[f64]| c.iter().rev().fold(Complex64::ZERO, |sum, c| sum * v + c);
     let ratio = polynomial(&NUMERATOR) / polynomial(&DENOMINATOR);
     Complex64::new(0.0, 0.5 * FRAC_2_SQRT_PI) * inverse * ratio
-}
-
-/// w_F(t) = 2 exp(-t²) - w_F(-t), for the lower half plane.
-fn reflected(t: Complex64) -> Complex64 {
-    2.0 * (-t * t).exp() - faddeeva(-t)
 }
 
 /// c_n of w_F(t0 + d) = Σ c_n d^n; from w_F'' = -2 t w_F' - 2 w_F follows the recurrence

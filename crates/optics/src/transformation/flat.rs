@@ -27,7 +27,6 @@ impl FlatMap {
 
     /// Value and derivatives at a virtual point (cm).
     #[inline]
-    #[must_use]
     pub fn jet(&self, zeta: Complex64) -> MapJet {
         let f = zeta + Complex64::new(0.0, self.level);
         MapJet { f, f1: Complex64::ONE, f2: Complex64::ZERO }

@@ -19,7 +19,8 @@ use crate::lanes::ComplexLanes;
 pub struct GaussianMap {
     /// w, cm.
     pub(super) width: f64,
-    height: f64,
+    /// The height h of the metal above Y = 0 in the middle, cm.
+    pub height: f64,
     inverse_width: f64,
 }
 
@@ -44,15 +45,8 @@ impl GaussianMap {
         }
     }
 
-    /// h, cm: the height of the metal above Y = 0 in the middle.
-    #[must_use]
-    pub fn height(&self) -> f64 {
-        self.height
-    }
-
     /// Value and derivatives at a virtual point (cm).
     #[inline]
-    #[must_use]
     pub fn jet(&self, zeta: Complex64) -> MapJet {
         let [w, w1, w2] = faddeeva_jet(zeta * self.inverse_width);
         let times_i = |c: Complex64, factor: f64| Complex64::new(-factor * c.im, factor * c.re);
@@ -75,9 +69,9 @@ impl GaussianMap {
     /// The virtual X of the floor point at physical `x` (cm).
     pub(super) fn floor_parameter(&self, x: f64) -> f64 {
         // x = X - h (2/√π) D(X/w) with Dawson's function 0 <= D < 0.542 for X >= 0.
-        let (side, x) = (1.0_f64.copysign(x), x.abs());
+        let (sign, x) = (1.0_f64.copysign(x), x.abs());
         let far = x + 0.542 * FRAC_2_SQRT_PI * self.height;
-        side * root_between(x, far, |virtual_x| {
+        sign * root_between(x, far, |virtual_x| {
             let jet = self.jet(Complex64::new(virtual_x, 0.0));
             (jet.f.re - x, jet.f1.re)
         })

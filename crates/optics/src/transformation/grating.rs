@@ -16,8 +16,9 @@ use crate::lanes::ComplexLanes;
 /// in the troughs to 1/(1 - hk) on the crests. (Schmied, Halimeh & Wegener, Opt. Express 18, 24361 (2010).)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GratingMap {
-    height: f64,
-    wave_number: f64,
+    /// How far the floor swings up and down, h, cm.
+    pub height: f64,
+    pub(super) wave_number: f64,
 }
 
 impl GratingMap {
@@ -38,26 +39,14 @@ impl GratingMap {
         }
     }
 
-    /// h, cm: how far the floor swings up and down.
-    #[must_use]
-    pub fn height(&self) -> f64 {
-        self.height
-    }
-
     /// Λ, cm.
     #[must_use]
     pub fn period(&self) -> f64 {
         TAU / self.wave_number
     }
 
-    /// The length over which the map varies, cm.
-    pub(super) fn scale(&self) -> f64 {
-        self.wave_number.recip()
-    }
-
     /// Value and derivatives at a virtual point (cm).
     #[inline]
-    #[must_use]
     pub fn jet(&self, zeta: Complex64) -> MapJet {
         let wave = self.wave(zeta);
         let (k, slope) = (self.wave_number, self.height * self.wave_number);
@@ -194,7 +183,7 @@ mod tests {
             .sum();
         let area = sum * 20.0 / f64::from(count);
         assert!((area - grating.area_from_middle_to(20.0)).abs() < 1e-6);
-        assert!((area + 20.0 * grating.height() - grating.area_of_a_period()).abs() < 1e-6);
+        assert!((area + 20.0 * grating.height - grating.area_of_a_period()).abs() < 1e-6);
     }
 
     #[test]

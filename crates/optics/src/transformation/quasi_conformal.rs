@@ -27,24 +27,26 @@ use crate::lanes::ComplexLanes;
 /// It holds tables: copies share them.
 #[derive(Clone, Debug)]
 pub struct QuasiConformalMap {
-    bump: Bump,
-    solved: Arc<Solved>,
+    /// The device's own floor, to which the series comes near.
+    pub(super) bump: Bump,
+    pub(super) solved: Arc<Solved>,
 }
 
 /// The floor: h cos²(πx/w) for |x| < w/2, else 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Bump {
+pub(super) struct Bump {
     height: f64,
-    width: f64,
+    pub width: f64,
 }
 
 #[derive(Debug)]
-struct Solved {
+pub(super) struct Solved {
     /// A and H.
     box_size: [f64; 2],
     series: Series,
     table: Table,
-    peak: f64,
+    /// The largest height of the floor of the series, cm.
+    pub peak: f64,
 }
 
 impl PartialEq for QuasiConformalMap {
@@ -59,7 +61,7 @@ pub(super) const MOST_WIDTHS: f64 = 30.0;
 
 impl Bump {
     /// The floor as a curve over x, with its derivatives by x.
-    fn profile(self, x: f64) -> MapJet {
+    pub(super) fn profile(self, x: f64) -> MapJet {
         let Self { height, width } = self;
         if x.abs() >= 0.5 * width {
             return MapJet { f: x.into(), f1: Complex64::ONE, f2: Complex64::ZERO };
@@ -111,11 +113,6 @@ impl QuasiConformalMap {
         Ok(Self { bump, solved: Arc::new(Solved { box_size, series, table, peak }) })
     }
 
-    /// The largest height of the floor of the series, cm.
-    pub(super) fn peak(&self) -> f64 {
-        self.solved.peak
-    }
-
     /// The height H_c of the virtual rectangle, cm.
     fn virtual_height(&self) -> f64 {
         self.solved.series.virtual_height
@@ -129,18 +126,12 @@ impl QuasiConformalMap {
 
     /// c = √(H/H_c) of the index c/|f'|.
     #[must_use]
-    pub fn strength(&self) -> f64 {
+    pub fn index_scale(&self) -> f64 {
         self.anisotropy().sqrt()
-    }
-
-    /// The length over which the map varies, cm.
-    pub(super) fn scale(&self) -> f64 {
-        0.25 * self.bump.width
     }
 
     /// Value and derivatives at a virtual point (cm), from the table.
     #[inline]
-    #[must_use]
     pub fn jet(&self, zeta: Complex64) -> MapJet {
         self.solved.table.jet(zeta)
     }
@@ -163,11 +154,6 @@ impl QuasiConformalMap {
     /// The height of the series' floor at physical `x` (cm).
     pub(super) fn floor_height_at(&self, x: f64) -> f64 {
         self.jet(self.floor_parameter(x).into()).f.im
-    }
-
-    /// The floor over x: the device's own, to which the series comes near.
-    pub(super) fn profile(&self, x: f64) -> MapJet {
-        self.bump.profile(x)
     }
 
     /// Where the floor's bend changes its sense or begins.

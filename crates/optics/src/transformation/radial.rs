@@ -16,8 +16,10 @@ pub enum Symmetry {
 /// shell between a and b and is the identity on its border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RadialMap {
-    inner: f64,
-    outer: f64,
+    /// Radius of the hole, cm.
+    pub inner: f64,
+    /// Radius of the border, cm.
+    pub outer: f64,
     /// What it turns about.
     pub(crate) symmetry: Symmetry,
 }
@@ -32,18 +34,6 @@ impl RadialMap {
     pub fn new(inner: f64, outer: f64, symmetry: Symmetry) -> Self {
         debug_assert!(0.0 < inner && inner < outer);
         Self { inner, outer, symmetry }
-    }
-
-    /// Radius of the hole, cm.
-    #[must_use]
-    pub fn inner(&self) -> f64 {
-        self.inner
-    }
-
-    /// Radius of the border, cm.
-    #[must_use]
-    pub fn outer(&self) -> f64 {
-        self.outer
     }
 
     /// k = b/(b - a): the virtual lengths along r over the physical ones.
@@ -173,9 +163,9 @@ mod tests {
         for map in MAPS {
             for point in virtual_points() {
                 let there = map.to_physical(point);
-                assert!(map.radius(there) > map.inner());
+                assert!(map.radius(there) > map.inner);
                 assert!((map.to_virtual(there) - point).length() < 1e-14);
-                let border = map.radial(point) * map.outer();
+                let border = map.radial(point) * map.outer;
                 assert!((map.to_physical(border) - border).length() < 1e-14);
             }
         }

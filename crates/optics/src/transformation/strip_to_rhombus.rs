@@ -11,7 +11,8 @@ use glam::{DMat3, DVec2, DVec3};
 /// other quadrants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripToRhombus {
-    half_diagonal: f64,
+    /// Half the diagonal of the square, d (cm): the strip is 2d wide.
+    pub half_diagonal: f64,
     kappa: f64,
 }
 
@@ -22,12 +23,6 @@ impl StripToRhombus {
     pub fn new(half_diagonal: f64, kappa: f64) -> Self {
         debug_assert!(half_diagonal > 0.0 && kappa > 0.0 && kappa < 1.0);
         Self { half_diagonal, kappa }
-    }
-
-    /// Half the diagonal of the square, d: the strip is 2d wide.
-    #[must_use]
-    pub fn half_diagonal(&self) -> f64 {
-        self.half_diagonal
     }
 
     /// Half the short diagonal of the rhombus, b.

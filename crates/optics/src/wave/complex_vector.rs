@@ -6,6 +6,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// A complex vector in three dimensions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[must_use]
 pub struct ComplexVector {
     /// Real part.
     pub re: DVec3,
@@ -18,13 +19,11 @@ impl ComplexVector {
     pub const ZERO: Self = Self { re: DVec3::ZERO, im: DVec3::ZERO };
 
     /// A vector from its real and imaginary parts.
-    #[must_use]
     pub const fn new(re: DVec3, im: DVec3) -> Self {
         Self { re, im }
     }
 
     /// A vector from its three components.
-    #[must_use]
     pub fn from_components(components: [Complex64; 3]) -> Self {
         let [x, y, z] = components;
         Self { re: DVec3::new(x.re, y.re, z.re), im: DVec3::new(x.im, y.im, z.im) }
@@ -58,7 +57,6 @@ impl ComplexVector {
     }
 
     /// The cross product v × w.
-    #[must_use]
     pub fn cross(self, other: Self) -> Self {
         Self {
             re: self.re.cross(other.re) - self.im.cross(other.im),
@@ -67,25 +65,21 @@ impl ComplexVector {
     }
 
     /// The cross product of a real vector with this one.
-    #[must_use]
     pub fn crossed_by(self, left: DVec3) -> Self {
         Self { re: left.cross(self.re), im: left.cross(self.im) }
     }
 
     /// The complex conjugate.
-    #[must_use]
     pub fn conj(self) -> Self {
         Self { re: self.re, im: -self.im }
     }
 
     /// A real matrix applied to the vector.
-    #[must_use]
     pub fn transformed(self, matrix: &DMat3) -> Self {
         Self { re: *matrix * self.re, im: *matrix * self.im }
     }
 
     /// The vector times a complex number.
-    #[must_use]
     pub fn scaled(self, factor: Complex64) -> Self {
         Self {
             re: self.re * factor.re - self.im * factor.im,

@@ -37,7 +37,6 @@
 pub const SPEED_OF_LIGHT: f64 = 29.979_245_8;
 
 mod complex_vector;
-mod direction;
 mod frame;
 mod linear_system;
 mod number;
@@ -45,10 +44,18 @@ mod polarization;
 mod stokes;
 
 pub use complex_vector::{ComplexVector, poynting};
-pub use direction::unit;
 pub(crate) use frame::Frame;
 pub(crate) use linear_system::solve;
 pub(crate) use number::{Number, cross, dot};
 pub use polarization::transverse_basis;
 pub(crate) use polarization::turn_transverse;
 pub use stokes::arriving_stokes;
+
+use glam::DVec3;
+
+/// The unit vector along a vector of any length, however large or small; `None` for zero.
+#[must_use]
+pub fn unit(vector: DVec3) -> Option<DVec3> {
+    // In two steps: the inverse of a denormal number is infinite.
+    (vector / vector.abs().max_element()).try_normalize()
+}

@@ -23,13 +23,17 @@ pub(crate) trait Number:
     + Into<Complex64>
 {
     /// The squared magnitude.
-    fn magnitude_squared(self) -> f64;
+    fn magnitude_squared(self) -> f64 {
+        (self * self.conjugate()).real()
+    }
 
     /// The complex conjugate.
     fn conjugate(self) -> Self;
 
     /// The real part.
-    fn real(self) -> f64;
+    fn real(self) -> f64 {
+        Into::<Complex64>::into(self).re
+    }
 
     /// A vector of such numbers in the world.
     type Vector: Copy;
@@ -42,15 +46,7 @@ pub(crate) trait Number:
 }
 
 impl Number for f64 {
-    fn magnitude_squared(self) -> f64 {
-        self * self
-    }
-
     fn conjugate(self) -> Self {
-        self
-    }
-
-    fn real(self) -> f64 {
         self
     }
 
@@ -66,16 +62,8 @@ impl Number for f64 {
 }
 
 impl Number for Complex64 {
-    fn magnitude_squared(self) -> f64 {
-        self.norm_sqr()
-    }
-
     fn conjugate(self) -> Self {
         self.conj()
-    }
-
-    fn real(self) -> f64 {
-        self.re
     }
 
     type Vector = ComplexVector;

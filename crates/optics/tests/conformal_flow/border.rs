@@ -78,7 +78,7 @@ fn misses_no_crossing_of_straight_paths() {
         let cut = Truncation {
             x_min: -w * dice.between(0.2, 3.0),
             x_max: w * dice.between(0.2, 3.0),
-            y_max: map.height() * dice.between(1.02, 3.0),
+            y_max: map.height * dice.between(1.02, 3.0),
         };
         let flow = ConformalFlow::new(ConformalMap::Gaussian(map), cut, Extent::ENDLESS, 1.0);
         for k in 0..20 {

@@ -170,7 +170,7 @@ fn follows_rays_through_other_cloaks() {
         let map = GaussianMap::new(w, w * dice.between(0.01, 0.88)).expect("a valid map");
         let cut = Truncation::centred(
             w * dice.between(1.0, 8.0),
-            map.height() + w * dice.between(0.2, 4.0),
+            map.height + w * dice.between(0.2, 4.0),
         );
         let extent = Extent::centred(Some(w * dice.between(0.5, 20.0)));
         let flow = ConformalFlow::new(ConformalMap::Gaussian(map), cut, extent, 1.0);

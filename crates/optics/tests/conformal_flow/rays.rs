@@ -9,9 +9,9 @@ pub const W: f64 = 10.02;
 pub const H: f64 = 4.25;
 pub const CUT: Truncation = Truncation { x_min: -25.0, x_max: 25.0, y_max: 28.57 };
 
-pub fn flow(extent: Extent, strength: f64) -> ConformalFlow {
+pub fn flow(extent: Extent, index_scale: f64) -> ConformalFlow {
     let map = GaussianMap::new(W, H).expect("a valid map");
-    ConformalFlow::new(ConformalMap::Gaussian(map), CUT, extent, strength)
+    ConformalFlow::new(ConformalMap::Gaussian(map), CUT, extent, index_scale)
 }
 
 /// Numbers from 0 to 1, always the same (xorshift).

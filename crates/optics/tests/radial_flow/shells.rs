@@ -148,7 +148,7 @@ fn matched_shells_against_hamiltons_equations() {
         (Symmetry::Centre, matched_sphere as fn(Phase) -> Dual),
     ] {
         let map = RadialMap::new(A, B, symmetry);
-        let flow = RadialFlow::Transformed(TransformedShell::new(map, Extent::ENDLESS));
+        let flow = RadialFlow::Transformed(TransformedShell { map, extent: Extent::ENDLESS });
         check(flow, dispersion, ModeKind::Shared, symmetry);
     }
 }
@@ -170,7 +170,7 @@ fn short_shells_end_where_they_end() {
     let extent = Extent::centred(Some(0.8));
     let map = RadialMap::new(A, B, Symmetry::Axis);
     let uniaxial_shell = |axis| RadialFlow::Uniaxial(UniaxialCylinder::new(A, B, axis, extent));
-    let matched = RadialFlow::Transformed(TransformedShell::new(map, extent));
+    let matched = RadialFlow::Transformed(TransformedShell { map, extent });
     let inside = |r: DVec3| (B - r.truncate().length()).min(0.4 - r.z.abs());
     let mut ends = [0; 3];
     let mut numbers = Numbers(9);
@@ -238,8 +238,9 @@ fn straight_ordinary_waves_come_to_the_core() {
 #[test]
 fn rays_at_the_axis_get_the_limit() {
     let map = |symmetry| RadialMap::new(A, B, symmetry);
-    let shell =
-        |symmetry| RadialFlow::Transformed(TransformedShell::new(map(symmetry), Extent::ENDLESS));
+    let shell = |symmetry| {
+        RadialFlow::Transformed(TransformedShell { map: map(symmetry), extent: Extent::ENDLESS })
+    };
     let uniaxial = |axis| RadialFlow::Uniaxial(UniaxialCylinder::new(A, B, axis, Extent::ENDLESS));
     for (flow, mode) in [
         (shell(Symmetry::Axis), ModeKind::Shared),

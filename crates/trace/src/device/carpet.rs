@@ -42,18 +42,18 @@ pub(super) fn cut(
     Ok(Truncation::centred(width, height))
 }
 
-/// A carpet in any view, on a floor so wide (cm); `strength` is c of its index c/|f'|.
+/// A carpet in any view, on a floor so wide (cm); `index_scale` is c of its index c/|f'|.
 pub(super) fn structure(
     map: ConformalMap,
     cut: Truncation,
-    strength: f64,
+    index_scale: f64,
     floor: f64,
     request: Request,
 ) -> Structure {
     let extent = Extent::centred(request.length);
     let site = Site { cut, half_floor: 0.5 * floor, extent };
     match request.show {
-        Show::Cloak => site.cloak(ConformalFlow::new(map, cut, extent, strength)),
+        Show::Cloak => site.cloak(ConformalFlow::new(map, cut, extent, index_scale)),
         Show::Bare => site.bare(map),
         // The flat mirror that the floor with the carpet should look like.
         Show::Mirror => super::flat_strip(site.half_floor.max(cut.x_max), extent),

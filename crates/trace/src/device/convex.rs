@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use optics::geometry::{
-    CutBall, Cylinder, CylinderPart, Disc, Extent, Outline, REACH, Solid, Sphere, first_along,
+    Border, CutBall, Cylinder, Disc, Extent, Outline, REACH, Solid, Sphere, first_along,
 };
 
 /// A convex shape about the origin.
@@ -49,7 +49,7 @@ impl Convex {
             Self::Cylinder(cylinder) => {
                 if let Some(distance) = cylinder.hit_side(origin, direction) {
                     let point = origin + direction * distance;
-                    return Some((distance, cylinder.outward(CylinderPart::Side, point)));
+                    return Some((distance, cylinder.outward(Border::Outer, point)));
                 }
                 let hit = |end: &Disc| Some((end.hit(origin, direction)?, end.normal));
                 cylinder.ends()?.iter().find_map(hit)

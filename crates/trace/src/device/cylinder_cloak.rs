@@ -67,7 +67,7 @@ impl Device for CylinderCloak {
                 let flow = match self.optic_axis() {
                     None => {
                         let map = RadialMap::new(inner, outer, Symmetry::Axis);
-                        RadialFlow::Transformed(TransformedShell::new(map, extent))
+                        RadialFlow::Transformed(TransformedShell { map, extent })
                     }
                     Some(axis) => {
                         RadialFlow::Uniaxial(UniaxialCylinder::new(inner, outer, axis, extent))

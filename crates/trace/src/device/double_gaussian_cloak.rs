@@ -42,7 +42,7 @@ impl DoubleGaussianCloak {
     /// The map and the cut of the upper half.
     fn parts(&self) -> Result<(GaussianMap, Truncation), KeyError> {
         let map = carpet::gaussian_map(self.w, self.h)?;
-        let (height, metal) = (self.height, 2.0 * map.height());
+        let (height, metal) = (self.height, 2.0 * map.height);
         let message = format!(
             "height is {height} cm; it must be above twice h, {metal} cm, to hold the metal"
         );
@@ -51,7 +51,7 @@ impl DoubleGaussianCloak {
     }
 
     /// The factor c of the index n = c/|f'|.
-    fn strength(&self, map: &ConformalMap, cut: &Truncation) -> f64 {
+    fn index_scale(&self, map: &ConformalMap, cut: &Truncation) -> f64 {
         if self.referenced { 1.0 / map.index_range(cut).0 } else { 1.0 }
     }
 }
@@ -67,8 +67,8 @@ impl Device for DoubleGaussianCloak {
         Ok(match request.show {
             Show::Cloak => {
                 let coating = if self.fresnel { Coating::None } else { Coating::Antireflection };
-                let strength = self.strength(&map, &cut);
-                let flow = ConformalFlow::new(map, cut, extent, strength);
+                let index_scale = self.index_scale(&map, &cut);
+                let flow = ConformalFlow::new(map, cut, extent, index_scale);
                 cloak(&flow, coating, extent, request.open_core)
             }
             Show::Bare => {
@@ -83,7 +83,7 @@ impl Device for DoubleGaussianCloak {
     fn facts(&self) -> Vec<Fact> {
         let Ok((gaussian, cut)) = self.parts() else { return Vec::new() };
         let map = ConformalMap::Gaussian(gaussian);
-        let c = self.strength(&map, &cut);
+        let c = self.index_scale(&map, &cut);
         let areas = [
             Fact::number("cloaked_area_cm2", 2.0 * gaussian.area()),
             Fact::number("cloaked_area_within_cut_cm2", 2.0 * map.area_within(&cut)),

@@ -27,7 +27,7 @@ crate::table! {
 impl GaussianCarpet {
     fn parts(&self) -> Result<(GaussianMap, Truncation), KeyError> {
         let map = carpet::gaussian_map(self.w, self.h)?;
-        Ok((map, carpet::cut([self.width, self.height], self.floor, map.height())?))
+        Ok((map, carpet::cut([self.width, self.height], self.floor, map.height)?))
     }
 }
 

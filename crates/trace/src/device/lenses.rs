@@ -45,8 +45,8 @@ lens! {
     EatonLens, "eaton-lens", "Eaton's lens",
     |radius| CentralLens::eaton(radius, PI),
     |lens| [
-        Fact::number("index_at_half_radius", lens.index(lens.radius() / 2.0)),
-        Fact::number("optical_path_beyond_chord_cm", PI * lens.radius()),
+        Fact::number("index_at_half_radius", lens.index(lens.radius / 2.0)),
+        Fact::number("optical_path_beyond_chord_cm", PI * lens.radius),
     ]
 }
 
@@ -56,7 +56,7 @@ lens! {
     CentralLens::luneburg,
     |lens| [
         Fact::number("index_max", lens.index(0.0)),
-        Fact::number("central_optical_path_cm", (FRAC_PI_2 + 1.0) * lens.radius()),
+        Fact::number("central_optical_path_cm", (FRAC_PI_2 + 1.0) * lens.radius),
     ]
 }
 
@@ -66,6 +66,6 @@ lens! {
     CentralLens::fisheye,
     |lens| [
         Fact::number("index_max", lens.index(0.0)),
-        Fact::number("optical_path_cm", PI * lens.radius()),
+        Fact::number("optical_path_cm", PI * lens.radius),
     ]
 }

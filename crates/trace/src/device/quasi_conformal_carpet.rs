@@ -48,13 +48,19 @@ impl Device for QuasiConformalCarpet {
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         let (map, cut) = self.parts()?;
-        let strength = map.strength();
-        Ok(carpet::structure(ConformalMap::QuasiConformal(map), cut, strength, self.floor, request))
+        let index_scale = map.index_scale();
+        Ok(carpet::structure(
+            ConformalMap::QuasiConformal(map),
+            cut,
+            index_scale,
+            self.floor,
+            request,
+        ))
     }
 
     fn facts(&self) -> Vec<Fact> {
         let Ok((quasi_conformal, cut)) = self.parts() else { return Vec::new() };
-        let c = quasi_conformal.strength();
+        let c = quasi_conformal.index_scale();
         let anisotropy = quasi_conformal.anisotropy();
         let map = ConformalMap::QuasiConformal(quasi_conformal);
         let own = [

@@ -37,7 +37,8 @@ impl Device for SphereCloak {
         let map = self.map()?;
         Ok(match request.show {
             Show::Cloak => {
-                let flow = RadialFlow::Transformed(TransformedShell::new(map, Extent::ENDLESS));
+                let flow =
+                    RadialFlow::Transformed(TransformedShell { map, extent: Extent::ENDLESS });
                 ball(self.outer, flow, request.open_core.then_some(self.inner))
             }
             Show::Bare => metal_ball(self.inner),

@@ -53,13 +53,13 @@ impl Device for SquareCloak {
         match request.show {
             Show::Cloak => square(&map, Some(&Recipe::new(self, &map)), extent, request.open_core),
             Show::Bare => square(&map, None, extent, false),
-            Show::Mirror => Ok(super::flat_strip(map.half_diagonal(), extent)),
+            Show::Mirror => Ok(super::flat_strip(map.half_diagonal, extent)),
         }
     }
 
     fn facts(&self) -> Vec<Fact> {
         let map = self.map();
-        let (d, b) = (map.half_diagonal(), map.half_height());
+        let (d, b) = (map.half_diagonal, map.half_height());
         let recipe = Recipe::new(self, &map);
         let [permittivity, permeability] = recipe.principal_values();
         vec![
@@ -96,7 +96,7 @@ fn square(
     extent: Extent,
     open_core: bool,
 ) -> Result<Structure, KeyError> {
-    let (d, b) = (map.half_diagonal(), map.half_height());
+    let (d, b) = (map.half_diagonal, map.half_height());
     let (square, rhombus) = (corners(d, d), corners(d, b));
     let of_kappa = |error: String| KeyError::at(key!(SquareCloak.kappa), error);
     let part = |corners: &[DVec2], medium| {

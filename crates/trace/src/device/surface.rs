@@ -2,9 +2,7 @@
 
 use super::{Coating, Convex, FarSide};
 use glam::DVec3;
-use optics::geometry::{
-    Cap, CurvedSide, Cylinder, CylinderPart, Disc, Extent, FloorCurve, Sphere, Wall,
-};
+use optics::geometry::{Border, Cap, CurvedSide, Cylinder, Disc, Extent, FloorCurve, Sphere, Wall};
 use optics::propagation::Half;
 use optics::transformation::ConformalMap;
 
@@ -132,7 +130,7 @@ impl Surface {
             }
             Shape::RoundHole(cylinder) => {
                 let distance = cylinder.hit_side_within(origin, direction)?;
-                (distance, -cylinder.outward(CylinderPart::Side, at(distance)))
+                (distance, -cylinder.outward(Border::Outer, at(distance)))
             }
             _ if departed => return None,
             Shape::Wall(wall) if direction.dot(wall.normal()) >= 0.0 => return None,
@@ -146,7 +144,7 @@ impl Surface {
             Shape::Convex(shape) => shape.entry(origin, direction)?,
             Shape::Round(cylinder) => {
                 let distance = cylinder.hit_side(origin, direction)?;
-                (distance, cylinder.outward(CylinderPart::Side, at(distance)))
+                (distance, cylinder.outward(Border::Outer, at(distance)))
             }
         };
         let whole = matches!(self.part, Part::Whole);

@@ -84,18 +84,17 @@ impl<T: Number> Berreman<T> {
 
     /// The mode of an eigenpair, made better where the eigenvalues differ much in size.
     fn mode<U: Number + From<T> + Mul<T, Output = U>>(&self, q: U, field: [U; 4]) -> LocalMode<U> {
-        let [normal_e, normal_h] = self
+        let normal = self
             .lift
             .map(|row| row.into_iter().zip(field).fold(U::default(), |sum, (a, b)| sum + b * a));
-        let mode = LocalMode {
-            kind: ModeKind::First,
-            propagating: true,
-            q,
-            electric: [field[0], field[1], normal_e],
-            magnetic: [field[2], field[3], normal_h],
-        };
-        self.maxwell.map(U::from).refined(mode)
+        self.maxwell.map(U::from).refined(unnamed(q, field, normal))
     }
+}
+
+/// A mode of the given tangential fields, see [`Berreman`], and normal ones.
+fn unnamed<T>(q: T, [e0, e1, h0, h1]: [T; 4], [normal_e, normal_h]: [T; 2]) -> LocalMode<T> {
+    let (electric, magnetic) = ([e0, e1, normal_e], [h0, h1, normal_h]);
+    LocalMode { kind: ModeKind::First, propagating: true, q, electric, magnetic }
 }
 
 /// The reciprocal of the normal-normal entry, which an indefinite tensor may have zero.
@@ -315,16 +314,10 @@ fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>], size: 
         }
         ([a], [b, ..]) => LocalModes::Complex(ordered([normalized(a).complex(), decaying(b)])),
         (_, [a, b, ..]) => LocalModes::Complex(ordered([decaying(a), decaying(b)])),
-        _ => {
-            let [a, b] = [FALLBACK[0], FALLBACK[1]].map(|(q, field)| LocalMode {
-                kind: ModeKind::First,
-                propagating: false,
-                q,
-                electric: [field[0], field[1], Complex64::ZERO],
-                magnetic: [field[2], field[3], Complex64::ZERO],
-            });
-            LocalModes::Complex(ordered([a, b]))
-        }
+        _ => LocalModes::Complex(ordered([FALLBACK[0], FALLBACK[1]].map(|(q, field)| LocalMode {
+            propagating: false,
+            ..unnamed(q, field, [Complex64::ZERO; 2])
+        }))),
     }
 }
 

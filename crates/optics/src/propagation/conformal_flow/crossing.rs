@@ -1,4 +1,4 @@
-//! Where a ray meets the border: the first crossing within a step, and landing on it.
+//! Where a ray meets the border: the first crossing within a step, and the refinement of that root.
 
 use pulp::Simd;
 
@@ -23,8 +23,8 @@ const NEAR: f64 = 0.03;
 /// Where the interpolation puts an end of the step.
 const AT_END: f64 = 1.0 - 1e-3;
 
-/// A landing this near to the border is exact, relative to the lengths at hand.
-const LANDED: f64 = 1e-15;
+/// A root this near to the border is exact, relative to the lengths at hand.
+const ROOT_FOUND: f64 = 1e-15;
 
 /// What counts as having missed another part of the border, relative to the map's scale.
 const MISSED: f64 = 1e-11;
@@ -33,7 +33,7 @@ const MAX_CORRECTIONS: u32 = 12;
 
 /// A coordinate's value and its first two derivatives by τ.
 #[derive(Clone, Copy, Debug)]
-struct Motion<T = f64> {
+struct EventJet<T = f64> {
     value: T,
     rate: T,
     bend: T,
@@ -59,7 +59,7 @@ pub(super) struct EventFunction {
 }
 
 impl EventFunction {
-    fn at(&self, point: &Point, p_z: f64) -> Motion {
+    fn at(&self, point: &Point, p_z: f64) -> EventJet {
         let (value, rate, bend) = match self.coordinate {
             Coordinate::X => (point.jet.f.re, point.velocity.re, point.bend.re),
             Coordinate::Y => (point.jet.f.im, point.velocity.im, point.bend.im),
@@ -77,11 +77,11 @@ impl EventFunction {
             }
         };
         let sign = self.sign;
-        Motion { value: sign * (value - self.limit), rate: sign * rate, bend: sign * bend }
+        EventJet { value: sign * (value - self.limit), rate: sign * rate, bend: sign * bend }
     }
 
     #[inline(always)]
-    fn motions<S: Simd>(&self, at: &PointLanes<S>, p_z: Lanes<S>) -> Motion<Lanes<S>> {
+    fn motions<S: Simd>(&self, at: &PointLanes<S>, p_z: Lanes<S>) -> EventJet<Lanes<S>> {
         let (value, rate, bend) = match self.coordinate {
             Coordinate::X => (at.jet.f.re, at.velocity.re, at.bend.re),
             Coordinate::Y => (at.jet.f.im, at.velocity.im, at.bend.im),
@@ -95,7 +95,7 @@ impl EventFunction {
             }
         };
         let sign = self.sign;
-        Motion {
+        EventJet {
             value: (value - value.all(self.limit)) * sign,
             rate: rate * sign,
             bend: bend * sign,
@@ -103,7 +103,7 @@ impl EventFunction {
     }
 }
 
-impl<S: Simd> Motion<Lanes<S>> {
+impl<S: Simd> EventJet<Lanes<S>> {
     /// When the value next falls through zero, by extrapolation; infinity for never.
     #[inline(always)]
     fn time_ahead(&self) -> Lanes<S> {
@@ -120,7 +120,7 @@ impl<S: Simd> Motion<Lanes<S>> {
     }
 }
 
-impl Motion {
+impl EventJet {
     /// The time (of any sign) to the nearest zero; to the nearest extremum where there is none.
     fn time_to_zero(&self) -> f64 {
         let Self { value, rate, bend } = *self;
@@ -141,7 +141,7 @@ pub(super) enum Crossing {
     /// It may touch the border at this share of the step: go there and look.
     Unclear { share: f64 },
     /// It crosses, first at about this share of the step.
-    At { gauge: EventFunction, share: f64 },
+    At { event: EventFunction, share: f64 },
 }
 
 /// The last moves of a ray, onto the border.
@@ -149,60 +149,60 @@ pub(super) enum Crossing {
 pub(super) struct RootRefinement {
     /// How far to move next.
     pub ahead: f64,
-    gauge: EventFunction,
+    pub event: EventFunction,
     /// The limit of each correction.
-    reach: f64,
-    corrections: u32,
+    pub reach: f64,
+    pub corrections: u32,
 }
 
-/// What a landing ray finds after a move.
-pub(super) enum Look {
+/// Where the refinement is after a move.
+pub(super) enum RootStatus {
     /// It is not there yet.
-    Move,
-    Landed(Boundary),
-    Missed,
+    Continue,
+    Found(Boundary),
+    Lost,
 }
 
 /// The distances from all parts of the border.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Gauges {
+pub(super) struct EventFunctions {
     all: [EventFunction; 8],
     /// The length over which the map varies.
     scale: f64,
 }
 
-impl Gauges {
+impl EventFunctions {
     /// Those of a cut map, the space within the first and beyond the second of two radii about the z axis, which
     /// are infinite where there is none.
     pub fn new(cut: &Truncation, extent: Extent, rim: f64, core: f64, scale: f64) -> Self {
-        let gauge =
+        let event =
             |boundary, coordinate, sign, limit| EventFunction { boundary, coordinate, sign, limit };
         Self {
             all: [
-                gauge(Boundary::Floor, Coordinate::VirtualY, 1.0, 0.0),
-                gauge(Boundary::XMin, Coordinate::X, 1.0, cut.x_min),
-                gauge(Boundary::XMax, Coordinate::X, -1.0, cut.x_max),
-                gauge(Boundary::YMax, Coordinate::Y, -1.0, cut.y_max),
-                gauge(Boundary::ZMin, Coordinate::Z, 1.0, extent.min),
-                gauge(Boundary::ZMax, Coordinate::Z, -1.0, extent.max),
-                gauge(Boundary::Rim, Coordinate::Radius, -1.0, rim),
-                gauge(Boundary::Core, Coordinate::Radius, 1.0, core),
+                event(Boundary::Floor, Coordinate::VirtualY, 1.0, 0.0),
+                event(Boundary::XMin, Coordinate::X, 1.0, cut.x_min),
+                event(Boundary::XMax, Coordinate::X, -1.0, cut.x_max),
+                event(Boundary::YMax, Coordinate::Y, -1.0, cut.y_max),
+                event(Boundary::ZMin, Coordinate::Z, 1.0, extent.min),
+                event(Boundary::ZMax, Coordinate::Z, -1.0, extent.max),
+                event(Boundary::Rim, Coordinate::Radius, -1.0, rim),
+                event(Boundary::Core, Coordinate::Radius, 1.0, core),
             ],
             scale,
         }
     }
 
     fn finite(&self) -> impl Iterator<Item = &EventFunction> {
-        self.all.iter().filter(|gauge| gauge.limit.is_finite())
+        self.all.iter().filter(|event| event.limit.is_finite())
     }
 
     /// The part of the border a ray starts on if it goes outwards from there.
     pub fn leaving_at(&self, p_z: f64, point: &Point, slack: f64) -> Option<Boundary> {
         self.finite()
-            .map(|gauge| (gauge, gauge.at(point, p_z)))
+            .map(|event| (event, event.at(point, p_z)))
             .filter(|(_, motion)| motion.value <= slack && motion.rate < -ALONG)
             .min_by(|a, b| a.1.rate.total_cmp(&b.1.rate))
-            .map(|(gauge, _)| gauge.boundary)
+            .map(|(event, _)| event.boundary)
     }
 
     /// What can be seen of the border at both ends of a move of four rays: when they next meet it, by extrapolation from
@@ -217,11 +217,8 @@ impl Gauges {
     ) -> [Lanes<S>; 2] {
         let zero = p_z.all(0.0);
         let (mut ahead, mut crossed) = (p_z.all(f64::INFINITY), zero);
-        for gauge in &self.all {
-            if gauge.limit.is_infinite() {
-                continue;
-            }
-            let (before, after) = (gauge.motions(from, p_z), gauge.motions(to, p_z));
+        for event in self.finite() {
+            let (before, after) = (event.motions(from, p_z), event.motions(to, p_z));
             let time = after.time_ahead();
             ahead = time.less_than(ahead).choose(time, ahead);
             let dips = before.rate.less_than(zero).and(zero.less_than(after.rate));
@@ -234,8 +231,8 @@ impl Gauges {
     /// The first crossing of the border in a step of length `reach` from `a` to `b`.
     pub fn first_crossing(&self, p_z: f64, a: &Point, b: &Point, reach: f64) -> Crossing {
         let (mut first, mut earliest) = (Crossing::None, f64::INFINITY);
-        for &gauge in self.finite() {
-            let (from, to) = (gauge.at(a, p_z), gauge.at(b, p_z));
+        for &event in self.finite() {
+            let (from, to) = (event.at(a, p_z), event.at(b, p_z));
             let (share, clear) = if to.value < 0.0 {
                 let back = to.time_to_zero();
                 let near = from.rate < 0.0 && to.rate < 0.0 && -back < NEAR * self.scale.min(reach);
@@ -262,7 +259,7 @@ impl Gauges {
             };
             if share < earliest {
                 earliest = share;
-                let at = Crossing::At { gauge, share };
+                let at = Crossing::At { event, share };
                 first = if clear { at } else { Crossing::Unclear { share } };
             }
         }
@@ -271,37 +268,32 @@ impl Gauges {
 }
 
 impl RootRefinement {
-    /// On a border that is `ahead`, at the given gauge, as far as interpolation can tell.
-    pub fn new(ahead: f64, gauge: EventFunction, reach: f64) -> Self {
-        Self { ahead, gauge, reach, corrections: 0 }
-    }
-
-    /// Looks where the ray is after a move, that is `here`.
-    pub fn look(&mut self, here: &Point, gauges: &Gauges, p_z: f64) -> Look {
+    /// What is left to do after a move, the ray being `here`.
+    pub fn check(&mut self, here: &Point, events: &EventFunctions, p_z: f64) -> RootStatus {
         self.corrections += 1;
-        let motion = self.gauge.at(here, p_z);
+        let motion = self.event.at(here, p_z);
         let remaining = motion.time_to_zero();
         if remaining.abs() > self.reach || remaining.is_nan() {
-            return Look::Missed;
+            return RootStatus::Lost;
         }
         if self.corrections >= MAX_CORRECTIONS {
             // Grazing incidence: as near as rounding allows.
-            return Look::Landed(self.gauge.boundary);
+            return RootStatus::Found(self.event.boundary);
         }
-        let exact = LANDED * (gauges.scale + self.gauge.limit.abs());
+        let exact = ROOT_FOUND * (events.scale + self.event.limit.abs());
         if motion.value.abs() > exact && remaining != 0.0 {
             self.ahead = remaining;
-            return Look::Move;
+            return RootStatus::Continue;
         }
         // Near an edge the interpolation may have taken the later of two crossings for the first.
-        let missed = gauges.finite().find(|other| {
+        let missed = events.finite().find(|other| {
             let motion = other.at(here, p_z);
-            motion.value < -MISSED * gauges.scale && motion.rate < 0.0
+            motion.value < -MISSED * events.scale && motion.rate < 0.0
         });
-        let Some(&other) = missed else { return Look::Landed(self.gauge.boundary) };
-        self.gauge = other;
+        let Some(&other) = missed else { return RootStatus::Found(self.event.boundary) };
+        self.event = other;
         self.ahead = other.at(here, p_z).time_to_zero().max(-self.reach);
-        Look::Move
+        RootStatus::Continue
     }
 }
 
@@ -310,8 +302,8 @@ impl RootRefinement {
 struct Hermite([f64; 6]);
 
 impl Hermite {
-    fn new(from: Motion, to: Motion, reach: f64) -> Self {
-        let scaled = |m: Motion| (m.value, m.rate * reach, 0.5 * m.bend * reach * reach);
+    fn new(from: EventJet, to: EventJet, reach: f64) -> Self {
+        let scaled = |m: EventJet| (m.value, m.rate * reach, 0.5 * m.bend * reach * reach);
         let ((v0, r0, b0), (v1, r1, b1)) = (scaled(from), scaled(to));
         let (value, rate, bend) = (v1 - v0 - r0 - b0, r1 - r0 - 2.0 * b0, b1 - b0);
         let third = 10.0 * value - 4.0 * rate + bend;

@@ -38,7 +38,7 @@ pub(super) trait Force<S: Simd, const Q: usize>: Field<S, Q> {
 pub(super) struct EvenForce<'w, S: Simd, M> {
     pub map: &'w M,
     pub p_z: Lanes<S>,
-    pub strength: Lanes<S>,
+    pub index_scale: Lanes<S>,
 }
 
 /// Where the index is uneven, too.
@@ -72,7 +72,7 @@ impl<S: Simd, M: LaneMap> Field<S, 2> for EvenForce<'_, S, M> {
         let square = jet.f1.norm_squared();
         let stretch = square.sqrt();
         let turn = (momentum * (jet.f2 * jet.f1.conj())).im;
-        let slowness = stretch * (self.strength + self.p_z.abs() * stretch);
+        let slowness = stretch * (self.index_scale + self.p_z.abs() * stretch);
         [self.p_z * square, (-self.p_z * turn).divided_by(slowness)]
     }
 }
@@ -91,7 +91,7 @@ impl<S: Simd, M: LaneMap> Force<S, 2> for EvenForce<'_, S, M> {
     /// c² - p_z² |f'|².
     #[inline(always)]
     fn momentum_squared(&self, jet: &JetLanes<S>) -> Lanes<S> {
-        self.strength * self.strength - self.p_z * self.p_z * jet.f1.norm_squared()
+        self.index_scale * self.index_scale - self.p_z * self.p_z * jet.f1.norm_squared()
     }
 }
 
@@ -102,20 +102,20 @@ impl<S: Simd, M: LaneMap> Field<S, 3> for UnevenForce<'_, S, M> {
     fn look(&self, zeta: ComplexLanes<S>) -> Stage<S, UnevenJet<S>> {
         let Stage { force, jet } = self.even.look(zeta);
         let jet = self.found(jet);
-        let strength = self.even.strength;
-        let uphill = jet.map.f1.conj() * jet.gradient * (strength * strength * 0.5);
+        let index_scale = self.even.index_scale;
+        let uphill = jet.map.f1.conj() * jet.gradient * (index_scale * index_scale * 0.5);
         Stage { force: force + uphill, jet }
     }
 
     /// dz/dτ, dθ/dτ and the growth of the optical path over c².
     #[inline(always)]
     fn rates(&self, jet: &UnevenJet<S>, momentum: ComplexLanes<S>) -> [Lanes<S>; 3] {
-        let EvenForce { p_z, strength, .. } = self.even;
+        let EvenForce { p_z, index_scale, .. } = self.even;
         let JetLanes { f1, f2, .. } = jet.map;
         let square = f1.norm_squared();
         let stretch = square.sqrt();
         let turn = (momentum * (f2 * f1.conj())).im;
-        let root = strength * jet.square.sqrt();
+        let root = index_scale * jet.square.sqrt();
         let across = ((momentum * f1).conj() * jet.gradient).im;
         let about_z = (p_z.signs() * root * across).divided_by(jet.square * 2.0);
         let bent = about_z - (p_z * turn).divided_by(stretch);
@@ -140,8 +140,8 @@ impl<S: Simd, M: LaneMap> Force<S, 3> for UnevenForce<'_, S, M> {
     /// c² ρ² - p_z² |f'|².
     #[inline(always)]
     fn momentum_squared(&self, jet: &UnevenJet<S>) -> Lanes<S> {
-        let EvenForce { p_z, strength, .. } = self.even;
-        strength * strength * jet.square - p_z * p_z * jet.map.f1.norm_squared()
+        let EvenForce { p_z, index_scale, .. } = self.even;
+        index_scale * index_scale * jet.square - p_z * p_z * jet.map.f1.norm_squared()
     }
 
     #[inline(always)]

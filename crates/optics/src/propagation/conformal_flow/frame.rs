@@ -6,39 +6,39 @@
 //! turns likewise, so relative to a frame that is bound to the ray's direction only one angle is left.
 
 use glam::{DMat3, DVec3};
-use num_complex::Complex64;
 
-use crate::transformation::MapJet;
+use super::points::Point;
 
 /// A frame bound to a ray's direction in virtual space, and how that space is turned physically.
-pub(super) struct Frame {
+struct RayFrame {
     /// The smallest rotation that takes the z-axis (-z for p_z < 0) into the ray (it is regular both for
     /// rays along z and for rays across), and then one by arg f' about z, from virtual to physical components.
     rotation: DMat3,
-    side: f64,
+    sign: f64,
 }
 
-impl Frame {
-    pub fn new(momentum: Complex64, p_z: f64, jet: &MapJet) -> Self {
+impl RayFrame {
+    fn new(p_z: f64, Point { momentum, jet, .. }: &Point) -> Self {
         let axial = p_z * jet.stretch();
         let length = (momentum.norm_sqr() + axial * axial).sqrt();
         let (tx, ty, sine) = (momentum.re / length, momentum.im / length, axial.abs() / length);
-        let side = 1.0_f64.copysign(p_z);
+        let sign = 1.0_f64.copysign(p_z);
         let bend = 1.0 / (1.0 + sine);
         let rotation = DMat3::from_cols(
-            DVec3::new(1.0 - tx * tx * bend, -tx * ty * bend, -side * tx),
-            DVec3::new(-tx * ty * bend, 1.0 - ty * ty * bend, -side * ty),
-            DVec3::new(side * tx, side * ty, sine),
+            DVec3::new(1.0 - tx * tx * bend, -tx * ty * bend, -sign * tx),
+            DVec3::new(-tx * ty * bend, 1.0 - ty * ty * bend, -sign * ty),
+            DVec3::new(sign * tx, sign * ty, sine),
         );
         let turn = jet.f1 / jet.stretch();
-        Self { rotation: about_z(turn.re, turn.im) * rotation, side }
+        Self { rotation: about_z(turn.re, turn.im) * rotation, sign }
     }
 }
 
-/// The rotation of physical vectors from `start` to `end`, the field having turned by `theta` about the
-/// ray against the frames.
-pub(super) fn transport(start: &Frame, end: &Frame, theta: f64) -> DMat3 {
-    let (sin, cos) = (end.side * theta).sin_cos();
+/// The rotation of the transverse field between two points of a ray's path.
+pub(super) fn transport(p_z: f64, from: &Point, to: &Point) -> DMat3 {
+    let [start, end] = [from, to].map(|point| RayFrame::new(p_z, point));
+    // By how much it has turned about the ray against the frames.
+    let (sin, cos) = (end.sign * (to.theta - from.theta)).sin_cos();
     end.rotation * about_z(cos, sin) * start.rotation.transpose()
 }
 

@@ -10,15 +10,15 @@
 //! handful of steps. Where the index is ρ(x, y) times that ([`IndexPerturbation`]), it is c² ρ² that |P|² + p_z² |f'|² must be,
 //! and another force comes in: see the module `forces`. Lengths are in cm, wave vectors in units of the vacuum wave number.
 
-mod course;
 mod crossing;
 mod forces;
 mod frame;
 mod path;
 mod points;
+mod ray_packet;
+mod step_control;
 mod strides;
 mod unevenness;
-mod walk;
 
 use std::sync::Arc;
 
@@ -26,11 +26,12 @@ use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 use thiserror::Error;
 
-use self::course::StepControl;
-use self::crossing::Gauges;
+use self::crossing::EventFunctions;
+use self::frame::transport;
 use self::points::Point;
+use self::ray_packet::RayPacket;
+use self::step_control::StepControl;
 pub use self::unevenness::IndexPerturbation;
-use self::walk::RayPacket;
 use crate::geometry::Extent;
 use crate::lanes::LANES;
 use crate::transformation::{ConformalMap, Truncation};
@@ -141,7 +142,7 @@ const BORDER_SLACK: f64 = 1e-9;
 
 /// A ray at its end.
 struct Arrival {
-    course: StepControl,
+    control: StepControl,
     begin: Point,
     end: Point,
     boundary: Boundary,
@@ -149,6 +150,7 @@ struct Arrival {
 
 /// One half of a conformal cloak cut to a box, and its mirror image under y -> -y.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct ConformalFlow {
     map: ConformalMap,
     cut: Truncation,
@@ -156,29 +158,27 @@ pub struct ConformalFlow {
     /// The radii of the round border and of the core, cm; infinite without them.
     rim: f64,
     core: f64,
-    strength: f64,
-    gauges: Gauges,
+    index_scale: f64,
+    events: EventFunctions,
     slack: f64,
     unevenness: Option<Arc<IndexPerturbation>>,
 }
 
 impl ConformalFlow {
-    /// The medium n = c/|f'| of `map` inside `cut` and between the z of `extent`; `strength` is c, 1 for
+    /// The medium n = c/|f'| of `map` inside `cut` and between the z of `extent`; `index_scale` is c, 1 for
     /// the cloak that needs no reference medium.
-    #[must_use]
-    pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, strength: f64) -> Self {
+    pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, index_scale: f64) -> Self {
         let slack = BORDER_SLACK * map.scale();
         let (rim, core) = (f64::INFINITY, f64::INFINITY);
-        let gauges = Gauges::new(&cut, extent, rim, core, map.scale());
-        Self { map, cut, extent, rim, core, strength, gauges, slack, unevenness: None }
+        let events = EventFunctions::new(&cut, extent, rim, core, map.scale());
+        Self { map, cut, extent, rim, core, index_scale, events, slack, unevenness: None }
     }
 
     /// The same medium (all of it in the upper half) within the radius `rim` about the z axis and beyond the radius
     /// `core`, both in cm, the latter less than the former.
-    #[must_use]
     pub fn between(self, core: Option<f64>, rim: Option<f64>) -> Self {
         let [rim, core] = [rim, core].map(|radius| radius.unwrap_or(f64::INFINITY));
-        Self { rim, core, ..self }.with_gauges()
+        Self { rim, core, ..self }.with_events()
     }
 
     /// The radii of its round core and of its round border, if it has them.
@@ -187,10 +187,10 @@ impl ConformalFlow {
         [self.core, self.rim].map(|radius| radius.is_finite().then_some(radius))
     }
 
-    /// The same with the gauges that follow from the rest.
-    fn with_gauges(self) -> Self {
-        let gauges = Gauges::new(&self.cut, self.extent, self.rim, self.core, self.scale());
-        Self { gauges, ..self }
+    /// The same with the event functions that follow from the rest.
+    fn with_events(self) -> Self {
+        let events = EventFunctions::new(&self.cut, self.extent, self.rim, self.core, self.scale());
+        Self { events, ..self }
     }
 
     /// The map.
@@ -210,7 +210,7 @@ impl ConformalFlow {
     pub fn index_range(&self) -> (f64, f64) {
         let (least, largest) = self.map.index_range(&self.cut);
         let [low, high] = self.unevenness.as_ref().map_or([1.0; 2], |uneven| uneven.bounds());
-        (self.strength * least * low, self.strength * largest * high)
+        (self.index_scale * least * low, self.index_scale * largest * high)
     }
 
     /// The index at a point of one half; None deep inside the metal, where the map has no inverse.
@@ -283,24 +283,12 @@ impl ConformalFlow {
         starts: &[Option<(VirtualPoint, DVec3)>; LANES],
         tolerance: f64,
     ) -> [Option<Result<FlowEnd, FlowError>>; LANES] {
-        let mut convoy = RayPacket::new(self, starts, tolerance);
-        while convoy.moves(self) {}
+        let mut packet = RayPacket::new(self, starts, tolerance);
+        while packet.moves(self) {}
         std::array::from_fn(|i| {
             let (start, _) = starts[i].as_ref()?;
-            Some(convoy.arrival(i).map(|arrival| self.end(start, &arrival)))
+            Some(packet.arrival(i).map(|arrival| self.end(start, &arrival)))
         })
-    }
-
-    /// Whether a ray can set out so.
-    fn sets_out(&self, start: &VirtualPoint, wave_vector: DVec3) -> Result<(), FlowError> {
-        if !wave_vector.is_finite() {
-            return Err(FlowError::NotFinite);
-        }
-        let length = wave_vector.length();
-        if (length - start.index).abs() > 1e-6 * start.index {
-            return Err(FlowError::WaveVector { length, index: start.index });
-        }
-        Ok(())
     }
 
     /// Whether a straight line in virtual space leads to the mirror.
@@ -309,13 +297,8 @@ impl ConformalFlow {
         momentum.im < 0.0 && x > self.cut.x_min && x < self.cut.x_max
     }
 
-    /// The distance over which an error of direction grows into one of position.
-    fn lever(&self) -> f64 {
-        0.5 * (self.cut.x_max - self.cut.x_min).max(self.cut.y_max - self.map.level())
-    }
-
     fn end(&self, start: &VirtualPoint, arrival: &Arrival) -> FlowEnd {
-        let Arrival { course, begin, mut end, boundary } = *arrival;
+        let Arrival { control, begin, mut end, boundary } = *arrival;
         let half = start.half;
         let mut position = DVec3::new(end.jet.f.re, end.jet.f.im, end.z);
         let inward = Complex64::i() * end.jet.f1 / end.jet.stretch();
@@ -334,10 +317,10 @@ impl ConformalFlow {
             Boundary::Rim => (position, normal) = (on_circle(self.rim), radial),
             Boundary::Core => (position, normal) = (on_circle(self.core), -radial),
         }
-        let strength = self.strength_at(end.jet.f);
-        end.momentum = course.on_shell(strength, end.momentum, &end.jet);
+        let index_scale = self.index_scale_at(end.jet.f);
+        end.momentum = control.on_shell(index_scale, end.momentum, &end.jet);
         let p = end.momentum / end.jet.f1.conj();
-        let turn = course.transport(&begin, &end);
+        let turn = transport(control.p_z, &begin, &end);
         let transport = match half {
             Half::Upper => turn,
             Half::Lower => {
@@ -351,10 +334,10 @@ impl ConformalFlow {
                 half,
                 position: half.mirrored(position),
                 virtual_position: end.zeta,
-                index: strength / end.jet.stretch(),
+                index: index_scale / end.jet.stretch(),
             },
-            wave_vector: half.mirrored(DVec3::new(p.re, p.im, course.p_z)),
-            optical_path: self.strength * self.strength * end.tau,
+            wave_vector: half.mirrored(DVec3::new(p.re, p.im, control.p_z)),
+            optical_path: self.index_scale * self.index_scale * end.tau,
             transport,
             normal: half.mirrored(normal),
         }

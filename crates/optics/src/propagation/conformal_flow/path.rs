@@ -1,6 +1,6 @@
 //! Points along a ray, for drawings.
 
-use super::walk::RayPacket;
+use super::ray_packet::RayPacket;
 use super::{ConformalFlow, FlowError, VirtualPoint};
 use crate::propagation::PathPoint;
 use glam::DVec3;
@@ -23,7 +23,7 @@ impl ConformalFlow {
         tolerance: f64,
     ) -> Result<Vec<PathPoint>, FlowError> {
         let half = start.half;
-        let speed = self.strength * self.strength;
+        let speed = self.index_scale * self.index_scale;
         let point = |at: Complex64, z: f64, tau: f64| PathPoint {
             position: half.mirrored(DVec3::new(at.re, at.im, z)),
             optical_path: speed * tau,
@@ -43,23 +43,23 @@ impl ConformalFlow {
                 })
                 .collect());
         }
-        let mut convoy =
+        let mut packet =
             RayPacket::new(self, &[Some((*start, wave_vector)), None, None, None], tolerance);
-        convoy.even_out(self, 0, spacing);
+        packet.even_out(self, 0, spacing);
         let mut way = Vec::new();
         let mut last = -1.0;
         loop {
-            if let Some((at, z, tau)) = convoy.waypoint(0)
+            if let Some((at, z, tau)) = packet.waypoint(0)
                 && tau > last
             {
                 way.push((at, z, tau));
                 last = tau;
             }
-            if !convoy.moves(self) {
+            if !packet.moves(self) {
                 break;
             }
         }
-        let end = convoy.arrival(0)?.end;
+        let end = packet.arrival(0)?.end;
         way.retain(|(_, _, tau)| *tau < end.tau);
         way.push((end.jet.f, end.z, end.tau));
         Ok(way.into_iter().map(|(at, z, tau)| point(at, z, tau)).collect())

@@ -9,7 +9,7 @@ use crate::transformation::{JetLanes, MapJet};
 
 /// Where a ray is, with the map there; of real and of complex numbers.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Place<R, C> {
+pub(super) struct RayPoint<R, C> {
     /// Optical path since the start over c².
     pub tau: R,
     /// Virtual position.
@@ -18,8 +18,7 @@ pub(super) struct Place<R, C> {
     pub momentum: C,
     /// Position along z.
     pub z: R,
-    /// Angle about the ray by which the field has turned against the frame of
-    /// [`Frame`](super::frame::Frame).
+    /// Angle about the ray by which the field has turned against the frame of the module `frame`.
     pub theta: R,
     /// The map at ζ.
     pub jet: MapJet<C>,
@@ -32,29 +31,29 @@ pub(super) struct Place<R, C> {
 }
 
 /// Where one ray is.
-pub(super) type Point = Place<f64, Complex64>;
+pub(super) type Point = RayPoint<f64, Complex64>;
 
 /// Where four rays are, in memory.
-pub(super) type Points = Place<[f64; LANES], Complexes>;
+pub(super) type Points = RayPoint<[f64; LANES], Complexes>;
 
 /// Where four rays are, in the processor.
-pub(super) type PointLanes<S> = Place<Lanes<S>, ComplexLanes<S>>;
+pub(super) type PointLanes<S> = RayPoint<Lanes<S>, ComplexLanes<S>>;
 
-impl<R: Copy, C: Copy> Place<R, C> {
+impl<R, C> RayPoint<R, C> {
     /// The same of other numbers.
     #[inline(always)]
-    fn map<Q, D>(&self, real: impl Fn(R) -> Q, complex: impl Fn(C) -> D) -> Place<Q, D> {
-        let MapJet { f, f1, f2 } = self.jet;
-        Place {
-            tau: real(self.tau),
-            zeta: complex(self.zeta),
-            momentum: complex(self.momentum),
-            z: real(self.z),
-            theta: real(self.theta),
+    fn map<Q, D>(&self, real: impl Fn(&R) -> Q, complex: impl Fn(&C) -> D) -> RayPoint<Q, D> {
+        let MapJet { f, f1, f2 } = &self.jet;
+        RayPoint {
+            tau: real(&self.tau),
+            zeta: complex(&self.zeta),
+            momentum: complex(&self.momentum),
+            z: real(&self.z),
+            theta: real(&self.theta),
             jet: MapJet { f: complex(f), f1: complex(f1), f2: complex(f2) },
-            force: complex(self.force),
-            velocity: complex(self.velocity),
-            bend: complex(self.bend),
+            force: complex(&self.force),
+            velocity: complex(&self.velocity),
+            bend: complex(&self.bend),
         }
     }
 }
@@ -62,17 +61,7 @@ impl<R: Copy, C: Copy> Place<R, C> {
 impl Points {
     /// One of them.
     pub fn at(&self, i: usize) -> Point {
-        Point {
-            tau: self.tau[i],
-            zeta: self.zeta.at(i),
-            momentum: self.momentum.at(i),
-            z: self.z[i],
-            theta: self.theta[i],
-            jet: MapJet { f: self.jet.f.at(i), f1: self.jet.f1.at(i), f2: self.jet.f2.at(i) },
-            force: self.force.at(i),
-            velocity: self.velocity.at(i),
-            bend: self.bend.at(i),
-        }
+        self.map(|numbers| numbers[i], |numbers| numbers.at(i))
     }
 
     /// Moves one of them to where it is in `other`.
@@ -92,12 +81,7 @@ impl Points {
 
     #[inline(always)]
     pub fn load<S: Simd>(&self, simd: S) -> PointLanes<S> {
-        self.map(|numbers| Lanes::new(simd, numbers), |numbers| numbers.load(simd))
-    }
-
-    #[inline(always)]
-    pub fn store<S: Simd>(&mut self, lanes: &PointLanes<S>) {
-        *self = lanes.map(Lanes::values, Complexes::of);
+        self.map(|numbers| Lanes::new(simd, *numbers), |numbers| numbers.load(simd))
     }
 }
 
@@ -114,6 +98,11 @@ impl<S: Simd> PointLanes<S> {
         let velocity = jet.f1 * momentum;
         let bend = (jet.f2 * momentum * momentum).plus(jet.f1, force);
         Self { tau, zeta, momentum, z, theta, jet, force, velocity, bend }
+    }
+
+    #[inline(always)]
+    pub fn store(&self) -> Points {
+        self.map(|lanes| lanes.values(), |lanes| Complexes::of(*lanes))
     }
 
     /// d²z/dτ².

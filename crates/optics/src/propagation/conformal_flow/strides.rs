@@ -3,7 +3,6 @@
 use pulp::{Simd, WithSimd};
 
 use super::ConformalFlow;
-use super::crossing::Gauges;
 use super::forces::{EvenForce, Force, UnevenForce};
 use super::points::{PointLanes, Points};
 use crate::lanes::{ComplexLanes, LANES, Lanes, side_by_side};
@@ -48,25 +47,6 @@ pub(super) struct StepResult {
     pub crossed: [f64; LANES],
 }
 
-impl StepResult {
-    /// Takes down what has come of a move.
-    #[inline(always)]
-    pub fn arrive<S: Simd>(
-        &mut self,
-        from: &PointLanes<S>,
-        end: &PointLanes<S>,
-        p_z: Lanes<S>,
-        error: Lanes<S>,
-        gauges: &Gauges,
-    ) {
-        self.end.store(end);
-        self.error = error.values();
-        self.factor = order_eight::step_factor(error).values();
-        let [ahead, crossed] = gauges.outlook(from, end, p_z);
-        (self.ahead, self.crossed) = (ahead.values(), crossed.values());
-    }
-}
-
 /// A momentum with its length made to fit |P|² = `square`, or 0 where that is negative.
 #[inline(always)]
 fn of_square<S: Simd>(momentum: ComplexLanes<S>, square: Lanes<S>) -> ComplexLanes<S> {
@@ -81,7 +61,7 @@ fn of_square<S: Simd>(momentum: ComplexLanes<S>, square: Lanes<S>) -> ComplexLan
 pub(super) struct Move<'w> {
     pub flow: &'w ConformalFlow,
     pub rays: &'w Rays,
-    pub pace: StepKind,
+    pub kind: StepKind,
     pub from: &'w Points,
     pub length: &'w [f64; LANES],
     /// What comes of it.
@@ -105,7 +85,7 @@ impl Move<'_> {
         let (p_z, h) = (Lanes::new(simd, self.rays.p_z), Lanes::new(simd, *self.length));
         let start = Motion { position: from.zeta, velocity: from.momentum };
         let mut error = p_z.all(0.0);
-        let ((motion, stage), growth) = match self.pace {
+        let ((motion, stage), growth) = match self.kind {
             StepKind::Departure => {
                 let stage = force.look(from.zeta);
                 let momentum = F::map(&stage.jet).f1.conj() * from.momentum;
@@ -156,7 +136,11 @@ impl Move<'_> {
         let path = if Q > 2 { growth[Q - 1] } else { h };
         let along = [from.tau + path, from.z + growth[0], from.theta + growth[1]];
         let end = PointLanes::new(motion, along, F::map(&stage.jet), stage.force);
-        self.to.arrive(&from, &end, p_z, error, &self.flow.gauges);
+        self.to.end = end.store();
+        self.to.error = error.values();
+        self.to.factor = order_eight::step_factor(error).values();
+        let [ahead, crossed] = self.flow.events.outlook(&from, &end, p_z);
+        (self.to.ahead, self.to.crossed) = (ahead.values(), crossed.values());
     }
 }
 
@@ -170,7 +154,7 @@ impl<M: LaneMap> WithSimd for Through<'_, M> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self(map, step) = self;
         let p_z = Lanes::new(simd, step.rays.p_z);
-        let even = EvenForce { map, p_z, strength: Lanes::splat(simd, step.flow.strength) };
+        let even = EvenForce { map, p_z, index_scale: Lanes::splat(simd, step.flow.index_scale) };
         match &step.flow.unevenness {
             None => step.under(simd, &even),
             Some(unevenness) => step.under(simd, &UnevenForce { even, unevenness }),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use num_complex::Complex64;
 
-use super::course::StepControl;
+use super::step_control::StepControl;
 use super::{ConformalFlow, MIRROR_MAGNIFIES};
 use crate::propagation::GridSpline;
 use crate::transformation::MapJet;
@@ -61,9 +61,8 @@ impl IndexPerturbation {
 impl ConformalFlow {
     /// The same medium with an index that is uneven: ρ times that of the map. The unevenness is that of the upper half
     /// plane, in which the lower half is looked at as its mirror image.
-    #[must_use]
     pub fn with_unevenness(self, unevenness: IndexPerturbation) -> Self {
-        Self { unevenness: Some(Arc::new(unevenness)), ..self }.with_gauges()
+        Self { unevenness: Some(Arc::new(unevenness)), ..self }.with_events()
     }
 
     /// Whether the index is not that of the map alone.
@@ -79,26 +78,23 @@ impl ConformalFlow {
     }
 
     /// How exactly rays are to be followed for a tolerance, cm, that meet the mirror or do not.
-    pub(super) fn demands(&self, tolerance: f64, to_mirror: bool) -> StepControl {
+    pub(super) fn step_control(&self, tolerance: f64, to_mirror: bool) -> StepControl {
         // Of a spline, nothing can be counted on, nor that a ray meets the mirror where a straight one would; and the
         // errors of many short steps add up.
         let uneven = self.is_uneven();
         let smoothness = if uneven { 0.3 } else { self.map.smoothness() };
         let share = if uneven || to_mirror { MIRROR_MAGNIFIES } else { 1.0 };
-        StepControl {
-            even: uneven,
-            ..StepControl::new(self.scale(), smoothness, share * tolerance)
-        }
+        StepControl::new(self.scale(), smoothness, share * tolerance, uneven)
     }
 
     /// c ρ at a physical point of the upper half.
-    pub(super) fn strength_at(&self, z: Complex64) -> f64 {
+    pub(super) fn index_scale_at(&self, z: Complex64) -> f64 {
         let square = self.unevenness.as_ref().map_or(1.0, |unevenness| unevenness.look(z).0);
-        self.strength * square.sqrt()
+        self.index_scale * square.sqrt()
     }
 
     /// The index at a virtual point.
     pub(super) fn index_at(&self, jet: &MapJet) -> f64 {
-        self.strength_at(jet.f) / jet.stretch()
+        self.index_scale_at(jet.f) / jet.stretch()
     }
 }

@@ -83,7 +83,7 @@ mod kepler {
     use crate::lanes::{ComplexLanes, LANES, Lanes};
 
     /// Position and velocity.
-    pub type Place = [Complex64; 2];
+    pub type OrbitState = [Complex64; 2];
 
     /// It pulls with 1/r²; the quadrature is the time integral of the speed squared.
     pub struct Sun;
@@ -104,20 +104,20 @@ mod kepler {
     }
 
     /// The perihelion of an orbit of eccentricity 0.3 and period 2π.
-    pub fn start() -> Place {
+    pub fn start() -> OrbitState {
         [0.7.into(), Complex64::new(0.0, (1.3_f64 / 0.7).sqrt())]
     }
 
     /// Orbits side by side, as a step takes them.
     #[inline(always)]
-    pub fn together<S: Simd>(simd: S, places: [Place; LANES]) -> Motion<S> {
+    pub fn together<S: Simd>(simd: S, places: [OrbitState; LANES]) -> Motion<S> {
         let [position, velocity] =
             [0, 1].map(|k| ComplexLanes::new(simd, places.map(|place| place[k])));
         Motion { position, velocity }
     }
 
     #[inline(always)]
-    pub fn apart<S: Simd>(motion: Motion<S>) -> [Place; LANES] {
+    pub fn apart<S: Simd>(motion: Motion<S>) -> [OrbitState; LANES] {
         let (position, velocity) = (motion.position.values(), motion.velocity.values());
         array::from_fn(|i| [position[i], velocity[i]])
     }
@@ -126,7 +126,7 @@ mod kepler {
     /// steps of the given lengths end, and their quadrature.
     pub fn revolution(
         count: u32,
-        step: impl Fn([Place; LANES], [f64; LANES]) -> ([Place; LANES], [f64; LANES]),
+        step: impl Fn([OrbitState; LANES], [f64; LANES]) -> ([OrbitState; LANES], [f64; LANES]),
     ) -> [(f64, f64); 2] {
         let h = TAU / f64::from(count);
         let mut places = [start(); LANES];
@@ -140,7 +140,7 @@ mod kepler {
         [0, 1].map(|i| (distance(places[i], start()), (action[i].abs() - TAU).abs()))
     }
 
-    pub fn distance(a: Place, b: Place) -> f64 {
+    pub fn distance(a: OrbitState, b: OrbitState) -> f64 {
         (a[0] - b[0]).norm().hypot((a[1] - b[1]).norm())
     }
 }

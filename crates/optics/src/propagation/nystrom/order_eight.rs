@@ -191,18 +191,18 @@ mod tests {
     use super::*;
     use crate::lanes::{LANES, side_by_side};
     use crate::propagation::nystrom::kepler::{
-        Place, Sun, apart, distance, revolution, start, together,
+        OrbitState, Sun, apart, distance, revolution, start, together,
     };
 
     /// A step of length `h` of four Kepler orbits from `start`; the quadrature is the time integral of the
     /// speed squared.
     struct Orbits {
-        start: [Place; LANES],
+        start: [OrbitState; LANES],
         h: [f64; LANES],
     }
 
     impl WithSimd for Orbits {
-        type Output = ([Place; LANES], [f64; LANES], [f64; LANES]);
+        type Output = ([OrbitState; LANES], [f64; LANES], [f64; LANES]);
 
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) -> Self::Output {

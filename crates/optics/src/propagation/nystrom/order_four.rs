@@ -38,15 +38,15 @@ mod tests {
 
     use super::*;
     use crate::lanes::{LANES, side_by_side};
-    use crate::propagation::nystrom::kepler::{Place, Sun, apart, revolution, together};
+    use crate::propagation::nystrom::kepler::{OrbitState, Sun, apart, revolution, together};
 
     struct Orbits {
-        start: [Place; LANES],
+        start: [OrbitState; LANES],
         h: [f64; LANES],
     }
 
     impl WithSimd for Orbits {
-        type Output = ([Place; LANES], [f64; LANES]);
+        type Output = ([OrbitState; LANES], [f64; LANES]);
 
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) -> Self::Output {

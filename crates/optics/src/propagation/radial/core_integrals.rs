@@ -21,14 +21,10 @@ impl RadialQuadratic {
         Self { a, b, c, root: discriminant.max(least).sqrt() }
     }
 
-    /// √Q at a radius.
-    pub fn root_at(&self, rho: f64) -> f64 {
-        ((self.a * rho + self.b) * rho + self.c).max(0.0).sqrt()
-    }
-
     /// The parameter of a radius on the way out.
     pub fn parameter(&self, rho: f64) -> f64 {
-        (2.0 * (self.a.sqrt() * self.root_at(rho)) / self.root).asinh()
+        let root = ((self.a * rho + self.b) * rho + self.c).max(0.0).sqrt();
+        (2.0 * (self.a.sqrt() * root) / self.root).asinh()
     }
 
     /// The radius of a parameter, and √Q with its sign.

@@ -12,9 +12,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Central forces: a ray stays in its plane, n r sin(angle to the radius) is kept, and the
 /// electric field turns with the ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct CentralLens {
     profile: Profile,
-    radius: f64,
+    /// Its radius, cm.
+    pub radius: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,29 +32,20 @@ impl CentralLens {
     /// π is the lens of Eaton (Trans. IRE Antennas Propag. 4, 66 (1952)), 2π the invisible sphere,
     /// π/2 the right-angle bender (Hannay & Haeusser, J. Mod. Opt. 40, 1437 (1993)). With m = π/angle and
     /// v = n^m, r/radius = 2 v^(1 - 1/m)/(1 + v²); the index is infinite at the centre.
-    #[must_use]
     pub fn eaton(radius: f64, angle: f64) -> Self {
         debug_assert!(radius > 0.0 && angle >= 0.0);
         Self { profile: Profile::Eaton(angle), radius }
     }
 
     /// The lens of Luneburg, n² = 2 - (r/radius)²: parallel rays meet at a point of the far side.
-    #[must_use]
     pub fn luneburg(radius: f64) -> Self {
         Self { profile: Profile::Luneburg, radius }
     }
 
     /// Maxwell's fish-eye, n = 2/(1 + (r/radius)²), cut where n = 1: a point of the surface is imaged
     /// to its antipode.
-    #[must_use]
     pub fn fisheye(radius: f64) -> Self {
         Self { profile: Profile::Fisheye, radius }
-    }
-
-    /// Its radius, cm.
-    #[must_use]
-    pub fn radius(&self) -> f64 {
-        self.radius
     }
 
     /// The index at a distance `r` (cm) from the centre, up to the radius.
@@ -60,14 +53,13 @@ impl CentralLens {
     pub fn index(&self, r: f64) -> f64 {
         let x = r / self.radius;
         match self.profile {
-            Profile::Eaton(angle) => eaton_index(angle / PI, x),
+            Profile::Eaton(angle) => (angle / PI * eaton_parameter(angle / PI, x)).exp(),
             Profile::Luneburg => (2.0 - x * x).sqrt(),
             Profile::Fisheye => 2.0 / (1.0 + x * x),
         }
     }
 
     /// The local medium.
-    #[must_use]
     pub fn medium(&self, position: DVec3) -> Medium {
         let r = position.length();
         // On the surface it is that of air to the last bit.
@@ -88,7 +80,7 @@ impl CentralLens {
         let (x, d) = (position.normalize(), wave_vector.normalize());
         let normal = plane_normal(x, d);
         let cosine = x.dot(d);
-        let (place, path) = match self.profile {
+        let (position, path) = match self.profile {
             Profile::Eaton(angle) => {
                 let way = EatonWay::new(x, d, angle / PI, share);
                 (x.rotate_axis(normal, way.swept) * eaton_radius(angle / PI, way.c), way.path)
@@ -105,7 +97,7 @@ impl CentralLens {
                 (across / (1.0 - cosine * sin), PI * share)
             }
         };
-        PathPoint { position: place * self.radius, optical_path: path * self.radius }
+        PathPoint { position: position * self.radius, optical_path: path * self.radius }
     }
 
     /// Whether a point is not one of the surface.
@@ -156,7 +148,6 @@ impl CentralLens {
     }
 
     /// Follows a ray from a point of the ball or its surface to where it comes out.
-    #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3) -> RadialEnd {
         if self.is_within(position) {
             let end = self.way_from_within(position, wave_vector, 1.0);
@@ -276,13 +267,8 @@ fn eaton_radius(turn: f64, c: f64) -> f64 {
 /// Closer to the centre than this share of the radius the local medium is that of here.
 const NEAREST: f64 = 1e-6;
 
-/// The index of Eaton's family at x = r/R, `turn` being 1/m. With v = e^w, n = e^(w/m) and
+/// w of Eaton's family at x = r/R, `turn` being 1/m: with v = e^w, the index is n = e^(w/m), and
 /// w/m + ln cosh w + ln x = 0.
-fn eaton_index(turn: f64, x: f64) -> f64 {
-    (turn * eaton_parameter(turn, x)).exp()
-}
-
-/// w of [`eaton_index`].
 fn eaton_parameter(turn: f64, x: f64) -> f64 {
     if x >= 1.0 {
         return 0.0;
@@ -354,7 +340,7 @@ mod tests {
             let last = lens.way_point(here.position, onward, 1.0);
             assert!(last.position.distance(found.position) < 1e-9);
             assert!(middle.optical_path < found.optical_path);
-            assert!(middle.position.length() < lens.radius());
+            assert!(middle.position.length() < lens.radius);
             // Out along the radius, from near the centre too.
             for r in [1.2, 1e-3] {
                 let out = lens.advance(DVec3::X * r, DVec3::X);

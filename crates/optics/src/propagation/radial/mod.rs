@@ -18,7 +18,7 @@ pub use transmuted_sphere::TransmutedSphere;
 pub use uniaxial_cylinder::{OpticAxis, UniaxialCylinder};
 
 use super::{PathPoint, first_way_out, turn_in_plane};
-use crate::geometry::CylinderPart;
+pub use crate::geometry::Border;
 use crate::medium::{Medium, ModeKind};
 use crate::transformation::RadialMap;
 use glam::{DMat3, DVec3};
@@ -36,21 +36,9 @@ pub enum RadialFlow {
     Uniaxial(UniaxialCylinder),
 }
 
-/// A part of the border of a radial medium.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Border {
-    /// The outer radius.
-    Outer,
-    /// The radius of the hole.
-    Inner,
-    /// The end at the least z.
-    Bottom,
-    /// The end at the largest z.
-    Top,
-}
-
 /// How a ray arrives at the border of a radial medium, still inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct RadialEnd {
     /// The part of the border.
     pub border: Border,
@@ -73,10 +61,10 @@ impl RadialFlow {
     #[must_use]
     pub fn radii(&self) -> [f64; 2] {
         match self {
-            Self::Lens(lens) => [0.0, lens.radius()],
-            Self::Transmuted(sphere) => [0.0, sphere.radius()],
-            Self::Transformed(shell) => [shell.map().inner(), shell.map().outer()],
-            Self::Uniaxial(cylinder) => [cylinder.map().inner(), cylinder.map().outer()],
+            Self::Lens(lens) => [0.0, lens.radius],
+            Self::Transmuted(sphere) => [0.0, sphere.radius],
+            Self::Transformed(shell) => [shell.map.inner, shell.map.outer],
+            Self::Uniaxial(cylinder) => [cylinder.map.inner, cylinder.map.outer],
         }
     }
 
@@ -85,8 +73,8 @@ impl RadialFlow {
     pub fn outward(&self, position: DVec3) -> DVec3 {
         match self {
             Self::Lens(_) | Self::Transmuted(_) => position.try_normalize().unwrap_or(DVec3::X),
-            Self::Transformed(shell) => shell.map().radial(position),
-            Self::Uniaxial(cylinder) => cylinder.map().radial(position),
+            Self::Transformed(shell) => shell.map.radial(position),
+            Self::Uniaxial(cylinder) => cylinder.map.radial(position),
         }
     }
 
@@ -110,7 +98,6 @@ impl RadialFlow {
     /// Follows a ray from a point of the border, where it has the given wave vector and is the given
     /// wave of the medium, to the next point of the border. It must run into the medium or along its
     /// border. In an isotropic medium it may start within, too.
-    #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
         match self {
             Self::Lens(lens) => lens.advance(position, wave_vector),
@@ -131,18 +118,18 @@ impl RadialFlow {
     ) -> Vec<PathPoint> {
         let end = self.advance(position, wave_vector, mode);
         let turning = match self {
-            Self::Uniaxial(cylinder) => cylinder.turning_course(position, wave_vector, mode),
+            Self::Uniaxial(cylinder) => cylinder.turning_path(position, wave_vector, mode),
             _ => None,
         };
         let point = |share: f64| match (self, &turning) {
-            (_, Some(course)) => course.way_point(position, share),
+            (_, Some(path)) => path.way_point(position, share),
             (Self::Lens(lens), _) => lens.way_point(position, wave_vector, share),
             (Self::Transmuted(sphere), _) if mode == ModeKind::Extraordinary => {
                 sphere.way_point(position, wave_vector, share)
             }
-            (Self::Transformed(shell), _) => straight_in(shell.map(), position, &end, share),
+            (Self::Transformed(shell), _) => straight_in(&shell.map, position, &end, share),
             (Self::Uniaxial(cylinder), _) if !cylinder.comes_to_core(mode) => {
-                straight_in(cylinder.map(), position, &end, share)
+                straight_in(&cylinder.map, position, &end, share)
             }
             _ => straight(position, &end, share),
         };
@@ -172,16 +159,6 @@ fn straight_in(map: &RadialMap, from: DVec3, end: &RadialEnd, share: f64) -> Pat
     PathPoint {
         position: map.to_physical(start.lerp(stop, share)),
         optical_path: share * end.optical_path,
-    }
-}
-
-impl From<CylinderPart> for Border {
-    fn from(part: CylinderPart) -> Self {
-        match part {
-            CylinderPart::Side => Self::Outer,
-            CylinderPart::Bottom => Self::Bottom,
-            CylinderPart::Top => Self::Top,
-        }
     }
 }
 

@@ -10,8 +10,10 @@ use glam::DVec3;
 /// lines, and fields are those of empty space: E = J⁻ᵀ E', H = J⁻ᵀ H'.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransformedShell {
-    map: RadialMap,
-    extent: Extent,
+    /// The map.
+    pub map: RadialMap,
+    /// From where to where a cylindrical one reaches along z.
+    pub extent: Extent,
 }
 
 /// How far from the hole, relative to its radius, a point is at its border.
@@ -22,24 +24,11 @@ const AT_HOLE: f64 = 1e-9;
 const BESIDE_HOLE: f64 = 1e-5;
 
 impl TransformedShell {
-    /// The shell of a map, a cylindrical one within `extent` along z.
-    #[must_use]
-    pub fn new(map: RadialMap, extent: Extent) -> Self {
-        Self { map, extent }
-    }
-
-    /// The map.
-    #[must_use]
-    pub fn map(&self) -> &RadialMap {
-        &self.map
-    }
-
     /// The local medium.
-    #[must_use]
     pub fn medium(&self, position: DVec3) -> Medium {
         let map = &self.map;
-        let at_hole = map.radius(position) <= map.inner() * (1.0 + AT_HOLE);
-        let off_hole = map.radial(position) * (map.inner() * (1.0 + BESIDE_HOLE));
+        let at_hole = map.radius(position) <= map.inner * (1.0 + AT_HOLE);
+        let off_hole = map.radial(position) * (map.inner * (1.0 + BESIDE_HOLE));
         let position = if at_hole { off_hole } else { position };
         // det (J Jᵀ/det J) = 1/det J.
         let determinant = map.determinant(position).recip();
@@ -47,7 +36,6 @@ impl TransformedShell {
     }
 
     /// Follows a ray from a point of the border to where it comes out. It never comes to the hole.
-    #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3) -> RadialEnd {
         let map = &self.map;
         let momentum = map.jacobian(position) * wave_vector;
@@ -84,7 +72,7 @@ impl VirtualLine {
     /// From a physical point with a virtual velocity.
     pub fn new(map: &RadialMap, extent: Extent, position: DVec3, velocity: DVec3) -> Self {
         let start = map.to_virtual(position);
-        let radius = map.outer();
+        let radius = map.outer;
         match map.symmetry {
             Symmetry::Centre => {
                 let sphere = Sphere { radius };
@@ -97,12 +85,12 @@ impl VirtualLine {
                 let (time, part) = cylinder.time_to_leave(start, velocity);
                 let end = start + velocity * time;
                 let outward = cylinder.outward(part, end);
-                let position = match Border::from(part) {
+                let position = match part {
                     Border::Outer | Border::Inner => outward * radius + DVec3::Z * end.z,
                     Border::Bottom => map.to_physical(end).with_z(extent.min),
                     Border::Top => map.to_physical(end).with_z(extent.max),
                 };
-                Self { time, border: part.into(), position, outward }
+                Self { time, border: part, position, outward }
             }
         }
     }

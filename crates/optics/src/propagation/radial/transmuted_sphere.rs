@@ -15,7 +15,8 @@ use std::f64::consts::PI;
 /// the invisible sphere, with the same optical path: it leaves on its chord, late by 2π radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransmutedSphere {
-    radius: f64,
+    /// Its radius, cm.
+    pub radius: f64,
 }
 
 /// Closer to the centre than this share of the radius the local medium is that of here.
@@ -33,12 +34,6 @@ impl TransmutedSphere {
     pub fn new(radius: f64) -> Self {
         debug_assert!(radius > 0.0);
         Self { radius }
-    }
-
-    /// Its radius, cm.
-    #[must_use]
-    pub fn radius(&self) -> f64 {
-        self.radius
     }
 
     /// The local medium.
@@ -90,7 +85,6 @@ impl TransmutedSphere {
     }
 
     /// Follows a ray of either wave from a point of the surface to where it comes out.
-    #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
         let from = position.normalize();
         let normal = plane_normal(from, wave_vector.normalize());

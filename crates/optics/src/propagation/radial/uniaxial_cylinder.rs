@@ -3,8 +3,8 @@
 use super::core_integrals::RadialQuadratic;
 use super::transformed_shell::VirtualLine;
 use super::uniaxial_wave::{UniaxialPoint, transport};
-use super::{Border, PathPoint, RadialEnd};
-use crate::geometry::{Cylinder, CylinderPart, Extent};
+use super::{PathPoint, RadialEnd};
+use crate::geometry::{Border, Cylinder, Extent};
 use crate::medium::{Medium, ModeKind};
 use crate::transformation::{RadialMap, Symmetry, root_in_bracket};
 use glam::{DVec2, DVec3};
@@ -32,7 +32,8 @@ pub enum OpticAxis {
 /// - radial axis, ordinary: straight, of index k; it comes to the core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UniaxialCylinder {
-    map: RadialMap,
+    /// The map that gives its refraction in the plane.
+    pub map: RadialMap,
     axis: OpticAxis,
     extent: Extent,
 }
@@ -49,12 +50,6 @@ impl UniaxialCylinder {
     #[must_use]
     pub fn new(inner: f64, outer: f64, axis: OpticAxis, extent: Extent) -> Self {
         Self { map: RadialMap::new(inner, outer, Symmetry::Axis), axis, extent }
-    }
-
-    /// The map that gives its refraction in the plane.
-    #[must_use]
-    pub fn map(&self) -> &RadialMap {
-        &self.map
     }
 
     /// Whether a wave comes to the core: the ordinary one of the radial axis.
@@ -90,12 +85,11 @@ impl UniaxialCylinder {
     }
 
     /// Follows a ray of either wave from a point of the border to the next point of it.
-    #[must_use]
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
         let leg = if self.comes_to_core(mode) {
             self.straight(position, wave_vector)
-        } else if let Some(course) = self.turning_course(position, wave_vector, mode) {
-            self.turning(position, wave_vector, course)
+        } else if let Some(path) = self.turning_path(position, wave_vector, mode) {
+            self.turning(position, wave_vector, path)
         } else {
             // Those of the other axis that are aimed at the axis, too, as their neighbours in the plane.
             self.virtually_straight(position, wave_vector)
@@ -118,39 +112,39 @@ impl UniaxialCylinder {
         }
     }
 
-    /// The course of a wave that turns back before the core, if it is one.
-    pub(super) fn turning_course(
+    /// The path of a wave that turns back before the core, if it is one.
+    pub(super) fn turning_path(
         &self,
         position: DVec3,
         wave_vector: DVec3,
         mode: ModeKind,
-    ) -> Option<TurningCourse> {
+    ) -> Option<TurningPath> {
         let turns = match (self.axis, mode == ModeKind::Extraordinary) {
             (OpticAxis::Radial, true) => {
                 // Unless it is aimed at the axis.
                 let momentum = position.truncate().perp_dot(wave_vector.truncate());
-                let off = momentum.hypot(wave_vector.z * self.map.inner());
-                off.is_nan() || off >= CENTRAL * self.map.outer()
+                let off = momentum.hypot(wave_vector.z * self.map.inner);
+                off.is_nan() || off >= CENTRAL * self.map.outer
             }
             (axis, extraordinary) => axis == OpticAxis::Azimuthal && !extraordinary,
         };
-        turns.then(|| TurningCourse::new(self, position, wave_vector))
+        turns.then(|| TurningPath::new(self, position, wave_vector))
     }
 
     /// The ordinary wave of the radial axis.
     fn straight(&self, position: DVec3, wave_vector: DVec3) -> PathSegment {
         let direction = wave_vector.normalize();
-        let [core, whole] = [self.map.inner(), self.map.outer()]
-            .map(|radius| Cylinder { radius, extent: self.extent });
+        let [core, whole] =
+            [self.map.inner, self.map.outer].map(|radius| Cylinder { radius, extent: self.extent });
         let (distance, part) = whole.time_to_leave(position, direction);
         let to_core = core.hit_side(position, direction).filter(|to_core| *to_core < distance);
         let distance = to_core.unwrap_or(distance);
         let end = position + direction * distance;
         let (border, outward, position) = if to_core.is_some() {
-            let radial = core.outward(CylinderPart::Side, end);
-            (Border::Inner, -radial, radial * self.map.inner() + DVec3::Z * end.z)
+            let radial = core.outward(Border::Inner, end);
+            (Border::Inner, -radial, radial * self.map.inner + DVec3::Z * end.z)
         } else {
-            (part.into(), whole.outward(part, end), self.on_border(part.into(), end))
+            (part, whole.outward(part, end), self.on_border(part, end))
         };
         let optical_path = distance * wave_vector.length();
         PathSegment { border, position, outward, wave_vector, optical_path }
@@ -172,21 +166,21 @@ impl UniaxialCylinder {
     }
 
     /// Waves that turn back before the core.
-    fn turning(&self, position: DVec3, wave_vector: DVec3, course: TurningCourse) -> PathSegment {
-        let TurningCourse { course, radial, border, etas: [start, eta] } = course;
-        let momentum = course.momentum;
-        let (begin, end) = (course.place(start), course.place(eta));
-        let (rho, root) = course.quadratic.radius(eta);
-        let radius = if border == Border::Outer { self.map.outer() } else { course.radius(rho) };
+    fn turning(&self, position: DVec3, wave_vector: DVec3, path: TurningPath) -> PathSegment {
+        let TurningPath { motion, radial, border, etas: [start, eta] } = path;
+        let momentum = motion.momentum;
+        let (begin, end) = (motion.integrals(start), motion.integrals(eta));
+        let (rho, root) = motion.quadratic.radius(eta);
+        let radius = if border == Border::Outer { self.map.outer } else { motion.radius(rho) };
         let turned = DVec2::from_angle(end.angle - begin.angle).rotate(radial.truncate());
         let outward_radial = turned.normalize().extend(0.0);
         let z = position.z + end.z - begin.z;
-        let place = self.on_border(border, outward_radial * radius + DVec3::Z * z);
-        let p_r = root / rho * course.scale;
+        let position = self.on_border(border, outward_radial * radius + DVec3::Z * z);
+        let p_r = root / rho * motion.scale;
         let around = DVec3::Z.cross(outward_radial) * (momentum / radius);
         PathSegment {
             border,
-            position: place,
+            position,
             outward: match border {
                 Border::Bottom => DVec3::NEG_Z,
                 Border::Top => DVec3::Z,
@@ -202,7 +196,7 @@ impl UniaxialCylinder {
         match border {
             Border::Bottom => point.with_z(self.extent.min),
             Border::Top => point.with_z(self.extent.max),
-            Border::Outer => (self.map.radial(point) * self.map.outer()).with_z(point.z),
+            Border::Outer => (self.map.radial(point) * self.map.outer).with_z(point.z),
             Border::Inner => point,
         }
     }
@@ -218,8 +212,8 @@ struct PathSegment {
 }
 
 /// The way of a ray that turns back before the core.
-pub(super) struct TurningCourse {
-    course: StepControl,
+pub(super) struct TurningPath {
+    motion: RadialMotion,
     /// The unit vector away from the axis at its start.
     radial: DVec3,
     /// Where it ends.
@@ -228,36 +222,36 @@ pub(super) struct TurningCourse {
     etas: [f64; 2],
 }
 
-impl TurningCourse {
+impl TurningPath {
     fn new(cylinder: &UniaxialCylinder, position: DVec3, wave_vector: DVec3) -> Self {
         let radial = cylinder.map.radial(position);
         let momentum = position.truncate().perp_dot(wave_vector.truncate());
-        let course = StepControl::new(cylinder, momentum, wave_vector.z);
+        let motion = RadialMotion::new(cylinder, momentum, wave_vector.z);
         let radius = cylinder.map.radius(position);
-        let start = course.quadratic.parameter(course.rho(radius));
+        let start = motion.quadratic.parameter(motion.rho(radius));
         let start = if wave_vector.dot(radial) < 0.0 { -start } else { start };
-        let begin = course.place(start);
-        let last = course.quadratic.parameter(course.rho(cylinder.map.outer()));
+        let begin = motion.integrals(start);
+        let last = motion.quadratic.parameter(motion.rho(cylinder.map.outer));
         let mut border = Border::Outer;
         let mut eta = last.max(start);
-        let end = course.place(eta);
-        let whole = Cylinder { radius: cylinder.map.outer(), extent: cylinder.extent };
+        let end = motion.integrals(eta);
+        let whole = Cylinder { radius: cylinder.map.outer, extent: cylinder.extent };
         let (share, part) = whole.time_to_end(position.z, end.z - begin.z);
         if share < 1.0 {
-            border = part.into();
+            border = part;
             let goal = begin.z + share * (end.z - begin.z);
-            let off = |eta: f64| (course.place(eta).z - goal, course.z_slope(eta));
+            let off = |eta: f64| (motion.integrals(eta).z - goal, motion.z_slope(eta));
             eta = root_in_bracket((start, begin.z - goal), (eta, end.z - goal), off);
         }
-        Self { course, radial, border, etas: [start, eta] }
+        Self { motion, radial, border, etas: [start, eta] }
     }
 
     /// The point at a share of the way from a position.
     pub fn way_point(&self, position: DVec3, share: f64) -> PathPoint {
         let [start, end] = self.etas;
         let eta = start + share * (end - start);
-        let (begin, here) = (self.course.place(start), self.course.place(eta));
-        let radius = self.course.radius(self.course.quadratic.radius(eta).0);
+        let (begin, here) = (self.motion.integrals(start), self.motion.integrals(eta));
+        let radius = self.motion.radius(self.motion.quadratic.radius(eta).0);
         let turned = DVec2::from_angle(here.angle - begin.angle).rotate(self.radial.truncate());
         PathPoint {
             position: (turned * radius).extend(position.z + here.z - begin.z),
@@ -267,14 +261,14 @@ impl TurningCourse {
 }
 
 /// What a ray that turns has done since its turning point.
-struct Place {
+struct PathIntegrals {
     angle: f64,
     z: f64,
     optical_path: f64,
 }
 
-/// The course of a ray that turns: in τ with dr/dτ = ∂H/∂p_r, ρ dρ/dτ = √Q.
-struct StepControl {
+/// The radial motion of a ray that turns: in τ with dr/dτ = ∂H/∂p_r, ρ dρ/dτ = √Q.
+struct RadialMotion {
     quadratic: RadialQuadratic,
     /// ρ = scale (r - origin), p_r = scale √Q/ρ.
     scale: f64,
@@ -285,9 +279,9 @@ struct StepControl {
     path: [f64; 3],
 }
 
-impl StepControl {
+impl RadialMotion {
     fn new(cylinder: &UniaxialCylinder, momentum: f64, p_z: f64) -> Self {
-        let (a, k) = (cylinder.map.inner(), cylinder.map.stretch());
+        let (a, k) = (cylinder.map.inner, cylinder.map.stretch());
         let (k2, l2, pz2) = (k * k, momentum * momentum, p_z * p_z);
         match cylinder.axis {
             // Extraordinary: ρ = r', r'² P_r'² = r'² - L² - p_z² (r'/k + a)².
@@ -329,10 +323,14 @@ impl StepControl {
         self.origin + rho / self.scale
     }
 
-    fn place(&self, eta: f64) -> Place {
+    fn integrals(&self, eta: f64) -> PathIntegrals {
         let [first, zeroth, inverse] = self.quadratic.integrals(eta);
         let sum = |[f, z, i]: [f64; 3]| f * first + z * zeroth + i * inverse;
-        Place { angle: self.momentum * inverse, z: sum(self.z), optical_path: sum(self.path) }
+        PathIntegrals {
+            angle: self.momentum * inverse,
+            z: sum(self.z),
+            optical_path: sum(self.path),
+        }
     }
 
     /// dz/dη.

@@ -76,24 +76,36 @@ impl Table {
     }
 
     /// Value and derivatives anywhere: beyond X = ±A and Y = H_c by the symmetries of the series.
-    ///
-    /// The steps of a ray need the derivatives alone; inlined, the value is computed only where it is used.
-    #[inline]
     pub fn jet(&self, zeta: Complex64) -> MapJet {
-        let local = self.local(zeta);
-        MapJet { f: local.value(self.height), f1: local.f1, f2: local.f2 }
+        let TablePoint { patch, d, shift, sign, mirror } = self.find(zeta);
+        let (mut f1, mut f2) = (patch.slopes[TERMS - 1], Complex64::ZERO);
+        for c in patch.slopes[..TERMS - 1].iter().rev() {
+            f2 = f2 * d + f1;
+            f1 = f1 * d + c;
+        }
+        let mut f = Complex64::ZERO;
+        for (c, inverse) in patch.slopes.iter().zip(INVERSE).rev() {
+            f = f * d + c * inverse;
+        }
+        f = f * d + patch.value;
+        let im = if mirror < 0.0 { 2.0 * self.height - f.im } else { f.im };
+        MapJet {
+            f: Complex64::new(sign * f.re + shift, im),
+            f1: Complex64::new(f1.re, sign * mirror * f1.im),
+            f2: Complex64::new(sign * f2.re, mirror * f2.im),
+        }
     }
 
     /// As [`Self::jet`] at four points.
     #[inline(always)]
     pub fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S> {
         let [a, b, c, d] = zeta.values();
-        let (a, b, c, d) = (self.place(a), self.place(b), self.place(c), self.place(d));
+        let (a, b, c, d) = (self.find(a), self.find(b), self.find(c), self.find(d));
         let like = zeta.re;
         let off = zeta.with([a.d, b.d, c.d, d.d]);
         let mut slopes = [off; TERMS];
         for (n, slope) in slopes.iter_mut().enumerate() {
-            *slope = zeta.with([&a, &b, &c, &d].map(|place| place.patch.slopes[n]));
+            *slope = zeta.with([&a, &b, &c, &d].map(|point| point.patch.slopes[n]));
         }
         let mut f2 = zeta.real(0.0);
         let mut f1 = slopes[TERMS - 1];
@@ -104,37 +116,21 @@ impl Table {
             f = f * off + slopes[n] * INVERSE[n];
         }
         f = f * off + zeta.with([a.patch.value, b.patch.value, c.patch.value, d.patch.value]);
-        let side = like.with([a.side, b.side, c.side, d.side]);
+        let sign = like.with([a.sign, b.sign, c.sign, d.sign]);
         let mirror = like.with([a.mirror, b.mirror, c.mirror, d.mirror]);
         let shift = like.with([a.shift, b.shift, c.shift, d.shift]);
         // 2H for the mirror images, else 0.
         let height = (like.all(1.0) - mirror) * self.height;
         JetLanes {
-            f: ComplexLanes { re: side * f.re + shift, im: height + mirror * f.im },
-            f1: ComplexLanes { re: f1.re, im: side * mirror * f1.im },
-            f2: ComplexLanes { re: side * f2.re, im: mirror * f2.im },
+            f: ComplexLanes { re: sign * f.re + shift, im: height + mirror * f.im },
+            f1: ComplexLanes { re: f1.re, im: sign * mirror * f1.im },
+            f2: ComplexLanes { re: sign * f2.re, im: mirror * f2.im },
         }
     }
 
-    #[inline(never)]
-    fn local(&self, zeta: Complex64) -> Local<'_> {
-        let place = self.place(zeta);
-        let Place { patch, d, side, mirror, .. } = place;
-        let (mut f1, mut f2) = (patch.slopes[TERMS - 1], Complex64::ZERO);
-        for c in patch.slopes[..TERMS - 1].iter().rev() {
-            f2 = f2 * d + f1;
-            f1 = f1 * d + c;
-        }
-        Local {
-            place,
-            f1: Complex64::new(f1.re, side * mirror * f1.im),
-            f2: Complex64::new(side * f2.re, mirror * f2.im),
-        }
-    }
-
-    /// The place of any point in the table.
+    /// Any point in the table.
     #[inline(always)]
-    fn place(&self, zeta: Complex64) -> Place<'_> {
+    fn find(&self, zeta: Complex64) -> TablePoint<'_> {
         // f(ζ + 2A) = f(ζ) + 2A, f(-conj ζ) = -conj f(ζ), f(conj ζ + 2iH_c) = conj f(ζ) + 2iH.
         let period = 2.0 * self.half_width;
         let shift =
@@ -143,9 +139,9 @@ impl Table {
         let above = zeta.im > self.virtual_height;
         let y = if above { 2.0 * self.virtual_height - zeta.im } else { zeta.im };
         let (patch, d) = self.patch(x.abs(), y);
-        let side = 1.0_f64.copysign(x);
+        let sign = 1.0_f64.copysign(x);
         let mirror = if above { -1.0 } else { 1.0 };
-        Place { patch, d, shift, side, mirror }
+        TablePoint { patch, d, shift, sign, mirror }
     }
 
     /// The patch for X from 0 to A and Y up to H_c, and where in it.
@@ -168,37 +164,15 @@ impl Table {
 }
 
 /// Where a point is in the table.
-struct Place<'a> {
+struct TablePoint<'a> {
     patch: &'a Patch,
     d: Complex64,
     /// By how much X is off its place in the table.
     shift: f64,
     /// The sign of X there.
-    side: f64,
+    sign: f64,
     /// -1 for a point above Y = H_c, of which the table holds the mirror image.
     mirror: f64,
-}
-
-/// The map about a point, but for its value.
-struct Local<'a> {
-    place: Place<'a>,
-    f1: Complex64,
-    f2: Complex64,
-}
-
-impl Local<'_> {
-    /// f, `height` being H.
-    #[inline]
-    fn value(&self, height: f64) -> Complex64 {
-        let Place { patch, d, shift, side, mirror } = self.place;
-        let mut f = Complex64::ZERO;
-        for (c, inverse) in patch.slopes.iter().zip(INVERSE).rev() {
-            f = f * d + c * inverse;
-        }
-        f = f * d + patch.value;
-        let im = if mirror < 0.0 { 2.0 * height - f.im } else { f.im };
-        Complex64::new(side * f.re + shift, im)
-    }
 }
 
 impl Band {

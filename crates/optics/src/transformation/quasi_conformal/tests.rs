@@ -82,7 +82,7 @@ fn table_is_the_series_and_conformal() {
 fn has_the_numbers_of_li_and_pendry() {
     let cut = Truncation::centred(4.0, 1.5);
     let map = QuasiConformalMap::new(2.0, 0.2, &cut).expect("a map");
-    let c = map.strength();
+    let c = map.index_scale();
     assert!((map.anisotropy() - 1.042).abs() < 5e-4, "{}", map.anisotropy());
     let (least, largest) = ConformalMap::QuasiConformal(map).index_range(&cut);
     let (least, largest) = (c * least, c * largest);

@@ -6,23 +6,23 @@ use super::*;
 use crate::lanes::side_by_side;
 
 /// When a value next falls through zero.
-struct Fall(Motion);
+struct Fall(EventJet);
 
 impl WithSimd for Fall {
     type Output = f64;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let Motion { value, rate, bend } = self.0;
+        let EventJet { value, rate, bend } = self.0;
         let [value, rate, bend] = [value, rate, bend].map(|x| Lanes::splat(simd, x));
-        Motion { value, rate, bend }.time_ahead().values()[2]
+        EventJet { value, rate, bend }.time_ahead().values()[2]
     }
 }
 
 /// (s - a)(s - b)(s - c) and its derivatives at s.
-fn cubic(s: f64, [a, b, c]: [f64; 3]) -> Motion {
+fn cubic(s: f64, [a, b, c]: [f64; 3]) -> EventJet {
     let (p, q, r) = (s - a, s - b, s - c);
-    Motion { value: p * q * r, rate: p * q + q * r + r * p, bend: 2.0 * (p + q + r) }
+    EventJet { value: p * q * r, rate: p * q + q * r + r * p, bend: 2.0 * (p + q + r) }
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn a_dip_is_seen_from_its_ends() {
 
 #[test]
 fn extrapolation_sees_the_next_fall_only() {
-    let time = |value, rate, bend| side_by_side(Fall(Motion { value, rate, bend }));
+    let time = |value, rate, bend| side_by_side(Fall(EventJet { value, rate, bend }));
     assert_eq!(time(2.0, -1.0, 0.0), 2.0);
     assert_eq!(time(2.0, 1.0, 0.0), f64::INFINITY);
     assert_eq!(time(2.0, 0.0, -1.0), 2.0);

@@ -1,10 +1,7 @@
 //! One ray's constants, and how accurately it is followed.
 
-use glam::DMat3;
 use num_complex::Complex64;
 
-use super::frame::{Frame, transport};
-use super::points::Point;
 use crate::transformation::MapJet;
 
 /// A ray's constants, and how accurately to follow it.
@@ -27,11 +24,11 @@ impl StepControl {
     /// error at the end of `tolerance`, cm.
     ///
     /// [`ConformalMap::smoothness`]: crate::transformation::ConformalMap::smoothness
-    pub fn new(scale: f64, smoothness: f64, tolerance: f64) -> Self {
+    pub fn new(scale: f64, smoothness: f64, tolerance: f64, even: bool) -> Self {
         let tolerance = tolerance.max(1e-12);
         Self {
             p_z: 0.0,
-            even: false,
+            even,
             allowed: smoothness * tolerance,
             // Where the estimate is low by chance, the order of the method still keeps a shorter step right.
             longest: 1.5 * scale * (tolerance / 1e-6).min(1.0).sqrt().sqrt().sqrt(),
@@ -43,23 +40,17 @@ impl StepControl {
     }
 
     /// The same for a ray with a wave vector along z.
-    pub fn along_z(self, p_z: f64, strength: f64) -> Self {
+    pub fn along_z(self, p_z: f64, index_scale: f64) -> Self {
         // Steep rays take long ways, on which errors have time to grow.
-        let flatness = (1.0 - (p_z / strength).powi(2)).max(0.05);
+        let flatness = (1.0 - (p_z / index_scale).powi(2)).max(0.05);
         Self { p_z, allowed: flatness.powi(3) * self.allowed, ..self }
     }
 
     /// `momentum` with its length made to fit |P|² = c² - p_z² |f'|².
-    pub fn on_shell(&self, strength: f64, momentum: Complex64, jet: &MapJet) -> Complex64 {
+    pub fn on_shell(&self, index_scale: f64, momentum: Complex64, jet: &MapJet) -> Complex64 {
         let axial = self.p_z * self.p_z * jet.f1.norm_sqr();
-        let square = (strength * strength - axial).max(0.0);
+        let square = (index_scale * index_scale - axial).max(0.0);
         let present = momentum.norm_sqr();
         if present > 0.0 { momentum * (square / present).sqrt() } else { momentum }
-    }
-
-    /// The rotation of the transverse field between two points of the path.
-    pub fn transport(&self, start: &Point, end: &Point) -> DMat3 {
-        let frame = |point: &Point| Frame::new(point.momentum, self.p_z, &point.jet);
-        transport(&frame(start), &frame(end), end.theta - start.theta)
     }
 }
