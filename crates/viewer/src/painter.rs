@@ -209,7 +209,7 @@ impl Painter<'_> {
             None => (to_srgb(&picture)?, Value::Null),
             Some(channel) => {
                 let map = ScalarMap::new(&picture, channel, None)?;
-                let scale = scale(channel, map.bar.scale.range());
+                let scale = scale(channel, map.bar.scale.range);
                 (map.image, scale)
             }
         };

@@ -7,20 +7,6 @@ use cloakroom::assembly::Assembly;
 use cloakroom::device::REACH;
 use glam::{DVec2, DVec3};
 
-/// How space is shown.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Projected {
-    /// Onto the xy-plane: the cross-section.
-    Section,
-    /// In parallel projection, seen from a direction.
-    Space {
-        /// Degrees about y, from the view along -z (0: x to the right) towards that along -x.
-        azimuth: f64,
-        /// Degrees above the xz-plane.
-        elevation: f64,
-    },
-}
-
 /// The row with the key.
 const KEY: f64 = 1.8 * TEXT;
 
