@@ -105,11 +105,6 @@ pub(crate) struct Client {
 }
 
 impl Client {
-    /// The images that all pages share.
-    pub fn images(&self) -> Images {
-        lock(&self.server.images).clone()
-    }
-
     /// The photograph that the page has brought last.
     pub fn uploaded(&self) -> Option<Uploaded> {
         lock(&self.uploaded).clone()
@@ -142,7 +137,7 @@ impl Client {
         let space = Space::take(&self.server, (width * height) as u64).ok_or(
             "other pages have brought so many photographs that there is no room; close some",
         )?;
-        let mut images = self.images();
+        let mut images = lock(&self.server.images).clone();
         images.hang(source.clone(), image);
         let number = self.uploads.fetch_add(1, Ordering::Relaxed);
         *lock(&self.uploaded) = Some(Uploaded { source, images, number, _space: Arc::new(space) });

@@ -60,7 +60,7 @@ pub(crate) fn paint(client: &Client, outbox: &Outbox) {
     let mut painter = Painter {
         client,
         outbox,
-        images: client.images(),
+        images: lock(&client.server.images).clone(),
         uploaded: None,
         pace: Pace::default(),
         devices: Vec::new(),

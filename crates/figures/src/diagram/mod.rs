@@ -115,7 +115,9 @@ pub fn diagram(
         .collect::<Result<_, _>>()?;
     let fronts = |trees: &[Vec<Line>]| {
         let Some(distance) = settings.wavefronts else { return Vec::new() };
-        rays::wavefronts(trees, &assembly, [distance, scenery.apart(trees.len())])
+        // How far apart the points of a front may be on so many neighbouring rays.
+        let apart = 6.0 * scenery.depth() / trees.len().max(4) as f64;
+        rays::wavefronts(trees, &assembly, [distance, apart])
     };
     let sheet = sheet(settings.size);
     let mut drawing = Drawing::new(sheet, TEXT);

@@ -82,11 +82,6 @@ impl Scenery {
         (self.bounds[1] - self.bounds[0]).max_element()
     }
 
-    /// How far apart the points of a wavefront may be on that many neighbouring rays.
-    pub fn apart(&self, rays: usize) -> f64 {
-        6.0 * self.depth() / rays.max(4) as f64
-    }
-
     /// The view of the cross-section on a sheet; its window is what is shown.
     pub fn section_view(&self, sheet: DVec2, bar: bool) -> View {
         let bar = if bar { BAR } else { 0.0 };

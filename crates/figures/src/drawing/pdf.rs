@@ -49,13 +49,13 @@ impl Drawing {
         let mut resources = page.resources();
         let mut names = resources.x_objects();
         for (i, _) in (0..).zip(&sheet.images) {
-            names.pair(Name(name("i", i).as_bytes()), id(RESOURCES + i));
+            names.pair(Name(format!("i{i}").as_bytes()), id(RESOURCES + i));
         }
         names.finish();
         let first_opacity = RESOURCES + sheet.images.len() as i32;
         let mut names = resources.ext_g_states();
         for (i, _) in (0..).zip(&sheet.opacities) {
-            names.pair(Name(name("o", i).as_bytes()), id(first_opacity + i));
+            names.pair(Name(format!("o{i}").as_bytes()), id(first_opacity + i));
         }
         names.finish();
         resources.finish();
@@ -82,11 +82,6 @@ impl Drawing {
         info.finish();
         pdf.finish()
     }
-}
-
-/// What a resource is called on the page.
-fn name(kind: &str, number: i32) -> String {
-    format!("{kind}{number}")
 }
 
 fn deflated(data: &[u8]) -> Vec<u8> {
@@ -124,12 +119,12 @@ impl<'d> Sheet<'d> {
             Shape::Circle { centre, radius } => self.paint(element, circle(*centre, *radius)),
             Shape::Words(words) => self.paint(element, words.outline()),
             Shape::Image { image, cells, place } if image.width() > 0 && image.height() > 0 => {
-                let number = self.images.len() as i32;
+                let number = self.images.len();
                 self.images.push((image, *cells));
                 // In a PDF images are one unit large, and y is up in them.
                 let flip = DAffine2::from_cols(DVec2::X, DVec2::NEG_Y, DVec2::Y);
                 self.transform(*place * flip);
-                self.content.x_object(Name(name("i", number).as_bytes()));
+                self.content.x_object(Name(format!("i{number}").as_bytes()));
             }
             Shape::Image { .. } => {}
         }
@@ -145,7 +140,7 @@ impl<'d> Sheet<'d> {
             if known.is_none() {
                 self.opacities.push(opacities);
             }
-            self.content.set_parameters(Name(name("o", number as i32).as_bytes()));
+            self.content.set_parameters(Name(format!("o{number}").as_bytes()));
         }
         let shares = |ink: Ink| ink.rgb.map(|code| f32::from(code) / 255.0);
         if let Some([r, g, b]) = fill.map(shares) {

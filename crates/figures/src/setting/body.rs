@@ -45,12 +45,11 @@ impl Sketch<'_> {
         // The middle of what is free, or nearly so.
         let Some([low, high]) = bounds(outline.points.iter().copied()) else { return };
         const STEPS: u32 = 24;
-        let is_free = |world: DVec2| before.iter().all(|(other, _)| !other.surrounds(world));
         let widest = std::iter::once((low + high) / 2.0)
             .chain(lattice([low, high], STEPS))
             .filter(|point| outline.surrounds(*point))
             .map(|point| subject.pose.point_to_world(point))
-            .filter(|world| is_free(*world))
+            .filter(|world| before.iter().all(|(other, _)| !other.surrounds(*world)))
             .map(|world| {
                 let at = view.place(world);
                 let free = |direction: DVec2| room(&lines, at, direction);
