@@ -33,6 +33,7 @@ __all__ = [
 __version__: str
 
 _Tell = Callable[[int, int], object] | None
+_Images = tuple[Image | None, Image | None]
 _Map = tuple[str | None, bool]
 _Tensors = tuple[NDArray[np.complex128], NDArray[np.complex128]]
 
@@ -52,32 +53,23 @@ class Scene:
         folder: str,
         is_file: bool,
         overrides: Sequence[str],
-        photograph: Image | None = None,
-        surroundings: Image | None = None,
+        images: _Images,
     ) -> Scene: ...
     @staticmethod
     def of_tables(
         tables: dict[str, Any],
         folder: str,
-        photograph: Image | None = None,
-        surroundings: Image | None = None,
+        images: _Images,
     ) -> Scene: ...
     @staticmethod
     def load(path: str) -> Scene: ...
     def replaced(
         self,
         overrides: Sequence[str],
-        photograph: Image | None = None,
-        surroundings: Image | None = None,
+        images: _Images,
     ) -> Scene: ...
     @property
-    def text(self) -> str: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def folder(self) -> str: ...
-    @property
-    def is_file(self) -> bool: ...
+    def written(self) -> tuple[str, str, str, bool]: ...
     @property
     def toml(self) -> str: ...
     @property
@@ -92,7 +84,7 @@ def schema() -> str: ...
 def fit(table: str, entries: dict[str, Any]) -> dict[str, Any]: ...
 def toml_literal(name: str, value: object) -> str: ...
 def render(
-    scene: Scene, image_only: bool, tile: Sequence[int] | None = None, progress: _Tell = None
+    scene: Scene, image_only: bool, tile: Sequence[int] | None, progress: _Tell
 ) -> tuple[dict[str, NDArray[Any]], list[tuple[str, str]], tuple[int, int]]: ...
 def read(path: str) -> tuple[dict[str, NDArray[Any]], list[tuple[str, str]]]: ...
 def merge(
@@ -112,36 +104,36 @@ def trace(
     polarization: str,
     fields: NDArray[np.complex128] | None,
     min_power: float | None,
-    progress: _Tell = None,
+    progress: _Tell,
 ) -> dict[str, NDArray[Any]]: ...
 def interface(
     incident: _Tensors,
     transmitted: _Tensors | None,
     normals: NDArray[np.float64],
     tangentials: NDArray[np.float64],
-    progress: _Tell = None,
+    progress: _Tell,
 ) -> dict[str, Any]: ...
 def quality(
     first: object,
     second: object,
-    mask: NDArray[np.bool_] | None = None,
-    rectangle: Sequence[int] | None = None,
+    mask: NDArray[np.bool_] | None,
+    rectangle: Sequence[int] | None,
 ) -> str: ...
 def sweep(
     scene: Scene,
     sweeps: Sequence[tuple[str, Sequence[str]]],
-    path: str | None = None,
-    progress: _Tell = None,
+    path: str | None,
+    progress: _Tell,
 ) -> str: ...
-def verify(progress: _Tell = None) -> str: ...
+def verify(progress: _Tell) -> str: ...
 def flux(
     scene: Scene,
     angles: Sequence[float],
     tilt: float,
     sun: tuple[float, float] | None,
     sampling: Sequence[int],
-    path: str | None = None,
-    progress: _Tell = None,
+    path: str | None,
+    progress: _Tell,
 ) -> dict[str, NDArray[np.float64]]: ...
 def export_grid(
     scene: Scene,
@@ -150,7 +142,7 @@ def export_grid(
     cells: Sequence[int] | None,
     spacing: float | None,
     world: bool,
-    progress: _Tell = None,
+    progress: _Tell,
 ) -> None: ...
 def export_table(scene: Scene, path: str, device: int | None) -> None: ...
 def set_threads(count: int) -> None: ...

@@ -81,7 +81,7 @@ class Scene:
             given["device"] = listed
         self._images = (tables["photograph"]._image, tables["surroundings"]._image)
         self._overrides: list[str] = []
-        self._native = _cloakroom.Scene.of_tables(given, os.getcwd(), *self._images)
+        self._native = _cloakroom.Scene.of_tables(given, os.getcwd(), self._images)
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Scene:
@@ -142,7 +142,7 @@ class Scene:
         scene = object.__new__(Scene)
         scene._images = (images[0], images[1])
         scene._overrides = [*self._overrides, *added]
-        scene._native = self._native.replaced(scene._overrides, *scene._images)
+        scene._native = self._native.replaced(scene._overrides, scene._images)
         return scene
 
     @staticmethod
@@ -237,12 +237,10 @@ class Scene:
         return f"<Scene of {width} x {height} pixels: {', '.join(self.kinds) or 'no devices'}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        native = self._native
+        text, name, folder, is_file = self._native.written
         arrays = [None if image is None else image.array() for image in self._images]
         # The working folder may be another one there.
-        folder = os.path.abspath(native.folder)
-        fields = (native.text, native.name, folder, native.is_file, self._overrides, *arrays)
-        return _rebuild, fields
+        return _rebuild, (text, name, os.path.abspath(folder), is_file, self._overrides, *arrays)
 
 
 def _rebuild(
@@ -262,7 +260,7 @@ def _rebuild(
     ]
     scene._images = (images[0], images[1])
     scene._overrides = overrides
-    scene._native = _cloakroom.Scene(text, name, folder, is_file, overrides, *images)
+    scene._native = _cloakroom.Scene(text, name, folder, is_file, overrides, scene._images)
     return scene
 
 

@@ -56,7 +56,6 @@ impl<'a> Media<'a> {
 /// Solves interfaces with normals and tangential wave vectors of shape (N, 3). Gives the arrays of an `Interface`
 /// by their names.
 #[pyfunction]
-#[pyo3(signature = (incident, transmitted, normals, tangentials, progress=None))]
 pub fn interface<'py>(
     py: Python<'py>,
     incident: Tensors<'py>,
@@ -101,20 +100,13 @@ pub fn interface<'py>(
         });
         reports.collect::<Result<Vec<_>, _>>()
     })?;
-    arrays(py, &reports, if beyond.is_some() { 4 } else { 2 })
-}
-
-fn arrays<'py>(
-    py: Python<'py>,
-    reports: &[InterfaceReport],
-    outgoing: usize,
-) -> Result<Bound<'py, PyDict>, Failure> {
     let arrays = PyDict::new(py);
-    arrays.set_item("incident", modes(py, reports, |report| &report.incident)?)?;
-    arrays.set_item("reflected", modes(py, reports, |report| &report.reflected)?)?;
-    if outgoing == 4 {
-        arrays.set_item("transmitted", modes(py, reports, |report| &report.transmitted)?)?;
+    arrays.set_item("incident", modes(py, &reports, |report| &report.incident)?)?;
+    arrays.set_item("reflected", modes(py, &reports, |report| &report.reflected)?)?;
+    if beyond.is_some() {
+        arrays.set_item("transmitted", modes(py, &reports, |report| &report.transmitted)?)?;
     }
+    let outgoing = if beyond.is_some() { 4 } else { 2 };
     let power = Array3::from_shape_fn((reports.len(), outgoing, 2), |(i, row, column)| {
         reports[i].power[row][column].unwrap_or(f64::NAN)
     });

@@ -10,7 +10,6 @@ use std::path::PathBuf;
 
 /// Writes the index and the tensors of a device on a grid: `cells` along x, y and z, or cubes of the side `spacing`.
 #[pyfunction]
-#[pyo3(signature = (scene, path, device, cells, spacing, world, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
 pub fn export_grid(
     py: Python<'_>,

@@ -37,7 +37,6 @@ fn view(object: &Bound<'_, PyAny>) -> Result<View, Failure> {
 /// Compares two pictures, over the whole and over a region: a mask (height, width), or left, top, width and height in
 /// pixels. Gives JSON.
 #[pyfunction]
-#[pyo3(signature = (first, second, mask=None, rectangle=None))]
 pub fn quality(
     py: Python<'_>,
     first: &Bound<'_, PyAny>,
@@ -62,7 +61,6 @@ pub fn quality(
 /// Measures a scene for every combination of the values of keys, as overrides write them; `path` may name a table or a
 /// plot to write. Gives JSON.
 #[pyfunction]
-#[pyo3(signature = (scene, sweeps, path=None, progress=None))]
 pub fn sweep(
     py: Python<'_>,
     scene: &Scene,
@@ -87,7 +85,6 @@ pub fn sweep(
 
 /// Goes through the statements of the paper. Gives JSON.
 #[pyfunction]
-#[pyo3(signature = (progress=None))]
 pub fn verify(py: Python<'_>, progress: Option<Py<PyAny>>) -> Result<String, Failure> {
     let findings = supervised(py, progress.as_ref(), |watch, supervision| {
         watch.begin(verification::steps());
@@ -99,7 +96,6 @@ pub fn verify(py: Python<'_>, progress: Option<Py<PyAny>>) -> Result<String, Fai
 /// Measures the light on the receiver, for angles of incidence tilted along the receiver, or for the sun over a day at a
 /// latitude with a declination; `sampling` is rays, samples and cells. Gives arrays by their names.
 #[pyfunction]
-#[pyo3(signature = (scene, angles, tilt, sun, sampling, path=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
 pub fn flux<'py>(
     py: Python<'py>,

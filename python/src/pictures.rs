@@ -24,7 +24,6 @@ type Rendered<'py> = (Bound<'py, PyDict>, Vec<(String, String)>, (u64, u64));
 /// Renders a scene: the image alone, or every channel; all of the picture, or the tile left, top, width, height.
 /// `progress` is called with the rows done and all rows.
 #[pyfunction]
-#[pyo3(signature = (scene, image_only, tile=None, progress=None))]
 pub fn render<'py>(
     py: Python<'py>,
     scene: &Scene,
@@ -33,7 +32,7 @@ pub fn render<'py>(
     progress: Option<Py<PyAny>>,
 ) -> Result<Rendered<'py>, Failure> {
     let tile = tile.map(|[left, top, width, height]| {
-        Tile { left, top, width, height }.check(scene.scene().camera.resolution())
+        Tile { left, top, width, height }.check(scene.scene().camera.resolution)
     });
     let tile = tile.transpose()?;
     let wanted = if image_only { ChannelSet::Image } else { ChannelSet::Everything };

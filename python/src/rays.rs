@@ -14,7 +14,6 @@ use pyo3::types::PyDict;
 /// Traces rays of shape (N, 3); `polarization` is a word, `fields` of shape (N, 3) stand instead of it. Gives the
 /// arrays of a `Traced` by their names.
 #[pyfunction]
-#[pyo3(signature = (scene, origins, directions, polarization, fields, min_power, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
 pub fn trace<'py>(
     py: Python<'py>,

@@ -21,6 +21,7 @@ use std::sync::{Arc, OnceLock};
 pub struct Scene {
     written: Arc<Written>,
     overrides: Vec<String>,
+    /// The arrays that are the photograph and the surroundings.
     arrays: Arrays,
     loaded: Loaded,
     /// The devices, built when they are first needed.
@@ -55,37 +56,26 @@ impl Written {
                 scene_file::assemble(tables.clone(), name, folder, overrides)?
             }
         };
-        arrays.hang(folder, &mut loaded.scene);
+        hang(arrays, folder, &mut loaded.scene);
         Ok(loaded)
     }
 }
 
-/// Images that are arrays, in the places of their names.
-#[derive(Debug, Default)]
-struct Arrays {
-    photograph: Option<ImageSource>,
-    surroundings: Option<ImageSource>,
-}
+/// The images of the photograph and of the surroundings that are arrays, in the places of their names.
+type Arrays = [Option<ImageSource>; 2];
 
-impl Arrays {
-    fn new(photograph: Option<&Image>, surroundings: Option<&Image>) -> Self {
-        let source = |image: Option<&Image>| image.map(|image| image.source.clone());
-        Self { photograph: source(photograph), surroundings: source(surroundings) }
-    }
+/// The same as Python hands them over.
+type Images<'py> = [Option<PyRef<'py, Image>>; 2];
 
-    /// Puts them where a scene names them; an override may name a file instead.
-    fn hang(&self, folder: &Path, scene: &mut scene::Scene) {
-        let hang = |array: &Option<ImageSource>, image: &mut ImageSource| {
-            if let Some(source) = array {
-                let name = source.to_string();
-                if [folder.join(&name), name.into()].map(ImageSource::File).contains(image) {
-                    *image = source.clone();
-                }
+/// Puts arrays where a scene names them; an override may name a file instead.
+fn hang(arrays: &Arrays, folder: &Path, scene: &mut scene::Scene) {
+    let shown = [Some(&mut scene.photograph.image), scene.surroundings.image.as_mut()];
+    for (source, image) in arrays.iter().zip(shown) {
+        if let (Some(source), Some(image)) = (source, image) {
+            let name = source.to_string();
+            if [folder.join(&name), name.into()].map(ImageSource::File).contains(image) {
+                *image = source.clone();
             }
-        };
-        hang(&self.photograph, &mut scene.photograph.image);
-        if let Some(image) = &mut scene.surroundings.image {
-            hang(&self.surroundings, image);
         }
     }
 }
@@ -94,33 +84,29 @@ impl Arrays {
 impl Scene {
     /// The scene of a text.
     #[new]
-    #[pyo3(signature = (text, name, folder, is_file, overrides, photograph=None, surroundings=None))]
     fn new(
         text: String,
         name: String,
         folder: PathBuf,
         is_file: bool,
         overrides: Vec<String>,
-        photograph: Option<&Image>,
-        surroundings: Option<&Image>,
+        images: Images<'_>,
     ) -> Result<Self, Failure> {
         let written = Written { content: Content::Text(text), name, folder, is_file };
-        Self::read(Arc::new(written), overrides, Arrays::new(photograph, surroundings))
+        Self::read(Arc::new(written), overrides, images)
     }
 
     /// The scene of tables by their names, devices in the list `device`.
     #[staticmethod]
-    #[pyo3(signature = (tables, folder, photograph=None, surroundings=None))]
     fn of_tables(
         tables: &Bound<'_, PyDict>,
         folder: PathBuf,
-        photograph: Option<&Image>,
-        surroundings: Option<&Image>,
+        images: Images<'_>,
     ) -> Result<Self, Failure> {
         let name = "scene".to_owned();
         let content = Content::Tables(value_of(&name, tables)?);
         let written = Written { content, name, folder, is_file: false };
-        Self::read(Arc::new(written), Vec::new(), Arrays::new(photograph, surroundings))
+        Self::read(Arc::new(written), Vec::new(), images)
     }
 
     /// Reads a scene file.
@@ -138,42 +124,20 @@ impl Scene {
     }
 
     /// The same scene with other overrides and images.
-    #[pyo3(signature = (overrides, photograph=None, surroundings=None))]
-    fn replaced(
-        &self,
-        overrides: Vec<String>,
-        photograph: Option<&Image>,
-        surroundings: Option<&Image>,
-    ) -> Result<Self, Failure> {
-        let arrays = Arrays::new(photograph, surroundings);
-        Self::read(Arc::clone(&self.written), overrides, arrays)
+    fn replaced(&self, overrides: Vec<String>, images: Images<'_>) -> Result<Self, Failure> {
+        Self::read(Arc::clone(&self.written), overrides, images)
     }
 
-    /// The text of the scene file, without overrides.
+    /// What it is made from again: the text of its file without overrides, what messages call it, the folder that its
+    /// files are relative to, and whether it comes from a file.
     #[getter]
-    fn text(&self) -> String {
-        match &self.written.content {
+    fn written(&self) -> (String, &str, &Path, bool) {
+        let Written { content, name, folder, is_file } = &*self.written;
+        let text = match content {
             Content::Text(text) => text.clone(),
             Content::Tables(tables) => scene_file::text(tables),
-        }
-    }
-
-    /// What messages call it.
-    #[getter]
-    fn name(&self) -> &str {
-        &self.written.name
-    }
-
-    /// The folder that its files are relative to.
-    #[getter]
-    fn folder(&self) -> &Path {
-        &self.written.folder
-    }
-
-    /// Whether it comes from a file.
-    #[getter]
-    fn is_file(&self) -> bool {
-        self.written.is_file
+        };
+        (text, name, folder, *is_file)
     }
 
     /// The scene as TOML, overrides applied.
@@ -185,7 +149,7 @@ impl Scene {
     /// Width and height of its picture.
     #[getter]
     fn resolution(&self) -> (u32, u32) {
-        self.scene().camera.resolution().into()
+        self.scene().camera.resolution.into()
     }
 
     /// The kinds of its devices.
@@ -210,8 +174,9 @@ impl Scene {
     fn read(
         written: Arc<Written>,
         overrides: Vec<String>,
-        arrays: Arrays,
+        images: Images<'_>,
     ) -> Result<Self, Failure> {
+        let arrays = images.map(|image| image.map(|image| image.source.clone()));
         let loaded = written.read(&overrides, &arrays);
         let loaded = loaded.map_err(|error| scene_error(&error, written.is_file))?;
         Ok(Self { written, overrides, arrays, loaded, assembly: OnceLock::new() })

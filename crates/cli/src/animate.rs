@@ -80,7 +80,7 @@ fn scenes(
                     .to_owned(),
             ));
         }
-        let size = |loaded: &Loaded| loaded.scene.camera.resolution();
+        let size = |loaded: &Loaded| loaded.scene.camera.resolution;
         if scenes.first().is_some_and(|first| size(first) != size(&loaded)) {
             return Err(Failure::Failed(
                 "camera.resolution changes from frame to frame; a film has one size".to_owned(),
@@ -103,7 +103,7 @@ fn render(
     let scale =
         |range: [f64; 2]| ColorScale { range: Some(range.into()), is_clipped: (true, true) };
     let scale = arguments.map_range.map(scale);
-    let rows = scenes.first().map_or(0, |first| u64::from(first.scene.camera.resolution()[1]));
+    let rows = scenes.first().map_or(0, |first| u64::from(first.scene.camera.resolution[1]));
     let (mut stats, mut skipped) = (TraceStats::default(), 0);
     supervised(rows * scenes.len() as u64, "rendering", |bar, supervision| {
         for (loaded, frame) in scenes.iter().zip(range) {

@@ -19,14 +19,13 @@ pub fn run(arguments: &SceneArguments) -> Result<()> {
 fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     let camera = &scene.camera;
-    let [width, height] = camera.resolution();
-    let [photo_width, photo_height] = prepared.photograph_size();
+    let [width, height] = camera.resolution;
+    let [photo_width, photo_height] = prepared.screen.size();
     writeln!(text, "The scene is sound.")?;
     writeln!(
         text,
         "picture      {width} x {height} pixels, {} samples each, polarizer {}",
-        camera.samples(),
-        camera.polarizer()
+        camera.samples, camera.polarizer
     )?;
     writeln!(
         text,

@@ -38,7 +38,7 @@ fn as_json(entry: &Entry) -> Value {
 
 fn keys_as_json(keys: &[Key]) -> Value {
     let key = |key: &Key| {
-        let mut object = json!({ "name": key.name, "doc": key.doc, "allowed": key.describe(), "default": key.default_value().map(value_json) });
+        let mut object = json!({ "name": key.name, "doc": key.doc, "allowed": key.describe(), "default": (key.default)().map(value_json) });
         if let KeyKind::Table { keys } | KeyKind::Tables { keys } = key.kind {
             object["keys"] = keys_as_json(keys);
         }

@@ -6,7 +6,7 @@ use crate::interruption::{self, STOP};
 use crate::report::Result;
 use crate::scene;
 use cloakroom::render::metadata;
-use cloakroom::scene::Camera;
+use cloakroom::scene::{Camera, CameraSettings};
 use cloakroom_figures::{DiagramError, DiagramSettings, DrawingFormat, Source};
 
 /// Draws a scene and writes every file asked for.
@@ -17,7 +17,7 @@ pub fn run(arguments: &DiagramArguments) -> Result<()> {
     let _busy = interruption::busy();
     let (drawing, title) = if arguments.setting {
         let mut scene = loaded.scene.clone();
-        let mut settings = scene.camera.settings().clone();
+        let mut settings = CameraSettings::clone(&scene.camera);
         // The sheet has the aspect of the picture.
         settings.resolution = arguments.size;
         scene.camera = Camera::new(settings)?;

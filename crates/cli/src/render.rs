@@ -65,15 +65,15 @@ fn check_tile(tile: Tile, scene: &Scene, formats: &[(&Path, PictureFormat)]) -> 
             )));
         }
     }
-    Ok(tile.check(scene.camera.resolution())?)
+    Ok(tile.check(scene.camera.resolution)?)
 }
 
 /// Renders a large image strip by strip into its file.
 fn in_strips(prepared: &PreparedScene<'_>, scene: &Scene, path: &Path) -> Result<()> {
     let (mut stats, mut failure) = (TraceStats::default(), None);
     let written = supervised(prepared.rows(), "rendering", |_, supervision| {
-        let images = render::strips(prepared).map(|rows| {
-            let strip = render::render_rows(prepared, ChannelSet::Image, rows, supervision);
+        let images = render::strips(prepared).map(|part| {
+            let strip = render::render_part(prepared, ChannelSet::Image, part, supervision);
             let image = strip.map_err(Failure::from).and_then(|strip| {
                 stats += strip.stats;
                 Ok(output::to_srgb(&strip.picture)?)
@@ -83,7 +83,7 @@ fn in_strips(prepared: &PreparedScene<'_>, scene: &Scene, path: &Path) -> Result
                 io::Error::other("no strip")
             })
         });
-        let (size, metadata) = (scene.camera.resolution(), render::metadata(scene));
+        let (size, metadata) = (scene.camera.resolution, render::metadata(scene));
         output::write_png_in_strips(size, &metadata, path, images)
     });
     failure.map_or(Ok(()), Err)?;

@@ -64,7 +64,7 @@ fn allowed(key: &Key) -> String {
 }
 
 fn default(key: &Key) -> String {
-    match (key.kind, key.default_value()) {
+    match (key.kind, (key.default)()) {
         (KeyKind::Choices { .. } | KeyKind::Tables { .. }, _) => "none".to_owned(),
         (_, Some(value)) => format!("`{value}`"),
         (_, None) => String::new(),

@@ -33,7 +33,7 @@ impl Subject {
     /// What must be rendered of a view for it.
     fn wanted_of_view(&self) -> ChannelSet {
         let own = ChannelSet::for_image(&self.loaded.scene.picture);
-        let polarizer = self.loaded.scene.camera.polarizer();
+        let polarizer = self.loaded.scene.camera.polarizer;
         if polarizer == Polarizer::None { own } else { own.max(ChannelSet::Polarizers) }
     }
 
@@ -43,7 +43,7 @@ impl Subject {
 
     /// Its own picture out of that of its view.
     fn of_view(&self, view: &Picture) -> Option<Picture> {
-        let polarizer = self.loaded.scene.camera.polarizer();
+        let polarizer = self.loaded.scene.camera.polarizer;
         let own = match (self.loaded.scene.picture.map.name(), polarizer) {
             (Some(_), _) => view.clone(),
             (None, Polarizer::None) => view.image_through("")?,
@@ -69,7 +69,7 @@ impl Views {
             std::iter::once("camera.polarizer=none").chain(map_override.as_deref()).collect();
         for Subject { panel, loaded, view } in &mut subjects {
             let (own_map, polarizer) =
-                (loaded.scene.picture.map.name(), loaded.scene.camera.polarizer());
+                (loaded.scene.picture.map.name(), loaded.scene.camera.polarizer);
             let shares = match polarizer {
                 Polarizer::None => own_map.is_none() || own_map == map,
                 Polarizer::Horizontal | Polarizer::Vertical => map.is_none(),

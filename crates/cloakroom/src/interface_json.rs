@@ -75,14 +75,10 @@ impl InterfaceRequest {
     /// If double precision does not reach: principal values that differ by many powers of ten, and a long tangential
     /// wave vector.
     pub fn solve(&self) -> Result<InterfaceReport, InterfaceError> {
-        let scattering = Scattering::new(
-            &self.incident,
-            self.transmitted.as_ref(),
-            self.tangential,
-            self.normal,
-        );
+        let Self { incident, transmitted, normal, tangential } = self;
+        let scattering = Scattering::new(incident, transmitted.as_ref(), *tangential, *normal);
         self.check(&scattering)?;
-        let rows = if self.transmitted.is_some() { 4 } else { 2 };
+        let rows = if transmitted.is_some() { 4 } else { 2 };
         let share = |row: usize| scattering.power.map(|column| column.map(|shares| shares[row]));
         let sum = |first: usize| {
             scattering.power.map(|column| column.map(|shares| shares[first] + shares[first + 1]))
@@ -131,20 +127,16 @@ impl InterfaceRequest {
 pub fn solve_interfaces(text: &str) -> Result<serde_json::Value, InterfaceError> {
     let value: serde_json::Value =
         serde_json::from_str(text).map_err(|error| InterfaceError::at("", error.to_string()))?;
+    let solve = |(place, item): (String, &serde_json::Value)| {
+        let solved = InterfaceRequest::read(item, &place)?.solve();
+        solved.map_err(|error| InterfaceError { place, ..error })
+    };
     let answer = match &value {
         serde_json::Value::Array(items) => {
-            let reports = items
-                .iter()
-                .enumerate()
-                .map(|(index, item)| {
-                    let place = format!("[{index}]");
-                    let solved = InterfaceRequest::read(item, &place)?.solve();
-                    solved.map_err(|error| InterfaceError { place, ..error })
-                })
-                .collect::<Result<Vec<_>, _>>()?;
-            serde_json::to_value(reports)
+            let items = items.iter().enumerate().map(|(i, item)| (format!("[{i}]"), item));
+            serde_json::to_value(items.map(solve).collect::<Result<Vec<_>, _>>()?)
         }
-        item => serde_json::to_value(InterfaceRequest::read(item, "")?.solve()?),
+        item => serde_json::to_value(solve((String::new(), item))?),
     };
     answer.map_err(|error| InterfaceError::at("", error.to_string()))
 }

@@ -23,10 +23,8 @@ pub fn value(json: &serde_json::Value) -> Result<Value, String> {
             Value::List(items.iter().map(value).collect::<Result<_, _>>()?)
         }
         serde_json::Value::Object(entries) => {
-            let entry = |(name, json): (&String, &serde_json::Value)| {
-                Ok::<_, String>((name.clone(), value(json)?))
-            };
-            Value::Table(entries.iter().map(entry).collect::<Result<_, _>>()?)
+            let entries = entries.iter().map(|(name, json)| Ok((name.clone(), value(json)?)));
+            Value::Table(entries.collect::<Result<_, String>>()?)
         }
     })
 }

@@ -27,5 +27,4 @@ pub mod scene_file;
 pub mod threads;
 pub mod timeline;
 
-use cloakroom_trace::split_mix;
-pub use cloakroom_trace::{assembly, device, keys, walk as trace};
+pub use cloakroom_trace::{assembly, device, keys, split_mix, walk as trace};

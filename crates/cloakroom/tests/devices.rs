@@ -65,7 +65,7 @@ fn benches() -> Vec<(String, Assembly)> {
                 KeyKind::Choice { options } => variants
                     .extend(options[1..].iter().map(|word| format!("{} = \"{word}\"\n", key.name))),
                 KeyKind::Flag => {
-                    let default = key.default_value() == Some(Value::Flag(true));
+                    let default = (key.default)() == Some(Value::Flag(true));
                     variants.push(format!("{} = {}\n", key.name, !default));
                 }
                 _ => {}

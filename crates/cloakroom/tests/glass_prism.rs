@@ -7,7 +7,7 @@ use cloakroom::device::{Face, FarSide, HomogeneousRegion, Hull, Region, Structur
 use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::{DVec2, DVec3};
 use num_complex::Complex64;
-use optics::geometry::{Extent, Outline, Plane, Pose, Wall};
+use optics::geometry::{Extent, Outline, Plane, Pose, Solid, Wall};
 use optics::medium::Medium;
 use optics::wave::{arriving_stokes, transverse_basis};
 
@@ -33,7 +33,8 @@ fn prism(glass: bool) -> Assembly {
     } else {
         Vec::new()
     };
-    let hull = Hull::prism(Outline::new(corners.to_vec()), Extent::ENDLESS);
+    let outline = Outline::new(corners.to_vec());
+    let hull = Hull::new(Solid::Prism { outline, extent: Extent::ENDLESS });
     let structure = Structure { regions, surfaces, hull };
     Assembly::new(vec![Placed { pose: Pose::new(DVec3::ZERO, 0.0), structure }])
 }

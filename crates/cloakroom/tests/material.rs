@@ -41,12 +41,13 @@ fn points(grid: &GridFile) -> Vec<Point> {
     else {
         panic!("wrong kinds of values")
     };
-    let [nx, ny, nz] = grid.cells;
+    let [nx, ny, nz] = grid.grid.cells;
     assert_eq!(regions.len(), nx * ny * nz);
     (0..regions.len())
         .map(|i| {
             let at = [i % nx, i / nx % ny, i / (nx * ny)];
-            let middle = [0, 1, 2].map(|a| grid.corner[a] + (at[a] as f64 + 0.5) * grid.spacing[a]);
+            let middle = [0, 1, 2]
+                .map(|a| grid.grid.corner[a] + (at[a] as f64 + 0.5) * grid.grid.spacing[a]);
             (middle, regions[i], indices[i], [e[i], m[i]])
         })
         .collect()
@@ -176,9 +177,10 @@ fn the_frame_of_the_world_turns_grid_and_tensors() {
     let scene = format!("{SQUARE}rotation = 90\nposition = [5, 6, 7]\nlength = 4\n");
     // An odd number of cells, or some would lie on the border.
     let grid = cells(&scene, Frame::World, [21, 21, 3]);
-    let middle = [0, 1, 2].map(|a| grid.corner[a] + 0.5 * grid.spacing[a] * grid.cells[a] as f64);
+    let middle = [0, 1, 2]
+        .map(|a| grid.grid.corner[a] + 0.5 * grid.grid.spacing[a] * grid.grid.cells[a] as f64);
     assert!(middle.iter().zip([5.0, 6.0, 7.0]).all(|(m, e)| (m - e).abs() < 1e-12), "{middle:?}");
-    assert!((grid.spacing[2] - 4.0 / 3.0).abs() < 1e-12);
+    assert!((grid.grid.spacing[2] - 4.0 / 3.0).abs() < 1e-12);
     let own = points(&cells(SQUARE, Frame::Device, [21, 21, 1]));
     let turned = points(&grid);
     for (i, (_, region, _, [e, _])) in turned.iter().take(441).enumerate() {
@@ -254,8 +256,8 @@ fn vtk_files_are_sound_xml_with_their_bytes_in_place() {
     let numbers = |text: Option<&str>| -> Vec<f64> {
         text.expect("numbers").split(' ').map(|n| n.parse().expect("a number")).collect()
     };
-    assert_eq!(numbers(node("ImageData").attribute("Spacing")), grid.spacing);
-    assert_eq!(numbers(node("ImageData").attribute("Origin")), grid.corner);
+    assert_eq!(numbers(node("ImageData").attribute("Spacing")), grid.grid.spacing.to_array());
+    assert_eq!(numbers(node("ImageData").attribute("Origin")), grid.grid.corner.to_array());
     let appended = node("AppendedData").text().expect("data").trim();
     let data = appended.strip_prefix('_').expect("the mark of the beginning");
     let expected = points(&grid);
@@ -310,12 +312,12 @@ fn tables_have_a_line_for_every_cell() {
 fn grids_fit_around_devices() {
     // Along z the cloak is endless: one layer as thick as the cells are wide.
     let grid = sampled(SQUARE, Frame::Device, Resolution::Spacing(0.5)).expect("a grid");
-    assert_eq!((grid.cells, grid.corner[2]), ([40, 40, 1], -0.25));
+    assert_eq!((grid.grid.cells, grid.grid.corner[2]), ([40, 40, 1], -0.25));
     let grid = sampled(SQUARE, Frame::Device, Resolution::Default).expect("a grid");
-    assert_eq!(grid.cells, [64, 64, 1]);
+    assert_eq!(grid.grid.cells, [64, 64, 1]);
     let ball = "[[device]]\nkind = \"luneburg-lens\"\nposition = [1, 2, 3]\n";
     let grid = sampled(ball, Frame::World, Resolution::Spacing(4.0)).expect("a grid");
-    assert_eq!((grid.cells, grid.corner), ([5, 5, 5], [-9.0, -8.0, -7.0]));
+    assert_eq!((grid.grid.cells, grid.grid.corner.to_array()), ([5, 5, 5], [-9.0, -8.0, -7.0]));
 }
 
 #[test]

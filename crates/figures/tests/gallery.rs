@@ -16,7 +16,7 @@ fn power_is_accounted_for_in_every_exhibit() {
         let assembly = assembly(&scene).unwrap();
         let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-6, tolerance: 1e-6 });
         let camera = &scene.camera;
-        let size = camera.resolution().map(f64::from);
+        let size = camera.resolution.map(f64::from);
         let mut met = 0;
         for k in 0..RAYS[0] * RAYS[1] {
             let pixel = [k % RAYS[0], k / RAYS[0]];

@@ -1,20 +1,17 @@
 //! Numbers, words and choices from the bytes of a fuzzer, or from a seed.
 
 use cloakroom::keys::Limits;
+use cloakroom::split_mix::{STEP, mix};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// Where choices come from. The same source gives the same choices.
 #[derive(Clone, Debug)]
-pub struct Draws<'a> {
-    source: Source<'a>,
-}
-
-#[derive(Clone, Debug)]
-enum Source<'a> {
-    /// Zeros follow the last byte, which mean the first choice or the default everywhere.
+pub enum Draws<'a> {
+    /// Choices that bytes make, so that a fuzzer can change one and keep the others. Zeros follow the last byte, which mean
+    /// the first choice or the default everywhere.
     Bytes(&'a [u8]),
-    /// `SplitMix64` (Steele, Lea & Flood, OOPSLA 2014).
+    /// Choices without end, by the state of [`mix`].
     Seed(u64),
 }
 
@@ -31,34 +28,19 @@ const SPECIAL: [f64; 22] = [
     1e16, 1e154, 1e300, 1e-300, LARGEST, SMALLEST,
 ];
 
-impl<'a> Draws<'a> {
-    /// Choices that bytes make, so that a fuzzer can change one and keep the others.
-    #[must_use]
-    pub fn from_bytes(bytes: &'a [u8]) -> Self {
-        Self { source: Source::Bytes(bytes) }
-    }
-
-    /// Choices without end.
-    #[must_use]
-    pub fn from_seed(seed: u64) -> Self {
-        Self { source: Source::Seed(seed) }
-    }
-
+impl Draws<'_> {
     fn bytes<const N: usize>(&mut self) -> [u8; N] {
         let mut taken = [0; N];
-        match &mut self.source {
-            Source::Bytes(bytes) => {
+        match self {
+            Self::Bytes(bytes) => {
                 let count = N.min(bytes.len());
                 let (first, rest) = bytes.split_at(count);
                 taken[..count].copy_from_slice(first);
                 *bytes = rest;
             }
-            Source::Seed(state) => {
-                *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-                let z = (*state ^ (*state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-                let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-                let z = (z ^ (z >> 31)).to_le_bytes();
-                taken.copy_from_slice(&z[..N]);
+            Self::Seed(state) => {
+                taken.copy_from_slice(&mix(*state).to_le_bytes()[..N]);
+                *state = state.wrapping_add(STEP);
             }
         }
         taken

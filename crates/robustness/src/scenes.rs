@@ -42,15 +42,12 @@ pub fn scene_of(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
             ("permittivity".to_owned(), draws.between(1.2, 4.0).into()),
         ])));
     }
-    let trace = Table::from_iter([("tolerance".to_owned(), tolerance(draws).into())]);
+    let tolerance = 10f64.powf(draws.between(-9.0, -3.0));
+    let trace = Table::from_iter([("tolerance".to_owned(), tolerance.into())]);
     Table::from_iter([
         ("device".to_owned(), devices.into()),
         ("trace".to_owned(), Value::Table(trace)),
     ])
-}
-
-fn tolerance(draws: &mut Draws<'_>) -> f64 {
-    10f64.powf(draws.between(-9.0, -3.0))
 }
 
 /// The table of a device of a kind.
@@ -82,7 +79,7 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
         Limits::Whole(min, max) => (min, max),
         _ => (i64::MIN, i64::MAX),
     };
-    let default = key.default_value();
+    let default = (key.default)();
     let usual = |value: &Default| value.as_number().unwrap_or(1.5);
     let usual_integer = |value: &Default| value.as_integer().unwrap_or(0);
     let number = default.as_ref().map_or(1.5, usual);

@@ -53,10 +53,6 @@ const MOST_PIXELS: u64 = 1 << 20;
 /// Most rays of a trial.
 const MOST_RAYS: usize = 32;
 
-fn least(limits: Limits) -> Limits {
-    Limits { min_power: limits.min_power.max(LEAST_POWER), ..limits }
-}
-
 /// Nothing there: scenes of trials find no files beside them.
 fn nowhere() -> &'static Path {
     Path::new("/nowhere")
@@ -88,20 +84,18 @@ fn look_at(loaded: &Loaded) {
         }
     };
     let camera = &loaded.scene.camera;
-    let [width, height] = camera.resolution().map(f64::from);
-    let mut launches = Vec::new();
-    for (x, y) in [(0.5, 0.5), (0.3, 0.6), (0.01, 0.99)] {
+    let [width, height] = camera.resolution.map(f64::from);
+    let launches = [(0.5, 0.5), (0.3, 0.6), (0.01, 0.99)].map(|(x, y)| {
         let ray = camera.ray(x * width, y * height);
         let (h, v) = camera.polarization_basis(ray.direction);
-        let (origin, direction) = (ray.origin, ray.direction);
-        launches.push(Launch { origin, direction, electric: [h.into(), v.into()] });
-    }
+        Launch { origin: ray.origin, direction: ray.direction, electric: [h.into(), v.into()] }
+    });
     trace(&assembly, render::limits(&loaded.scene), &launches);
 }
 
 /// Traces rays singly and four at a time: what must hold holds, and both ways agree to the last bit.
 fn trace(assembly: &Assembly, limits: Limits, launches: &[Launch<2>]) {
-    let limits = least(limits);
+    let limits = Limits { min_power: limits.min_power.max(LEAST_POWER), ..limits };
     let mut tracer = Tracer::new(assembly, limits);
     let mut four = FourTracers::new(&tracer);
     let launches: Vec<Launch<2>> =
@@ -183,7 +177,7 @@ fn interface_json(bytes: &[u8]) {
 
 /// Interfaces of random media.
 fn interfaces(bytes: &[u8]) {
-    let mut draws = Draws::from_bytes(bytes);
+    let mut draws = Draws::Bytes(bytes);
     let json = |value: toml::Value| serde_json::to_value(value).unwrap_or_default();
     let medium = |draws: &mut Draws<'_>| {
         json!({
@@ -260,7 +254,7 @@ fn picture_files(bytes: &[u8]) {
 
 /// Random rays through random devices.
 fn physics(bytes: &[u8]) {
-    let mut draws = Draws::from_bytes(bytes);
+    let mut draws = Draws::Bytes(bytes);
     let text = scenes::scene(&mut draws).to_string();
     let Ok(loaded) = scene_file::parse(&text, "a.toml", nowhere(), &[]) else { return };
     let Ok(assembly) = render::assembly(&loaded.scene) else { return };
@@ -273,7 +267,7 @@ fn physics(bytes: &[u8]) {
 fn scene_texts() -> Vec<Vec<u8>> {
     let overridden = |text: &str| format!("{text}\n---\ncamera.samples=1\ndevice.0.rotation=5");
     let exhibits = EXHIBITS.iter().map(|exhibit| overridden(exhibit.scene).into_bytes());
-    let random = (0..40).map(|seed| scenes::scene(&mut Draws::from_seed(seed)).to_string());
+    let random = (0..40).map(|seed| scenes::scene(&mut Draws::Seed(seed)).to_string());
     exhibits.chain(random.map(String::into_bytes)).collect()
 }
 
@@ -308,7 +302,7 @@ fn interface_texts() -> Vec<Vec<u8>> {
 
 fn random_bytes() -> Vec<Vec<u8>> {
     let bytes = |seed: u64| {
-        let mut draws = Draws::from_seed(seed);
+        let mut draws = Draws::Seed(seed);
         (0..1500).map(|_| draws.below(256) as u8).collect()
     };
     (0..60).map(bytes).collect()

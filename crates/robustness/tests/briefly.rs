@@ -58,7 +58,7 @@ fn briefly(name: &str) {
     for seed in &seeds {
         (trial.run)(seed);
     }
-    let mut draws = Draws::from_seed(20_131_105);
+    let mut draws = Draws::Seed(20_131_105);
     for number in 0..count(trial) {
         let [one, other] = [0, 1].map(|_| &seeds[(draws.share() * seeds.len() as f64) as usize]);
         let input = changed(one, other, &mut draws);

@@ -53,7 +53,7 @@ fn kind(entry: &Entry, schema: &Value) -> Value {
         "own_keys": keys,
         "keys": schema["$defs"][entry.kind]["properties"],
         "shows": shows,
-        "core_can_be_open": built(Show::Cloak, true).is_some_and(|built| built.hull.has_open_core()),
+        "core_can_be_open": built(Show::Cloak, true).is_some_and(|built| built.hull.filled.is_some()),
     })
 }
 

@@ -11,11 +11,11 @@ const FAR: f64 = 1e4;
 
 /// The shapes of all devices, the photograph and the camera, in world coordinates, cm.
 pub(crate) fn cross_section(scene: &Scene, prepared: &PreparedScene<'_>) -> Value {
-    let devices = scene.devices.iter().zip(prepared.assembly().devices());
+    let devices = scene.devices.iter().zip(prepared.assembly.devices());
     let devices: Vec<Value> = devices.map(|(settings, placed)| device(settings, placed)).collect();
-    let photograph = prepared.screen().middle_line().map(|end| point(end.x, end.y));
+    let photograph = prepared.screen.middle_line().map(|end| point(end.x, end.y));
     let camera = &scene.camera;
-    let [width_px, height_px] = camera.resolution().map(f64::from);
+    let [width_px, height_px] = camera.resolution.map(f64::from);
     let ray = |y: f64| {
         let ray = camera.ray(width_px / 2.0, y);
         json!([point(ray.origin.x, ray.origin.y), point(ray.direction.x, ray.direction.y)])
@@ -24,9 +24,9 @@ pub(crate) fn cross_section(scene: &Scene, prepared: &PreparedScene<'_>) -> Valu
         "devices": devices,
         "photograph": photograph,
         "camera": {
-            "position": point(camera.position().x, camera.position().y),
+            "position": point(camera.position.x, camera.position.y),
             "edges": [ray(0.0), ray(height_px)],
-            "parallel": matches!(camera.settings().projection, Projection::Orthographic),
+            "parallel": matches!(camera.projection, Projection::Orthographic),
         },
     })
 }

@@ -4,7 +4,7 @@ use cloakroom::measure::{
     FlightFigures, MeasureError, Region, View, bare, compare, empty, ideal, survey,
 };
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, Images, PreparedScene, RenderError, Supervision, render};
+use cloakroom::render::{ChannelSet, Images, PreparedScene, Supervision, render};
 use cloakroom::scene::{Camera, CameraSettings, Scene};
 use serde_json::{Value, json};
 use std::error::Error;
@@ -36,8 +36,7 @@ pub(crate) fn figures(
     let bare = bare.as_ref().map(View::of).transpose()?;
     let view = View::of(&shown)?;
     let (prepared, ideal) = (prepared(&scene, images)?, prepared(&wanted_scene, images)?);
-    let rays =
-        survey(&prepared, &ideal, &scene.camera, &|_| {}, stop).ok_or(RenderError::Stopped)?;
+    let rays = survey(&prepared, &ideal, &supervision)?;
     let silhouette = Region::new(view.width, rays.silhouette.clone()).ok();
     let likeness = |of: &View, to: &View| -> Result<Value, MeasureError> {
         let comparison = compare(to, of, silhouette.as_ref())?;
@@ -73,7 +72,7 @@ fn prepared<'s>(scene: &'s Scene, images: &mut Images) -> Result<PreparedScene<'
 
 /// The same scene in few pixels.
 fn small(scene: &Scene) -> Scene {
-    let [width, height] = scene.camera.resolution();
+    let [width, height] = scene.camera.resolution;
     let share = f64::from(WIDTH) / f64::from(width.max(WIDTH));
     let resolution = [width, height].map(|side| ((f64::from(side) * share).round() as u32).max(1));
     resized(scene, resolution, 1)
@@ -81,7 +80,7 @@ fn small(scene: &Scene) -> Scene {
 
 /// The same scene with another resolution and number of samples.
 pub(crate) fn resized(scene: &Scene, resolution: [u32; 2], samples: u32) -> Scene {
-    let settings = CameraSettings { resolution, samples, ..scene.camera.settings().clone() };
+    let settings = CameraSettings { resolution, samples, ..CameraSettings::clone(&scene.camera) };
     let mut scene = scene.clone();
     // Both are within the limits of cameras, as the rest has been before.
     if let Ok(camera) = Camera::new(settings) {

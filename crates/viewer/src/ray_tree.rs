@@ -50,7 +50,7 @@ pub(crate) fn follow(slot: &Slot<Wish>, outbox: &Outbox) {
 
 fn answer(scene: &Scene, prepared: &PreparedScene<'_>, ray: &Ray) -> Value {
     let camera = &scene.camera;
-    let size = camera.resolution();
+    let size = camera.resolution;
     let pixel: [u32; 2] = std::array::from_fn(|i| {
         // Shares lie between 0 and 1.
         ((ray.at[i] * f64::from(size[i])) as u32).min(size[i] - 1)
@@ -59,11 +59,11 @@ fn answer(scene: &Scene, prepared: &PreparedScene<'_>, ray: &Ray) -> Value {
     let sight = camera.ray(x, y);
     let (h, v) = camera.polarization_basis(sight.direction);
     let limits = Limits {
-        min_power: prepared.limits().min_power.max(LEAST_POWER),
-        tolerance: prepared.limits().tolerance.max(1e-4),
+        min_power: prepared.limits.min_power.max(LEAST_POWER),
+        tolerance: prepared.limits.tolerance.max(1e-4),
     };
-    let (origin, direction, assembly) = (sight.origin, sight.direction, prepared.assembly());
-    let mut tree = match camera.polarizer().amplitudes() {
+    let (origin, direction, assembly) = (sight.origin, sight.direction, &prepared.assembly);
+    let mut tree = match camera.polarizer.amplitudes() {
         None => {
             let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
             lines(assembly, limits, &launch, [0.5, 0.5], REACH)
@@ -90,7 +90,7 @@ fn drawn(line: &Line, prepared: &PreparedScene<'_>) -> Value {
     let mut lands = false;
     if let (true, [from, to]) = (line.leaves, &line.points[..]) {
         let direction = (to.position - from.position).normalize_or_zero();
-        if let Some(distance) = prepared.screen().hit(from.position, direction, 0.0) {
+        if let Some(distance) = prepared.screen.hit(from.position, direction, 0.0) {
             let end = from.position + direction * distance;
             points[1] = point(end.x, end.y);
             lands = true;

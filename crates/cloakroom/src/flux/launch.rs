@@ -24,6 +24,7 @@ pub(super) struct Launcher {
 impl Launcher {
     pub fn new(scene: &Scene, assembly: &Assembly, sampling: Sampling) -> Result<Self, FluxError> {
         let receiver = scene.receiver.clone();
+        let endless_along = |device, problem| Err(FluxError::Endless { device, problem });
         let mut corners = Vec::new();
         let mut endless = Vec::new();
         for (device, placed) in assembly.devices().iter().enumerate() {
@@ -33,19 +34,19 @@ impl Launcher {
                 continue;
             };
             if !(high - low).truncate().is_finite() {
-                return Err(FluxError::Endless {
+                return endless_along(
                     device,
-                    problem: "its axis, which is not that of z; give it a `length`",
-                });
+                    "its axis, which is not that of z; give it a `length`",
+                );
             }
             let is_endless = high.z - low.z > REACH;
             endless.push(is_endless);
             if is_endless && receiver.normal.z != 0.0 {
-                return Err(FluxError::Endless {
+                return endless_along(
                     device,
-                    problem: "z, and the receiver is not along z; give the device a `length`, or the receiver a \
-                              normal with z = 0",
-                });
+                    "z, and the receiver is not along z; give the device a `length`, or the receiver a \
+                     normal with z = 0",
+                );
             }
             let (low, high) =
                 if is_endless { (low.with_z(0.0), high.with_z(0.0)) } else { (low, high) };
@@ -62,10 +63,7 @@ impl Launcher {
         }
         let all = endless.iter().all(|endless| *endless);
         if !all && let Some(device) = endless.iter().position(|endless| *endless) {
-            return Err(FluxError::Endless {
-                device,
-                problem: "z and others are not; give it a `length`",
-            });
+            return endless_along(device, "z and others are not; give it a `length`");
         }
         let [across, along] = receiver.axes();
         for (u, v) in [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)] {
@@ -111,11 +109,8 @@ impl Launcher {
             (u, v, along)
         };
         let range = |axis: DVec3| {
-            let at = self.corners.iter().map(|corner| corner.dot(axis));
-            let (low, high) = at.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
-                (low.min(at), high.max(at))
-            });
-            [low, high]
+            let at = || self.corners.iter().map(|corner| corner.dot(axis));
+            [at().fold(f64::INFINITY, f64::min), at().fold(f64::NEG_INFINITY, f64::max)]
         };
         let (u_range, v_range) = (range(u), range(v));
         let size = [u_range[1] - u_range[0], v_range[1] - v_range[0]];

@@ -164,7 +164,7 @@ fn tally(
                 if number % 256 == 0 && supervision.stop.load(Ordering::Relaxed) {
                     return Err(FluxError::Stopped);
                 }
-                let launch = field.launch(sample, number, scene.camera.seed());
+                let launch = field.launch(sample, number, scene.camera.seed);
                 let (leaves, outcome) = tracer.trace(&launch);
                 tally.stats += outcome.stats;
                 for leaf in leaves.iter().filter(|leaf| leaf.body().is_none()) {

@@ -132,6 +132,8 @@ impl Incidence {
             let [n, b, c] = STANDS.map(|stand| of(stand, light)[..most].to_vec());
             given_back(&n, &b, &c)
         };
+        let mut stats = TraceStats::default();
+        tallies.iter().flatten().for_each(|tally| stats += tally.stats);
         let samples = sums.first().map_or(0, Vec::len);
         let steps = std::iter::successors(Some(2), |step| Some(step * 2));
         let steps = steps.take_while(|step| *step < samples).chain([samples]);
@@ -148,10 +150,7 @@ impl Incidence {
                     gain: gain(2, most),
                 })
                 .collect(),
-            stats: tallies.iter().flatten().fold(TraceStats::default(), |mut sum, tally| {
-                sum += tally.stats;
-                sum
-            }),
+            stats,
         }
     }
 }

@@ -134,17 +134,16 @@ fn tensor(value: &Value, place: &str) -> Result<Tensor, InterfaceError> {
     if value.as_array().is_none_or(|rows| rows.len() == 2 && rows.iter().all(Value::is_number)) {
         return Ok(entry(value, place)?.into());
     }
-    let mut re = DMat3::ZERO;
-    let mut im = DMat3::ZERO;
+    let mut tensor = Tensor { re: DMat3::ZERO, im: DMat3::ZERO };
     for (i, row) in three(value, place, "a number, [re, im] or a 3 x 3 array")?.iter().enumerate() {
         let place = format!("{place}[{i}]");
         for (j, value) in three(row, &place, "a row of three entries")?.iter().enumerate() {
             let value = entry(value, &format!("{place}[{j}]"))?;
-            re.col_mut(j)[i] = value.re;
-            im.col_mut(j)[i] = value.im;
+            tensor.re.col_mut(j)[i] = value.re;
+            tensor.im.col_mut(j)[i] = value.im;
         }
     }
-    Ok(Tensor { re, im })
+    Ok(tensor)
 }
 
 fn entry(value: &Value, place: &str) -> Result<Complex64, InterfaceError> {

@@ -3,6 +3,7 @@
 use super::MaterialError;
 use crate::assembly::Placed;
 use crate::device::REACH;
+use crate::output::Grid;
 use glam::DVec3;
 use optics::geometry::Pose;
 
@@ -25,17 +26,6 @@ pub enum Resolution {
     Spacing(f64),
     /// Cubic cells, 64 along the longest side.
     Default,
-}
-
-/// A regular grid of cells; what is said of a cell is so in its middle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
-    /// The corner of the least coordinates, cm.
-    pub corner: DVec3,
-    /// The sides of a cell, cm.
-    pub spacing: DVec3,
-    /// Cells along x, y and z.
-    pub cells: [usize; 3],
 }
 
 /// Cells along the longest side where nothing is asked for.
@@ -66,25 +56,19 @@ impl Grid {
         let has_ends = |axis: usize| size[axis] < REACH;
         let longest = (0..3).filter(|axis| has_ends(*axis)).map(|axis| size[axis]);
         let longest = longest.reduce(f64::max).ok_or(MaterialError::Endless)?;
-        let side = match resolution {
-            Resolution::Spacing(side) => side,
-            _ => longest / DEFAULT_CELLS,
-        };
+        let default = longest / DEFAULT_CELLS;
+        let side = if let Resolution::Spacing(side) = resolution { side } else { default };
         let (spacing, cells) = match resolution {
+            Resolution::Cells(cells) if cells.contains(&0) => return Err(MaterialError::EmptyGrid),
             Resolution::Cells(cells) => {
-                if cells.contains(&0) {
-                    return Err(MaterialError::EmptyGrid);
-                }
                 let side = |axis: usize| size[axis] / f64::from(cells[axis]);
                 let sides = (0..3).filter(|axis| has_ends(*axis)).map(side);
                 let least = sides.reduce(f64::min).unwrap_or(longest);
                 let spacing = [0, 1, 2].map(|axis| if has_ends(axis) { side(axis) } else { least });
                 (DVec3::from(spacing), cells.map(f64::from))
             }
+            _ if !(side > 0.0 && side.is_finite()) => return Err(MaterialError::EmptyGrid),
             Resolution::Spacing(_) | Resolution::Default => {
-                if !(side > 0.0 && side.is_finite()) {
-                    return Err(MaterialError::EmptyGrid);
-                }
                 // A side that divides the size but for rounding does.
                 let count = |axis: usize| (size[axis] / side - 1e-9).ceil().max(1.0);
                 let cells = [0, 1, 2].map(|axis| if has_ends(axis) { count(axis) } else { 1.0 });
@@ -97,26 +81,6 @@ impl Grid {
         });
         let corner = DVec3::from(middle) - spacing * DVec3::from(cells) * 0.5;
         Ok(Self { corner, spacing, cells: cells.map(|count| count as usize) })
-    }
-
-    /// How many cells there are.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.cells.iter().product()
-    }
-
-    /// The middle of a cell, the cells being counted along x, then y, then z.
-    #[must_use]
-    pub fn middle(&self, index: usize) -> DVec3 {
-        let [nx, ny, _] = self.cells;
-        let at = [index % nx, index / nx % ny, index / (nx * ny)];
-        DVec3::from([0, 1, 2].map(|axis| self.coordinate(axis, at[axis])))
-    }
-
-    /// The coordinate of the middles of the cells of that number along an axis, cm.
-    #[must_use]
-    pub fn coordinate(&self, axis: usize, number: usize) -> f64 {
-        self.corner[axis] + (number as f64 + 0.5) * self.spacing[axis]
     }
 }
 

@@ -5,7 +5,7 @@ mod grid;
 mod sampling;
 mod segments;
 
-pub use grid::{Frame, Grid, Resolution};
+pub use grid::{Frame, Resolution};
 pub use sampling::{Region, SymmetricTensor, sample};
 pub use segments::{Segment, segments, write_segments};
 

@@ -1,9 +1,9 @@
 //! The material of a device on a grid.
 
-use super::{Frame, Grid, MaterialError, Resolution, chosen};
+use super::{Frame, MaterialError, Resolution, chosen};
 use crate::assembly::{Assembly, Placed};
 use crate::device::MaterialAt;
-use crate::output::{GridArray, GridFile, GridValues};
+use crate::output::{Grid, GridArray, GridFile, GridValues};
 use crate::render::{Supervision, metadata};
 use crate::scene::Scene;
 use glam::DMat3;
@@ -80,13 +80,7 @@ pub fn sample(
         })
         .collect::<Result<_, _>>()?;
     let points: Vec<Point> = points.into_iter().flatten().collect();
-    Ok(GridFile {
-        corner: grid.corner.to_array(),
-        spacing: grid.spacing.to_array(),
-        cells: grid.cells,
-        arrays: arrays(&points),
-        metadata: described(scene, device, frame),
-    })
+    Ok(GridFile { grid, arrays: arrays(&points), metadata: described(scene, device, frame) })
 }
 
 fn point(placed: &Placed, frame: Frame, at: glam::DVec3) -> Point {
@@ -139,10 +133,7 @@ fn arrays(points: &[Point]) -> Vec<GridArray> {
 
 /// What the numbers are, for files.
 fn described(scene: &Scene, device: usize, frame: Frame) -> Vec<(String, String)> {
-    let frame = match frame {
-        Frame::Device => "device",
-        Frame::World => "world",
-    };
+    let frame = if frame == Frame::World { "world" } else { "device" };
     let codes: Vec<String> =
         (0..).zip(Region::WORDS).map(|(i, word)| format!("{i} {word}")).collect();
     let own = [

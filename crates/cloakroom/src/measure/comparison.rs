@@ -117,8 +117,7 @@ fn figures(
     region: &Region,
     differences: &[f64],
 ) -> Result<Figures, MeasureError> {
-    let planes = |k: usize| (&a.light[k], &b.light[k]);
-    let channels = [planes(0), planes(1), planes(2)];
+    let channels = [0, 1, 2].map(|color| (&a.light[color], &b.light[color]));
     let flights = a.time_of_flight.as_ref().zip(b.time_of_flight.as_ref());
     let delivered = |view: &View| view.delivered.as_ref().map(|power| region.mean(|i| power[i]));
     Ok(Figures {

@@ -4,7 +4,9 @@
 use super::{MeasureError, Region, View};
 use num_complex::Complex64;
 use rayon::prelude::*;
-use rustfft::{Fft, FftDirection, FftPlanner};
+use rustfft::algorithm::butterflies::Butterfly3;
+use rustfft::algorithm::{MixedRadix, Radix4};
+use rustfft::{Fft, FftDirection};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -68,17 +70,12 @@ pub fn best_shift(
 ) -> Result<[Option<BestShift>; 3], MeasureError> {
     let transform = Transform::new(a)?;
     let everywhere = transform.forward(|_| Complex64::ONE);
-    let inside = transform.forward(|i| real(f64::from(u8::from(region.mask()[i]))));
+    let inside = transform.forward(|i| f64::from(u8::from(region.mask[i])).into());
     let count = transform.correlate(&everywhere, &inside);
-    let mut best = [None; 3];
-    for (best, (a_plane, b_plane)) in best.iter_mut().zip(a.light.iter().zip(&b.light)) {
-        *best = transform.best(a_plane, b_plane, region, &everywhere, &inside, &count);
-    }
-    Ok(best)
-}
-
-fn real(value: f64) -> Complex64 {
-    Complex64::new(value, 0.0)
+    let best = |color: usize| {
+        transform.best(&a.light[color], &b.light[color], region, &everywhere, &inside, &count)
+    };
+    Ok([0, 1, 2].map(best))
 }
 
 /// Fourier transforms of planes laid into a field of zeros so large that no shift wraps around. Spectra are
@@ -99,15 +96,9 @@ impl Transform {
         let field = [width, height].map(|side| smooth(2 * side));
         // Two masks, four spectra and three correlations of a channel, and a copy.
         let needed = 10 * 16 * field[0] as u64 * field[1] as u64;
-        crate::memory::check(needed, u64::MAX).map_err(|shortage| MeasureError::TooLarge {
-            width,
-            height,
-            shortage,
-        })?;
-        let mut planner = FftPlanner::new();
-        let mut plan = |side: usize| {
-            [FftDirection::Forward, FftDirection::Inverse].map(|way| planner.plan_fft(side, way))
-        };
+        let too_large = |shortage| MeasureError::TooLarge { width, height, shortage };
+        crate::memory::check(needed, u64::MAX).map_err(too_large)?;
+        let plan = |side| [FftDirection::Forward, FftDirection::Inverse].map(|way| fft(side, way));
         let (rows, columns) = (plan(field[0]), plan(field[1]));
         Ok(Self { width, height, field, rows, columns })
     }
@@ -151,9 +142,9 @@ impl Transform {
     ) -> Option<BestShift> {
         let mean = |plane: &[f64]| plane.iter().sum::<f64>() / plane.len() as f64;
         let (mean_a, mean_b) = (mean(a), mean(b));
-        let in_region = |i: usize| if region.mask()[i] { b[i] - mean_b } else { 0.0 };
-        let a_once = self.forward(|i| real(a[i] - mean_a));
-        let b_once = self.forward(|i| real(in_region(i)));
+        let in_region = |i: usize| if region.mask[i] { b[i] - mean_b } else { 0.0 };
+        let a_once = self.forward(|i| (a[i] - mean_a).into());
+        let b_once = self.forward(|i| in_region(i).into());
         let cross = self.correlate(&a_once, &b_once);
         drop((a_once, b_once));
         // Sums and sums of squares in one: of real planes, they are the two parts. The conjugate of the first
@@ -190,11 +181,8 @@ impl Transform {
         let still = correlation(a, b, region)
             .map(|correlation| BestShift { correlation, shift_pixels: [0; 2] });
         let moved = found.and_then(|(i, _)| self.shifted(a, b, region, self.shift(i)));
-        match (still, moved) {
-            (Some(still), Some(moved)) if moved.correlation > still.correlation => Some(moved),
-            (None, moved) => moved,
-            (still, _) => still,
-        }
+        let better = |moved: &BestShift| still.is_none_or(|s| moved.correlation > s.correlation);
+        moved.filter(better).or(still)
     }
 
     /// The shift that an entry of a correlation stands for.
@@ -242,18 +230,18 @@ fn transposed(field: &[Complex64], width: usize) -> Vec<Complex64> {
     turned
 }
 
-/// The least number from `n` on without prime factors above 5: transforms of such sizes are fast.
+/// The least number from `n` on that is a power of two, or three times one: [`fft`] transforms such sizes.
 fn smooth(n: usize) -> usize {
-    let is_smooth = |&n: &usize| {
-        let rest = [2, 3, 5].iter().fold(n, |mut rest, factor| {
-            while rest % factor == 0 {
-                rest /= factor;
-            }
-            rest
-        });
-        rest == 1
-    };
-    (n.max(1)..).find(is_smooth).unwrap_or(n)
+    n.next_power_of_two().min(3 * n.div_ceil(3).next_power_of_two())
+}
+
+/// The transform of a size that [`smooth`] gives. (The library's planner knows all sizes; compiling it takes longer than all
+/// else here.)
+fn fft(size: usize, way: FftDirection) -> Arc<dyn Fft<f64>> {
+    if size % 3 != 0 {
+        return Arc::new(Radix4::new(size, way));
+    }
+    Arc::new(MixedRadix::new(Arc::new(Radix4::new(size / 3, way)), Arc::new(Butterfly3::new(way))))
 }
 
 #[cfg(test)]

@@ -69,7 +69,9 @@ fn opponent(view: &View) -> [Plane; 3] {
             [y, x - y, y - z]
         })
         .collect();
-    std::array::from_fn(|k| Plane::new(view.width, colors.iter().map(|c| c[k]).collect()))
+    let plane =
+        |k: usize| Plane { width: view.width, values: colors.iter().map(|c| c[k]).collect() };
+    [0, 1, 2].map(plane)
 }
 
 /// The contrast sensitivity as a Gaussian kernel: its b in square degrees.

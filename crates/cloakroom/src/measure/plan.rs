@@ -107,7 +107,7 @@ impl Plan {
         let steps = |one: &Combination| {
             let scene = &one.loaded.scene;
             let pictures = FIXED_PICTURES + PICTURES_A_DRAW * u64::from(self.draws_of(scene));
-            pictures * u64::from(scene.camera.resolution()[1])
+            pictures * u64::from(scene.camera.resolution[1])
         };
         self.scenes.iter().map(steps).sum()
     }
@@ -140,9 +140,8 @@ const FIXED_PICTURES: u64 = 2;
 const PICTURES_A_DRAW: u64 = 2;
 
 fn is_random(scene: &Scene) -> bool {
-    let imperfections =
-        scene.devices.iter().filter_map(|device| device.placement.imperfection.as_ref());
-    imperfections.into_iter().any(Imperfection::is_random)
+    let placements = scene.devices.iter().map(|device| &device.placement);
+    placements.flat_map(|placement| &placement.imperfection).any(Imperfection::is_random)
 }
 
 /// A scene with that draw of its devices' random errors.

@@ -10,17 +10,9 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    pub fn new(width: usize, values: Vec<f64>) -> Self {
-        Self { width, values }
-    }
-
-    fn height(&self) -> usize {
-        self.values.len() / self.width
-    }
-
     /// Convolves with a kernel across and one down, both of odd length; the edge goes on beyond itself.
     pub fn filtered(&self, across: &[f64], down: &[f64]) -> Self {
-        let (width, height) = (self.width, self.height());
+        let (width, height) = (self.width, self.values.len() / self.width);
         let reach = across.len() / 2;
         let mut rows = vec![0.0; self.values.len()];
         rows.par_chunks_mut(width).zip(self.values.par_chunks(width)).for_each(|(out, row)| {
@@ -63,10 +55,10 @@ mod tests {
 
     #[test]
     fn filters_keep_what_is_even_and_spread_what_is_not() {
-        let even = Plane::new(5, vec![3.0; 20]);
+        let even = Plane { width: 5, values: vec![3.0; 20] };
         let kernel = gaussian(1.2, 4);
         assert!(even.filtered(&kernel, &kernel).values.iter().all(|v| (v - 3.0).abs() < 1e-14));
-        let mut point = Plane::new(9, vec![0.0; 81]);
+        let mut point = Plane { width: 9, values: vec![0.0; 81] };
         point.values[40] = 1.0;
         let spread = point.filtered(&kernel, &[1.0]);
         assert_eq!(spread.values[36..45], kernel);

@@ -21,7 +21,8 @@ pub enum QualityError {
     #[error("{0}")]
     Sweep(#[from] SweepError),
     /// A scene cannot be read or built.
-    #[error("{}", in_sweep(.0))]
+    // What is said to be wrong with an override may be so with a swept value.
+    #[error("{}", .0.to_string().replacen("--set ", "--set or --sweep ", 1))]
     Scene(Box<SceneFileError>),
     /// A picture cannot be made, or the work was stopped.
     #[error("{0}")]
@@ -38,11 +39,6 @@ pub enum QualityError {
          --set device.0.imperfection.error=0.01"
     )]
     NothingRandom(u32),
-}
-
-/// The message of an error in an override: here, those are the swept values.
-fn in_sweep(error: &SceneFileError) -> String {
-    error.to_string().replacen("--set ", "--set or --sweep ", 1)
 }
 
 /// There is no such figure.
@@ -148,7 +144,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
         };
         let empty = match last_empty.take() {
             Some((known, view)) if same_view(&known, scene) => {
-                (supervision.rows_done)(u64::from(scene.camera.resolution()[1]));
+                (supervision.rows_done)(u64::from(scene.camera.resolution[1]));
                 view
             }
             _ => View::of(&picture(&prepared(&empty(scene), loaded)?)?)?,
@@ -156,7 +152,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
         let wanted_scene = ideal(scene);
         let wanted_prepared = prepared(&wanted_scene, loaded)?;
         let wanted = if wanted_scene.devices.is_empty() {
-            (supervision.rows_done)(u64::from(scene.camera.resolution()[1]));
+            (supervision.rows_done)(u64::from(scene.camera.resolution[1]));
             empty.clone()
         } else {
             View::of(&picture(&wanted_prepared)?)?
@@ -167,9 +163,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
             let drawn = prepared(scene, loaded)?;
             let shown = picture(&drawn)?;
             let view = View::of(&shown)?;
-            let (rows_done, stop) = (supervision.rows_done, supervision.stop);
-            let rays = survey(&drawn, &wanted_prepared, &scene.camera, rows_done, stop)
-                .ok_or(RenderError::Stopped)?;
+            let rays = survey(&drawn, &wanted_prepared, supervision)?;
             let measured = Measured::of(&shown, &view, [&wanted, &empty], rays)?;
             statistics.add(&measured.numbers().numbers);
             if metadata.is_empty() {

@@ -118,10 +118,6 @@ fn unit_of(name: &str) -> &'static str {
     let tables = TABLES.iter().map(|(_, keys)| *keys);
     let keys = devices.chain(tables).chain([Placement::KEYS, Imperfection::KEYS]).flatten();
     let has_unit = |key: &&Key| key.name == name && !key.unit.is_empty();
-    let mut found = keys.filter(has_unit).map(|key| key.unit);
-    match found.next() {
-        Some("degrees") => "°",
-        Some(unit) => unit,
-        None => "",
-    }
+    let unit = keys.into_iter().find(has_unit).map_or("", |key| key.unit);
+    if unit == "degrees" { "°" } else { unit }
 }

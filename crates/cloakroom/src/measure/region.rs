@@ -6,7 +6,8 @@ use super::{MeasureError, View};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Region {
     width: usize,
-    mask: Vec<bool>,
+    /// Whether each pixel belongs to it.
+    pub(super) mask: Vec<bool>,
 }
 
 impl Region {
@@ -64,12 +65,6 @@ impl Region {
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         [self.width, self.mask.len() / self.width]
-    }
-
-    /// Whether each pixel belongs to it.
-    #[must_use]
-    pub fn mask(&self) -> &[bool] {
-        &self.mask
     }
 
     /// The pixels that belong to it, counted row by row.

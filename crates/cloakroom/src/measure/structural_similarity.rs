@@ -15,7 +15,7 @@ const K: [f64; 2] = [0.01, 0.03];
 /// Views and region must be of one size.
 #[must_use]
 pub fn structural_similarity(a: &View, b: &View, region: &Region) -> f64 {
-    let [a, b] = [a, b].map(|view| Plane::new(view.width, luminance(view)));
+    let [a, b] = [a, b].map(|view| Plane { width: view.width, values: luminance(view) });
     let kernel = gaussian(1.5, 5);
     let blur = |plane: &Plane| plane.filtered(&kernel, &kernel).values;
     let product = |a: &Plane, b: &Plane| blur(&a.zip(b, |a, b| a * b));

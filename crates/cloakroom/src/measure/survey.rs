@@ -1,11 +1,11 @@
 //! What the rays themselves tell of a cloak: where they land on the photograph, against where they should.
 
 use crate::assembly::Screen;
-use crate::render::PreparedScene;
+use crate::render::{PreparedScene, RenderError, Supervision};
 use crate::scene::Camera;
 use crate::trace::{Launch, Leaf, Outcome, Tracer};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 /// How near to where it should a ray must land to count as cloaked, cm on the photograph.
 pub const CLOAKED_WITHIN_CM: f64 = 1.0;
@@ -45,41 +45,40 @@ struct Sight {
 }
 
 /// Sends a ray through the middle of each pixel of a scene, and the same ray through the ideal scene, which must
-/// have the same camera and photograph; `None` if the work was stopped. `rows_done` is called now and then with the
-/// rows finished since the last call.
-#[must_use]
+/// have the same camera and photograph.
+///
+/// # Errors
+///
+/// If the work was stopped.
 pub fn survey(
     prepared: &PreparedScene<'_>,
     ideal: &PreparedScene<'_>,
-    camera: &Camera,
-    rows_done: &(dyn Fn(u64) + Sync),
-    stop: &AtomicBool,
-) -> Option<Survey> {
-    match camera.polarizer().amplitudes() {
-        Some(amplitudes) => launched(prepared, ideal, camera, [amplitudes], rows_done, stop),
-        None => launched(prepared, ideal, camera, [[1.0, 0.0], [0.0, 1.0]], rows_done, stop),
+    supervision: &Supervision<'_>,
+) -> Result<Survey, RenderError> {
+    match prepared.scene.camera.polarizer.amplitudes() {
+        Some(amplitudes) => launched(prepared, ideal, [amplitudes], supervision),
+        None => launched(prepared, ideal, [[1.0, 0.0], [0.0, 1.0]], supervision),
     }
 }
 
 fn launched<const N: usize>(
     prepared: &PreparedScene<'_>,
     ideal: &PreparedScene<'_>,
-    camera: &Camera,
     amplitudes: [[f64; 2]; N],
-    rows_done: &(dyn Fn(u64) + Sync),
-    stop: &AtomicBool,
-) -> Option<Survey> {
-    let [width, height] = camera.resolution();
+    supervision: &Supervision<'_>,
+) -> Result<Survey, RenderError> {
+    let camera = &prepared.scene.camera;
+    let [width, height] = camera.resolution;
     fn tracer<'b, const N: usize>(prepared: &'b PreparedScene<'_>) -> Tracer<'b, N> {
-        Tracer::new(prepared.assembly(), prepared.limits()).with_screen(prepared.screen())
+        Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen)
     }
-    let rows: Option<Vec<Vec<Sight>>> = (0..height)
+    let rows: Result<Vec<Vec<Sight>>, _> = (0..height)
         .into_par_iter()
         .map_init(
             || (tracer::<N>(prepared), tracer::<N>(ideal)),
             |(tracer, ideal), row| {
-                if stop.load(Ordering::Relaxed) {
-                    return None;
+                if supervision.stop.load(Ordering::Relaxed) {
+                    return Err(RenderError::Stopped);
                 }
                 let sights = (0..width).map(|column| {
                     let ray = camera.ray(f64::from(column) + 0.5, f64::from(row) + 0.5);
@@ -89,16 +88,16 @@ fn launched<const N: usize>(
                     let (wanted, _) = ideal.trace(&launch);
                     let wanted = strongest(wanted).copied();
                     let (leaves, outcome) = tracer.trace(&launch);
-                    sight(&prepared.screen(), leaves, outcome, wanted.as_ref())
+                    sight(&prepared.screen, leaves, outcome, wanted.as_ref())
                 });
                 let sights = sights.collect();
-                rows_done(1);
-                Some(sights)
+                (supervision.rows_done)(1);
+                Ok(sights)
             },
         )
         .collect();
     let sights: Vec<Sight> = rows?.into_iter().flatten().collect();
-    Some(summary(&sights, camera, &prepared.screen()))
+    Ok(summary(&sights, camera, &prepared.screen))
 }
 
 fn power<const N: usize>(leaf: &Leaf<N>) -> f64 {
@@ -147,7 +146,7 @@ fn sight<const N: usize>(
 }
 
 fn summary(sights: &[Sight], camera: &Camera, screen: &Screen) -> Survey {
-    let width = camera.resolution()[0] as usize;
+    let width = camera.resolution[0] as usize;
     let met = || sights.iter().enumerate().filter(|(_, sight)| sight.met);
     let sum = |value: &dyn Fn(&Sight) -> f64| met().map(|(_, sight)| value(sight)).sum::<f64>();
     let compared = sum(&|sight| sight.compared);
@@ -157,9 +156,8 @@ fn summary(sights: &[Sight], camera: &Camera, screen: &Screen) -> Survey {
         let corner = |right: f64, down: f64| {
             let (column, row) = ((index % width) as f64 + right, (index / width) as f64 + down);
             let ray = camera.ray(column, row);
-            screen
-                .plane_distance(ray.origin, ray.direction)
-                .map(|distance| ray.origin + ray.direction * distance)
+            let distance = screen.plane_distance(ray.origin, ray.direction, 0.0)?;
+            Some(ray.origin + ray.direction * distance)
         };
         let sides = corner(0.0, 0.0).zip(corner(1.0, 0.0)).zip(corner(0.0, 1.0));
         sides.map_or(0.0, |((at, right), below)| (right - at).cross(below - at).length())

@@ -2,19 +2,49 @@
 
 use super::{OutputError, ending, write_npz, write_whole};
 use base64::prelude::{BASE64_STANDARD, Engine};
+use glam::DVec3;
 use ndarray::ShapeBuilder;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Arrays on a regular grid of cells; what is said of a cell is so in its middle.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GridFile {
+/// A regular grid of cells; what is said of a cell is so in its middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
     /// The corner of the least coordinates, cm.
-    pub corner: [f64; 3],
+    pub corner: DVec3,
     /// The sides of a cell, cm.
-    pub spacing: [f64; 3],
+    pub spacing: DVec3,
     /// Cells along x, y and z.
     pub cells: [usize; 3],
+}
+
+impl Grid {
+    /// How many cells there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.cells.iter().product()
+    }
+
+    /// The middle of a cell, the cells being counted along x, then y, then z.
+    #[must_use]
+    pub fn middle(&self, index: usize) -> DVec3 {
+        let [nx, ny, _] = self.cells;
+        let at = [index % nx, index / nx % ny, index / (nx * ny)];
+        DVec3::from([0, 1, 2].map(|axis| self.coordinate(axis, at[axis])))
+    }
+
+    /// The coordinate of the middles of the cells of that number along an axis, cm.
+    #[must_use]
+    pub fn coordinate(&self, axis: usize, number: usize) -> f64 {
+        self.corner[axis] + (number as f64 + 0.5) * self.spacing[axis]
+    }
+}
+
+/// Arrays on a regular grid of cells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridFile {
+    /// The grid.
+    pub grid: Grid,
     /// The arrays, of one value a cell, along x first, then y, then z.
     pub arrays: Vec<GridArray>,
     /// Pairs of key and text that say what it is.
@@ -88,23 +118,15 @@ pub fn write_grid(grid: &GridFile, path: &Path) -> Result<(), OutputError> {
 }
 
 impl GridFile {
-    fn count(&self) -> usize {
-        self.cells.iter().product()
-    }
-
-    fn coordinates(&self, axis: usize) -> Vec<f64> {
-        let middle = |i: usize| self.corner[axis] + (i as f64 + 0.5) * self.spacing[axis];
-        (0..self.cells[axis]).map(middle).collect()
-    }
-
     /// Arrays `x`, `y`, `z` of the middles of the cells, and each array with the indices of x, y and z, and of
     /// row and column for a tensor; the metadata as the array of bytes `metadata`, a JSON object.
     fn write_npz(&self, path: &Path) -> Result<(), OutputError> {
         write_npz(path, &self.metadata, |npz| {
             for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-                npz.add(name, self.cells[axis], &self.coordinates(axis))?;
+                let middles = (0..self.grid.cells[axis]).map(|i| self.grid.coordinate(axis, i));
+                npz.add(name, self.grid.cells[axis], &middles.collect::<Vec<f64>>())?;
             }
-            let [nx, ny, nz] = self.cells;
+            let [nx, ny, nz] = self.grid.cells;
             for GridArray { name, values } in &self.arrays {
                 match values {
                     GridValues::Codes(codes, _) => npz.add(name, (nx, ny, nz).f(), codes)?,
@@ -124,10 +146,10 @@ impl GridFile {
 
     /// VTK XML image data with all arrays on its cells, little-endian and appended in base64.
     fn write_vti(&self, out: &mut dyn Write) -> io::Result<()> {
-        let three = |numbers: [f64; 3]| numbers.map(|number| number.to_string()).join(" ");
-        let [nx, ny, nz] = self.cells;
+        let three = |vector: DVec3| vector.to_array().map(|number| number.to_string()).join(" ");
+        let [nx, ny, nz] = self.grid.cells;
         let extent = format!("0 {nx} 0 {ny} 0 {nz}");
-        let (origin, spacing) = (three(self.corner), three(self.spacing));
+        let (origin, spacing) = (three(self.grid.corner), three(self.grid.spacing));
         writeln!(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>")?;
         for (key, text) in &self.metadata {
             // Two hyphens would end a comment.
@@ -194,10 +216,9 @@ impl GridFile {
             }
         }
         writeln!(out, "{}", names.join(","))?;
-        let [x, y, z] = [0, 1, 2].map(|axis| self.coordinates(axis));
-        let [nx, ny, _] = self.cells;
-        for cell in 0..self.count() {
-            write!(out, "{},{},{}", x[cell % nx], y[cell / nx % ny], z[cell / (nx * ny)])?;
+        for cell in 0..self.grid.count() {
+            let DVec3 { x, y, z } = self.grid.middle(cell);
+            write!(out, "{x},{y},{z}")?;
             for GridArray { values, .. } in &self.arrays {
                 match values {
                     GridValues::Codes(codes, words) => {

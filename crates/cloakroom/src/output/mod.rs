@@ -9,7 +9,7 @@ mod png_file;
 mod reading;
 mod whole_file;
 
-pub use grid_file::{GridArray, GridFile, GridFormat, GridValues, write_grid};
+pub use grid_file::{Grid, GridArray, GridFile, GridFormat, GridValues, write_grid};
 pub use image::RgbImage;
 pub(crate) use npz_file::write_npz;
 pub use picture::{Channel, Picture, Samples};

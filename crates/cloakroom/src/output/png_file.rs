@@ -12,10 +12,8 @@ use std::path::Path;
 /// [`OutputError::MissingChannel`] if the picture has no image.
 pub fn to_srgb(picture: &Picture) -> Result<RgbImage, OutputError> {
     let find = |name: &str| {
-        picture
-            .channel(name)
-            .map(|channel| &channel.samples)
-            .ok_or_else(|| OutputError::MissingChannel(name.to_owned()))
+        let samples = picture.channel(name).map(|channel| &channel.samples);
+        samples.ok_or_else(|| OutputError::MissingChannel(name.to_owned()))
     };
     let planes: [&Samples; 3] = [find("R")?, find("G")?, find("B")?];
     let codes = Codes::new();
@@ -49,10 +47,8 @@ const PARTS: usize = 4096;
 
 impl Codes {
     fn new() -> Self {
-        let thresholds: [f64; 255] = std::array::from_fn(|n| {
-            // Half-way between the two.
-            decode((n as f64 + 0.5) / 255.0)
-        });
+        // Half-way between the two.
+        let thresholds: [f64; 255] = std::array::from_fn(|n| decode((n as f64 + 0.5) / 255.0));
         let lowest = std::array::from_fn(|part| {
             let light = part as f64 / PARTS as f64;
             thresholds.partition_point(|threshold| *threshold <= light) as u8

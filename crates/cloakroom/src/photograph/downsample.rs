@@ -1,31 +1,23 @@
 //! Halving an image by exact area averages, whatever its size.
 
-use super::Texels;
+use super::{LinearImage, Texels};
 
 /// The next coarser image: half as wide and high, rounded down, at least 1.
 ///
 /// Each new texel is the average over the part of the image that it covers. Where a side is odd,
 /// this part is a little more than two texels, and the average weighs the outer of three texels
 /// accordingly, so that the image does not shift.
-///
-/// Returns the new width, height and linear texels.
-pub(super) fn halve(
-    width: usize,
-    height: usize,
-    texels: &Texels,
-    table: &[f32; 256],
-) -> (usize, usize, Vec<f32>) {
-    let (new_width, new_height) = ((width / 2).max(1), (height / 2).max(1));
-    let mut halved = vec![0.0; new_width * new_height * 3];
-    match texels {
+pub(super) fn halve(image: &LinearImage, table: &[f32; 256]) -> LinearImage {
+    let (width, height) = ((image.width / 2).max(1), (image.height / 2).max(1));
+    let mut halved = vec![0.0; width * height * 3];
+    let size = [image.width, image.height];
+    match &image.texels {
         Texels::Srgb8(codes) => {
-            halve_into(&mut halved, [width, height], codes, |code| table[usize::from(code)]);
+            halve_into(&mut halved, size, codes, |code| table[usize::from(code)]);
         }
-        Texels::Linear(values) => {
-            halve_into(&mut halved, [width, height], values, |value| value);
-        }
+        Texels::Linear(values) => halve_into(&mut halved, size, values, |value| value),
     }
-    (new_width, new_height, halved)
+    LinearImage { width, height, texels: Texels::Linear(halved) }
 }
 
 fn halve_into<S: Copy>(
@@ -121,8 +113,11 @@ mod tests {
     use super::super::decode_table;
     use super::*;
 
-    fn halve_linear(width: usize, height: usize, texels: Vec<f32>) -> (usize, usize, Vec<f32>) {
-        halve(width, height, &Texels::Linear(texels), decode_table())
+    fn halved(width: usize, height: usize, texels: Texels) -> (usize, usize, Vec<f32>) {
+        let LinearImage { width, height, texels } =
+            halve(&LinearImage { width, height, texels }, decode_table());
+        let Texels::Linear(texels) = texels else { panic!("linear light") };
+        (width, height, texels)
     }
 
     #[test]
@@ -133,7 +128,7 @@ mod tests {
                     (0..width * height * 3).map(|i| ((i * 37) % 101) as f32).collect();
                 let mean = |values: &[f32]| values.iter().sum::<f32>() / values.len() as f32;
                 let expected = mean(&texels);
-                let (new_width, new_height, halved) = halve_linear(width, height, texels);
+                let (new_width, new_height, halved) = halved(width, height, Texels::Linear(texels));
                 assert_eq!((new_width, new_height), ((width / 2).max(1), (height / 2).max(1)));
                 assert!((mean(&halved) - expected).abs() < 1e-3, "{width} x {height}");
             }
@@ -146,7 +141,7 @@ mod tests {
         for width in [7, 8, 33] {
             let ramp: Vec<f32> =
                 (0..width).flat_map(|x| [(x as f32 + 0.5) / width as f32; 3]).collect();
-            let (new_width, _, halved) = halve_linear(width, 1, ramp);
+            let (new_width, _, halved) = halved(width, 1, Texels::Linear(ramp));
             for x in 0..new_width {
                 let middle = (x as f32 + 0.5) / new_width as f32;
                 // An odd side's texels are steps, not a ramp: a twentieth of one.
@@ -158,7 +153,7 @@ mod tests {
     #[test]
     fn averages_light_not_codes() {
         let codes = Texels::Srgb8(vec![0, 0, 0, 255, 255, 255]);
-        let (_, _, halved) = halve(2, 1, &codes, decode_table());
+        let (_, _, halved) = halved(2, 1, codes);
         assert_eq!(halved, vec![0.5; 3]);
     }
 }

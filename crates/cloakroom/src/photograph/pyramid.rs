@@ -42,7 +42,7 @@ pub enum Edges {
 /// An image with its coarser copies, ready to be looked at through patches of any size.
 #[derive(Clone, Debug)]
 pub struct Pyramid {
-    image: Level,
+    finest: Level,
     /// Its coarser copies, each made when it is first looked at: most pictures never need one.
     coarser: Vec<OnceLock<Level>>,
     edges: Edges,
@@ -52,9 +52,7 @@ pub struct Pyramid {
 
 #[derive(Clone, Debug)]
 struct Level {
-    width: usize,
-    height: usize,
-    texels: Texels,
+    image: LinearImage,
     /// Texels of this level per texel of the image.
     scale: [f64; 2],
 }
@@ -73,10 +71,9 @@ struct Plan {
 impl Pyramid {
     /// An image and its coarser copies, which are exact area averages in linear light.
     pub fn new(image: LinearImage, edges: Edges) -> Self {
-        let LinearImage { width, height, texels } = image;
-        let count = width.max(height).ilog2() as usize;
+        let count = image.width.max(image.height).ilog2() as usize;
         Self {
-            image: Level { width, height, texels, scale: [1.0; 2] },
+            finest: Level { image, scale: [1.0; 2] },
             coarser: vec![OnceLock::new(); count],
             edges,
             max_ratio: MAX_RATIO,
@@ -88,7 +85,7 @@ impl Pyramid {
     #[inline]
     fn level(&self, level: usize) -> &Level {
         match level.checked_sub(1) {
-            None => &self.image,
+            None => &self.finest,
             // One thread makes it, on its own: work shared out while others wait could wait for them.
             Some(index) => self.coarser[index].get_or_init(|| self.halved(index)),
         }
@@ -96,10 +93,9 @@ impl Pyramid {
 
     #[cold]
     fn halved(&self, level: usize) -> Level {
-        let Level { width, height, texels, .. } = self.level(level);
-        let (width, height, texels) = downsample::halve(*width, *height, texels, self.table);
-        let scale = [width as f64 / self.width() as f64, height as f64 / self.height() as f64];
-        Level { width, height, texels: Texels::Linear(texels), scale }
+        let image = downsample::halve(&self.level(level).image, self.table);
+        let across = image.width as f64 / self.width() as f64;
+        Level { scale: [across, image.height as f64 / self.height() as f64], image }
     }
 
     /// The same pyramid with another limit for the ratio of a patch's axes (default 16); thinner
@@ -111,19 +107,19 @@ impl Pyramid {
 
     /// Width of the image in texels.
     pub fn width(&self) -> usize {
-        self.image.width
+        self.finest.image.width
     }
 
     /// Height of the image in texels.
     pub fn height(&self) -> usize {
-        self.image.height
+        self.finest.image.height
     }
 
     /// Memory of the image and the coarser copies made so far, in bytes.
     pub fn memory(&self) -> usize {
-        std::iter::once(&self.image)
+        std::iter::once(&self.finest)
             .chain(self.coarser.iter().filter_map(OnceLock::get))
-            .map(|level| match &level.texels {
+            .map(|level| match &level.image.texels {
                 Texels::Srgb8(codes) => codes.len(),
                 Texels::Linear(values) => values.len() * size_of::<f32>(),
             })
@@ -225,13 +221,14 @@ impl Level {
     ) -> [f32; 3] {
         let across = Taps::<TAPS, LANES>::new(at[0], width);
         let down = Taps::<TAPS, LANES>::new(at[1], width);
-        if let Some(left) = across.inside(self.width)
-            && let Some(top) = down.inside(self.height)
+        let LinearImage { width, height, texels } = &self.image;
+        if let Some(left) = across.inside(*width)
+            && let Some(top) = down.inside(*height)
         {
-            let start = (top * self.width + left) * 3;
-            let stride = self.width * 3;
+            let start = (top * width + left) * 3;
+            let stride = width * 3;
             let weights = (across.weights(), down.weights());
-            match &self.texels {
+            match texels {
                 Texels::Srgb8(codes) => {
                     weigh(&codes[start..], stride, weights, |code| table[usize::from(code)])
                 }
@@ -250,7 +247,8 @@ impl Level {
         edges: Edges,
         table: &[f32; 256],
     ) -> [f32; 3] {
-        let (columns, rows) = (self.width as i64, self.height as i64);
+        let LinearImage { width, height, texels } = &self.image;
+        let (columns, rows) = (*width as i64, *height as i64);
         let mut sum = [0.0; 3];
         for (y, row_weight) in (down.first..).zip(down.weights()) {
             let y = y.clamp(0, rows - 1) as usize;
@@ -259,9 +257,9 @@ impl Level {
                     Edges::Clamp => x.clamp(0, columns - 1),
                     Edges::WrapHorizontally => x.rem_euclid(columns),
                 } as usize;
-                let start = (y * self.width + x) * 3;
+                let start = (y * width + x) * 3;
                 for (channel, total) in sum.iter_mut().enumerate() {
-                    let light = match &self.texels {
+                    let light = match texels {
                         Texels::Srgb8(codes) => table[usize::from(codes[start + channel])],
                         Texels::Linear(values) => values[start + channel],
                     };

@@ -71,33 +71,48 @@ pub struct LoadError {
     pub problem: LoadProblem,
 }
 
-/// What is wrong with an image.
-#[derive(Debug)]
+/// What is wrong with an image: what can be said of it.
+#[derive(Debug, thiserror::Error)]
 pub enum LoadProblem {
     /// There is no such file.
+    #[error("there is no image file")]
     Missing,
     /// The path is a folder.
+    #[error("is a folder, not an image file")]
     Folder,
     /// The operating system refuses to read the file, and says why.
+    #[error("cannot be read: {0}")]
     Unreadable(io::Error),
     /// The file has no bytes.
+    #[error("is empty")]
     Empty,
     /// The file is no image, or of a kind that is not known.
+    #[error("is not an image that can be read (PNG, JPEG or EXR)")]
     NotAnImage,
     /// An image of this kind, which is known but not read.
+    #[error("is a {0} image; only PNG, JPEG and EXR can be read")]
     OtherFormat(String),
     /// The file ends early or is damaged: what the decoder says.
+    #[error("is damaged or cut short: {0}")]
     Damaged(String),
     /// The image uses a feature of its format that is not read: what the decoder says.
+    #[error("uses a feature that is not supported: {0}")]
     Unsupported(String),
     /// The image has no pixels: its width and height.
+    #[error("has no pixels ({} x {})", .0[0], .0[1])]
     NoPixels([u32; 2]),
     /// The image has too many pixels, or would take too much memory.
+    #[error(
+        "is too large: at most {} million pixels and {} GiB of memory are allowed",
+        MAX_PIXELS / 1_000_000, MAX_MEMORY >> 30
+    )]
     TooLarge,
     /// An image in memory has not as many texels as its size says, but so many.
+    #[error("has {0} texels")]
     WrongCount(usize),
     /// A pixel of an EXR image or of one in memory is infinite or not a number: the column and row of the first such
     /// one, from 0.
+    #[error("has a pixel that is not a finite number, in column {} and row {}", .0[0], .0[1])]
     NotFinite([usize; 2]),
 }
 
@@ -105,32 +120,9 @@ impl LoadProblem {
     /// The message for an image.
     fn of(&self, image: &ImageSource) -> String {
         match self {
-            Self::Missing => format!("there is no image file {image}"),
-            Self::Folder => format!("{image} is a folder, not an image file"),
+            Self::Missing => format!("{self} {image}"),
             Self::Unreadable(reason) => format!("cannot read {image}: {reason}"),
-            Self::Empty => format!("{image} is empty"),
-            Self::NotAnImage => {
-                format!("{image} is not an image that can be read (PNG, JPEG or EXR)")
-            }
-            Self::OtherFormat(format) => {
-                format!("{image} is a {format} image; only PNG, JPEG and EXR can be read")
-            }
-            Self::Damaged(reason) => format!("{image} is damaged or cut short: {reason}"),
-            Self::Unsupported(reason) => {
-                format!("{image} uses a feature that is not supported: {reason}")
-            }
-            Self::NoPixels([width, height]) => {
-                format!("{image} has no pixels ({width} x {height})")
-            }
-            Self::TooLarge => format!(
-                "{image} is too large: at most {} million pixels and {} GiB of memory are allowed",
-                MAX_PIXELS / 1_000_000,
-                MAX_MEMORY >> 30
-            ),
-            Self::WrongCount(count) => format!("{image} has {count} texels"),
-            Self::NotFinite([column, row]) => format!(
-                "{image} has a pixel that is not a finite number, in column {column} and row {row}"
-            ),
+            _ => format!("{image} {self}"),
         }
     }
 }

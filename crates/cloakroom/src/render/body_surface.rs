@@ -5,7 +5,7 @@
 //! that looks along -x, towards the usual camera. Around a ball and the side of a cylinder the image goes once:
 //! its middle column is on the side of -x, and its top row at the pole +y of a ball, at the end +z of a cylinder.
 
-use super::images::BodyImages;
+use super::Images;
 use crate::assembly::Placed;
 use crate::device::Convex;
 use crate::photograph::{Equirectangular, LoadError, Pyramid};
@@ -52,9 +52,9 @@ impl BodySurface {
     pub fn of(
         device: &DeviceSettings,
         placed: &Placed,
-        images: &mut BodyImages,
+        images: &mut Images,
     ) -> Result<Option<Self>, LoadError> {
-        let (Some(body), Some(appearance)) = (placed.structure.hull.body(), device.appearance())
+        let (Some(body), Some(appearance)) = (placed.structure.hull.body, device.appearance())
         else {
             return Ok(None);
         };

@@ -217,66 +217,40 @@ fn light<const N: usize>(
     beside: &[Neighbour<'_, N>; 2],
     spacing: f64,
 ) -> [f64; 3] {
+    let lines =
+        || beside.each_ref().map(|beside| beside.twin_line().unwrap_or_else(|| beside.moved()));
     match (leaf.body(), screen) {
-        (Some(body), _) => body_light(prepared, body, leaf, beside, spacing),
-        (None, Some(distance)) => photograph_light(prepared, leaf, distance, beside, spacing),
-        (None, None) => surroundings_light(prepared, leaf, beside, spacing),
-    }
-}
-
-fn photograph_light<const N: usize>(
-    prepared: &PreparedScene<'_>,
-    leaf: &Leaf<N>,
-    distance: f64,
-    beside: &[Neighbour<'_, N>; 2],
-    spacing: f64,
-) -> [f64; 3] {
-    let screen = &prepared.screen;
-    let at = |line: &Line, distance: f64| {
-        screen.image_position(line.origin + line.direction * distance, leaf.direction)
-    };
-    let here = at(&Line { origin: leaf.position, direction: leaf.direction }, distance);
-    let place = |line: &Line| {
-        let t = screen.distance_along(line.origin, line.direction);
-        t.is_finite().then(|| at(line, t))
-    };
-    let [dx, dy] = footprint(place, here, beside).map(|step| step.map(|change| change * spacing));
-    prepared.image.sample(here, dx, dy).map(f64::from)
-}
-
-fn surroundings_light<const N: usize>(
-    prepared: &PreparedScene<'_>,
-    leaf: &Leaf<N>,
-    beside: &[Neighbour<'_, N>; 2],
-    spacing: f64,
-) -> [f64; 3] {
-    match &prepared.surroundings {
-        Surroundings::Color(color) => *color,
-        Surroundings::Image(image) => {
-            let steps = [0, 1].map(|i| {
-                let line = beside[i].twin_line().unwrap_or_else(|| beside[i].moved());
-                (line.direction - leaf.direction) * spacing
-            });
-            image.sample(leaf.direction, steps[0], steps[1]).map(f64::from)
+        (Some(body), _) => {
+            let Some(surface) = prepared.body_surface(body) else { return [0.0; 3] };
+            surface.light(leaf.position, |normal| {
+                lines().map(|Line { origin, direction }| {
+                    let distance = normal.dot(leaf.position - origin) / normal.dot(direction);
+                    let step = (origin + direction * distance - leaf.position) * spacing;
+                    // A neighbour that does not come to the plane leaves a patch without size, which does no harm.
+                    if step.is_finite() { step } else { DVec3::ZERO }
+                })
+            })
         }
+        (None, Some(distance)) => {
+            let screen = &prepared.screen;
+            let at = |line: &Line, distance: f64| {
+                screen.image_position(line.origin + line.direction * distance, leaf.direction)
+            };
+            let here = at(&Line { origin: leaf.position, direction: leaf.direction }, distance);
+            let place = |line: &Line| {
+                let t = screen.distance_along(line.origin, line.direction);
+                t.is_finite().then(|| at(line, t))
+            };
+            let steps = footprint(place, here, beside);
+            let [dx, dy] = steps.map(|step| step.map(|change| change * spacing));
+            prepared.image.sample(here, dx, dy).map(f64::from)
+        }
+        (None, None) => match &prepared.surroundings {
+            Surroundings::Color(color) => *color,
+            Surroundings::Image(image) => {
+                let [dx, dy] = lines().map(|line| (line.direction - leaf.direction) * spacing);
+                image.sample(leaf.direction, dx, dy).map(f64::from)
+            }
+        },
     }
-}
-
-fn body_light<const N: usize>(
-    prepared: &PreparedScene<'_>,
-    body: u16,
-    leaf: &Leaf<N>,
-    beside: &[Neighbour<'_, N>; 2],
-    spacing: f64,
-) -> [f64; 3] {
-    let Some(surface) = prepared.body_surface(body) else { return [0.0; 3] };
-    surface.light(leaf.position, |normal| {
-        let steps = beside.each_ref().map(|neighbour| {
-            let line = neighbour.twin_line().unwrap_or_else(|| neighbour.moved());
-            let distance = normal.dot(leaf.position - line.origin) / normal.dot(line.direction);
-            (line.origin + line.direction * distance - leaf.position) * spacing
-        });
-        // A neighbour that does not come to the plane leaves a patch without size, which does no harm.
-        steps.map(|step| if step.is_finite() { step } else { DVec3::ZERO })
-    })
 }

@@ -31,12 +31,11 @@ use exposure::{Traced, expose, expose_unhindered};
 use film::{Band, Film};
 use pixel::{Pixel, Pulses};
 use rayon::prelude::*;
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Rows in a band; even, so that bands hold whole blocks of 2 x 2 pixels.
-const BAND_ROWS: usize = 4;
+const BAND_ROWS: u32 = 4;
 
 /// How a long work is watched and stopped.
 #[derive(Clone, Copy)]
@@ -84,35 +83,24 @@ pub fn render(
     wanted: ChannelSet,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
-    render_rows(prepared, wanted, 0..prepared.rows() as usize, supervision)
+    let [width, height] = prepared.scene.camera.resolution;
+    render_part(prepared, wanted, Tile { left: 0, top: 0, width, height }, supervision)
 }
 
 /// Pixels in a strip: enough for all threads to be busy nearly all the time.
-const STRIP_PIXELS: usize = 1 << 22;
+const STRIP_PIXELS: u32 = 1 << 22;
 
-/// The rows of a picture in strips of equal height, from top to bottom: what is rendered strip by strip needs
+/// A picture in strips of equal height, from top to bottom: what is rendered strip by strip needs
 /// no more memory than one of them.
-pub fn strips(prepared: &PreparedScene<'_>) -> impl Iterator<Item = Range<usize>> + use<> {
-    let [width, height] = prepared.scene.camera.resolution().map(|size| size as usize);
+pub fn strips(prepared: &PreparedScene<'_>) -> impl Iterator<Item = Tile> + use<> {
+    let [width, height] = prepared.scene.camera.resolution;
     let rows = (STRIP_PIXELS / width / BAND_ROWS).max(1) * BAND_ROWS;
-    (0..height).step_by(rows).map(move |first| first..height.min(first + rows))
-}
-
-/// Renders some rows of a picture, one of its [`strips`]: the picture has these rows alone.
-///
-/// # Errors
-///
-/// If they would not fit into memory, or the work was stopped.
-pub fn render_rows(
-    prepared: &PreparedScene<'_>,
-    wanted: ChannelSet,
-    rows: Range<usize>,
-    supervision: &Supervision<'_>,
-) -> Result<Rendered, RenderError> {
-    let width = prepared.scene.camera.resolution()[0];
-    // A camera has at most 65536 rows.
-    let tile = Tile { left: 0, top: rows.start as u32, width, height: rows.len() as u32 };
-    expose_tile(prepared, wanted, tile, supervision)
+    (0..height).step_by(rows as usize).map(move |top| Tile {
+        left: 0,
+        top,
+        width,
+        height: rows.min(height - top),
+    })
 }
 
 /// Renders a tile of a picture: the picture has these pixels alone, and its metadata say which they are. They are
@@ -131,25 +119,31 @@ pub fn render_tile(
     tile: Tile,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
-    let resolution = prepared.scene.camera.resolution();
+    let resolution = prepared.scene.camera.resolution;
     assert!(tile.check(resolution).is_ok(), "the tile is not of this picture");
-    let mut rendered = expose_tile(prepared, wanted, tile, supervision)?;
+    let mut rendered = render_part(prepared, wanted, tile, supervision)?;
     rendered.picture.metadata.extend(tile.metadata(resolution));
     Ok(rendered)
 }
 
-fn expose_tile(
+/// Renders a part of a picture, one of its [`strips`] or all of it: the picture has these pixels alone, and the
+/// metadata of the whole.
+///
+/// # Errors
+///
+/// If it would not fit into memory, or the work was stopped.
+pub fn render_part(
     prepared: &PreparedScene<'_>,
     wanted: ChannelSet,
     tile: Tile,
     supervision: &Supervision<'_>,
 ) -> Result<Rendered, RenderError> {
-    match (wanted, prepared.scene.camera.polarizer().amplitudes()) {
+    match (wanted, prepared.scene.camera.polarizer.amplitudes()) {
         (_, None) => expose_film(prepared, wanted, tile, supervision, Detection::UNPOLARIZED),
         (ChannelSet::Image, Some(amplitudes)) => {
             expose_film(prepared, wanted, tile, supervision, Detection::image(amplitudes))
         }
-        (ChannelSet::Polarizers | ChannelSet::Everything, Some(amplitudes)) => {
+        (_, Some(amplitudes)) => {
             expose_film(prepared, wanted, tile, supervision, Detection::through(amplitudes))
         }
     }
@@ -169,14 +163,11 @@ fn expose_film<const N: usize>(
     let bytes: usize = channels.iter().map(|channel| channel.blank(1).bytes()).sum();
     // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
     let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2) as u64;
-    crate::memory::check(needed, u64::MAX).map_err(|shortage| RenderError::TooLarge {
-        width,
-        height,
-        shortage,
-    })?;
+    let too_large = |shortage| RenderError::TooLarge { width, height, shortage };
+    crate::memory::check(needed, u64::MAX).map_err(too_large)?;
     let mut film = Film::new(tile, &channels);
     let stats = film
-        .bands(BAND_ROWS)
+        .bands(BAND_ROWS as usize)
         .into_par_iter()
         .map_init(
             || Exposer::new(prepared, &detection),
@@ -191,14 +182,9 @@ fn expose_film<const N: usize>(
             a += b;
             Ok(a)
         })?;
-    let (width, height) = (width as usize, height as usize);
-    let picture = Picture {
-        width,
-        height,
-        channels: film.into_channels(),
-        metadata: metadata(prepared.scene),
-    };
-    Ok(Rendered { picture, stats })
+    let [width, height] = [width, height].map(|side| side as usize);
+    let (channels, metadata) = (film.into_channels(), metadata(prepared.scene));
+    Ok(Rendered { picture: Picture { width, height, channels, metadata }, stats })
 }
 
 /// How long rendering the image will take on the threads there are, in seconds: a few thousand rays, spread
@@ -210,7 +196,7 @@ pub fn estimated_seconds(prepared: &PreparedScene<'_>) -> f64 {
     // A prime above the number of blocks: its multiples visit them all, here and there in the picture.
     const STRIDE: u32 = 7919;
     let camera = &prepared.scene.camera;
-    let [width, height] = camera.resolution();
+    let [width, height] = camera.resolution;
     let [columns, rows] = [GRID[0].min(width), GRID[1].min(height)];
     let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &prepared.scene.picture);
     let mut exposer = Exposer::new(prepared, &detection);
@@ -224,7 +210,7 @@ pub fn estimated_seconds(prepared: &PreparedScene<'_>) -> f64 {
         blocks += 1;
     }
     let traced = f64::from(4 * blocks);
-    let all = f64::from(width) * f64::from(height) * f64::from(camera.samples());
+    let all = f64::from(width) * f64::from(height) * f64::from(camera.samples);
     start.elapsed().as_secs_f64() * all / traced / rayon::current_num_threads() as f64
 }
 
@@ -235,7 +221,7 @@ pub fn metadata(scene: &Scene) -> Vec<(String, String)> {
         ("software", concat!("cloakroom ", env!("CARGO_PKG_VERSION")).to_owned()),
         ("scene", scene.source.clone()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("seed", scene.camera.seed().to_string()),
+        ("seed", scene.camera.seed.to_string()),
     ]
     .map(|(key, value)| (key.to_owned(), value))
     .to_vec()
@@ -265,8 +251,8 @@ impl<'a, const N: usize> Exposer<'a, N> {
     fn expose_band(&mut self, band: &mut Band<'_>, stop: &AtomicBool) -> Option<TraceStats> {
         let camera = &self.prepared.scene.camera;
         let Band { width, rows, corner: [first_column, first_row], .. } = *band;
-        let samples = camera.samples();
-        let look = if camera.adaptive() > 0.0 { first_look(samples) } else { 0 };
+        let samples = camera.samples;
+        let look = if camera.adaptive > 0.0 { first_look(samples) } else { 0 };
         let mut stats = TraceStats::default();
         // Blocks are those of the whole picture, and may reach beyond the band.
         for top in ((first_row & !1)..first_row + rows).step_by(2) {
@@ -284,7 +270,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
                     if let Some(before) = before {
                         contrast.add(&before, &pixels);
                     }
-                    if taken == look && contrast.is_within(camera.adaptive()) {
+                    if taken == look && contrast.is_within(camera.adaptive) {
                         break;
                     }
                 }
@@ -313,9 +299,9 @@ impl<'a, const N: usize> Exposer<'a, N> {
         pixels: &mut [Pixel; 4],
     ) -> TraceStats {
         let camera = &self.prepared.scene.camera;
-        let samples = camera.samples();
+        let samples = camera.samples;
         let block = [column as u32 / 2, row as u32 / 2];
-        let offset = sampling::offset(sample, samples, block, camera.seed());
+        let offset = sampling::offset(sample, samples, block, camera.seed);
         let rays = std::array::from_fn(|i| {
             camera.ray((column + i % 2) as f64 + offset[0], (row + i / 2) as f64 + offset[1])
         });

@@ -82,17 +82,11 @@ pub enum PreparedSceneError {
     /// The photograph cannot hang like that.
     #[error("{0}")]
     PhotographPlace(#[source] KeyError),
-    /// The photograph cannot be read.
-    #[error("{0}")]
-    Photograph(#[source] LoadError),
-    /// The image of the surroundings cannot be read.
-    #[error("{0}")]
-    Surroundings(#[source] LoadError),
-    /// The image on a body cannot be read.
+    /// An image cannot be read: the photograph, that of the surroundings, or one on a body.
     #[error("{error}")]
-    Surface {
-        /// Which device, counted from 0.
-        device: usize,
+    Image {
+        /// The key that names it.
+        key: String,
         /// Why not.
         error: LoadError,
     },
@@ -111,9 +105,7 @@ impl PreparedSceneError {
             Self::CameraInside { .. } => "camera.position".to_owned(),
             Self::NoCoveringWidth { .. } => "photograph.x".to_owned(),
             Self::PhotographPlace(error) => error.path_in("photograph"),
-            Self::Photograph(_) => "photograph.image".to_owned(),
-            Self::Surroundings(_) => "surroundings.image".to_owned(),
-            Self::Surface { device, .. } => format!("device.{device}.surface.image"),
+            Self::Image { key, .. } => key.clone(),
         }
     }
 }
@@ -137,7 +129,7 @@ pub fn assembly(scene: &Scene) -> Result<Assembly, PreparedSceneError> {
         placed.push(Placed { pose, structure });
     }
     let assembly = Assembly::new(placed).with_wavelength(scene.light.wavelength_nm);
-    let is_body = |index: usize| assembly.devices()[index].structure.hull.body().is_some();
+    let is_body = |index: usize| assembly.devices()[index].structure.hull.body.is_some();
     match assembly.overlap() {
         Some((first, second)) if is_body(first) && is_body(second) => {
             Err(PreparedSceneError::EqualPriority { first, second })
@@ -175,11 +167,16 @@ pub(super) enum Surroundings {
 /// A scene ready to be rendered.
 #[derive(Clone, Debug)]
 pub struct PreparedScene<'s> {
-    pub(super) scene: &'s Scene,
-    pub(super) assembly: Assembly,
-    pub(super) limits: Limits,
-    pub(super) screen: Screen,
-    pub(super) image: Arc<Pyramid>,
+    /// The scene.
+    pub scene: &'s Scene,
+    /// The devices at their places.
+    pub assembly: Assembly,
+    /// The limits within which rays are followed.
+    pub limits: Limits,
+    /// The rectangle in space on which the photograph is.
+    pub screen: Screen,
+    /// The photograph.
+    pub image: Arc<Pyramid>,
     pub(super) surroundings: Surroundings,
     /// Those of the opaque bodies, by their numbers among the devices.
     body_surfaces: Vec<Option<BodySurface>>,
@@ -205,7 +202,12 @@ impl<'s> PreparedScene<'s> {
         if let Some(device) = camera_inside(scene, &assembly) {
             return Err(PreparedSceneError::CameraInside { device });
         }
-        let image = images.photograph(scene)?;
+        let unreadable = |key: &str| {
+            let key = key.to_owned();
+            move |error| PreparedSceneError::Image { key, error }
+        };
+        let image = images.photograph(&scene.photograph.image);
+        let image = image.map_err(unreadable("photograph.image"))?;
         let aspect = image.width() as f64 / image.height() as f64;
         let screen = screen(scene, aspect)?;
         if let Some(device) = screen.cut_by(&assembly) {
@@ -214,14 +216,20 @@ impl<'s> PreparedScene<'s> {
                 plane: scene.photograph.plane(),
             });
         }
-        let surroundings = images.surroundings(scene)?;
+        let surroundings = match &scene.surroundings.image {
+            None => Surroundings::Color(scene.surroundings.color.value),
+            Some(source) => {
+                let image = images.around(source).map_err(unreadable("surroundings.image"))?;
+                Surroundings::Image(image)
+            }
+        };
         let surface = |(device, placed): (usize, &Placed)| {
-            BodySurface::of(&scene.devices[device], placed, images.bodies())
-                .map_err(|error| PreparedSceneError::Surface { device, error })
+            BodySurface::of(&scene.devices[device], placed, images)
+                .map_err(unreadable(&format!("device.{device}.surface.image")))
         };
         let body_surfaces =
             assembly.devices().iter().enumerate().map(surface).collect::<Result<_, _>>()?;
-        images.bodies().keep(&scene.body_images().collect::<Vec<_>>());
+        images.keep(&scene.body_images().collect::<Vec<_>>());
         Ok(Self {
             scene,
             assembly,
@@ -238,40 +246,10 @@ impl<'s> PreparedScene<'s> {
         self.body_surfaces[usize::from(device)].as_ref()
     }
 
-    /// Width and height of the photograph, cm.
-    #[must_use]
-    pub fn photograph_size(&self) -> [f64; 2] {
-        self.screen.size()
-    }
-
-    /// The photograph.
-    #[must_use]
-    pub fn photograph(&self) -> &Pyramid {
-        &self.image
-    }
-
     /// Rows of the picture: the steps of its progress.
     #[must_use]
     pub fn rows(&self) -> u64 {
-        u64::from(self.scene.camera.resolution()[1])
-    }
-
-    /// The rectangle in space on which the photograph is.
-    #[must_use]
-    pub fn screen(&self) -> Screen {
-        self.screen
-    }
-
-    /// The limits within which rays are followed.
-    #[must_use]
-    pub fn limits(&self) -> Limits {
-        self.limits
-    }
-
-    /// The devices at their places.
-    #[must_use]
-    pub fn assembly(&self) -> &Assembly {
-        &self.assembly
+        u64::from(self.scene.camera.resolution[1])
     }
 }
 
@@ -281,10 +259,10 @@ fn camera_inside(scene: &Scene, assembly: &Assembly) -> Option<usize> {
     let camera = &scene.camera;
     let forward = camera.forward();
     let inside = |origin: glam::DVec3| assembly.region_around(origin, forward).err();
-    match camera.settings().projection {
-        Projection::Perspective => inside(camera.position()),
+    match camera.projection {
+        Projection::Perspective => inside(camera.position),
         Projection::Orthographic => {
-            let [width, height] = camera.resolution();
+            let [width, height] = camera.resolution;
             (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).find_map(|(x, y)| {
                 inside(camera.ray(f64::from(x) + 0.5, f64::from(y) + 0.5).origin)
             })

@@ -85,12 +85,12 @@ pub struct PulseError {
 /// If the picture has no such pixel.
 pub fn pulses(prepared: &PreparedScene<'_>, pixel: [u32; 2]) -> Result<PulseList, PulseError> {
     let camera = &prepared.scene.camera;
-    let resolution = camera.resolution();
+    let resolution = camera.resolution;
     if pixel[0] >= resolution[0] || pixel[1] >= resolution[1] {
         return Err(PulseError { pixel, resolution });
     }
     // The same trees as in a picture of every channel.
-    Ok(match camera.polarizer().amplitudes() {
+    Ok(match camera.polarizer.amplitudes() {
         None => list(prepared, pixel, &Detection::UNPOLARIZED),
         Some(amplitudes) => list(prepared, pixel, &Detection::through(amplitudes)),
     })
@@ -106,23 +106,19 @@ fn list<const N: usize>(
     let ray = camera.ray(x, y);
     let mut tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
     let (leaves, outcome) = tracer.trace(&detection.launch(camera, &ray));
-    let (mut arrivals, mut escaped) = (Vec::new(), 0.0);
-    let mut ended = 0.0;
+    let (mut arrivals, mut escaped, mut ended) = (Vec::new(), 0.0, 0.0);
     for leaf in leaves {
         let power = detection.detected(&leaf.power);
-        if leaf.body().is_some() {
-            ended += power;
-            continue;
-        }
-        match leaf.distance_to(&prepared.screen) {
-            Some(distance) if power > 0.0 => arrivals.push(Arrival {
+        match (leaf.body(), leaf.distance_to(&prepared.screen)) {
+            (Some(_), _) => ended += power,
+            (None, Some(distance)) if power > 0.0 => arrivals.push(Arrival {
                 time: time_of_flight(leaf, distance),
                 power,
                 // On the plane to the last digit.
                 position: prepared.screen.foot(leaf.position + leaf.direction * distance),
             }),
-            Some(_) => {}
-            None => escaped += power,
+            (None, Some(_)) => {}
+            (None, None) => escaped += power,
         }
     }
     let empty = empty_time_of_flight(prepared, &ray);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use optics::wave::transverse_basis;
 
-use super::{CameraSettings, Polarizer, Projection, across, direction};
+use super::{CameraSettings, Projection, across, direction};
 use crate::keys::{KeyError, Table, vector_text};
 use cloakroom_trace::key;
 use optics::geometry::Pose;
@@ -21,7 +21,7 @@ pub struct CameraRay {
     pub direction: DVec3,
 }
 
-/// A camera that can take a picture: every way into it validates.
+/// A camera that can take a picture: every way into it validates. Its settings can be read from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     settings: CameraSettings,
@@ -32,6 +32,14 @@ pub struct Camera {
     middle: [f64; 2],
     /// Size of a pixel: cm for an orthographic camera, else at distance 1 along the line of sight.
     pixel: f64,
+}
+
+impl std::ops::Deref for Camera {
+    type Target = CameraSettings;
+
+    fn deref(&self) -> &CameraSettings {
+        &self.settings
+    }
 }
 
 impl CameraSettings {
@@ -94,41 +102,6 @@ impl Camera {
             pixel: view_width / f64::from(width),
             settings,
         })
-    }
-
-    /// What the camera was made from.
-    pub fn settings(&self) -> &CameraSettings {
-        &self.settings
-    }
-
-    /// Where it stands, in cm.
-    pub fn position(&self) -> DVec3 {
-        self.settings.position
-    }
-
-    /// Width and height of the picture in pixels.
-    pub fn resolution(&self) -> [u32; 2] {
-        self.settings.resolution
-    }
-
-    /// Rays per pixel.
-    pub fn samples(&self) -> u32 {
-        self.settings.samples
-    }
-
-    /// By how many 8-bit steps the first samples of a 2 x 2 block may differ for it to get no others.
-    pub fn adaptive(&self) -> f64 {
-        self.settings.adaptive
-    }
-
-    /// Chooses where in its pixel each sample lies.
-    pub fn seed(&self) -> u64 {
-        self.settings.seed
-    }
-
-    /// The polarizer before the lens.
-    pub fn polarizer(&self) -> Polarizer {
-        self.settings.polarizer
     }
 
     /// The line of sight, a unit vector.

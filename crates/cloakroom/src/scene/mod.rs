@@ -148,12 +148,12 @@ impl SurroundingsSettings {
     /// # Errors
     ///
     /// If both are given.
-    pub fn consistent(self) -> Result<Self, KeyError> {
+    pub fn check_one(&self) -> Result<(), KeyError> {
         if self.color.given && self.image.is_some() {
             let message = "color and image are both given; the surroundings take one of them";
             return Err(KeyError::at(key!(Self.image), message));
         }
-        Ok(self)
+        Ok(())
     }
 }
 
@@ -197,7 +197,7 @@ impl DeviceSettings {
     pub fn structure(&self, number: usize) -> Result<Structure, KeyError> {
         let Placement { show, imperfection, .. } = &self.placement;
         let structure = self.built(*show)?;
-        if self.has_open_core() && !structure.hull.has_open_core() {
+        if self.has_open_core() && structure.hull.filled.is_none() {
             let message = format!("{} with these keys has no core that could be open", self.kind());
             return Err(KeyError::at(key!(Placement.core), message));
         }
@@ -302,9 +302,9 @@ mod tests {
     #[test]
     fn the_default_scene_is_that_of_the_paper() {
         let scene = Scene::default();
-        assert_eq!(scene.camera.settings(), &CameraSettings::default());
-        assert_eq!((scene.camera.position().x, scene.camera.forward()), (-100.0, DVec3::X));
-        assert_eq!((scene.camera.resolution(), scene.camera.samples()), ([1024, 768], 4));
+        assert_eq!(*scene.camera, CameraSettings::default());
+        assert_eq!((scene.camera.position.x, scene.camera.forward()), (-100.0, DVec3::X));
+        assert_eq!((scene.camera.resolution, scene.camera.samples), ([1024, 768], 4));
         assert_eq!((scene.receiver.position.x, scene.receiver.normal), (50.0, DVec3::NEG_X));
         assert_eq!((scene.receiver.width, scene.receiver.length), (60.0, 60.0));
         assert_eq!(scene.photograph.image, ImageSource::BuiltIn("bookshelf"));

@@ -6,13 +6,14 @@ use cloakroom_trace::key;
 use glam::{DVec2, DVec3};
 
 impl Receiver {
-    /// The same receiver with a normal of length 1.
+    /// Gives its normal the length 1.
     ///
     /// # Errors
     ///
     /// If the normal is zero.
-    pub fn normalized(self) -> Result<Self, KeyError> {
-        Ok(Self { normal: direction(key!(Self.normal), self.normal)?, ..self })
+    pub fn normalize(&mut self) -> Result<(), KeyError> {
+        self.normal = direction(key!(Self.normal), self.normal)?;
+        Ok(())
     }
 
     /// The unit vectors along its width and its length; the second one is z if the rectangle is along z.

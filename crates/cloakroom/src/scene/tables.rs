@@ -231,7 +231,7 @@ mod tests {
         let tables = TABLES.iter().copied().chain([("device", Placement::KEYS)]);
         for (table, keys) in tables.chain(CATALOGUE.iter().map(|entry| (entry.kind, entry.keys))) {
             for (i, key) in keys.iter().enumerate() {
-                if let Some(value) = key.default_value() {
+                if let Some(value) = (key.default)() {
                     assert_eq!(key.check(&value), Ok(value), "{table}.{}", key.name);
                 }
                 assert!(keys[..i].iter().all(|earlier| earlier.name != key.name));

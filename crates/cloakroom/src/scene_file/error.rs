@@ -19,7 +19,7 @@ pub struct SceneFileError {
     /// What is wrong.
     pub message: String,
     /// The quoted line with a mark under the place.
-    excerpt: Option<String>,
+    pub(super) excerpt: Option<String>,
 }
 
 impl SceneFileError {
@@ -35,26 +35,10 @@ impl SceneFileError {
         }
     }
 
-    /// An error of an override, given as it was written (`camera.samples=16`).
-    pub(super) fn in_override(file: &str, text: &str, message: impl Into<String>) -> Self {
-        let override_text = Some(text.to_owned());
-        SceneFileError { override_text, ..SceneFileError::whole(file, message) }
-    }
-
-    /// An error of some bytes of the file's text.
-    pub(super) fn in_text(
-        file: &str,
-        text: &str,
-        span: Range<usize>,
-        message: impl Into<String>,
-    ) -> Self {
+    /// The same error, of some bytes of the file's text.
+    pub(super) fn in_text(self, text: &str, span: Range<usize>) -> Self {
         let (line, column, excerpt) = place(text, span);
-        SceneFileError {
-            line: Some(line),
-            column: Some(column),
-            excerpt: Some(excerpt),
-            ..SceneFileError::whole(file, message)
-        }
+        SceneFileError { line: Some(line), column: Some(column), excerpt: Some(excerpt), ..self }
     }
 }
 
@@ -133,7 +117,7 @@ mod tests {
     use super::*;
 
     fn shown(text: &str, span: Range<usize>) -> String {
-        SceneFileError::in_text("scene.toml", text, span, "wrong").to_string()
+        SceneFileError::whole("scene.toml", "wrong").in_text(text, span).to_string()
     }
 
     #[test]

@@ -35,8 +35,8 @@ pub(super) fn join(path: &str, key: &str) -> String {
 #[derive(Clone, Debug)]
 pub struct Locations {
     name: String,
-    text: Arc<str>,
-    overrides: Arc<[String]>,
+    pub(super) text: Arc<str>,
+    pub(super) overrides: Arc<[String]>,
     /// By path, such as `device.1.side`.
     places: HashMap<String, Place>,
 }
@@ -45,11 +45,6 @@ impl Locations {
     pub(super) fn new(name: &str, text: &str, overrides: &[String]) -> Self {
         let places = HashMap::new();
         Locations { name: name.to_owned(), text: text.into(), overrides: overrides.into(), places }
-    }
-
-    /// The text that the places are in.
-    pub(super) fn text(&self) -> Arc<str> {
-        Arc::clone(&self.text)
     }
 
     /// Keeps the place of the key at a path.
@@ -89,18 +84,15 @@ impl Locations {
     /// An error that points at a part of the scene: `camera.up`, `device.1` (its header) or
     /// `device.1.side` (its value); at the nearest part around it where that one is not written.
     pub fn error_at(&self, path: &str, message: impl Into<String>) -> SceneFileError {
-        let mut around = path;
-        loop {
-            match self.places.get(around).map(|place| &place.value) {
-                // An override that has made the table around is not to blame for what it does not say.
-                Some(Origin::Override(_)) if around != path && !around.starts_with("device") => {}
-                Some(origin) => return self.error(origin, message),
-                None => {}
-            }
-            match around.rsplit_once('.') {
-                Some((outer, _)) => around = outer,
-                None => return SceneFileError::whole(&self.name, message),
-            }
+        let around = std::iter::successors(Some(path), |inner| Some(inner.rsplit_once('.')?.0));
+        let written = around.filter_map(|at| Some((at, &self.places.get(at)?.value)));
+        // An override that has made the table around is not to blame for what it does not say.
+        let mut to_blame = written.filter(|(at, origin)| {
+            !matches!(origin, Origin::Override(_)) || *at == path || at.starts_with("device")
+        });
+        match to_blame.next() {
+            Some((_, origin)) => self.error(origin, message),
+            None => SceneFileError::whole(&self.name, message),
         }
     }
 
@@ -109,15 +101,14 @@ impl Locations {
         self.error_at(&error.path_in(table), &error.message)
     }
 
-    fn error(&self, origin: &Origin, message: impl Into<String>) -> SceneFileError {
+    /// An error of what is written at a place.
+    pub(super) fn error(&self, origin: &Origin, message: impl Into<String>) -> SceneFileError {
+        let error = SceneFileError::whole(&self.name, message);
         match origin {
-            Origin::File(span) => {
-                SceneFileError::in_text(&self.name, &self.text, span.clone(), message)
+            Origin::File(span) => error.in_text(&self.text, span.clone()),
+            Origin::Override(number) => {
+                SceneFileError { override_text: Some(self.overrides[*number].clone()), ..error }
             }
-            Origin::Override(number) => match self.overrides.get(*number) {
-                Some(text) => SceneFileError::in_override(&self.name, text, message),
-                None => SceneFileError::whole(&self.name, message),
-            },
         }
     }
 }

@@ -61,8 +61,8 @@ pub fn parse(
     overrides: &[String],
 ) -> Result<Loaded, SceneFileError> {
     let mut locations = Locations::new(name, text, overrides);
-    let root = tree::parse(name, &mut locations)?;
-    let mut loaded = read_values(root, name, base_folder, overrides, locations)?;
+    let root = tree::parse(&mut locations)?;
+    let mut loaded = read_values(root, base_folder, locations)?;
     if overrides.is_empty() {
         loaded.scene.source = text.to_owned();
     }
@@ -75,7 +75,7 @@ pub fn parse(
 ///
 /// If the text is not valid TOML.
 pub fn tables(text: &str, name: &str) -> Result<Value, SceneFileError> {
-    tree::parse(name, &mut Locations::new(name, text, &[]))
+    tree::parse(&mut Locations::new(name, text, &[]))
 }
 
 /// Reads a scene that is a table of values rather than a text; what it would be as a text becomes its source.
@@ -89,17 +89,15 @@ pub fn assemble(
     base_folder: &Path,
     overrides: &[String],
 ) -> Result<Loaded, SceneFileError> {
-    read_values(tables, name, base_folder, overrides, Locations::new(name, "", overrides))
+    read_values(tables, base_folder, Locations::new(name, "", overrides))
 }
 
 fn read_values(
     mut root: Value,
-    name: &str,
     base_folder: &Path,
-    overrides: &[String],
     mut locations: Locations,
 ) -> Result<Loaded, SceneFileError> {
-    overrides::apply(&mut root, overrides, name, &mut locations)?;
+    overrides::apply(&mut root, &mut locations)?;
     let mut scene = read::read(&root, &locations, base_folder)?;
     scene.source = text(&root);
     Ok(Loaded { scene, locations })

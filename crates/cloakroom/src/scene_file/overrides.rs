@@ -1,24 +1,20 @@
 //! Overrides: `camera.samples=16` sets one key of a scene.
 
 use super::error::SceneFileError;
-use super::locations::{Locations, join};
+use super::locations::{Locations, Origin, join};
 use super::read::DEVICES;
 use super::tree::parse_value;
 use crate::keys::{Value, quoted};
+use std::sync::Arc;
 
 /// The deepest key there is; anything deeper is refused before a tree of it is built.
 const DEEPEST: usize = 16;
 
 /// Applies overrides to a scene, in order.
-pub(super) fn apply(
-    root: &mut Value,
-    overrides: &[String],
-    name: &str,
-    locations: &mut Locations,
-) -> Result<(), SceneFileError> {
-    for (number, text) in overrides.iter().enumerate() {
+pub(super) fn apply(root: &mut Value, locations: &mut Locations) -> Result<(), SceneFileError> {
+    for (number, text) in Arc::clone(&locations.overrides).iter().enumerate() {
         apply_one(root, text, number, locations)
-            .map_err(|message| SceneFileError::in_override(name, text, message))?;
+            .map_err(|message| locations.error(&Origin::Override(number), message))?;
     }
     Ok(())
 }

@@ -6,10 +6,7 @@ use super::error::SceneFileError;
 use super::locations::{Locations, join};
 use crate::device::{AnyDevice, CATALOGUE};
 use crate::keys::{Key, KeyKind, Table, Value, hint, quoted, unknown};
-use crate::scene::{
-    Camera, CameraSettings, DeviceSettings, PhotographSettings, Placement, Receiver, Scene,
-    SurroundingsSettings, TABLES,
-};
+use crate::scene::{Camera, CameraSettings, DeviceSettings, Placement, Scene, TABLES};
 
 /// The list of devices, the one list of tables a scene has.
 pub(super) const DEVICES: &str = "device";
@@ -33,37 +30,31 @@ pub(super) fn read(
             continue;
         }
         let path = join("", name);
-        if !TABLES.iter().any(|(known, _)| known == name) {
-            return Err(locations.error_at_key(&path, unknown_table(name)));
-        }
+        let mut camera = CameraSettings::default();
+        let table: &mut dyn Table = match name.as_str() {
+            "camera" => &mut camera,
+            "light" => &mut scene.light,
+            "photograph" => &mut scene.photograph,
+            "surroundings" => &mut scene.surroundings,
+            "trace" => &mut scene.trace,
+            "picture" => &mut scene.picture,
+            "receiver" => &mut scene.receiver,
+            _ => return Err(locations.error_at_key(&path, unknown_table(name))),
+        };
         let Some(entries) = value.as_table() else {
             let message = format!("{name} is {value}; it must be a table: [{name}]");
             return Err(locations.error_at_key(&path, message));
         };
-        let wrong = |error| locations.key_error(name, &error);
-        match name.as_str() {
-            "camera" => {
-                let settings: CameraSettings = reader.table(name, entries)?;
-                scene.camera = Camera::new(settings).map_err(wrong)?;
-            }
-            "light" => scene.light = reader.table(name, entries)?,
-            "photograph" => {
-                let settings: PhotographSettings = reader.table(name, entries)?;
-                settings.pose().map_err(wrong)?;
-                scene.photograph = settings;
-            }
-            "surroundings" => {
-                let settings: SurroundingsSettings = reader.table(name, entries)?;
-                scene.surroundings = settings.consistent().map_err(wrong)?;
-            }
-            "trace" => scene.trace = reader.table(name, entries)?,
-            "picture" => scene.picture = reader.table(name, entries)?,
-            "receiver" => {
-                let receiver: Receiver = reader.table(name, entries)?;
-                scene.receiver = receiver.normalized().map_err(wrong)?;
-            }
-            _ => unreachable!("`{name}` is in the list of tables but not in the scene"),
-        }
+        let held = reader.held(&[table.keys()], entries, &[], name, &format!(" in [{name}]"))?;
+        reader.fill(&mut [table], &held, name);
+        let checked = match name.as_str() {
+            "camera" => Camera::new(camera).map(|camera| scene.camera = camera),
+            "photograph" => scene.photograph.pose().map(drop),
+            "surroundings" => scene.surroundings.check_one(),
+            "receiver" => scene.receiver.normalize(),
+            _ => Ok(()),
+        };
+        checked.map_err(|error| locations.key_error(name, &error))?;
     }
     Ok(scene)
 }
@@ -75,18 +66,6 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// One of the tables of a scene.
-    fn table<T: Table + Default>(
-        &self,
-        name: &str,
-        entries: &Entries,
-    ) -> Result<T, SceneFileError> {
-        let mut table = T::default();
-        let held = self.held(&[table.keys()], entries, &[], name, &format!(" in [{name}]"))?;
-        self.fill(&mut [&mut table], &held, name);
-        Ok(table)
-    }
-
     fn devices(&self, value: &Value) -> Result<Vec<DeviceSettings>, SceneFileError> {
         let wrong = |path: &str, value: &Value| {
             let message =

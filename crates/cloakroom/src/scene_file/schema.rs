@@ -108,7 +108,7 @@ fn property(key: &Key) -> Value {
         property["description"] = format!("{} Unit: {}.", key.doc, key.unit).into();
         property["x-unit"] = key.unit.into();
     }
-    if let Some(default) = key.default_value() {
+    if let Some(default) = (key.default)() {
         property["default"] = crate::json::json(default);
     }
     property

@@ -1,6 +1,7 @@
 //! The text of a scene as values, with the places where they were written.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -16,9 +17,8 @@ const LONGEST_TOLD: usize = 64;
 type Fault = (Range<usize>, String);
 
 /// Reads the text of a scene file; the places go into `locations`, whose text it is.
-pub(super) fn parse(name: &str, locations: &mut Locations) -> Result<Value, SceneFileError> {
-    let text = locations.text();
-    let at = |span, message: String| SceneFileError::in_text(name, &text, span, message);
+pub(super) fn parse(locations: &mut Locations) -> Result<Value, SceneFileError> {
+    let text = Arc::clone(&locations.text);
     let document = DeTable::parse(&text).map_err(|error| {
         let span = error.span().unwrap_or(0..0);
         // The parser says what it expected, but not which key is there twice.
@@ -26,18 +26,17 @@ pub(super) fn parse(name: &str, locations: &mut Locations) -> Result<Value, Scen
             ("duplicate key", Some(key)) => format!("`{key}` is given twice"),
             (message, _) => message.to_owned(),
         };
-        at(span, message)
+        locations.error(&Origin::File(span), message)
     })?;
-    let mut tell = |path: &str, place| locations.tell(path, place);
-    table(document.into_inner(), "", &mut tell).map_err(|(span, message)| at(span, message))
+    table(document.into_inner(), "", locations)
+        .map_err(|(span, message)| locations.error(&Origin::File(span), message))
 }
 
 /// Reads the value of an override; what is no TOML is a bare text.
 pub(super) fn parse_value(text: &str) -> Result<Value, String> {
-    let value = match DeValue::parse(text) {
-        Ok(value) => self::value(value, None, &mut |_, _| {}).map_err(|(_, message)| message)?,
-        Err(_) => return Ok(text.into()),
-    };
+    let Ok(value) = DeValue::parse(text) else { return Ok(text.into()) };
+    let mut nowhere = Locations::new("", text, &[]);
+    let value = self::value(value, None, &mut nowhere).map_err(|(_, message)| message)?;
     Ok(if let Value::Date(_) = value { text.into() } else { value })
 }
 
@@ -56,12 +55,8 @@ pub(super) fn to_toml(value: &Value) -> toml::Value {
     }
 }
 
-/// Reads a table; `tell` is told the paths and the places of all that is in it.
-fn table(
-    table: DeTable<'_>,
-    path: &str,
-    tell: &mut dyn FnMut(&str, Place),
-) -> Result<Value, Fault> {
+/// Reads a table; the paths and the places of all that is in it go into `locations`.
+fn table(table: DeTable<'_>, path: &str, locations: &mut Locations) -> Result<Value, Fault> {
     // The parser sorts keys by name; messages and the written scene keep the order of the file.
     let mut entries: Vec<_> = table.into_iter().collect();
     entries.sort_by_key(|(key, _)| key.span().start);
@@ -69,8 +64,8 @@ fn table(
         let [key_origin, origin] = [key.span(), inner.span()].map(Origin::File);
         let key = key.into_inner().into_owned();
         let path = join(path, &key);
-        tell(&path, Place { key: key_origin, value: origin });
-        Ok((key, value(inner, Some(&path), tell)?))
+        locations.tell(&path, Place { key: key_origin, value: origin });
+        Ok((key, value(inner, Some(&path), locations)?))
     };
     Ok(Value::Table(entries.into_iter().map(entry).collect::<Result<_, _>>()?))
 }
@@ -79,7 +74,7 @@ fn table(
 fn value(
     value: Spanned<DeValue<'_>>,
     path: Option<&str>,
-    tell: &mut dyn FnMut(&str, Place),
+    locations: &mut Locations,
 ) -> Result<Value, Fault> {
     let span = value.span();
     Ok(match value.into_inner() {
@@ -102,13 +97,13 @@ fn value(
                 let path = told.map(|path| join(path, &number.to_string()));
                 if let Some(path) = &path {
                     let [key, value] = [item.span(), item.span()].map(Origin::File);
-                    tell(path, Place { key, value });
+                    locations.tell(path, Place { key, value });
                 }
                 let path = path.as_deref().filter(|_| item.get_ref().is_table());
-                self::value(item, path, tell)
+                self::value(item, path, locations)
             };
             Value::List(items.into_iter().enumerate().map(item).collect::<Result<_, _>>()?)
         }
-        DeValue::Table(inner) => table(inner, path.unwrap_or(""), tell)?,
+        DeValue::Table(inner) => table(inner, path.unwrap_or(""), locations)?,
     })
 }

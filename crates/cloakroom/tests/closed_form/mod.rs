@@ -99,7 +99,7 @@ fn check_starts_inside(scene: &str, height: &dyn Fn(DVec3) -> f64) {
         let local = point_inside(&mut numbers, 12.0, height);
         let direction = numbers.direction();
         let ray = launch(placed.pose.to_world(local), direction);
-        let (region, _, medium) = placed.structure.region_at(local).expect("a medium");
+        let (region, medium) = placed.structure.region_at(local).expect("a medium");
         let index = medium.tensors().0.re.x_axis.x.sqrt();
         let onward = placed.pose.vector_to_local(ray.direction);
         let inner = InnerRay {

@@ -65,7 +65,7 @@ impl Source {
                         (from, direction.extend(rise).normalize())
                     }
                     Self::Camera => {
-                        let [width, height] = scene.camera.resolution().map(f64::from);
+                        let [width, height] = scene.camera.resolution.map(f64::from);
                         let column = (f64::from(k) + 0.5) / f64::from(settings.layers) * width;
                         let ray = scene.camera.ray(column, (0.5 - share) * height);
                         (ray.origin, ray.direction)

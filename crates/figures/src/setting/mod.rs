@@ -85,10 +85,10 @@ const SKY: Ink = Ink::new([86, 180, 233]);
 /// ```
 pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
     let prepared = PreparedScene::new(scene)?;
-    let devices = Devices::new(prepared.assembly());
+    let devices = Devices::new(&prepared.assembly);
     let subjects = &devices.subjects;
     let stage = Stage::new(scene, &prepared);
-    let sheet = sheet(scene.camera.resolution());
+    let sheet = sheet(scene.camera.resolution);
     let layout = Layout::new(sheet, &stage, subjects, devices.has_bar());
     let mut drawing = Drawing::new(sheet, TEXT);
     stage.draw_behind(&mut drawing, &layout.view);

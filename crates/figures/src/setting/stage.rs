@@ -36,22 +36,22 @@ pub(super) struct Stage {
 impl Stage {
     pub fn new(scene: &Scene, prepared: &PreparedScene<'_>) -> Self {
         let camera = &scene.camera;
-        let eye = camera.position().truncate();
+        let eye = camera.position.truncate();
         let forward = camera.forward().truncate();
         let forward = (forward.length() > 0.2).then(|| forward.normalize());
-        let screen = prepared.screen();
+        let screen = prepared.screen;
         Self {
             eye,
             forward,
             sight: forward.map(|forward| sight(camera, forward, &screen)).unwrap_or_default(),
             screen,
-            thumbnail: thumbnail(prepared.photograph()),
+            thumbnail: thumbnail(&prepared.image),
         }
     }
 
     /// The corners of the photograph as it is drawn: top left, top right, bottom right, bottom left.
     pub fn photograph(&self) -> [DVec2; 4] {
-        let middle = self.screen.middle();
+        let middle = self.screen.middle;
         [(1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(up, across)| {
             let corner = self.screen.point(up, across);
             corner.truncate() + (corner.z - middle.z) * SLANT
@@ -101,7 +101,7 @@ impl Stage {
         drawing.add_words("camera-label", words);
         let lowest =
             self.photograph().into_iter().map(|p| view.place(p).y).fold(f64::MIN, f64::max);
-        let foot = view.place(self.screen.middle().truncate()).x;
+        let foot = view.place(self.screen.middle.truncate()).x;
         let words = name("photograph", DVec2::new(foot, lowest + 0.9 * TEXT));
         drawing.add_words("photograph-label", words);
     }
@@ -110,7 +110,7 @@ impl Stage {
     /// above the view. Opaque bodies are scenery, and left out.
     pub fn draw_distances(&self, drawing: &mut Drawing, view: &View, subjects: &[Subject<'_>]) {
         let row = view.window[0].y - 0.8 * TEXT;
-        let (x, top) = (self.screen.middle().x, self.screen.point(1.0, 0.0).truncate());
+        let (x, top) = (self.screen.middle.x, self.screen.point(1.0, 0.0).truncate());
         let eye = view.place(self.eye) - DVec2::Y * 0.6 * EYE;
         let mut stations = vec![(self.eye.x, eye.y), (x, view.place(top).y)];
         let measured = |subject: &&Subject<'_>| subject.bounds().is_some() && !subject.is_opaque();
@@ -157,9 +157,9 @@ fn within(view: &View, words: Words) -> Words {
 
 /// The field of view in the xy-plane: what its projection covers, up to the plane of the photograph.
 fn sight(camera: &Camera, forward: DVec2, screen: &Screen) -> Vec<DVec2> {
-    let [width, height] = camera.resolution().map(f64::from);
-    let eye = camera.position().truncate();
-    let far = 1.5 * screen.ahead_of(camera.position()).abs().max(1.0);
+    let [width, height] = camera.resolution.map(f64::from);
+    let eye = camera.position.truncate();
+    let far = 1.5 * screen.ahead_of(camera.position).abs().max(1.0);
     // The middles of the sides of the picture, and its corners.
     let across = [0.5, 0.5, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0];
     let down = [0.0, 1.0, 0.5, 0.5, 0.0, 1.0, 0.0, 1.0];

@@ -5,7 +5,7 @@ use cloakroom::assembly::Assembly;
 use cloakroom::device::FactValue;
 use cloakroom::measure::{Region, Survey, View, correlation, survey};
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, PreparedScene, RenderError, Supervision, assembly, render};
+use cloakroom::render::{ChannelSet, PreparedScene, Supervision, assembly, render};
 use cloakroom::scene::Scene;
 use cloakroom::scene_file;
 use cloakroom::trace::{Launch, Leaf, Limits, PathSegment, Tracer};
@@ -94,8 +94,8 @@ impl Fixture<'_> {
     fn survey(&self, device: &str, polarizer: &str) -> Result<Survey> {
         let (scene, empty) = (Self::scene(device, polarizer)?, Self::scene("", polarizer)?);
         let (prepared, ideal) = (PreparedScene::new(&scene)?, PreparedScene::new(&empty)?);
-        let survey = survey(&prepared, &ideal, &scene.camera, &|_| {}, self.stop);
-        Ok(survey.ok_or(RenderError::Stopped)?)
+        let supervision = Supervision { rows_done: &|_| {}, stop: self.stop };
+        Ok(survey(&prepared, &ideal, &supervision)?)
     }
 
     /// The silhouette of a device.

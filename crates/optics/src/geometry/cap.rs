@@ -25,10 +25,10 @@ impl Cap {
         })
     }
 
-    /// The distance at which a ray meets the cap, from zero on.
+    /// The distance at which a ray that comes from outside meets the cap, from zero on.
     #[must_use]
     pub fn hit(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
-        if direction.z == 0.0 {
+        if direction.dot(self.normal) >= 0.0 {
             return None;
         }
         let t = (self.z - origin.z) / direction.z;

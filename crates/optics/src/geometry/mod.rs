@@ -35,6 +35,12 @@ pub use solid::{Solid, TOUCHING};
 pub use sphere::Sphere;
 pub use wall::Wall;
 
+/// Of what a ray meets, each with its distance, the nearest; of several that are as near, the first.
+#[inline]
+pub fn first_along<T>(met: impl Iterator<Item = (f64, T)>) -> Option<(f64, T)> {
+    met.reduce(|nearest, next| if next.0 < nearest.0 { next } else { nearest })
+}
+
 /// From where to where something extends along z, cm; endless ends are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {

@@ -38,7 +38,7 @@ use splitting::Splitting;
 const ROUNDING: f64 = 1e-28;
 
 /// On which side of an interface an outgoing wave runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// In the medium the light came from.
     Reflected,

@@ -6,7 +6,7 @@
 
 pub use super::reference::SquaredIndex;
 use super::turn_in_plane;
-use crate::geometry::FlatOrRound;
+use crate::geometry::{FlatOrRound, first_along};
 use glam::{DMat3, DVec3};
 use std::fmt::Debug;
 
@@ -77,15 +77,10 @@ pub fn follow(
     start: &CurvedRay,
     surfaces: impl Iterator<Item = FlatOrRound>,
 ) -> Option<WayOut> {
-    let mut nearest: Option<(u16, FlatOrRound, f64)> = None;
-    for (number, surface) in (0u16..).zip(surfaces) {
-        if let Some(parameter) = medium.way_out(start, &surface)
-            && nearest.is_none_or(|(.., least)| parameter < least)
-        {
-            nearest = Some((number, surface, parameter));
-        }
-    }
-    let (number, surface, parameter) = nearest?;
+    let met = (0u16..).zip(surfaces).filter_map(|(number, surface)| {
+        Some((medium.way_out(start, &surface)?, (number, surface)))
+    });
+    let (parameter, (number, surface)) = first_along(met)?;
     let (mut ray, optical_path) = medium.way_point(start, parameter);
     ray.position = surface.project(ray.position);
     let before = medium.squared_index(start.position);

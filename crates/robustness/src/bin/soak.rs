@@ -24,7 +24,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Most rays of a parcel.
@@ -92,8 +91,7 @@ fn soak(arguments: &Arguments) -> io::Result<bool> {
         let done: HashSet<u64> = lines.iter().filter_map(|line| line["parcel"].as_u64()).collect();
         let mut rays: u64 = lines.iter().filter_map(|line| line["rays"].as_u64()).sum();
         let record = OpenOptions::new().create(true).append(true).open(&arguments.record)?;
-        let record = Arc::new(Mutex::new(record));
-        watch(start, record.clone());
+        watch(start, record.try_clone()?);
         let in_time = || arguments.seconds.is_none_or(|most| start.elapsed().as_secs() < most);
         for number in (arguments.first..).filter(|number| !done.contains(number)) {
             if rays >= arguments.rays || !in_time() {
@@ -105,8 +103,7 @@ fn soak(arguments: &Arguments) -> io::Result<bool> {
             lines.push(line);
         }
     }
-    let sound = print_table(&lines);
-    Ok(sound)
+    Ok(print_table(&lines))
 }
 
 /// The lines of a record; one that was cut short when the program was killed is left out.
@@ -119,16 +116,15 @@ fn recorded(path: &Path) -> io::Result<Vec<Value>> {
     lines.filter_map(|line| line.map(|line| serde_json::from_str(&line).ok()).transpose()).collect()
 }
 
-fn write_line(record: &Mutex<File>, line: &Value) -> io::Result<()> {
+fn write_line(mut record: &File, line: &Value) -> io::Result<()> {
     // Begins with the end of a line: what was cut short before spoils nothing.
-    let mut record = record.lock().unwrap_or_else(PoisonError::into_inner);
     record.write_all(format!("\n{line}").as_bytes())
 }
 
 /// One random device and the rays through it.
 fn parcel(number: u64) -> Value {
     let entry = CATALOGUE[(number % CATALOGUE.len() as u64) as usize];
-    let mut draws = Draws::from_seed(number.wrapping_mul(0xA076_1D64_78BD_642F));
+    let mut draws = Draws::Seed(number.wrapping_mul(0xA076_1D64_78BD_642F));
     PARCEL.store(number, Ordering::Relaxed);
     BEGUN.fetch_add(1, Ordering::Relaxed);
     let ran = catch_unwind(AssertUnwindSafe(|| {
@@ -206,7 +202,7 @@ fn computed(start: Instant) -> Duration {
 }
 
 /// Ends the program where a ray does not end.
-fn watch(start: Instant, record: Arc<Mutex<File>>) {
+fn watch(start: Instant, record: File) {
     std::thread::spawn(move || {
         let (mut begun, mut since) = (0, computed(start));
         loop {

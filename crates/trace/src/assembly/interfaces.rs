@@ -1,8 +1,6 @@
 //! What of a device's interfaces is worked out once.
 
-use crate::device::{
-    Coating, FarSide, HomogeneousRegion, Region, RegionBorder, Shape, Structure, Surface,
-};
+use crate::device::{Coating, Face, FarSide, Region, Shape, Structure, Surface};
 use glam::DVec3;
 use optics::interface::Reflectionless;
 use optics::medium::Medium;
@@ -41,14 +39,11 @@ impl Interfaces {
             };
             between(&Medium::AIR, surface.far, -normal)
         };
-        let exits = |HomogeneousRegion { medium, border, .. }: &HomogeneousRegion| match border {
-            RegionBorder::Faces(faces) => {
-                faces.iter().map(|face| between(medium, face.far, face.plane.normal)).collect()
-            }
-            RegionBorder::Convex(_) => Vec::new(),
-        };
         let faces = |region: &Region| match region {
-            Region::Homogeneous(region) => exits(region),
+            Region::Homogeneous(region) => {
+                let exit = |face: &Face| between(&region.medium, face.far, face.plane.normal);
+                region.faces().iter().map(exit).collect()
+            }
             Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) => Vec::new(),
         };
         Self {

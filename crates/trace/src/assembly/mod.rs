@@ -11,7 +11,7 @@ pub use screen::Screen;
 use crate::device::SurfaceHit;
 use glam::DVec3;
 use interfaces::Interfaces;
-use optics::geometry::{Solid, TOUCHING};
+use optics::geometry::{Solid, TOUCHING, first_along};
 
 /// The most devices a scene may have: they are numbered in 16 bits.
 pub const MOST_DEVICES: usize = u16::MAX as usize;
@@ -29,9 +29,10 @@ pub struct Assembly {
     bodies: Vec<u16>,
     /// For each body the devices that rays in it may meet: those that come before it and reach into its bounds.
     guests: Vec<Vec<u16>>,
-    /// Whether there is one device at most, and no body.
-    simple: bool,
-    vacuum_wave_number: f64,
+    /// Whether there is one device at most, and no body: around it is air, and nothing touches it.
+    pub(crate) simple: bool,
+    /// k0, the wave number in vacuum, 1/cm.
+    pub(crate) vacuum_wave_number: f64,
 }
 
 /// What is ahead of a ray at a point that may lie on the borders of several devices.
@@ -42,12 +43,6 @@ pub(crate) enum Ahead {
     Surface(u16, SurfaceHit),
     /// The inside of a body.
     Body(u16),
-}
-
-impl Default for Assembly {
-    fn default() -> Self {
-        Self::new(Vec::new())
-    }
 }
 
 /// Borders that are no further than this from a point, cm, go through it: what rounding makes of coordinates.
@@ -95,12 +90,6 @@ impl Assembly {
         Self { vacuum_wave_number, ..self }
     }
 
-    /// k0, the wave number in vacuum, 1/cm.
-    #[must_use]
-    pub fn vacuum_wave_number(&self) -> f64 {
-        self.vacuum_wave_number
-    }
-
     /// The devices, in the order of the scene.
     #[must_use]
     pub fn devices(&self) -> &[Placed] {
@@ -115,16 +104,6 @@ impl Assembly {
     /// The interfaces of a device, by its number.
     pub(crate) fn interfaces(&self, device: u16) -> &Interfaces {
         &self.interfaces[usize::from(device)]
-    }
-
-    /// The devices that rays in a body may meet.
-    pub(crate) fn guests(&self, body: u16) -> &[u16] {
-        &self.guests[usize::from(body)]
-    }
-
-    /// Whether there is one device at most, and no body: around it is air, and nothing touches it.
-    pub(crate) fn is_simple(&self) -> bool {
-        self.simple
     }
 
     /// The first two devices that overlap, if any do. Bodies may, unless their priorities are equal; and a device may
@@ -171,49 +150,51 @@ impl Assembly {
         others.chain(self.bodies.iter().map(|body| usize::from(*body))).find(holds)
     }
 
-    /// The nearest surface ahead of a ray, of all devices or of the `guests` of a body. `departed` is what the ray has just
-    /// left. Surfaces of other devices that rounding has put a hair behind the ray are met, too, at the distance 0.
+    /// The nearest surface ahead of a ray in air. `departed` is what the ray has just left.
     #[inline(always)]
     pub(crate) fn first_hit(
         &self,
         origin: DVec3,
         direction: DVec3,
         departed: Option<DepartedSurface>,
-        guests: Option<&[u16]>,
     ) -> Option<(u16, SurfaceHit)> {
         if self.simple {
             return self.hit_of(0, origin, direction, departed).map(|hit| (0, hit));
         }
-        self.first_of_several(origin, direction, departed, guests)
+        self.first_hit_of((0u16..).take(self.devices.len()), origin, direction, departed)
     }
 
-    /// As [`Self::first_hit`], where there is more than one device.
-    fn first_of_several(
+    /// The nearest surface ahead of a ray in a body, of the devices that it may meet there.
+    pub(crate) fn first_guest(
         &self,
+        body: u16,
         origin: DVec3,
         direction: DVec3,
         departed: Option<DepartedSurface>,
-        guests: Option<&[u16]>,
+    ) -> Option<(u16, SurfaceHit)> {
+        let guests = self.guests[usize::from(body)].iter().copied();
+        self.first_hit_of(guests, origin, direction, departed)
+    }
+
+    /// The nearest surface of some devices ahead of a ray. Surfaces of other devices than the departed one that rounding
+    /// has put a hair behind the ray are met, too, at the distance 0.
+    fn first_hit_of(
+        &self,
+        numbers: impl Iterator<Item = u16>,
+        origin: DVec3,
+        direction: DVec3,
+        departed: Option<DepartedSurface>,
     ) -> Option<(u16, SurfaceHit)> {
         let slack = slack_at(origin);
-        let mut nearest: Option<(u16, SurfaceHit)> = None;
-        let mut look = |number: u16| {
+        let hits = numbers.filter_map(|number| {
             // A device that is not convex is met again from where it was left.
             let own = departed.is_some_and(|departed| departed.device == number);
             let back = if own { 0.0 } else { slack };
-            let hit = self.hit_of(number, origin - direction * back, direction, departed);
-            if let Some(mut hit) = hit {
-                hit.distance = (hit.distance - back).max(0.0);
-                if nearest.is_none_or(|(_, least)| hit.distance < least.distance) {
-                    nearest = Some((number, hit));
-                }
-            }
-        };
-        match guests {
-            None => (0u16..).take(self.devices.len()).for_each(&mut look),
-            Some(guests) => guests.iter().copied().for_each(&mut look),
-        }
-        nearest
+            let hit = self.hit_of(number, origin - direction * back, direction, departed)?;
+            Some(((hit.distance - back).max(0.0), (number, hit)))
+        });
+        let (distance, (number, hit)) = first_along(hits)?;
+        Some((number, SurfaceHit { distance, ..hit }))
     }
 
     /// The nearest surface of one device ahead of a ray, `departed` being what the ray has just left.
@@ -242,20 +223,13 @@ impl Assembly {
         departed: Option<DepartedSurface>,
     ) -> Ahead {
         let slack = slack_at(point);
-        let mut nearest: Option<(u16, SurfaceHit)> = None;
-        for (number, device) in (0u16..).zip(&self.devices) {
-            if device.body().is_some() {
-                continue;
-            }
-            let behind = point - direction * slack;
-            if let Some(hit) = self.hit_of(number, behind, direction, departed)
-                && hit.distance <= 2.0 * slack
-                && nearest.is_none_or(|(_, least)| hit.distance < least.distance)
-            {
-                nearest = Some((number, hit));
-            }
-        }
-        if let Some((device, hit)) = nearest {
+        let behind = point - direction * slack;
+        let others = (0u16..).zip(&self.devices).filter(|(_, device)| device.body().is_none());
+        let hits = others.filter_map(|(number, _)| {
+            let hit = self.hit_of(number, behind, direction, departed)?;
+            (hit.distance <= 2.0 * slack).then_some((hit.distance, (number, hit)))
+        });
+        if let Some((_, (device, hit))) = first_along(hits) {
             return Ahead::Surface(device, SurfaceHit { distance: 0.0, ..hit });
         }
         let inside = |number: &&u16| {

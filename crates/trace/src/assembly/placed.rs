@@ -1,6 +1,6 @@
 //! A device at its place.
 
-use crate::device::{Body, InnerRay, Region, Structure};
+use crate::device::{Body, Region, Structure, SurfaceHit};
 use glam::DVec3;
 use optics::geometry::{Pose, Solid};
 use optics::medium::Medium;
@@ -20,6 +20,13 @@ pub(crate) struct DepartedSurface {
     pub device: u16,
     /// Which of the device's surfaces; the whole device if it is convex.
     pub surface: Option<u16>,
+}
+
+impl DepartedSurface {
+    /// The surface of the `device`th device that a ray has met.
+    pub fn met(device: u16, hit: &SurfaceHit) -> Self {
+        Self { device, surface: Some(hit.surface) }
+    }
 }
 
 impl Placed {
@@ -61,7 +68,7 @@ impl Placed {
     /// The body that it is, if it is one.
     #[must_use]
     pub fn body(&self) -> Option<&Body> {
-        self.structure.hull.body()
+        self.structure.hull.body.as_ref()
     }
 
     /// Its region of that number.
@@ -69,18 +76,11 @@ impl Placed {
         &self.structure.regions[usize::from(number)]
     }
 
-    /// The medium where a ray is in the region of that number, in the world's frame; the ray is in the device's.
-    pub(crate) fn medium_in_world(&self, region: u16, ray: &InnerRay) -> Option<Medium> {
-        let region = self.region(region);
-        let medium = *region.medium(ray.position, ray.virtual_point.as_ref(), &mut None)?;
-        Some(turned(&medium, &self.pose))
+    /// A medium of the device's frame in the world's.
+    pub(crate) fn medium_in_world(&self, medium: &Medium) -> Medium {
+        let (permittivity, permeability) = medium.tensors();
+        let turn = self.pose.rotation();
+        // A medium stays one when it is turned.
+        Medium::new(permittivity.turned(&turn), permeability.turned(&turn)).unwrap_or(*medium)
     }
-}
-
-/// A medium of a device's frame in the world's.
-fn turned(medium: &Medium, pose: &Pose) -> Medium {
-    let (permittivity, permeability) = medium.tensors();
-    let turn = pose.rotation();
-    // A medium stays one when it is turned.
-    Medium::new(permittivity.turned(&turn), permeability.turned(&turn)).unwrap_or(*medium)
 }

@@ -8,7 +8,7 @@ use optics::geometry::{Extent, Outline, Pose, Solid, TOUCHING};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screen {
     /// Its middle, cm.
-    middle: DVec3,
+    pub middle: DVec3,
     /// The way one looks straight at its front, up, and to the right: unit vectors.
     axes: [DVec3; 3],
     /// Whether these are x, y and z, as in most scenes.
@@ -33,12 +33,6 @@ impl Screen {
         if self.straight { vector[axis] } else { self.axes[axis].dot(vector) }
     }
 
-    /// Its middle, cm.
-    #[must_use]
-    pub fn middle(&self) -> DVec3 {
-        self.middle
-    }
-
     /// Its width and its height, cm.
     #[must_use]
     pub fn size(&self) -> [f64; 2] {
@@ -52,11 +46,12 @@ impl Screen {
         self.along(0, self.middle - point)
     }
 
-    /// The distance at which a ray meets the plane, from zero on.
+    /// The distance at which a ray meets the plane, from `least` (cm) on.
     #[must_use]
-    pub fn plane_distance(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+    #[inline]
+    pub fn plane_distance(&self, origin: DVec3, direction: DVec3, least: f64) -> Option<f64> {
         let t = self.distance_along(origin, direction);
-        (t >= 0.0 && t.is_finite()).then_some(t)
+        (t >= least && t.is_finite()).then_some(t)
     }
 
     /// The distance at which a line meets the plane, negative behind its origin; not finite if it does not.
@@ -70,10 +65,7 @@ impl Screen {
     #[must_use]
     #[inline]
     pub fn hit(&self, origin: DVec3, direction: DVec3, least: f64) -> Option<f64> {
-        let t = self.distance_along(origin, direction);
-        if !(t >= least && t.is_finite()) {
-            return None;
-        }
+        let t = self.plane_distance(origin, direction, least)?;
         let [up, across] = self.place(origin + direction * t);
         (up.abs() <= self.half_height && across.abs() <= self.half_width).then_some(t)
     }

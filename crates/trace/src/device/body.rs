@@ -78,11 +78,11 @@ impl Device for SolidBody {
         let shape = self.convex(request.length)?;
         let medium = self.medium()?;
         let pictured = self.surface.as_ref().is_some_and(|surface| surface.image.is_some());
-        if pictured && shape.is_endless() {
-            let message = "an endless body has no place for an image; give a cylinder its `length`, and take a \
-                           box instead of a slab";
-            return Err(KeyError::at(key!(Self.surface), message));
-        }
+        let message = "an endless body has no place for an image; give a cylinder its `length`, and take a \
+                       box instead of a slab";
+        let endless = self.shape == BodyShape::Slab
+            || (self.shape == BodyShape::Cylinder && request.length.is_none());
+        KeyError::refuse_if(pictured && endless, key!(Self.surface), message)?;
         let body = Body { shape, priority: self.priority };
         let far = if medium.is_some() { FarSide::Region(0) } else { FarSide::Opaque };
         let group_index = self.group_index;
@@ -91,7 +91,7 @@ impl Device for SolidBody {
         Ok(Structure {
             regions: medium.into_iter().map(region).map(Region::Homogeneous).collect(),
             surfaces: vec![Surface::new(Shape::Convex(shape), far)],
-            hull: Hull::new(shape.solid()).of_body(body),
+            hull: Hull { body: Some(body), ..Hull::new(shape.solid()) },
         })
     }
 
@@ -118,32 +118,32 @@ impl Device for SolidBody {
 
 impl SolidBody {
     fn convex(&self, length: Option<f64>) -> Result<Convex, KeyError> {
-        let shape = self.shape.word();
-        let sizes = [
-            (key!(Self.thickness), self.thickness.given, &[BodyShape::Slab][..]),
-            (key!(Self.size), self.size.given, &[BodyShape::Box]),
-            (key!(Self.radius), self.radius.given, &[BodyShape::Sphere, BodyShape::Cylinder]),
-        ];
-        let is_own = |shapes: &[BodyShape]| shapes.contains(&self.shape);
-        let own = sizes.iter().find(|(.., shapes)| is_own(shapes)).map_or("", |(key, ..)| key);
-        let length_given =
-            length.is_some() && matches!(self.shape, BodyShape::Box | BodyShape::Sphere);
-        let foreign = sizes.iter().find(|(_, given, shapes)| *given && !is_own(shapes));
-        let foreign = foreign.map(|(key, ..)| *key);
-        if let Some(key) = foreign.or(length_given.then_some(key!(Request.length))) {
-            return Err(KeyError::at(key, format!("a {shape} has no {key}; it has {own}")));
-        }
-        let extent = Extent::centred(length);
-        let radius = self.radius.value;
-        Ok(match self.shape {
+        let (extent, radius) = (Extent::centred(length), self.radius.value);
+        let (own, convex) = match self.shape {
             BodyShape::Slab => {
-                let half = 0.5 * self.thickness.value;
-                Convex::Box { half: DVec3::new(half, f64::INFINITY, extent.max) }
+                let half = DVec3::new(0.5 * self.thickness.value, f64::INFINITY, extent.max);
+                (key!(Self.thickness), Convex::Box { half })
             }
-            BodyShape::Box => Convex::Box { half: self.size.value * 0.5 },
-            BodyShape::Sphere => Convex::Ball(Sphere { radius }),
-            BodyShape::Cylinder => Convex::Cylinder(Cylinder { radius, extent }),
-        })
+            BodyShape::Box => (key!(Self.size), Convex::Box { half: self.size.value * 0.5 }),
+            BodyShape::Sphere => (key!(Self.radius), Convex::Ball(Sphere { radius })),
+            BodyShape::Cylinder => {
+                (key!(Self.radius), Convex::Cylinder(Cylinder { radius, extent }))
+            }
+        };
+        let has_no_length = matches!(self.shape, BodyShape::Box | BodyShape::Sphere);
+        let given = [
+            (key!(Self.thickness), self.thickness.given),
+            (key!(Self.size), self.size.given),
+            (key!(Self.radius), self.radius.given),
+            (key!(Request.length), length.is_some() && has_no_length),
+        ];
+        let shape = self.shape.word();
+        match given.into_iter().find(|(key, given)| *given && *key != own) {
+            Some((key, _)) => {
+                Err(KeyError::at(key, format!("a {shape} has no {key}; it has {own}")))
+            }
+            None => Ok(convex),
+        }
     }
 
     /// What fills it; nothing that light could enter if it has a surface of its own.
@@ -160,10 +160,8 @@ impl SolidBody {
             let message = format!("a body with a surface of its own is opaque; it has no {key}");
             return Err(KeyError::at(key, message));
         }
-        if surface.image.is_some() && surface.color.given {
-            let message = "color and image are both given; a surface takes one of them";
-            return Err(KeyError::at(key!(Self.surface), message));
-        }
-        Ok(None)
+        let both = surface.image.is_some() && surface.color.given;
+        let message = "color and image are both given; a surface takes one of them";
+        KeyError::refuse_if(both, key!(Self.surface), message).map(|()| None)
     }
 }

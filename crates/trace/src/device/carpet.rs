@@ -12,7 +12,7 @@ use super::{
 use crate::key;
 use crate::keys::KeyError;
 use glam::DVec2;
-use optics::geometry::{Cap, Extent, FloorCurve, MetalBack, Outline, Wall};
+use optics::geometry::{Cap, Extent, FloorCurve, MetalBack, Outline, Solid, Wall};
 use optics::propagation::{ConformalFlow, Half};
 use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
@@ -32,17 +32,13 @@ pub(super) fn cut(
     floor: f64,
     peak: f64,
 ) -> Result<Truncation, KeyError> {
-    if height <= peak {
-        let message =
-            format!("height is {height} cm; it must be above h, {peak} cm, to hold the metal");
-        return Err(KeyError::at(key!(GaussianCarpet.height), message));
-    }
-    if floor > 0.0 && floor < width {
-        let message = format!(
-            "floor is {floor} cm; it must be at least as wide as the device, {width} cm, or 0 for none"
-        );
-        return Err(KeyError::at(key!(GaussianCarpet.floor), message));
-    }
+    let message =
+        format!("height is {height} cm; it must be above h, {peak} cm, to hold the metal");
+    KeyError::refuse_if(height <= peak, key!(GaussianCarpet.height), message)?;
+    let message = format!(
+        "floor is {floor} cm; it must be at least as wide as the device, {width} cm, or 0 for none"
+    );
+    KeyError::refuse_if(floor > 0.0 && floor < width, key!(GaussianCarpet.floor), message)?;
     Ok(Truncation::centred(width, height))
 }
 
@@ -77,9 +73,9 @@ pub(super) fn metal(curve: FloorCurve, around: Outline, extent: Extent) -> Struc
     let metal = |shape| Surface::new(shape, FarSide::Conductor);
     let mut surfaces = vec![metal(Shape::Curve { curve: curve.clone(), side: None, extent })];
     for cap in extent.ends().into_iter().flat_map(|ends| Cap::both(&around, ends)) {
-        surfaces.push(metal(Shape::Cap(cap)).with_part(Part::Metal(curve.clone())));
+        surfaces.push(Surface { part: Part::Metal(curve.clone()), ..metal(Shape::Cap(cap)) });
     }
-    let hull = Hull::prism(around, extent).of_metal(curve);
+    let hull = Hull { metal: Some(curve), ..Hull::new(Solid::Prism { outline: around, extent }) };
     Structure { regions: Vec::new(), surfaces, hull }
 }
 
@@ -113,13 +109,13 @@ impl Site {
         wall([x, bottom], [x, tip], FarSide::Conductor);
         let outline = self.box_between(bottom, top);
         for cap in self.extent.ends().into_iter().flat_map(|ends| Cap::both(&outline, ends)) {
-            let cap = |far, part| Surface::new(Shape::Cap(cap.clone()), far).with_part(part);
+            let cap = |far, part| Surface { part, ..Surface::new(Shape::Cap(cap.clone()), far) };
             let below = Part::BelowFloor { map: map.clone(), mirrored: false };
             surfaces.push(cap(FarSide::Conductor, below));
             surfaces.push(cap(medium, Part::AboveFloor(map.clone(), Half::Upper)));
         }
         let region = ConformalRegion::new(flow, Half::Upper, FarSide::Conductor);
-        let hull = Hull::prism(outline, self.extent);
+        let hull = Hull::new(Solid::Prism { outline, extent: self.extent });
         self.on_floor(vec![Region::Conformal(region)], surfaces, hull)
     }
 

@@ -2,7 +2,7 @@
 
 use super::{Convex, FarSide, Hull, InnerRay, Passage, Region, Shape, Structure, Surface};
 use glam::DVec3;
-use optics::geometry::TOUCHING;
+use optics::geometry::{CutBall, FlatOrRound, Plane, TOUCHING};
 use optics::medium::Medium;
 use optics::propagation::{ClosedForm, CurvedRay, PathPoint, follow};
 use std::sync::Arc;
@@ -12,19 +12,52 @@ use std::sync::Arc;
 pub struct ClosedFormRegion {
     /// What fills it.
     pub medium: Arc<dyn ClosedForm>,
-    /// Where it ends: at planes and spheres.
-    pub border: Convex,
+    /// Where it ends.
+    pub border: ClosedFormBorder,
 }
 
-/// A device that is one convex region of a medium whose rays are known in closed form, between planes and spheres: no
-/// cylinder.
-pub(super) fn filled(border: Convex, medium: impl ClosedForm + 'static) -> Structure {
-    debug_assert!(!matches!(border, Convex::Cylinder(_)), "its side is neither plane nor sphere");
+/// The convex shapes between planes and spheres: what a medium whose rays are known in closed form can be cut to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ClosedFormBorder {
+    /// A box, by half its size along x, y and z, cm.
+    Box(DVec3),
+    /// A ball of which a plane has cut something off.
+    CutBall(CutBall),
+}
+
+/// A device that is one convex region of a medium whose rays are known in closed form.
+pub(super) fn filled(border: ClosedFormBorder, medium: impl ClosedForm + 'static) -> Structure {
     let region = ClosedFormRegion { medium: Arc::new(medium), border };
+    let shape = border.convex();
     Structure {
         regions: vec![Region::ClosedForm(region)],
-        surfaces: vec![Surface::new(Shape::Convex(border), FarSide::Region(0))],
-        hull: Hull::new(border.solid()),
+        surfaces: vec![Surface::new(Shape::Convex(shape), FarSide::Region(0))],
+        hull: Hull::new(shape.solid()),
+    }
+}
+
+impl ClosedFormBorder {
+    /// The shape that is met from outside.
+    pub(super) fn convex(self) -> Convex {
+        match self {
+            Self::Box(half) => Convex::Box { half },
+            Self::CutBall(ball) => Convex::CutBall(ball),
+        }
+    }
+
+    /// The planes and spheres between which it is.
+    fn bounds(self) -> impl Iterator<Item = FlatOrRound> {
+        let (half, ball) = match self {
+            Self::Box(half) => (Some(half), None),
+            Self::CutBall(ball) => (None, Some(ball)),
+        };
+        let side = |half: DVec3, side: usize| {
+            let sign = [-1.0, 1.0][side % 2];
+            Plane { normal: sign * DVec3::AXES[side / 2], offset: half[side / 2] }
+        };
+        let sides = half.into_iter().flat_map(move |half| (0..6).map(move |i| side(half, i)));
+        let planes = sides.chain(ball.map(|ball| ball.plane));
+        planes.map(FlatOrRound::from).chain(ball.map(|ball| ball.sphere.into()))
     }
 }
 

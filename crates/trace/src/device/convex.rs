@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 use optics::geometry::{
-    CutBall, Cylinder, CylinderPart, Disc, Extent, FlatOrRound, Outline, Plane, REACH, Solid,
-    Sphere,
+    CutBall, Cylinder, CylinderPart, Disc, Extent, Outline, REACH, Solid, Sphere, first_along,
 };
 
 /// A convex shape about the origin.
@@ -23,16 +22,6 @@ pub enum Convex {
 }
 
 impl Convex {
-    /// Whether it has no end somewhere.
-    #[must_use]
-    pub fn is_endless(&self) -> bool {
-        match self {
-            Self::Ball(_) | Self::CutBall(_) => false,
-            Self::Cylinder(cylinder) => cylinder.extent.ends().is_none(),
-            Self::Box { half } => !half.is_finite(),
-        }
-    }
-
     /// The space that it takes up; what has no end reaches to [`REACH`].
     #[must_use]
     pub fn solid(&self) -> Solid {
@@ -46,24 +35,6 @@ impl Convex {
                 Solid::Prism { outline, extent: Extent { min: -half.z, max: half.z } }
             }
         }
-    }
-
-    /// The planes and spheres between which it is, without the round side of a cylinder.
-    pub fn bounds(&self) -> impl Iterator<Item = FlatOrRound> + use<> {
-        let (sphere, cut, half) = match *self {
-            Self::Ball(sphere) => (Some(sphere), None, DVec3::INFINITY),
-            Self::CutBall(CutBall { sphere, plane }) => {
-                (Some(sphere), Some(plane), DVec3::INFINITY)
-            }
-            Self::Cylinder(cylinder) => (None, None, DVec3::INFINITY.with_z(cylinder.extent.max)),
-            Self::Box { half } => (None, None, half),
-        };
-        let plane = move |side: usize| {
-            let sign = [-1.0, 1.0][side % 2];
-            Plane { normal: sign * DVec3::AXES[side / 2], offset: half[side / 2] }
-        };
-        let sides = (0..6).map(plane).filter(|plane| plane.offset.is_finite());
-        sides.chain(cut).map(FlatOrRound::from).chain(sphere.map(FlatOrRound::from))
     }
 
     /// Where a ray that is outside enters: the distance, from zero on, and the outward unit normal.
@@ -127,9 +98,7 @@ impl Convex {
                     let distance = if d == 0.0 { f64::INFINITY } else { distance.max(0.0) };
                     (distance, DVec3::AXES[axis] * d.signum())
                 };
-                (0..3).map(far).fold((f64::INFINITY, DVec3::ZERO), |least, exit| {
-                    if exit.0 < least.0 { exit } else { least }
-                })
+                first_along((0..3).map(far))?
             }
         };
         distance.is_finite().then_some((distance, outward))
@@ -162,28 +131,4 @@ impl Convex {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn on_the_border_the_direction_decides() {
-        let shapes = [
-            Convex::Box { half: DVec3::new(1.0, f64::INFINITY, 3.0) },
-            Convex::Ball(Sphere { radius: 1.0 }),
-            Convex::Cylinder(Cylinder { radius: 1.0, extent: Extent::centred(Some(6.0)) }),
-            Convex::CutBall(CutBall {
-                sphere: Sphere { radius: 2.0 },
-                plane: Plane { normal: DVec3::X, offset: 1.0 },
-            }),
-        ];
-        for shape in shapes {
-            for off in [-1e-12, 0.0, 1e-12] {
-                let point = DVec3::X * (1.0 + off);
-                assert!(shape.holds_ahead(point, DVec3::new(-0.8, 0.6, 0.0), 1e-9), "{shape:?}");
-                assert!(!shape.holds_ahead(point, DVec3::new(0.8, 0.6, 0.0), 1e-9), "{shape:?}");
-            }
-            assert!(shape.holds_ahead(DVec3::X * 0.99, DVec3::X, 1e-9));
-            assert!(!shape.holds_ahead(DVec3::X * 1.01, DVec3::NEG_X, 1e-9));
-        }
-    }
-}
+mod tests;

@@ -11,14 +11,13 @@ use super::{
 use glam::DVec2;
 use optics::geometry::{Cylinder, Outline, Pose, REACH, Solid, Sphere};
 use optics::medium::Medium;
-use optics::propagation::Half;
 
 /// Straight pieces that a curve is drawn with.
 const PIECES: u32 = 256;
 
 /// A piece of the border of a region, or of the surfaces.
 #[derive(Clone, Debug, PartialEq)]
-struct Line {
+struct Edge {
     /// From point to point, cm.
     points: Vec<DVec2>,
     /// What lies on its other side.
@@ -55,7 +54,7 @@ pub struct CrossSection<'s> {
     /// The medium that fills the outlines, if the device is a body of one.
     pub body_medium: Option<&'s Medium>,
     /// The body that fills the outlines, if the device is one.
-    pub body: Option<&'s Body>,
+    pub body: Option<Body>,
     /// Whether it is only seen from afar: its outlines are projections, and nothing is known of within.
     pub is_shadow: bool,
 }
@@ -64,24 +63,20 @@ impl Structure {
     /// The cross-section in the plane z = 0.
     #[must_use]
     pub fn cross_section(&self) -> CrossSection<'_> {
-        let outside: Vec<Line> = self.surfaces.iter().flat_map(Surface::lines).collect();
-        let regions: Vec<Vec<Line>> = self.regions.iter().map(Region::lines).collect();
+        let outside: Vec<Edge> = self.surfaces.iter().filter_map(Surface::edge).collect();
+        let regions: Vec<Vec<Edge>> = self.regions.iter().map(Region::edges).collect();
         let metal = regions.iter().flatten().chain(&outside);
-        let metal = metal.filter(|line| line.far == FarSide::Conductor);
-        let is_body = self.hull.body().is_some();
-        let sections = self.regions.iter().zip(&regions).filter(|_| !is_body);
+        let metal = metal.filter(|edge| edge.far == FarSide::Conductor);
+        let sections = self.regions.iter().zip(&regions).filter(|_| self.hull.body.is_none());
         CrossSection {
             body_medium: self.body_medium(),
-            body: self.hull.body(),
+            body: self.hull.body,
             is_shadow: false,
-            metal: joined(metal.map(|line| line.points.clone())),
+            metal: joined(metal),
             regions: sections
-                .map(|(region, lines)| Section {
-                    border: joined(lines.iter().map(|line| line.points.clone())),
-                    region,
-                })
+                .map(|(region, edges)| Section { border: joined(edges), region })
                 .collect(),
-            outlines: joined(outside.into_iter().map(|line| line.points)),
+            outlines: joined(&outside),
         }
     }
 
@@ -89,7 +84,7 @@ impl Structure {
     #[must_use]
     pub fn body_medium(&self) -> Option<&Medium> {
         match self.regions.first() {
-            Some(Region::Homogeneous(region)) => self.hull.body().map(|_| &region.medium),
+            Some(Region::Homogeneous(region)) => self.hull.body.map(|_| &region.medium),
             _ => None,
         }
     }
@@ -110,7 +105,7 @@ impl Structure {
         let parts: Vec<Vec<DVec2>> = self.hull.solids().iter().map(shadow).collect();
         let whole = Outline::hull(parts.concat());
         // What has neither regions nor is a body is metal.
-        let body = self.hull.body();
+        let body = self.hull.body;
         let is_metal = self.regions.is_empty() && body.is_none();
         let mirror = self.hull.thin_mirror().map(shadow);
         let metal = parts.iter().filter(|_| is_metal).chain(&mirror);
@@ -124,20 +119,19 @@ impl Structure {
 
 impl Region {
     /// The border of the region in the plane z = 0.
-    fn lines(&self) -> Vec<Line> {
+    fn edges(&self) -> Vec<Edge> {
         match self {
-            Self::Homogeneous(region) => region.lines(),
-            Self::Conformal(region) => region.lines(),
+            Self::Homogeneous(region) => region.edges(),
+            Self::Conformal(region) => region.edges(),
             Self::Radial(region) => {
                 let [inner, outer] = region.flow.radii();
-                let mut lines = vec![Line { points: circle(outer), far: FarSide::Outside }];
-                if inner > 0.0 {
-                    lines.push(Line { points: circle(inner), far: region.inner });
-                }
-                lines
+                let outer = Edge { points: circle(outer), far: FarSide::Outside };
+                let inner =
+                    (inner > 0.0).then(|| Edge { points: circle(inner), far: region.inner });
+                std::iter::once(outer).chain(inner).collect()
             }
             Self::ClosedForm(region) => {
-                vec![Line { points: region.border.around(), far: FarSide::Outside }]
+                vec![Edge { points: region.border.convex().around(), far: FarSide::Outside }]
             }
         }
     }
@@ -145,39 +139,30 @@ impl Region {
     /// Whether the medium varies from point to point.
     #[must_use]
     pub fn is_graded(&self) -> bool {
-        match self {
-            Self::Homogeneous(_) => false,
-            Self::Conformal(_) | Self::Radial(_) | Self::ClosedForm(_) => true,
-        }
+        !matches!(self, Self::Homogeneous(_))
     }
 
     /// The medium at a point of the plane z = 0 that lies in the region or on its border; a graded
     /// medium has none elsewhere.
     #[must_use]
     pub fn medium_at(&self, point: DVec2) -> Option<Medium> {
-        let point = point.extend(0.0);
-        let entrance = self.enter(point)?;
-        self.medium(point, entrance.virtual_point.as_ref(), &mut None).copied()
+        self.enter(point.extend(0.0), &mut None).map(|(_, medium)| *medium)
     }
 }
 
 impl Surface {
     /// The surface in the plane z = 0: nothing for the ends of a device.
-    fn lines(&self) -> Vec<Line> {
+    fn edge(&self) -> Option<Edge> {
         let points = match &self.shape {
-            Shape::Wall(wall) => wall.ends().to_vec(),
+            Shape::Wall(wall) | Shape::Sheet(wall) => wall.ends().to_vec(),
             Shape::Convex(shape) => shape.around(),
-            Shape::Round(cylinder) => circle(cylinder.radius),
+            Shape::BallHole(sphere) => circle(sphere.radius),
+            Shape::Round(cylinder) | Shape::RoundHole(cylinder) => circle(cylinder.radius),
             Shape::Curve { curve, side: Some(side), .. } => curve.side_line(*side, PIECES),
-            Shape::Curve { curve, side: None, .. } => {
-                // Back to its beginning.
-                let mut around = curve.outline(PIECES);
-                around.extend(around.first().copied());
-                around
-            }
-            Shape::Cap(_) | Shape::Disc(_) => return Vec::new(),
+            Shape::Curve { curve, side: None, .. } => closed(curve.outline(PIECES)),
+            Shape::Cap(_) | Shape::Disc(_) => return None,
         };
-        vec![Line { points, far: self.far }]
+        Some(Edge { points, far: self.far })
     }
 }
 
@@ -188,37 +173,40 @@ impl Convex {
             Self::Ball(Sphere { radius }) | Self::Cylinder(Cylinder { radius, .. }) => {
                 circle(*radius)
             }
-            Self::CutBall(ball) => {
-                let mut around = ball.section(PIECES);
-                around.extend(around.first().copied());
-                around
-            }
+            Self::CutBall(ball) => closed(ball.section(PIECES)),
             Self::Box { half } => {
                 let corner = half.truncate().min(DVec2::splat(REACH));
-                let signs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)];
-                signs.map(|sign| DVec2::from(sign) * corner).to_vec()
+                closed(QUADRANTS.map(|sign| sign * corner).to_vec())
             }
         }
     }
 }
 
+/// Points around something, joined to their beginning.
+fn closed(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    points.extend(points.first().copied());
+    points
+}
+
 /// A circle about the origin, joined to its beginning.
 fn circle(radius: f64) -> Vec<DVec2> {
     let step = std::f64::consts::TAU / f64::from(PIECES);
-    (0..=PIECES).map(|i| DVec2::from_angle(step * f64::from(i % PIECES)) * radius).collect()
+    closed((0..PIECES).map(|i| DVec2::from_angle(step * f64::from(i)) * radius).collect())
 }
 
+/// The corners of a square, counterclockwise.
+const QUADRANTS: [DVec2; 4] =
+    [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
+
 impl HomogeneousRegion {
-    fn lines(&self) -> Vec<Line> {
+    fn edges(&self) -> Vec<Edge> {
         if let RegionBorder::Convex(shape) = &self.border {
-            return vec![Line { points: shape.around(), far: FarSide::Outside }];
+            return vec![Edge { points: shape.around(), far: FarSide::Outside }];
         }
         // A large square, cut by one plane after the other; with each corner, the face whose side
         // starts there.
         let mut corners: Vec<(DVec2, Option<&Face>)> =
-            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-                .map(|corner| (DVec2::from(corner) * REACH, None))
-                .to_vec();
+            QUADRANTS.map(|corner| (corner * REACH, None)).to_vec();
         for face in self.faces() {
             let height = |p: DVec2| face.plane.normal.truncate().dot(p) - face.plane.offset;
             let mut kept = Vec::new();
@@ -248,7 +236,7 @@ impl HomogeneousRegion {
             (b.plane.offset * p.perp() - a.plane.offset * q.perp()) / p.perp_dot(q)
         };
         (0..n)
-            .map(|i| Line {
+            .map(|i| Edge {
                 points: vec![exact(i), exact(i + 1)],
                 far: corners[i].1.map_or(FarSide::Outside, |face| face.far),
             })
@@ -257,14 +245,11 @@ impl HomogeneousRegion {
 }
 
 impl ConformalRegion {
-    fn lines(&self) -> Vec<Line> {
+    fn edges(&self) -> Vec<Edge> {
         let cut = self.flow.cut();
         let map = self.flow.map();
-        let mirrored = |p: DVec2| match self.half {
-            Half::Upper => p,
-            Half::Lower => DVec2::new(p.x, -p.y),
-        };
-        let side = |points: Vec<DVec2>, far| Line {
+        let mirrored = |p: DVec2| self.half.mirrored(p.extend(0.0)).truncate();
+        let side = |points: Vec<DVec2>, far| Edge {
             points: points.into_iter().map(mirrored).collect(),
             far,
         };
@@ -327,13 +312,14 @@ impl Section<'_> {
     }
 }
 
-/// Whether two ends of lines are one point.
+/// Whether two ends of edges are one point.
 fn near(a: DVec2, b: DVec2) -> bool {
     a.distance(b) <= 1e-9 * (1.0 + a.length())
 }
 
-/// Lines joined where their ends meet, in whichever direction they run.
-fn joined(lines: impl Iterator<Item = Vec<DVec2>>) -> Vec<Contour> {
+/// Edges joined where their ends meet, in whichever direction they run.
+fn joined<'e>(edges: impl IntoIterator<Item = &'e Edge>) -> Vec<Contour> {
+    let lines = edges.into_iter().map(|edge| edge.points.clone());
     let mut rest: Vec<Vec<DVec2>> = lines.filter(|line| line.len() > 1).collect();
     let mut contours = Vec::new();
     while !rest.is_empty() {

@@ -38,23 +38,15 @@ crate::table! {
     }
 }
 
-/// The regions of the two halves.
-const UPPER: u16 = 0;
-const LOWER: u16 = 1;
-
 impl DoubleGaussianCloak {
     /// The map and the cut of the upper half.
     fn parts(&self) -> Result<(GaussianMap, Truncation), KeyError> {
         let map = carpet::gaussian_map(self.w, self.h)?;
-        let h = map.height();
-        let height = self.height;
-        if height <= 2.0 * h {
-            let message = format!(
-                "height is {height} cm; it must be above twice h, {} cm, to hold the metal",
-                2.0 * h
-            );
-            return Err(KeyError::at(key!(Self.height), message));
-        }
+        let (height, metal) = (self.height, 2.0 * map.height());
+        let message = format!(
+            "height is {height} cm; it must be above twice h, {metal} cm, to hold the metal"
+        );
+        KeyError::refuse_if(height <= metal, key!(Self.height), message)?;
         Ok((map, Truncation::centred(self.width, height / 2.0)))
     }
 
@@ -108,9 +100,9 @@ fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool
     let tip = flow.map().floor_height_at(x);
     let wall = |from: [f64; 2], to: [f64; 2], far: FarSide| {
         let wall = Wall::new(DVec2::from(from), DVec2::from(to), extent);
-        Surface::wall(wall, far).with_coating(coating)
+        Surface { coating, ..Surface::wall(wall, far) }
     };
-    let (upper, lower) = (FarSide::Region(UPPER), FarSide::Region(LOWER));
+    let (upper, lower) = (FarSide::Region(0), FarSide::Region(1));
     let mut surfaces = vec![
         wall([x, -y], [x, -tip], lower),
         wall([x, tip], [x, y], upper),
@@ -125,9 +117,8 @@ fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool
         surfaces.push(wall([-x, tip], [-x, -tip], floor));
     }
     for cap in extent.ends().into_iter().flat_map(|ends| Cap::both(&outline, ends)) {
-        let cap = |far, part| {
-            Surface::new(Shape::Cap(cap.clone()), far).with_part(part).with_coating(coating)
-        };
+        let cap =
+            |far, part| Surface { part, coating, ..Surface::new(Shape::Cap(cap.clone()), far) };
         let map = || flow.map().clone();
         surfaces.push(cap(upper, Part::AboveFloor(map(), Half::Upper)));
         surfaces.push(cap(lower, Part::AboveFloor(map(), Half::Lower)));
@@ -141,15 +132,15 @@ fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool
             Region::Conformal(ConformalRegion { coating, ..region })
         })
         .to_vec();
+    let whole = Solid::Prism { outline, extent };
     if !open_core {
-        return Structure { regions, surfaces, hull: Hull::prism(outline, extent) };
+        return Structure { regions, surfaces, hull: Hull::new(whole) };
     }
     let curve = FloorCurve::new(flow.map().clone(), MetalBack::MirrorImage, cut.x_min, x);
     for (side, far) in [(CurvedSide::Floor, upper), (CurvedSide::Image, lower)] {
         let shape = Shape::Curve { curve: curve.clone(), side: Some(side), extent };
-        surfaces.push(Surface::new(shape, far).with_coating(coating).from_behind());
+        surfaces.push(Surface { coating, ..Surface::new(shape, far) });
     }
     let hole = Hole::Lens { curve, pose: Pose::new(DVec3::ZERO, 0.0), extent };
-    let hull = Hull::around(hole, Solid::Prism { outline, extent });
-    Structure { regions, surfaces, hull }
+    Structure { regions, surfaces, hull: Hull::around(hole, whole) }
 }

@@ -2,7 +2,7 @@
 
 use super::closed_form::filled;
 use super::round::lens_alone;
-use super::{Convex, Device, Fact, Request, Structure};
+use super::{ClosedFormBorder, Device, Fact, Request, Structure};
 use crate::key;
 use crate::keys::{KeyError, Limits};
 use glam::{DVec3, DVec4};
@@ -36,11 +36,9 @@ impl FisheyeHemisphere {
         let normal = unit(self.cut_normal);
         let normal = normal.ok_or_else(|| KeyError::at(key!(Self.cut_normal), nowhere))?;
         let (offset, most) = (self.cut_distance, (1.0 - THINNEST) * self.radius);
-        if offset.abs() > most {
-            let range = format!("it must be from -{most} to {most} cm, within the ball");
-            let message = format!("cut_distance is {offset} cm; {range}");
-            return Err(KeyError::at(key!(Self.cut_distance), message));
-        }
+        let range = format!("it must be from -{most} to {most} cm, within the ball");
+        let message = format!("cut_distance is {offset} cm; {range}");
+        KeyError::refuse_if(offset.abs() > most, key!(Self.cut_distance), message)?;
         Ok(Plane { normal, offset })
     }
 }
@@ -53,7 +51,7 @@ impl Device for FisheyeHemisphere {
         lens_alone(request)?;
         let ball = CutBall { sphere: Sphere { radius: self.radius }, plane: self.cut()? };
         let medium = Fisheye { radius: self.radius, border_index: self.index };
-        Ok(filled(Convex::CutBall(ball), medium))
+        Ok(filled(ClosedFormBorder::CutBall(ball), medium))
     }
 
     fn facts(&self) -> Vec<Fact> {
@@ -90,8 +88,7 @@ impl Fisheye {
 impl ClosedForm for Fisheye {
     fn squared_index(&self, at: DVec3) -> SquaredIndex {
         let x = at / self.radius;
-        let index = 2.0 * self.border_index / (1.0 + x.length_squared());
-        let value = index * index;
+        let value = (2.0 * self.border_index / (1.0 + x.length_squared())).powi(2);
         let gradient = x * (-4.0 * value / (self.radius * (1.0 + x.length_squared())));
         SquaredIndex { value, gradient }
     }
@@ -103,8 +100,8 @@ impl ClosedForm for Fisheye {
         let slope = (linear * self.radius).extend(square - constant);
         let [cos, sin] = self.on_sphere(start).map(|at| at.dot(slope));
         let level = constant + square;
-        let [over, under] = first_way_out([level + cos, 2.0 * sin, level - cos])?;
-        Some(2.0 * over.atan2(under))
+        let tangent = first_way_out([level + cos, 2.0 * sin, level - cos]);
+        tangent.map(|[over, under]| 2.0 * over.atan2(under))
     }
 
     fn way_point(&self, start: &CurvedRay, angle: f64) -> (CurvedRay, f64) {

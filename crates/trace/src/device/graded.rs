@@ -5,21 +5,21 @@
 //! followed through that, to the tolerance. At the border the index steps to that of air, with refraction and Fresnel
 //! reflection.
 
-use super::round::{metal_cylinder, pierced, round_hole, upright};
+use super::round::{self, metal_cylinder, pierced, upright};
 use super::{
-    ConformalRegion, Device, Fact, FarSide, Hull, Region, Request, Shape, Show, Structure, Surface,
+    ConformalRegion, Device, Fact, FarSide, Region, Request, Shape, Show, Structure, Surface,
 };
 use crate::key;
 use crate::keys::{KeyError, Limits, Sampled, Samples};
 use glam::DVec2;
-use optics::geometry::{Cap, Extent, Hole, Outline, Solid, Wall};
+use optics::geometry::{Cap, Extent, Outline, Solid, Wall};
 use optics::propagation::{ConformalFlow, GridSpline, Half, IndexPerturbation};
 use optics::transformation::{ConformalMap, FlatMap, Truncation};
 use std::f64::consts::PI;
 
 crate::choice! {
     /// The border of a [`Graded`] device.
-    pub enum Border {
+    pub enum GradedShape {
         /// The rectangle of the grid.
         Rectangle = "rectangle",
         /// The largest circle about the middle of the grid.
@@ -36,7 +36,7 @@ crate::table! {
         /// relative to the scene file. Between them the square of the index is a bicubic spline.
         index: Option<Sampled>, in Limits::Between(0.0, 1000.0),
         /// The border: the rectangle of the grid, or the largest circle about the middle of it.
-        shape: Border,
+        shape: GradedShape,
         /// Size of the grid along x, from its first sample to its last.
         width: f64 = 40.0, "cm", in Limits::LENGTH,
         /// Size of the grid along y, from its first sample to its last.
@@ -55,7 +55,7 @@ const VARIES: f64 = 0.25;
 
 /// The border of a device: it is centred on the z axis.
 #[derive(Clone, Copy)]
-struct Site {
+struct Plan {
     /// Half the size of the grid along x and y, cm.
     half: DVec2,
     /// The radius of the border if it is round, cm.
@@ -64,18 +64,16 @@ struct Site {
     core: Option<f64>,
 }
 
-impl Site {
+impl Plan {
     fn new(device: &Graded) -> Result<Self, KeyError> {
         let half = 0.5 * DVec2::new(device.width, device.height);
         let nearest = half.min_element();
-        let rim = (device.shape == Border::Circle).then_some(nearest);
+        let rim = (device.shape == GradedShape::Circle).then_some(nearest);
         let inner = device.inner;
         let most = (1.0 - THINNEST) * nearest;
-        if inner > most {
-            let message =
-                format!("inner is {inner} cm; it must be at most {most} cm, within the border");
-            return Err(KeyError::at(key!(Graded.inner), message));
-        }
+        let message =
+            format!("inner is {inner} cm; it must be at most {most} cm, within the border");
+        KeyError::refuse_if(inner > most, key!(Graded.inner), message)?;
         Ok(Self { half, rim, core: (inner > 0.0).then_some(inner) })
     }
 
@@ -133,13 +131,7 @@ impl Site {
             Some(rim) => (upright(core, rim, extent, far), Solid::cylinder(rim, extent)),
             None => (upright_box(core, &outline, extent, far), Solid::Prism { outline, extent }),
         };
-        let hull = match self.core {
-            Some(radius) if open_core => {
-                surfaces.push(round_hole(radius, extent));
-                Hull::around(Hole::Round(Solid::cylinder(radius, extent)), whole)
-            }
-            _ => Hull::new(whole),
-        };
+        let hull = round::hull(core, whole, extent, &mut surfaces);
         Ok(Structure { regions, surfaces, hull })
     }
 }
@@ -174,9 +166,9 @@ impl Graded {
 }
 
 /// The square of the index.
-fn square(site: &Site, samples: &Samples) -> Result<GridSpline, KeyError> {
+fn square(plan: &Plan, samples: &Samples) -> Result<GridSpline, KeyError> {
     let [nx, ny] = samples.count();
-    let [corner, spacing] = site.grid([nx, ny]);
+    let [corner, spacing] = plan.grid([nx, ny]);
     // Along x side by side.
     let along_x = (0..ny).flat_map(|j| (0..nx).map(move |i| samples.values()[i * ny + j].powi(2)));
     GridSpline::new(corner, spacing, [nx, ny], &along_x.collect::<Vec<_>>())
@@ -188,15 +180,13 @@ impl Device for Graded {
     const TITLE: &'static str = "Graded index of one's own";
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
-        let site = Site::new(self)?;
+        let plan = Plan::new(self)?;
         let extent = Extent::centred(request.length);
-        if request.open_core && site.core.is_none() {
-            let message = "there is no core to open; `inner` is its radius";
-            return Err(KeyError::at("core", message));
-        }
-        match (request.show, site.core) {
+        let message = "there is no core to open; `inner` is its radius";
+        KeyError::refuse_if(request.open_core && plan.core.is_none(), "core", message)?;
+        match (request.show, plan.core) {
             (Show::Cloak, _) => {
-                site.structure(square(&site, self.samples()?)?, extent, request.open_core)
+                plan.structure(square(&plan, self.samples()?)?, extent, request.open_core)
             }
             (Show::Bare, Some(core)) => Ok(metal_cylinder(core, extent)),
             (Show::Mirror, Some(_)) => Ok(Structure::empty()),
@@ -208,16 +198,16 @@ impl Device for Graded {
     }
 
     fn facts(&self) -> Vec<Fact> {
-        let Ok(site) = Site::new(self) else { return Vec::new() };
-        let mut facts = vec![Fact::number("medium_area_cm2", site.area())];
-        if site.core.is_some() {
-            facts.push(Fact::number("cloaked_area_cm2", site.core_area()));
+        let Ok(plan) = Plan::new(self) else { return Vec::new() };
+        let mut facts = vec![Fact::number("medium_area_cm2", plan.area())];
+        if plan.core.is_some() {
+            facts.push(Fact::number("cloaked_area_cm2", plan.core_area()));
         }
         if let Ok(samples) = self.samples() {
             let [_, ny] = samples.count();
-            let [corner, spacing] = site.grid(samples.count());
+            let [corner, spacing] = plan.grid(samples.count());
             let place = |k: usize| corner + spacing * DVec2::new((k / ny) as f64, (k % ny) as f64);
-            let within = samples.values().iter().enumerate().filter(|(k, _)| site.holds(place(*k)));
+            let within = samples.values().iter().enumerate().filter(|(k, _)| plan.holds(place(*k)));
             let start = (f64::INFINITY, 0.0_f64);
             let (least, largest) =
                 within.fold(start, |(low, high), (_, n)| (low.min(*n), high.max(*n)));

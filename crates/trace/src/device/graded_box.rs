@@ -1,7 +1,7 @@
 //! A box in which the square of the index grows evenly along a direction.
 
 use super::closed_form::filled;
-use super::{Convex, Device, Fact, Request, Structure};
+use super::{ClosedFormBorder, Device, Fact, Request, Structure};
 use crate::key;
 use crate::keys::{KeyError, Limits, vector_text};
 use glam::DVec3;
@@ -42,20 +42,16 @@ impl Device for GradedBox {
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         super::refuse_other_views(request, "a box hides no metal and imitates no mirror")?;
-        if request.length.is_some() {
-            let message = "length is given; a box has the third of its sides";
-            return Err(KeyError::at(key!(Request.length), message));
-        }
+        let message = "length is given; a box has the third of its sides";
+        KeyError::refuse_if(request.length.is_some(), key!(Request.length), message)?;
         let [least, _] = self.squares();
-        if least < LEAST {
-            let message = format!(
-                "gradient is {} 1/cm: with it the square of the index is {least} at a corner of the box; \
-                 it must be {LEAST} at least",
-                vector_text(self.gradient)
-            );
-            return Err(KeyError::at(key!(Self.gradient), message));
-        }
-        Ok(filled(Convex::Box { half: 0.5 * self.sides }, self.medium()))
+        let message = format!(
+            "gradient is {} 1/cm: with it the square of the index is {least} at a corner of the box; \
+             it must be {LEAST} at least",
+            vector_text(self.gradient)
+        );
+        KeyError::refuse_if(least < LEAST, key!(Self.gradient), message)?;
+        Ok(filled(ClosedFormBorder::Box(0.5 * self.sides), self.medium()))
     }
 
     fn facts(&self) -> Vec<Fact> {

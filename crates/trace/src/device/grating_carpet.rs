@@ -34,14 +34,13 @@ impl GratingCarpet {
         let Self { h, period, width, .. } = *self;
         let map = GratingMap::new(period, h)
             .map_err(|error| KeyError::at(key!(Self.h), error.to_string()))?;
-        if period > width || period * MOST_PERIODS < width {
-            let least = width / MOST_PERIODS;
-            let message = format!(
-                "period is {period} cm; it must be from {least} cm to {width} cm, for 1 to {MOST_PERIODS} of them \
-                 on the width"
-            );
-            return Err(KeyError::at(key!(Self.period), message));
-        }
+        let least = width / MOST_PERIODS;
+        let message = format!(
+            "period is {period} cm; it must be from {least} cm to {width} cm, for 1 to {MOST_PERIODS} of them \
+             on the width"
+        );
+        let refused = period > width || period * MOST_PERIODS < width;
+        KeyError::refuse_if(refused, key!(Self.period), message)?;
         Ok((map, carpet::cut([width, self.height], self.floor, h)?))
     }
 }

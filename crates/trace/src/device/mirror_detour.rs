@@ -30,12 +30,10 @@ impl Device for MirrorDetour {
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         super::refuse_other_views(request, "mirror-detour is mirrors alone")?;
         let (s, l) = (self.offset, self.half_length);
-        if l < s {
-            let message = format!(
-                "half_length is {l} cm; it must be {s} cm, the offset, at least, or mirrors cross"
-            );
-            return Err(KeyError::at(key!(Self.half_length), message));
-        }
+        let message = format!(
+            "half_length is {l} cm; it must be {s} cm, the offset, at least, or mirrors cross"
+        );
+        KeyError::refuse_if(l < s, key!(Self.half_length), message)?;
         let extent = Extent::centred(request.length);
         let (surfaces, solids) = mirrors(s, l)
             .into_iter()

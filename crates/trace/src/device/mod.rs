@@ -41,34 +41,23 @@ mod square_cloak;
 mod structure;
 mod surface;
 
-pub use bending_sphere::BendingSphere;
-pub use body::{BodyShape, BodySurface, SolidBody};
-pub use closed_form::ClosedFormRegion;
+pub use body::{BodyShape, BodySurface};
+pub use closed_form::{ClosedFormBorder, ClosedFormRegion};
 pub use convex::Convex;
 pub use cross_section::{Contour, CrossSection, Section};
-pub use cylinder_cloak::{CylinderCloak, ShellMaterial};
-pub use double_gaussian_cloak::DoubleGaussianCloak;
-pub use fisheye_hemisphere::FisheyeHemisphere;
-pub use gaussian_carpet::GaussianCarpet;
-pub use graded::{Border, Graded};
-pub use graded_box::GradedBox;
-pub use grating_carpet::GratingCarpet;
+pub use cylinder_cloak::ShellMaterial;
+pub use graded::GradedShape;
 pub use imperfection::Imperfection;
-pub use invisible_sphere::{InvisibleSphere, SphereMaterial};
-pub use lenses::{EatonLens, FisheyeLens, LuneburgLens};
-pub use mirror_detour::MirrorDetour;
+pub use invisible_sphere::SphereMaterial;
 pub use occupant::MaterialAt;
 pub use optics::geometry::REACH;
-pub use prisms::{PrismOfMedium, Prisms};
-pub use quasi_conformal_carpet::QuasiConformalCarpet;
+pub use prisms::PrismOfMedium;
 pub use region::{
-    ConformalRegion, Entrance, Face, HomogeneousRegion, InnerRay, Passage, RadialRegion, Region,
-    RegionBorder,
+    ConformalRegion, Face, HomogeneousRegion, InnerRay, Passage, RadialRegion, Region, RegionBorder,
 };
-pub use sphere_cloak::SphereCloak;
-pub use square_cloak::{SegmentMaterial, SquareCloak};
+pub use square_cloak::SegmentMaterial;
 pub use structure::{Body, Coating, FarSide, Hull, Structure, SurfaceHit};
-pub use surface::{Part, Shape, Side, Surface};
+pub use surface::{Part, Shape, Surface};
 
 use crate::key;
 use crate::keys::{Key, KeyError, Table};
@@ -176,9 +165,11 @@ impl Fact {
     }
 }
 
-/// Makes the catalogue of the kinds of devices.
+/// Makes the catalogue of the kinds of devices, each in its module.
 macro_rules! catalogue {
-    ($($kind:ident),+ $(,)?) => {
+    ($($module:ident::$kind:ident),+ $(,)?) => {
+        $(pub use $module::$kind;)+
+
         /// A device of the catalogue.
         #[derive(Clone, Debug, PartialEq)]
         #[allow(missing_docs, reason = "each variant is the struct of its name")]
@@ -233,24 +224,24 @@ macro_rules! catalogue {
 }
 
 catalogue! {
-    SquareCloak,
-    DoubleGaussianCloak,
-    CylinderCloak,
-    SphereCloak,
-    InvisibleSphere,
-    BendingSphere,
-    EatonLens,
-    LuneburgLens,
-    FisheyeLens,
-    FisheyeHemisphere,
-    MirrorDetour,
-    Prisms,
-    Graded,
-    GradedBox,
-    SolidBody,
-    GaussianCarpet,
-    GratingCarpet,
-    QuasiConformalCarpet,
+    square_cloak::SquareCloak,
+    double_gaussian_cloak::DoubleGaussianCloak,
+    cylinder_cloak::CylinderCloak,
+    sphere_cloak::SphereCloak,
+    invisible_sphere::InvisibleSphere,
+    bending_sphere::BendingSphere,
+    lenses::EatonLens,
+    lenses::LuneburgLens,
+    lenses::FisheyeLens,
+    fisheye_hemisphere::FisheyeHemisphere,
+    mirror_detour::MirrorDetour,
+    prisms::Prisms,
+    graded::Graded,
+    graded_box::GradedBox,
+    body::SolidBody,
+    gaussian_carpet::GaussianCarpet,
+    grating_carpet::GratingCarpet,
+    quasi_conformal_carpet::QuasiConformalCarpet,
 }
 
 /// The entry of a kind, if there is one.
@@ -271,22 +262,17 @@ fn medium(permittivity: Tensor, permeability: Tensor) -> Result<Medium, KeyError
 
 /// Refuses to show a device otherwise than as it is; `reason` says what it is: "a body is no cloak".
 fn refuse_other_views(request: Request, reason: &str) -> Result<(), KeyError> {
-    if request.show == Show::Cloak {
-        return Ok(());
-    }
     let message = format!("{reason}; it can be shown as it is, with show = \"cloak\", only");
-    Err(KeyError::at(key!(Request.show), message))
+    KeyError::refuse_if(request.show != Show::Cloak, key!(Request.show), message)
 }
 
 /// A two-sided flat metal strip on the x axis, |x| <= `half_width` (cm): what a cloak that opens a
 /// strip should look like.
 fn flat_strip(half_width: f64, extent: Extent) -> Structure {
     let ends = [DVec2::new(half_width, 0.0), DVec2::new(-half_width, 0.0)];
-    Structure {
-        regions: Vec::new(),
-        surfaces: vec![Surface::mirror(Wall::new(ends[0], ends[1], extent))],
-        hull: Hull::new(Solid::Nothing).with_thin_mirror(Outline::new(ends.to_vec()), extent),
-    }
+    let surfaces = vec![Surface::mirror(Wall::new(ends[0], ends[1], extent))];
+    let hull = Hull::new(Solid::Nothing).with_thin_mirror(Outline::new(ends.to_vec()), extent);
+    Structure { regions: Vec::new(), surfaces, hull }
 }
 
 /// A device of a kind with some of its keys, for tests.
@@ -300,59 +286,4 @@ fn built(kind: &str, keys: &[(&str, crate::keys::Value)], request: Request) -> S
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::keys::{Limits, Sampled, Samples};
-
-    /// What a kind needs to be something.
-    fn sound(entry: &Entry) -> AnyDevice {
-        let mut device = (entry.device)();
-        if let AnyDevice::Graded(graded) = &mut device {
-            graded.index = Samples::new(&vec![vec![1.5; 4]; 4]).ok().map(Sampled::Here);
-        }
-        if let AnyDevice::Prisms(prisms) = &mut device {
-            let corners = Some(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
-            prisms.prism = vec![PrismOfMedium { corners, metal: true, ..PrismOfMedium::default() }];
-        }
-        device
-    }
-
-    #[test]
-    fn a_device_of_a_struct_is_that_of_its_written_keys() {
-        for entry in CATALOGUE {
-            let device = sound(entry);
-            let mut read = (entry.device)();
-            for (name, value) in device.table().written() {
-                read.table_mut().set(&name, value).expect("as it was written");
-            }
-            let build = |device: &AnyDevice| {
-                let built = device.build(Request::default());
-                format!("{:?}", built.unwrap_or_else(|error| panic!("{}: {error}", entry.kind)))
-            };
-            assert_eq!(build(&device), build(&read), "{}", entry.kind);
-            assert_eq!(device.facts(), read.facts());
-            assert_eq!(
-                (device.kind(), device.table().keys().len()),
-                (entry.kind, entry.keys.len())
-            );
-        }
-    }
-
-    #[test]
-    fn a_struct_outside_its_limits_is_refused() {
-        for entry in CATALOGUE {
-            for key in entry.keys.iter().filter(|key| key.limits == Limits::LENGTH) {
-                for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
-                    let mut device = sound(entry);
-                    let value = match key.default_value() {
-                        Some(crate::keys::Value::List(_)) => [bad; 3].into(),
-                        _ => bad.into(),
-                    };
-                    assert!(device.table_mut().put(key.name, &value), "{}", key.name);
-                    let error = device.build(Request::default()).expect_err(key.name);
-                    assert_eq!(error.key, Some(key.name), "{}", entry.kind);
-                }
-            }
-        }
-    }
-}
+mod tests;

@@ -1,8 +1,9 @@
 //! What is where in a device: the same media that the tracer meets, point by point.
 
-use super::{Entrance, Region, Structure};
+use super::{Region, Structure};
 use glam::DVec3;
 use optics::medium::Medium;
+use optics::propagation::VirtualPoint;
 
 /// What is at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,27 +30,25 @@ impl Structure {
             return MaterialAt::Air;
         }
         match self.region_at(point) {
-            Some((_, _, medium)) => MaterialAt::Medium(medium),
+            Some((_, medium)) => MaterialAt::Medium(medium),
             None if self.is_opaque() => MaterialAt::Opaque,
-            None if self.hull.has_open_core() => MaterialAt::HiddenAir,
+            None if self.hull.filled.is_some() => MaterialAt::HiddenAir,
             None => MaterialAt::Metal,
         }
     }
 
     /// The region that a point within the device's ends lies in or on the border of, the first of several: its number,
-    /// what a ray finds there, and the medium.
+    /// and the medium.
     #[must_use]
-    pub fn region_at(&self, point: DVec3) -> Option<(u16, Entrance, Medium)> {
-        (0u16..).zip(&self.regions).find_map(|(number, region)| {
-            let (entrance, medium) = region.entrance_if_within(point)?;
-            Some((number, entrance, medium))
-        })
+    pub fn region_at(&self, point: DVec3) -> Option<(u16, Medium)> {
+        let mut numbered = (0u16..).zip(&self.regions);
+        numbered.find_map(|(number, region)| Some((number, region.enter_if_within(point)?.1)))
     }
 }
 
 impl Region {
-    /// The entrance and the medium at a point between the ends of the device, if it lies in the region or on its border.
-    pub(crate) fn entrance_if_within(&self, point: DVec3) -> Option<(Entrance, Medium)> {
+    /// As [`Region::enter`] at a point between the ends of the device, if it lies in the region or on its border.
+    pub(crate) fn enter_if_within(&self, point: DVec3) -> Option<(Option<VirtualPoint>, Medium)> {
         let within = match self {
             Self::Homogeneous(region) => region.faces().iter().all(|face| {
                 let slack = 1e-12 * (1.0 + face.plane.offset.abs());
@@ -63,47 +62,11 @@ impl Region {
             }
             Self::ClosedForm(region) => region.holds(point),
         };
-        let entrance = within.then(|| self.enter(point))??;
-        let medium = *self.medium(point, entrance.virtual_point.as_ref(), &mut None)?;
-        Some((entrance, medium))
+        let mut graded = None;
+        let (virtual_point, medium) = within.then(|| self.enter(point, &mut graded))??;
+        Some((virtual_point, *medium))
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::device::{Request, built};
-
-    fn structure(kind: &str, open_core: bool) -> Structure {
-        let request = Request { open_core, length: Some(20.0), ..Request::default() };
-        built(kind, &[], request)
-    }
-
-    #[test]
-    fn air_media_metal_and_the_hidden_region_are_told_apart() {
-        // Of each cloak a point in its medium and one in its hidden region.
-        for (kind, in_medium, hidden) in [
-            ("square-cloak", DVec3::new(0.0, 8.0, 3.0), DVec3::new(1.0, -1.0, 3.0)),
-            ("double-gaussian-cloak", DVec3::new(3.0, -9.0, 3.0), DVec3::new(1.0, -1.0, 3.0)),
-            ("cylinder-cloak", DVec3::new(0.0, -7.0, 3.0), DVec3::new(0.0, 3.9, -3.0)),
-        ] {
-            for open_core in [false, true] {
-                let device = structure(kind, open_core);
-                let inside = if open_core { MaterialAt::HiddenAir } else { MaterialAt::Metal };
-                assert!(matches!(device.material_at(in_medium), MaterialAt::Medium(_)), "{kind}");
-                assert_eq!(device.material_at(hidden), inside, "{kind}");
-                for outside in [DVec3::new(60.0, 0.0, 0.0), hidden.with_z(10.5)] {
-                    assert_eq!(device.material_at(outside), MaterialAt::Air, "{kind}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn below_a_carpet_there_is_metal() {
-        let device = structure("gaussian-carpet", false);
-        assert_eq!(device.material_at(DVec3::new(0.0, 4.2, 0.0)), MaterialAt::Metal);
-        assert!(matches!(device.material_at(DVec3::new(0.0, 4.3, 0.0)), MaterialAt::Medium(_)));
-        assert_eq!(device.material_at(DVec3::new(0.0, -0.1, 0.0)), MaterialAt::Air);
-    }
-}
+mod tests;

@@ -47,10 +47,8 @@ impl Device for Prisms {
             Show::Cloak => {}
             Show::Bare => {
                 parts.retain(|part| part.medium.is_none());
-                if parts.is_empty() {
-                    let message = "no prism is metal, so nothing of it is bare";
-                    return Err(KeyError::at(key!(Request.show), message));
-                }
+                let message = "no prism is metal, so nothing of it is bare";
+                KeyError::refuse_if(parts.is_empty(), key!(Request.show), message)?;
             }
             Show::Mirror => super::refuse_other_views(request, "prisms imitate no mirror")?,
         }
@@ -95,10 +93,9 @@ impl Prisms {
 fn part(prism: &PrismOfMedium, known: &mut Vec<DVec2>) -> Result<PolygonPart, KeyError> {
     let missing = || KeyError::general("this prism has no `corners`: three or more [x, y]");
     let corners = prism.corners.as_ref().ok_or_else(missing)?;
-    if known.len() + corners.len() > MOST_CORNERS {
-        let message = format!("all prisms together have more than {MOST_CORNERS} corners");
-        return Err(KeyError::at(key!(PrismOfMedium.corners), message));
-    }
+    let refused = known.len() + corners.len() > MOST_CORNERS;
+    let message = format!("all prisms together have more than {MOST_CORNERS} corners");
+    KeyError::refuse_if(refused, key!(PrismOfMedium.corners), message)?;
     let corners: Vec<DVec2> = corners
         .iter()
         .map(|corner| {

@@ -2,7 +2,7 @@
 
 use super::{ClosedFormRegion, Coating, Convex, FarSide};
 use glam::{DMat3, DVec3};
-use optics::geometry::Plane;
+use optics::geometry::{Plane, first_along};
 use optics::medium::{Medium, ModeKind};
 use optics::propagation::{
     Border, Boundary, ConformalFlow, FlowEnd, Half, PathPoint, RadialFlow, VirtualPoint,
@@ -91,13 +91,6 @@ impl Face {
     }
 }
 
-/// What a ray finds on entering a region.
-#[derive(Clone, Copy, Debug)]
-pub struct Entrance {
-    /// The point in the virtual space of a conformal region.
-    pub virtual_point: Option<VirtualPoint>,
-}
-
 /// A ray in a region, at a point of it or of its border.
 #[derive(Clone, Copy, Debug)]
 pub struct InnerRay {
@@ -142,19 +135,21 @@ pub struct Passage {
 }
 
 impl Region {
-    /// What a ray finds that enters the region at a point of its border; `None` if a conformal map has no such
-    /// point: it has been lost in rounding at an edge.
+    /// What a ray finds that enters the region at a point of its border: the point in the virtual space of a conformal
+    /// region, and the medium, see [`Region::medium`]. `None` if a conformal map has no such point: it has been lost in
+    /// rounding at an edge.
     #[must_use]
     #[inline]
-    pub fn enter(&self, position: DVec3) -> Option<Entrance> {
-        Some(Entrance {
-            virtual_point: match self {
-                Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) => None,
-                Self::Conformal(region) => {
-                    Some(region.flow.virtual_point(region.half, position).ok()?)
-                }
-            },
-        })
+    pub fn enter<'m>(
+        &'m self,
+        position: DVec3,
+        local: &'m mut Option<Medium>,
+    ) -> Option<(Option<VirtualPoint>, &'m Medium)> {
+        let virtual_point = match self {
+            Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) => None,
+            Self::Conformal(region) => Some(region.flow.virtual_point(region.half, position).ok()?),
+        };
+        Some((virtual_point, self.medium(position, virtual_point.as_ref(), local)?))
     }
 
     /// The medium at a point of the region or its border, `virtual_point` being what [`Region::enter`] or the last
@@ -267,12 +262,8 @@ impl Region {
         match self {
             Self::Homogeneous(_) => ends(),
             Self::Conformal(region) => {
-                let virtual_point = ray
-                    .virtual_point
-                    .or_else(|| region.flow.virtual_point(region.half, ray.position).ok());
-                let path = virtual_point
-                    .and_then(|start| region.flow.path(&start, ray.wave_vector, tolerance).ok());
-                path.unwrap_or_else(ends)
+                let path = |start| region.flow.path(&start, ray.wave_vector, tolerance).ok();
+                region.start(ray).and_then(path).unwrap_or_else(ends)
             }
             Self::Radial(region) if region.inner == FarSide::Outside && region.turns_back(ray) => {
                 ends()
@@ -311,15 +302,10 @@ impl HomogeneousRegion {
                 return Some(Passage::straight(ray, end, 0, outward, FarSide::Outside));
             }
         };
-        let mut nearest: Option<(u16, &Face, f64)> = None;
-        for (index, face) in (0u16..).zip(faces) {
-            if let Some(distance) = face.plane.distance(position, direction)
-                && nearest.is_none_or(|(_, _, least)| distance < least)
-            {
-                nearest = Some((index, face, distance));
-            }
-        }
-        let (mut index, mut face, distance) = nearest?;
+        let met = (0u16..).zip(faces).filter_map(|(index, face)| {
+            Some((face.plane.distance(position, direction)?, (index, face)))
+        });
+        let (distance, (mut index, mut face)) = first_along(met)?;
         // On the plane to the last bit: what is off along the normal would show in the optical path.
         let end = face.plane.project(position + direction * distance);
         while face.until < DVec3::Z.cross(face.plane.normal).dot(end) {
@@ -358,12 +344,14 @@ impl ConformalRegion {
         Self { flow, half, floor, core, coating, loss_tangent: 0.0 }
     }
 
+    /// Where a ray is in virtual space.
+    fn start(&self, ray: &InnerRay) -> Option<VirtualPoint> {
+        let here = || self.flow.virtual_point(self.half, ray.position).ok();
+        ray.virtual_point.or_else(here)
+    }
+
     fn advance_four(&self, rays: &[Option<InnerRay>; 4], tolerance: f64) -> [Option<Passage>; 4] {
-        let starts = rays.map(|ray| {
-            let ray = ray?;
-            let here = || self.flow.virtual_point(self.half, ray.position).ok();
-            Some((ray.virtual_point.or_else(here)?, ray.wave_vector))
-        });
+        let starts = rays.map(|ray| Some((self.start(&ray?)?, ray?.wave_vector)));
         let ends = self.flow.advance_four(&starts, tolerance);
         std::array::from_fn(|i| {
             let end = ends[i].as_ref()?.as_ref().ok()?;

@@ -1,6 +1,8 @@
 //! What balls and round cylinders have in common.
 
-use super::{FarSide, Hull, Part, RadialRegion, Region, Request, Shape, Structure, Surface};
+use super::{
+    Convex, FarSide, Hull, Part, RadialRegion, Region, Request, Shape, Structure, Surface,
+};
 use crate::key;
 use crate::keys::KeyError;
 use optics::geometry::{Cylinder, Extent, Hole, Solid, Sphere};
@@ -13,25 +15,17 @@ const THINNEST: f64 = 0.001;
 /// Refuses an inner radius that is not within the outer one; `key` is that of the inner one.
 pub(super) fn check_radii(key: &'static str, inner: f64, outer: f64) -> Result<(), KeyError> {
     let (least, most) = (THINNEST * outer, (1.0 - THINNEST) * outer);
-    if !(least..=most).contains(&inner) {
-        let message = format!(
-            "inner is {inner} cm; it must be from {least} to {most} cm, {THINNEST} to {} times outer",
-            1.0 - THINNEST
-        );
-        return Err(KeyError::at(key, message));
-    }
-    Ok(())
+    let message = format!(
+        "inner is {inner} cm; it must be from {least} to {most} cm, {THINNEST} to {} times outer",
+        1.0 - THINNEST
+    );
+    KeyError::refuse_if(!(least..=most).contains(&inner), key, message)
 }
 
 /// Refuses what a ball cannot have.
 pub(super) fn no_length(request: Request) -> Result<(), KeyError> {
-    match request.length {
-        None => Ok(()),
-        Some(_) => {
-            let message = "length is given; a ball has none but its diameter";
-            Err(KeyError::at(key!(Request.length), message))
-        }
-    }
+    let message = "length is given; a ball has none but its diameter";
+    KeyError::refuse_if(request.length.is_some(), key!(Request.length), message)
 }
 
 /// Refuses what a ball that hides nothing cannot have.
@@ -42,25 +36,28 @@ pub(super) fn lens_alone(request: Request) -> Result<(), KeyError> {
 
 /// A ball filled with a medium: solid, around a metal core that no light comes to, or around an open core of a radius.
 pub(super) fn ball(radius: f64, flow: RadialFlow, open_core: Option<f64>) -> Structure {
-    let border = |radius| Surface::sphere(Sphere { radius }, FarSide::Region(0));
-    let (mut surfaces, solid) = (vec![border(radius)], Solid::ball(radius));
+    let border = |shape| Surface::new(shape, FarSide::Region(0));
+    let mut surfaces = vec![border(sphere(radius))];
+    let solid = Solid::ball(radius);
     let (inner, hull) = match open_core {
         None => (FarSide::Conductor, Hull::new(solid)),
         Some(core) => {
-            surfaces.push(border(core).from_behind());
+            surfaces.push(border(Shape::BallHole(Sphere { radius: core })));
             (FarSide::Outside, Hull::around(Hole::Round(Solid::ball(core)), solid))
         }
     };
     Structure { regions: vec![Region::Radial(RadialRegion { flow, inner })], surfaces, hull }
 }
 
+/// The border of a ball.
+fn sphere(radius: f64) -> Shape {
+    Shape::Convex(Convex::Ball(Sphere { radius }))
+}
+
 /// A metal ball.
 pub(super) fn metal_ball(radius: f64) -> Structure {
-    Structure {
-        regions: Vec::new(),
-        surfaces: vec![Surface::sphere(Sphere { radius }, FarSide::Conductor)],
-        hull: Hull::new(Solid::ball(radius)),
-    }
+    let surfaces = vec![Surface::new(sphere(radius), FarSide::Conductor)];
+    Structure { regions: Vec::new(), surfaces, hull: Hull::new(Solid::ball(radius)) }
 }
 
 /// A round cylinder filled with a medium around a core of metal, or around an open one.
@@ -73,19 +70,24 @@ pub(super) fn tube(
 ) -> Structure {
     let inner = if open_core { FarSide::Outside } else { FarSide::Conductor };
     let mut surfaces = upright((core, inner), radius, extent, FarSide::Region(0));
-    let solid = Solid::cylinder(radius, extent);
-    let hull = if open_core {
-        surfaces.push(round_hole(core, extent));
-        Hull::around(Hole::Round(Solid::cylinder(core, extent)), solid)
-    } else {
-        Hull::new(solid)
-    };
+    let hull = hull((core, inner), Solid::cylinder(radius, extent), extent, &mut surfaces);
     Structure { regions: vec![Region::Radial(RadialRegion { flow, inner })], surfaces, hull }
 }
 
-/// The border of an open core, in the first region.
-pub(super) fn round_hole(radius: f64, extent: Extent) -> Surface {
-    Surface::new(Shape::Round(Cylinder { radius, extent }), FarSide::Region(0)).from_behind()
+/// The hull of a device around a round core that has a radius and is something of its own; an open one gets its border,
+/// that of the first region.
+pub(super) fn hull(
+    (radius, far_of_core): (f64, FarSide),
+    whole: Solid,
+    extent: Extent,
+    surfaces: &mut Vec<Surface>,
+) -> Hull {
+    if far_of_core != FarSide::Outside {
+        return Hull::new(whole);
+    }
+    let border = Shape::RoundHole(Cylinder { radius, extent });
+    surfaces.push(Surface::new(border, FarSide::Region(0)));
+    Hull::around(Hole::Round(Solid::cylinder(radius, extent)), whole)
 }
 
 /// A round metal cylinder.
@@ -112,7 +114,7 @@ pub(super) fn upright(
 /// A flat end around a core that has a radius and is something of its own; where that is outside, nothing is there.
 pub(super) fn pierced(end: &Shape, core: (f64, FarSide), far: FarSide) -> Vec<Surface> {
     let (radius, far_of_core) = core;
-    let part = |far, part| Surface::new(end.clone(), far).with_part(part);
+    let part = |far, part| Surface { part, ..Surface::new(end.clone(), far) };
     let mut surfaces = vec![part(far, Part::Beyond(radius))];
     if far_of_core != FarSide::Outside && radius > 0.0 {
         surfaces.push(part(far_of_core, Part::Within(radius)));

@@ -22,10 +22,9 @@ crate::table! {
 }
 
 impl SphereCloak {
-    /// The radii of the core and of the border.
-    fn radii(&self) -> Result<(f64, f64), KeyError> {
+    fn map(&self) -> Result<RadialMap, KeyError> {
         check_radii(key!(Self.inner), self.inner, self.outer)?;
-        Ok((self.inner, self.outer))
+        Ok(RadialMap::new(self.inner, self.outer, Symmetry::Centre))
     }
 }
 
@@ -35,24 +34,22 @@ impl Device for SphereCloak {
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         no_length(request)?;
-        let (inner, outer) = self.radii()?;
+        let map = self.map()?;
         Ok(match request.show {
             Show::Cloak => {
-                let map = RadialMap::new(inner, outer, Symmetry::Centre);
                 let flow = RadialFlow::Transformed(TransformedShell::new(map, Extent::ENDLESS));
-                ball(outer, flow, request.open_core.then_some(inner))
+                ball(self.outer, flow, request.open_core.then_some(self.inner))
             }
-            Show::Bare => metal_ball(inner),
+            Show::Bare => metal_ball(self.inner),
             Show::Mirror => Structure::empty(),
         })
     }
 
     fn facts(&self) -> Vec<Fact> {
-        let Ok((inner, outer)) = self.radii() else { return Vec::new() };
-        let map = RadialMap::new(inner, outer, Symmetry::Centre);
-        let tensor = map.tensor(DVec3::X * outer);
+        let Ok(map) = self.map() else { return Vec::new() };
+        let tensor = map.tensor(DVec3::X * self.outer);
         vec![
-            Fact::number("cloaked_volume_cm3", 4.0 / 3.0 * PI * inner.powi(3)),
+            Fact::number("cloaked_volume_cm3", 4.0 / 3.0 * PI * self.inner.powi(3)),
             Fact::principal_values("border_tensor_principal_values", &tensor),
             Fact::number("time_of_flight_difference_ns", 0.0),
         ]

@@ -11,7 +11,7 @@ use crate::key;
 use crate::keys::{KeyError, Limits};
 use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::{Extent, Outline, Polygon, Solid};
-use optics::medium::Medium;
+use optics::medium::{Medium, Tensor};
 use optics::transformation::StripToRhombus;
 
 crate::choice! {
@@ -117,11 +117,9 @@ fn square(
     let structure = polygonal(&parts, extent)
         .map_err(|_| of_kappa("the segments overlap by rounding".to_owned()))?;
     let outline = Outline::new(if recipe.is_some() { square } else { rhombus }.to_vec());
-    let hull = if open_core {
-        structure.hull.with_open_core(Solid::Prism { outline, extent })
-    } else {
-        Hull::prism(outline, extent)
-    };
+    let whole = Solid::Prism { outline, extent };
+    let hull =
+        if open_core { Hull { filled: Some(whole), ..structure.hull } } else { Hull::new(whole) };
     Ok(Structure { hull, ..structure })
 }
 
@@ -156,13 +154,9 @@ impl Recipe {
         let DVec3 { x: along_u, y: along_v, z: along_z } = self.principal;
         match self.material {
             SegmentMaterial::ImpedanceMatched => {
-                let of_principal = || {
-                    let m = turn * DMat3::from_diagonal(self.principal) * turn.transpose();
-                    // Symmetric to the last bit.
-                    (m + m.transpose()) * 0.5
-                };
+                let principal = Tensor::from(DMat3::from_diagonal(self.principal));
                 let exact = self.exact.map(|map| map.tensor(quadrant));
-                Medium::impedance_matched(exact.unwrap_or_else(of_principal))
+                Medium::impedance_matched(exact.unwrap_or_else(|| principal.turned(&turn).re))
             }
             SegmentMaterial::PositiveUniaxial => {
                 Medium::uniaxial_magnetic(along_z, along_v, along_u, u)

@@ -2,7 +2,7 @@
 
 use super::{Convex, Region, Surface};
 use glam::DVec3;
-use optics::geometry::{Extent, FloorCurve, Hole, Outline, Pose, Solid};
+use optics::geometry::{Extent, FloorCurve, Hole, Outline, Pose, Solid, first_along};
 
 /// What lies on the other side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,19 +51,21 @@ pub struct Body {
 /// The space a device takes up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
-    solids: Vec<Solid>,
-    reach: Reach,
-    thin_mirror: Option<Solid>,
-    metal: Option<FloorCurve>,
-    body: Option<Body>,
-    /// The device with its hidden region filled, where that is air.
-    filled: Option<Solid>,
+    pub(super) solids: Vec<Solid>,
+    pub(super) reach: Reach,
+    pub(super) thin_mirror: Option<Solid>,
+    /// Bare metal below a floor: it holds only that part of the solids.
+    pub metal: Option<FloorCurve>,
+    /// The body that it is the hull of, which may overlap other bodies.
+    pub body: Option<Body>,
+    /// The device together with its hidden region, where that is air, and free.
+    pub filled: Option<Solid>,
 }
 
 /// What holds a hull, about the origin or the z axis of the device's frame: rays that miss it miss
 /// the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Reach {
+pub(super) enum Reach {
     Nothing,
     Cylinder(f64),
     Ball(f64),
@@ -71,21 +73,19 @@ enum Reach {
 
 impl Reach {
     fn of(solid: &Solid) -> Self {
-        match solid {
-            Solid::Nothing => Self::Nothing,
-            Solid::Prism { outline, .. } => Self::Cylinder(outline.radius() * GRAZING),
-            Solid::Cylinder { centre, radius, .. } => {
-                Self::Cylinder((centre.length() + radius) * GRAZING)
+        let (shape, radius): (fn(f64) -> Self, f64) = match solid {
+            Solid::Nothing => return Self::Nothing,
+            Solid::Prism { outline, .. } => (Self::Cylinder, outline.radius()),
+            Solid::Cylinder { centre, radius, .. } => (Self::Cylinder, centre.length() + radius),
+            Solid::Ball { centre, radius } => (Self::Ball, centre.length() + radius),
+            Solid::CutBall { centre, ball } => (Self::Ball, centre.length() + ball.sphere.radius),
+            Solid::Hollow { whole, .. } => return Self::of(whole),
+            Solid::Tilted { .. } => {
+                let Some([low, high]) = solid.bounds() else { return Self::Nothing };
+                (Self::Ball, low.abs().max(high.abs()).length())
             }
-            Solid::Ball { centre, radius } => Self::Ball((centre.length() + radius) * GRAZING),
-            Solid::CutBall { centre, ball } => {
-                Self::Ball((centre.length() + ball.sphere.radius) * GRAZING)
-            }
-            Solid::Hollow { whole, .. } => Self::of(whole),
-            Solid::Tilted { .. } => solid.bounds().map_or(Self::Nothing, |[low, high]| {
-                Self::Ball(low.abs().max(high.abs()).length() * GRAZING)
-            }),
-        }
+        };
+        shape(radius * GRAZING)
     }
 
     /// What holds both.
@@ -117,12 +117,6 @@ impl Hull {
         Self { solids, reach, thin_mirror: None, metal: None, body: None, filled: None }
     }
 
-    /// The hull of a device with a polygonal cross-section that extends along z.
-    #[must_use]
-    pub fn prism(outline: Outline, extent: Extent) -> Self {
-        Self::new(Solid::Prism { outline, extent })
-    }
-
     /// The hull with a thin mirror as well, such as a floor, on a line of two corners: it holds nothing, and
     /// the photograph may stand across it.
     #[must_use]
@@ -132,46 +126,16 @@ impl Hull {
         Self { thin_mirror: Some(sheet), reach, ..self }
     }
 
-    /// The hull of bare metal below a floor: it holds only that part of its outline.
-    #[must_use]
-    pub fn of_metal(self, curve: FloorCurve) -> Self {
-        Self { metal: Some(curve), ..self }
-    }
-
     /// The sheet of its thin mirror, if it has one.
     #[must_use]
     pub fn thin_mirror(&self) -> Option<&Solid> {
         self.thin_mirror.as_ref()
     }
 
-    /// The hull of a body, which may overlap other bodies.
-    #[must_use]
-    pub fn of_body(self, body: Body) -> Self {
-        Self { body: Some(body), ..self }
-    }
-
     /// The hull of a cloak around a hidden region that is air, and free: `filled` without `hole`.
     #[must_use]
     pub fn around(hole: Hole, filled: Solid) -> Self {
-        Self::new(filled.clone().with_hole(hole)).with_open_core(filled)
-    }
-
-    /// The hull of a cloak whose hidden region is air, and free; `filled` is the cloak together with it.
-    #[must_use]
-    pub fn with_open_core(self, filled: Solid) -> Self {
-        Self { filled: Some(filled), ..self }
-    }
-
-    /// Whether it leaves a hidden region free.
-    #[must_use]
-    pub fn has_open_core(&self) -> bool {
-        self.filled.is_some()
-    }
-
-    /// The body whose hull it is, if it is one's.
-    #[must_use]
-    pub fn body(&self) -> Option<&Body> {
-        self.body.as_ref()
+        Self { filled: Some(filled.clone()), ..Self::new(filled.with_hole(hole)) }
     }
 
     /// Whether it is one convex body: light that has left it does not come back by itself.
@@ -263,18 +227,12 @@ impl Structure {
         if !self.hull.may_be_met(origin, direction) {
             return None;
         }
-        let mut nearest: Option<(u16, &Surface, f64, DVec3)> = None;
-        for (index, surface) in (0u16..).zip(&self.surfaces) {
-            if let Some((distance, outward)) =
-                surface.hit(origin, direction, departed == Some(index))
-                && nearest.is_none_or(|(_, _, least, _)| distance < least)
-            {
-                nearest = Some((index, surface, distance, outward));
-            }
-        }
-        let (index, surface, distance, outward) = nearest?;
-        let (far, coating) = (surface.far, surface.coating);
-        Some(SurfaceHit { surface: index, distance, outward, far, coating })
+        let hits = (0u16..).zip(&self.surfaces).filter_map(|(index, surface)| {
+            let (distance, outward) = surface.hit(origin, direction, departed == Some(index))?;
+            Some((distance, (index, surface, outward)))
+        });
+        let (distance, (surface, &Surface { far, coating, .. }, outward)) = first_along(hits)?;
+        Some(SurfaceHit { surface, distance, outward, far, coating })
     }
 }
 

@@ -11,10 +11,8 @@ use optics::transformation::ConformalMap;
 /// A surface, and what lies behind it.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    /// Where it lies.
+    /// Where it lies, and from where it is met.
     pub shape: Shape,
-    /// From where it is met.
-    pub side: Side,
     /// Which part of the shape it is.
     pub part: Part,
     /// What lies behind it.
@@ -26,17 +24,24 @@ pub struct Surface {
 /// A piece of a surface about the origin or the z axis.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// A plane piece that extends along z.
+    /// A plane piece that extends along z, met from its front.
     Wall(Wall),
+    /// A plane piece that extends along z, met from both sides.
+    Sheet(Wall),
     /// A flat end of a polygonal prism.
     Cap(Cap),
     /// A flat end of a round cylinder.
     Disc(Disc),
-    /// The whole border of a convex shape.
+    /// The whole border of a convex shape, met from outside.
     Convex(Convex),
-    /// The round side of a cylinder.
+    /// The border of a hole that is a ball, met from within.
+    BallHole(Sphere),
+    /// The round side of a cylinder, met from outside.
     Round(Cylinder),
-    /// The outline of the metal below the curved floor of a conformal map, or one curved side of it, extended along z.
+    /// The round side of a hole that is a cylinder, met from within.
+    RoundHole(Cylinder),
+    /// The outline of the metal below the curved floor of a conformal map, met from outside, or one curved side of it, met
+    /// from within; extended along z.
     Curve {
         /// Its cross-section.
         curve: FloorCurve,
@@ -45,17 +50,6 @@ pub enum Shape {
         /// Its extent along z.
         extent: Extent,
     },
-}
-
-/// From where a surface is met.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// From where its normal points.
-    Front,
-    /// From the other side: the border of a hole.
-    Back,
-    /// From both: a sheet.
-    Both,
 }
 
 /// A part of a flat end.
@@ -102,10 +96,10 @@ impl Part {
 }
 
 impl Surface {
-    /// A whole bare surface that is met from the front.
+    /// A whole bare surface.
     #[must_use]
     pub fn new(shape: Shape, far: FarSide) -> Self {
-        Self { shape, side: Side::Front, part: Part::Whole, far, coating: Coating::None }
+        Self { shape, part: Part::Whole, far, coating: Coating::None }
     }
 
     /// A plane piece that extends along z, met from its front.
@@ -117,31 +111,7 @@ impl Surface {
     /// A thin two-sided mirror that extends along z.
     #[must_use]
     pub fn mirror(wall: Wall) -> Self {
-        Self { side: Side::Both, ..Self::wall(wall, FarSide::Conductor) }
-    }
-
-    /// A ball's border, met from outside.
-    #[must_use]
-    pub fn sphere(sphere: Sphere, far: FarSide) -> Self {
-        Self::new(Shape::Convex(Convex::Ball(sphere)), far)
-    }
-
-    /// The same surface, coated.
-    #[must_use]
-    pub fn with_coating(self, coating: Coating) -> Self {
-        Self { coating, ..self }
-    }
-
-    /// A part of the same surface.
-    #[must_use]
-    pub fn with_part(self, part: Part) -> Self {
-        Self { part, ..self }
-    }
-
-    /// The same surface, met from behind.
-    #[must_use]
-    pub fn from_behind(self) -> Self {
-        Self { side: Side::Back, ..self }
+        Self::new(Shape::Sheet(wall), FarSide::Conductor)
     }
 
     /// The distance, from zero on, at which a ray meets the surface and the unit normal there, against the ray. A ray that
@@ -149,49 +119,38 @@ impl Surface {
     #[must_use]
     #[inline]
     pub fn hit(&self, origin: DVec3, direction: DVec3, departed: bool) -> Option<(f64, DVec3)> {
-        let least = if departed { AGAIN } else { 0.0 };
-        let (distance, normal) = match (&self.shape, self.side) {
-            (Shape::Curve { curve, side, extent }, _) => {
+        let at = |distance: f64| origin + direction * distance;
+        let (distance, normal) = match &self.shape {
+            Shape::Curve { curve, side, extent } => {
+                let least = if departed { AGAIN } else { 0.0 };
                 return curve_hit(curve, *side, *extent, origin, direction, least);
             }
             // The border of a hole is curved inwards: a ray meets it again.
-            (Shape::Convex(Convex::Ball(sphere)), Side::Back) => {
+            Shape::BallHole(sphere) => {
                 let distance = sphere.hit_within(origin, direction)?;
-                (distance, -sphere.outward(origin + direction * distance))
+                (distance, -sphere.outward(at(distance)))
             }
-            (Shape::Round(cylinder), Side::Back) => {
+            Shape::RoundHole(cylinder) => {
                 let distance = cylinder.hit_side_within(origin, direction)?;
-                let point = origin + direction * distance;
-                (distance, -cylinder.outward(CylinderPart::Side, point))
+                (distance, -cylinder.outward(CylinderPart::Side, at(distance)))
             }
             _ if departed => return None,
-            (Shape::Wall(wall), side) => {
+            Shape::Wall(wall) if direction.dot(wall.normal()) >= 0.0 => return None,
+            Shape::Wall(wall) => (wall.hit(origin, direction)?, wall.normal()),
+            Shape::Sheet(wall) => {
                 let facing = -direction.dot(wall.normal());
-                let normal = match side {
-                    Side::Front if facing <= 0.0 => return None,
-                    Side::Front => wall.normal(),
-                    Side::Back if facing >= 0.0 => return None,
-                    Side::Back => -wall.normal(),
-                    Side::Both => wall.normal() * facing.signum(),
-                };
-                (wall.hit(origin, direction)?, normal)
+                (wall.hit(origin, direction)?, wall.normal() * facing.signum())
             }
-            (Shape::Cap(cap), _) => {
-                if direction.dot(cap.normal) >= 0.0 {
-                    return None;
-                }
-                (cap.hit(origin, direction)?, cap.normal)
-            }
-            (Shape::Disc(disc), _) => (disc.hit(origin, direction)?, disc.normal),
-            (Shape::Convex(shape), _) => shape.entry(origin, direction)?,
-            (Shape::Round(cylinder), _) => {
+            Shape::Cap(cap) => (cap.hit(origin, direction)?, cap.normal),
+            Shape::Disc(disc) => (disc.hit(origin, direction)?, disc.normal),
+            Shape::Convex(shape) => shape.entry(origin, direction)?,
+            Shape::Round(cylinder) => {
                 let distance = cylinder.hit_side(origin, direction)?;
-                let point = origin + direction * distance;
-                (distance, cylinder.outward(CylinderPart::Side, point))
+                (distance, cylinder.outward(CylinderPart::Side, at(distance)))
             }
         };
         let whole = matches!(self.part, Part::Whole);
-        (whole || self.part.holds(origin + direction * distance)).then_some((distance, normal))
+        (whole || self.part.holds(at(distance))).then_some((distance, normal))
     }
 }
 

@@ -59,11 +59,6 @@ impl Key {
         }
     }
 
-    /// The value where the key is absent; `None` if absence itself means something.
-    pub fn default_value(&self) -> Option<Value> {
-        (self.default)()
-    }
-
     /// Holds a value against the key, and gives it back as the key has it: 3 is 3.0 where a number is asked for.
     ///
     /// # Errors

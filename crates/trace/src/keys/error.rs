@@ -22,6 +22,19 @@ impl KeyError {
         KeyError { key: Some(key), entry: None, message: message.into() }
     }
 
+    /// Refuses a table for one of its keys where `refused` is true.
+    ///
+    /// # Errors
+    ///
+    /// The error of that key.
+    pub fn refuse_if(
+        refused: bool,
+        key: &'static str,
+        message: impl Into<String>,
+    ) -> Result<(), Self> {
+        if refused { Err(Self::at(key, message)) } else { Ok(()) }
+    }
+
     /// An error of no single key.
     pub fn general(message: impl Into<String>) -> Self {
         KeyError { key: None, entry: None, message: message.into() }

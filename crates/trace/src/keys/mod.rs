@@ -19,8 +19,6 @@ pub use error::KeyError;
 pub use field::{Field, Given, Item, Sampled, VisitFile};
 pub use nearest::{hint, nearest, unknown};
 pub use samples::Samples;
-#[doc(hidden)]
-pub use table::trimmed;
 pub use table::{Table, find};
 pub use value::{Value, number_text, quoted, vector_text};
 

@@ -55,16 +55,6 @@ pub fn find(keys: &'static [Key], name: &str) -> Result<&'static Key, KeyError> 
     })
 }
 
-/// The text of a doc comment, which begins with a space.
-#[doc(hidden)]
-#[must_use]
-pub const fn trimmed(doc: &'static str) -> &'static str {
-    match doc.as_bytes() {
-        [b' ', ..] => doc.split_at(1).1,
-        _ => doc,
-    }
-}
-
 /// Makes a table of a scene: the struct, its keys, its defaults, and the way from values to fields and back.
 ///
 /// A field is a key. Its doc comment is what people are told about the key; after its type come its default (where it
@@ -135,12 +125,12 @@ macro_rules! table {
 
         impl $table {
             /// What it is, in a sentence or two.
-            pub const SUMMARY: &'static str = $crate::keys::trimmed(concat!($($about),+));
+            pub const SUMMARY: &'static str = concat!($($about),+).trim_ascii_start();
 
             /// Its keys.
             pub const KEYS: &'static [$crate::keys::Key] = &[$($crate::keys::Key {
                 name: stringify!($name),
-                doc: $crate::keys::trimmed(concat!($($doc),+)),
+                doc: concat!($($doc),+).trim_ascii_start(),
                 kind: <$type as $crate::keys::Field>::KIND,
                 unit: concat!($($unit)?),
                 limits: $crate::table!(@limits $($limits)?),

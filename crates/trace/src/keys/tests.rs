@@ -108,7 +108,7 @@ fn the_declaration_gives_keys_and_defaults() {
     assert_eq!((table.show, table.channels.len(), table.resolution), (Look::Cloak, 0, [4, 3]));
     assert_eq!((table.image.to_str(), &table.sky), (Some(SHELF), &None));
     for key in Everything::KEYS {
-        assert_eq!(table.get(key.name), key.default_value(), "{}", key.name);
+        assert_eq!(table.get(key.name), (key.default)(), "{}", key.name);
     }
     assert_eq!(key!(Everything.side), "side");
 }

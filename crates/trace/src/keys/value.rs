@@ -105,35 +105,22 @@ impl fmt::Display for Value {
     }
 }
 
-impl From<f64> for Value {
-    fn from(number: f64) -> Self {
-        Value::Number(number)
-    }
+/// Makes values of a type that is one of their kinds.
+macro_rules! from {
+    ($type:ty, $kind:ident) => {
+        impl From<$type> for Value {
+            fn from(value: $type) -> Self {
+                Value::$kind(value.into())
+            }
+        }
+    };
 }
 
-impl From<i64> for Value {
-    fn from(integer: i64) -> Self {
-        Value::Integer(integer)
-    }
-}
-
-impl From<bool> for Value {
-    fn from(flag: bool) -> Self {
-        Value::Flag(flag)
-    }
-}
-
-impl From<&str> for Value {
-    fn from(text: &str) -> Self {
-        Value::Text(text.to_owned())
-    }
-}
-
-impl From<String> for Value {
-    fn from(text: String) -> Self {
-        Value::Text(text)
-    }
-}
+from!(f64, Number);
+from!(i64, Integer);
+from!(bool, Flag);
+from!(&str, Text);
+from!(String, Text);
 
 impl<T: Into<Value>, const N: usize> From<[T; N]> for Value {
     fn from(items: [T; N]) -> Self {

@@ -1,9 +1,9 @@
 //! A branch of a ray tree on its way.
 
+use super::event::fingerprint;
 use super::{Launch, Leaf, LeafEnd};
 use crate::assembly::DepartedSurface;
 use crate::device::InnerRay;
-use crate::split_mix::mix;
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::geometry::Pose;
@@ -11,6 +11,7 @@ use optics::interface::{IncidentWave, OutgoingWave};
 use optics::medium::{ModeKind, RayWave};
 use optics::propagation::VirtualPoint;
 use optics::wave::ComplexVector;
+use std::hash::Hash;
 
 /// Where a branch runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,7 +108,7 @@ impl<const N: usize> Branch<N> {
             part.electric[i] = unit.scaled(along[i]);
         }
         part.mode = mode;
-        part.path = fingerprint(self.path, mode as u64);
+        part.path = fingerprint(self.path, mode);
         part
     }
 
@@ -120,13 +121,13 @@ impl<const N: usize> Branch<N> {
             electric: amplitudes.map(|amplitude| field.scaled(amplitude)),
             power: amplitudes.map(|amplitude| amplitude.norm_sqr()),
             mode: wave.kind,
-            path: fingerprint(self.path, wave.kind as u64),
+            path: fingerprint(self.path, wave.kind),
             ..*self
         }
     }
 
     /// Goes on from here as `wave`, the event telling how.
-    pub fn go_on_as(&mut self, wave: &OutgoingWave<N>, event: u64) {
+    pub fn go_on_as(&mut self, wave: &OutgoingWave<N>, event: impl Hash) {
         self.wave_vector = wave.wave_vector;
         self.attenuation = wave.attenuation;
         self.direction = wave.direction;
@@ -207,9 +208,4 @@ impl<const N: usize> Branch<N> {
     pub fn largest_power(&self) -> f64 {
         self.power.iter().copied().fold(0.0, f64::max)
     }
-}
-
-/// Adds an event to the fingerprint of a path.
-fn fingerprint(path: u64, event: u64) -> u64 {
-    mix(path ^ event)
 }

@@ -4,7 +4,9 @@
 //! solver; at a conductor, reflect. Power is accounted for: what the leaves carry, what is
 //! absorbed and what is pruned add up to what was launched.
 
+mod borders;
 mod branch;
+mod event;
 mod first_face;
 mod four;
 mod leaf;

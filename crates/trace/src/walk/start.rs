@@ -3,7 +3,6 @@
 use super::branch::{Branch, Place};
 use super::{PathRecorder, Tracer};
 use crate::assembly::{Ahead, Assembly};
-use crate::device::Entrance;
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::medium::{Medium, RayWave};
@@ -33,7 +32,7 @@ impl Assembly {
         let region = if device.body().is_some() && !opaque {
             Some(0)
         } else {
-            device.structure.region_at(device.pose.to_local(point)).map(|(region, ..)| region)
+            device.structure.region_at(device.pose.to_local(point)).map(|(region, _)| region)
         };
         let region = region.filter(|region| device.region(*region).can_be_started_in());
         // Devices are numbered in 16 bits.
@@ -54,8 +53,8 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
         let device = self.assembly.device(number);
         branch.enter_frame(&device.pose);
         branch.place = Place::Region { device: number, region };
-        let found = device.region(region).entrance_if_within(branch.position);
-        let Some((Entrance { virtual_point }, medium)) = found else {
+        let found = device.region(region).enter_if_within(branch.position);
+        let Some((virtual_point, medium)) = found else {
             return self.lose(branch.power);
         };
         branch.virtual_point = virtual_point;

@@ -1,12 +1,15 @@
 //! From surface to surface: how a branch runs on, and what becomes of it where media meet.
 
+use super::borders::Met;
 use super::branch::{Branch, Place};
+use super::event::Event;
 use super::{LeafEnd, PathRecorder, PathSegment, Tracer};
 use crate::assembly::{Ahead, DepartedSurface, slack_at};
-use crate::device::{Coating, Entrance, FarSide, InnerRay, Passage, Region, SurfaceHit};
+use crate::device::{Coating, FarSide, Passage, Region, SurfaceHit};
 use glam::DVec3;
 use optics::interface::{
-    OutgoingWave, OutgoingWaves, Side, reflect_at_conductor, split_down_to, transmit_antireflection,
+    OutgoingWave, OutgoingWaves, Reflectionless, Side, reflect_at_conductor, split_down_to,
+    transmit_antireflection,
 };
 use optics::medium::{Medium, ModeKind};
 use optics::propagation::PathPoint;
@@ -19,32 +22,13 @@ const SHORTEST_WAVE: f64 = 1e30;
 /// edge of a negative-index body, and never comes out.
 const MOST_STANDSTILLS: u8 = 16;
 
-/// Tells borders between devices from those with air in the fingerprint of a path.
-const BETWEEN_DEVICES: u64 = 1 << 55;
-
-/// What lies beyond a border between devices.
-#[expect(clippy::large_enum_variant, reason = "it is looked at and dropped")]
-enum Beyond {
-    Air,
-    Conductor,
-    End(LeafEnd),
-    /// A region of a device, with its medium in the world's frame.
-    Region {
-        device: u16,
-        region: u16,
-        entrance: Entrance,
-        medium: Medium,
-    },
-}
-
-/// A border between devices, in the world's frame.
-struct Border {
+/// Where media meet, in the frame of the branch that comes there.
+#[derive(Clone, Copy)]
+pub(super) struct Interface {
     /// The unit normal, along the ray.
-    onward: DVec3,
-    coating: Coating,
-    event: u64,
-    /// What light that is sent back has departed from.
-    departed: Option<DepartedSurface>,
+    pub onward: DVec3,
+    pub coating: Coating,
+    pub event: Event,
 }
 
 impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
@@ -75,76 +59,57 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         branch.optical_path += hit.distance;
         branch.group_path += hit.distance;
         branch.met_device = true;
-        let (number, hit) = if self.assembly.is_simple() {
-            (number, hit)
-        } else if !self.moves(branch, hit.distance) {
+        if self.assembly.simple {
+            return self.enter(branch, number, &hit);
+        }
+        if !self.moves(branch, hit.distance) {
             return false;
-        } else {
-            match self.assembly.ahead(branch.position, branch.direction, branch.departed) {
-                Ahead::Surface(number, hit) => (number, hit),
-                Ahead::Body(body) if body == number => (number, hit),
-                Ahead::Body(body) => {
-                    let outward = self.assembly.device(number).pose.vector_to_world(hit.outward);
-                    let event = BETWEEN_DEVICES | event(number, &hit);
-                    let border =
-                        Border { onward: -outward, coating: Coating::None, event, departed: None };
-                    let beyond = self.beyond(branch, Ahead::Body(body));
-                    return self.cross(branch, &Medium::AIR, beyond, &border);
-                }
-                // Only grazed.
-                Ahead::Air => {
-                    let surface = Some(hit.surface);
-                    branch.departed = Some(DepartedSurface { device: number, surface });
-                    return true;
-                }
+        }
+        match self.assembly.ahead(branch.position, branch.direction, branch.departed) {
+            Ahead::Surface(number, hit) => self.enter(branch, number, &hit),
+            Ahead::Body(body) if body == number => self.enter(branch, number, &hit),
+            ahead @ Ahead::Body(_) => {
+                let outward = self.assembly.device(number).pose.vector_to_world(hit.outward);
+                let event = Event::Surface { device: number, surface: hit.surface }.shared();
+                let interface = Interface { onward: -outward, coating: Coating::None, event };
+                self.cross(branch, &Medium::AIR, ahead, interface)
             }
-        };
-        self.enter(branch, number, &hit)
+            // Only grazed.
+            Ahead::Air => {
+                branch.departed = Some(DepartedSurface::met(number, &hit));
+                true
+            }
+        }
     }
 
     /// Takes a branch in air that has come to a surface of a device into it.
     fn enter(&mut self, branch: &mut Branch<N>, number: u16, hit: &SurfaceHit) -> bool {
         let device = self.assembly.device(number);
-        let departed = || device.departed(number, Some(hit.surface));
-        let event = event(number, hit);
-        let region = match hit.far {
-            FarSide::Region(region) | FarSide::Seam(region) => region,
+        let interface = Interface {
+            onward: -hit.outward,
+            coating: hit.coating,
+            event: Event::Surface { device: number, surface: hit.surface },
+        };
+        let back = |branch: &mut Branch<N>| {
+            branch.leave_frame(&device.pose);
+            branch.departed = device.departed(number, Some(hit.surface));
+        };
+        match hit.far {
+            FarSide::Region(region) | FarSide::Seam(region) => {
+                branch.enter_frame(&device.pose);
+                let known = self.assembly.interfaces(number).entrance(hit.surface);
+                self.refract(branch, &Medium::AIR, known, (number, region), &interface, back)
+            }
             FarSide::Conductor => {
                 branch.enter_frame(&device.pose);
-                let waves = self.reflect(&Medium::AIR, branch, -hit.outward);
-                return self.go_on(branch, &waves, event, |branch, _| {
-                    branch.leave_frame(&device.pose);
-                    branch.departed = departed();
-                });
+                self.reflect(branch, &Medium::AIR, &interface, back)
             }
-            FarSide::Opaque => return self.end(branch, LeafEnd::Body(number)),
+            FarSide::Opaque => self.end(branch, LeafEnd::Body(number)),
             FarSide::Outside => {
-                branch.departed =
-                    Some(DepartedSurface { device: number, surface: Some(hit.surface) });
-                return true;
+                branch.departed = Some(DepartedSurface::met(number, hit));
+                true
             }
-        };
-        branch.enter_frame(&device.pose);
-        if let Some(interface) = self.assembly.interfaces(number).entrance(hit.surface) {
-            let wave = interface.transmit(&branch.incident());
-            return self.go_on_alone(branch, &wave, event, |branch| {
-                branch.enter_region(number, region, None);
-            });
         }
-        let mut graded = None;
-        let found = entered(device.region(region), branch.position, &mut graded);
-        let Some((entrance, medium)) = found else {
-            return self.lose(branch.power);
-        };
-        let mut waves = OutgoingWaves::new();
-        self.split(&Medium::AIR, medium, branch, -hit.outward, hit.coating, &mut waves);
-        self.go_on(branch, &waves, event, |branch, side| match side {
-            Side::Reflected => {
-                branch.leave_frame(&device.pose);
-                branch.departed = departed();
-            }
-            Side::Transmitted => branch.enter_region(number, region, entrance.virtual_point),
-        })
     }
 
     /// Whether a branch in a region starts as several waves that then part: each goes on alone.
@@ -185,15 +150,15 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let Some(medium) = self.travel(branch, place, passage, &mut graded) else {
             return false;
         };
-        let Some((met, _)) = guest else {
-            // Sent back from here, it may come again to what it has left.
-            branch.departed = None;
-            return self.arrive(branch, place, medium, passage);
+        let interface = Interface {
+            onward: passage.outward,
+            coating: passage.coating,
+            event: Event::Face { device: place.0, region: place.1, face: passage.face },
         };
-        let onward = device.pose.vector_to_world(passage.outward);
-        let event = BETWEEN_DEVICES | face_event(place, passage.face);
-        let border = Border { onward, coating: Coating::None, event, departed: None };
-        self.leave(branch, medium, met, border)
+        match guest {
+            Some((met, _)) => self.leave(branch, medium, met, interface),
+            None => self.arrive(branch, place, medium, passage, &interface),
+        }
     }
 
     /// Takes a branch along a passage through a region; the medium at its end, or `None` if the branch does not come there.
@@ -234,6 +199,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         branch.optical_path += passage.optical_path;
         branch.group_path += region.group_path(passage.optical_path, way);
         branch.virtual_point = passage.virtual_point;
+        // From here on it may come again to what it has left.
+        branch.departed = None;
         if let Some(transport) = passage.transport {
             branch.electric = branch.electric.map(|field| field.transformed(&transport));
         }
@@ -248,67 +215,42 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         (number, region): (u16, u16),
         medium: &Medium,
         passage: &Passage,
+        interface: &Interface,
     ) -> bool {
         let device = self.assembly.device(number);
-        let event = face_event((number, region), passage.face);
-        let interface = self.assembly.interfaces(number).exit(region, passage.face);
+        let known = self.assembly.interfaces(number).exit(region, passage.face);
         match passage.far {
-            FarSide::Conductor => {
-                let waves = self.reflect(medium, branch, passage.outward);
-                self.go_on(branch, &waves, event, |_, _| ())
-            }
+            FarSide::Conductor => self.reflect(branch, medium, interface, |_| ()),
             FarSide::Seam(next) => {
                 branch.place = Place::Region { device: number, region: next };
                 true
             }
             FarSide::Region(next) => {
-                if let Some(interface) = interface {
-                    let wave = interface.transmit(&branch.incident());
-                    return self.go_on_alone(branch, &wave, event, |branch| {
-                        branch.enter_region(number, next, None);
-                    });
-                }
-                let mut graded = None;
-                let beyond = entered(device.region(next), branch.position, &mut graded);
-                let Some((entrance, beyond)) = beyond else {
-                    return self.lose(branch.power);
-                };
-                let mut waves = OutgoingWaves::new();
-                self.split(medium, beyond, branch, passage.outward, passage.coating, &mut waves);
-                self.go_on(branch, &waves, event, |branch, side| {
-                    if side == Side::Transmitted {
-                        branch.enter_region(number, next, entrance.virtual_point);
-                    }
-                })
+                self.refract(branch, medium, known, (number, next), interface, |_| ())
             }
             FarSide::Opaque => self.end(branch, LeafEnd::Body(number)),
             FarSide::Outside => {
                 // It has met no surface from outside, which it may meet next unless the device is convex.
                 let departed = device.departed(number, None);
-                if !self.assembly.is_simple() || self.screen_touches {
+                if !self.assembly.simple || self.screen_touches {
                     let position = device.pose.to_world(branch.position);
                     let direction = device.pose.vector_to_world(branch.direction);
                     let met = self.met_at(position, direction, departed);
-                    if met != Met::Air {
-                        let onward = device.pose.vector_to_world(passage.outward);
-                        let event = BETWEEN_DEVICES | event;
-                        let border =
-                            Border { onward, coating: passage.coating, event, departed: None };
-                        return self.leave(branch, medium, met, border);
+                    if met != Met::Device(Ahead::Air) {
+                        return self.leave(branch, medium, met, *interface);
                     }
                 }
                 let leave = |branch: &mut Branch<N>| {
                     branch.come_out(departed);
                     branch.leave_frame(&device.pose);
                 };
-                if let Some(interface) = interface {
-                    let wave = interface.transmit(&branch.incident());
-                    return self.go_on_alone(branch, &wave, event, leave);
+                if let Some(known) = known {
+                    let wave = known.transmit(&branch.incident());
+                    return self.go_on_alone(branch, &wave, interface.event, leave);
                 }
-                let air = &Medium::AIR;
                 let mut waves = OutgoingWaves::new();
-                self.split(medium, air, branch, passage.outward, passage.coating, &mut waves);
-                self.go_on(branch, &waves, event, |branch, side| {
+                self.split(medium, &Medium::AIR, branch, interface, &mut waves);
+                self.go_on(branch, &waves, interface.event, |branch, side| {
                     if side == Side::Transmitted {
                         leave(branch);
                     }
@@ -317,189 +259,62 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
     }
 
-    /// What a ray meets at a point, in the world, at which it leaves `departed`.
-    fn met_at(&self, position: DVec3, direction: DVec3, departed: Option<DepartedSurface>) -> Met {
-        let slack = slack_at(position);
-        let screen = self.screen.filter(|_| self.screen_touches);
-        let screen = screen.and_then(|screen| screen.hit(position, direction, -slack));
-        if screen.is_some_and(|distance| distance <= slack) {
-            return Met::Screen;
-        }
-        match self.assembly.ahead(position, direction, departed) {
-            Ahead::Air => Met::Air,
-            ahead => Met::Device(ahead),
-        }
-    }
-
-    /// What a ray in a body, in its frame, meets before the border to which it has passed, and the passage to there.
-    fn guest_ahead(
-        &self,
-        branch: &Branch<N>,
-        body: u16,
-        passage: Option<&Passage>,
-    ) -> Option<(Met, Passage)> {
-        let pose = &self.assembly.device(body).pose;
-        let origin = pose.to_world(branch.position);
-        let direction = pose.vector_to_world(branch.direction);
-        let slack = slack_at(origin);
-        let end = passage.map_or(f64::INFINITY, |p| (p.position - branch.position).length());
-        let guests = self.assembly.guests(body);
-        let hit = self.assembly.first_hit(origin, direction, branch.departed, Some(guests));
-        let hit = hit.filter(|(_, hit)| hit.distance < end - slack);
-        let reach = hit.map_or(end - slack, |(_, hit)| hit.distance + slack);
-        let screen = self.screen.and_then(|screen| screen.hit(origin, direction, -slack));
-        let ray = branch.inner_ray();
-        let to = |distance: f64, face: u16, onward: DVec3| {
-            let end = branch.position + branch.direction * distance;
-            Passage::straight(&ray, end, face, onward, FarSide::Outside)
-        };
-        if let Some(distance) = screen.filter(|distance| *distance <= reach) {
-            return Some((Met::Screen, to(distance.max(0.0), u16::MAX, branch.direction)));
-        }
-        let (guest, hit) = hit?;
-        let at = origin + direction * hit.distance;
-        let met = match self.assembly.ahead(at, direction, branch.departed) {
-            Ahead::Air => {
-                Met::Grazed(DepartedSurface { device: guest, surface: Some(hit.surface) })
-            }
-            Ahead::Body(there) if there == body => {
-                Met::Grazed(DepartedSurface { device: guest, surface: Some(hit.surface) })
-            }
-            ahead => Met::Device(ahead),
-        };
-        let outward = self.assembly.device(guest).pose.vector_to_world(hit.outward);
-        Some((met, to(hit.distance, guest, -pose.vector_to_local(outward))))
-    }
-
-    /// Takes a branch from a region, in its frame, across a border beyond which is not air.
-    fn leave(&mut self, branch: &mut Branch<N>, medium: &Medium, met: Met, border: Border) -> bool {
-        let Place::Region { device: number, region } = branch.place else { return false };
-        let device = self.assembly.device(number);
-        let turned = (!medium.is_isotropic())
-            .then(|| device.medium_in_world(region, &branch.inner_ray()))
-            .flatten();
-        let ahead = match met {
-            Met::Grazed(departed) => {
-                branch.departed = Some(departed);
-                return true;
-            }
-            Met::Screen => {
-                branch.leave_frame(&device.pose);
-                return self.end(branch, LeafEnd::Screen);
-            }
-            Met::Air => Ahead::Air,
-            Met::Device(ahead) => ahead,
-        };
-        branch.leave_frame(&device.pose);
-        let coating = match ahead {
-            Ahead::Surface(_, hit) if border.coating == Coating::None => hit.coating,
-            _ => border.coating,
-        };
-        let beyond = self.beyond(branch, ahead);
-        let departed = self.departed_from(ahead);
-        let border = Border { coating, departed, ..border };
-        self.cross(branch, turned.as_ref().unwrap_or(medium), beyond, &border)
-    }
-
-    /// What light has departed from that is sent back by what is ahead of it.
-    fn departed_from(&self, ahead: Ahead) -> Option<DepartedSurface> {
-        match ahead {
-            Ahead::Air => None,
-            Ahead::Surface(number, hit) => {
-                self.assembly.device(number).departed(number, Some(hit.surface))
-            }
-            Ahead::Body(number) => self.assembly.device(number).departed(number, None),
-        }
-    }
-
-    /// What lies beyond a border, at which the branch is, in the world's frame; `None` if rounding hides it.
-    fn beyond(&self, branch: &Branch<N>, ahead: Ahead) -> Option<Beyond> {
-        let (number, far) = match ahead {
-            Ahead::Air => return Some(Beyond::Air),
-            Ahead::Surface(number, hit) => (number, hit.far),
-            Ahead::Body(number) if self.assembly.device(number).structure.is_opaque() => {
-                (number, FarSide::Opaque)
-            }
-            Ahead::Body(number) => (number, FarSide::Region(0)),
-        };
-        Some(match far {
-            FarSide::Outside => Beyond::Air,
-            FarSide::Conductor => Beyond::Conductor,
-            FarSide::Opaque => Beyond::End(LeafEnd::Body(number)),
-            FarSide::Region(region) | FarSide::Seam(region) => {
-                let device = self.assembly.device(number);
-                let position = device.pose.to_local(branch.position);
-                let entrance = device.region(region).enter(position)?;
-                let ray = InnerRay {
-                    position,
-                    virtual_point: entrance.virtual_point,
-                    ..branch.inner_ray()
-                };
-                let medium = device.medium_in_world(region, &ray)?;
-                Beyond::Region { device: number, region, entrance, medium }
-            }
-        })
-    }
-
-    /// Splits a branch, in the world's frame but still of the place that it leaves, at the border of two devices or of one
-    /// and what is around it.
-    fn cross(
+    /// Splits a branch, in the frame of a device, where it comes to a region of it; `known` is the interface if it reflects
+    /// nothing. What is sent back is put into its place by `back`.
+    #[inline]
+    fn refract(
         &mut self,
         branch: &mut Branch<N>,
-        here: &Medium,
-        beyond: Option<Beyond>,
-        border: &Border,
+        from: &Medium,
+        known: Option<&Reflectionless>,
+        (number, region): (u16, u16),
+        interface: &Interface,
+        back: impl Fn(&mut Branch<N>),
     ) -> bool {
-        let Some(beyond) = beyond else { return self.lose(branch.power) };
-        let (assembly, place) = (self.assembly, branch.place);
-        let back = |branch: &mut Branch<N>| {
-            // Sheets would be met again at once.
-            branch.departed = border.departed;
-            if let Place::Region { device, .. } = place {
-                branch.enter_frame(&assembly.device(device).pose);
-            }
-        };
-        let on = |branch: &mut Branch<N>| match &beyond {
-            Beyond::Region { device, region, entrance, .. } => {
-                branch.enter_frame(&assembly.device(*device).pose);
-                branch.enter_region(*device, *region, entrance.virtual_point);
-            }
-            _ => branch.come_out(match place {
-                Place::Region { device, .. } => assembly.device(device).departed(device, None),
-                Place::Air => None,
-            }),
-        };
-        let there = match &beyond {
-            Beyond::Region { medium, .. } => medium,
-            Beyond::Air => &Medium::AIR,
-            Beyond::End(end) => return self.end(branch, *end),
-            Beyond::Conductor => {
-                let waves = self.reflect(here, branch, border.onward);
-                return self.go_on(branch, &waves, border.event, |branch, _| back(branch));
-            }
-        };
-        if here == there {
-            // A border between equal media: nothing is there.
-            on(branch);
-            return true;
+        if let Some(known) = known {
+            let wave = known.transmit(&branch.incident());
+            return self.go_on_alone(branch, &wave, interface.event, |branch| {
+                branch.enter_region(number, region, None);
+            });
         }
+        let mut graded = None;
+        let found = self.assembly.device(number).region(region).enter(branch.position, &mut graded);
+        let Some((virtual_point, medium)) = found else {
+            return self.lose(branch.power);
+        };
         let mut waves = OutgoingWaves::new();
-        self.split(here, there, branch, border.onward, border.coating, &mut waves);
-        self.go_on(branch, &waves, border.event, |branch, side| match side {
+        self.split(from, medium, branch, interface, &mut waves);
+        self.go_on(branch, &waves, interface.event, |branch, side| match side {
             Side::Reflected => back(branch),
-            Side::Transmitted => on(branch),
+            Side::Transmitted => branch.enter_region(number, region, virtual_point),
         })
+    }
+
+    /// Sends a branch back from metal, into the place where `back` puts it. Where metal sends nothing back, for a surface has
+    /// no normal that numbers can hold, light is lost.
+    pub(super) fn reflect(
+        &mut self,
+        branch: &mut Branch<N>,
+        medium: &Medium,
+        interface: &Interface,
+        back: impl Fn(&mut Branch<N>),
+    ) -> bool {
+        let waves = reflect_at_conductor(medium, &branch.incident(), interface.onward);
+        if waves.is_empty() {
+            return self.lose(branch.power);
+        }
+        self.go_on(branch, &waves, interface.event, |branch, _| back(branch))
     }
 
     /// Ends a branch, which does not go on.
-    fn end(&mut self, branch: &Branch<N>, end: LeafEnd) -> bool {
+    pub(super) fn end(&mut self, branch: &Branch<N>, end: LeafEnd) -> bool {
         self.leaves.push(branch.leaf(end));
         self.recorder.stopped(&[]);
         false
     }
 
     /// Counts borders that a branch crosses without getting anywhere; whether it goes on.
-    fn moves(&mut self, branch: &mut Branch<N>, distance: f64) -> bool {
+    pub(super) fn moves(&mut self, branch: &mut Branch<N>, distance: f64) -> bool {
         let stands = distance < slack_at(branch.position);
         branch.standstills = if stands { branch.standstills + 1 } else { 0 };
         if branch.standstills > MOST_STANDSTILLS {
@@ -510,22 +325,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         true
     }
 
-    /// The waves that metal sends back. Where it sends none, for a surface has no normal that numbers can hold, light is
-    /// lost.
-    fn reflect(&mut self, medium: &Medium, branch: &Branch<N>, into: DVec3) -> OutgoingWaves<N> {
-        let waves = reflect_at_conductor(medium, &branch.incident(), into);
-        if waves.is_empty() {
-            self.lose(branch.power);
-        }
-        waves
-    }
-
     /// Lets the one wave that leaves a surface go on as the branch itself, put into its place.
     fn go_on_alone(
         &mut self,
         branch: &mut Branch<N>,
         wave: &OutgoingWave<N>,
-        event: u64,
+        event: Event,
         put: impl Fn(&mut Branch<N>),
     ) -> bool {
         if W::STOPS_AT_SURFACE {
@@ -539,11 +344,11 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
 
     /// Lets the waves that leave a surface go on, each put into its place: the last one as the branch itself,
     /// the others waiting. Whether there is one.
-    fn go_on(
+    pub(super) fn go_on(
         &mut self,
         branch: &mut Branch<N>,
         waves: &[OutgoingWave<N>],
-        event: u64,
+        event: Event,
         put: impl Fn(&mut Branch<N>, Side),
     ) -> bool {
         if W::STOPS_AT_SURFACE {
@@ -560,14 +365,14 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 // Branches are large, and made where they wait.
                 self.waiting.push(*branch);
                 if let Some(other) = self.waiting.last_mut() {
-                    other.go_on_as(earlier, event | side_code(earlier));
+                    other.go_on_as(earlier, (event, earlier.side, earlier.mode));
                     other.update_survival(least_power);
                     put(other, earlier.side);
                 }
             }
         }
         let Some(wave) = last else { return false };
-        branch.go_on_as(wave, event | side_code(wave));
+        branch.go_on_as(wave, (event, wave.side, wave.mode));
         branch.update_survival(least_power);
         put(branch, wave.side);
         true
@@ -581,7 +386,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         direction: DVec3,
         departed: Option<DepartedSurface>,
     ) -> Option<(u16, SurfaceHit)> {
-        let hit = self.assembly.first_hit(position, direction, departed, None)?;
+        let hit = self.assembly.first_hit(position, direction, departed)?;
         let screen = self.screen.as_ref();
         let screen = screen.and_then(|screen| screen.hit(position, direction, 0.0));
         // Of two that touch, the screen is met.
@@ -589,13 +394,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         screen.is_none_or(|distance| hit.1.distance + slack < distance).then_some(hit)
     }
 
-    fn split(
+    pub(super) fn split(
         &mut self,
         from: &Medium,
         to: &Medium,
         branch: &Branch<N>,
-        normal: DVec3,
-        coating: Coating,
+        interface: &Interface,
         waves: &mut OutgoingWaves<N>,
     ) {
         if branch.wave_vector.length_squared() > SHORTEST_WAVE {
@@ -605,7 +409,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
         let wave = branch.incident();
         let mut weak = [0.0; N];
-        match coating {
+        let normal = interface.onward;
+        match interface.coating {
             Coating::None => {
                 weak = split_down_to(from, to, &wave, normal, self.least_power(), waves);
             }
@@ -615,44 +420,4 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
         self.check_account(branch, waves, weak);
     }
-}
-
-/// What a ray meets.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Met {
-    Air,
-    Screen,
-    Device(Ahead),
-    /// A surface within rounding, which it does not cross.
-    Grazed(DepartedSurface),
-}
-
-/// What a ray finds that enters a region, and the medium there.
-fn entered<'m>(
-    region: &'m Region,
-    position: DVec3,
-    graded: &'m mut Option<Medium>,
-) -> Option<(Entrance, &'m Medium)> {
-    let entrance = region.enter(position)?;
-    let medium = region.medium(position, entrance.virtual_point.as_ref(), graded)?;
-    Some((entrance, medium))
-}
-
-/// Entering a device through a surface, for the fingerprint of a path.
-fn event(device: u16, hit: &SurfaceHit) -> u64 {
-    u64::from(device) << 32 | u64::from(hit.surface) << 2
-}
-
-/// Coming to a face of a region of a device, for the fingerprint of a path.
-fn face_event((device, region): (u16, u16), face: u16) -> u64 {
-    u64::from(device) << 32 | (u64::from(region) + 1) << 20 | u64::from(face) << 2
-}
-
-/// Tells the branches at one surface apart in the fingerprint of the path.
-fn side_code<const N: usize>(wave: &OutgoingWave<N>) -> u64 {
-    let side = match wave.side {
-        Side::Reflected => 1,
-        Side::Transmitted => 2,
-    };
-    side | (wave.mode as u64) << 56
 }

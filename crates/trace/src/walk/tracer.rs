@@ -202,7 +202,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// As [`Self::absorb`], given ∫ Im n ds along the way, cm.
     pub(super) fn extinguish(&mut self, branch: &mut Branch<N>, extinction: f64) -> bool {
         // Power never grows along a ray: rounding must not have it so.
-        let depth = (self.assembly.vacuum_wave_number() * extinction).max(0.0);
+        let depth = (self.assembly.vacuum_wave_number * extinction).max(0.0);
         let (amplitude, kept) = ((-depth).exp(), (-2.0 * depth).exp());
         for (i, power) in branch.power.iter_mut().enumerate() {
             let left = *power * kept;

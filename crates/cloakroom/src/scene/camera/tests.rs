@@ -1,6 +1,7 @@
 //! Tests of the camera.
 
 use super::*;
+use crate::scene::Polarizer;
 
 fn camera(change: impl FnOnce(&mut CameraSettings)) -> Result<Camera, KeyError> {
     let mut settings = CameraSettings::default();
@@ -133,7 +134,7 @@ fn the_covering_width_covers_every_pixel_and_no_more() {
         assert_eq!(camera.covering_width(&plane(-200.0), 1.3), None, "behind the camera");
     }
     let wide = camera(perspective(100.0));
-    let mut settings = wide.expect("a camera").settings().clone();
+    let mut settings = CameraSettings::clone(&wide.expect("a camera"));
     settings.target = DVec3::new(0.0, 0.0, 100.0);
     let aside = Camera::new(settings).expect("a camera");
     assert_eq!(aside.covering_width(&plane(50.0), 1.0), None, "the left edge looks away");

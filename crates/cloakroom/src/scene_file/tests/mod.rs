@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::*;
 use crate::keys::{Given, Value};
 use crate::photograph::ImageSource;
-use crate::scene::{DeviceSettings, Polarizer, Projection, Show};
+use crate::scene::{CameraSettings, DeviceSettings, Polarizer, Projection, Show};
 
 fn read(text: &str) -> Result<Loaded, SceneFileError> {
     read_with(text, &[])
@@ -88,7 +88,7 @@ fn side(device: &DeviceSettings) -> Option<Value> {
 #[test]
 fn every_key_is_read() {
     let scene = scene_with(EVERYTHING, &[]);
-    let camera = scene.camera.settings();
+    let camera: &CameraSettings = &scene.camera;
     assert_eq!(camera.position.to_array(), [-90.0, 1.5, 0.0]);
     assert_eq!(camera.up.to_array(), [0.0, 1.0, 1.0]);
     assert_eq!((camera.projection, camera.width), (Projection::Orthographic, Some(60.0)));
@@ -132,9 +132,9 @@ fn overrides_set_keys_that_are_there_and_keys_that_are_not() {
             "device.2.side=3",
         ],
     );
-    assert_eq!(scene.camera.samples(), 1);
-    assert_eq!(scene.camera.position().to_array(), [1.0, 2.0, 3.0]);
-    assert_eq!(scene.camera.settings().up.to_array(), [0.5, 1.0, 1.0]);
+    assert_eq!(scene.camera.samples, 1);
+    assert_eq!(scene.camera.position.to_array(), [1.0, 2.0, 3.0]);
+    assert_eq!(CameraSettings::clone(&scene.camera).up.to_array(), [0.5, 1.0, 1.0]);
     // Files in overrides are relative to the current folder.
     assert_eq!(scene.photograph.image, ImageSource::File("holiday.jpg".into()));
     let second = &scene.devices[1].placement;
@@ -147,16 +147,16 @@ fn overrides_set_keys_that_are_there_and_keys_that_are_not() {
     let scene = scene_with("", &[r#"device.0={kind="square-cloak", side=2}"#]);
     assert_eq!(side(&scene.devices[0]), Some(2.0.into()));
     let scene = scene_with("", &[r#"camera={samples=2}"#, "photograph.image=2024-01-01"]);
-    assert_eq!(scene.camera.samples(), 2);
+    assert_eq!(scene.camera.samples, 2);
     assert_eq!(scene.photograph.image, ImageSource::File("2024-01-01".into()));
-    assert_eq!(scene_with("", &["camera.seed=1", "camera.seed=2"]).camera.seed(), 2);
+    assert_eq!(scene_with("", &["camera.seed=1", "camera.seed=2"]).camera.seed, 2);
 }
 
 #[test]
 fn an_override_repairs_what_it_replaces() {
     let text = "[camera]\nsamples = -4\n";
     assert!(read(text).is_err());
-    assert_eq!(scene_with(text, &["camera.samples=4"]).camera.samples(), 4);
+    assert_eq!(scene_with(text, &["camera.samples=4"]).camera.samples, 4);
 }
 
 #[test]

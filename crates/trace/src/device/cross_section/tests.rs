@@ -84,15 +84,15 @@ fn lines_are_joined_whichever_way_they_run() {
         vec![p(0.0, 1.0), p(1.0, 1.0)],
         vec![p(0.0, 0.0), p(0.0, 1.0)],
         vec![p(1.0, 1.0), p(1.0, 0.0)],
-    ];
-    let contours = joined(square.iter().cloned());
+    ]
+    .map(|points| Edge { points, far: FarSide::Outside });
+    let contours = joined(&square);
     assert_eq!(contours.len(), 1);
     assert!(contours[0].closed && contours[0].points.len() == 4);
     assert!(contours[0].surrounds(p(0.5, 0.5)) && !contours[0].surrounds(p(1.5, 0.5)));
     // Without one side it is open, wherever one begins.
     for missing in 0..4 {
-        let lines = (0..4).filter(|i| *i != missing).map(|i| square[i].clone());
-        let contours = joined(lines);
+        let contours = joined((0..4).filter(|i| *i != missing).map(|i| &square[i]));
         assert_eq!(contours.len(), 1);
         assert!(!contours[0].closed && contours[0].points.len() == 4);
         assert_eq!(contours[0].corners().len(), 4);

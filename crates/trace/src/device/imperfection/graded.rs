@@ -36,25 +36,16 @@ pub(super) fn apply(
     region: &mut ConformalRegion,
 ) -> Result<(), KeyError> {
     region.loss_tangent = imperfection.loss_tangent;
-    let limited = imperfection.limits_values();
-    if !limited && !imperfection.is_random() {
-        return Ok(());
-    }
-    if region.flow.is_uneven() {
-        let message = "this index is given on a grid; what is made of it is to be given so, too. Loss alone can be asked for";
-        return Err(KeyError::at(TABLE, message));
-    }
-    let finest = |spacing: f64, needed: bool| if needed { spacing } else { f64::INFINITY };
-    let for_limits = finest(imperfection.resolution / SAMPLES_A_RESOLUTION, limited);
-    let for_errors =
-        finest(imperfection.correlation / SAMPLES_A_CORRELATION, imperfection.is_random());
-    let spacing = for_limits.min(for_errors);
+    let (limited, random) = (imperfection.limits_values(), imperfection.is_random());
+    let spacings = [
+        (limited, imperfection.resolution / SAMPLES_A_RESOLUTION, "imperfection.resolution"),
+        (random, imperfection.correlation / SAMPLES_A_CORRELATION, "imperfection.correlation"),
+    ];
+    let needed = spacings.into_iter().filter(|(needed, ..)| *needed);
+    let Some((_, spacing, key)) = needed.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
+    let message = "this index is given on a grid; what is made of it is to be given so, too. Loss alone can be asked for";
+    KeyError::refuse_if(region.flow.is_uneven(), TABLE, message)?;
     let grid = Grid::over(region, spacing).ok_or_else(|| {
-        let key = if for_limits <= for_errors {
-            "imperfection.resolution"
-        } else {
-            "imperfection.correlation"
-        };
         let message = format!(
             "on a grid of {spacing} cm the device has more than {MOST_SAMPLES:.0e} samples; make it larger"
         );
@@ -62,7 +53,7 @@ pub(super) fn apply(
     })?;
     let mut factor =
         if limited { grid.limited(imperfection, region) } else { vec![1.0; grid.len()] };
-    if imperfection.is_random() {
+    if random {
         let field = grid.random_field(imperfection.correlation, deviates, region.half);
         for (factor, deviate) in factor.iter_mut().zip(field) {
             *factor *= (1.0 + imperfection.error * deviate).max(LEAST);
@@ -111,48 +102,34 @@ impl Grid {
         let process = imperfection.process([least, largest]);
         let floor = |x: f64| region.flow.map().floor_height_at(x);
         // By how much the ratio is off 1, and whether the place is in the medium.
-        let mut off: Vec<[f64; 2]> = crate::parallel::map(self.len(), |sample| {
+        let mut off: Vec<DVec2> = crate::parallel::map(self.len(), |sample| {
             let place = self.place(sample);
             if place.y < floor(place.x) {
-                return [0.0; 2];
+                return DVec2::ZERO;
             }
             let index = region.flow.index(Half::Upper, place.extend(0.0));
-            index.map_or([0.0; 2], |index| [process.made(index) / index - 1.0, 1.0])
+            index.map_or(DVec2::ZERO, |index| DVec2::new(process.made(index) / index - 1.0, 1.0))
         });
-        let width = imperfection.resolution / self.spacing;
-        self.smooth(&mut off, width);
-        let ratio = |[sum, weight]: &[f64; 2]| if *weight > 0.0 { 1.0 + sum / weight } else { 1.0 };
-        off.iter().map(ratio).collect()
+        self.smooth(&mut off, imperfection.resolution / self.spacing);
+        off.iter().map(|sum| if sum.y > 0.0 { 1.0 + sum.x / sum.y } else { 1.0 }).collect()
     }
 
     /// Smooths by a Gaussian of a standard deviation in samples, along x and then along y.
-    fn smooth(&self, values: &mut [[f64; 2]], width: f64) {
+    fn smooth(&self, values: &mut [DVec2], width: f64) {
         let [nx, ny] = self.count;
         let reach = ((REACH * width).ceil() as usize).min(nx.max(ny));
         let kernel: Vec<f64> =
             (0..=reach).map(|k| (-0.5 * (k as f64 / width).powi(2)).exp()).collect();
-        let line = |line: &[[f64; 2]]| -> Vec<[f64; 2]> {
-            let n = line.len();
-            (0..n)
-                .map(|i| {
-                    let near = i.saturating_sub(reach)..(i + reach + 1).min(n);
-                    near.fold([0.0; 2], |sum, j| {
-                        let weight = kernel[i.abs_diff(j)];
-                        [sum[0] + weight * line[j][0], sum[1] + weight * line[j][1]]
-                    })
-                })
-                .collect()
-        };
-        for row in values.chunks_exact_mut(nx) {
-            let smoothed = line(row);
-            row.copy_from_slice(&smoothed);
-        }
-        for x in 0..nx {
-            let column: Vec<[f64; 2]> = (0..ny).map(|y| values[y * nx + x]).collect();
-            for (y, value) in line(&column).into_iter().enumerate() {
-                values[y * nx + x] = value;
+        let mut smooth_line = |first: usize, step: usize, count: usize| {
+            let line: Vec<DVec2> = (0..count).map(|i| values[first + i * step]).collect();
+            for i in 0..count {
+                let near = i.saturating_sub(reach)..(i + reach + 1).min(count);
+                values[first + i * step] =
+                    near.fold(DVec2::ZERO, |sum, j| sum + kernel[i.abs_diff(j)] * line[j]);
             }
-        }
+        };
+        (0..ny).for_each(|y| smooth_line(y * nx, 1, nx));
+        (0..nx).for_each(|x| smooth_line(x, nx, ny));
     }
 
     /// A Gaussian random field of mean 0 and variance 1, correlated as exp(-r²/(2 l²)): plane waves with normally
@@ -161,25 +138,20 @@ impl Grid {
         let side = half.mirrored(DVec3::Y).y;
         let [nx, ny] = self.count;
         let scale = (WAVES as f64).sqrt().recip();
-        let waves: Vec<(DVec2, Complex64)> = (0..WAVES)
+        // Of each wave: its wave vector along y, its amplitude, and exp(i k x) along a row.
+        let waves: Vec<(f64, Complex64, Vec<Complex64>)> = (0..WAVES)
             .map(|wave| {
                 let [kx, ky, a, b] = [0, 1, 2, 3].map(|k| deviates.normal(4 * wave + k));
-                (DVec2::new(kx, ky) / correlation, Complex64::new(a, b) * scale)
-            })
-            .collect();
-        // exp(i k x) along a row, for each wave.
-        let along: Vec<Vec<Complex64>> = waves
-            .iter()
-            .map(|(k, _)| {
-                let turn = |i: usize| k.x * (self.corner.x + self.spacing * i as f64);
-                (0..nx).map(|i| Complex64::cis(turn(i) % TAU)).collect()
+                let turn = |i: usize| kx / correlation * (self.corner.x + self.spacing * i as f64);
+                let along = (0..nx).map(|i| Complex64::cis(turn(i) % TAU)).collect();
+                (ky / correlation, Complex64::new(a, b) * scale, along)
             })
             .collect();
         let rows = crate::parallel::map(ny, |j| {
             let y = side * (self.corner.y + self.spacing * j as f64);
             let mut row = vec![0.0; nx];
-            for ((k, amplitude), along) in waves.iter().zip(&along) {
-                let here = amplitude * Complex64::cis(k.y * y % TAU);
+            for (ky, amplitude, along) in &waves {
+                let here = amplitude * Complex64::cis(ky * y % TAU);
                 for (sum, turn) in row.iter_mut().zip(along) {
                     *sum += here.re * turn.re - here.im * turn.im;
                 }
@@ -191,57 +163,4 @@ impl Grid {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_field_has_its_variance_and_its_correlation() {
-        let grid = Grid { corner: DVec2::new(-3.0, 1.0), spacing: 0.5, count: [9, 9] };
-        let correlation = 2.0;
-        let draws = 2000;
-        let fields: Vec<Vec<f64>> = (0..draws)
-            .map(|k| grid.random_field(correlation, &Deviates::new([1, 0, k]), Half::Upper))
-            .collect();
-        let mean = |a: usize, b: usize| {
-            fields.iter().map(|field| field[a] * field[b]).sum::<f64>() / fields.len() as f64
-        };
-        // Within five standard errors of a covariance, at most sqrt(2/N).
-        let error = 5.0 * (2.0 / draws as f64).sqrt();
-        for (a, b) in [(0, 0), (40, 40), (0, 4), (0, 36), (10, 50), (0, 80)] {
-            let distance = grid.place(a).distance(grid.place(b));
-            let expected = (-0.5 * (distance / correlation).powi(2)).exp();
-            let found = mean(a, b);
-            assert!((found - expected).abs() < error, "{distance}: {found} {expected}");
-        }
-    }
-
-    #[test]
-    fn what_is_much_wider_than_the_device_smooths_to_the_mean() {
-        let grid = Grid { corner: DVec2::ZERO, spacing: 1.0, count: [3, 4] };
-        for width in [1e9, 1e300] {
-            let mut values: Vec<[f64; 2]> = (0..12).map(|k| [f64::from(k), 1.0]).collect();
-            grid.smooth(&mut values, width);
-            assert!(values.iter().all(|value| *value == [66.0, 12.0]), "{values:?}");
-        }
-    }
-
-    #[test]
-    fn the_field_is_one_of_places_not_of_grids() {
-        let deviates = Deviates::new([4, 2, 0]);
-        let coarse = Grid { corner: DVec2::new(-1.0, 0.0), spacing: 0.5, count: [5, 5] };
-        let fine = Grid { corner: DVec2::new(-1.0, 0.0), spacing: 0.25, count: [9, 9] };
-        let [coarse, fine] =
-            [coarse, fine].map(|grid| grid.random_field(1.0, &deviates, Half::Upper));
-        for (k, value) in coarse.iter().enumerate() {
-            let same = fine[(k / 5) * 2 * 9 + (k % 5) * 2];
-            assert!((value - same).abs() < 1e-12, "{value} {same}");
-        }
-        // In the lower half the plane goes on: the mirror image of y is -y.
-        let grid = |y: f64| Grid { corner: DVec2::new(0.0, y), spacing: 1.0, count: [4, 1] };
-        let [upper, lower] = [
-            grid(-2.0).random_field(1.0, &deviates, Half::Upper),
-            grid(2.0).random_field(1.0, &deviates, Half::Lower),
-        ];
-        assert_eq!(upper, lower);
-    }
-}
+mod tests;

@@ -16,15 +16,12 @@ pub(super) fn apply(
     structure: &mut Structure,
 ) -> Result<(), KeyError> {
     let groups = groups(&structure.regions);
-    let mut media: Vec<(u64, &mut Medium)> = structure
-        .regions
-        .iter_mut()
-        .zip(groups)
-        .filter_map(|(region, group)| match region {
-            Region::Homogeneous(region) => Some((group, &mut region.medium)),
-            Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) => None,
-        })
-        .collect();
+    let regions = structure.regions.iter_mut().zip(groups);
+    let media = regions.filter_map(|(region, group)| match region {
+        Region::Homogeneous(region) => Some((group, &mut region.medium)),
+        Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) => None,
+    });
+    let mut media: Vec<(u64, &mut Medium)> = media.collect();
     let values = media.iter().flat_map(|(_, medium)| {
         let (permittivity, permeability) = medium.tensors();
         [permittivity, permeability].into_iter().filter(|tensor| !is_vacuum(tensor))
@@ -63,16 +60,16 @@ fn groups(regions: &[Region]) -> Vec<u64> {
             })
         })
         .collect();
-    let mut changed = true;
-    while changed {
-        changed = false;
+    loop {
+        let before = group.clone();
         for &(a, b) in &seams {
             let least = group[a].min(group[b]);
-            changed |= group[a] != least || group[b] != least;
             (group[a], group[b]) = (least, least);
         }
+        if group == before {
+            return group;
+        }
     }
-    group
 }
 
 fn is_vacuum(tensor: &Tensor) -> bool {
@@ -100,11 +97,7 @@ fn made(
         );
     }
     let changed = values * factors;
-    let built = |values: DVec3| {
-        let tensor = axes * DMat3::from_diagonal(values) * axes.transpose();
-        // Symmetric to the last bit.
-        (tensor + tensor.transpose()) * 0.5
-    };
+    let built = |values: DVec3| Tensor::from(DMat3::from_diagonal(values)).turned(&axes).re;
     let re = if factors == DVec3::ONE { tensor.re } else { built(changed) };
     let loss = imperfection.loss_tangent;
     let im = if loss > 0.0 { tensor.im + built(changed.abs() * loss) } else { tensor.im };

@@ -65,10 +65,8 @@ impl Imperfection {
         draw: (usize, u32),
     ) -> Result<Structure, KeyError> {
         self.check()?;
-        if structure.regions.is_empty() {
-            let message = "this device has no medium that could be imperfect";
-            return Err(KeyError::at(TABLE, message));
-        }
+        let message = "this device has no medium that could be imperfect";
+        KeyError::refuse_if(structure.regions.is_empty(), TABLE, message)?;
         let deviates = Deviates::new([self.seed, draw.0 as u64, u64::from(draw.1)]);
         for region in &mut structure.regions {
             match region {
@@ -92,11 +90,8 @@ impl Imperfection {
             let message = format!("minimum is {minimum}, above maximum, {maximum}");
             return Err(KeyError::at("imperfection.minimum", message));
         }
-        if self.levels == 1 {
-            let message = "levels is 1; a process has 2 at least, or 0 for any value";
-            return Err(KeyError::at("imperfection.levels", message));
-        }
-        Ok(())
+        let message = "levels is 1; a process has 2 at least, or 0 for any value";
+        KeyError::refuse_if(self.levels == 1, "imperfection.levels", message)
     }
 
     /// The range and the levels of the process for a design whose values lie between two numbers.

@@ -1,0 +1,205 @@
+//! Borders between devices, and between a device and what is around it: crossed in the world's frame.
+
+use super::branch::{Branch, Place};
+use super::surfaces::Interface;
+use super::{LeafEnd, PathRecorder, Tracer};
+use crate::assembly::{Ahead, DepartedSurface, slack_at};
+use crate::device::{Coating, FarSide, Passage};
+use glam::DVec3;
+use optics::interface::{OutgoingWaves, Side};
+use optics::medium::Medium;
+use optics::propagation::VirtualPoint;
+
+/// What a ray meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Met {
+    Screen,
+    Device(Ahead),
+    /// A surface within rounding, which it does not cross.
+    Grazed(DepartedSurface),
+}
+
+/// What lies beyond a border between devices.
+#[expect(clippy::large_enum_variant, reason = "it is looked at and dropped")]
+enum Destination {
+    Air,
+    Conductor,
+    End(LeafEnd),
+    /// A region of a device, with its medium in the world's frame.
+    Region {
+        place: (u16, u16),
+        virtual_point: Option<VirtualPoint>,
+        medium: Medium,
+    },
+}
+
+impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
+    /// What a ray meets at a point, in the world, at which it leaves `departed`.
+    pub(super) fn met_at(
+        &self,
+        position: DVec3,
+        direction: DVec3,
+        departed: Option<DepartedSurface>,
+    ) -> Met {
+        let slack = slack_at(position);
+        let screen = self.screen.filter(|_| self.screen_touches);
+        let screen = screen.and_then(|screen| screen.hit(position, direction, -slack));
+        if screen.is_some_and(|distance| distance <= slack) {
+            return Met::Screen;
+        }
+        Met::Device(self.assembly.ahead(position, direction, departed))
+    }
+
+    /// What a ray in a body, in its frame, meets before the border to which it has passed, and the passage to there.
+    pub(super) fn guest_ahead(
+        &self,
+        branch: &Branch<N>,
+        body: u16,
+        passage: Option<&Passage>,
+    ) -> Option<(Met, Passage)> {
+        let pose = &self.assembly.device(body).pose;
+        let origin = pose.to_world(branch.position);
+        let direction = pose.vector_to_world(branch.direction);
+        let slack = slack_at(origin);
+        let end = passage.map_or(f64::INFINITY, |p| (p.position - branch.position).length());
+        let hit = self.assembly.first_guest(body, origin, direction, branch.departed);
+        let hit = hit.filter(|(_, hit)| hit.distance < end - slack);
+        let reach = hit.map_or(end - slack, |(_, hit)| hit.distance + slack);
+        let screen = self.screen.and_then(|screen| screen.hit(origin, direction, -slack));
+        let ray = branch.inner_ray();
+        let to = |distance: f64, face: u16, onward: DVec3| {
+            let end = branch.position + branch.direction * distance;
+            Passage::straight(&ray, end, face, onward, FarSide::Outside)
+        };
+        if let Some(distance) = screen.filter(|distance| *distance <= reach) {
+            return Some((Met::Screen, to(distance.max(0.0), u16::MAX, branch.direction)));
+        }
+        let (guest, hit) = hit?;
+        let at = origin + direction * hit.distance;
+        let met = match self.assembly.ahead(at, direction, branch.departed) {
+            ahead @ Ahead::Surface(..) => Met::Device(ahead),
+            ahead @ Ahead::Body(there) if there != body => Met::Device(ahead),
+            Ahead::Air | Ahead::Body(_) => Met::Grazed(DepartedSurface::met(guest, &hit)),
+        };
+        let outward = self.assembly.device(guest).pose.vector_to_world(hit.outward);
+        Some((met, to(hit.distance, guest, -pose.vector_to_local(outward))))
+    }
+
+    /// Takes a branch from a region across its border, both in the frame of the region's device, to what it meets there.
+    pub(super) fn leave(
+        &mut self,
+        branch: &mut Branch<N>,
+        medium: &Medium,
+        met: Met,
+        interface: Interface,
+    ) -> bool {
+        let Place::Region { device: number, .. } = branch.place else { return false };
+        let device = self.assembly.device(number);
+        let ahead = match met {
+            Met::Grazed(departed) => {
+                branch.departed = Some(departed);
+                return true;
+            }
+            Met::Screen => {
+                branch.leave_frame(&device.pose);
+                return self.end(branch, LeafEnd::Screen);
+            }
+            Met::Device(ahead) => ahead,
+        };
+        let turned = (!medium.is_isotropic()).then(|| device.medium_in_world(medium));
+        branch.leave_frame(&device.pose);
+        let onward = device.pose.vector_to_world(interface.onward);
+        let coating = match ahead {
+            Ahead::Surface(_, hit) if interface.coating == Coating::None => hit.coating,
+            _ => interface.coating,
+        };
+        let event = interface.event.shared();
+        let medium = turned.as_ref().unwrap_or(medium);
+        self.cross(branch, medium, ahead, Interface { onward, coating, event })
+    }
+
+    /// What light has departed from that is sent back by what is ahead of it.
+    fn departed_from(&self, ahead: Ahead) -> Option<DepartedSurface> {
+        let (number, surface) = match ahead {
+            Ahead::Air => return None,
+            Ahead::Surface(number, hit) => (number, Some(hit.surface)),
+            Ahead::Body(number) => (number, None),
+        };
+        self.assembly.device(number).departed(number, surface)
+    }
+
+    /// What lies beyond a border, at which the branch is, in the world's frame; `None` if rounding hides it.
+    fn destination(&self, branch: &Branch<N>, ahead: Ahead) -> Option<Destination> {
+        let (number, far) = match ahead {
+            Ahead::Air => return Some(Destination::Air),
+            Ahead::Surface(number, hit) => (number, hit.far),
+            Ahead::Body(number) if self.assembly.device(number).structure.is_opaque() => {
+                (number, FarSide::Opaque)
+            }
+            Ahead::Body(number) => (number, FarSide::Region(0)),
+        };
+        Some(match far {
+            FarSide::Outside => Destination::Air,
+            FarSide::Conductor => Destination::Conductor,
+            FarSide::Opaque => Destination::End(LeafEnd::Body(number)),
+            FarSide::Region(region) | FarSide::Seam(region) => {
+                let device = self.assembly.device(number);
+                let position = device.pose.to_local(branch.position);
+                let mut graded = None;
+                let (virtual_point, medium) = device.region(region).enter(position, &mut graded)?;
+                let medium = device.medium_in_world(medium);
+                Destination::Region { place: (number, region), virtual_point, medium }
+            }
+        })
+    }
+
+    /// Splits a branch, in the world's frame but still of the place that it leaves, at the border of that place to what is
+    /// ahead.
+    pub(super) fn cross(
+        &mut self,
+        branch: &mut Branch<N>,
+        here: &Medium,
+        ahead: Ahead,
+        interface: Interface,
+    ) -> bool {
+        let Some(destination) = self.destination(branch, ahead) else {
+            return self.lose(branch.power);
+        };
+        // Sheets would be met again at once.
+        let departed = self.departed_from(ahead);
+        let (assembly, place) = (self.assembly, branch.place);
+        let back = |branch: &mut Branch<N>| {
+            branch.departed = departed;
+            if let Place::Region { device, .. } = place {
+                branch.enter_frame(&assembly.device(device).pose);
+            }
+        };
+        let on = |branch: &mut Branch<N>| match &destination {
+            Destination::Region { place: (device, region), virtual_point, .. } => {
+                branch.enter_frame(&assembly.device(*device).pose);
+                branch.enter_region(*device, *region, *virtual_point);
+            }
+            _ => branch.come_out(match place {
+                Place::Region { device, .. } => assembly.device(device).departed(device, None),
+                Place::Air => None,
+            }),
+        };
+        let there = match &destination {
+            Destination::Region { medium, .. } => medium,
+            Destination::Air => &Medium::AIR,
+            Destination::End(end) => return self.end(branch, *end),
+            Destination::Conductor => return self.reflect(branch, here, &interface, back),
+        };
+        if here == there {
+            // A border between equal media: nothing is there.
+            on(branch);
+            return true;
+        }
+        let mut waves = OutgoingWaves::new();
+        self.split(here, there, branch, &interface, &mut waves);
+        self.go_on(branch, &waves, interface.event, |branch, side| match side {
+            Side::Reflected => back(branch),
+            Side::Transmitted => on(branch),
+        })
+    }
+}
