@@ -37,7 +37,9 @@ fn cloned_commit(folder: &Path) -> Option<String> {
     if Path::new(&top).canonicalize().ok()? != root {
         return None;
     }
-    for name in ["HEAD", "packed-refs"].into_iter().map(str::to_owned).chain(branch(folder)) {
+    // The reference that HEAD stands for, unless it is detached.
+    let branch = git(folder, &["symbolic-ref", "--quiet", "HEAD"]);
+    for name in ["HEAD", "packed-refs"].into_iter().map(str::to_owned).chain(branch) {
         let path = folder.join(git(folder, &["rev-parse", "--git-path", &name])?);
         // A path that is missing would run this script at every build.
         if path.exists() {
@@ -45,11 +47,6 @@ fn cloned_commit(folder: &Path) -> Option<String> {
         }
     }
     git(folder, &["log", "-1", "--format=%h %cs", "--abbrev=9"])
-}
-
-/// The reference that HEAD stands for, unless it is detached.
-fn branch(folder: &Path) -> Option<String> {
-    git(folder, &["symbolic-ref", "--quiet", "HEAD"])
 }
 
 fn git(folder: &Path, arguments: &[&str]) -> Option<String> {

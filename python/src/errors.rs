@@ -7,8 +7,8 @@ use cloakroom::output::OutputError;
 use cloakroom::ray_json::RayError;
 use cloakroom::render::RenderError;
 use cloakroom::scene_file::SceneFileError;
+use cloakroom_figures::IllustrationError;
 use cloakroom_figures::verification::VerificationError;
-use cloakroom_figures::{IllustrationError, TableError};
 use pyo3::PyErr;
 use pyo3::exceptions::{
     PyFileNotFoundError, PyKeyboardInterrupt, PyMemoryError, PyOSError, PyValueError,
@@ -47,9 +47,8 @@ impl<E: Error + 'static> From<E> for Failure {
         let too_large = matches!(error.downcast_ref(), Some(RenderError::TooLarge { .. }))
             || matches!(error.downcast_ref(), Some(MaterialError::TooLarge { .. }))
             || matches!(error.downcast_ref(), Some(RayError::TooMany { .. }));
-        let unwritten = match (error.downcast_ref(), error.downcast_ref()) {
-            (Some(IllustrationError::Output(error)), _)
-            | (_, Some(TableError::Drawing(IllustrationError::Output(error)))) => Some(error),
+        let unwritten = match error.downcast_ref() {
+            Some(IllustrationError::Output(error)) => Some(error),
             _ => error.downcast_ref(),
         };
         let message = error.to_string();

@@ -4,19 +4,22 @@ use crate::arguments::AnimateArguments;
 use crate::interruption::{self, STOP};
 use crate::progress::supervised;
 use crate::render::tell_rarities;
-use crate::report::{Failure, say};
+use crate::report::{Failure, Result, say};
 use crate::scene;
 use cloakroom::output;
+use cloakroom::render::{self, ChannelSet, Images};
+use cloakroom::scene::Scene;
 use cloakroom::scene_file::Loaded;
 use cloakroom::timeline::Timeline;
 use cloakroom::trace::TraceStats;
-use cloakroom_figures::film::{FilmFormat, FilmSettings, FrameFolder, Projector, write_film};
+use cloakroom_figures::film::{Film, FilmFormat, FrameFolder};
+use cloakroom_figures::{ColorScale, shown};
 use std::ffi::OsString;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Renders the frames that are not there yet, and makes the film of them.
-pub fn run(arguments: &AnimateArguments) -> Result<(), Failure> {
+pub fn run(arguments: &AnimateArguments) -> Result<()> {
     let path = &arguments.output;
     let format = FilmFormat::of(path).map_err(Failure::Failed)?;
     let timeline = Timeline::new(&arguments.sweeps, arguments.frames)?;
@@ -27,12 +30,12 @@ pub fn run(arguments: &AnimateArguments) -> Result<(), Failure> {
         output::check_writable(path)?;
     }
     scene::use_threads(&arguments.threads)?;
-    let mut projector = Projector::with_map_range(arguments.map_range);
-    let scenes = scenes(arguments, &timeline, range.clone(), &mut projector)?;
+    let mut images = Images::default();
+    let scenes = scenes(arguments, &timeline, range.clone(), &mut images)?;
     let folder = if format == FilmFormat::Frames { path.clone() } else { frames_beside(path) };
     let frames = FrameFolder::new(&folder, count)?;
     let _busy = interruption::busy();
-    let rendered = render(&scenes, range, &frames, &mut projector);
+    let rendered = render(arguments, &scenes, range, &frames, &mut images);
     if let Err(Failure::Interrupted) = rendered {
         say(&format!("the finished frames are kept in {}", folder.display()));
     }
@@ -47,11 +50,11 @@ pub fn run(arguments: &AnimateArguments) -> Result<(), Failure> {
         ));
         return Ok(());
     }
-    let metadata = scenes.first().map(|loaded| projector.metadata(&loaded.scene));
+    let metadata = scenes.first().map(|loaded| metadata(&loaded.scene, arguments.map_range));
     let (rate, metadata) = (arguments.fps, &metadata.unwrap_or_default());
     supervised(count as u64, "writing", |bar, _| {
-        let settings = FilmSettings { rate, metadata, frame_done: &|| bar.inc(1), stop: &STOP };
-        write_film(&frames, format, path, &settings)
+        let frame_done = &|| bar.inc(1);
+        Film { frames: &frames, path, rate, metadata, frame_done, stop: &STOP }.write(format)
     })?;
     if !arguments.keep_frames {
         frames.remove();
@@ -64,12 +67,12 @@ fn scenes(
     arguments: &AnimateArguments,
     timeline: &Timeline,
     range: Range<usize>,
-    projector: &mut Projector,
-) -> Result<Vec<Loaded>, Failure> {
+    images: &mut Images,
+) -> Result<Vec<Loaded>> {
     let mut scenes: Vec<Loaded> = Vec::new();
     for frame in range {
         let loaded = scene::load(&arguments.scene, &timeline.overrides(frame))?;
-        projector.prepared(&loaded.scene).map_err(|error| scene::located(&loaded, &error))?;
+        scene::prepared(&loaded, images)?;
         if loaded.scene.picture.map.name().is_some() && arguments.map_range.is_none() {
             return Err(Failure::Failed(
                 "a film of a map needs one scale for all frames; give --map-range LOW,HIGH, in ns for times \
@@ -90,28 +93,35 @@ fn scenes(
 
 /// Renders the frames of a range that are not finished.
 fn render(
+    arguments: &AnimateArguments,
     scenes: &[Loaded],
     range: Range<usize>,
     frames: &FrameFolder,
-    projector: &mut Projector,
-) -> Result<(), Failure> {
+    images: &mut Images,
+) -> Result<()> {
+    // There may be numbers beyond the range.
+    let scale =
+        |range: [f64; 2]| ColorScale { range: Some(range.into()), is_clipped: (true, true) };
+    let scale = arguments.map_range.map(scale);
     let rows = scenes.first().map_or(0, |first| u64::from(first.scene.camera.resolution[1]));
     let (mut stats, mut skipped) = (TraceStats::default(), 0);
     supervised(rows * scenes.len() as u64, "rendering", |bar, supervision| {
         for (loaded, frame) in scenes.iter().zip(range) {
             let scene = &loaded.scene;
-            let prepared =
-                projector.prepared(scene).map_err(|error| scene::located(loaded, &error))?;
-            let metadata = projector.metadata(scene);
+            let prepared = scene::prepared(loaded, images)?;
+            let metadata = metadata(scene, arguments.map_range);
             let files: Vec<_> = scene.files().into_iter().map(|(_, file)| file).collect();
             if frames.is_finished(frame, &metadata, &files) {
                 skipped += 1;
                 bar.inc(rows);
                 continue;
             }
-            let (image, rare) = projector.frame(scene, &prepared, supervision)?;
-            stats += rare;
-            frames.write(frame, &image, &metadata)?;
+            let wanted = ChannelSet::for_image(&scene.picture);
+            let rendered = render::render(&prepared, wanted, supervision)?;
+            stats += rendered.stats;
+            let map = (scene.picture.map.name(), scene.picture.color_bar);
+            let image = shown(&rendered.picture, map, scale)?;
+            output::write_png(&image, &metadata, &frames.file(frame))?;
         }
         Ok::<_, Failure>(())
     })?;
@@ -122,8 +132,15 @@ fn render(
     Ok(())
 }
 
+/// What the frame of a scene carries: what its picture does, and the range of a map.
+fn metadata(scene: &Scene, map_range: Option<[f64; 2]>) -> Vec<(String, String)> {
+    let range = map_range.filter(|_| scene.picture.map.name().is_some());
+    let range = range.map(|[low, high]| ("map_range".to_owned(), format!("{low} {high}")));
+    render::metadata(scene).into_iter().chain(range).collect()
+}
+
 /// Which frames are to be rendered.
-fn range(only: Option<[usize; 2]>, count: usize) -> Result<Range<usize>, Failure> {
+fn range(only: Option<[usize; 2]>, count: usize) -> Result<Range<usize>> {
     match only {
         None => Ok(0..count),
         Some([first, last]) if last < count => Ok(first..last + 1),

@@ -7,10 +7,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use cloakroom::render::Tile;
 use cloakroom::scene::OPTIONAL_CHANNELS;
-pub use measuring::{
-    CompareArguments, DiagramArguments, ExportArguments, FluxArguments, QualityArguments,
-    VerifyArguments,
-};
+pub use measuring::*;
 use std::path::PathBuf;
 use values::{frames_only, map_range, pixel, size};
 

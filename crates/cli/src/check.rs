@@ -2,7 +2,7 @@
 
 use crate::arguments::SceneArguments;
 use crate::devices::fact_lines;
-use crate::report::{self, Failure};
+use crate::report::{self, Result};
 use crate::scene;
 use cloakroom::render::{Images, PreparedScene, estimated_seconds};
 use cloakroom::scene::Scene;
@@ -10,7 +10,7 @@ use cloakroom::threads;
 use std::fmt::Write;
 
 /// Validates a scene and prints facts about it.
-pub fn run(arguments: &SceneArguments) -> Result<(), Failure> {
+pub fn run(arguments: &SceneArguments) -> Result<()> {
     let loaded = scene::load(arguments, &[])?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;
     report::print(&described(&prepared, &loaded.scene)?)

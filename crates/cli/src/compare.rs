@@ -1,13 +1,13 @@
 //! `cloakroom compare`: how alike two pictures are.
 
 use crate::arguments::CompareArguments;
-use crate::report::{self, Failure};
+use crate::report::{self, Failure, Result};
 use crate::scene;
 use cloakroom::measure::{Comparison, Figures, MeasureError, Region, View, compare};
 use std::fmt::Write;
 
 /// Compares two pictures.
-pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
+pub fn run(arguments: &CompareArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
     let (first, second) = (View::read(&arguments.first)?, View::read(&arguments.second)?);
     let region = match (&arguments.mask, arguments.region) {

@@ -1,6 +1,6 @@
 //! `cloakroom devices`: the catalogue with computed facts.
 
-use crate::report::{self, Failure};
+use crate::report::{self, Result};
 use cloakroom::device::{CATALOGUE, Entry, Fact, FactValue};
 use cloakroom::json::json as value_json;
 use cloakroom::keys::{Key, KeyKind};
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// Prints the catalogue.
-pub fn run(json: bool) -> Result<(), Failure> {
+pub fn run(json: bool) -> Result<()> {
     if json {
         let list: Vec<Value> = CATALOGUE.iter().map(|entry| as_json(entry)).collect();
         return report::print_json(&json!({ "devices": list }));

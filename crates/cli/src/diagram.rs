@@ -3,38 +3,35 @@
 use crate::arguments::DiagramArguments;
 use crate::files::{check_writable, formats};
 use crate::interruption::{self, STOP};
-use crate::report::Failure;
+use crate::report::Result;
 use crate::scene;
+use cloakroom::render::metadata;
 use cloakroom::scene::{Camera, CameraSettings};
-use cloakroom_figures::{
-    Diagram, DiagramError, DiagramSettings, DrawingFormat, Projected, Setting, Source,
-};
+use cloakroom_figures::{DiagramError, DiagramSettings, DrawingFormat, Source};
 
 /// Draws a scene and writes every file asked for.
-pub fn run(arguments: &DiagramArguments) -> Result<(), Failure> {
+pub fn run(arguments: &DiagramArguments) -> Result<()> {
     let formats = formats(&arguments.outputs, DrawingFormat::of)?;
     check_writable(&arguments.outputs)?;
     let loaded = scene::load(&arguments.scene, &[])?;
     let _busy = interruption::busy();
-    let (drawing, metadata, title) = if arguments.setting {
+    let (drawing, title) = if arguments.setting {
         let mut scene = loaded.scene.clone();
         let mut settings = CameraSettings::clone(&scene.camera);
         // The sheet has the aspect of the picture.
         settings.resolution = arguments.size;
         scene.camera = Camera::new(settings)?;
-        let Setting { drawing, metadata, .. } =
-            cloakroom_figures::setting(&scene).map_err(|e| scene::located(&loaded, &e))?;
-        (drawing, metadata, "Setting")
+        let setting = cloakroom_figures::setting(&scene);
+        (setting.map_err(|error| scene::located(&loaded, &error))?.drawing, "Setting")
     } else {
-        let Diagram { drawing, metadata } =
-            cloakroom_figures::diagram(&loaded.scene, &settings(arguments), &STOP).map_err(
-                |error| match error {
-                    DiagramError::Scene(error) => scene::located(&loaded, &error),
-                    error => error.into(),
-                },
-            )?;
-        (drawing, metadata, "Ray diagram")
+        let diagram = cloakroom_figures::diagram(&loaded.scene, &settings(arguments), &STOP);
+        let drawing = diagram.map_err(|error| match error {
+            DiagramError::Scene(error) => scene::located(&loaded, &error),
+            error => error.into(),
+        })?;
+        (drawing, "Ray diagram")
     };
+    let metadata = metadata(&loaded.scene);
     for (path, format) in formats {
         drawing.write(format, title, &metadata, arguments.size, path)?;
     }
@@ -60,9 +57,7 @@ fn settings(arguments: &DiagramArguments) -> DiagramSettings {
         },
         wavefronts: arguments.wavefronts,
         min_power: arguments.min_power,
-        projected: arguments.space.map_or(Projected::Section, |[azimuth, elevation]| {
-            Projected::Space { azimuth, elevation }
-        }),
+        space: arguments.space,
         size: arguments.size,
     }
 }

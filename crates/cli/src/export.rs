@@ -2,13 +2,13 @@
 
 use crate::arguments::ExportArguments;
 use crate::progress::supervised;
-use crate::report::Failure;
+use crate::report::Result;
 use crate::{interruption, scene};
 use cloakroom::material::{self, Frame, Resolution};
 use cloakroom::output::{self, GridFormat};
 
 /// Writes the material of a device.
-pub fn run(arguments: &ExportArguments) -> Result<(), Failure> {
+pub fn run(arguments: &ExportArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene, &[])?;
     let assembly = scene::assembly(&loaded)?;

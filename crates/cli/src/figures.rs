@@ -5,53 +5,52 @@ use crate::files::make_folder;
 use crate::interruption;
 use crate::panels::{merge, write_drawing, write_png};
 use crate::render::rgb;
-use crate::report::Failure;
+use crate::report::{Failure, Result};
 use crate::scene;
 use crate::views::{Subject, Views};
 use cloakroom::output::RgbImage;
 use cloakroom::render::Images;
 use cloakroom::scene_file::Loaded;
-use cloakroom_figures::paper::{self, Figure, Panel, Shows};
+use cloakroom_figures::paper::{self, PANELS, Panel, Shows, TITLES};
 use cloakroom_figures::{ColorBar, ScalarMap, Setting, SheetPanel, sheet};
 use std::path::PathBuf;
 
 /// Makes panels and sheets.
-pub fn run(arguments: &FiguresArguments) -> Result<(), Failure> {
+pub fn run(arguments: &FiguresArguments) -> Result<()> {
     let chosen = paper::select(&arguments.only).map_err(Failure::Usage)?;
     scene::use_threads(&arguments.panels.threads)?;
     make_folder(&arguments.out)?;
     let _busy = interruption::busy();
     let mut images = Images::default();
-    for (figure, panels) in chosen {
-        make(figure, &panels, arguments, &mut images)?;
+    for panels in chosen.chunk_by(|one, next| one.figure == next.figure) {
+        make(panels, arguments, &mut images)?;
     }
     Ok(())
 }
 
 /// Makes the chosen panels of one figure, and its sheet if all of them are chosen.
 fn make(
-    figure: &Figure,
     chosen: &[&'static Panel],
     arguments: &FiguresArguments,
     images: &mut Images,
-) -> Result<(), Failure> {
+) -> Result<()> {
     let mut on_sheet = Vec::new();
     let mut metadata: Vec<(String, String)> = Vec::new();
     let mut views = Views::new(chosen, arguments)?;
     for (index, panel) in chosen.iter().enumerate() {
-        let shown = match panel.shows {
+        let (image, bar, of_panel) = match panel.shows {
             Shows::Picture => rendered(&mut views, index, arguments, images)?,
             Shows::Setting => drawn(panel, &views.subjects[index].loaded, arguments)?,
         };
-        let (image, bar, of_panel) = shown;
         merge(&mut metadata, &of_panel);
-        let (label, caption) = (format!("({})", panel.letter()), panel.caption.to_owned());
+        let (label, caption) = (format!("({})", panel.letter), panel.caption.to_owned());
         on_sheet.push(SheetPanel { image, label, caption, bar });
     }
-    if chosen.len() == figure.panels.len() {
-        let title = format!("Figure {}. {}", figure.number(), figure.title);
+    let number = chosen[0].figure;
+    if chosen.len() == PANELS.iter().filter(|panel| panel.figure == number).count() {
+        let title = format!("Figure {number}. {}", TITLES[number - 1]);
         let drawing = sheet(&title, &on_sheet);
-        let files = ["png", "pdf"].map(|ending| file(figure.number(), ending, arguments));
+        let files = ["png", "pdf"].map(|ending| file(&number.to_string(), ending, arguments));
         write_drawing(&drawing, &title, &metadata, drawing.pixels(), &files)?;
     }
     Ok(())
@@ -66,7 +65,7 @@ fn rendered(
     index: usize,
     arguments: &FiguresArguments,
     images: &mut Images,
-) -> Result<Shown, Failure> {
+) -> Result<Shown> {
     let picture = views.picture(index, images)?;
     let Subject { panel, loaded, .. } = &views.subjects[index];
     let image = rgb(&loaded.scene, &picture)?;
@@ -77,7 +76,7 @@ fn rendered(
 }
 
 /// Draws the setting of a panel and writes it, in pixels and as lines.
-fn drawn(panel: &Panel, loaded: &Loaded, arguments: &FiguresArguments) -> Result<Shown, Failure> {
+fn drawn(panel: &Panel, loaded: &Loaded, arguments: &FiguresArguments) -> Result<Shown> {
     let Setting { drawing, metadata, .. } =
         cloakroom_figures::setting(&loaded.scene).map_err(|e| scene::located(loaded, &e))?;
     let size = arguments.panels.size;

@@ -3,7 +3,7 @@
 use crate::arguments::FluxArguments;
 use crate::files::{check_writable, formats};
 use crate::progress::supervised;
-use crate::report::{Failure, say};
+use crate::report::{Failure, Result, say};
 use crate::{interruption, render, report, scene};
 use cloakroom::flux::{self, Direction, FluxError, FluxReport, Gain, Sampling};
 use cloakroom::output;
@@ -14,7 +14,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// Measures the flux and writes every file asked for.
-pub fn run(arguments: &FluxArguments) -> Result<(), Failure> {
+pub fn run(arguments: &FluxArguments) -> Result<()> {
     let files = formats(&arguments.outputs, TableFormat::of)?;
     let map = formats(arguments.map.as_slice(), DrawingFormat::of)?;
     check_writable(arguments.outputs.iter().chain(&arguments.map))?;
@@ -47,10 +47,7 @@ pub fn run(arguments: &FluxArguments) -> Result<(), Failure> {
 }
 
 /// The directions asked for, and what they are named by.
-fn directions(
-    arguments: &FluxArguments,
-    scene: &Scene,
-) -> Result<(Vec<Direction>, &'static str), Failure> {
+fn directions(arguments: &FluxArguments, scene: &Scene) -> Result<(Vec<Direction>, &'static str)> {
     let receiver = &scene.receiver;
     if let Some([latitude, declination]) = arguments.sun {
         let day = flux::sun_day(receiver, latitude, declination, 0.5);
@@ -67,12 +64,7 @@ fn directions(
     Ok((flux::across_range(receiver, &angles, arguments.tilt), "Angle of incidence (°)"))
 }
 
-fn write(
-    measured: &FluxReport,
-    axis: &str,
-    format: TableFormat,
-    path: &Path,
-) -> Result<(), Failure> {
+fn write(measured: &FluxReport, axis: &str, format: TableFormat, path: &Path) -> Result<()> {
     match format {
         TableFormat::Npz => Ok(flux::write_flux_npz(measured, path)?),
         TableFormat::Csv => {
@@ -91,7 +83,7 @@ fn save(
     title: &str,
     measured: &FluxReport,
     (path, format): (&Path, DrawingFormat),
-) -> Result<(), Failure> {
+) -> Result<()> {
     let size = drawing.pixels();
     if format == DrawingFormat::Png {
         say(&format!("{}: {} x {} pixels", path.display(), size[0], size[1]));

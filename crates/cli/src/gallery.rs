@@ -5,7 +5,7 @@ use crate::files::make_folder;
 use crate::interruption;
 use crate::panels::{self, merge, write_drawing, write_png};
 use crate::render::{picture, rgb};
-use crate::report::Failure;
+use crate::report::{Failure, Result};
 use crate::scene;
 use cloakroom::render::{ChannelSet, Images};
 use cloakroom_figures::gallery::{self, EXHIBITS, Exhibit};
@@ -15,7 +15,7 @@ use cloakroom_figures::{ScalarMap, TablePicture, TableRow, table};
 const MAP: &str = "time_of_flight_difference";
 
 /// Makes the chosen pictures and maps, and the table if all are chosen.
-pub fn run(arguments: &GalleryArguments) -> Result<(), Failure> {
+pub fn run(arguments: &GalleryArguments) -> Result<()> {
     let chosen = gallery::select(&arguments.only).map_err(Failure::Usage)?;
     scene::use_threads(&arguments.panels.threads)?;
     make_folder(&arguments.out)?;
@@ -39,7 +39,7 @@ fn make(
     arguments: &GalleryArguments,
     images: &mut Images,
     metadata: &mut Vec<(String, String)>,
-) -> Result<TableRow, Failure> {
+) -> Result<TableRow> {
     let loaded = panels::load(exhibit.scene, exhibit.name, &arguments.panels, &[])?;
     let prepared = scene::prepared(&loaded, images)?;
     let picture = picture(&prepared, ChannelSet::Everything, exhibit.name)?;

@@ -1,6 +1,6 @@
 //! Ctrl-C: a flag that long work looks at.
 
-use crate::report::Failure;
+use crate::report::{Failure, Result};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -16,7 +16,7 @@ const AT_ONCE: Duration = Duration::from_millis(500);
 /// Watches for Ctrl-C and for being asked to end. During work that looks at the flag, the first one
 /// stops it cleanly, and another one, for the impatient, ends the process at once; at any other time,
 /// as while input is awaited, the first one does.
-pub fn watch() -> Result<(), Failure> {
+pub fn watch() -> Result<()> {
     ctrlc::set_handler(|| {
         STOP.store(true, Ordering::SeqCst);
         let is_impatient = FIRST.get_or_init(Instant::now).elapsed() > AT_ONCE;

@@ -14,7 +14,6 @@ mod figures;
 mod files;
 mod flux;
 mod gallery;
-mod input;
 mod interruption;
 mod manual;
 mod merge;
@@ -35,7 +34,7 @@ mod views;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
-use report::Failure;
+use report::Result;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -46,7 +45,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(command: &Command) -> Result<(), Failure> {
+fn run(command: &Command) -> Result<()> {
     interruption::watch()?;
     match command {
         Command::Render(arguments) => render::run(arguments),

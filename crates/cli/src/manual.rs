@@ -2,13 +2,13 @@
 
 use crate::arguments::{Arguments, ManualArguments};
 use crate::files::{make_folder, write};
-use crate::report::{self, Failure};
+use crate::report::{self, Failure, Result};
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
 /// Prints a manual page, or writes them all into a folder.
-pub fn run(arguments: &ManualArguments) -> Result<(), Failure> {
+pub fn run(arguments: &ManualArguments) -> Result<()> {
     let mut command = Arguments::command();
     // Gives the subcommands their full names, as in `cloakroom-render`.
     command.build();
@@ -29,14 +29,14 @@ pub fn run(arguments: &ManualArguments) -> Result<(), Failure> {
 }
 
 /// A page in the language of `man`.
-fn page_text(command: &Command) -> Result<Vec<u8>, Failure> {
+fn page_text(command: &Command) -> Result<Vec<u8>> {
     let mut text = Vec::new();
     Man::new(command.clone()).render(&mut text)?;
     Ok(text)
 }
 
 /// Prints the completions of a shell.
-pub fn completions(shell: Shell) -> Result<(), Failure> {
+pub fn completions(shell: Shell) -> Result<()> {
     let mut command = Arguments::command();
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command, "cloakroom", &mut script);

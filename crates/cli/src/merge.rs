@@ -3,14 +3,14 @@
 use crate::arguments::MergeArguments;
 use crate::files::{check_writable, formats};
 use crate::render::rgb;
-use crate::report::Failure;
+use crate::report::{Failure, Result};
 use cloakroom::output::{self, Format};
 use cloakroom::render;
 use cloakroom::scene_file;
 use std::path::Path;
 
 /// Puts tiles together and writes every file asked for.
-pub fn run(arguments: &MergeArguments) -> Result<(), Failure> {
+pub fn run(arguments: &MergeArguments) -> Result<()> {
     let tiles = formats(&arguments.tiles, Format::of)?;
     let outputs = formats(&arguments.outputs, Format::of)?;
     check_writable(&arguments.outputs)?;

@@ -1,19 +1,14 @@
 //! Panels: scenes that the program carries along, as the command line wants them, and their files.
 
 use crate::arguments::PanelArguments;
-use crate::report::{Failure, wrote};
+use crate::report::{Result, wrote};
 use cloakroom::output::{self, RgbImage};
 use cloakroom::scene_file::{self, Loaded};
 use cloakroom_figures::{Drawing, DrawingFormat};
 use std::path::{Path, PathBuf};
 
 /// Reads the scene of a panel, with what the command line changes in it, and with more overrides.
-pub fn load(
-    scene: &str,
-    name: &str,
-    arguments: &PanelArguments,
-    more: &[&str],
-) -> Result<Loaded, Failure> {
+pub fn load(scene: &str, name: &str, arguments: &PanelArguments, more: &[&str]) -> Result<Loaded> {
     let [width, height] = arguments.size;
     let mut overrides = vec![
         format!("camera.resolution=[{width}, {height}]"),
@@ -29,11 +24,7 @@ pub fn load(
 }
 
 /// Writes a PNG and says so.
-pub fn write_png(
-    image: &RgbImage,
-    metadata: &[(String, String)],
-    path: &Path,
-) -> Result<(), Failure> {
+pub fn write_png(image: &RgbImage, metadata: &[(String, String)], path: &Path) -> Result<()> {
     output::write_png(image, metadata, path)?;
     wrote(path);
     Ok(())
@@ -46,7 +37,7 @@ pub fn write_drawing(
     metadata: &[(String, String)],
     pixels: [u32; 2],
     files: &[PathBuf],
-) -> Result<(), Failure> {
+) -> Result<()> {
     for path in files {
         drawing.write(DrawingFormat::of(path)?, title, metadata, pixels, path)?;
         wrote(path);

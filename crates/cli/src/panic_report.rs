@@ -1,6 +1,6 @@
 //! Panics: a mistake in the program is one message like any other failure, and the same exit status.
 
-use crate::report::Failure;
+use crate::report::{Failure, Result};
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind, set_hook};
 use std::sync::{Mutex, PoisonError};
 
@@ -11,7 +11,7 @@ static SAID: Mutex<Option<String>> = Mutex::new(None);
 /// the work itself deals with, such as that of an image's decoder, is not heard of.
 ///
 /// With `RUST_BACKTRACE` every panic is told as it happens, too.
-pub fn caught(work: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+pub fn caught(work: impl FnOnce() -> Result<()>) -> Result<()> {
     let aloud = std::env::var_os("RUST_BACKTRACE").is_some_and(|value| value != "0");
     let usual = std::panic::take_hook();
     set_hook(Box::new(move |panic| {
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
     use rayon::prelude::*;
 
-    fn message(result: Result<(), Failure>) -> String {
+    fn message(result: Result<()>) -> String {
         match result {
             Err(Failure::Failed(message)) => message,
             other => panic!("{other:?}"),

@@ -1,13 +1,13 @@
 //! `cloakroom pulses`: the pulses of one pixel.
 
 use crate::arguments::PulsesArguments;
-use crate::report::{self, Failure};
+use crate::report::{self, Failure, Result};
 use crate::scene;
 use cloakroom::render::{self, Images, PulseList};
 use std::fmt::Write;
 
 /// Lists the pulses of a pixel.
-pub fn run(arguments: &PulsesArguments) -> Result<(), Failure> {
+pub fn run(arguments: &PulsesArguments) -> Result<()> {
     let loaded = scene::load(&arguments.scene, &[])?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;
     let list = render::pulses(&prepared, arguments.pixel)

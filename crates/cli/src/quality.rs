@@ -5,10 +5,9 @@ use crate::files::{check_writable, formats};
 use crate::interruption;
 use crate::progress::supervised;
 use crate::render::tell_rarities;
-use crate::report::{self, Failure};
+use crate::report::{self, Result};
 use crate::scene;
 use cloakroom::measure::{Constraint, Plan, QualityTable, Sweep, quality};
-use cloakroom::scene_file;
 use cloakroom_figures::{TableFormat, write_table};
 use std::fmt::Write;
 
@@ -25,14 +24,12 @@ const PRINTED: [(&str, &str); 8] = [
 ];
 
 /// Measures every combination, writes every file asked for and prints the table.
-pub fn run(arguments: &QualityArguments) -> Result<(), Failure> {
+pub fn run(arguments: &QualityArguments) -> Result<()> {
     let formats = formats(&arguments.outputs, TableFormat::of)?;
     scene::use_threads(&arguments.threads)?;
     let sweeps =
         arguments.sweeps.iter().map(|text| Sweep::parse(text)).collect::<Result<_, _>>()?;
-    let load = |further: &[String]| {
-        scene_file::load(&arguments.scene.scene, &[&arguments.scene.overrides, further].concat())
-    };
+    let load = |further: &[String]| scene::load(&arguments.scene, further);
     let holds =
         arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;
     let plan = Plan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;

@@ -4,18 +4,18 @@ use crate::arguments::RenderArguments;
 use crate::files::formats;
 use crate::interruption;
 use crate::progress::supervised;
-use crate::report::{Failure, say};
+use crate::report::{Failure, Result, say};
 use crate::scene;
 use cloakroom::output::{self, Format, Picture};
 use cloakroom::render::{self, ChannelSet, Images, PreparedScene, Rendered, Tile};
 use cloakroom::scene::Scene;
 use cloakroom::trace::TraceStats;
-use cloakroom_figures::{IllustrationError, PictureFormat, ScalarMap, write_picture};
+use cloakroom_figures::{IllustrationError, PictureFormat, shown, write_picture};
 use std::io;
 use std::path::Path;
 
 /// Renders a scene and writes every file asked for.
-pub fn run(arguments: &RenderArguments) -> Result<(), Failure> {
+pub fn run(arguments: &RenderArguments) -> Result<()> {
     let formats = formats(&arguments.outputs, PictureFormat::of)?;
     scene::use_threads(&arguments.threads)?;
     let data = formats.iter().any(|(_, format)| !format.is_shown());
@@ -52,11 +52,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), Failure> {
 }
 
 /// The tile, if the picture has one there and its files can be tiles.
-fn check_tile(
-    tile: Tile,
-    scene: &Scene,
-    formats: &[(&Path, PictureFormat)],
-) -> Result<Tile, Failure> {
+fn check_tile(tile: Tile, scene: &Scene, formats: &[(&Path, PictureFormat)]) -> Result<Tile> {
     for (path, format) in formats {
         if matches!(format, PictureFormat::Pixels(Format::Exr) | PictureFormat::Map(_)) {
             let path = path.display();
@@ -73,7 +69,7 @@ fn check_tile(
 }
 
 /// Renders a large image strip by strip into its file.
-fn in_strips(prepared: &PreparedScene<'_>, scene: &Scene, path: &Path) -> Result<(), Failure> {
+fn in_strips(prepared: &PreparedScene<'_>, scene: &Scene, path: &Path) -> Result<()> {
     let (mut stats, mut failure) = (TraceStats::default(), None);
     let written = supervised(prepared.rows(), "rendering", |_, supervision| {
         let images = render::strips(prepared).map(|part| {
@@ -97,7 +93,7 @@ fn in_strips(prepared: &PreparedScene<'_>, scene: &Scene, path: &Path) -> Result
 }
 
 /// The override that asks for more channels; only files of data hold them.
-fn channels(names: &[String], data: bool) -> Result<Option<String>, Failure> {
+fn channels(names: &[String], data: bool) -> Result<Option<String>> {
     match names {
         [] => Ok(None),
         _ if !data => Err(Failure::Usage(
@@ -111,11 +107,7 @@ fn channels(names: &[String], data: bool) -> Result<Option<String>, Failure> {
 }
 
 /// Renders with a progress bar, and says what was rare.
-pub fn picture(
-    prepared: &PreparedScene<'_>,
-    wanted: ChannelSet,
-    what: &str,
-) -> Result<Picture, Failure> {
+pub fn picture(prepared: &PreparedScene<'_>, wanted: ChannelSet, what: &str) -> Result<Picture> {
     let rendered = supervised(prepared.rows(), what, |_, supervision| {
         render::render(prepared, wanted, supervision)
     });
@@ -129,13 +121,8 @@ fn told(rendered: Rendered) -> Picture {
 }
 
 /// What a PNG of the scene shows: the image, or the map of one channel.
-pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage, Failure> {
-    Ok(match scene.picture.map.name() {
-        None => output::to_srgb(picture)?,
-        Some(channel) => {
-            ScalarMap::new(picture, channel, None)?.into_image(scene.picture.color_bar)?
-        }
-    })
+pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage> {
+    Ok(shown(picture, (scene.picture.map.name(), scene.picture.color_bar), None)?)
 }
 
 /// Says what was rare, if anything was.

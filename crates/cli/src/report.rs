@@ -2,15 +2,14 @@
 
 use cloakroom::flux::FluxError;
 use cloakroom::material::MaterialError;
-use cloakroom::measure::QualityError;
 use cloakroom::render::RenderError;
-use cloakroom_figures::DiagramError;
-use cloakroom_figures::film::FilmError;
-use cloakroom_figures::verification::VerificationError;
 use std::error::Error;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
+
+/// What a command comes to.
+pub type Result<T, E = Failure> = std::result::Result<T, E>;
 
 /// Why the command ends without success.
 #[derive(Debug)]
@@ -40,13 +39,10 @@ impl<E: Error + 'static> From<E> for Failure {
     /// What work ends with that Ctrl-C has stopped, else a failure with the message of the error.
     fn from(error: E) -> Self {
         let of: &(dyn Error + 'static) = &error;
-        let stopped = matches!(of.downcast_ref(), Some(RenderError::Stopped))
-            || matches!(of.downcast_ref(), Some(FilmError::Render(RenderError::Stopped)))
-            || matches!(of.downcast_ref(), Some(QualityError::Render(RenderError::Stopped)))
+        let stopped = std::iter::successors(Some(of), |error| (**error).source())
+            .any(|error| matches!(error.downcast_ref(), Some(RenderError::Stopped)))
             || matches!(of.downcast_ref(), Some(MaterialError::Stopped))
-            || matches!(of.downcast_ref(), Some(FluxError::Stopped))
-            || matches!(of.downcast_ref(), Some(DiagramError::Stopped))
-            || matches!(of.downcast_ref(), Some(VerificationError::Render(RenderError::Stopped)));
+            || matches!(of.downcast_ref(), Some(FluxError::Stopped));
         if stopped { Self::Interrupted } else { Self::Failed(error.to_string()) }
     }
 }
@@ -63,7 +59,7 @@ pub fn wrote(path: &Path) {
 
 /// Prints text on standard output. A reader that has gone away (as in `| head`) ends the printing
 /// without a fuss.
-pub fn print(text: &str) -> Result<(), Failure> {
+pub fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
     match written {
@@ -75,6 +71,6 @@ pub fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// Prints JSON on standard output, for people to read and programs to parse.
-pub fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+pub fn print_json(value: &impl serde::Serialize) -> Result<()> {
     print(&format!("{}\n", serde_json::to_string_pretty(value)?))
 }

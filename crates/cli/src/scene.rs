@@ -1,23 +1,23 @@
 //! Scenes from files, and errors that point back into them.
 
 use crate::arguments::{SceneArguments, ThreadsArguments};
-use crate::report::Failure;
+use crate::report::{Failure, Result};
 use cloakroom::assembly::Assembly;
 use cloakroom::render::{self, Images, PreparedScene, PreparedSceneError};
-use cloakroom::scene_file::{self, Loaded};
+use cloakroom::scene_file::{self, Loaded, SceneFileError};
 
 /// Reads a scene with its overrides and further ones after them.
-pub fn load(arguments: &SceneArguments, further: &[String]) -> Result<Loaded, Failure> {
-    Ok(scene_file::load(&arguments.scene, &[&arguments.overrides, further].concat())?)
+pub fn load(arguments: &SceneArguments, further: &[String]) -> Result<Loaded, SceneFileError> {
+    scene_file::load(&arguments.scene, &[&arguments.overrides, further].concat())
 }
 
 /// What a picture of a scene needs, built; `images` keeps what has been read.
-pub fn prepared<'s>(loaded: &'s Loaded, images: &mut Images) -> Result<PreparedScene<'s>, Failure> {
+pub fn prepared<'s>(loaded: &'s Loaded, images: &mut Images) -> Result<PreparedScene<'s>> {
     PreparedScene::with_images(&loaded.scene, images).map_err(|error| located(loaded, &error))
 }
 
 /// The devices of a scene, built.
-pub fn assembly(loaded: &Loaded) -> Result<Assembly, Failure> {
+pub fn assembly(loaded: &Loaded) -> Result<Assembly> {
     render::assembly(&loaded.scene).map_err(|error| located(loaded, &error))
 }
 
@@ -27,7 +27,7 @@ pub fn located(loaded: &Loaded, error: &PreparedSceneError) -> Failure {
 }
 
 /// Lets the work use the given number of threads, or all cores.
-pub fn use_threads(threads: &ThreadsArguments) -> Result<(), Failure> {
+pub fn use_threads(threads: &ThreadsArguments) -> Result<()> {
     let threads = threads.count.map_or(0, usize::from);
     cloakroom::threads::use_threads(threads)
         .map_err(|error| Failure::Failed(format!("cannot start {threads} threads: {error}")))

@@ -2,7 +2,7 @@
 
 use crate::arguments::ScenesArguments;
 use crate::files::{make_folder, write};
-use crate::report::{self, Failure, say};
+use crate::report::{self, Failure, Result, say};
 use cloakroom_figures::examples::{self, Example};
 use serde_json::{Value, json};
 use std::fs;
@@ -10,7 +10,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Lists the chosen scenes, or copies them.
-pub fn run(arguments: &ScenesArguments) -> Result<(), Failure> {
+pub fn run(arguments: &ScenesArguments) -> Result<()> {
     let chosen = examples::select(&arguments.only).map_err(Failure::Usage)?;
     if let Some(folder) = &arguments.out {
         return copy(&chosen, folder);
@@ -26,7 +26,7 @@ pub fn run(arguments: &ScenesArguments) -> Result<(), Failure> {
 }
 
 /// Copies scenes into a folder. What the user has changed there stays: then nothing is copied.
-fn copy(chosen: &[Example], folder: &Path) -> Result<(), Failure> {
+fn copy(chosen: &[Example], folder: &Path) -> Result<()> {
     let mut missing: Vec<(PathBuf, &Example)> = Vec::new();
     for example in chosen {
         let path = folder.join(example.path);

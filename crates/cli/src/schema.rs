@@ -1,7 +1,7 @@
 //! `cloakroom schema`: all that a scene file can say, for editors or for people.
 
 use crate::devices::all_keys;
-use crate::report::{self, Failure};
+use crate::report::{self, Result};
 use cloakroom::device::CATALOGUE;
 use cloakroom::keys::{Key, KeyKind, Limits};
 use cloakroom::scene::{Placement, TABLES};
@@ -9,7 +9,7 @@ use cloakroom::scene_file;
 use std::fmt::{self, Write};
 
 /// Prints the JSON Schema, or the reference page.
-pub fn run(markdown: bool) -> Result<(), Failure> {
+pub fn run(markdown: bool) -> Result<()> {
     if markdown {
         return report::print(&reference()?);
     }

@@ -1,17 +1,22 @@
 //! `cloakroom trace`: rays in, leaves out; `cloakroom interface`: two media in, modes and powers out.
 
 use crate::arguments::TraceArguments;
-use crate::input;
 use crate::interruption::{self, STOP};
-use crate::report::{self, Failure};
+use crate::report::{self, Failure, Result};
 use crate::scene;
+use cloakroom::input::read_up_to;
 use cloakroom::interface_json::solve_interfaces;
 use cloakroom::ray_json::{RayError, RayRequest, trace_rays};
 use cloakroom::render;
+use std::fs::File;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
+/// Longer texts are refused before they fill the memory, in bytes.
+const LONGEST: u64 = 1 << 30;
+
 /// Traces the rays of a file through a scene.
-pub fn run(arguments: &TraceArguments) -> Result<(), Failure> {
+pub fn run(arguments: &TraceArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene, &[])?;
     let assembly = scene::assembly(&loaded)?;
@@ -19,8 +24,14 @@ pub fn run(arguments: &TraceArguments) -> Result<(), Failure> {
         return Err(Failure::Usage(format!("--min-power is {p}; it must be from 0 to 1")));
     }
     let limits = render::ray_limits(&loaded.scene, arguments.min_power);
-    let (text, name) = input::read(&arguments.rays)?;
-    let rays = parse_rays(&text, &name)?;
+    let (text, name) = read(&arguments.rays)?;
+    let rays: Vec<RayRequest> = serde_json::from_str(&text).map_err(|error| {
+        Failure::Failed(format!(
+            "{name}: {error}; expected an array of \
+             {{\"origin\": [x,y,z], \"direction\": [x,y,z], \"polarization\": P}}, P being \
+             \"horizontal\", \"vertical\" or {{\"electric_field\": [[re,im],[re,im],[re,im]]}}"
+        ))
+    })?;
     let busy = interruption::busy();
     let reports = trace_rays(&assembly, limits, &rays, &STOP).map_err(|error| match error {
         RayError::Stopped(_) => Failure::Interrupted,
@@ -30,21 +41,28 @@ pub fn run(arguments: &TraceArguments) -> Result<(), Failure> {
     report::print(&format!("{}\n", serde_json::to_string(&reports)?))
 }
 
-/// The rays of a JSON text; `name` says where it comes from.
-fn parse_rays(text: &str, name: &str) -> Result<Vec<RayRequest>, Failure> {
-    serde_json::from_str(text).map_err(|error| {
-        Failure::Failed(format!(
-            "{name}: {error}; expected an array of \
-             {{\"origin\": [x,y,z], \"direction\": [x,y,z], \"polarization\": P}}, P being \
-             \"horizontal\", \"vertical\" or {{\"electric_field\": [[re,im],[re,im],[re,im]]}}"
-        ))
-    })
-}
-
 /// Solves the interfaces of a file.
-pub fn interfaces(path: &Path) -> Result<(), Failure> {
-    let (text, name) = input::read(path)?;
+pub fn interfaces(path: &Path) -> Result<()> {
+    let (text, name) = read(path)?;
     let solved =
         solve_interfaces(&text).map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
     report::print_json(&solved)
+}
+
+/// The text of a file, or of standard input for `-`, and what to call it in messages.
+fn read(path: &Path) -> Result<(String, String)> {
+    let mut bytes = Vec::new();
+    let (name, read) = if path == Path::new("-") {
+        ("standard input".to_owned(), read_up_to(LONGEST, io::stdin(), &mut bytes))
+    } else {
+        let read = File::open(path).and_then(|file| read_up_to(LONGEST, file, &mut bytes));
+        (path.display().to_string(), read)
+    };
+    let failed = |reason: String| Failure::Failed(format!("cannot read {name}: {reason}"));
+    read.map_err(|error| match error.kind() {
+        ErrorKind::FileTooLarge => failed(format!("{error}; give it in parts")),
+        _ => failed(error.to_string()),
+    })?;
+    let text = String::from_utf8(bytes).map_err(|_| failed("it is not UTF-8 text".to_owned()))?;
+    Ok((text, name))
 }

@@ -3,12 +3,12 @@
 use crate::arguments::VerifyArguments;
 use crate::interruption::{self, STOP};
 use crate::progress::supervised;
-use crate::report::{self, Failure};
+use crate::report::{self, Result};
 use crate::scene;
 use cloakroom_figures::verification::{self, markdown, verify};
 
 /// Goes through the paper and prints what has been found.
-pub fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
+pub fn run(arguments: &VerifyArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
     let busy = interruption::busy();
     let findings =

@@ -2,7 +2,7 @@
 
 use crate::arguments::ViewArguments;
 use crate::interruption::{self, STOP};
-use crate::report::{Failure, print, say};
+use crate::report::{Failure, Result, print, say};
 use crate::scene;
 use cloakroom::scene_file;
 use cloakroom_figures::examples;
@@ -10,9 +10,17 @@ use cloakroom_viewer::{Settings, serve};
 use std::path::Path;
 
 /// Serves the page until Ctrl-C.
-pub fn run(arguments: &ViewArguments) -> Result<(), Failure> {
+pub fn run(arguments: &ViewArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
-    let settings = settings(arguments)?;
+    let overrides = &arguments.overrides;
+    let path = arguments.scene.as_deref().unwrap_or(Path::new(""));
+    let folder = path.parent().unwrap_or(path);
+    let scene = match &arguments.scene {
+        Some(path) => scene_file::load(path, overrides)?,
+        None => scene_file::parse(examples::FIRST, "the first scene", folder, overrides)?,
+    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let settings = Settings { scene, name, folder: folder.to_owned(), port: arguments.port };
     let _busy = interruption::busy();
     let mut told = Ok(());
     let ready = |address: &str| {
@@ -25,16 +33,4 @@ pub fn run(arguments: &ViewArguments) -> Result<(), Failure> {
     serve(&settings, ready, &STOP)?;
     told?;
     Err(Failure::Interrupted)
-}
-
-fn settings(arguments: &ViewArguments) -> Result<Settings, Failure> {
-    let overrides = &arguments.overrides;
-    let path = arguments.scene.as_deref().unwrap_or(Path::new(""));
-    let folder = path.parent().unwrap_or(path);
-    let scene = match &arguments.scene {
-        Some(path) => scene_file::load(path, overrides)?,
-        None => scene_file::parse(examples::FIRST, "the first scene", folder, overrides)?,
-    };
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Settings { scene, name, folder: folder.to_owned(), port: arguments.port })
 }

@@ -4,7 +4,7 @@
 use crate::arguments::FiguresArguments;
 use crate::panels;
 use crate::render::picture;
-use crate::report::Failure;
+use crate::report::{Failure, Result};
 use crate::scene;
 use cloakroom::output::Picture;
 use cloakroom::render::{ChannelSet, Images, metadata};
@@ -33,10 +33,8 @@ impl Subject {
     /// What must be rendered of a view for it.
     fn wanted_of_view(&self) -> ChannelSet {
         let own = ChannelSet::for_image(&self.loaded.scene.picture);
-        match self.loaded.scene.camera.polarizer {
-            Polarizer::None => own,
-            _ => own.max(ChannelSet::Polarizers),
-        }
+        let polarizer = self.loaded.scene.camera.polarizer;
+        if polarizer == Polarizer::None { own } else { own.max(ChannelSet::Polarizers) }
     }
 
     fn view_text(&self) -> Option<&str> {
@@ -57,7 +55,7 @@ impl Subject {
 
 impl Views {
     /// Reads the scenes of panels.
-    pub fn new(panels: &[&'static Panel], arguments: &FiguresArguments) -> Result<Self, Failure> {
+    pub fn new(panels: &[&'static Panel], arguments: &FiguresArguments) -> Result<Self> {
         let load = |panel: &Panel, overrides: &[&str]| {
             panels::load(panel.scene, &format!("fig{}", panel.name), &arguments.panels, overrides)
         };
@@ -85,7 +83,7 @@ impl Views {
     }
 
     /// The picture of a panel, given its place among the panels.
-    pub fn picture(&mut self, index: usize, images: &mut Images) -> Result<Picture, Failure> {
+    pub fn picture(&mut self, index: usize, images: &mut Images) -> Result<Picture> {
         let subject = &self.subjects[index];
         let what = format!("figure {}", subject.panel.name);
         let mut render =

@@ -27,7 +27,7 @@ const STEPS: u32 = 256;
 impl ColorBar {
     /// In type of a size: the axis, the width of its widest label, and the lines of its title.
     fn layout(&self, height: f64, text: f64) -> (Axis, f64, Vec<String>) {
-        let axis = axis(&self.quantity, self.scale.range(), (height / (1.6 * text)) as usize);
+        let axis = axis(&self.quantity, self.scale.range, (height / (1.6 * text)) as usize);
         let widths = axis.ticks.iter().map(|tick| Face::Regular.width(&tick.label, text));
         let widest = widths.fold(0.0, f64::max);
         let title = Face::Regular.wrap(&axis.title, text, height);
@@ -52,7 +52,7 @@ impl ColorBar {
         let place = DAffine2::from_cols(DVec2::X * width, DVec2::Y * height, at);
         drawing.add("color-bar", Shape::Image { image, cells: true, place });
         frame.draw(drawing);
-        let (below, above) = self.scale.is_clipped();
+        let (below, above) = self.scale.is_clipped;
         for (clipped, share, up) in [(above, 1.0, -0.5), (below, 0.0, 0.5)] {
             if clipped {
                 // A point: there are numbers beyond.

@@ -15,8 +15,11 @@ use image::Rgb;
 /// Numbers that are not finite are gray. Numbers that all agree get the middle of viridis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorScale {
-    range: Option<(f64, f64)>,
-    clipped: (bool, bool),
+    /// The least and the greatest number that have a colour of their own; equal if all numbers
+    /// agree, none if no number is finite.
+    pub range: Option<(f64, f64)>,
+    /// Whether there are numbers below and above the range.
+    pub is_clipped: (bool, bool),
 }
 
 /// The colour where there is no number: a neutral gray that is not in the map.
@@ -29,7 +32,7 @@ impl ColorScale {
     pub fn new(numbers: impl Iterator<Item = f64>, rounding: f64) -> Self {
         let mut finite: Vec<f64> = numbers.filter(|number| number.is_finite()).collect();
         let Some(last) = finite.len().checked_sub(1) else {
-            return Self { range: None, clipped: (false, false) };
+            return Self { range: None, is_clipped: (false, false) };
         };
         let least = finite.iter().copied().fold(f64::INFINITY, f64::min);
         let greatest = finite.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -46,27 +49,8 @@ impl ColorScale {
         } else {
             (low, high)
         };
-        let clipped = if low < high { (least < low, greatest > high) } else { (false, false) };
-        Self { range: Some((low, high)), clipped }
-    }
-
-    /// The scale of a range that is given, the same for many pictures: there may be numbers beyond it.
-    #[must_use]
-    pub fn between(low: f64, high: f64) -> Self {
-        Self { range: Some((low, high)), clipped: (true, true) }
-    }
-
-    /// The least and the greatest number that have a colour of their own; equal if all numbers
-    /// agree, none if no number is finite.
-    #[must_use]
-    pub fn range(&self) -> Option<(f64, f64)> {
-        self.range
-    }
-
-    /// Whether there are numbers below and above the range.
-    #[must_use]
-    pub fn is_clipped(&self) -> (bool, bool) {
-        self.clipped
+        let is_clipped = if low < high { (least < low, greatest > high) } else { (false, false) };
+        Self { range: Some((low, high)), is_clipped }
     }
 
     /// The colour of a number.
@@ -110,7 +94,7 @@ mod tests {
     #[test]
     fn the_range_is_that_of_the_finite_numbers() {
         let scale = scale(&[3.0, f64::NAN, 1.0, f64::INFINITY, 2.0]);
-        assert_eq!(scale.range(), Some((1.0, 3.0)));
+        assert_eq!(scale.range, Some((1.0, 3.0)));
         assert_eq!(scale.color(f64::NAN), NOTHING);
         assert_eq!(scale.color(f64::NEG_INFINITY), NOTHING);
         assert_eq!(scale.color(1.0), Rgb(colorous::VIRIDIS.eval_continuous(0.0).into_array()));
@@ -127,16 +111,16 @@ mod tests {
 
     #[test]
     fn degenerate_sets_have_colours() {
-        assert_eq!(scale(&[]).range(), None);
+        assert_eq!(scale(&[]).range, None);
         assert_eq!(scale(&[f64::NAN]).color(1.0), NOTHING);
         for number in [0.0, -0.0, 7.0, 1e-300, f64::MAX] {
             let same = scale(&[number; 4]);
-            assert_eq!(same.range(), Some((number, number)));
+            assert_eq!(same.range, Some((number, number)));
             assert_eq!(same.color(number), same.color_at(0.0));
-            assert_eq!(same.is_clipped(), (false, false));
+            assert_eq!(same.is_clipped, (false, false));
         }
         let noise = scale(&[1.0, 1.0 + f64::EPSILON]);
-        assert!(noise.range().is_some_and(|(low, high)| low == high));
+        assert!(noise.range.is_some_and(|(low, high)| low == high));
         let all = scale(&[-f64::MAX, f64::MAX]);
         assert_eq!(all.color(0.0), all.color_at(0.5));
     }
@@ -144,14 +128,14 @@ mod tests {
     #[test]
     fn outliers_do_not_take_the_contrast() {
         let mut numbers: Vec<f64> = (0..10_000).map(f64::from).collect();
-        assert_eq!(scale(&numbers).range(), Some((0.0, 9999.0)));
+        assert_eq!(scale(&numbers).range, Some((0.0, 9999.0)));
         numbers[17] = 1e9;
         let clipped = scale(&numbers);
-        assert_eq!(clipped.is_clipped(), (false, true));
-        assert!(clipped.range().is_some_and(|(low, high)| low == 0.0 && high < 10_000.0));
+        assert_eq!(clipped.is_clipped, (false, true));
+        assert!(clipped.range.is_some_and(|(low, high)| low == 0.0 && high < 10_000.0));
         // Where nearly all agree, the exceptions are what there is to see.
         let mut few = vec![1.0; 10_000];
         few[3] = 0.0;
-        assert_eq!(scale(&few).range(), Some((0.0, 1.0)));
+        assert_eq!(scale(&few).range, Some((0.0, 1.0)));
     }
 }

@@ -1,7 +1,7 @@
 //! The example scenes: every file of the folder `scenes/`, carried along in the program.
 
 use crate::gallery::EXHIBITS;
-use crate::paper::FIGURES;
+use crate::paper::{PANELS, Panel, TITLES};
 use cloakroom::keys::hint;
 
 /// A scene file.
@@ -15,23 +15,19 @@ pub struct Example {
     pub text: &'static str,
 }
 
+/// A scene file with what it shows.
+macro_rules! other {
+    ($file:literal => $words:literal) => {
+        (concat!($file, ".toml"), $words, include_str!(concat!("../scenes/", $file, ".toml")))
+    };
+}
+
 /// Scenes that are neither a panel of the paper nor an exhibit: path, words, text.
 const OTHERS: [(&str, &str, &str); 3] = [
-    (
-        "flux/solar-cell.toml",
-        "For `cloakroom flux`: a contact on a solar cell, under a cloak",
-        include_str!("../scenes/flux/solar-cell.toml"),
-    ),
-    (
-        "flux/window.toml",
-        "For `cloakroom flux`: an advertising column before a window",
-        include_str!("../scenes/flux/window.toml"),
-    ),
-    (
-        "shop-window.toml",
-        "For `cloakroom animate`: a cloak with an open core that turns in a shop window",
-        include_str!("../scenes/shop-window.toml"),
-    ),
+    other!("flux/solar-cell" => "For `cloakroom flux`: a contact on a solar cell, under a cloak"),
+    other!("flux/window" => "For `cloakroom flux`: an advertising column before a window"),
+    other!("shop-window" =>
+        "For `cloakroom animate`: a cloak with an open core that turns in a shop window"),
 ];
 
 /// Cloak (iii) of the paper, turned by 10 degrees: the scene to begin with.
@@ -40,12 +36,10 @@ pub const FIRST: &str = include_str!("../scenes/paper/fig7d.toml");
 /// All example scenes: those of the paper, those of the gallery, the others.
 #[must_use]
 pub fn all() -> Vec<Example> {
-    let panels = FIGURES.iter().flat_map(|figure| {
-        figure.panels.iter().map(|panel| Example {
-            path: panel.file,
-            words: format!("Figure {}, {}: {}", figure.number(), figure.title, panel.caption),
-            text: panel.scene,
-        })
+    let panels = PANELS.iter().map(|Panel { figure, caption, file, scene, .. }| Example {
+        path: file,
+        words: format!("Figure {figure}, {}: {caption}", TITLES[figure - 1]),
+        text: scene,
     });
     let exhibits = EXHIBITS.iter().filter(|exhibit| exhibit.file.starts_with("gallery/"));
     let exhibits = exhibits.map(|exhibit| Example {

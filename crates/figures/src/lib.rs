@@ -28,18 +28,19 @@ pub mod verification;
 
 pub use color_bar::ColorBar;
 pub use color_scale::ColorScale;
-pub use diagram::{Diagram, DiagramError, DiagramSettings, Projected, Source, diagram};
+pub use diagram::{DiagramError, DiagramSettings, Source, diagram};
 pub use drawing::{Drawing, DrawingFormat, Element, Face, Ink, Shape, Stroke, Words};
 pub use flux_pictures::{flux_map, flux_plot};
-pub use picture_file::{PictureFormat, write_picture};
+pub use picture_file::{PictureFormat, shown, write_picture};
 pub use plot::{Curve, CurvePoint, Plot, PlotPanel};
-pub use quality_plot::{STANDARD_PLOT, TableError, TableFormat, quality_plot, write_table};
+pub use quality_plot::{STANDARD_PLOT, TableFormat, quality_plot, write_table};
 pub use quantity::{Dimension, Quantity, Unit};
 pub use scalar_map::ScalarMap;
 pub use setting::{Setting, View, setting};
 pub use sheet::{SheetPanel, sheet};
 pub use table::{TablePicture, TableRow, table};
 
+use cloakroom::measure::UnknownColumn;
 use cloakroom::output::OutputError;
 use std::path::PathBuf;
 
@@ -85,6 +86,9 @@ pub enum IllustrationError {
         /// The file.
         path: PathBuf,
     },
+    /// There is no such column in a table.
+    #[error(transparent)]
+    UnknownColumn(#[from] UnknownColumn),
     /// The file cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),

@@ -1,8 +1,8 @@
 //! Pictures as files: data, images, and maps drawn with their colour bars.
 
 use super::drawing::DrawingFormat;
-use super::{IllustrationError, ScalarMap};
-use cloakroom::output::{Format, OutputError, Picture, write, write_png};
+use super::{ColorScale, IllustrationError, ScalarMap};
+use cloakroom::output::{Format, OutputError, Picture, RgbImage, to_srgb, write, write_png};
 use std::path::Path;
 
 /// A format of files of pictures.
@@ -36,6 +36,23 @@ impl PictureFormat {
     }
 }
 
+/// What an image of a picture shows: what the camera sees, or the map of a channel, if one is named, on a scale that may
+/// be given, and whether with its colour bar.
+///
+/// # Errors
+///
+/// If the picture has no image, the map is impossible, or does not fit into the memory.
+pub fn shown(
+    picture: &Picture,
+    (channel, color_bar): (Option<&str>, bool),
+    scale: Option<ColorScale>,
+) -> Result<RgbImage, IllustrationError> {
+    match channel {
+        None => Ok(to_srgb(picture)?),
+        Some(channel) => ScalarMap::new(picture, channel, scale)?.into_image(color_bar),
+    }
+}
+
 /// Writes a picture; `map` is the channel that what is to be seen is a map of, if any, and whether it has a colour bar.
 ///
 /// # Errors
@@ -48,22 +65,18 @@ pub fn write_picture(
     path: &Path,
 ) -> Result<(), IllustrationError> {
     match (format, map) {
-        (PictureFormat::Map(_), (None, _)) => {
-            return Err(IllustrationError::NoMap { path: path.to_owned() });
-        }
         (PictureFormat::Map(format), (Some(channel), color_bar)) => {
             let map = ScalarMap::new(picture, channel, None)?;
             let drawing = map.draw(color_bar);
             let title = &map.bar.quantity.title;
-            drawing.write(format, title, &picture.metadata, drawing.pixels(), path)?;
+            drawing.write(format, title, &picture.metadata, drawing.pixels(), path)
         }
-        (PictureFormat::Pixels(Format::Png), (Some(channel), color_bar)) => {
-            let map = ScalarMap::new(picture, channel, None)?.into_image(color_bar)?;
-            write_png(&map, &picture.metadata, path)?;
+        (PictureFormat::Map(_), _) => Err(IllustrationError::NoMap { path: path.to_owned() }),
+        (PictureFormat::Pixels(Format::Png), _) => {
+            Ok(write_png(&shown(picture, map, None)?, &picture.metadata, path)?)
         }
-        (PictureFormat::Pixels(_), _) => write(picture, path)?,
+        (PictureFormat::Pixels(_), _) => Ok(write(picture, path)?),
     }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::quantity::with_unit;
 use crate::{Curve, CurvePoint, DrawingFormat, IllustrationError, Plot, PlotPanel};
-use cloakroom::measure::{QualityTable, Row, UnknownColumn, combinations, name_and_unit};
+use cloakroom::measure::{QualityTable, Row, combinations, name_and_unit};
 use cloakroom::output::{OutputError, ending};
 use std::path::Path;
 
@@ -19,17 +19,6 @@ pub enum TableFormat {
     Npz,
     /// A plot, as pixels 600 an inch at the width of a column.
     Plot(DrawingFormat),
-}
-
-/// Why a table cannot be written.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum TableError {
-    /// There is no such column.
-    #[error("{0}")]
-    UnknownColumn(#[from] UnknownColumn),
-    /// The plot does not fit into the memory, or the file cannot be written.
-    #[error("{0}")]
-    Drawing(#[from] IllustrationError),
 }
 
 impl TableFormat {
@@ -59,10 +48,10 @@ pub fn write_table(
     format: TableFormat,
     plotted: &[String],
     path: &Path,
-) -> Result<(), TableError> {
+) -> Result<(), IllustrationError> {
     match format {
-        TableFormat::Csv => table.write_csv(path).map_err(IllustrationError::from)?,
-        TableFormat::Npz => table.write_npz(path).map_err(IllustrationError::from)?,
+        TableFormat::Csv => table.write_csv(path)?,
+        TableFormat::Npz => table.write_npz(path)?,
         TableFormat::Plot(format) => {
             let drawing = quality_plot(table, plotted)?.draw();
             // On paper, 600 an inch.
@@ -80,7 +69,7 @@ pub fn write_table(
 /// # Errors
 ///
 /// If there is no such column.
-pub fn quality_plot(table: &QualityTable, names: &[String]) -> Result<Plot, TableError> {
+pub fn quality_plot(table: &QualityTable, names: &[String]) -> Result<Plot, IllustrationError> {
     let several = |i: &usize| table.sweeps[*i].values.len() > 1;
     let all = || (0..table.sweeps.len()).filter(several);
     let axis = all().find(|i| table.sweeps[*i].numbers().is_some()).or_else(|| all().next());
@@ -134,7 +123,7 @@ pub fn quality_plot(table: &QualityTable, names: &[String]) -> Result<Plot, Tabl
     Ok(Plot {
         axis: axis.map_or_else(String::new, axis_title),
         categories,
-        panels: names.iter().map(panel).collect::<Result<_, TableError>>()?,
+        panels: names.iter().map(panel).collect::<Result<_, IllustrationError>>()?,
     })
 }
 

@@ -134,7 +134,7 @@ mod tests {
         assert_eq!(map.dimensions(), (5, 3));
         assert_ne!(map.get_pixel(0, 0), map.get_pixel(4, 2));
         let range = ScalarMap::new(&picture, "time_of_flight_difference", None)
-            .map(|map| map.bar.scale.range());
+            .map(|map| map.bar.scale.range);
         assert_eq!(range, Ok(Some((0.0, 14.0 * 1e-15))));
     }
 

@@ -21,12 +21,10 @@ pub struct TableRow {
 
 /// A picture in a table.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TablePicture(Content);
-
-#[derive(Clone, Debug, PartialEq)]
-enum Content {
+pub enum TablePicture {
     /// With its colour bar, if it is a map.
     Picture(RgbImage, Option<ColorBar>),
+    /// Words instead.
     Words(String),
 }
 
@@ -34,25 +32,24 @@ impl TablePicture {
     /// A picture, shrunk to 320 x 240 pixels.
     #[must_use]
     pub fn new(image: &RgbImage) -> Self {
-        Self(Content::Picture(shrink(image, PICTURE.0, PICTURE.1), None))
+        Self::Picture(shrink(image, PICTURE.0, PICTURE.1), None)
     }
 
     /// A map with its colour bar, shrunk to 320 x 240 pixels; those words instead if no number of it
     /// is finite.
     #[must_use]
     pub fn of_map(map: &ScalarMap, instead: &str) -> Self {
-        if map.bar.scale.range().is_none() {
-            return Self(Content::Words(instead.to_owned()));
+        if map.bar.scale.range.is_none() {
+            return Self::Words(instead.to_owned());
         }
-        let image = shrink(&map.image, PICTURE.0, PICTURE.1);
-        Self(Content::Picture(image, Some(map.bar.clone())))
+        Self::Picture(shrink(&map.image, PICTURE.0, PICTURE.1), Some(map.bar.clone()))
     }
 
     /// The size of the picture itself.
     fn picture(&self) -> DVec2 {
-        let (width, height) = match &self.0 {
-            Content::Picture(image, _) => image.dimensions(),
-            Content::Words(_) => PICTURE,
+        let (width, height) = match self {
+            Self::Picture(image, _) => image.dimensions(),
+            Self::Words(_) => PICTURE,
         };
         DVec2::new(f64::from(width), f64::from(height))
     }
@@ -60,21 +57,21 @@ impl TablePicture {
     /// The size that it takes up with its colour bar.
     fn size(&self) -> DVec2 {
         let size = self.picture();
-        let Content::Picture(_, Some(bar)) = &self.0 else { return size };
+        let Self::Picture(_, Some(bar)) = self else { return size };
         let height = size.y.max(LEAST_BAR);
         DVec2::new((size.x + GAP + bar.width(height, BAR_TEXT)).ceil(), height)
     }
 
     fn draw(&self, drawing: &mut Drawing, at: DVec2) {
         let size = self.picture();
-        match &self.0 {
-            Content::Picture(image, bar) => {
+        match self {
+            Self::Picture(image, bar) => {
                 drawing.add_framed(image.clone(), bar.is_some(), at, RULE);
                 if let Some(bar) = bar {
                     bar.draw(drawing, at + DVec2::X * (size.x + GAP), self.size().y, BAR_TEXT);
                 }
             }
-            Content::Words(words) => {
+            Self::Words(words) => {
                 let frame = Frame { corner: at, size, text: TEXT };
                 frame.draw(drawing);
                 let lines = Face::Regular.wrap(words, TEXT, size.x - 2.0 * GAP);

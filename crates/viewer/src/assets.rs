@@ -1,24 +1,14 @@
 //! The files of the page, carried in the program: nothing is read from the disk.
 
-/// One file of the page.
-pub(crate) struct Asset {
-    /// Its path in the address.
-    pub path: &'static str,
-    /// Its media type.
-    pub kind: &'static str,
-    /// What it holds.
-    pub bytes: &'static [u8],
-}
-
 /// An asset of the folder `page`.
 macro_rules! asset {
     ($path:literal, $file:literal, $kind:literal) => {
-        Asset { path: $path, kind: $kind, bytes: include_bytes!(concat!("../page/", $file)) }
+        ($path, $kind, include_bytes!(concat!("../page/", $file)))
     };
 }
 
-/// All of them.
-pub(crate) static ASSETS: &[Asset] = &[
+/// All of them: their paths in the address, media types, and what they hold.
+pub(crate) static ASSETS: &[(&str, &str, &[u8])] = &[
     asset!("/", "index.html", "text/html; charset=utf-8"),
     asset!("/style.css", "style.css", "text/css; charset=utf-8"),
     asset!("/icon.svg", "icon.svg", "image/svg+xml"),

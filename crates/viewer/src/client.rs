@@ -98,38 +98,27 @@ pub(crate) struct Client {
     pub looks: Slot<Wish>,
     pub seen: Seen,
     rays: Slot<ray_tree::Wish>,
-    shown: Mutex<Option<Arc<Shown>>>,
+    /// What rays go through.
+    pub shown: Mutex<Option<Arc<Shown>>>,
     uploaded: Mutex<Option<Uploaded>>,
     uploads: AtomicU64,
 }
 
 impl Client {
-    /// The images that all pages share.
-    pub fn images(&self) -> Images {
-        lock(&self.server.images).clone()
-    }
-
     /// The photograph that the page has brought last.
     pub fn uploaded(&self) -> Option<Uploaded> {
         lock(&self.uploaded).clone()
-    }
-
-    /// Rays go through this from now on.
-    pub fn show(&self, shown: Shown) {
-        *lock(&self.shown) = Some(Arc::new(shown));
     }
 
     /// Reads a photograph, one at a time of all pages: memory for more is not taken.
     fn hang(&self, name: &str, bytes: &[u8]) -> Result<Value, String> {
         let source = self.server.opened.source_of(name);
         let _one = lock(&self.server.reading);
+        let millions = MOST_PIXELS / 1_000_000;
         let image =
             load_bytes(&source, bytes, MOST_PIXELS).map_err(|error| match error.problem {
                 LoadProblem::TooLarge => {
-                    format!(
-                        "the photograph is too large: at most {} million pixels",
-                        MOST_PIXELS / 1_000_000
-                    )
+                    format!("the photograph is too large: at most {millions} million pixels")
                 }
                 LoadProblem::NotAnImage | LoadProblem::Empty => {
                     "this is not an image that can be read (PNG, JPEG or EXR)".to_owned()
@@ -148,7 +137,7 @@ impl Client {
         let space = Space::take(&self.server, (width * height) as u64).ok_or(
             "other pages have brought so many photographs that there is no room; close some",
         )?;
-        let mut images = self.images();
+        let mut images = lock(&self.server.images).clone();
         images.hang(source.clone(), image);
         let number = self.uploads.fetch_add(1, Ordering::Relaxed);
         *lock(&self.uploaded) = Some(Uploaded { source, images, number, _space: Arc::new(space) });
@@ -228,18 +217,20 @@ struct Session<'a> {
 
 impl Session<'_> {
     async fn hear(&mut self, message: ws::Message) -> Result<(), Gone> {
-        match message {
-            ws::Message::Text(text) => match Message::read(&text) {
-                Ok(message) => self.heed(message).await,
-                Err(problem) => self.outbox.answer(&error(None, &problem)).await,
-            },
-            ws::Message::Binary(bytes) => self.take_photograph(bytes).await,
-            ws::Message::Close(_) => Err(Gone),
-            ws::Message::Ping(_) | ws::Message::Pong(_) => Ok(()),
+        let heard = match message {
+            ws::Message::Text(text) => Message::read(&text).and_then(|said| self.heed(said)),
+            ws::Message::Binary(bytes) => self.take_photograph(bytes).await.map(Some),
+            ws::Message::Close(_) => return Err(Gone),
+            ws::Message::Ping(_) | ws::Message::Pong(_) => Ok(None),
+        };
+        match heard.unwrap_or_else(|problem| Some(error(None, &problem))) {
+            Some(answer) => self.outbox.answer(&answer).await,
+            None => Ok(()),
         }
     }
 
-    async fn heed(&mut self, message: Message) -> Result<(), Gone> {
+    /// Does what a message says, and gives the answer to it, if there is one at once.
+    fn heed(&mut self, message: Message) -> Result<Option<Value>, String> {
         match message {
             Message::Look(look) => {
                 if let Some((stop, false)) = &self.stop {
@@ -251,48 +242,34 @@ impl Session<'_> {
             }
             Message::Seen { id } => self.client.seen.tell(id),
             Message::Ray(ray) => {
-                let shown = lock(&self.client.shown).clone();
-                let Some(shown) = shown else {
+                let Some(shown) = lock(&self.client.shown).clone() else {
                     let message = "there is no picture yet that a ray could be followed through";
-                    return self.outbox.answer(&error(Some(ray.id), message)).await;
+                    return Ok(Some(error(Some(ray.id), message)));
                 };
                 self.client.rays.put((ray, shown));
             }
             Message::Save { scene } => {
                 let uploaded = self.client.uploaded();
                 let source = uploaded.as_ref().map(|uploaded| &uploaded.source);
-                let read = self.client.server.opened.read(&scene, source);
-                let answer = match read {
-                    Ok(loaded) => json!({ "saved": { "text": loaded.scene.source } }),
-                    Err(problem) => error(None, &problem),
-                };
-                return self.outbox.answer(&answer).await;
+                let loaded = self.client.server.opened.read(&scene, source)?;
+                return Ok(Some(json!({ "saved": { "text": loaded.scene.source } })));
             }
             Message::Photograph { name } if is_plain_name(&name) => self.name = Some(name),
             Message::Photograph { .. } => {
-                let message = "a photograph's name is that of a file, without folders";
-                return self.outbox.answer(&error(None, message)).await;
+                return Err("a photograph's name is that of a file, without folders".to_owned());
             }
         }
-        Ok(())
+        Ok(None)
     }
 
-    async fn take_photograph(&mut self, bytes: Bytes) -> Result<(), Gone> {
-        let Some(name) = self.name.take() else {
-            let message = "these bytes belong to no photograph; say its name first";
-            return self.outbox.answer(&error(None, message)).await;
-        };
+    async fn take_photograph(&mut self, bytes: Bytes) -> Result<Value, String> {
+        let unnamed = "these bytes belong to no photograph; say its name first";
+        let name = self.name.take().ok_or(unnamed)?;
         if bytes.len() > LARGEST_PHOTOGRAPH {
-            let message = format!("a photograph may have {} MiB", LARGEST_PHOTOGRAPH >> 20);
-            return self.outbox.answer(&error(None, &message)).await;
+            return Err(format!("a photograph may have {} MiB", LARGEST_PHOTOGRAPH >> 20));
         }
         let client = self.client.clone();
         let read = tokio::task::spawn_blocking(move || client.hang(&name, &bytes)).await;
-        let answer = match read {
-            Ok(Ok(answer)) => answer,
-            Ok(Err(problem)) => error(None, &problem),
-            Err(_) => error(None, "this image is damaged"),
-        };
-        self.outbox.answer(&answer).await
+        read.unwrap_or_else(|_| Err("this image is damaged".to_owned()))
     }
 }

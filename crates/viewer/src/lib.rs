@@ -12,7 +12,6 @@ mod catalogue;
 mod client;
 mod cross_section;
 mod figures;
-mod frame;
 mod pace;
 mod painter;
 mod protocol;

@@ -4,12 +4,11 @@
 use crate::client::{Client, Gone, Outbox};
 use crate::cross_section::cross_section;
 use crate::figures::{figures, resized};
-use crate::frame::encode;
 use crate::pace::{Pace, Pass};
 use crate::protocol::{Beside, Look, error};
 use crate::slot::lock;
 use cloakroom::measure::{bare, empty, ideal};
-use cloakroom::output::to_srgb;
+use cloakroom::output::{RgbImage, to_srgb};
 use cloakroom::render::{
     ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Supervision, render,
 };
@@ -61,7 +60,7 @@ pub(crate) fn paint(client: &Client, outbox: &Outbox) {
     let mut painter = Painter {
         client,
         outbox,
-        images: client.images(),
+        images: lock(&client.server.images).clone(),
         uploaded: None,
         pace: Pace::default(),
         devices: Vec::new(),
@@ -140,7 +139,8 @@ impl Painter<'_> {
                 self.section = section;
             }
         }
-        self.client.show(Shown { scene: full, images: images.clone() });
+        let shown = Shown { scene: full, images: images.clone() };
+        *lock(&self.client.shown) = Some(Arc::new(shown));
         let beside = match look.beside {
             Beside::Nothing => None,
             Beside::Bare => bare(scene).map(|scene| ("bare", scene)),
@@ -189,27 +189,26 @@ impl Painter<'_> {
         }
         let start = Instant::now();
         let prepared = PreparedScene::with_images(&scene, images)?;
-        let progress = Progress {
-            outbox: self.outbox,
-            id: wish.look.id,
-            samples: pass.samples,
-            rows: prepared.rows(),
-            done: AtomicU64::new(0),
-            told: Mutex::new(Instant::now()),
+        let (done, told) = (AtomicU64::new(0), Mutex::new(Instant::now()));
+        // The page is told now and then how far a picture is.
+        let rows_done = |rows| {
+            let done = done.fetch_add(rows, Ordering::Relaxed) + rows;
+            let mut told = lock(&told);
+            if !pass.coarse && told.elapsed() >= PROGRESS {
+                *told = Instant::now();
+                let (id, share) = (wish.look.id, done as f64 / prepared.rows() as f64);
+                let progress = json!({ "id": id, "samples": pass.samples, "share": share });
+                self.outbox.say_if_room(&json!({ "progress": progress }));
+            }
         };
-        let rows_done = |rows| progress.add(rows);
-        let quiet = |_| {};
-        let supervision = Supervision {
-            rows_done: if pass.coarse { &quiet } else { &rows_done },
-            stop: &wish.stop,
-        };
+        let supervision = Supervision { rows_done: &rows_done, stop: &wish.stop };
         let wanted = ChannelSet::for_image(&scene.picture);
         let picture = render(&prepared, wanted, &supervision)?.picture;
         let (image, scale) = match scene.picture.map.name() {
             None => (to_srgb(&picture)?, Value::Null),
             Some(channel) => {
                 let map = ScalarMap::new(&picture, channel, None)?;
-                let scale = scale(channel, map.bar.scale.range());
+                let scale = scale(channel, map.bar.scale.range);
                 (map.image, scale)
             }
         };
@@ -254,26 +253,15 @@ fn scale(channel: &str, range: Option<(f64, f64)>) -> Value {
     })
 }
 
-/// Tells a page now and then how far a picture is.
-struct Progress<'a> {
-    outbox: &'a Outbox,
-    id: u64,
-    samples: u32,
-    rows: u64,
-    done: AtomicU64,
-    told: Mutex<Instant>,
-}
-
-impl Progress<'_> {
-    fn add(&self, rows: u64) {
-        let done = self.done.fetch_add(rows, Ordering::Relaxed) + rows;
-        let mut told = lock(&self.told);
-        if told.elapsed() >= PROGRESS {
-            *told = Instant::now();
-            let share = done as f64 / self.rows as f64;
-            self.outbox.say_if_room(
-                &json!({ "progress": { "id": self.id, "samples": self.samples, "share": share } }),
-            );
-        }
+/// A picture on its way to a page: four bytes of length, JSON of that length, then RGBA.
+fn encode(caption: &Value, image: &RgbImage) -> Vec<u8> {
+    let caption = caption.to_string().into_bytes();
+    let pixels = image.as_raw();
+    let mut bytes = Vec::with_capacity(4 + caption.len() + pixels.len() / 3 * 4);
+    bytes.extend((caption.len() as u32).to_le_bytes());
+    bytes.extend(caption);
+    for pixel in pixels.chunks_exact(3) {
+        bytes.extend([pixel[0], pixel[1], pixel[2], 255]);
     }
+    bytes
 }

@@ -31,16 +31,10 @@ impl<T> Slot<T> {
 
     /// Waits for something and takes it; `None` once the slot is closed.
     pub fn take(&self) -> Option<T> {
-        let mut content = lock(&self.content);
-        loop {
-            if content.closed {
-                return None;
-            }
-            if let Some(wish) = content.waiting.take() {
-                return Some(wish);
-            }
-            content = self.changed.wait(content).unwrap_or_else(PoisonError::into_inner);
-        }
+        let is_idle = |content: &mut Content<T>| content.waiting.is_none() && !content.closed;
+        let content = self.changed.wait_while(lock(&self.content), is_idle);
+        let mut content = content.unwrap_or_else(PoisonError::into_inner);
+        content.waiting.take().filter(|_| !content.closed)
     }
 
     /// Ends the waiting for good.

@@ -4,26 +4,24 @@ use cloakroom::material::Resolution;
 use std::str::FromStr;
 
 /// Reads a point such as -30,0,0.
-pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
-    numbers(text).ok_or_else(|| "write X,Y,Z in cm, as in -30,0,0".to_owned())
+pub(super) fn point(text: &str) -> Result<[f64; 3], &'static str> {
+    numbers(text).ok_or("write X,Y,Z in cm, as in -30,0,0")
 }
 
 /// Reads from where space is seen, such as 30,20.
-pub(super) fn view(text: &str) -> Result<[f64; 2], String> {
-    numbers(text).ok_or_else(|| "write AZIMUTH,ELEVATION in degrees, as in 30,20".to_owned())
+pub(super) fn view(text: &str) -> Result<[f64; 2], &'static str> {
+    numbers(text).ok_or("write AZIMUTH,ELEVATION in degrees, as in 30,20")
 }
 
 /// Reads where and when the sun is, such as 49,23.44.
-pub(super) fn sun(text: &str) -> Result<[f64; 2], String> {
+pub(super) fn sun(text: &str) -> Result<[f64; 2], &'static str> {
     numbers(text)
         .filter(|[latitude, declination]| latitude.abs().max(declination.abs()) <= 90.0)
-        .ok_or_else(|| {
-            "write LATITUDE,DECLINATION, each from -90 to 90 degrees, as in 49,23.44".to_owned()
-        })
+        .ok_or("write LATITUDE,DECLINATION, each from -90 to 90 degrees, as in 49,23.44")
 }
 
 /// Reads angles such as -60..60:5, or a single one: first, last and step.
-pub(super) fn angles(text: &str) -> Result<[f64; 3], String> {
+pub(super) fn angles(text: &str) -> Result<[f64; 3], &'static str> {
     let parts = text.split_once("..").and_then(|(from, rest)| {
         let (to, step) = rest.split_once(':')?;
         numbers(&format!("{from},{to},{step}"))
@@ -32,59 +30,52 @@ pub(super) fn angles(text: &str) -> Result<[f64; 3], String> {
     parts
         .or_else(single)
         .filter(|[from, to, step]| *step > 0.0 && to >= from && (to - from) / step < 10_000.0)
-        .ok_or_else(|| {
+        .ok_or(
             "write FROM..TO:STEP in degrees, as in -60..60:5, the step above 0, the end not before the beginning, \
-             at most 10000 angles, or a single angle"
-                .to_owned()
-        })
+             at most 10000 angles, or a single angle",
+        )
 }
 
 /// Reads the first and the last of some frames, such as 0..29.
-pub(super) fn frames_only(text: &str) -> Result<[usize; 2], String> {
+pub(super) fn frames_only(text: &str) -> Result<[usize; 2], &'static str> {
     parsed(text, "..")
         .filter(|[first, last]| first <= last)
-        .ok_or_else(|| "write FIRST..LAST, counted from 0, as in 0..29".to_owned())
+        .ok_or("write FIRST..LAST, counted from 0, as in 0..29")
 }
 
 /// Reads the range of a map, such as -0.1,0.1.
-pub(super) fn map_range(text: &str) -> Result<[f64; 2], String> {
+pub(super) fn map_range(text: &str) -> Result<[f64; 2], &'static str> {
     numbers(text)
         .filter(|[low, high]| low < high)
-        .ok_or_else(|| "write LOW,HIGH, the smaller number first, as in -0.1,0.1".to_owned())
+        .ok_or("write LOW,HIGH, the smaller number first, as in -0.1,0.1")
 }
 
 /// Reads a grid such as 200x200x1 or 0.1.
-pub(super) fn grid(text: &str) -> Result<Resolution, String> {
+pub(super) fn grid(text: &str) -> Result<Resolution, &'static str> {
     if let Some(counts) = parsed(text, "x") {
         return Ok(Resolution::Cells(counts));
     }
-    text.parse().map(Resolution::Spacing).map_err(|_| {
-        "write how many cells along x, y and z, as in 200x200x1, or the side of a cell in cm, as in 0.1"
-            .to_owned()
-    })
+    text.parse().map(Resolution::Spacing).map_err(
+        |_| "write how many cells along x, y and z, as in 200x200x1, or the side of a cell in cm, as in 0.1",
+    )
 }
 
 /// Reads a pixel such as 512,384.
-pub(super) fn pixel(text: &str) -> Result<[u32; 2], String> {
-    parsed(text, ",")
-        .ok_or_else(|| "write COLUMN,ROW, counted from 0 at the top left, as in 512,384".to_owned())
+pub(super) fn pixel(text: &str) -> Result<[u32; 2], &'static str> {
+    parsed(text, ",").ok_or("write COLUMN,ROW, counted from 0 at the top left, as in 512,384")
 }
 
 /// Reads a rectangle such as 100,50,200,150.
-pub(super) fn rectangle(text: &str) -> Result<[usize; 4], String> {
-    parsed(text, ",").ok_or_else(|| {
-        "write X,Y,W,H in pixels: left column, top row, width, height, as in 100,50,200,150"
-            .to_owned()
-    })
+pub(super) fn rectangle(text: &str) -> Result<[usize; 4], &'static str> {
+    parsed(text, ",")
+        .ok_or("write X,Y,W,H in pixels: left column, top row, width, height, as in 100,50,200,150")
 }
 
 /// Reads a size such as 1024x768.
-pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
+pub(super) fn size(text: &str) -> Result<[u32; 2], &'static str> {
     parsed(text, "x")
         .filter(|sides| sides.iter().all(|side| (1..=65536).contains(side)))
-        .ok_or_else(|| {
-            "write WIDTHxHEIGHT in pixels, each from 1 to 65536, as in 1024x768".to_owned()
-        })
+        .ok_or("write WIDTHxHEIGHT in pixels, each from 1 to 65536, as in 1024x768")
 }
 
 /// Finite numbers between commas.

@@ -6,11 +6,10 @@ mod source;
 mod view;
 
 pub use source::Source;
-pub use view::Projected;
 
 use super::drawing::Drawing;
 use super::setting::{AXES, Devices, MARGIN, TEXT, draw_axes, sheet};
-use cloakroom::render::{PreparedSceneError, assembly, metadata};
+use cloakroom::render::{PreparedSceneError, RenderError, assembly};
 use cloakroom::scene::Scene;
 use cloakroom::trace::{Limits, Line, lines};
 use glam::{DVec2, DVec3};
@@ -37,37 +36,11 @@ pub struct DiagramSettings {
     pub wavefronts: Option<f64>,
     /// Branches weaker than this are not drawn.
     pub min_power: f64,
-    /// How space is shown.
-    pub projected: Projected,
+    /// From where space is seen in parallel projection: degrees about y, from the view along -z (0: x to the right)
+    /// towards that along -x, and degrees above the xz-plane; `None`: the cross-section in the xy-plane.
+    pub space: Option<[f64; 2]>,
     /// Width and height in pixels: their ratio is that of the sheet.
     pub size: [u32; 2],
-}
-
-impl Default for DiagramSettings {
-    fn default() -> Self {
-        Self {
-            source: Source::Parallel { degrees: 0.0 },
-            // Even, so that none runs on the axis, where cloaks are singular.
-            rays: 20,
-            layers: 1,
-            z: None,
-            width: None,
-            polarization: [0.5, 0.5],
-            wavefronts: None,
-            min_power: 0.01,
-            projected: Projected::Section,
-            size: [1024, 768],
-        }
-    }
-}
-
-/// A ray diagram.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Diagram {
-    /// The drawing.
-    pub drawing: Drawing,
-    /// Scene and version, for files.
-    pub metadata: Vec<(String, String)>,
 }
 
 /// Why a ray diagram cannot be drawn.
@@ -96,8 +69,8 @@ pub enum DiagramError {
         allowed: &'static str,
     },
     /// The work was stopped from outside.
-    #[error("stopped")]
-    Stopped,
+    #[error("{0}")]
+    Render(#[from] RenderError),
 }
 
 /// More rays than this are no diagram.
@@ -112,7 +85,7 @@ pub fn diagram(
     scene: &Scene,
     settings: &DiagramSettings,
     stop: &AtomicBool,
-) -> Result<Diagram, DiagramError> {
+) -> Result<Drawing, DiagramError> {
     check(settings)?;
     let assembly = assembly(scene)?;
     let devices = Devices::new(&assembly);
@@ -133,7 +106,7 @@ pub fn diagram(
         .par_iter()
         .map(|launch| {
             if stop.load(Ordering::Relaxed) {
-                return Err(DiagramError::Stopped);
+                return Err(RenderError::Stopped);
             }
             let mut tree = lines(&assembly, limits, launch, settings.polarization, reach);
             tree.retain(|line| line.power >= settings.min_power);
@@ -142,12 +115,14 @@ pub fn diagram(
         .collect::<Result<_, _>>()?;
     let fronts = |trees: &[Vec<Line>]| {
         let Some(distance) = settings.wavefronts else { return Vec::new() };
-        rays::wavefronts(trees, &assembly, [distance, scenery.apart(trees.len())])
+        // How far apart the points of a front may be on so many neighbouring rays.
+        let apart = 6.0 * scenery.depth() / trees.len().max(4) as f64;
+        rays::wavefronts(trees, &assembly, [distance, apart])
     };
     let sheet = sheet(settings.size);
     let mut drawing = Drawing::new(sheet, TEXT);
-    match settings.projected {
-        Projected::Section => {
+    match settings.space {
+        None => {
             let view = scenery.section_view(sheet, devices.has_bar());
             devices.draw(&mut drawing, &view);
             let place = |at: DVec3| view.place(at.truncate());
@@ -160,19 +135,18 @@ pub fn diagram(
             devices.draw_bar(&mut drawing, view::bar(sheet));
             draw_axes(&mut drawing, sheet - AXES - DVec2::new(MARGIN, 4.0));
         }
-        Projected::Space { azimuth, elevation } => {
-            let view = SpaceView::new(&scenery, sheet, [azimuth, elevation]);
+        Some(from) => {
+            let view = SpaceView::new(&scenery, sheet, from);
             let fronts: Vec<_> = trees.chunks(settings.rays as usize).flat_map(fronts).collect();
             solids::draw(&mut drawing, &view, &assembly, (&trees, &fronts), &scenery);
         }
     }
     view::draw_key(&mut drawing, settings);
-    Ok(Diagram { drawing, metadata: metadata(scene) })
+    Ok(drawing)
 }
 
 fn check(settings: &DiagramSettings) -> Result<(), DiagramError> {
     let refuse = |name, value, allowed| Err(DiagramError::Setting { name, value, allowed });
-    let positive = "above 0";
     let rays = u64::from(settings.rays) * u64::from(settings.layers);
     if rays == 0 || rays > u64::from(MOST_RAYS) {
         return refuse("the number of rays", rays as f64, "from 1 to 2000");
@@ -182,10 +156,8 @@ fn check(settings: &DiagramSettings) -> Result<(), DiagramError> {
         ("the distance of wavefronts", settings.wavefronts),
         ("the least power", Some(settings.min_power)),
     ] {
-        if let Some(value) = value
-            && !(value > 0.0 && value.is_finite())
-        {
-            return refuse(name, value, positive);
+        if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
+            return refuse(name, value, "above 0");
         }
     }
     let numbers = match settings.source {

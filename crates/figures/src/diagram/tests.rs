@@ -3,11 +3,29 @@ use cloakroom::scene_file;
 use glam::DVec2;
 use std::path::Path;
 
+impl Default for DiagramSettings {
+    fn default() -> Self {
+        Self {
+            source: Source::Parallel { degrees: 0.0 },
+            // Even, so that none runs on the axis, where cloaks are singular.
+            rays: 20,
+            layers: 1,
+            z: None,
+            width: None,
+            polarization: [0.5, 0.5],
+            wavefronts: None,
+            min_power: 0.01,
+            space: None,
+            size: [1024, 768],
+        }
+    }
+}
+
 fn scene(text: &str) -> Scene {
     scene_file::parse(text, "scene", Path::new(""), &[]).expect("a scene").scene
 }
 
-fn drawn(text: &str, settings: &DiagramSettings) -> Result<Diagram, DiagramError> {
+fn drawn(text: &str, settings: &DiagramSettings) -> Result<Drawing, DiagramError> {
     diagram(&scene(text), settings, &AtomicBool::new(false))
 }
 
@@ -24,7 +42,7 @@ fn fronts(drawing: &Drawing) -> Vec<Vec<DVec2>> {
 fn a_perfect_cloak_leaves_wavefronts_plane() {
     let settings =
         DiagramSettings { wavefronts: Some(2.0), rays: 40, ..DiagramSettings::default() };
-    let drawing = drawn("[[device]]\nkind = \"square-cloak\"", &settings).expect("drawn").drawing;
+    let drawing = drawn("[[device]]\nkind = \"square-cloak\"", &settings).expect("drawn");
     let view = Scenery::new(
         [DVec2::splat(-9.970_205_614_730_32), DVec2::splat(9.970_205_614_730_32)],
         0.0,
@@ -76,21 +94,20 @@ fn every_device_can_be_drawn_in_every_way() {
             _ => "",
         };
         let text = format!("[[device]]\nkind = \"{}\"\n{more}", entry.kind);
-        let space = Projected::Space { azimuth: 30.0, elevation: 20.0 };
-        for (projected, source) in [
-            (Projected::Section, Source::Parallel { degrees: 200.0 }),
-            (Projected::Section, Source::Camera),
+        let space = Some([30.0, 20.0]);
+        for (space, source) in [
+            (None, Source::Parallel { degrees: 200.0 }),
+            (None, Source::Camera),
             (space, Source::Point(DVec3::new(-400.0, 60.0, 0.0))),
         ] {
-            let settings =
-                DiagramSettings { projected, source, rays: 3, ..DiagramSettings::default() };
-            let drawing = drawn(&text, &settings).expect("drawn").drawing;
+            let settings = DiagramSettings { space, source, rays: 3, ..DiagramSettings::default() };
+            let drawing = drawn(&text, &settings).expect("drawn");
             let rays = drawing.of_class("ray").count();
             assert!(rays >= 3, "{} {source:?}: {rays}", entry.kind);
             for axis in ["[1, 2, -0.5]", "[0, 1, 0]", "[-1, 0, 0]", "[0, 0, -1]"] {
                 let text = text.replacen("\n", &format!("\naxis = {axis}\n"), 1);
                 match drawn(&text, &settings) {
-                    Ok(Diagram { drawing, .. }) => assert!(drawing.of_class("ray").count() >= 3),
+                    Ok(drawing) => assert!(drawing.of_class("ray").count() >= 3),
                     // What has no end along the rays is where they would start.
                     Err(error) => assert!(matches!(error, DiagramError::Inside { .. }), "{error}"),
                 }
@@ -102,13 +119,13 @@ fn every_device_can_be_drawn_in_every_way() {
 #[test]
 fn wavefronts_are_drawn_in_space_too() {
     let settings = DiagramSettings {
-        projected: Projected::Space { azimuth: 0.0, elevation: 90.0 },
+        space: Some([0.0, 90.0]),
         wavefronts: Some(4.0),
         rays: 6,
         layers: 2,
         ..DiagramSettings::default()
     };
-    let drawing = drawn("[[device]]\nkind = \"square-cloak\"", &settings).expect("drawn").drawing;
+    let drawing = drawn("[[device]]\nkind = \"square-cloak\"", &settings).expect("drawn");
     let fronts = fronts(&drawing);
     assert!(fronts.len() > 20, "{}", fronts.len());
     // Seen from above, pieces of fronts across the light are points: layers are not joined.

@@ -7,20 +7,6 @@ use cloakroom::assembly::Assembly;
 use cloakroom::device::REACH;
 use glam::{DVec2, DVec3};
 
-/// How space is shown.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Projected {
-    /// Onto the xy-plane: the cross-section.
-    Section,
-    /// In parallel projection, seen from a direction.
-    Space {
-        /// Degrees about y, from the view along -z (0: x to the right) towards that along -x.
-        azimuth: f64,
-        /// Degrees above the xz-plane.
-        elevation: f64,
-    },
-}
-
 /// The row with the key.
 const KEY: f64 = 1.8 * TEXT;
 
@@ -94,11 +80,6 @@ impl Scenery {
     /// How far along z space is shown, where devices have no end.
     pub fn depth(&self) -> f64 {
         (self.bounds[1] - self.bounds[0]).max_element()
-    }
-
-    /// How far apart the points of a wavefront may be on that many neighbouring rays.
-    pub fn apart(&self, rays: usize) -> f64 {
-        6.0 * self.depth() / rays.max(4) as f64
     }
 
     /// The view of the cross-section on a sheet; its window is what is shown.

@@ -53,17 +53,11 @@ impl Drawing {
         pixels: [u32; 2],
         path: &Path,
     ) -> Result<(), IllustrationError> {
-        match format {
-            DrawingFormat::Svg => {
-                let svg = self.to_svg(title, metadata);
-                write_whole(path, |out| out.write_all(svg.as_bytes()))?;
-            }
-            DrawingFormat::Pdf => {
-                let pdf = self.to_pdf(title, metadata);
-                write_whole(path, |out| out.write_all(&pdf))?;
-            }
-            DrawingFormat::Png => write_png(&self.to_image(pixels)?, metadata, path)?,
-        }
-        Ok(())
+        let bytes = match format {
+            DrawingFormat::Svg => self.to_svg(title, metadata).into_bytes(),
+            DrawingFormat::Pdf => self.to_pdf(title, metadata),
+            DrawingFormat::Png => return Ok(write_png(&self.to_image(pixels)?, metadata, path)?),
+        };
+        Ok(write_whole(path, |out| out.write_all(&bytes))?)
     }
 }

@@ -6,8 +6,7 @@ use super::{Drawing, Element, Ink, Shape, contours, line};
 use base64::Engine;
 use cloakroom::output::RgbImage;
 use glam::{DAffine2, DVec2};
-use std::fmt::Write;
-use svg::node::element::{ClipPath, Group, Image, Path, Rectangle, Title};
+use svg::node::element::{ClipPath, Description, Group, Image, Path, Rectangle, Title};
 use svg::{Document, Node};
 
 impl Drawing {
@@ -34,10 +33,8 @@ impl Drawing {
             .set("preserveAspectRatio", "none")
             .add(Title::new(description));
         for (key, text) in metadata {
-            let mut entry = svg::node::element::Element::new("desc");
-            entry.assign("class", key.as_str());
-            entry.append(svg::node::Text::new(text.clone()));
-            document = document.add(entry);
+            let text = svg::node::Text::new(text.as_str());
+            document = document.add(Description::new().set("class", key.as_str()).add(text));
         }
         let paper = Rectangle::new().set("width", w).set("height", h).set("fill", "#ffffff");
         document = document.add(paper);
@@ -117,17 +114,14 @@ fn point(p: DVec2) -> String {
 
 /// What pieces of an outline are together.
 fn path(pieces: impl IntoIterator<Item = Piece>) -> Path {
-    let data = pieces.into_iter().fold(String::new(), |mut data, piece| {
-        let _ = match piece {
-            Piece::Move(p) => write!(data, "M{}", point(p)),
-            Piece::Line(p) => write!(data, "L{}", point(p)),
-            Piece::Quadratic(a, p) => write!(data, "Q{} {}", point(a), point(p)),
-            Piece::Cubic(a, b, p) => write!(data, "C{} {} {}", point(a), point(b), point(p)),
-            Piece::Close => write!(data, "Z"),
-        };
-        data
+    let data = pieces.into_iter().map(|piece| match piece {
+        Piece::Move(p) => format!("M{}", point(p)),
+        Piece::Line(p) => format!("L{}", point(p)),
+        Piece::Quadratic(a, p) => format!("Q{} {}", point(a), point(p)),
+        Piece::Cubic(a, b, p) => format!("C{} {} {}", point(a), point(b), point(p)),
+        Piece::Close => "Z".to_owned(),
     });
-    Path::new().set("d", data)
+    Path::new().set("d", data.collect::<String>())
 }
 
 /// An image as a PNG within the SVG; none if it has no pixels.

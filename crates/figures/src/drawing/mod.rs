@@ -183,7 +183,8 @@ impl Drawing {
     }
 
     /// The elements of a class.
-    pub fn of_class(&self, class: &str) -> impl Iterator<Item = &Element> {
+    #[cfg(test)]
+    pub(crate) fn of_class(&self, class: &str) -> impl Iterator<Item = &Element> {
         self.elements.iter().filter(move |element| element.class == class)
     }
 }
@@ -284,13 +285,7 @@ impl Words {
                     DVec2::new(x + p.x * self.size, (face.half_capital() - p.y) * self.size);
                 self.at + turn.rotate(on_line)
             };
-            pieces.extend(face.outline(text).into_iter().map(|piece| match piece {
-                Piece::Move(p) => Piece::Move(place(p)),
-                Piece::Line(p) => Piece::Line(place(p)),
-                Piece::Quadratic(a, p) => Piece::Quadratic(place(a), place(p)),
-                Piece::Cubic(a, b, p) => Piece::Cubic(place(a), place(b), place(p)),
-                Piece::Close => Piece::Close,
-            }));
+            pieces.extend(face.outline(text, &place));
             x += face.width(text, self.size);
         }
         pieces

@@ -49,13 +49,13 @@ impl Drawing {
         let mut resources = page.resources();
         let mut names = resources.x_objects();
         for (i, _) in (0..).zip(&sheet.images) {
-            names.pair(Name(name("i", i).as_bytes()), id(RESOURCES + i));
+            names.pair(Name(format!("i{i}").as_bytes()), id(RESOURCES + i));
         }
         names.finish();
         let first_opacity = RESOURCES + sheet.images.len() as i32;
         let mut names = resources.ext_g_states();
         for (i, _) in (0..).zip(&sheet.opacities) {
-            names.pair(Name(name("o", i).as_bytes()), id(first_opacity + i));
+            names.pair(Name(format!("o{i}").as_bytes()), id(first_opacity + i));
         }
         names.finish();
         resources.finish();
@@ -82,11 +82,6 @@ impl Drawing {
         info.finish();
         pdf.finish()
     }
-}
-
-/// What a resource is called on the page.
-fn name(kind: &str, number: i32) -> String {
-    format!("{kind}{number}")
 }
 
 fn deflated(data: &[u8]) -> Vec<u8> {
@@ -119,29 +114,17 @@ impl<'d> Sheet<'d> {
             self.set_colors(element.fill, element.stroke);
         }
         match &element.shape {
-            Shape::Area(loops) => {
-                self.path(contours(loops));
-                self.paint(element, true);
-            }
-            Shape::Line(points) => {
-                self.path(line(points));
-                self.paint(element, false);
-            }
-            Shape::Circle { centre, radius } => {
-                self.path(circle(*centre, *radius));
-                self.paint(element, false);
-            }
-            Shape::Words(words) => {
-                self.path(words.outline());
-                self.paint(element, false);
-            }
+            Shape::Area(loops) => self.paint(element, contours(loops)),
+            Shape::Line(points) => self.paint(element, line(points)),
+            Shape::Circle { centre, radius } => self.paint(element, circle(*centre, *radius)),
+            Shape::Words(words) => self.paint(element, words.outline()),
             Shape::Image { image, cells, place } if image.width() > 0 && image.height() > 0 => {
-                let number = self.images.len() as i32;
+                let number = self.images.len();
                 self.images.push((image, *cells));
                 // In a PDF images are one unit large, and y is up in them.
                 let flip = DAffine2::from_cols(DVec2::X, DVec2::NEG_Y, DVec2::Y);
                 self.transform(*place * flip);
-                self.content.x_object(Name(name("i", number).as_bytes()));
+                self.content.x_object(Name(format!("i{number}").as_bytes()));
             }
             Shape::Image { .. } => {}
         }
@@ -157,7 +140,7 @@ impl<'d> Sheet<'d> {
             if known.is_none() {
                 self.opacities.push(opacities);
             }
-            self.content.set_parameters(Name(name("o", number as i32).as_bytes()));
+            self.content.set_parameters(Name(format!("o{number}").as_bytes()));
         }
         let shares = |ink: Ink| ink.rgb.map(|code| f32::from(code) / 255.0);
         if let Some([r, g, b]) = fill.map(shares) {
@@ -173,9 +156,11 @@ impl<'d> Sheet<'d> {
         }
     }
 
-    /// Paints the path with what has been called on its element.
-    fn paint(&mut self, element: &Element, even_odd: bool) {
+    /// Paints a path with what has been called on its element.
+    fn paint(&mut self, element: &Element, pieces: impl IntoIterator<Item = Piece>) {
+        self.path(pieces);
         let content = &mut self.content;
+        let even_odd = matches!(element.shape, Shape::Area(_));
         match (element.fill.is_some(), element.stroke.is_some(), even_odd) {
             (true, true, true) => content.fill_even_odd_and_stroke(),
             (true, true, false) => content.fill_nonzero_and_stroke(),
@@ -190,28 +175,21 @@ impl<'d> Sheet<'d> {
         let content = &mut self.content;
         let mut pen = DVec2::ZERO;
         for piece in pieces {
-            let (curve, to) = match piece {
-                Piece::Close => {
-                    content.close_path();
-                    continue;
-                }
-                Piece::Move(p) => {
-                    content.move_to(p.x as f32, p.y as f32);
-                    (None, p)
-                }
-                Piece::Line(p) => {
-                    content.line_to(p.x as f32, p.y as f32);
-                    (None, p)
-                }
+            let curve = match piece {
+                Piece::Close => [pen; 3],
+                Piece::Move(p) | Piece::Line(p) => [p; 3],
                 // The cubic curve that is the quadratic one.
-                Piece::Quadratic(a, p) => (Some([pen.lerp(a, 2.0 / 3.0), p.lerp(a, 2.0 / 3.0)]), p),
-                Piece::Cubic(a, b, p) => (Some([a, b]), p),
+                Piece::Quadratic(a, p) => [pen.lerp(a, 2.0 / 3.0), p.lerp(a, 2.0 / 3.0), p],
+                Piece::Cubic(a, b, p) => [a, b, p],
             };
-            if let Some(curve) = curve {
-                let [a, b, p] = [curve[0], curve[1], to].map(DVec2::as_vec2);
-                content.cubic_to(a.x, a.y, b.x, b.y, p.x, p.y);
-            }
-            pen = to;
+            pen = curve[2];
+            let [a, b, p] = curve.map(DVec2::as_vec2);
+            match piece {
+                Piece::Close => content.close_path(),
+                Piece::Move(_) => content.move_to(p.x, p.y),
+                Piece::Line(_) => content.line_to(p.x, p.y),
+                _ => content.cubic_to(a.x, a.y, b.x, b.y, p.x, p.y),
+            };
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The outlines of letters: Noto Sans, which comes with the program.
 
 use glam::DVec2;
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 use ttf_parser::{OutlineBuilder, Rect};
 
 /// A face of the type.
@@ -27,12 +27,11 @@ pub(super) enum Piece {
 
 impl Face {
     fn font(self) -> &'static ttf_parser::Face<'static> {
-        static FONTS: OnceLock<[ttf_parser::Face<'static>; 3]> = OnceLock::new();
-        let fonts = FONTS.get_or_init(|| {
+        static FONTS: LazyLock<[ttf_parser::Face<'static>; 3]> = LazyLock::new(|| {
             [notosans::REGULAR_TTF, notosans::BOLD_TTF, notosans::ITALIC_TTF]
                 .map(|data| ttf_parser::Face::parse(data, 0).expect("the font is sound"))
         });
-        &fonts[self as usize]
+        &FONTS[self as usize]
     }
 
     /// Units of the font in one of type size.
@@ -90,9 +89,10 @@ impl Face {
         self.font().glyph_index(c).unwrap_or(ttf_parser::GlyphId(0))
     }
 
-    /// The outline of a text from the origin on its base line to the right, y up, in type of size 1.
-    pub(super) fn outline(self, text: &str) -> Vec<Piece> {
-        let mut pen = Pen { pieces: Vec::new(), x: 0.0, scale: self.scale() };
+    /// The outline of a text. `place` takes points of a line of type of size 1 to where they are: it runs from the origin
+    /// on its base line to the right, y up.
+    pub(super) fn outline(self, text: &str, place: &dyn Fn(DVec2) -> DVec2) -> Vec<Piece> {
+        let mut pen = Pen { pieces: Vec::new(), x: 0.0, scale: self.scale(), place };
         for c in text.chars() {
             let _: Option<Rect> = self.font().outline_glyph(self.glyph(c), &mut pen);
             pen.x += self.advance(c);
@@ -102,19 +102,21 @@ impl Face {
 }
 
 /// Collects outlines.
-struct Pen {
+struct Pen<'p> {
     pieces: Vec<Piece>,
     x: f64,
     scale: f64,
+    place: &'p dyn Fn(DVec2) -> DVec2,
 }
 
-impl Pen {
+impl Pen<'_> {
     fn at(&self, x: f32, y: f32) -> DVec2 {
-        DVec2::new(self.x + f64::from(x) * self.scale, f64::from(y) * self.scale)
+        let on_line = DVec2::new(self.x + f64::from(x) * self.scale, f64::from(y) * self.scale);
+        (self.place)(on_line)
     }
 }
 
-impl OutlineBuilder for Pen {
+impl OutlineBuilder for Pen<'_> {
     fn move_to(&mut self, x: f32, y: f32) {
         self.pieces.push(Piece::Move(self.at(x, y)));
     }
@@ -166,13 +168,14 @@ mod tests {
         assert!((Face::Regular.width("mm", 10.0) - 2.0 * width).abs() < 1e-12);
         assert!(Face::Bold.width("m", 10.0) > width);
         let reach = |text: &str| {
-            let ends = Face::Regular.outline(text).into_iter().filter_map(|piece| match piece {
-                Piece::Move(p) | Piece::Line(p) => Some(p.x),
-                _ => None,
-            });
+            let ends =
+                Face::Regular.outline(text, &|p| p).into_iter().filter_map(|piece| match piece {
+                    Piece::Move(p) | Piece::Line(p) => Some(p.x),
+                    _ => None,
+                });
             ends.fold(0.0, f64::max)
         };
         assert!((reach("mm") - reach("m") - width / 10.0).abs() < 1e-12);
-        assert!(Face::Regular.outline(" ").is_empty());
+        assert!(Face::Regular.outline(" ", &|p| p).is_empty());
     }
 }

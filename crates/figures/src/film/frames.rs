@@ -1,7 +1,7 @@
 //! A folder of frames: PNG files, each of which says what it shows, so that work can be taken up again.
 
 use super::FilmError;
-use cloakroom::output::{RgbImage, png_texts, write_png};
+use cloakroom::output::{RgbImage, png_texts};
 use std::fs;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -53,20 +53,6 @@ impl FrameFolder {
         files.iter().all(older) && carried(&path).is_some_and(same)
     }
 
-    /// Writes a frame.
-    ///
-    /// # Errors
-    ///
-    /// If it cannot be written.
-    pub fn write(
-        &self,
-        frame: usize,
-        image: &RgbImage,
-        metadata: &[(String, String)],
-    ) -> Result<(), FilmError> {
-        Ok(write_png(image, metadata, &self.file(frame))?)
-    }
-
     /// Reads a frame.
     ///
     /// # Errors
@@ -98,6 +84,7 @@ fn carried(path: &Path) -> Option<Vec<(String, String)>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use cloakroom::output::write_png;
 
     #[test]
     fn a_frame_is_finished_if_it_shows_the_same() {
@@ -108,7 +95,7 @@ mod tests {
         };
         let image = RgbImage::from_fn(5, 4, |x, y| image::Rgb([x as u8, y as u8, 9]));
         assert!(!frames.is_finished(0, &say("a"), &[]));
-        frames.write(0, &image, &say("a")).expect("written");
+        write_png(&image, &say("a"), &frames.file(0)).expect("written");
         assert!(frames.is_finished(0, &say("a"), &[]));
         assert!(!frames.is_finished(0, &say("b"), &[]) && !frames.is_finished(1, &say("a"), &[]));
         assert!(!frames.is_finished(0, &say("a")[..1], &[]));

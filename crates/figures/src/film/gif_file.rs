@@ -1,12 +1,11 @@
 //! Animated GIF: one palette of 255 colors for the whole film, so that what stands still does not flicker.
 
-use super::{FilmError, FilmSettings, FrameFolder, checked, size, stay, write_whole};
+use super::{Film, FilmError, stay, write_whole};
 use cloakroom::output::RgbImage;
 use color_quant::NeuQuant;
 use gif::{AnyExtension, Encoder, Extension, Frame, Repeat};
 use rayon::prelude::*;
 use std::borrow::Cow;
-use std::path::Path;
 
 /// Colors of the palette; one more index stands for a pixel that stays as it is.
 const COLORS: usize = 255;
@@ -21,25 +20,21 @@ const SAMPLES: usize = 1 << 19;
 const DITHER: f64 = 16.0;
 
 /// Writes frames as an animated GIF that goes round for ever.
-pub(super) fn write(
-    frames: &FrameFolder,
-    path: &Path,
-    settings: &FilmSettings<'_>,
-) -> Result<(), FilmError> {
-    let size = size(frames, "GIF", u32::from(u16::MAX))?;
+pub(super) fn write(film: &Film<'_>) -> Result<(), FilmError> {
+    let size = film.size("GIF", u32::from(u16::MAX))?;
     let [width, height] = size.map(|side| side as u16);
-    let palette = palette(frames, size)?;
-    write_whole(path, |out| {
+    let palette = palette(film, size)?;
+    write_whole(film.path, |out| {
         let colors = palette.color_map_rgb();
         let mut encoder = Encoder::new(out, width, height, &colors)?;
         encoder.set_repeat(Repeat::Infinite)?;
-        for (key, text) in settings.metadata {
+        for (key, text) in film.metadata {
             let text = format!("{key}: {text}");
             let comment = AnyExtension(Extension::Comment as u8);
             encoder.write_raw_extension(comment, &[text.as_bytes()])?;
         }
         let mut shown: Vec<u8> = Vec::new();
-        for (number, frame) in checked(frames, size).enumerate() {
+        for (number, frame) in film.checked(size).enumerate() {
             let indices = indices(&palette, &frame?);
             let changed = |(new, old): (&u8, &u8)| if new == old { UNCHANGED } else { *new };
             let buffer = match number {
@@ -49,14 +44,14 @@ pub(super) fn write(
             let frame = Frame {
                 width,
                 height,
-                delay: stay(number, settings.rate, 100.0) as u16,
+                delay: stay(number, film.rate, 100.0) as u16,
                 transparent: Some(UNCHANGED),
                 buffer: Cow::Owned(buffer),
                 ..Frame::default()
             };
             encoder.write_frame(&frame)?;
             shown = indices;
-            settings.done()?;
+            film.done()?;
         }
         encoder.into_inner()?;
         Ok(())
@@ -64,10 +59,10 @@ pub(super) fn write(
 }
 
 /// The palette of a film, from pixels spread over all its frames.
-fn palette(frames: &FrameFolder, size: [u32; 2]) -> Result<NeuQuant, FilmError> {
-    let each = (SAMPLES / frames.count).max(64);
+fn palette(film: &Film<'_>, size: [u32; 2]) -> Result<NeuQuant, FilmError> {
+    let each = (SAMPLES / film.frames.count).max(64);
     let mut pixels = Vec::new();
-    for frame in checked(frames, size) {
+    for frame in film.checked(size) {
         let frame = frame?;
         let step = (frame.as_raw().len() / 3 / each).max(1);
         let colors = frame.as_raw().chunks_exact(3).step_by(step);

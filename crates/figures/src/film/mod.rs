@@ -12,14 +12,8 @@ mod webp_file;
 
 pub use frames::FrameFolder;
 
-use crate::{ColorScale, IllustrationError, ScalarMap};
 use cloakroom::output::{self, OutputError, RgbImage};
-use cloakroom::render::{
-    ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Rendered, Supervision,
-    metadata, render,
-};
-use cloakroom::scene::Scene;
-use cloakroom::trace::TraceStats;
+use cloakroom::render::RenderError;
 use std::error::Error;
 use std::fmt::Display;
 use std::io;
@@ -71,12 +65,9 @@ pub enum FilmError {
     /// The film cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// A frame cannot be rendered.
-    #[error(transparent)]
+    /// The work was stopped.
+    #[error("{0}")]
     Render(#[from] RenderError),
-    /// A map cannot be drawn.
-    #[error(transparent)]
-    Map(#[from] IllustrationError),
 }
 
 /// What a film is written as.
@@ -132,89 +123,13 @@ impl FilmFormat {
     }
 }
 
-/// Makes the pictures of frames, one after the other: their images are read once.
-#[derive(Debug, Default)]
-pub struct Projector {
-    images: Images,
-    scale: Option<ColorScale>,
-}
-
-impl Projector {
-    /// A projector whose maps show the range from `low` to `high`, in the unit of their channel.
-    #[must_use]
-    pub fn with_map_range(range: Option<[f64; 2]>) -> Self {
-        let scale = range.map(|[low, high]| ColorScale::between(low, high));
-        Self { images: Images::default(), scale }
-    }
-
-    /// Makes a scene ready.
-    ///
-    /// # Errors
-    ///
-    /// As [`PreparedScene::new`].
-    pub fn prepared<'s>(
-        &mut self,
-        scene: &'s Scene,
-    ) -> Result<PreparedScene<'s>, PreparedSceneError> {
-        PreparedScene::with_images(scene, &mut self.images)
-    }
-
-    /// What the frame of a scene carries: that of its picture, and the range of a map.
-    #[must_use]
-    pub fn metadata(&self, scene: &Scene) -> Vec<(String, String)> {
-        let range = self.scale.as_ref().and_then(ColorScale::range);
-        let range = range.filter(|_| scene.picture.map.name().is_some());
-        let range = range.map(|(low, high)| ("map_range".to_owned(), format!("{low} {high}")));
-        metadata(scene).into_iter().chain(range).collect()
-    }
-
-    /// Renders a frame.
-    ///
-    /// # Errors
-    ///
-    /// If it would not fit into memory, or the work was stopped.
-    pub fn frame(
-        &self,
-        scene: &Scene,
-        prepared: &PreparedScene<'_>,
-        supervision: &Supervision<'_>,
-    ) -> Result<(RgbImage, TraceStats), FilmError> {
-        let wanted = ChannelSet::for_image(&scene.picture);
-        let Rendered { picture, stats } = render(prepared, wanted, supervision)?;
-        let image = match scene.picture.map.name() {
-            None => output::to_srgb(&picture)?,
-            Some(channel) => ScalarMap::new(&picture, channel, self.scale)?
-                .into_image(scene.picture.color_bar)?,
-        };
-        Ok((image, stats))
-    }
-}
-
-/// Writes finished frames as one file; a film is there whole or not at all. `frame_done` is called after each
-/// frame, `stop` ends the work.
-///
-/// # Errors
-///
-/// If a frame cannot be read or the film not be written, or the work was stopped.
-pub fn write_film(
-    frames: &FrameFolder,
-    format: FilmFormat,
-    path: &Path,
-    settings: &FilmSettings<'_>,
-) -> Result<(), FilmError> {
-    match format {
-        FilmFormat::Gif => gif_file::write(frames, path, settings),
-        FilmFormat::Apng => apng_file::write(frames, path, settings),
-        FilmFormat::WebP => webp_file::write(frames, path, settings),
-        FilmFormat::Mp4 => video::write(frames, path, video::H264, settings),
-        FilmFormat::WebM => video::write(frames, path, video::VP9, settings),
-        FilmFormat::Frames => Ok(()),
-    }
-}
-
-/// How a film is written.
+/// A film to be written.
 #[derive(Clone, Copy)]
-pub struct FilmSettings<'a> {
+pub struct Film<'a> {
+    /// Its frames, which are finished.
+    pub frames: &'a FrameFolder,
+    /// Its file.
+    pub path: &'a Path,
     /// Frames a second, 1 to 100.
     pub rate: u32,
     /// What the film carries: scene, version, seed of its first frame.
@@ -231,7 +146,23 @@ impl FilmError {
     }
 }
 
-impl FilmSettings<'_> {
+impl Film<'_> {
+    /// Writes it in a format; it is there whole or not at all.
+    ///
+    /// # Errors
+    ///
+    /// If a frame cannot be read or the film not be written, or the work was stopped.
+    pub fn write(&self, format: FilmFormat) -> Result<(), FilmError> {
+        match format {
+            FilmFormat::Gif => gif_file::write(self),
+            FilmFormat::Apng => apng_file::write(self),
+            FilmFormat::WebP => webp_file::write(self),
+            FilmFormat::Mp4 => video::write(self, video::H264),
+            FilmFormat::WebM => video::write(self, video::VP9),
+            FilmFormat::Frames => Ok(()),
+        }
+    }
+
     /// Says that a frame is done; an error if the work is to stop.
     fn done(&self) -> Result<(), FilmError> {
         (self.frame_done)();
@@ -240,30 +171,27 @@ impl FilmSettings<'_> {
         }
         Ok(())
     }
-}
 
-/// The size of the first frame, `most` a side at most.
-fn size(frames: &FrameFolder, format: &'static str, most: u32) -> Result<[u32; 2], FilmError> {
-    let size: [u32; 2] = frames.read(0)?.dimensions().into();
-    if size.iter().any(|side| *side > most) {
-        return Err(FilmError::TooLarge { format, most, size });
-    }
-    Ok(size)
-}
-
-/// The frames one after the other, all of which must have the size of the first.
-fn checked(
-    frames: &FrameFolder,
-    first: [u32; 2],
-) -> impl Iterator<Item = Result<RgbImage, FilmError>> + '_ {
-    (0..frames.count).map(move |number| {
-        let frame = frames.read(number)?;
-        let size: [u32; 2] = frame.dimensions().into();
-        if size != first {
-            return Err(FilmError::Size { path: frames.file(number), size, first });
+    /// The size of the first frame, `most` a side at most.
+    fn size(&self, format: &'static str, most: u32) -> Result<[u32; 2], FilmError> {
+        let size: [u32; 2] = self.frames.read(0)?.dimensions().into();
+        if size.iter().any(|side| *side > most) {
+            return Err(FilmError::TooLarge { format, most, size });
         }
-        Ok(frame)
-    })
+        Ok(size)
+    }
+
+    /// The frames one after the other, all of which must have the size of the first.
+    fn checked(&self, first: [u32; 2]) -> impl Iterator<Item = Result<RgbImage, FilmError>> {
+        (0..self.frames.count).map(move |number| {
+            let frame = self.frames.read(number)?;
+            let size: [u32; 2] = frame.dimensions().into();
+            if size != first {
+                return Err(FilmError::Size { path: self.frames.file(number), size, first });
+            }
+            Ok(frame)
+        })
+    }
 }
 
 /// How long a frame stays, in parts of a second, such that all together keep the rate.
@@ -287,10 +215,8 @@ fn write_whole(
             Err(error) => io::Error::other(error),
         })
     });
-    match failure {
-        Some(error) => Err(error),
-        None => Ok(written?),
-    }
+    failure.map_or(Ok(()), Err)?;
+    Ok(written?)
 }
 
 #[cfg(test)]

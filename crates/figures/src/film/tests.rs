@@ -16,7 +16,7 @@ const SCENE: &str = "[camera] # <&>\nsamples = 4 ; a\\b\n";
 fn frames(folder: &Path, count: usize) -> FrameFolder {
     let frames = FrameFolder::new(&folder.join("frames"), count).expect("a folder");
     for number in 0..count {
-        frames.write(number, &picture(number as u32), &[]).expect("written");
+        output::write_png(&picture(number as u32), &[], &frames.file(number)).expect("written");
     }
     frames
 }
@@ -35,7 +35,11 @@ fn film(name: &str, format: FilmFormat, count: usize, folder: &Path) -> PathBuf 
     let frames = frames(folder, count);
     let done = AtomicUsize::new(0);
     let metadata = [("scene".to_owned(), SCENE.to_owned())];
-    let settings = FilmSettings {
+    let path = folder.join(name);
+    assert_eq!(FilmFormat::of(&path), Ok(format));
+    let film = Film {
+        frames: &frames,
+        path: &path,
         rate: 30,
         metadata: &metadata,
         frame_done: &|| {
@@ -43,9 +47,7 @@ fn film(name: &str, format: FilmFormat, count: usize, folder: &Path) -> PathBuf 
         },
         stop: &AtomicBool::new(false),
     };
-    let path = folder.join(name);
-    assert_eq!(FilmFormat::of(&path), Ok(format));
-    write_film(&frames, format, &path, &settings).expect("a film");
+    film.write(format).expect("a film");
     assert_eq!(done.into_inner(), count);
     path
 }
@@ -138,19 +140,20 @@ fn stopped_and_broken_films_leave_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let frames = frames(folder.path(), 3);
     let stop = AtomicBool::new(true);
-    let settings = FilmSettings { rate: 25, metadata: &[], frame_done: &|| {}, stop: &stop };
+    let (path, frame_done) = (Path::new(""), &|| {});
+    let film = Film { frames: &frames, path, rate: 25, metadata: &[], frame_done, stop: &stop };
     for (name, format) in
         [("a.gif", FilmFormat::Gif), ("a.png", FilmFormat::Apng), ("a.webp", FilmFormat::WebP)]
     {
         let path = folder.path().join(name);
-        let stopped = write_film(&frames, format, &path, &settings);
+        let stopped = Film { path: &path, ..film }.write(format);
         assert!(matches!(stopped, Err(FilmError::Render(RenderError::Stopped))));
         assert!(!path.exists());
     }
-    frames.write(2, &RgbImage::new(5, 5), &[]).expect("written");
+    output::write_png(&RgbImage::new(5, 5), &[], &frames.file(2)).expect("written");
     stop.store(false, Ordering::Relaxed);
     let path = folder.path().join("a.gif");
-    let error = write_film(&frames, FilmFormat::Gif, &path, &settings).expect_err("two sizes");
+    let error = Film { path: &path, ..film }.write(FilmFormat::Gif).expect_err("two sizes");
     assert!(error.to_string().contains("5 x 5 pixels, the first one 37 x 24"), "{error}");
     assert!(!path.exists());
 }

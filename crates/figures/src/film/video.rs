@@ -1,6 +1,6 @@
 //! MP4 and WebM, by the program `ffmpeg` where it is installed.
 
-use super::{FilmError, FilmSettings, FrameFolder, checked, size};
+use super::{Film, FilmError};
 use cloakroom::output::{OutputError, check_writable};
 use cloakroom::render::RenderError;
 use std::fmt::Display;
@@ -18,7 +18,7 @@ pub(super) const H264: &[&str] =
 pub(super) const VP9: &[&str] =
     &["-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-f", "webm"];
 
-/// The frames in their folder, as `ffmpeg` takes them: see [`FrameFolder::file`].
+/// The frames in their folder, as `ffmpeg` takes them: see [`super::FrameFolder::file`].
 const FRAMES: &str = "frame-%06d.png";
 
 /// How often `ffmpeg` is looked after.
@@ -32,17 +32,12 @@ pub(super) fn ffmpeg_is_there() -> bool {
 }
 
 /// Lets `ffmpeg` make a video of frames, into a temporary file that is renamed at the end.
-pub(super) fn write(
-    frames: &FrameFolder,
-    path: &Path,
-    codec: &[&str],
-    settings: &FilmSettings<'_>,
-) -> Result<(), FilmError> {
+pub(super) fn write(film: &Film<'_>, codec: &[&str]) -> Result<(), FilmError> {
+    let path = film.path;
     check_writable(path)?;
-    let size = size(frames, "video", 16_384)?;
-    for frame in checked(frames, size) {
+    for frame in film.checked(film.size("video", 16_384)?) {
         frame?;
-        settings.done()?;
+        film.done()?;
     }
     let unwritable = |error: io::Error| {
         let (path, reason) = (path.to_owned(), error.to_string());
@@ -56,14 +51,14 @@ pub(super) fn write(
     // It works in the folder of the frames.
     let inside = std::path::absolute(part.path()).map_err(unwritable)?;
     let (file, metadata) = (inside.join("film"), inside.join("metadata"));
-    std::fs::write(&metadata, ffmetadata(settings.metadata)).map_err(unwritable)?;
+    std::fs::write(&metadata, ffmetadata(film.metadata)).map_err(unwritable)?;
     let failed = |reason: &dyn Display| FilmError::failed("ffmpeg could not make", path, reason);
-    let command = command(frames, [&metadata, &file], codec, settings.rate).spawn();
+    let command = command(film, [&metadata, &file], codec).spawn();
     let mut child = command.map_err(|error| match error.kind() {
         ErrorKind::NotFound => FilmError::NoFfmpeg,
         _ => failed(&error),
     })?;
-    let done = wait(&mut child, settings.stop);
+    let done = wait(&mut child, film.stop);
     let said = child.stderr.take().map(|mut stderr| {
         let mut said = Vec::new();
         // What cannot be read is not said.
@@ -116,20 +111,15 @@ fn ffmetadata(metadata: &[(String, String)]) -> String {
     text
 }
 
-fn command(
-    frames: &FrameFolder,
-    [metadata, file]: [&Path; 2],
-    codec: &[&str],
-    rate: u32,
-) -> Command {
+fn command(film: &Film<'_>, [metadata, file]: [&Path; 2], codec: &[&str]) -> Command {
     let mut command = Command::new("ffmpeg");
     command.args(["-hide_banner", "-loglevel", "error", "-nostdin", "-y"]);
     // In their folder: a `%` or a `:` in its name would mean something.
-    command.current_dir(&frames.folder);
-    command.args(["-framerate", &rate.to_string(), "-start_number", "0", "-i"]);
+    command.current_dir(&film.frames.folder);
+    command.args(["-framerate", &film.rate.to_string(), "-start_number", "0", "-i"]);
     command.args([FRAMES, "-f", "ffmetadata", "-i"]).arg(metadata);
     command.args(["-map", "0:v", "-map_metadata", "1"]);
-    command.args(["-frames:v", &frames.count.to_string()]);
+    command.args(["-frames:v", &film.frames.count.to_string()]);
     // sRGB to BT.709, told in the file; colors are halved in size, so sides must be even.
     command.args([
         "-vf",

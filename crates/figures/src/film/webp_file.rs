@@ -1,24 +1,16 @@
 //! Animated WebP, lossless: the container (RFC 9649) around frames of the encoder.
 
-use super::{FilmError, FilmSettings, FrameFolder, checked, size, stay, write_whole};
+use super::{Film, FilmError, stay, write_whole};
 use image_webp::{ColorType, WebPEncoder};
 use std::io::{self, Seek, SeekFrom, Write};
-use std::path::Path;
-
-/// Most pixels a side of a frame.
-const MOST: u32 = 16_384;
 
 /// The bytes before the first chunk: "RIFF", the length, "WEBP".
 const HEADER: usize = 12;
 
 /// Writes frames as an animated WebP that goes round for ever.
-pub(super) fn write(
-    frames: &FrameFolder,
-    path: &Path,
-    settings: &FilmSettings<'_>,
-) -> Result<(), FilmError> {
-    let [width, height] = size(frames, "WebP", MOST)?;
-    write_whole(path, |out| {
+pub(super) fn write(film: &Film<'_>) -> Result<(), FilmError> {
+    let [width, height] = film.size("WebP", 16_384)?;
+    write_whole(film.path, |out| {
         out.write_all(b"RIFF\0\0\0\0WEBP")?;
         const ANIMATED: u8 = 1 << 1;
         const DESCRIBED: u8 = 1 << 2;
@@ -26,19 +18,19 @@ pub(super) fn write(
         chunk(out, b"VP8X", &[&[ANIMATED | DESCRIBED, 0, 0, 0], canvas.as_slice()].concat())?;
         // Black ground; round for ever.
         chunk(out, b"ANIM", &[0, 0, 0, 255, 0, 0])?;
-        for (number, frame) in checked(frames, [width, height]).enumerate() {
+        for (number, frame) in film.checked([width, height]).enumerate() {
             let mut still = Vec::new();
             let encoder = WebPEncoder::new(&mut still);
             encoder.encode(frame?.as_raw(), width, height, ColorType::Rgb8)?;
             let place = [short(0), short(0)].concat();
-            let delay = short(stay(number, settings.rate, 1000.0));
+            let delay = short(stay(number, film.rate, 1000.0));
             // Each frame replaces the one before.
             const REPLACE: [u8; 1] = [1 << 1];
             let head = [place.as_slice(), &canvas, &delay, &REPLACE].concat();
             chunk(out, b"ANMF", &[head.as_slice(), &still[HEADER..]].concat())?;
-            settings.done()?;
+            film.done()?;
         }
-        chunk(out, b"XMP ", description(settings.metadata).as_bytes())?;
+        chunk(out, b"XMP ", description(film.metadata).as_bytes())?;
         let length = out.stream_position()? - 8;
         let length = u32::try_from(length)
             .map_err(|_| io::Error::other("a WebP file cannot be larger than 4 GiB"))?;

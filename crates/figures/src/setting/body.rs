@@ -1,11 +1,9 @@
 //! Bodies: their outlines, filled with a tint of their index.
 
-use super::super::drawing::{Drawing, Ink};
-use super::device;
-use super::index_map::on_sheet;
+use super::super::drawing::{Ink, Shape};
+use super::device::{Sketch, room};
 use super::medium_axes::MediumAxes;
 use super::subject::{Subject, bounds, lattice};
-use super::view::View;
 use super::{INK, OPAQUE, PAPER, TEXT, THIN};
 use glam::DVec2;
 use optics::medium::Medium;
@@ -23,53 +21,45 @@ pub(super) fn tint(medium: Option<&Medium>) -> Ink {
     Ink::new(std::array::from_fn(|i| mix(PAPER.rgb[i], far[i])))
 }
 
-/// Draws a body.
-pub(super) fn draw(drawing: &mut Drawing, view: &View, subject: &Subject<'_>) {
-    for outline in &subject.section.outlines {
-        let area = drawing.add_area("body", on_sheet(view, &subject.pose, &outline.points));
-        let area = area.filled(tint(subject.section.body_medium)).stroked(INK, THIN);
-        area.within(vec![view.frame().to_vec()]);
+impl Sketch<'_> {
+    /// Draws a body.
+    pub fn draw_body(&mut self) {
+        let section = &self.subject.section;
+        for outline in self.subject.places(self.view, &section.outlines) {
+            let area = self.add_within("body", Shape::Area(vec![outline]));
+            area.filled(tint(section.body_medium)).stroked(INK, THIN);
+        }
     }
-}
 
-/// Draws what a body is filled with, its axes or its index, where nothing stands before it.
-pub(super) fn draw_medium(
-    drawing: &mut Drawing,
-    view: &View,
-    subject: &Subject<'_>,
-    before: &[(&Subject<'_>, bool)],
-) {
-    let Some(medium) = subject.section.body_medium else { return };
-    if subject.section.is_shadow && MediumAxes::of(medium).is_some() {
-        return;
-    }
-    let [outline] = &subject.section.outlines[..] else { return };
-    let devices = before.iter().map(|(other, _)| *other).chain([subject]);
-    let lines: Vec<Vec<DVec2>> = devices
-        .flat_map(|device| device.section.outlines.iter().map(|outline| (&device.pose, outline)))
-        .map(|(pose, outline)| on_sheet(view, pose, &outline.points))
-        .collect();
-    // The middle of what is free, or nearly so.
-    let Some([low, high]) = bounds(outline.points.iter().copied()) else { return };
-    const STEPS: u32 = 24;
-    let is_free = |world: DVec2| before.iter().all(|(other, _)| !other.surrounds(world));
-    let widest = std::iter::once((low + high) / 2.0)
-        .chain(lattice([low, high], STEPS))
-        .filter(|point| outline.surrounds(*point))
-        .map(|point| subject.pose.point_to_world(point))
-        .filter(|world| is_free(*world))
-        .map(|world| {
-            let at = view.place(world);
-            let free = |direction: DVec2| device::room(&lines, at, direction);
-            // A label is wider than high.
-            (free(DVec2::Y).min(0.3 * free(DVec2::X)), at)
-        })
-        .fold(None, |best: Option<(f64, DVec2)>, next| match best {
-            Some(best) if best.0 >= next.0 - 1e-9 => Some(best),
-            _ => Some(next),
-        });
-    let Some((room, at)) = widest else { return };
-    if room > 0.3 * TEXT || MediumAxes::of(medium).is_some() {
-        device::draw_filling(drawing, &subject.pose, medium, at, &lines, tint(Some(medium)));
+    /// Draws what a body is filled with, its axes or its index, where nothing stands before it.
+    pub fn draw_body_medium(&mut self, before: &[(&Subject<'_>, bool)]) {
+        let (view, subject) = (self.view, self.subject);
+        let Some(medium) = subject.section.body_medium else { return };
+        if subject.section.is_shadow && MediumAxes::of(medium).is_some() {
+            return;
+        }
+        let [outline] = &subject.section.outlines[..] else { return };
+        let devices = before.iter().map(|(other, _)| *other).chain([subject]);
+        let lines: Vec<Vec<DVec2>> =
+            devices.flat_map(|device| device.places(view, &device.section.outlines)).collect();
+        // The middle of what is free, or nearly so.
+        let Some([low, high]) = bounds(outline.points.iter().copied()) else { return };
+        const STEPS: u32 = 24;
+        let widest = std::iter::once((low + high) / 2.0)
+            .chain(lattice([low, high], STEPS))
+            .filter(|point| outline.surrounds(*point))
+            .map(|point| subject.pose.point_to_world(point))
+            .filter(|world| before.iter().all(|(other, _)| !other.surrounds(*world)))
+            .map(|world| {
+                let at = view.place(world);
+                let free = |direction: DVec2| room(&lines, at, direction);
+                // A label is wider than high.
+                (free(DVec2::Y).min(0.3 * free(DVec2::X)), at)
+            })
+            .reduce(|best, next| if best.0 >= next.0 - 1e-9 { best } else { next });
+        let Some((room, at)) = widest else { return };
+        if room > 0.3 * TEXT || MediumAxes::of(medium).is_some() {
+            self.draw_filling(medium, at, &lines, tint(Some(medium)));
+        }
     }
 }

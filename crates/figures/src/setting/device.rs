@@ -1,16 +1,13 @@
 //! A device in cross-section.
 
 use super::super::color_scale::ColorScale;
-use super::super::drawing::{Drawing, Face, Ink, Shape, Words};
-use super::body;
-use super::index_map::{draw_region, on_sheet};
-use super::medium_axes::{MediumAxes, draw_cross};
+use super::super::drawing::{Drawing, Element, Face, Ink, Shape, Words};
+use super::medium_axes::{MediumAxes, turned};
 use super::subject::{Subject, border, bounds, sides, turn};
 use super::view::View;
 use super::{INK, MEDIUM, METAL, PAPER, TEXT, THICK, THIN, centimetres, dimension, rounded, write};
 use cloakroom::device::{Contour, REACH, Section};
 use glam::DVec2;
-use optics::geometry::Pose;
 use optics::medium::Medium;
 
 /// Longest half of an axis within a cell, units of the sheet.
@@ -20,97 +17,198 @@ const SHIFT: f64 = 15.0;
 /// Contours of more corners than this are curves: their sides are not measured.
 const MOST_CORNERS: usize = 8;
 
-/// Draws the shapes of a device.
-pub(super) fn draw(
-    drawing: &mut Drawing,
-    view: &View,
-    subject: &Subject<'_>,
-    scale: Option<&ColorScale>,
-) {
-    let section = &subject.section;
-    if section.body.is_some() {
-        body::draw(drawing, view, subject);
-    }
-    let window = || vec![view.frame().to_vec()];
-    let place = |contour: &Contour| on_sheet(view, &subject.pose, &contour.points);
-    let places = |contours: &[Contour]| contours.iter().map(place).collect::<Vec<_>>();
-    for region in &section.regions {
-        let border = places(&region.border);
-        match scale {
-            Some(scale) if region.region.is_graded() => {
-                draw_region(drawing, view, region, &subject.pose, scale);
+/// A device, and where it is drawn.
+pub(super) struct Sketch<'a> {
+    pub drawing: &'a mut Drawing,
+    pub view: &'a View,
+    pub subject: &'a Subject<'a>,
+}
+
+impl Sketch<'_> {
+    /// Draws its shapes.
+    pub fn draw(&mut self, scale: Option<&ColorScale>) {
+        let section = &self.subject.section;
+        if section.body.is_some() {
+            self.draw_body();
+        }
+        for region in &section.regions {
+            let border = self.subject.places(self.view, &region.border);
+            match scale {
+                Some(scale) if region.region.is_graded() => self.draw_index(region, scale),
+                _ => {
+                    self.add_within("medium", Shape::Area(border.clone())).filled(MEDIUM);
+                }
             }
-            _ => {
-                drawing.add("medium", Shape::Area(border.clone())).filled(MEDIUM).within(window());
+            self.add_within("border", Shape::Area(border)).stroked(INK, THIN);
+        }
+        if section.is_shadow && section.body.is_none() && section.metal.is_empty() {
+            let area = Shape::Area(self.subject.places(self.view, &section.outlines));
+            self.add_within("medium", area).filled(MEDIUM).stroked(INK, THIN);
+        }
+        for contour in &section.metal {
+            let points = self.subject.on_sheet(self.view, &contour.points);
+            if contour.closed {
+                self.drawing.add_area("metal", points).filled(METAL).stroked(INK, THICK);
+            } else {
+                self.add_within("mirror", Shape::Line(points)).stroked(INK, 1.4 * THICK);
             }
         }
-        drawing.add("border", Shape::Area(border)).stroked(INK, THIN).within(window());
     }
-    if section.is_shadow && section.body.is_none() && section.metal.is_empty() {
-        let area = drawing.add("medium", Shape::Area(places(&section.outlines))).filled(MEDIUM);
-        area.stroked(INK, THIN).within(window());
+
+    /// Adds an element that ends with the window.
+    pub fn add_within(&mut self, class: &'static str, shape: Shape) -> &mut Element {
+        self.drawing.add(class, shape).within(vec![self.view.frame().to_vec()])
     }
-    for contour in &section.metal {
-        if contour.closed {
-            drawing.add_area("metal", place(contour)).filled(METAL).stroked(INK, THICK);
+
+    /// Draws what it is filled with: the axes of its media, or their indices. `before` are those that stand
+    /// before it.
+    pub fn draw_media(&mut self, before: &[(&Subject<'_>, bool)]) {
+        for region in &self.subject.section.regions {
+            if region.region.is_graded() {
+                self.draw_axes(region);
+            } else {
+                self.draw_medium(region);
+            }
+        }
+        self.draw_body_medium(before);
+    }
+
+    /// What a homogeneous cell is filled with: its axes, or its index.
+    fn draw_medium(&mut self, region: &Section<'_>) {
+        let Some(middle) = middle(region) else { return };
+        let Some(medium) = region.region.medium_at(middle) else { return };
+        let at = self.subject.place(self.view, middle);
+        let border = self.subject.places(self.view, &region.border);
+        self.draw_filling(&medium, at, &border, MEDIUM);
+    }
+
+    /// Draws the axes of a medium, or its index, about a point of the sheet within some contours, on a ground of
+    /// that colour.
+    pub fn draw_filling(&mut self, medium: &Medium, at: DVec2, border: &[Vec<DVec2>], ground: Ink) {
+        if let Some(axes) = MediumAxes::of(medium) {
+            let reach = |direction| room(border, at, direction).min(AXIS);
+            axes.draw_cross(self.drawing, &self.subject.pose, at, reach);
         } else {
-            let stroke = (INK, 1.4 * THICK);
-            drawing.add_line("mirror", place(contour), stroke).within(window());
+            let words = Words::of_runs(index_label(medium), at, TEXT);
+            if words.width() < 2.0 * room(border, at, DVec2::X)
+                && TEXT < 2.0 * room(border, at, DVec2::Y)
+            {
+                write(self.drawing, "index", words, ground);
+            }
         }
     }
-}
 
-/// Draws what a device is filled with: the axes of its media, or their indices. `before` are those that stand
-/// before it.
-pub(super) fn draw_media(
-    drawing: &mut Drawing,
-    view: &View,
-    subject: &Subject<'_>,
-    before: &[(&Subject<'_>, bool)],
-) {
-    for region in &subject.section.regions {
-        if region.region.is_graded() {
-            draw_axes(drawing, view, subject, region);
-        } else {
-            draw_medium(drawing, view, subject, region);
+    /// The axes of a graded cell here and there, as large as there is room between them.
+    fn draw_axes(&mut self, region: &Section<'_>) {
+        let (axes, distance) = axes_of_graded(region);
+        let half = 0.42 * distance * self.view.scale;
+        for (point, axes) in axes {
+            let at = self.subject.place(self.view, point);
+            for axis in axes.drawn() {
+                let along = half * axis.length * turned(&self.subject.pose, axis.direction);
+                let line = [at - along, at + along];
+                self.drawing.add_line("rim", line, (PAPER.faint(0.7), 2.2 * THICK));
+                self.drawing.add_line("axis", line, (axis.ink, THICK));
+            }
         }
     }
-    body::draw_medium(drawing, view, subject, before);
-}
 
-/// What a homogeneous cell is filled with: its axes, or its index.
-fn draw_medium(drawing: &mut Drawing, view: &View, subject: &Subject<'_>, region: &Section<'_>) {
-    let Some((middle, medium)) =
-        middle(region).and_then(|p| Some((p, region.region.medium_at(p)?)))
-    else {
-        return;
-    };
-    let at = view.place(subject.pose.point_to_world(middle));
-    let border: Vec<Vec<DVec2>> = (region.border.iter())
-        .map(|contour| on_sheet(view, &subject.pose, &contour.points))
-        .collect();
-    draw_filling(drawing, &subject.pose, &medium, at, &border, MEDIUM);
-}
+    /// Draws its dimensions: the sides of polygons, height and width of what is curved; none of an
+    /// opaque body, and of what is seen from the side.
+    pub fn draw_dimensions(&mut self) {
+        let section = &self.subject.section;
+        if self.subject.is_opaque() || section.is_shadow {
+            return;
+        }
+        let mut told = Vec::new();
+        for contour in &section.outlines {
+            self.measure(contour, &mut told, 1.0);
+        }
+        let inner = section.metal.iter().filter(|contour| !section.outlines.contains(contour));
+        for contour in inner {
+            self.measure(contour, &mut told, -1.0);
+        }
+    }
 
-/// Draws the axes of a medium, or its index, about a point of the sheet within some contours, on a ground of
-/// that colour.
-pub(super) fn draw_filling(
-    drawing: &mut Drawing,
-    pose: &Pose,
-    medium: &Medium,
-    at: DVec2,
-    border: &[Vec<DVec2>],
-    ground: Ink,
-) {
-    if let Some(axes) = MediumAxes::of(medium) {
-        let reach = |direction| room(border, at, direction).min(AXIS);
-        draw_cross(drawing, &axes, at, reach, |v| turned(pose, v));
-    } else {
-        let words = Words::of_runs(index_label(medium), at, TEXT);
-        if words.width() < 2.0 * room(border, at, DVec2::X)
-            && TEXT < 2.0 * room(border, at, DVec2::Y)
-        {
-            write(drawing, "index", words, ground);
+    /// Measures a contour, from outside (`way` 1) or from within (-1). Lengths that have been told are
+    /// not told again.
+    fn measure(&mut self, contour: &Contour, told: &mut Vec<f64>, way: f64) {
+        let corners = contour.corners();
+        let points = self.subject.on_sheet(self.view, &corners);
+        let Some([low, high]) = bounds(points.iter().copied()) else { return };
+        let mut is_new = |length: f64| {
+            let new =
+                length < REACH && told.iter().all(|known| (known - length).abs() > 1e-6 * length);
+            if new {
+                told.push(length);
+            }
+            new
+        };
+        if corners.len() > MOST_CORNERS {
+            self.measure_curve(contour, way, is_new);
+            return;
+        }
+        // A dimension within needs room for its label.
+        if way < 0.0 && (high - low).min_element() < 4.5 * TEXT {
+            return;
+        }
+        let turn = turn(&points);
+        // Away from the inside; below a line.
+        let outward = |(a, b): (DVec2, DVec2)| {
+            let along = b - a;
+            let normal = DVec2::new(along.y, -along.x).normalize_or(DVec2::Y);
+            let below = normal * normal.dot(DVec2::new(0.1, 1.0)).signum();
+            if contour.closed { normal * turn.signum() } else { below }
+        };
+        // Outside rather below and on the side with more room, inside rather opposite.
+        let [from, size] = self.view.window;
+        let [left, right] = [low.x - from.x, from.x + size.x - high.x];
+        let beside = if left > right + 2.0 * TEXT { -0.6 } else { 0.6 };
+        let liked = |side| outward(side).dot(DVec2::new(beside, 0.8) * way);
+        // On the sheet, and how long they are, cm.
+        let lengths = sides(&corners).map(|(a, b)| a.distance(b));
+        let mut order: Vec<((DVec2, DVec2), f64)> = sides(&points).zip(lengths).collect();
+        order.truncate(points.len() - usize::from(!contour.closed));
+        order.sort_by(|(a, _), (b, _)| liked(*b).total_cmp(&liked(*a)));
+        for ((a, b), length) in order {
+            if a.distance(b) > 1.5 * TEXT && is_new(length) {
+                let shift = way * SHIFT * outward((a, b));
+                let ground = if way < 0.0 { METAL } else { PAPER };
+                dimension::draw(self.drawing, [a, b], shift, &centimetres(length), ground);
+            }
+        }
+    }
+
+    /// Measures a curve: how wide and how high it is in the frame of its device.
+    fn measure_curve(&mut self, contour: &Contour, way: f64, mut is_new: impl FnMut(f64) -> bool) {
+        let Some([low, high]) = bounds(contour.points.iter().copied()) else { return };
+        let (view, subject) = (self.view, self.subject);
+        let at = |x: f64, y: f64| subject.place(view, DVec2::new(x, y));
+        let size = high - low;
+        let middle = (low + high) / 2.0;
+        if way < 0.0 {
+            // Within: its height, at its middle.
+            let ends = [at(middle.x, low.y), at(middle.x, high.y)];
+            if ends[0].distance(ends[1]) > 1.2 * TEXT && is_new(size.y) {
+                dimension::double_arrow(self.drawing, "dimension", ends);
+                let beside = ends[1] + DVec2::new(10.0, -0.4 * TEXT);
+                let words = Words::new(centimetres(size.y), beside, TEXT).anchored(0.0);
+                write(self.drawing, "dimension-label", words, PAPER);
+            }
+            return;
+        }
+        let round = (size.x - size.y).abs() < 1e-3 * size.x;
+        if is_new(size.x) {
+            let label =
+                if round { format!("Ø {}", centimetres(size.x)) } else { centimetres(size.x) };
+            let ends = [at(low.x, low.y), at(high.x, low.y)];
+            let down = (at(middle.x, low.y) - at(middle.x, high.y)).normalize_or(DVec2::Y);
+            dimension::draw(self.drawing, ends, SHIFT * down, &label, PAPER);
+        }
+        if !round && is_new(size.y) {
+            let ends = [at(high.x, low.y), at(high.x, high.y)];
+            let right = (at(high.x, middle.y) - at(low.x, middle.y)).normalize_or(DVec2::X);
+            dimension::draw(self.drawing, ends, SHIFT * right, &centimetres(size.y), PAPER);
         }
     }
 }
@@ -121,31 +219,10 @@ pub(super) fn index_label(medium: &Medium) -> Vec<(Face, String)> {
     vec![(Face::Italic, "n".to_owned()), (Face::Regular, value)]
 }
 
-/// A vector of a device's frame in the plane, as a direction of the sheet.
-pub(super) fn turned(pose: &Pose, v: DVec2) -> DVec2 {
-    let world = pose.vector_to_world(v.extend(0.0)).truncate();
-    DVec2::new(world.x, -world.y)
-}
-
 /// How far one can go from a point of the sheet, to and fro, well within some contours.
 pub(super) fn room(border: &[Vec<DVec2>], at: DVec2, direction: DVec2) -> f64 {
     let free = [direction, -direction].map(|d| free_way(border, at, d));
     0.8 * free[0].min(free[1])
-}
-
-/// The axes of a graded cell here and there, as large as there is room between them.
-fn draw_axes(drawing: &mut Drawing, view: &View, subject: &Subject<'_>, region: &Section<'_>) {
-    let (axes, distance) = axes_of_graded(region);
-    let half = 0.42 * distance * view.scale;
-    for (point, axes) in axes {
-        let at = view.place(subject.pose.point_to_world(point));
-        for axis in axes.drawn() {
-            let along = half * axis.length * turned(&subject.pose, axis.direction);
-            let line = [at - along, at + along];
-            drawing.add_line("rim", line, (PAPER.faint(0.7), 2.2 * THICK));
-            drawing.add_line("axis", line, (axis.ink, THICK));
-        }
-    }
 }
 
 /// The axes of the medium of a graded cell on a lattice, if it is anisotropic, and how far apart they are, cm.
@@ -193,113 +270,4 @@ fn free_way(contours: &[Vec<DVec2>], from: DVec2, direction: DVec2) -> f64 {
             (across != 0.0 && way >= 0.0 && (0.0..=1.0).contains(&along)).then_some(way)
         })
         .fold(f64::INFINITY, f64::min)
-}
-
-/// Draws the dimensions of a device: the sides of polygons, height and width of what is curved; none of an
-/// opaque body, and of what is seen from the side.
-pub(super) fn draw_dimensions(drawing: &mut Drawing, view: &View, subject: &Subject<'_>) {
-    let section = &subject.section;
-    if subject.is_opaque() || section.is_shadow {
-        return;
-    }
-    let mut told = Vec::new();
-    for contour in &section.outlines {
-        measure(drawing, view, subject, contour, &mut told, 1.0);
-    }
-    let inner = section.metal.iter().filter(|contour| !section.outlines.contains(contour));
-    for contour in inner {
-        measure(drawing, view, subject, contour, &mut told, -1.0);
-    }
-}
-
-/// Measures a contour, from outside (`way` 1) or from within (-1). Lengths that have been told are
-/// not told again.
-fn measure(
-    drawing: &mut Drawing,
-    view: &View,
-    subject: &Subject<'_>,
-    contour: &Contour,
-    told: &mut Vec<f64>,
-    way: f64,
-) {
-    let corners = contour.corners();
-    let points = on_sheet(view, &subject.pose, &corners);
-    let Some([low, high]) = bounds(points.iter().copied()) else { return };
-    let mut is_new = |length: f64| {
-        let new = length < REACH && told.iter().all(|known| (known - length).abs() > 1e-6 * length);
-        if new {
-            told.push(length);
-        }
-        new
-    };
-    if corners.len() > MOST_CORNERS {
-        measure_curve(drawing, view, subject, contour, way, is_new);
-        return;
-    }
-    // A dimension within needs room for its label.
-    if way < 0.0 && (high - low).min_element() < 4.5 * TEXT {
-        return;
-    }
-    let turn = turn(&points);
-    // Away from the inside; below a line.
-    let outward = |(a, b): (DVec2, DVec2)| {
-        let along = b - a;
-        let normal = DVec2::new(along.y, -along.x).normalize_or(DVec2::Y);
-        let below = normal * normal.dot(DVec2::new(0.1, 1.0)).signum();
-        if contour.closed { normal * turn.signum() } else { below }
-    };
-    // Outside rather below and on the side with more room, inside rather opposite.
-    let [left, right] = [low.x - view.window[0].x, view.window[0].x + view.window[1].x - high.x];
-    let beside = if left > right + 2.0 * TEXT { -0.6 } else { 0.6 };
-    let liked = |side| outward(side).dot(DVec2::new(beside, 0.8) * way);
-    // On the sheet, and how long they are, cm.
-    let lengths = sides(&corners).map(|(a, b)| a.distance(b));
-    let mut order: Vec<((DVec2, DVec2), f64)> = sides(&points).zip(lengths).collect();
-    order.truncate(points.len() - usize::from(!contour.closed));
-    order.sort_by(|(a, _), (b, _)| liked(*b).total_cmp(&liked(*a)));
-    for ((a, b), length) in order {
-        if a.distance(b) > 1.5 * TEXT && is_new(length) {
-            let shift = way * SHIFT * outward((a, b));
-            let ground = if way < 0.0 { METAL } else { PAPER };
-            dimension::draw(drawing, [a, b], shift, &centimetres(length), ground);
-        }
-    }
-}
-
-/// Measures a curve: how wide and how high it is in the frame of its device.
-fn measure_curve(
-    drawing: &mut Drawing,
-    view: &View,
-    subject: &Subject<'_>,
-    contour: &Contour,
-    way: f64,
-    mut is_new: impl FnMut(f64) -> bool,
-) {
-    let Some([low, high]) = bounds(contour.points.iter().copied()) else { return };
-    let at = |x: f64, y: f64| view.place(subject.pose.point_to_world(DVec2::new(x, y)));
-    let size = high - low;
-    let middle = (low + high) / 2.0;
-    if way < 0.0 {
-        // Within: its height, at its middle.
-        let ends = [at(middle.x, low.y), at(middle.x, high.y)];
-        if ends[0].distance(ends[1]) > 1.2 * TEXT && is_new(size.y) {
-            dimension::double_arrow(drawing, "dimension", ends);
-            let beside = ends[1] + DVec2::new(10.0, -0.4 * TEXT);
-            let words = Words::new(centimetres(size.y), beside, TEXT).anchored(0.0);
-            write(drawing, "dimension-label", words, PAPER);
-        }
-        return;
-    }
-    let round = (size.x - size.y).abs() < 1e-3 * size.x;
-    if is_new(size.x) {
-        let label = if round { format!("Ø {}", centimetres(size.x)) } else { centimetres(size.x) };
-        let ends = [at(low.x, low.y), at(high.x, low.y)];
-        let down = (at(middle.x, low.y) - at(middle.x, high.y)).normalize_or(DVec2::Y);
-        dimension::draw(drawing, ends, SHIFT * down, &label, PAPER);
-    }
-    if !round && is_new(size.y) {
-        let ends = [at(high.x, low.y), at(high.x, high.y)];
-        let right = (at(high.x, middle.y) - at(low.x, middle.y)).normalize_or(DVec2::X);
-        dimension::draw(drawing, ends, SHIFT * right, &centimetres(size.y), PAPER);
-    }
 }

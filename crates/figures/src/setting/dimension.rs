@@ -29,12 +29,10 @@ pub(super) fn draw(
 /// The angle in degrees of text along a line of the sheet that nobody has to read upside down.
 fn upright(along: DVec2) -> f64 {
     let angle = (-along.y).atan2(along.x).to_degrees();
-    let turned = if angle > 90.0 - 1e-9 {
-        angle - 180.0
-    } else if angle <= -90.0 - 1e-9 {
-        angle + 180.0
-    } else {
-        angle
+    let turned = match angle {
+        _ if angle > 90.0 - 1e-9 => angle - 180.0,
+        _ if angle <= -90.0 - 1e-9 => angle + 180.0,
+        _ => angle,
     };
     // Upright lines are read upwards.
     if (turned + 90.0).abs() < 1e-6 { 90.0 } else { turned }
@@ -45,13 +43,9 @@ fn upright(along: DVec2) -> f64 {
 pub(super) fn double_arrow(drawing: &mut Drawing, class: &'static str, [a, b]: [DVec2; 2]) {
     let along = (b - a).normalize_or(DVec2::X);
     let inside = a.distance(b) > 2.2 * HEAD;
-    let inward = if inside { along } else { -along };
-    let (from, to) = if inside {
-        (a + 0.8 * HEAD * along, b - 0.8 * HEAD * along)
-    } else {
-        (a - 2.0 * HEAD * along, b + 2.0 * HEAD * along)
-    };
-    drawing.add_line(class, [from, to], (INK, THIN));
+    let (inward, shorter) = if inside { (along, 0.8) } else { (-along, -2.0) };
+    let end = shorter * HEAD * along;
+    drawing.add_line(class, [a + end, b - end], (INK, THIN));
     for (tip, back) in [(a, inward), (b, -inward)] {
         drawing.add("head", arrow_head(tip, back, HEAD)).filled(INK);
     }

@@ -2,15 +2,14 @@
 
 use super::super::color_bar::ColorBar;
 use super::super::color_scale::ColorScale;
-use super::super::drawing::{Drawing, Shape};
+use super::super::drawing::Shape;
 use super::super::quantity::Quantity;
+use super::device::Sketch;
 use super::medium_axes::MediumAxes;
 use super::subject::{Subject, border, bounds, lattice};
-use super::view::View;
 use cloakroom::device::Section;
 use cloakroom::output::RgbImage;
 use glam::{DAffine2, DVec2};
-use optics::geometry::Pose;
 
 /// The colours for the index of all graded cells; none if there are none.
 pub(super) fn bar(subjects: &[Subject<'_>]) -> Option<ColorBar> {
@@ -34,54 +33,44 @@ pub(super) fn bar(subjects: &[Subject<'_>]) -> Option<ColorBar> {
     })
 }
 
-/// Draws a graded region: its index in colours, within its border.
-pub(super) fn draw_region(
-    drawing: &mut Drawing,
-    view: &View,
-    region: &Section<'_>,
-    pose: &Pose,
-    scale: &ColorScale,
-) {
-    const MOST: f64 = 480.0;
-    let Some([low, high]) = bounds(border(region)) else { return };
-    let size = high - low;
-    let step = (size.max_element() / MOST).max(0.7 / view.scale);
-    let count = (size / step).ceil().max(DVec2::splat(4.0)).min(DVec2::splat(MOST));
-    let (columns, rows) = (count.x as u32, count.y as u32);
-    let at = |column: u32, row: u32| {
-        let share = (DVec2::new(f64::from(column), f64::from(row)) + 0.5) / count;
-        DVec2::new(low.x + share.x * size.x, high.y - share.y * size.y)
-    };
-    let mut numbers: Vec<Option<f64>> = (0..rows)
-        .flat_map(|row| (0..columns).map(move |column| (column, row)))
-        .map(|(column, row)| {
-            let medium = region.region.medium_at(at(column, row))?;
-            Some(medium.mean_index()).filter(|index| index.is_finite())
-        })
-        .collect();
-    // What lies just outside the medium shows where a pixel is cut by the border.
-    for _ in 0..3 {
-        numbers = spread(&numbers, columns as usize);
+impl Sketch<'_> {
+    /// Draws a graded region: its index in colours, within its border.
+    pub fn draw_index(&mut self, region: &Section<'_>, scale: &ColorScale) {
+        const MOST: f64 = 480.0;
+        let Some([low, high]) = bounds(border(region)) else { return };
+        let size = high - low;
+        let step = (size.max_element() / MOST).max(0.7 / self.view.scale);
+        let count = (size / step).ceil().max(DVec2::splat(4.0)).min(DVec2::splat(MOST));
+        let (columns, rows) = (count.x as u32, count.y as u32);
+        let at = |column: u32, row: u32| {
+            let share = (DVec2::new(f64::from(column), f64::from(row)) + 0.5) / count;
+            DVec2::new(low.x + share.x * size.x, high.y - share.y * size.y)
+        };
+        let mut numbers: Vec<Option<f64>> = (0..rows)
+            .flat_map(|row| (0..columns).map(move |column| (column, row)))
+            .map(|(column, row)| {
+                let medium = region.region.medium_at(at(column, row))?;
+                Some(medium.mean_index()).filter(|index| index.is_finite())
+            })
+            .collect();
+        // What lies just outside the medium shows where a pixel is cut by the border.
+        for _ in 0..3 {
+            numbers = spread(&numbers, columns as usize);
+        }
+        let image = RgbImage::from_fn(columns, rows, |column, row| {
+            let number = numbers[(row * columns + column) as usize];
+            scale.color(number.unwrap_or(f64::NAN))
+        });
+        let corner = |x: f64, y: f64| self.subject.place(self.view, DVec2::new(x, y));
+        let top_left = corner(low.x, high.y);
+        let place = DAffine2::from_cols(
+            corner(high.x, high.y) - top_left,
+            corner(low.x, low.y) - top_left,
+            top_left,
+        );
+        let border = self.subject.places(self.view, &region.border);
+        self.drawing.add("index-map", Shape::Image { image, cells: false, place }).within(border);
     }
-    let image = RgbImage::from_fn(columns, rows, |column, row| {
-        let number = numbers[(row * columns + column) as usize];
-        scale.color(number.unwrap_or(f64::NAN))
-    });
-    let corner = |x: f64, y: f64| view.place(pose.point_to_world(DVec2::new(x, y)));
-    let top_left = corner(low.x, high.y);
-    let place = DAffine2::from_cols(
-        corner(high.x, high.y) - top_left,
-        corner(low.x, low.y) - top_left,
-        top_left,
-    );
-    drawing.add("index-map", Shape::Image { image, cells: false, place }).within(
-        region.border.iter().map(|contour| on_sheet(view, pose, &contour.points)).collect(),
-    );
-}
-
-/// Points of a device's frame on the sheet.
-pub(super) fn on_sheet(view: &View, pose: &Pose, points: &[DVec2]) -> Vec<DVec2> {
-    points.iter().map(|p| view.place(pose.point_to_world(*p))).collect()
 }
 
 /// Fills pixels without a number from their neighbours.

@@ -26,7 +26,6 @@ pub(super) struct Group {
 
 /// Where things are on the sheet.
 pub(super) struct Layout {
-    pub sheet: DVec2,
     /// The whole scene.
     pub view: View,
     /// Devices once more, magnified.
@@ -65,132 +64,121 @@ impl Layout {
                 whole.scale * (*high - *low).max_element() < SMALL * sheet.min_element()
             })
             .collect();
-        let mut layout = Self {
-            sheet,
-            view: whole,
-            insets: Vec::new(),
-            bar: (DVec2::ZERO, 0.0),
-            axes: DVec2::ZERO,
+        let (view, insets) = match &small[..] {
+            [] => (whole, Vec::new()),
+            [group] => one_inset(sheet, group, world, view, (stage, subjects)),
+            _ => row_of_insets(sheet, &small, view(0.56)),
         };
-        if let [group] = &small[..] {
-            layout.place_one(group, world, view, stage, subjects);
-        } else if !small.is_empty() {
-            layout.place_row(&small, view(0.56));
-        }
-        let [top, size] = layout.view.window;
+        let [top, size] = view.window;
         let bar_at = DVec2::new(sheet.x - MARGIN - BAR + 0.6 * TEXT, top.y + 0.08 * size.y);
-        layout.bar = (bar_at, 0.84 * size.y);
-        layout.place_axes(stage, subjects);
-        layout
+        let mut taken = obstacles(&view, stage, subjects);
+        let of_insets = insets.iter().flat_map(|inset| [inset.frame, inset.legend]);
+        taken.extend(of_insets.map(|taken| corners(taken).to_vec()));
+        let axes = place_of_axes(sheet, view.window, &taken);
+        Self { view, insets, bar: (bar_at, 0.84 * size.y), axes }
     }
 
     /// Whether a device is drawn once more, magnified.
     pub fn is_magnified(&self, subject: usize) -> bool {
         self.insets.iter().any(|inset| inset.group.subjects.contains(&subject))
     }
+}
 
-    /// One small device: magnified in the corner below the camera, as large as it can be beside what
-    /// the camera sees.
-    fn place_one(
-        &mut self,
-        group: &Group,
-        world: [DVec2; 2],
-        view: impl Fn(f64) -> View,
-        stage: &Stage,
-        subjects: &[Subject<'_>],
-    ) {
-        let sheet = self.sheet;
-        let mut best: Option<(f64, View, [DVec2; 2])> = None;
-        for share in [0.84, 0.8, 0.76, 0.72, 0.68, 0.64, 0.6, 0.56] {
-            // To the right, away from the inset.
-            let mut view = view(share);
-            let right = view.window[0].x + view.window[1].x;
-            view.origin.x += (right - view.place(world[1]).x).max(0.0);
-            let taken = obstacles(&view, stage, subjects);
-            for height in (4..=13).map(|k| 0.04 * f64::from(k) * sheet.y) {
-                let size = DVec2::splat(height);
-                let from = DVec2::new(MARGIN, sheet.y - MARGIN - height);
-                let frame = [from, size];
-                // The scene should be large, and so should the inset.
-                let merit = height * view.scale.powi(2);
-                if is_free(frame, &taken) && best.as_ref().is_none_or(|(most, ..)| merit > *most) {
-                    best = Some((merit, view, frame));
-                }
+/// One small device: magnified in the corner below the camera, as large as it can be beside what
+/// the camera sees.
+fn one_inset(
+    sheet: DVec2,
+    group: &Group,
+    world: [DVec2; 2],
+    view: impl Fn(f64) -> View,
+    (stage, subjects): (&Stage, &[Subject<'_>]),
+) -> (View, Vec<Inset>) {
+    let mut best: Option<(f64, View, [DVec2; 2])> = None;
+    for share in [0.84, 0.8, 0.76, 0.72, 0.68, 0.64, 0.6, 0.56] {
+        // To the right, away from the inset.
+        let mut view = view(share);
+        let right = view.window[0].x + view.window[1].x;
+        view.origin.x += (right - view.place(world[1]).x).max(0.0);
+        let taken = obstacles(&view, stage, subjects);
+        for height in (4..=13).map(|k| 0.04 * f64::from(k) * sheet.y) {
+            let size = DVec2::splat(height);
+            let from = DVec2::new(MARGIN, sheet.y - MARGIN - height);
+            let frame = [from, size];
+            // The scene should be large, and so should the inset.
+            let merit = height * view.scale.powi(2);
+            if is_free(frame, &taken) && best.as_ref().is_none_or(|(most, ..)| merit > *most) {
+                best = Some((merit, view, frame));
             }
         }
-        let Some((_, view, frame)) = best else {
-            self.place_row(std::slice::from_ref(group), view(0.56));
-            return;
+    }
+    let Some((_, view, frame)) = best else {
+        return row_of_insets(sheet, std::slice::from_ref(group), view(0.56));
+    };
+    let legend = free_below(sheet, frame, &obstacles(&view, stage, subjects));
+    let (group, inset) = (group.clone(), within(group.bounds, frame));
+    (view, vec![Inset { group, view: inset, frame, legend }])
+}
+
+/// The largest free room to the right of an inset, down to the lower edge of the sheet.
+fn free_below(sheet: DVec2, [from, size]: [DVec2; 2], taken: &[Vec<DVec2>]) -> [DVec2; 2] {
+    let left = from.x + size.x + TEXT;
+    let lower = sheet.y - MARGIN;
+    let ends = taken.iter().flatten().map(|p| p.x).chain([sheet.x - MARGIN]);
+    let rooms = ends.filter(|right| *right >= left + LEGEND).flat_map(|right| {
+        (0..40).map(move |k| {
+            let top = lower * f64::from(k) / 40.0;
+            [DVec2::new(left, top), DVec2::new(right - left, lower - top)]
+        })
+    });
+    rooms
+        .filter(|room| is_free(*room, taken))
+        .max_by(|a, b| (a[1].x * a[1].y).total_cmp(&(b[1].x * b[1].y)))
+        .unwrap_or([DVec2::new(left, lower), DVec2::ZERO])
+}
+
+/// Several small devices: magnified in a row below the scene, each with its key beside it, or below it
+/// where there is no room.
+fn row_of_insets(sheet: DVec2, small: &[Group], view: View) -> (View, Vec<Inset>) {
+    let mut insets = Vec::new();
+    let top = view.window[0].y + view.window[1].y + 2.2 * TEXT;
+    let height = (sheet.y - MARGIN - top).max(1.0);
+    let room = (sheet.x - 2.0 * MARGIN) / small.len() as f64;
+    for (k, group) in small.iter().enumerate() {
+        let from = DVec2::new(MARGIN + k as f64 * room, top);
+        let beside = room - height - 2.0 * TEXT >= LEGEND;
+        let below = if beside { 0.0 } else { (5.0 * TEXT).min(0.45 * height) };
+        let frame_height = height - below;
+        let frame = [from, DVec2::new(frame_height.min(room - 0.5 * TEXT), frame_height)];
+        let legend = if beside {
+            let legend_from = DVec2::new(from.x + frame[1].x + 1.2 * TEXT, top);
+            [legend_from, DVec2::new((room - frame[1].x - 2.0 * TEXT).max(0.0), height)]
+        } else {
+            let gap = 0.4 * TEXT;
+            let legend_from = DVec2::new(from.x, top + frame_height + gap);
+            [legend_from, DVec2::new((room - 0.5 * TEXT).max(0.0), (below - gap).max(0.0))]
         };
-        self.view = view;
-        let legend = self.free_below(frame, &obstacles(&view, stage, subjects));
-        let (group, view) = (group.clone(), within(group.bounds, frame));
-        self.insets.push(Inset { group, view, frame, legend });
+        let view = within(group.bounds, frame);
+        insets.push(Inset { group: group.clone(), view, frame, legend });
     }
+    (view, insets)
+}
 
-    /// The largest free room to the right of an inset, down to the lower edge of the sheet.
-    fn free_below(&self, [from, size]: [DVec2; 2], taken: &[Vec<DVec2>]) -> [DVec2; 2] {
-        let left = from.x + size.x + TEXT;
-        let lower = self.sheet.y - MARGIN;
-        let ends = taken.iter().flatten().map(|p| p.x).chain([self.sheet.x - MARGIN]);
-        let rooms = ends.filter(|right| *right >= left + LEGEND).flat_map(|right| {
-            (0..40).map(move |k| {
-                let top = lower * f64::from(k) / 40.0;
-                [DVec2::new(left, top), DVec2::new(right - left, lower - top)]
-            })
-        });
-        rooms
-            .filter(|room| is_free(*room, taken))
-            .max_by(|a, b| (a[1].x * a[1].y).total_cmp(&(b[1].x * b[1].y)))
-            .unwrap_or([DVec2::new(left, lower), DVec2::ZERO])
-    }
-
-    /// Several small devices: magnified in a row below the scene, each with its key beside it, or below it
-    /// where there is no room.
-    fn place_row(&mut self, small: &[Group], view: View) {
-        self.view = view;
-        let top = view.window[0].y + view.window[1].y + 2.2 * TEXT;
-        let height = (self.sheet.y - MARGIN - top).max(1.0);
-        let room = (self.sheet.x - 2.0 * MARGIN) / small.len() as f64;
-        for (k, group) in small.iter().enumerate() {
-            let from = DVec2::new(MARGIN + k as f64 * room, top);
-            let beside = room - height - 2.0 * TEXT >= LEGEND;
-            let below = if beside { 0.0 } else { (5.0 * TEXT).min(0.45 * height) };
-            let frame_height = height - below;
-            let frame = [from, DVec2::new(frame_height.min(room - 0.5 * TEXT), frame_height)];
-            let legend = if beside {
-                let legend_from = DVec2::new(from.x + frame[1].x + 1.2 * TEXT, top);
-                [legend_from, DVec2::new((room - frame[1].x - 2.0 * TEXT).max(0.0), height)]
-            } else {
-                let gap = 0.4 * TEXT;
-                let legend_from = DVec2::new(from.x, top + frame_height + gap);
-                [legend_from, DVec2::new((room - 0.5 * TEXT).max(0.0), (below - gap).max(0.0))]
-            };
-            let view = within(group.bounds, frame);
-            self.insets.push(Inset { group: group.clone(), view, frame, legend });
-        }
-    }
-
-    /// Puts the axes of coordinates into the first corner that is free.
-    fn place_axes(&mut self, stage: &Stage, subjects: &[Subject<'_>]) {
-        let mut taken = obstacles(&self.view, stage, subjects);
-        let insets = self.insets.iter().flat_map(|inset| [inset.frame, inset.legend]);
-        taken.extend(insets.map(|taken| corners(taken).to_vec()));
-        let [DVec2 { y: view_top, .. }, size] = self.view.window;
-        let (left, right) = (MARGIN, self.sheet.x - MARGIN - AXES.x);
-        let bottom = self.sheet.y - MARGIN - AXES.y;
-        let places = [
-            (left, bottom),
-            (left, view_top + size.y - AXES.y),
-            (left, view_top + 0.5 * TEXT),
-            (right, bottom),
-            (right, view_top),
-            ((left + right) / 2.0, bottom),
-        ]
-        .map(DVec2::from);
-        let free = places.into_iter().find(|at| is_free([*at, AXES], &taken));
-        self.axes = free.unwrap_or(places[0]);
-    }
+/// The first corner that is free, for the axes of coordinates.
+fn place_of_axes(sheet: DVec2, window: [DVec2; 2], taken: &[Vec<DVec2>]) -> DVec2 {
+    let [DVec2 { y: view_top, .. }, size] = window;
+    let (left, right) = (MARGIN, sheet.x - MARGIN - AXES.x);
+    let bottom = sheet.y - MARGIN - AXES.y;
+    let places = [
+        (left, bottom),
+        (left, view_top + size.y - AXES.y),
+        (left, view_top + 0.5 * TEXT),
+        (right, bottom),
+        (right, view_top),
+        ((left + right) / 2.0, bottom),
+    ]
+    .map(DVec2::from);
+    let free = places.into_iter().find(|at| is_free([*at, AXES], taken));
+    free.unwrap_or(places[0])
 }
 
 impl Inset {
@@ -213,11 +201,8 @@ impl Inset {
 /// The devices that have ends, those together whose boxes overlap, with the opaque bodies that lie within.
 fn groups(subjects: &[Subject<'_>]) -> Vec<Group> {
     let boxed = |opaque: bool| {
-        let of_kind = move |(_, subject): &(usize, &Subject<'_>)| subject.is_opaque() == opaque;
-        let with_ends = |(index, subject): (usize, &Subject<'_>)| {
-            Some(Group { subjects: vec![index], bounds: subject.bounds()? })
-        };
-        subjects.iter().enumerate().filter(of_kind).filter_map(with_ends)
+        let of_kind = subjects.iter().enumerate().filter(move |(_, s)| s.is_opaque() == opaque);
+        of_kind.filter_map(|(i, s)| Some(Group { subjects: vec![i], bounds: s.bounds()? }))
     };
     let mut groups: Vec<Group> = Vec::new();
     for mut own in boxed(false) {
@@ -228,9 +213,8 @@ fn groups(subjects: &[Subject<'_>]) -> Vec<Group> {
         groups.push(own);
     }
     for own in boxed(true) {
-        if let Some(group) = groups.iter().position(|group| group.holds(&own)) {
-            let around = groups.remove(group);
-            groups.insert(group, around.with(own));
+        if let Some(around) = groups.iter_mut().find(|group| group.holds(&own)) {
+            *around = around.clone().with(own);
         }
     }
     groups
@@ -277,18 +261,15 @@ fn obstacles(view: &View, stage: &Stage, subjects: &[Subject<'_>]) -> Vec<Vec<DV
 
 /// Whether none of some convex shapes reaches into a part of the sheet, its top left corner and size.
 fn is_free(part: [DVec2; 2], taken: &[Vec<DVec2>]) -> bool {
-    taken.iter().all(|shape| !overlap(shape, &corners(part)))
+    let part = outline(&corners(part));
+    taken.iter().all(|shape| !outline(shape).overlaps(&part, 0.0))
 }
 
-/// Whether two convex shapes of the sheet overlap.
-fn overlap(a: &[DVec2], b: &[DVec2]) -> bool {
-    // Outlines run counterclockwise with y up.
-    let outline = |shape: &[DVec2]| {
-        let mut points: Vec<DVec2> = shape.iter().map(|p| DVec2::new(p.x, -p.y)).collect();
-        if turn(&points) < 0.0 {
-            points.reverse();
-        }
-        Outline::new(points)
-    };
-    outline(a).overlaps(&outline(b), 0.0)
+/// A convex shape of the sheet as an outline, which runs counterclockwise with y up.
+fn outline(shape: &[DVec2]) -> Outline {
+    let mut points: Vec<DVec2> = shape.iter().map(|p| DVec2::new(p.x, -p.y)).collect();
+    if turn(&points) < 0.0 {
+        points.reverse();
+    }
+    Outline::new(points)
 }

@@ -2,13 +2,12 @@
 
 use super::super::drawing::{Drawing, Face, Ink, Words};
 use super::body;
-use super::device::{axes_of_graded, index_label, middle, turned};
-use super::medium_axes::{MediumAxes, draw_key};
+use super::device::{axes_of_graded, index_label, middle};
+use super::medium_axes::MediumAxes;
 use super::subject::Subject;
 use super::view::corners;
 use super::{INK, METAL, TEXT, THICK, THIN};
 use glam::DVec2;
-use optics::geometry::Pose;
 use optics::medium::Medium;
 
 /// The distance of lines.
@@ -51,7 +50,13 @@ pub(super) fn draw(
     if let Some(((axes, _), pose)) = &homogeneous
         && radius > 24.0
     {
-        y = draw_axes(drawing, from, radius, axes, pose) + 1.2 * LINE;
+        let at = DVec2::new(from.x + radius + TEXT, from.y + radius + 0.5 * TEXT);
+        axes.draw_key(drawing, pose, at, radius);
+        if axes.drawn().len() == 1 {
+            let words = Words::new("optic axis", at + DVec2::new(radius + 4.5 * TEXT, 0.0), TEXT);
+            drawing.add_words("optic-axis", words.anchored(0.0));
+        }
+        y = at.y + radius + 1.2 * LINE;
     }
     for (sample, words) in entries {
         let (class, left) = match sample {
@@ -78,24 +83,6 @@ pub(super) fn draw(
         drawing.add_words(class, words);
         y += LINE;
     }
-}
-
-/// Draws the axes of a homogeneous medium below the top left corner of a box, and says how far down they
-/// reach.
-fn draw_axes(
-    drawing: &mut Drawing,
-    from: DVec2,
-    radius: f64,
-    axes: &MediumAxes,
-    pose: &Pose,
-) -> f64 {
-    let at = DVec2::new(from.x + radius + TEXT, from.y + radius + 0.5 * TEXT);
-    draw_key(drawing, axes, at, radius, |v| turned(pose, v));
-    if axes.drawn().len() == 1 {
-        let words = Words::new("optic axis", at + DVec2::new(radius + 4.5 * TEXT, 0.0), TEXT);
-        drawing.add_words("optic-axis", words.anchored(0.0));
-    }
-    at.y + radius
 }
 
 /// The first homogeneous anisotropic medium of a device with its axes.

@@ -4,6 +4,7 @@ use super::super::drawing::{Drawing, Face, Ink, Shape, Words};
 use super::dimension::arrow_head;
 use super::{BLUE, GRAY, INK, TEXT, THICK, THIN, VERMILION, rounded};
 use glam::{DMat3, DVec2, DVec3};
+use optics::geometry::Pose;
 use optics::medium::{Medium, principal_axes};
 
 /// The length of an arrow head.
@@ -80,6 +81,63 @@ impl MediumAxes {
         }
         line
     }
+
+    /// Draws them about a point of the sheet; `reach` says how far one may go in a direction.
+    pub fn draw_cross(
+        &self,
+        drawing: &mut Drawing,
+        pose: &Pose,
+        at: DVec2,
+        reach: impl Fn(DVec2) -> f64,
+    ) {
+        let drawn = self.drawn();
+        let Some(first) = drawn.first() else { return };
+        let longest = reach(turned(pose, first.direction));
+        for axis in drawn {
+            let direction = turned(pose, axis.direction);
+            let half = direction * reach(direction).min(longest * axis.length);
+            let head = (0.4 * half.length()).min(HEAD);
+            // Too small to be told from a blot.
+            if head > 3.0 {
+                let back = half.normalize_or(DVec2::X) * head;
+                let shaft = [at - half + 0.8 * back, at + half - 0.8 * back];
+                drawing.add_line("axis", shaft, (axis.ink, THICK));
+                for tip in [half, -half] {
+                    let head = arrow_head(at + tip, -tip.normalize_or(DVec2::X), head);
+                    drawing.add("head", head).filled(axis.ink);
+                }
+            }
+        }
+    }
+
+    /// Draws them large, with their names and the angle of the first from the device's x axis.
+    pub fn draw_key(&self, drawing: &mut Drawing, pose: &Pose, at: DVec2, radius: f64) {
+        let drawn = self.drawn();
+        let level = turned(pose, DVec2::X);
+        let line = [at - radius * level, at + 1.25 * radius * level];
+        drawing.add_line("level", line, (GRAY, THIN)).dashed(7.0, 5.0);
+        self.draw_cross(drawing, pose, at, |_| radius);
+        // The end to the right of the device's y axis.
+        let right =
+            |axis: &Drawn| if axis.direction.x < 0.0 { -axis.direction } else { axis.direction };
+        for axis in &drawn {
+            let end = turned(pose, right(axis)) * (radius * axis.length);
+            let beside = at + end + 0.6 * TEXT * end.normalize_or(DVec2::X);
+            let name = Shape::Words(Words::of(Face::Italic, axis.name, beside, TEXT));
+            drawing.add("axis-name", name).filled(axis.ink);
+        }
+        let Some(direction) = drawn.first().map(right) else { return };
+        let angle = direction.y.atan2(direction.x);
+        if angle.abs().to_degrees() < 0.005 || angle.abs().to_degrees() > 89.995 {
+            return;
+        }
+        let at_angle = |share: f64, r: f64| at + r * turned(pose, DVec2::from_angle(share * angle));
+        let arc = (0..=24).map(|k| at_angle(f64::from(k) / 24.0, 0.72 * radius));
+        drawing.add_line("angle", arc.collect::<Vec<_>>(), (INK, THIN));
+        let text = format!("{}°", rounded(angle.to_degrees().abs()));
+        let words = Words::new(text, at_angle(0.5, 0.84 * radius), TEXT).anchored(0.0);
+        drawing.add_words("angle-label", words);
+    }
 }
 
 fn size(tensor: &DMat3) -> f64 {
@@ -91,66 +149,8 @@ fn is_anisotropic(tensor: &DMat3) -> bool {
     !tensor.abs_diff_eq(scalar, 1e-9 * size(tensor))
 }
 
-/// Draws axes about a point of the sheet; `reach` says how far one may go in a direction, `turned` takes
-/// directions of the device's frame to the sheet.
-pub(super) fn draw_cross(
-    drawing: &mut Drawing,
-    axes: &MediumAxes,
-    at: DVec2,
-    reach: impl Fn(DVec2) -> f64,
-    turned: impl Fn(DVec2) -> DVec2,
-) {
-    let drawn = axes.drawn();
-    let Some(first) = drawn.first() else { return };
-    let longest = reach(turned(first.direction));
-    for axis in drawn {
-        let direction = turned(axis.direction);
-        let half = direction * reach(direction).min(longest * axis.length);
-        let head = (0.4 * half.length()).min(HEAD);
-        // Too small to be told from a blot.
-        if head > 3.0 {
-            let back = half.normalize_or(DVec2::X) * head;
-            let shaft = [at - half + 0.8 * back, at + half - 0.8 * back];
-            drawing.add_line("axis", shaft, (axis.ink, THICK));
-            for tip in [half, -half] {
-                let head = arrow_head(at + tip, -tip.normalize_or(DVec2::X), head);
-                drawing.add("head", head).filled(axis.ink);
-            }
-        }
-    }
-}
-
-/// Draws the axes large, with their names and the angle of the first from the device's x axis.
-pub(super) fn draw_key(
-    drawing: &mut Drawing,
-    axes: &MediumAxes,
-    at: DVec2,
-    radius: f64,
-    turned: impl Fn(DVec2) -> DVec2,
-) {
-    let drawn = axes.drawn();
-    let level = turned(DVec2::X);
-    let line = [at - radius * level, at + 1.25 * radius * level];
-    drawing.add_line("level", line, (GRAY, THIN)).dashed(7.0, 5.0);
-    draw_cross(drawing, axes, at, |_| radius, &turned);
-    // The end to the right of the device's y axis.
-    let right =
-        |axis: &Drawn| if axis.direction.x < 0.0 { -axis.direction } else { axis.direction };
-    for axis in &drawn {
-        let end = turned(right(axis)) * (radius * axis.length);
-        let beside = at + end + 0.6 * TEXT * end.normalize_or(DVec2::X);
-        let name = Shape::Words(Words::of(Face::Italic, axis.name, beside, TEXT));
-        drawing.add("axis-name", name).filled(axis.ink);
-    }
-    let Some(direction) = drawn.first().map(right) else { return };
-    let angle = direction.y.atan2(direction.x);
-    if angle.abs().to_degrees() < 0.005 || angle.abs().to_degrees() > 89.995 {
-        return;
-    }
-    let at_angle = |share: f64, r: f64| at + r * turned(DVec2::from_angle(share * angle));
-    let arc = (0..=24).map(|k| at_angle(f64::from(k) / 24.0, 0.72 * radius));
-    drawing.add_line("angle", arc.collect::<Vec<_>>(), (INK, THIN));
-    let text = format!("{}°", rounded(angle.to_degrees().abs()));
-    let words = Words::new(text, at_angle(0.5, 0.84 * radius), TEXT).anchored(0.0);
-    drawing.add_words("angle-label", words);
+/// A vector of a device's frame in the plane, as a direction of the sheet.
+pub(super) fn turned(pose: &Pose, v: DVec2) -> DVec2 {
+    let world = pose.vector_to_world(v.extend(0.0)).truncate();
+    DVec2::new(world.x, -world.y)
 }

@@ -24,6 +24,7 @@ use super::quantity::{short, with_minus};
 use cloakroom::assembly::Assembly;
 use cloakroom::render::{PreparedScene, PreparedSceneError, metadata};
 use cloakroom::scene::Scene;
+use device::Sketch;
 use glam::DVec2;
 use layout::Layout;
 use stage::Stage;
@@ -87,8 +88,9 @@ pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
     let devices = Devices::new(&prepared.assembly);
     let subjects = &devices.subjects;
     let stage = Stage::new(scene, &prepared);
-    let layout = Layout::new(sheet(scene.camera.resolution), &stage, subjects, devices.has_bar());
-    let mut drawing = Drawing::new(layout.sheet, TEXT);
+    let sheet = sheet(scene.camera.resolution);
+    let layout = Layout::new(sheet, &stage, subjects, devices.has_bar());
+    let mut drawing = Drawing::new(sheet, TEXT);
     stage.draw_behind(&mut drawing, &layout.view);
     let order = Subject::from_back(subjects);
     let whole: Vec<_> =
@@ -156,7 +158,7 @@ impl<'s> Devices<'s> {
                 other != place && subject.is_within(around, other > place)
             };
             if !shown.iter().enumerate().any(is_inner) {
-                device::draw_dimensions(drawing, view, subject);
+                Sketch { drawing, view, subject }.draw_dimensions();
             }
         }
     }
@@ -164,9 +166,10 @@ impl<'s> Devices<'s> {
     /// Draws devices from back to front, without their dimensions.
     fn draw_shapes(&self, drawing: &mut Drawing, view: &View, shown: &[(&Subject<'_>, bool)]) {
         for (place, (subject, in_detail)) in shown.iter().enumerate() {
-            device::draw(drawing, view, subject, self.bar.as_ref().map(|bar| &bar.scale));
+            let mut sketch = Sketch { drawing, view, subject };
+            sketch.draw(self.bar.as_ref().map(|bar| &bar.scale));
             if *in_detail {
-                device::draw_media(drawing, view, subject, &shown[place + 1..]);
+                sketch.draw_media(&shown[place + 1..]);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The devices of a scene, ready to be drawn.
 
+use super::view::View;
 use cloakroom::assembly::Assembly;
 use cloakroom::device::{Contour, CrossSection, REACH, Section};
 use glam::DVec2;
@@ -20,6 +21,21 @@ impl<'s> Subject<'s> {
                 Self { section, pose }
             })
             .collect()
+    }
+
+    /// Where on the sheet a point of its frame is.
+    pub fn place(&self, view: &View, point: DVec2) -> DVec2 {
+        view.place(self.pose.point_to_world(point))
+    }
+
+    /// Where on the sheet points of its frame are.
+    pub fn on_sheet(&self, view: &View, points: &[DVec2]) -> Vec<DVec2> {
+        points.iter().map(|point| self.place(view, *point)).collect()
+    }
+
+    /// Where on the sheet contours in its frame are.
+    pub fn places(&self, view: &View, contours: &[Contour]) -> Vec<Vec<DVec2>> {
+        contours.iter().map(|contour| self.on_sheet(view, &contour.points)).collect()
     }
 
     /// The contours of all that is to be seen of it, in its own frame.

@@ -2,15 +2,12 @@
 
 use super::finding::{DOUBLE, Page, SINGLE, Verdict, above, below, list, percent};
 use super::fixture::{
-    CAMERA, DESIGNS, Fixture, HALF_VIEW, Rays, camera_direction, fact, largest_difference,
-    likeness, numbers, principal_values, reflected_inside, square, statistics,
+    CAMERA, DESIGNS, Fixture, HALF_VIEW, camera_direction, fact, facts, largest_difference, launch,
+    likeness, reflected_inside, square, tracer, undisturbed,
 };
-use super::{Checked, VerificationError};
+use super::{Result, VerificationError};
 use cloakroom::measure::CLOAKED_WITHIN_CM;
 use glam::{DVec2, DVec3};
-
-/// How near to its own line light counts as undisturbed, degrees and cm.
-const ON_ITS_LINE: [f64; 2] = [1e-6, 1e-6];
 
 /// The share of the light that a reflection must have to be seen.
 const SEEN: f64 = 0.01;
@@ -20,22 +17,22 @@ fn heights() -> impl Iterator<Item = f64> {
     (0..40).map(|i| -9.5 + 19.0 * (f64::from(i) + 0.5) / 40.0)
 }
 
-pub(super) fn along_the_axis(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn along_the_axis(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let mut through = [[0.0; 2]; 2];
     for (material, through) in DESIGNS.iter().zip(&mut through) {
         let assembly = fixture.assembly(&square(material))?;
-        let mut rays = Rays::new(&assembly, 1e-7);
+        let mut rays = tracer(&assembly, 1e-7);
         // In the centre vertical plane, from the camera.
         let mut least: f64 = 1.0;
         let mut most: f64 = 0.0;
         for i in 0..40 {
             let up = 5.6 * ((f64::from(i) + 0.5) / 20.0 - 1.0);
-            let [h, v] = rays.undisturbed(CAMERA, camera_direction(0.0, up), ON_ITS_LINE);
+            let [h, v] = undisturbed(&mut rays, CAMERA, camera_direction(0.0, up));
             least = least.min(h);
             most = most.max(v);
         }
         for y in heights() {
-            let [h, v] = rays.undisturbed(DVec3::new(-100.0, y, 0.0), DVec3::X, ON_ITS_LINE);
+            let [h, v] = undisturbed(&mut rays, DVec3::new(-100.0, y, 0.0), DVec3::X);
             through[0] += h / 40.0;
             through[1] += v / 40.0;
         }
@@ -72,7 +69,7 @@ pub(super) fn along_the_axis(fixture: &Fixture<'_>, page: &mut Page) -> Checked 
     Ok(())
 }
 
-pub(super) fn views(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn views(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let empty = fixture.show("", "none")?.view;
     let silhouette = fixture.silhouette(&square(DESIGNS[2]))?;
     let bare = fixture.show(&format!("{}show = \"bare\"\n", square(DESIGNS[2])), "none")?.view;
@@ -91,7 +88,7 @@ pub(super) fn views(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
         }
         admixture = admixture.max(largest_difference(&mean, &none));
         let like = |to, view| likeness(to, view, &silhouette);
-        let off = fixture.displacement(&device, "horizontal", "")?;
+        let off = fixture.displacement(&device, "horizontal")?;
         *numbers = [like(&empty, &h)?, like(&empty, &v)?, like(&perfect, &h)?, off];
     }
     let [[h1, v1, like_1, off_1], [h2, v2, like_2, off_2]] = numbers;
@@ -131,7 +128,7 @@ pub(super) fn views(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
 }
 
 /// What the cloaks look like when they are turned, and the first reflection then.
-pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let mut likenesses = [[0.0; 3]; 2];
     let mut bare = [0.0; 3];
     let mut reflections = [[0.0; 3]; 2];
@@ -142,12 +139,10 @@ pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
         let show = |what| fixture.show(&format!("{perfect}show = \"{what}\"\n"), "horizontal");
         let mirror = show("mirror")?.view;
         bare[i] = likeness(&mirror, &show("bare")?.view, &silhouette)?;
-        for (material, (likenesses, reflections)) in
-            DESIGNS.iter().zip(likenesses.iter_mut().zip(&mut reflections))
-        {
+        for (design, material) in DESIGNS.iter().take(2).enumerate() {
             let shown = fixture.show(&turned(material), "horizontal")?;
-            likenesses[i] = likeness(&mirror, &shown.view, &silhouette)?;
-            reflections[i] = statistics(&shown.picture, "first_face_reflectance")?[0];
+            likenesses[design][i] = likeness(&mirror, &shown.view, &silhouette)?;
+            reflections[design][i] = shown.statistics("first_face_reflectance")?[0];
         }
     }
     let [one, two] = likenesses;
@@ -182,30 +177,27 @@ pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn reflections(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
-    let reflection = |material: &str, polarizer: &str| {
-        let shown = fixture.show(&square(material), polarizer)?;
-        statistics(&shown.picture, "first_face_reflectance")
-    };
-    let [[_, horizontal], [_, vertical]] =
-        [reflection(DESIGNS[1], "horizontal")?, reflection(DESIGNS[1], "vertical")?];
+pub(super) fn reflections(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
+    let [_, horizontal] = fixture.reflection(&square(DESIGNS[1]), "horizontal")?;
+    let [_, vertical] = fixture.reflection(&square(DESIGNS[1]), "vertical")?;
     // All that comes back, at 20 degrees to the side. Some paths lead straight up or down, to the last digits;
     // that light does not go on, and counts.
     const STRAIGHT_UP: f64 = 1e-9;
     let mut backward = [0.0; 2];
     for (material, backward) in DESIGNS.iter().zip(&mut backward) {
         let assembly = fixture.assembly(&square(material))?;
-        let mut rays = Rays::new(&assembly, 1e-5);
+        let mut rays = tracer(&assembly, 1e-5);
         for y in heights() {
             let direction = camera_direction(HALF_VIEW, 0.0);
-            let (leaves, _) = rays.trace(DVec3::new(0.0, y, 0.0) - direction * 60.0, direction);
+            let ray = launch(DVec3::new(0.0, y, 0.0) - direction * 60.0, direction);
+            let (leaves, _) = rays.trace(&ray);
             let back = leaves.iter().filter(|leaf| leaf.direction.x < STRAIGHT_UP);
             *backward += back.map(|leaf| leaf.power[0]).sum::<f64>() / 40.0;
         }
     }
     let ordinary = |material: &str| {
-        let shown = fixture.show(&square(material), "horizontal")?;
-        let shares = numbers(&shown.picture, "extraordinary_share")?;
+        let shares =
+            fixture.show(&square(material), "horizontal")?.numbers("extraordinary_share")?;
         Ok::<_, VerificationError>(1.0 - shares.into_iter().fold(1.0, f64::min))
     };
     let ordinary = [ordinary(DESIGNS[0])?, ordinary(DESIGNS[1])?];
@@ -238,18 +230,19 @@ pub(super) fn reflections(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn trapped_light(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn trapped_light(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     // The ordinary index of a segment, sqrt(eps mu_o).
-    let index = |material: &str, ordinary: usize| -> Result<f64, VerificationError> {
+    let index = |material: &str, ordinary: usize| -> Result<f64> {
         let device = square(material);
-        let permittivity = principal_values(&device, "permittivity_principal_values")?;
-        let permeability = principal_values(&device, "permeability_principal_values")?;
+        let permittivity: [f64; 3] = facts(&device, "permittivity_principal_values")?;
+        let permeability: [f64; 3] = facts(&device, "permeability_principal_values")?;
         Ok((permittivity[0] * permeability[ordinary]).sqrt())
     };
     let critical = [index(DESIGNS[0], 1)?.asin(), (1.0 / index(DESIGNS[1], 0)?).asin()];
     let [in_air, inside] = critical.map(f64::to_degrees);
     let assembly = fixture.assembly(&square(DESIGNS[1]))?;
-    let (main, times) = reflected_inside(&assembly, DVec3::new(-50.0, 4.0, 0.0), DVec3::X)?;
+    let (main, times) =
+        reflected_inside(&assembly, &launch(DVec3::new(-50.0, 4.0, 0.0), DVec3::X))?;
     let angle = main.direction.y.atan2(main.direction.x).to_degrees().abs();
     // The steepest incidence on a front face that the camera sees, at a rotation.
     let corner = 0.5 * fact(&square(DESIGNS[0]), "mirror_width_cm")?;

@@ -45,11 +45,8 @@ impl Verdict {
     pub(super) fn number(computed: f64, printed: f64, decimals: i32) -> Self {
         // A hair more than half a digit: the border belongs to both.
         let half = 0.5 * 10f64.powi(-decimals) * (1.0 + 1e-9);
-        if (computed - printed).abs() <= half {
-            Self::Agrees
-        } else {
-            Self::magnitude(computed, printed)
-        }
+        let agrees = (computed - printed).abs() <= half;
+        if agrees { Self::Agrees } else { Self::magnitude(computed, printed) }
     }
 
     /// Of a number that is said to be at most another.
@@ -102,16 +99,10 @@ impl Finding {
     }
 
     /// A number was computed, against the one that is printed with so many decimals.
-    pub(super) fn number(
-        &mut self,
-        computed: f64,
-        (printed, decimals, unit): (f64, usize, &str),
-    ) -> &mut Self {
-        self.computed(format!("{computed:.decimals$}{unit}")).verdict(Verdict::number(
-            computed,
-            printed,
-            decimals as i32,
-        ))
+    pub(super) fn number(&mut self, computed: f64, printed: (f64, usize, &str)) -> &mut Self {
+        let (printed, decimals, unit) = printed;
+        let verdict = Verdict::number(computed, printed, decimals as i32);
+        self.computed(format!("{computed:.decimals$}{unit}")).verdict(verdict)
     }
 
     /// The finding with a word why.

@@ -1,6 +1,6 @@
 //! Scenes of the paper, made and measured.
 
-use super::VerificationError;
+use super::{Result, VerificationError};
 use cloakroom::assembly::Assembly;
 use cloakroom::device::FactValue;
 use cloakroom::measure::{Region, Survey, View, correlation, survey};
@@ -8,7 +8,7 @@ use cloakroom::output::Picture;
 use cloakroom::render::{ChannelSet, PreparedScene, Supervision, assembly, render};
 use cloakroom::scene::Scene;
 use cloakroom::scene_file;
-use cloakroom::trace::{Launch, Leaf, Limits, Outcome, PathSegment, Tracer};
+use cloakroom::trace::{Launch, Leaf, Limits, PathSegment, Tracer};
 use glam::DVec3;
 use optics::wave::transverse_basis;
 use std::path::Path;
@@ -39,24 +39,45 @@ pub(super) struct Fixture<'s> {
 
 /// A device as the paper's camera sees it.
 pub(super) struct Shown {
-    pub picture: Picture,
+    picture: Picture,
     pub view: View,
+}
+
+impl Shown {
+    /// The numbers of a channel that are there, one at least.
+    pub fn numbers(&self, channel: &str) -> Result<Vec<f64>> {
+        let found = self.picture.channel(channel);
+        let missing = |what: &str| VerificationError::Missing(format!("{what} {channel}"));
+        let samples = &found.ok_or_else(|| missing("the channel"))?.samples;
+        let all = (0..samples.len()).map(|i| samples.get(i));
+        let numbers: Vec<f64> = all.filter(|number| number.is_finite()).collect();
+        if numbers.is_empty() {
+            return Err(missing("a number in"));
+        }
+        Ok(numbers)
+    }
+
+    /// The mean and the largest size of the numbers of a channel that are there.
+    pub fn statistics(&self, channel: &str) -> Result<[f64; 2]> {
+        let numbers = self.numbers(channel)?;
+        let largest = numbers.iter().copied().map(f64::abs).fold(0.0, f64::max);
+        Ok([numbers.iter().sum::<f64>() / numbers.len() as f64, largest])
+    }
 }
 
 impl Fixture<'_> {
     /// The paper's scene with a device (or none), through a polarizer.
-    fn scene(device: &str, polarizer: &str) -> Result<Scene, VerificationError> {
+    fn scene(device: &str, polarizer: &str) -> Result<Scene> {
         let text = format!(
             "[camera]\nresolution = [160, 120]\nsamples = 1\npolarizer = \"{polarizer}\"\n\
              [picture]\nchannels = [\"first_face_reflectance\", \"extraordinary_share\"]\n{device}"
         );
-        scene_file::parse(&text, "verification", Path::new(""), &[])
-            .map(|loaded| loaded.scene)
-            .map_err(|error| VerificationError::Scene(Box::new(error)))
+        let loaded = scene_file::parse(&text, "verification", Path::new(""), &[]);
+        Ok(loaded.map_err(Box::new)?.scene)
     }
 
     /// The picture of a device.
-    pub fn show(&self, device: &str, polarizer: &str) -> Result<Shown, VerificationError> {
+    pub fn show(&self, device: &str, polarizer: &str) -> Result<Shown> {
         let scene = Self::scene(device, polarizer)?;
         let prepared = PreparedScene::new(&scene)?;
         let supervision = Supervision { rows_done: &|_| {}, stop: self.stop };
@@ -64,61 +85,53 @@ impl Fixture<'_> {
         Ok(Shown { view: View::of(&picture)?, picture })
     }
 
-    /// Where the rays of a device's picture go, against those of another scene.
-    pub fn survey(
-        &self,
-        device: &str,
-        polarizer: &str,
-        ideal: &str,
-    ) -> Result<Survey, VerificationError> {
-        let [scene, ideal] = [device, ideal].map(|device| Self::scene(device, polarizer));
-        let (scene, ideal) = (scene?, ideal?);
-        let [prepared, ideal] = [&scene, &ideal].map(PreparedScene::new);
+    /// The mean and the largest share of the light that the first face of a device reflects.
+    pub fn reflection(&self, device: &str, polarizer: &str) -> Result<[f64; 2]> {
+        self.show(device, polarizer)?.statistics("first_face_reflectance")
+    }
+
+    /// Where the rays of a device's picture go, against those of the empty view.
+    fn survey(&self, device: &str, polarizer: &str) -> Result<Survey> {
+        let (scene, empty) = (Self::scene(device, polarizer)?, Self::scene("", polarizer)?);
+        let (prepared, ideal) = (PreparedScene::new(&scene)?, PreparedScene::new(&empty)?);
         let supervision = Supervision { rows_done: &|_| {}, stop: self.stop };
-        Ok(survey(&prepared?, &ideal?, &supervision)?)
+        Ok(survey(&prepared, &ideal, &supervision)?)
     }
 
     /// The silhouette of a device.
-    pub fn silhouette(&self, device: &str) -> Result<Region, VerificationError> {
-        let survey = self.survey(device, "horizontal", "")?;
-        Ok(Region::new(160, survey.silhouette)?)
+    pub fn silhouette(&self, device: &str) -> Result<Region> {
+        Ok(Region::new(160, self.survey(device, "horizontal")?.silhouette)?)
     }
 
     /// Root mean square displacement at the photograph, cm.
-    pub fn displacement(
-        &self,
-        device: &str,
-        polarizer: &str,
-        ideal: &str,
-    ) -> Result<f64, VerificationError> {
-        let survey = self.survey(device, polarizer, ideal)?;
-        survey.displacement_rms_cm.ok_or_else(|| missing("light from the photograph"))
+    pub fn displacement(&self, device: &str, polarizer: &str) -> Result<f64> {
+        let rms = self.survey(device, polarizer)?.displacement_rms_cm;
+        Ok(rms.ok_or("light from the photograph")?)
     }
 
     /// The devices of a scene.
-    pub fn assembly(&self, device: &str) -> Result<Assembly, VerificationError> {
+    pub fn assembly(&self, device: &str) -> Result<Assembly> {
         Ok(assembly(&Self::scene(device, "none")?)?)
     }
 }
 
-/// That something is not there.
-pub(super) fn missing(what: &str) -> VerificationError {
-    VerificationError::Missing(what.to_owned())
+impl From<&str> for VerificationError {
+    /// That something is not there.
+    fn from(what: &str) -> Self {
+        Self::Missing(what.to_owned())
+    }
 }
 
 /// The strongest leaf of a ray's horizontal (0) or vertical (1) light.
-pub(super) fn strongest(leaves: &[Leaf<2>], light: usize) -> Result<Leaf<2>, VerificationError> {
+pub(super) fn strongest(leaves: &[Leaf<2>], light: usize) -> Result<Leaf<2>> {
     let strongest = leaves.iter().max_by(|a, b| a.power[light].total_cmp(&b.power[light]));
-    strongest.copied().ok_or_else(|| missing("a leaf"))
+    Ok(strongest.copied().ok_or("a leaf")?)
 }
 
 /// The mean over red, green and blue of the correlation over a region.
-pub(super) fn likeness(a: &View, b: &View, region: &Region) -> Result<f64, VerificationError> {
-    let mut sum = 0.0;
-    for (a, b) in a.light.iter().zip(&b.light) {
-        sum += correlation(a, b, region).ok_or_else(|| missing("contrast"))?;
-    }
-    Ok(sum / 3.0)
+pub(super) fn likeness(a: &View, b: &View, region: &Region) -> Result<f64> {
+    let of_colors = a.light.iter().zip(&b.light).map(|(a, b)| correlation(a, b, region));
+    Ok(of_colors.sum::<Option<f64>>().ok_or("contrast")? / 3.0)
 }
 
 /// The largest difference of linear light between two views.
@@ -127,85 +140,42 @@ pub(super) fn largest_difference(a: &View, b: &View) -> f64 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// The numbers of a channel that are there, one at least.
-pub(super) fn numbers(picture: &Picture, channel: &str) -> Result<Vec<f64>, VerificationError> {
-    let found = picture.channel(channel);
-    let samples = &found.ok_or_else(|| missing(&format!("the channel {channel}")))?.samples;
-    let all = (0..samples.len()).map(|i| samples.get(i));
-    let numbers: Vec<f64> = all.filter(|number| number.is_finite()).collect();
-    if numbers.is_empty() {
-        return Err(missing(&format!("a number in {channel}")));
-    }
-    Ok(numbers)
-}
-
-/// The mean and the largest size of the numbers of a channel that are there.
-pub(super) fn statistics(picture: &Picture, channel: &str) -> Result<[f64; 2], VerificationError> {
-    let numbers = numbers(picture, channel)?;
-    let largest = numbers.iter().copied().map(f64::abs).fold(0.0, f64::max);
-    Ok([numbers.iter().sum::<f64>() / numbers.len() as f64, largest])
-}
-
-/// A fact of the device of a scene, by its name.
-fn fact_value(device: &str, name: &str) -> Result<FactValue, VerificationError> {
+/// The numbers of a fact of the device of a scene, by its name.
+pub(super) fn facts<const N: usize>(device: &str, name: &str) -> Result<[f64; N]> {
     let scene = Fixture::scene(device, "none")?;
-    let device = scene.devices.first();
-    let facts = device.map(|device| device.facts()).unwrap_or_default();
-    let found = facts.into_iter().find(|fact| fact.name == name);
-    found.map(|fact| fact.value).ok_or_else(|| missing(name))
+    let mut facts = scene.devices.iter().flat_map(|device| device.facts());
+    let numbers = facts.find(|fact| fact.name == name).map(|fact| match fact.value {
+        FactValue::Number(number) => vec![number],
+        FactValue::Numbers(numbers) => numbers,
+    });
+    Ok(numbers.and_then(|numbers| numbers.try_into().ok()).ok_or(name)?)
 }
 
-/// A fact that is a number.
-pub(super) fn fact(device: &str, name: &str) -> Result<f64, VerificationError> {
-    match fact_value(device, name)? {
-        FactValue::Number(number) => Ok(number),
-        _ => Err(missing(name)),
-    }
+/// A fact that is one number.
+pub(super) fn fact(device: &str, name: &str) -> Result<f64> {
+    facts(device, name).map(|[number]| number)
 }
 
-/// The principal values of a tensor among the facts of a device.
-pub(super) fn principal_values(device: &str, name: &str) -> Result<Vec<f64>, VerificationError> {
-    match fact_value(device, name)? {
-        FactValue::Numbers(numbers) => Ok(numbers),
-        _ => Err(missing(name)),
-    }
+/// Follows single rays through devices, down to a power.
+pub(super) fn tracer(assembly: &Assembly, min_power: f64) -> Tracer<'_, 2> {
+    Tracer::new(assembly, Limits { min_power, tolerance: 1e-8 })
 }
 
-/// Follows single rays through a device, horizontal and vertical at once, down to a power.
-pub(super) struct Rays<'b> {
-    tracer: Tracer<'b, 2>,
-}
-
-impl<'b> Rays<'b> {
-    pub fn new(assembly: &'b Assembly, min_power: f64) -> Self {
-        Self { tracer: Tracer::new(assembly, Limits { min_power, tolerance: 1e-8 }) }
-    }
-
-    pub fn trace(&mut self, origin: DVec3, direction: DVec3) -> (&[Leaf<2>], &Outcome<2>) {
-        self.tracer.trace(&launch(origin, direction))
-    }
-
-    /// The shares of horizontal and vertical light that go on along the ray's own line, as if nothing were there,
-    /// within an angle (degrees) and a distance (cm).
-    pub fn undisturbed(
-        &mut self,
-        origin: DVec3,
-        direction: DVec3,
-        [angle, distance]: [f64; 2],
-    ) -> [f64; 2] {
-        let direction = direction.normalize();
-        let (leaves, _) = self.trace(origin, direction);
-        let on = leaves.iter().filter(|leaf| {
-            let offset = leaf.position - origin;
-            let beside = (offset - direction * offset.dot(direction)).length();
-            leaf.direction.distance(direction) <= angle.to_radians() && beside <= distance
-        });
-        on.fold([0.0; 2], |sum, leaf| [sum[0] + leaf.power[0], sum[1] + leaf.power[1]])
-    }
+/// The shares of horizontal and vertical light that go on along the ray's own line, as if nothing were there, within
+/// 1e-6 degrees and 1e-6 cm.
+pub(super) fn undisturbed(tracer: &mut Tracer<'_, 2>, origin: DVec3, direction: DVec3) -> [f64; 2] {
+    let direction = direction.normalize();
+    let (leaves, _) = tracer.trace(&launch(origin, direction));
+    let on = leaves.iter().filter(|leaf| {
+        let offset = leaf.position - origin;
+        let beside = (offset - direction * offset.dot(direction)).length();
+        leaf.direction.distance(direction) <= 1e-6_f64.to_radians() && beside <= 1e-6
+    });
+    on.fold([0.0; 2], |sum, leaf| [sum[0] + leaf.power[0], sum[1] + leaf.power[1]])
 }
 
 /// A ray, horizontal and vertical at once.
-fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
+pub(super) fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
     let direction = direction.normalize();
     let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
     Launch { origin, direction, electric: [h.into(), v.into()] }
@@ -213,14 +183,9 @@ fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
 
 /// The strongest leaf of a ray's vertical light, and how often its way is reflected within a segment: where two legs on
 /// end lie in one. The device must stand in the frame of the scene.
-pub(super) fn reflected_inside(
-    assembly: &Assembly,
-    origin: DVec3,
-    direction: DVec3,
-) -> Result<(Leaf<2>, usize), VerificationError> {
-    let limits = Limits { min_power: 1e-6, tolerance: 1e-8 };
-    let mut tracer = Tracer::new(assembly, limits).watched(Vec::new());
-    let (leaves, _) = tracer.trace(&launch(origin, direction));
+pub(super) fn reflected_inside(assembly: &Assembly, ray: &Launch<2>) -> Result<(Leaf<2>, usize)> {
+    let mut tracer = tracer(assembly, 1e-6).watched(Vec::new());
+    let (leaves, _) = tracer.trace(ray);
     let main = strongest(leaves, 1)?;
     let legs: &Vec<PathSegment<2>> = tracer.recorder();
     let (mut at, mut path) = (main.position, main.optical_path);

@@ -1,19 +1,19 @@
 //! Section 1 and 2: the trivial cloak, the setting and the materials.
 
-use super::Checked;
 use super::finding::{DOUBLE, Page, Verdict, below, percent};
-use super::fixture::{DESIGNS, Fixture, GAUSSIAN, Rays, fact, missing, principal_values, square};
+use super::fixture::{DESIGNS, Fixture, GAUSSIAN, fact, facts, launch, square, tracer};
+use super::{Result, VerificationError};
 use glam::DVec3;
 use optics::interface::{IncidentWave, Side, split};
 use optics::medium::Medium;
 use optics::wave::SPEED_OF_LIGHT;
 
-pub(super) fn introduction(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn introduction(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let assembly = fixture.assembly("[[device]]\nkind = \"mirror-detour\"\n")?;
-    let mut rays = Rays::new(&assembly, 1e-9);
+    let mut rays = tracer(&assembly, 1e-9);
     let origin = DVec3::new(-60.0, 3.0, 0.0);
-    let (leaves, _) = rays.trace(origin, DVec3::X);
-    let leaf = leaves.first().ok_or_else(|| missing("a ray through the mirrors"))?;
+    let (leaves, _) = rays.trace(&launch(origin, DVec3::X));
+    let leaf = leaves.first().ok_or("a ray through the mirrors")?;
     let straight = leaf.position.x - origin.x;
     let delay = (leaf.optical_path - straight) / SPEED_OF_LIGHT;
     let turned = leaf.direction.distance(DVec3::X);
@@ -34,7 +34,7 @@ pub(super) fn introduction(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn setting(_: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn setting(_: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let cloak = square(DESIGNS[2]);
     let of = |name| fact(&cloak, name);
     page.says("Fig. 1", "A square of side 14.1 cm holds a rhombus of side 11.51 cm")
@@ -51,11 +51,11 @@ pub(super) fn setting(_: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn materials(_: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn materials(_: &Fixture<'_>, page: &mut Page) -> Result<()> {
     // Normal incidence, the axis along the surface: the normal parts of p are the indices.
     let (permittivity, ordinary, extraordinary) = (2.366, 0.31, 3.27);
     let medium = Medium::uniaxial_magnetic(permittivity, ordinary, extraordinary, DVec3::Y)
-        .map_err(|error| missing(&error.to_string()))?;
+        .map_err(|error| VerificationError::Missing(error.to_string()))?;
     let wave = IncidentWave {
         wave_vector: DVec3::X,
         attenuation: DVec3::ZERO,
@@ -82,8 +82,7 @@ pub(super) fn materials(_: &Fixture<'_>, page: &mut Page) -> Checked {
         ("(i) is positive uniaxial: µ_o = 0.31, µ_e = 3.27", DESIGNS[0], [0.31, 3.27]),
         ("(ii) is negative uniaxial: µ_o = 3.27, µ_e = 0.31", DESIGNS[1], [3.27, 0.31]),
     ] {
-        let values = principal_values(&square(material), "permeability_principal_values")?;
-        let [u, v, z] = values[..] else { return Err(missing("three principal values")) };
+        let [u, v, z] = facts(&square(material), "permeability_principal_values")?;
         let (ordinary, extraordinary) = if material == DESIGNS[0] { (v, u) } else { (u, v) };
         let agree = [(ordinary, printed_o), (z, printed_o), (extraordinary, printed_e)]
             .into_iter()

@@ -2,10 +2,10 @@
 
 use super::finding::{Page, Verdict, above, list, percent};
 use super::fixture::{
-    CAMERA, DESIGNS, Fixture, GAUSSIAN, Rays, camera_direction, fact, largest_difference, likeness,
-    missing, square, statistics, strongest,
+    CAMERA, DESIGNS, Fixture, GAUSSIAN, camera_direction, fact, largest_difference, launch,
+    likeness, square, strongest, tracer,
 };
-use super::{Checked, VerificationError};
+use super::{Result, VerificationError};
 use cloakroom::measure::Region;
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
@@ -13,7 +13,7 @@ use optics::wave::SPEED_OF_LIGHT;
 /// The size of the cloak along x, cm.
 const DEPTH: f64 = 50.0;
 
-pub(super) fn index(_: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn index(_: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let exact = format!("{GAUSSIAN}w = 10.0158\nh = 4.2532\n");
     let referenced = format!("{GAUSSIAN}referenced = true\n");
     let (from, to) = (fact(&referenced, "index_min")?, fact(&referenced, "index_max")?);
@@ -38,14 +38,13 @@ pub(super) fn index(_: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn polarization(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn polarization(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let h = fixture.show(GAUSSIAN, "horizontal")?.view;
     let v = fixture.show(GAUSSIAN, "vertical")?.view;
     let difference = largest_difference(&h, &v);
     let pairs = || h.light.iter().zip(&v.light).flat_map(|(h, v)| h.iter().zip(v));
     let rms = (pairs().map(|(h, v)| (h - v).powi(2)).sum::<f64>() / pairs().count() as f64).sqrt();
-    let unpolarized = fixture.show(GAUSSIAN, "none")?;
-    let [delivered, _] = statistics(&unpolarized.picture, "delivered")?;
+    let [delivered, _] = fixture.show(GAUSSIAN, "none")?.statistics("delivered")?;
     page.says("4", "(iv) is polarization insensitive")
         .computed(format!(
             "difference of linear light between H and V: RMS {rms:.4}, at most \
@@ -61,7 +60,7 @@ pub(super) fn polarization(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn views(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn views(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let metal = format!("{GAUSSIAN}show = \"bare\"\n");
     let empty = fixture.show("", "none")?.view;
     let cloaked = fixture.show(GAUSSIAN, "none")?.view;
@@ -71,14 +70,14 @@ pub(super) fn views(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     let like = |view, region| likeness(&empty, view, region);
     let [with, without] = [like(&cloaked, &silhouette)?, like(&bare, &silhouette)?];
     let [all_with, all_without] = [like(&cloaked, &whole)?, like(&bare, &whole)?];
-    let off = fixture.displacement(GAUSSIAN, "none", "")?;
+    let off = fixture.displacement(GAUSSIAN, "none")?;
     // How much higher than without the cloak light comes from that is seen at an angle upwards, cm.
     let assembly = fixture.assembly(GAUSSIAN)?;
-    let mut rays = Rays::new(&assembly, 1e-3);
+    let mut rays = tracer(&assembly, 1e-3);
     let mut raised = |right: f64, up: f64| {
         let direction = camera_direction(right, up);
         let height = |origin: DVec3, d: DVec3| origin.y + d.y * (50.0 - origin.x) / d.x;
-        let (leaves, _) = rays.trace(CAMERA, direction);
+        let (leaves, _) = rays.trace(&launch(CAMERA, direction));
         let leaf = strongest(leaves, 0)?;
         Ok::<_, VerificationError>(
             height(leaf.position, leaf.direction) - height(CAMERA, direction),
@@ -120,12 +119,12 @@ pub(super) fn views(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn times(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn times(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let shown = fixture.show(GAUSSIAN, "none")?;
     let (Some(differences), Some(flights)) =
         (&shown.view.time_of_flight_difference, &shown.view.time_of_flight)
     else {
-        return Err(missing("times of flight"));
+        return Err("times of flight".into());
     };
     let pairs = || differences.iter().zip(flights).filter(|(d, _)| d.is_finite());
     let largest = pairs().map(|(d, _)| d.abs()).fold(0.0, f64::max);
@@ -150,10 +149,9 @@ pub(super) fn times(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn reflections(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn reflections(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let reflection = |rotation: i32, polarizer: &str| {
-        let shown = fixture.show(&format!("{GAUSSIAN}rotation = {rotation}\n"), polarizer)?;
-        statistics(&shown.picture, "first_face_reflectance")
+        fixture.reflection(&format!("{GAUSSIAN}rotation = {rotation}\n"), polarizer)
     };
     let [still_mean, still_most] = reflection(0, "none")?;
     let mut most: f64 = 0.0;
@@ -167,8 +165,7 @@ pub(super) fn reflections(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     }
     let mut others = [0.0; 2];
     for (material, other) in DESIGNS.iter().zip(&mut others) {
-        let shown = fixture.show(&square(material), "none")?;
-        *other = statistics(&shown.picture, "first_face_reflectance")?[0];
+        *other = fixture.reflection(&square(material), "none")?[0];
     }
     let [average, largest] = [still_mean, still_most].map(|share| percent(share, 3));
     let [one, two] = others.map(|share| percent(share, 1));
@@ -193,18 +190,16 @@ pub(super) fn reflections(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
     Ok(())
 }
 
-pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
-    let mut likenesses = [[0.0; 3]; 2];
+pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
+    let (mut cloak, mut bare) = ([0.0; 3], [0.0; 3]);
     for (i, rotation) in [5, 10, 20].into_iter().enumerate() {
         let device = format!("{GAUSSIAN}rotation = {rotation}\n");
         let silhouette = fixture.silhouette(&format!("{device}show = \"bare\"\n"))?;
         let show = |what| fixture.show(&format!("{device}show = \"{what}\"\n"), "none");
         let mirror = show("mirror")?.view;
-        for (likenesses, what) in likenesses.iter_mut().zip(["cloak", "bare"]) {
-            likenesses[i] = likeness(&mirror, &show(what)?.view, &silhouette)?;
-        }
+        let like = |what| likeness(&mirror, &show(what)?.view, &silhouette);
+        (cloak[i], bare[i]) = (like("cloak")?, like("bare")?);
     }
-    let [cloak, bare] = likenesses;
     page.says(
         "4, Fig. 9",
         "Turned by 5, 10, 20 degrees, (iv) behaves as a Gaussian carpet cloak does: as a \

@@ -1,29 +1,29 @@
 //! Section 3, design (iii).
 
-use super::Checked;
+use super::Result;
 use super::finding::{DOUBLE, Page, SINGLE, below};
 use super::fixture::{
-    CAMERA, DESIGNS, Fixture, Rays, camera_direction, largest_difference, square, statistics,
+    CAMERA, DESIGNS, Fixture, camera_direction, largest_difference, square, tracer, undisturbed,
 };
 
 /// Yoctoseconds in a nanosecond.
 const YOCTOSECONDS: f64 = 1e15;
 
-pub(super) fn along_the_axis(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn along_the_axis(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let device = square(DESIGNS[2]);
     let empty = fixture.show("", "none")?.view;
     let shown = fixture.show(&device, "none")?;
     let bare = fixture.show(&format!("{device}show = \"bare\"\n"), "none")?.view;
     let difference = largest_difference(&empty, &shown.view);
     let bare = largest_difference(&empty, &bare);
-    let [_, late] = statistics(&shown.picture, "time_of_flight_difference")?;
+    let [_, late] = shown.statistics("time_of_flight_difference")?;
     let assembly = fixture.assembly(&device)?;
-    let mut rays = Rays::new(&assembly, 1e-12);
+    let mut rays = tracer(&assembly, 1e-12);
     let mut lost: f64 = 0.0;
     for right in [0.0, 7.0, 14.0, 20.0] {
         for step in -12..=12 {
             let up = 0.43 * f64::from(step) + 0.1;
-            let [h, v] = rays.undisturbed(CAMERA, camera_direction(right, up), [1e-6, 1e-6]);
+            let [h, v] = undisturbed(&mut rays, CAMERA, camera_direction(right, up));
             lost = lost.max(1.0 - h).max(1.0 - v);
         }
     }
@@ -46,7 +46,7 @@ pub(super) fn along_the_axis(fixture: &Fixture<'_>, page: &mut Page) -> Checked 
     Ok(())
 }
 
-pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
+pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let mut largest: f64 = 0.0;
     for rotation in [5, 10, 20] {
         let device = format!("{}rotation = {rotation}\n", square(DESIGNS[2]));

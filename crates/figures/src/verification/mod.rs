@@ -32,7 +32,7 @@ pub enum VerificationError {
     Measure(#[from] MeasureError),
     /// A scene could not be read.
     #[error("{0}")]
-    Scene(Box<SceneFileError>),
+    Scene(#[from] Box<SceneFileError>),
     /// A scene could not be built.
     #[error("{0}")]
     PreparedScene(#[from] PreparedSceneError),
@@ -42,8 +42,8 @@ pub enum VerificationError {
 }
 
 /// A check adds what it finds to the page.
-type Check = fn(&Fixture<'_>, &mut Page) -> Checked;
-type Checked = Result<(), VerificationError>;
+type Check = fn(&Fixture<'_>, &mut Page) -> Result<()>;
+type Result<T, E = VerificationError> = std::result::Result<T, E>;
 
 /// All checks, in the order of the paper.
 const CHECKS: &[Check] = &[
@@ -77,7 +77,7 @@ pub fn steps() -> u64 {
 /// # Errors
 ///
 /// If the work was stopped, or a picture could not be made.
-pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Result<Vec<Finding>, VerificationError> {
+pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Result<Vec<Finding>> {
     let fixture = Fixture { stop };
     let mut page = Page::default();
     for check in CHECKS {

@@ -1,8 +1,8 @@
 //! Section 2: the equation of motion of rays.
 
-use super::Checked;
 use super::finding::{Page, SINGLE, below};
-use super::fixture::{CAMERA, Fixture, GAUSSIAN, Rays, camera_direction, missing, strongest};
+use super::fixture::{CAMERA, Fixture, GAUSSIAN, camera_direction, launch, strongest, tracer};
+use super::{Result, VerificationError};
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::propagation::reference::{ReferenceRay, SquaredIndex, follow};
@@ -12,19 +12,19 @@ use optics::transformation::{ConformalMap, GaussianMap};
 const CUT: [f64; 2] = [25.0, 28.57];
 
 /// Rays of design (iv) by the program, and by plain steps along the equation of motion in physical space.
-pub(super) fn equation(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
-    let gaussian = GaussianMap::new(10.02, 4.25).map_err(|error| missing(&error.to_string()))?;
+pub(super) fn equation(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
+    let gaussian =
+        GaussianMap::new(10.02, 4.25).map_err(|e| VerificationError::Missing(e.to_string()))?;
     let map = ConformalMap::Gaussian(gaussian);
     let assembly = fixture.assembly(GAUSSIAN)?;
-    let mut rays = Rays::new(&assembly, 1e-3);
+    let mut rays = tracer(&assembly, 1e-3);
     let mut off: f64 = 0.0;
     let directions =
         [2.0, 5.0, 9.0].into_iter().flat_map(|up| [0.0, 10.0, 20.0].map(|right| (right, up)));
     for (right, up) in directions {
         let d = camera_direction(right, up);
         let entry = CAMERA + d * ((-CUT[0] - CAMERA.x) / d.x);
-        let p =
-            refracted(d, DVec3::X, medium(&map, entry).value).ok_or_else(|| missing("a ray"))?;
+        let p = refracted(d, DVec3::X, medium(&map, entry).value).ok_or("a ray")?;
         let start = ReferenceRay {
             position: entry,
             wave_vector: p,
@@ -34,10 +34,9 @@ pub(super) fn equation(fixture: &Fixture<'_>, page: &mut Page) -> Checked {
         let inside = |r: DVec3| (CUT[0] - r.x).min(CUT[1] - r.y);
         let end = follow(start, 0.05, 10_000, |r| medium(&map, r), inside)
             .filter(|end| end.position.y < CUT[1] - 1e-3)
-            .ok_or_else(|| missing("the end of a ray"))?;
-        let direction =
-            refracted(end.wave_vector, DVec3::X, 1.0).ok_or_else(|| missing("the end of a ray"))?;
-        let (leaves, _) = rays.trace(CAMERA, d);
+            .ok_or("the end of a ray")?;
+        let direction = refracted(end.wave_vector, DVec3::X, 1.0).ok_or("the end of a ray")?;
+        let (leaves, _) = rays.trace(&launch(CAMERA, d));
         let leaf = strongest(leaves, 0)?;
         let path = entry.distance(CAMERA) + end.optical_path;
         off = off
