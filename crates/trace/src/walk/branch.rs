@@ -1,6 +1,6 @@
 //! A branch of a ray tree on its way.
 
-use super::event::fingerprint;
+use super::event::{NO_EVENTS, fingerprint};
 use super::{Launch, Leaf, LeafEnd};
 use crate::assembly::DepartedSurface;
 use crate::device::InnerRay;
@@ -66,7 +66,7 @@ impl<const N: usize> Branch<N> {
             departed: None,
             standstills: 0,
             met_device: false,
-            path: 0,
+            path: NO_EVENTS,
             mode: ModeKind::Shared,
             virtual_point: None,
         }
@@ -203,9 +203,9 @@ impl<const N: usize> Branch<N> {
             *survives &= power >= least_power;
         }
     }
+}
 
-    /// The power of its strongest polarization.
-    pub fn largest_power(&self) -> f64 {
-        self.power.iter().copied().fold(0.0, f64::max)
-    }
+/// The power of the strongest polarization; of none that is not a number.
+pub(super) fn largest<const N: usize>(power: &[f64; N]) -> f64 {
+    power.iter().fold(0.0, |largest, &power| if power > largest { power } else { largest })
 }

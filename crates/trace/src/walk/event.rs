@@ -4,7 +4,7 @@ use crate::split_mix::STEP as ODD;
 use std::hash::{Hash, Hasher};
 
 /// Where a branch comes to a border.
-#[derive(Clone, Copy, Debug, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Event {
     /// To a surface of a device, from outside.
     Surface { device: u16, surface: u16 },
@@ -26,6 +26,9 @@ impl Event {
     }
 }
 
+/// The fingerprint of a path on which nothing has happened. (Numbers that are 0 would leave 0 as it is.)
+pub(super) const NO_EVENTS: u64 = ODD;
+
 /// Adds what happens to a branch to the fingerprint of its path.
 #[inline]
 pub(super) fn fingerprint(path: u64, event: impl Hash) -> u64 {
@@ -34,7 +37,7 @@ pub(super) fn fingerprint(path: u64, event: impl Hash) -> u64 {
     state.finish()
 }
 
-/// A polynomial in an odd number: few instructions, and every way gets a number of its own.
+/// Turns, adds and multiplies by an odd number: few instructions, and no two ways in practice have one number.
 struct Fingerprint(u64);
 
 impl Hasher for Fingerprint {
@@ -56,5 +59,46 @@ impl Hasher for Fingerprint {
     #[inline]
     fn write_isize(&mut self, number: isize) {
         self.write_u16(number as u16);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use optics::interface::Side;
+    use optics::medium::ModeKind;
+    use std::collections::HashSet;
+
+    /// Ways of up to two events of any kind, with small numbers as scenes have them.
+    #[test]
+    fn ways_that_differ_have_fingerprints_that_differ() {
+        let mut events = HashSet::new();
+        for (device, region, face) in (0..27).map(|i| (i / 9, i / 3 % 3, i % 3)) {
+            for event in
+                [Event::Surface { device, surface: face }, Event::Face { device, region, face }]
+            {
+                events.extend([event, event.shared()]);
+            }
+        }
+        let waves: Vec<(Side, ModeKind)> = [Side::Reflected, Side::Transmitted]
+            .into_iter()
+            .flat_map(|side| {
+                [ModeKind::Shared, ModeKind::S, ModeKind::Ordinary].map(|mode| (side, mode))
+            })
+            .collect();
+        let after = |way: u64| {
+            let alone = events.iter().map(move |event| fingerprint(way, event));
+            let split =
+                events.iter().flat_map(|event| waves.iter().map(move |wave| (event, *wave)));
+            alone.chain(
+                split.map(move |(event, (side, mode))| fingerprint(way, (event, side, mode))),
+            )
+        };
+        let once: Vec<u64> = after(NO_EVENTS).collect();
+        let twice = once.iter().flat_map(|way| after(*way));
+        let ways: Vec<u64> =
+            [NO_EVENTS].into_iter().chain(once.iter().copied()).chain(twice).collect();
+        assert_eq!(ways.len(), 1 + once.len() + once.len().pow(2));
+        assert_eq!(ways.iter().collect::<HashSet<_>>().len(), ways.len());
     }
 }

@@ -1,6 +1,6 @@
 //! The walk along the ray tree.
 
-use super::branch::{Branch, Place};
+use super::branch::{Branch, Place, largest};
 use super::{Leaf, Outcome, PathRecorder};
 use crate::assembly::{Assembly, Screen};
 use crate::device::{InnerRay, Passage};
@@ -169,7 +169,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
 
     fn walk(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
         loop {
-            let goes_on = if branch.largest_power() < self.threshold {
+            let goes_on = if largest(&branch.power) < self.threshold {
                 self.outcome.stats.endless += 1;
                 self.prune(branch.power);
                 false
@@ -251,8 +251,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
 
     /// Whether a branch of that power is followed; else it is pruned, and need not be made.
     pub(super) fn follows(&mut self, power: [f64; N]) -> bool {
-        let largest = power.iter().copied().fold(0.0, f64::max);
-        let follows = largest >= self.limits.min_power;
+        let follows = largest(&power) >= self.limits.min_power;
         if !follows {
             self.prune(power);
         }
