@@ -117,18 +117,18 @@ fn trace(assembly: &Assembly, limits: Limits, launches: &[Launch<2>]) {
 }
 
 /// Scenes that rays of `trace_json` are sent through: one of each kind of passage.
-static BENCHES: LazyLock<Vec<Assembly>> = LazyLock::new(|| {
-    let benches = EXHIBITS.iter().filter_map(|exhibit| {
+static ASSEMBLIES: LazyLock<Vec<Assembly>> = LazyLock::new(|| {
+    let assemblies = EXHIBITS.iter().filter_map(|exhibit| {
         let loaded = scene_file::parse(exhibit.scene, exhibit.name, nowhere(), &[]).ok()?;
         render::assembly(&loaded.scene).ok()
     });
-    benches.collect()
+    assemblies.collect()
 });
 
 /// The rays of `cloakroom trace`, through one of the scenes of the gallery: the first byte says which.
 fn trace_json(bytes: &[u8]) {
     let Some((first, text)) = bytes.split_first() else { return };
-    let assembly = &BENCHES[usize::from(*first) % BENCHES.len()];
+    let assembly = &ASSEMBLIES[usize::from(*first) % ASSEMBLIES.len()];
     let Ok(mut requests) = serde_json::from_slice::<Vec<RayRequest>>(text) else { return };
     requests.truncate(MOST_RAYS);
     let limits = Limits { min_power: 1e-4, tolerance: 1e-6 };
@@ -278,7 +278,7 @@ fn ray_texts() -> Vec<Vec<u8>> {
         { "origin": [0, 60, 0], "direction": [0, -1, 0],
           "polarization": { "electric_field": [[0, 1], [0, 0], [1, 0]] } },
     ]);
-    (0..BENCHES.len()).map(|i| [&[i as u8], rays.to_string().as_bytes()].concat()).collect()
+    (0..ASSEMBLIES.len()).map(|i| [&[i as u8], rays.to_string().as_bytes()].concat()).collect()
 }
 
 fn interface_texts() -> Vec<Vec<u8>> {
@@ -348,27 +348,4 @@ fn picture_bytes() -> Vec<Vec<u8>> {
         std::fs::read(path).expect("read")
     };
     vec![file("a.npz"), file("a.png")]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use cloakroom::photograph::load;
-
-    #[test]
-    fn seeds_are_understood() {
-        for trial in TRIALS {
-            assert!(!(trial.seeds)().is_empty(), "{}", trial.name);
-        }
-        assert!(BENCHES.len() == EXHIBITS.len());
-        let readable = image_files();
-        let source = ImageSource::File(PathBuf::from("a"));
-        assert!(readable.iter().all(|bytes| load_bytes(&source, bytes, MOST_PIXELS).is_ok()));
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        for bytes in readable {
-            let path = folder.path().join("a");
-            std::fs::write(&path, bytes).expect("written");
-            load(&ImageSource::File(path)).expect("an image");
-        }
-    }
 }

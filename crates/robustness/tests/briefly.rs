@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "a test may")]
 
 use crate::long;
+use cloakroom::photograph::{ImageSource, load_bytes};
+use cloakroom_figures::gallery::EXHIBITS;
 use robustness::{Draws, TRIALS, Trial};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,6 +20,20 @@ fn count(trial: &Trial) -> u64 {
 
 fn trial(name: &str) -> &'static Trial {
     TRIALS.iter().find(|trial| trial.name == name).unwrap()
+}
+
+/// Trials that refused all that they begin with would try nothing.
+#[test]
+fn seeds_are_understood() {
+    for trial in TRIALS {
+        assert!(!(trial.seeds)().is_empty(), "{}", trial.name);
+    }
+    // Each scene of the gallery can be traced.
+    assert_eq!((trial("trace_json").seeds)().len(), EXHIBITS.len());
+    let source = ImageSource::File(PathBuf::from("a"));
+    for bytes in (trial("images").seeds)() {
+        load_bytes(&source, &bytes, 1 << 20).unwrap();
+    }
 }
 
 /// An input changed in a few places, as a fuzzer would: bytes, numbers, pieces of another input.
