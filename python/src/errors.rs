@@ -1,14 +1,12 @@
 //! Errors of the library as Python exceptions, with the same messages.
 
-use cloakroom::flux::FluxError;
 use cloakroom::material::MaterialError;
-use cloakroom::measure::QualityError;
 use cloakroom::output::OutputError;
 use cloakroom::ray_json::RayError;
 use cloakroom::render::RenderError;
 use cloakroom::scene_file::SceneFileError;
+use cloakroom::trace::Stopped;
 use cloakroom_figures::IllustrationError;
-use cloakroom_figures::verification::VerificationError;
 use pyo3::PyErr;
 use pyo3::exceptions::{
     PyFileNotFoundError, PyKeyboardInterrupt, PyMemoryError, PyOSError, PyValueError,
@@ -35,15 +33,6 @@ impl<E: Error + 'static> From<E> for Failure {
             Ok(raised) => return Self(*raised),
             Err(error) => error,
         };
-        let stopped = matches!(error.downcast_ref(), Some(RenderError::Stopped))
-            || matches!(error.downcast_ref(), Some(QualityError::Render(RenderError::Stopped)))
-            || matches!(error.downcast_ref(), Some(MaterialError::Stopped))
-            || matches!(error.downcast_ref(), Some(FluxError::Stopped))
-            || matches!(error.downcast_ref(), Some(RayError::Stopped(_)))
-            || matches!(
-                error.downcast_ref(),
-                Some(VerificationError::Render(RenderError::Stopped))
-            );
         let too_large = matches!(error.downcast_ref(), Some(RenderError::TooLarge { .. }))
             || matches!(error.downcast_ref(), Some(MaterialError::TooLarge { .. }))
             || matches!(error.downcast_ref(), Some(RayError::TooMany { .. }));
@@ -52,7 +41,7 @@ impl<E: Error + 'static> From<E> for Failure {
             _ => error.downcast_ref(),
         };
         let message = error.to_string();
-        Self(if stopped {
+        Self(if Stopped::is_in(error.as_ref()) {
             PyKeyboardInterrupt::new_err(())
         } else if too_large {
             PyMemoryError::new_err(message)

@@ -3,10 +3,10 @@
 use crate::errors::{Failure, unreadable, value_error};
 use crate::scenes::Scene;
 use crate::supervision::supervised;
-use cloakroom::output::{self, Channel, Picture, RgbImage, Samples};
+use cloakroom::output::{self, Channel, Picture, Samples};
 use cloakroom::render as rendering;
 use cloakroom::render::{ChannelSet, Tile};
-use cloakroom_figures::{PictureFormat, ScalarMap, write_picture};
+use cloakroom_figures::{PictureFormat, shown, write_picture};
 use ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
@@ -117,7 +117,8 @@ pub fn srgb<'py>(
     map: (Option<String>, bool),
 ) -> Result<Bound<'py, PyArray3<u8>>, Failure> {
     let picture = picture_of(channels, Vec::new())?;
-    let image = supervised(py, None, |_, _| shown(&picture, &map))?;
+    let map = (map.0.as_deref(), map.1);
+    let image = supervised(py, None, |_, _| Ok(shown(&picture, map, None)?))?;
     let (width, height) = image.dimensions();
     let shape = (height as usize, width as usize, 3);
     Ok(Array3::from_shape_vec(shape, image.into_raw())?.into_pyarray(py))
@@ -134,20 +135,14 @@ pub fn png_bytes<'py>(
     let picture = picture_of(channels, metadata)?;
     let bytes = supervised(py, None, |_, _| {
         let mut out = Cursor::new(Vec::new());
-        output::encode_png(&shown(&picture, &map)?, &picture.metadata, &mut out)?;
+        output::encode_png(
+            &shown(&picture, (map.0.as_deref(), map.1), None)?,
+            &picture.metadata,
+            &mut out,
+        )?;
         Ok(out.into_inner())
     })?;
     Ok(PyBytes::new(py, &bytes))
-}
-
-fn shown(
-    picture: &Picture,
-    (map, color_bar): &(Option<String>, bool),
-) -> Result<RgbImage, Failure> {
-    Ok(match map {
-        None => output::to_srgb(picture)?,
-        Some(channel) => ScalarMap::new(picture, channel, None)?.into_image(*color_bar)?,
-    })
 }
 
 /// The picture that channels are.

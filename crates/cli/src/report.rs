@@ -1,8 +1,6 @@
 //! Words for people: messages on standard error, results on standard output.
 
-use cloakroom::flux::FluxError;
-use cloakroom::material::MaterialError;
-use cloakroom::render::RenderError;
+use cloakroom::trace::Stopped;
 use std::error::Error;
 use std::io::Write;
 use std::path::Path;
@@ -38,12 +36,7 @@ impl Failure {
 impl<E: Error + 'static> From<E> for Failure {
     /// What work ends with that Ctrl-C has stopped, else a failure with the message of the error.
     fn from(error: E) -> Self {
-        let of: &(dyn Error + 'static) = &error;
-        let stopped = std::iter::successors(Some(of), |error| (**error).source())
-            .any(|error| matches!(error.downcast_ref(), Some(RenderError::Stopped)))
-            || matches!(of.downcast_ref(), Some(MaterialError::Stopped))
-            || matches!(of.downcast_ref(), Some(FluxError::Stopped));
-        if stopped { Self::Interrupted } else { Self::Failed(error.to_string()) }
+        if Stopped::is_in(&error) { Self::Interrupted } else { Self::Failed(error.to_string()) }
     }
 }
 

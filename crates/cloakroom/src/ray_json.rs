@@ -83,7 +83,7 @@ pub enum RayError {
         shortage: Shortage,
     },
     /// The work was stopped from outside.
-    #[error(transparent)]
+    #[error("stopped")]
     Stopped(#[from] Stopped),
 }
 

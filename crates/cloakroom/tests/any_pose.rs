@@ -7,6 +7,7 @@ use cloakroom::output::Samples;
 use cloakroom::trace::{Limits, Tracer};
 use glam::{DMat3, DVec3};
 use optics::geometry::Pose;
+use std::f64::consts::TAU;
 
 const LIMITS: Limits = Limits { min_power: 1e-6, tolerance: 1e-9 };
 
@@ -50,7 +51,7 @@ fn a_scene_that_is_turned_as_a_whole_looks_the_same() {
     ];
     let mut numbers = Numbers(11);
     for (number, devices) in cases.iter().enumerate() {
-        let turn = Pose::with_axis(DVec3::ZERO, 360.0 * numbers.next(), numbers.direction());
+        let turn = Pose::with_axis(DVec3::ZERO, TAU * numbers.next(), numbers.direction());
         let upright = picture(&scene(devices, &DMat3::IDENTITY, ""));
         let turned = picture(&scene(devices, &turn.rotation(), ""));
         let pixels = upright.width * upright.height;
@@ -119,7 +120,7 @@ fn a_standing_cylinder_cloak_is_not_seen_from_the_side() {
     let mut met = 0;
     for _ in 0..400 {
         // Level enough to come and to go through the side.
-        let angle = std::f64::consts::TAU * numbers.next();
+        let angle = TAU * numbers.next();
         let direction =
             DVec3::new(angle.cos(), 0.3 * (numbers.next() - 0.5), angle.sin()).normalize();
         let across = direction.cross(DVec3::Y).normalize();
@@ -139,7 +140,7 @@ fn a_standing_cylinder_cloak_is_not_seen_from_the_side() {
 fn light_leaves_a_tilted_box_parallel_to_itself_and_beside_itself() {
     const HALF: f64 = 9.0;
     let glass = assembly(include_str!("../../../scenes/gallery/tilted-box.toml"));
-    let pose = Pose::with_axis(DVec3::ZERO, 20.0, DVec3::new(1.0, 2.0, 2.0));
+    let pose = Pose::with_axis(DVec3::ZERO, 20f64.to_radians(), DVec3::new(1.0, 2.0, 2.0));
     let mut tracer = Tracer::new(&glass, LIMITS);
     let mut numbers = Numbers(14);
     let mut through = 0;

@@ -134,7 +134,7 @@ fn what_cannot_be_is_told_before_the_work() {
     let plan = plan(scene, &["device.0.rotation=0"]).unwrap();
     let supervision = Supervision { rows_done: &|_| {}, stop: &AtomicBool::new(true) };
     let stopped = quality(&plan, &supervision);
-    assert!(matches!(stopped, Err(QualityError::Render(RenderError::Stopped))));
+    assert!(matches!(stopped, Err(QualityError::Render(RenderError::Stopped(_)))));
 }
 
 /// Design (iii) with errors, before a small photograph and seen by a small camera.

@@ -63,7 +63,7 @@ fn light_never_goes_through_metal_that_touches_glass() {
         } else {
             (numbers.between(-180.0, 180.0), numbers.direction())
         };
-        let pose = Pose::with_axis(DVec3::ZERO, rotation, tilt);
+        let pose = Pose::with_axis(DVec3::ZERO, f64::to_radians(rotation), tilt);
         let place = |x: f64| {
             let [u, v, w] = pose.to_world(DVec3::X * x).to_array();
             let [i, j, k] = tilt.to_array();
@@ -93,7 +93,7 @@ fn blocks_of_one_glass_that_touch_are_one_block() {
     for _ in 0..count(100, 2000) {
         let (rotation, tilt) = (numbers.between(-180.0, 180.0), numbers.direction());
         let origin = numbers.direction() * 3.0;
-        let pose = Pose::with_axis(origin, rotation, tilt);
+        let pose = Pose::with_axis(origin, rotation.to_radians(), tilt);
         let place = |x: f64| {
             let [u, v, w] = pose.to_world(DVec3::X * x).to_array();
             let [i, j, k] = tilt.to_array();

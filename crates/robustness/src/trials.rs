@@ -109,7 +109,7 @@ fn trace(assembly: &Assembly, limits: Limits, launches: &[Launch<2>]) {
     for launches in launches.chunks_exact(4) {
         let Ok(launches) = <&[Launch<2>; 4]>::try_from(launches) else { continue };
         four.trace(launches);
-        for (each, launch) in four.each().iter().zip(launches) {
+        for (each, launch) in four.tracers.iter().zip(launches) {
             let (leaves, outcome) = tracer.trace(launch);
             assert_eq!(each.traced(), (leaves, outcome), "four at a time: {launch:?}");
         }

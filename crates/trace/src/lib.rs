@@ -6,7 +6,7 @@
 //! by the interface solver of [`optics`]; and so on until each branch is a [`Leaf`](walk::Leaf), is absorbed or is too weak
 //! to follow. What the leaves carry, what is absorbed and what is pruned add up to what was launched.
 //!
-//! Lengths are in cm, angles in degrees; axes and signs are those of [`optics::wave`]. The crate reads no files, draws no
+//! Lengths are in cm, angles of keys in degrees, others in radians; axes and signs are those of [`optics::wave`]. The crate reads no files, draws no
 //! pictures and starts no threads, unless its feature `rayon` is asked for.
 //!
 //! # Example

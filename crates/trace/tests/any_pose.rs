@@ -9,6 +9,7 @@ use cloakroom_trace::walk::{Launch, Leaf, LeafEnd, Limits, Outcome, Tracer};
 use glam::DVec3;
 use optics::geometry::Pose;
 use optics::wave::{ComplexVector, transverse_basis};
+use std::f64::consts::PI;
 
 const LIMITS: Limits = Limits { min_power: 1e-6, tolerance: 1e-12 };
 
@@ -27,7 +28,7 @@ impl Numbers {
 
     fn pose(&mut self) -> Pose {
         let origin = 20.0 * self.vector();
-        let rotation = 180.0 * self.next();
+        let rotation = PI * self.next();
         Pose::with_axis(origin, rotation, self.vector())
     }
 }
@@ -122,7 +123,7 @@ fn rays_through_a_tilted_device_are_turned_rays_through_an_upright_one() {
         for n in 0..60 {
             let axes = [DVec3::X, DVec3::NEG_Y, DVec3::NEG_Z];
             let pose = match axes.get(n) {
-                Some(axis) => Pose::with_axis(numbers.vector(), 37.0, *axis),
+                Some(axis) => Pose::with_axis(numbers.vector(), 0.65, *axis),
                 None => numbers.pose(),
             };
             let tilted = assembly(pose);

@@ -120,16 +120,7 @@ impl Client {
                 LoadProblem::TooLarge => {
                     format!("the photograph is too large: at most {millions} million pixels")
                 }
-                LoadProblem::NotAnImage | LoadProblem::Empty => {
-                    "this is not an image that can be read (PNG, JPEG or EXR)".to_owned()
-                }
-                LoadProblem::OtherFormat(format) => {
-                    format!("this is a {format} image; only PNG, JPEG and EXR can be read")
-                }
-                LoadProblem::Unsupported(reason) => {
-                    format!("this image uses a feature that is not supported: {reason}")
-                }
-                _ => "this image is damaged or cut short".to_owned(),
+                problem => format!("this image {problem}"),
             })?;
         let (width, height) = (image.width, image.height);
         // The old one makes room.

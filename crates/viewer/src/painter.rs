@@ -10,9 +10,10 @@ use crate::slot::lock;
 use cloakroom::measure::{bare, empty, ideal};
 use cloakroom::output::{RgbImage, to_srgb};
 use cloakroom::render::{
-    ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Supervision, render,
+    ChannelSet, Images, PreparedScene, PreparedSceneError, Supervision, render,
 };
 use cloakroom::scene::{DeviceSettings, Placement, Scene};
+use cloakroom::trace::Stopped;
 use cloakroom_figures::{Quantity, ScalarMap};
 use serde_json::{Value, json};
 use std::error::Error;
@@ -52,7 +53,7 @@ type PaintError = Box<dyn Error>;
 
 /// Whether newer wishes, or the end of the page, are why.
 fn is_stop(error: &PaintError) -> bool {
-    error.is::<Gone>() || matches!(error.downcast_ref(), Some(RenderError::Stopped))
+    error.is::<Gone>() || Stopped::is_in(error.as_ref())
 }
 
 /// Paints what a page wishes, until it is gone.

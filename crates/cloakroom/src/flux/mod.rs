@@ -16,7 +16,7 @@ use crate::assembly::Assembly;
 use crate::measure;
 use crate::render::{PreparedSceneError, Supervision, assembly, limits, metadata};
 use crate::scene::Scene;
-use crate::trace::Tracer;
+use crate::trace::{Stopped, Tracer};
 use launch::Launcher;
 use rayon::prelude::*;
 use result::Tally;
@@ -83,7 +83,7 @@ pub enum FluxError {
     },
     /// The work was stopped from outside.
     #[error("stopped")]
-    Stopped,
+    Stopped(#[from] Stopped),
 }
 
 /// The flux that comes to the scene's receiver, for light from each of the directions.
@@ -162,7 +162,7 @@ fn tally(
             let mut tally = Tally::new(launcher.cells);
             for number in 0..field.count() {
                 if number % 256 == 0 && supervision.stop.load(Ordering::Relaxed) {
-                    return Err(FluxError::Stopped);
+                    return Err(Stopped.into());
                 }
                 let launch = field.launch(sample, number, scene.camera.seed);
                 let (leaves, outcome) = tracer.trace(&launch);

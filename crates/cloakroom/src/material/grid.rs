@@ -77,7 +77,7 @@ impl Grid {
         };
         check_memory(cells)?;
         let middle = [0, 1, 2].map(|axis| {
-            if has_ends(axis) { 0.5 * (low[axis] + high[axis]) } else { pose.origin()[axis] }
+            if has_ends(axis) { 0.5 * (low[axis] + high[axis]) } else { pose.origin[axis] }
         });
         let corner = DVec3::from(middle) - spacing * DVec3::from(cells) * 0.5;
         Ok(Self { corner, spacing, cells: cells.map(|count| count as usize) })

@@ -13,6 +13,7 @@ use crate::assembly::{Assembly, Placed};
 use crate::device::Show;
 use crate::memory::Shortage;
 use crate::scene::Scene;
+use crate::trace::Stopped;
 
 /// Why the material of a device cannot be given.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -56,7 +57,7 @@ pub enum MaterialError {
     Endless,
     /// The work was stopped from outside.
     #[error("stopped")]
-    Stopped,
+    Stopped(#[from] Stopped),
 }
 
 /// The device that is meant, if there is a medium in it: that of the number, or the only one there is.

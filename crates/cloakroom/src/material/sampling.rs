@@ -6,6 +6,7 @@ use crate::device::MaterialAt;
 use crate::output::{Grid, GridArray, GridFile, GridValues};
 use crate::render::{Supervision, metadata};
 use crate::scene::Scene;
+use crate::trace::Stopped;
 use glam::DMat3;
 use optics::medium::Tensor;
 use rayon::prelude::*;
@@ -71,7 +72,7 @@ pub fn sample(
         .into_par_iter()
         .map(|number| {
             if supervision.stop.load(Ordering::Relaxed) {
-                return Err(MaterialError::Stopped);
+                return Err(MaterialError::from(Stopped));
             }
             let cells = number * row..(number + 1) * row;
             let points = cells.map(|cell| point(placed, frame, grid.middle(cell))).collect();

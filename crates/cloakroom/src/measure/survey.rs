@@ -3,7 +3,7 @@
 use crate::assembly::Screen;
 use crate::render::{PreparedScene, RenderError, Supervision};
 use crate::scene::Camera;
-use crate::trace::{Launch, Leaf, Outcome, Tracer};
+use crate::trace::{Launch, Leaf, Outcome, Stopped, Tracer};
 use rayon::prelude::*;
 use std::sync::atomic::Ordering;
 
@@ -78,7 +78,7 @@ fn launched<const N: usize>(
             || (tracer::<N>(prepared), tracer::<N>(ideal)),
             |(tracer, ideal), row| {
                 if supervision.stop.load(Ordering::Relaxed) {
-                    return Err(RenderError::Stopped);
+                    return Err(RenderError::from(Stopped));
                 }
                 let sights = (0..width).map(|column| {
                     let ray = camera.ray(f64::from(column) + 0.5, f64::from(row) + 0.5);

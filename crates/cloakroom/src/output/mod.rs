@@ -19,6 +19,7 @@ pub(crate) use reading::read_channels;
 pub use reading::{ReadError, read_npz, read_png};
 pub use whole_file::{WriteSeek, check_writable, write_whole};
 
+use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -67,18 +68,11 @@ impl OutputError {
 
 /// The error of the system beneath those that encoders wrap around it.
 fn innermost(error: &io::Error) -> &io::Error {
-    let mut inner = error;
-    let mut next: Option<&(dyn std::error::Error + 'static)> =
-        error.get_ref().map(|wrapped| wrapped as _);
-    while let Some(wrapped) = next {
-        if let Some(found) = wrapped.downcast_ref::<io::Error>() {
-            inner = found;
-            next = found.get_ref().map(|wrapped| wrapped as _);
-        } else {
-            next = wrapped.source();
-        }
-    }
-    inner
+    let causes = std::iter::successors(Some(error as &(dyn Error + 'static)), |&error| {
+        let of_system = error.downcast_ref::<io::Error>();
+        of_system.map_or_else(|| error.source(), |error| error.get_ref().map(|inner| inner as _))
+    });
+    causes.filter_map(<dyn Error>::downcast_ref).last().unwrap_or(error)
 }
 
 /// The ending of a file's name in small letters.

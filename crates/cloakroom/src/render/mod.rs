@@ -24,7 +24,7 @@ pub use tile::{MergeError, Tile, TileError, merge, merge_images};
 
 use crate::output::Picture;
 use crate::scene::Scene;
-use crate::trace::{FourTracers, TraceStats, Tracer};
+use crate::trace::{FourTracers, Stopped, TraceStats, Tracer};
 use contrast::{Contrast, first_look};
 use detection::Detection;
 use exposure::{Traced, expose, expose_unhindered};
@@ -51,7 +51,7 @@ pub struct Supervision<'a> {
 pub enum RenderError {
     /// The work was stopped from outside.
     #[error("stopped")]
-    Stopped,
+    Stopped(#[from] Stopped),
     /// The picture would not fit into memory.
     #[error("a picture of {width} x {height} pixels {shortage}; make `camera.resolution` smaller")]
     TooLarge {
@@ -172,10 +172,9 @@ fn expose_film<const N: usize>(
         .map_init(
             || Exposer::new(prepared, &detection),
             |exposer, mut band| {
-                let stats =
-                    exposer.expose_band(&mut band, supervision.stop).ok_or(RenderError::Stopped)?;
+                let stats = exposer.expose_band(&mut band, supervision.stop).ok_or(Stopped)?;
                 (supervision.rows_done)(band.rows as u64);
-                Ok(stats)
+                Ok::<_, Stopped>(stats)
             },
         )
         .try_reduce(TraceStats::default, |mut a, b| {
@@ -307,7 +306,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
         });
         let spacing = 1.0 / f64::from(samples).sqrt();
         let mut stats = TraceStats::default();
-        let any = &self.tracers.each()[0];
+        let any = &self.tracers.tracers[0];
         if self.detection.images_alone()
             && rays.iter().all(|ray| any.meets_nothing(ray.origin, ray.direction))
             && expose_unhindered(self.prepared, self.detection, &rays, spacing, pixels)
@@ -317,7 +316,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
         let launches = rays.each_ref().map(|ray| self.detection.launch(camera, ray));
         self.tracers.trace(&launches);
         let block: [Traced<'_, N>; 4] = std::array::from_fn(|i| {
-            let tracer = &self.tracers.each()[i];
+            let tracer = &self.tracers.tracers[i];
             let (leaves, outcome) = tracer.traced();
             stats += outcome.stats;
             let first_face =

@@ -103,10 +103,8 @@ impl PhotographSettings {
     ///
     /// If both `x` and `position` are given, the normal or `up` is zero, or they are parallel.
     pub fn pose(&self) -> Result<Pose, KeyError> {
-        if self.position.given && self.x.given {
-            let message = "x and position are both given; x is short for position = [x, 0, 0]";
-            return Err(KeyError::at(key!(Self.position), message));
-        }
+        let message = "x and position are both given; x is short for position = [x, 0, 0]";
+        KeyError::refuse_if(self.position.given && self.x.given, key!(Self.position), message)?;
         let front = direction(key!(Self.normal), self.normal)?;
         let upward = direction(key!(Self.up), self.up)?;
         let across = across(upward.cross(front), (front, "the normal"), self.up)?;
@@ -149,11 +147,8 @@ impl SurroundingsSettings {
     ///
     /// If both are given.
     pub fn check_one(&self) -> Result<(), KeyError> {
-        if self.color.given && self.image.is_some() {
-            let message = "color and image are both given; the surroundings take one of them";
-            return Err(KeyError::at(key!(Self.image), message));
-        }
-        Ok(())
+        let message = "color and image are both given; the surroundings take one of them";
+        KeyError::refuse_if(self.color.given && self.image.is_some(), key!(Self.image), message)
     }
 }
 
@@ -197,10 +192,9 @@ impl DeviceSettings {
     pub fn structure(&self, number: usize) -> Result<Structure, KeyError> {
         let Placement { show, imperfection, .. } = &self.placement;
         let structure = self.built(*show)?;
-        if self.has_open_core() && structure.hull.filled.is_none() {
-            let message = format!("{} with these keys has no core that could be open", self.kind());
-            return Err(KeyError::at(key!(Placement.core), message));
-        }
+        let message = format!("{} with these keys has no core that could be open", self.kind());
+        let closed = self.has_open_core() && structure.hull.filled.is_none();
+        KeyError::refuse_if(closed, key!(Placement.core), message)?;
         match imperfection {
             Some(imperfection) if *show == Show::Cloak => {
                 imperfection.apply(structure, (number, self.draw))
@@ -250,7 +244,8 @@ impl DeviceSettings {
     pub fn pose(&self) -> Result<Pose, KeyError> {
         let Placement { position, rotation, axis, .. } = self.placement;
         direction(key!(Placement.axis), axis)?;
-        Ok(Pose::with_axis(position, rotation, axis))
+        // Whole turns are taken off in degrees, of which they are a whole number.
+        Ok(Pose::with_axis(position, rotation.rem_euclid(360.0).to_radians(), axis))
     }
 }
 
@@ -265,11 +260,8 @@ fn direction(key: &'static str, vector: DVec3) -> Result<DVec3, KeyError> {
 fn across(product: DVec3, (along, words): (DVec3, &str), up: DVec3) -> Result<DVec3, KeyError> {
     /// The sine of the angle between two directions below which they count as parallel.
     const PARALLEL: f64 = 1e-9;
-    if product.length() < PARALLEL {
-        let up = vector_text(up);
-        let message = format!("up is {up}, along {words}; it must point across it");
-        return Err(KeyError::at(key!(CameraSettings.up), message));
-    }
+    let message = format!("up is {}, along {words}; it must point across it", vector_text(up));
+    KeyError::refuse_if(product.length() < PARALLEL, key!(CameraSettings.up), message)?;
     // Where the two are nearly parallel, the product is not yet perpendicular to the last digit.
     Ok(product.normalize().reject_from_normalized(along).normalize())
 }

@@ -55,7 +55,7 @@ fn two_halves_are_the_whole_lens() {
         // Each in a pose of its own.
         for sign in [1.0, -1.0] {
             let (rotation, axis) = (numbers.between(0.0, 360.0), numbers.direction());
-            let pose = Pose::with_axis(DVec3::ZERO, rotation, axis);
+            let pose = Pose::with_axis(DVec3::ZERO, rotation.to_radians(), axis);
             let [normal, axis] = [pose.vector_to_local(normal * sign), axis].map(|v| v.to_array());
             scene += &format!(
                 "[[device]]\nkind = 'fisheye-hemisphere'\nposition = [4, 5, -6]\nrotation = {rotation:?}\n\

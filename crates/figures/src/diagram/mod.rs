@@ -11,7 +11,7 @@ use super::drawing::Drawing;
 use super::setting::{AXES, Devices, MARGIN, TEXT, draw_axes, sheet};
 use cloakroom::render::{PreparedSceneError, RenderError, assembly};
 use cloakroom::scene::Scene;
-use cloakroom::trace::{Limits, Line, lines};
+use cloakroom::trace::{Limits, Line, Stopped, lines};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -91,7 +91,7 @@ pub fn diagram(
     let devices = Devices::new(&assembly);
     let bounds =
         view::bounds(&assembly).or_else(|| devices.bounds()).ok_or(DiagramError::NoDevice)?;
-    let z = settings.z.unwrap_or_else(|| assembly.devices()[0].pose.origin().z);
+    let z = settings.z.unwrap_or_else(|| assembly.devices()[0].pose.origin.z);
     let scenery = Scenery::new(bounds, z, settings);
     let launches = settings.source.launches(scene, settings, &scenery);
     if let Some(device) =
@@ -106,7 +106,7 @@ pub fn diagram(
         .par_iter()
         .map(|launch| {
             if stop.load(Ordering::Relaxed) {
-                return Err(RenderError::Stopped);
+                return Err(RenderError::from(Stopped));
             }
             let mut tree = lines(&assembly, limits, launch, settings.polarization, reach);
             tree.retain(|line| line.power >= settings.min_power);

@@ -98,7 +98,7 @@ impl Solids<'_> {
         // Its ends in its own frame; upright ones are cut where the scenery is.
         let half = self.scenery.depth() / 2.0;
         let is_upright = placed.pose.is_upright();
-        let middle = if is_upright { self.scenery.z - placed.pose.origin().z } else { 0.0 };
+        let middle = if is_upright { self.scenery.z - placed.pose.origin.z } else { 0.0 };
         let shown = [middle - half, middle + half];
         let ends = match structure.hull.bounds(&Pose::IDENTITY) {
             Some([low, high]) => [low.z.max(shown[0]), high.z.min(shown[1])],
@@ -156,7 +156,7 @@ impl Solids<'_> {
     /// rim.
     fn add_ball(&mut self, placed: &Placed, contour: &Contour, metal: bool) {
         let Some(radius) = contour.points.first().map(|point| point.length()) else { return };
-        let centre = placed.pose.origin();
+        let centre = placed.pose.origin;
         let toward = self.view.toward;
         let right = toward.any_orthonormal_vector();
         let circle = |u: DVec3, v: DVec3| {

@@ -19,7 +19,7 @@ pub(super) fn bounds(assembly: &Assembly) -> Option<[DVec2; 2]> {
         let [low, high] = placed.structure.hull.bounds(&placed.pose)?.map(DVec3::truncate);
         let size = high - low;
         let shown = if size.min_element() < REACH { 1.5 * size.min_element() } else { ENDLESS };
-        let middle = placed.pose.origin().truncate();
+        let middle = placed.pose.origin.truncate();
         let is_endless = size.cmpge(DVec2::splat(REACH));
         Some([
             DVec2::select(is_endless, middle - shown, low),

@@ -14,6 +14,7 @@ pub use frames::FrameFolder;
 
 use cloakroom::output::{self, OutputError, RgbImage};
 use cloakroom::render::RenderError;
+use cloakroom::trace::Stopped;
 use std::error::Error;
 use std::fmt::Display;
 use std::io;
@@ -167,7 +168,7 @@ impl Film<'_> {
     fn done(&self) -> Result<(), FilmError> {
         (self.frame_done)();
         if self.stop.load(std::sync::atomic::Ordering::Relaxed) {
-            return Err(RenderError::Stopped.into());
+            return Err(RenderError::from(Stopped).into());
         }
         Ok(())
     }

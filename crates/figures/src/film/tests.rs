@@ -147,7 +147,7 @@ fn stopped_and_broken_films_leave_nothing() {
     {
         let path = folder.path().join(name);
         let stopped = Film { path: &path, ..film }.write(format);
-        assert!(matches!(stopped, Err(FilmError::Render(RenderError::Stopped))));
+        assert!(matches!(stopped, Err(FilmError::Render(RenderError::Stopped(_)))));
         assert!(!path.exists());
     }
     output::write_png(&RgbImage::new(5, 5), &[], &frames.file(2)).expect("written");

@@ -3,6 +3,7 @@
 use super::{Film, FilmError};
 use cloakroom::output::{OutputError, check_writable};
 use cloakroom::render::RenderError;
+use cloakroom::trace::Stopped;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
@@ -66,7 +67,7 @@ pub(super) fn write(film: &Film<'_>, codec: &[&str]) -> Result<(), FilmError> {
         String::from_utf8_lossy(&said).into_owned()
     });
     match done.map_err(|error| failed(&error))? {
-        None => Err(RenderError::Stopped.into()),
+        None => Err(RenderError::from(Stopped).into()),
         Some(true) => std::fs::rename(&file, path).map_err(unwritable),
         Some(false) => {
             let said = said.unwrap_or_default();

@@ -56,7 +56,7 @@ impl<'s> Subject<'s> {
     /// the other, as it is the one that is there, else what has the larger z.
     pub fn from_back(subjects: &[Self]) -> Vec<usize> {
         let priority = |i: usize| subjects[i].section.body.map_or(0, |body| body.priority);
-        let z = |i: usize| subjects[i].pose.origin().z;
+        let z = |i: usize| subjects[i].pose.origin.z;
         let mut order: Vec<usize> = (0..subjects.len()).collect();
         order.sort_by(|&i, &j| priority(i).cmp(&priority(j)).then(z(i).total_cmp(&z(j))));
         order
@@ -88,7 +88,7 @@ impl<'s> Subject<'s> {
 
     /// Where its axis is in the scene.
     pub fn origin(&self) -> DVec2 {
-        self.pose.origin().truncate()
+        self.pose.origin.truncate()
     }
 }
 

@@ -17,6 +17,7 @@ pub use finding::{Finding, Verdict, markdown};
 use cloakroom::measure::MeasureError;
 use cloakroom::render::{PreparedSceneError, RenderError};
 use cloakroom::scene_file::SceneFileError;
+use cloakroom::trace::Stopped;
 use finding::Page;
 use fixture::Fixture;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -82,7 +83,7 @@ pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Result<Vec<Finding>> {
     let mut page = Page::default();
     for check in CHECKS {
         if stop.load(Ordering::Relaxed) {
-            return Err(RenderError::Stopped.into());
+            return Err(RenderError::from(Stopped).into());
         }
         check(&fixture, &mut page)?;
         step_done();

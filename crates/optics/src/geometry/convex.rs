@@ -82,7 +82,7 @@ impl<'s> Convex<'s> {
     fn bounds(&self, thickness: f64) -> Vec<Bound> {
         let plane = |normal: DVec3, offset: f64| {
             let normal = self.pose.vector_to_world(normal);
-            Bound::Plane { normal, offset: offset + normal.dot(self.pose.origin()) }
+            Bound::Plane { normal, offset: offset + normal.dot(self.pose.origin) }
         };
         let ends = [(DVec3::Z, self.extent.max), (DVec3::NEG_Z, -self.extent.min)];
         let ends = ends.into_iter().filter(|(_, offset)| offset.is_finite());
@@ -239,7 +239,7 @@ impl<'s> Convex<'s> {
         let end = if own.z > 0.0 { self.extent.max } else { self.extent.min };
         // What is endless across the direction but for rounding does not reach along it.
         let along = if own.z.abs() < SAME_AXIS { 0.0 } else { own.z * end };
-        beside + along + direction.dot(self.pose.origin())
+        beside + along + direction.dot(self.pose.origin)
     }
 }
 
@@ -339,6 +339,7 @@ mod tests {
     use super::super::{Hole, TOUCHING};
     use super::*;
     use proptest::prelude::*;
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
     fn cuboid(half: DVec3) -> Solid {
         let extent = Extent { min: -half.z, max: half.z };
@@ -347,7 +348,7 @@ mod tests {
 
     fn poses() -> impl Strategy<Value = Pose> {
         let vector = || prop::array::uniform3(-3.0..3.0).prop_map(DVec3::from_array);
-        (vector(), -180.0..180.0, vector())
+        (vector(), -PI..PI, vector())
             .prop_map(|(origin, rotation, axis)| Pose::with_axis(origin, rotation, axis))
     }
 
@@ -504,7 +505,7 @@ mod tests {
 
         #[test]
         fn bodies_that_touch_at_odd_angles_do_not_overlap(pose in poses(), turn in -180.0..180.0) {
-            let up = Pose::new(DVec3::ZERO, turn);
+            let up = Pose::new(DVec3::ZERO, f64::to_radians(turn));
             let slab = cuboid(DVec3::new(4.0, 3.0, 0.5)).placed(&up);
             // A cube on its corner, one on its edge, one flat; a cylinder on its rim, its side, its end.
             let cube = cuboid(DVec3::ONE);
@@ -520,7 +521,7 @@ mod tests {
             let corner = up.after(&Pose::from_rotation(DVec3::ZERO, standing));
             let tilt = |degrees: f64| {
                 let (sin, cos) = degrees.to_radians().sin_cos();
-                Pose::with_axis(DVec3::ZERO, turn, DVec3::new(sin, 0.0, cos))
+                Pose::with_axis(DVec3::ZERO, f64::to_radians(turn), DVec3::new(sin, 0.0, cos))
             };
             let lying = |degrees: f64| {
                 let (sin, cos) = degrees.to_radians().sin_cos();
@@ -529,8 +530,8 @@ mod tests {
             let (sin, cos) = 40f64.to_radians().sin_cos();
             let cases = [
                 (cube.placed(&corner), 3f64.sqrt()),
-                (cube.placed(&Pose::with_axis(DVec3::ZERO, 45.0, DVec3::Y)), 2f64.sqrt()),
-                (cube.placed(&Pose::with_axis(DVec3::ZERO, 90.0, DVec3::X)), 1.0),
+                (cube.placed(&Pose::with_axis(DVec3::ZERO, FRAC_PI_4, DVec3::Y)), 2f64.sqrt()),
+                (cube.placed(&Pose::with_axis(DVec3::ZERO, FRAC_PI_2, DVec3::X)), 1.0),
                 (rod.placed(&tilt(40.0)), 0.7 * sin + cos),
                 (rod.placed(&lying(turn)), 0.7),
                 (endless.placed(&lying(turn)), 0.7),
@@ -566,7 +567,7 @@ mod tests {
                 moved(inner, by).placed(&pose).is_within(&around.placed(&pose))
             };
             let cube = cuboid(DVec3::ONE);
-            let across = Pose::with_axis(DVec3::ZERO, 45.0, DVec3::Y);
+            let across = Pose::with_axis(DVec3::ZERO, FRAC_PI_4, DVec3::Y);
             let small = Solid::cylinder(1.0, Extent::centred(Some(2.0))).placed(&across);
             let rim = 3.0 - 2f64.sqrt();
             for (inner, around, by) in [
@@ -591,7 +592,7 @@ mod tests {
         }
 
         #[test]
-        fn others_may_be_in_a_tilted_hole(pose in poses(), turn in -180.0..180.0) {
+        fn others_may_be_in_a_tilted_hole(pose in poses(), turn in -PI..PI) {
             let hole = Solid::cylinder(3.0, Extent::ENDLESS);
             let tube = Solid::cylinder(5.0, Extent::ENDLESS).with_hole(Hole::Round(hole));
             let short = Extent::centred(Some(1.0));
@@ -666,7 +667,7 @@ mod tests {
                 shadow.distance(corner) < 1e-12 && !shadow.contains((corner - 1.0) * 1.01 + 1.0)
             );
         }
-        let cube = cuboid(DVec3::ONE).placed(&Pose::with_axis(DVec3::ZERO, 45.0, DVec3::X));
+        let cube = cuboid(DVec3::ONE).placed(&Pose::with_axis(DVec3::ZERO, FRAC_PI_4, DVec3::X));
         assert!((cube.shadow().radius() - 3f64.sqrt()).abs() < 1e-12);
         let endless = Solid::ball(2.0).placed(&lying).shadow();
         assert!(

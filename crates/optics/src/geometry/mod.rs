@@ -84,7 +84,7 @@ impl Extent {
 
     /// The extent at a place whose axis is along z, one way or the other.
     fn placed(self, pose: &Pose) -> Self {
-        let z = pose.origin().z;
+        let z = pose.origin.z;
         if pose.axis().z < 0.0 {
             Self { min: z - self.max, max: z - self.min }
         } else {

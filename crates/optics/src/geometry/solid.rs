@@ -320,6 +320,7 @@ mod tests {
     use super::super::{FloorCurve, MetalBack, Sphere};
     use super::*;
     use crate::transformation::{ConformalMap, GaussianMap};
+    use std::f64::consts::FRAC_PI_2;
 
     const SLACK: f64 = 1e-9;
 
@@ -372,7 +373,7 @@ mod tests {
 
     /// The body in the hole, moved along x until it presses against the border, and beyond it outside.
     fn check_hole(hollow: &Solid, body: &Solid, [inside, outside]: [f64; 2]) {
-        for (turn, towards) in [(0.0, DVec3::X), (90.0, DVec3::Y)] {
+        for (turn, towards) in [(0.0, DVec3::X), (FRAC_PI_2, DVec3::Y)] {
             let hollow = hollow.placed(&Pose::new(DVec3::ZERO, turn));
             let body = body.placed(&Pose::new(DVec3::ZERO, turn));
             let meets = |way: f64| {
@@ -447,7 +448,7 @@ mod tests {
     }
 
     fn check_along_x(hollow: &Solid, body: &Solid, [inside, outside]: [f64; 2]) {
-        for turn in [0.0, 90.0, 33.0] {
+        for turn in [0.0, FRAC_PI_2, 0.6] {
             let pose = Pose::new(DVec3::new(3.0, -2.0, 1.0), turn);
             let hollow = hollow.placed(&pose);
             let meets = |way: f64| {
@@ -471,7 +472,7 @@ mod tests {
         let normal = DVec3::new(2.0, -1.0, 2.0) / 3.0;
         for (k, offset) in [0.0, 1.2, -0.7].into_iter().enumerate() {
             let axis = DVec3::new(1.0, k as f64, -0.3);
-            let pose = Pose::with_axis(DVec3::new(30.0, -7.0, 1e3), 33.0, axis);
+            let pose = Pose::with_axis(DVec3::new(30.0, -7.0, 1e3), 0.6, axis);
             let out = pose.vector_to_world(normal);
             let part = cut(normal, offset, &pose);
             let meet = |other: &Solid, way: f64| {
@@ -483,7 +484,7 @@ mod tests {
             // The part that was cut off, in its place; a ball, a cylinder and a box upon the cut.
             assert!(!meet(&cut(-normal, -offset, &pose), 0.0));
             assert!(meet(&cut(-normal, -offset, &pose), -1e-6));
-            let turn = Pose::with_axis(DVec3::ZERO, 10.0, normal);
+            let turn = Pose::with_axis(DVec3::ZERO, 0.2, normal);
             for solid in [
                 Solid::ball(1.0),
                 Solid::cylinder(1.0, Extent::centred(Some(2.0))),
@@ -508,11 +509,11 @@ mod tests {
                 moved(&Solid::Prism { outline, extent }, 0.5 * (high + low))
             };
             assert!(part.is_within(&around(half)) && !part.is_within(&around(half - 1e-6)));
-            assert!(part.is_within(&moved(&Solid::ball(2.0), pose.origin())));
+            assert!(part.is_within(&moved(&Solid::ball(2.0), pose.origin)));
             let shadow = part.shadow();
             let tips = shadow.corners().iter().map(|at| at.x).fold(f64::MIN, f64::max);
-            assert!((tips - high.x).abs() < 1e-2 && part.contains(pose.origin() - out * 1.9));
-            assert!(!part.holds(pose.origin() + out * (offset + 1e-9)));
+            assert!((tips - high.x).abs() < 1e-2 && part.contains(pose.origin - out * 1.9));
+            assert!(!part.holds(pose.origin + out * (offset + 1e-9)));
         }
     }
 

@@ -13,7 +13,8 @@ pub struct Wall {
     from: DVec2,
     to: DVec2,
     extent: Extent,
-    normal: DVec3,
+    /// The outward unit normal.
+    pub normal: DVec3,
     length: f64,
 }
 
@@ -30,13 +31,6 @@ impl Wall {
     #[must_use]
     pub fn ends(&self) -> [DVec2; 2] {
         [self.from, self.to]
-    }
-
-    /// The outward unit normal.
-    #[must_use]
-    #[inline]
-    pub fn normal(&self) -> DVec3 {
-        self.normal
     }
 
     /// The distance at which a ray meets the wall, from zero on, ends and edges included.
@@ -77,7 +71,7 @@ mod tests {
             let origin = target - direction * 7.3;
             let entering = walls
                 .iter()
-                .filter(|wall| direction.dot(wall.normal()) < 0.0)
+                .filter(|wall| direction.dot(wall.normal) < 0.0)
                 .filter_map(|wall| wall.hit(origin, direction))
                 .count();
             // At a corner both walls, or one: never none, unless the ray only grazes the corner.

@@ -33,7 +33,7 @@ impl Interfaces {
                 return None;
             }
             let normal = match &surface.shape {
-                Shape::Wall(wall) => wall.normal(),
+                Shape::Wall(wall) => wall.normal,
                 Shape::Cap(cap) => cap.normal,
                 _ => return None,
             };

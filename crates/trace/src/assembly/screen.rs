@@ -24,7 +24,7 @@ impl Screen {
     pub fn new(pose: &Pose, half_width: f64, half_height: f64) -> Self {
         let axes = DVec3::AXES.map(|axis| pose.vector_to_world(axis));
         let straight = axes == DVec3::AXES;
-        Self { middle: pose.origin(), axes, straight, half_width, half_height }
+        Self { middle: pose.origin, axes, straight, half_width, half_height }
     }
 
     /// The parts of a vector along the axes.

@@ -96,7 +96,7 @@ impl Structure {
         if pose.axis().truncate() == DVec2::ZERO {
             return (self.cross_section(), *pose);
         }
-        let origin = pose.origin();
+        let origin = pose.origin;
         let contour = |corners: &[DVec2]| Contour {
             points: corners.iter().map(|corner| *corner - origin.truncate()).collect(),
             closed: corners.len() > 2,
@@ -176,7 +176,7 @@ impl Convex {
             Self::CutBall(ball) => closed(ball.section(PIECES)),
             Self::Box { half } => {
                 let corner = half.truncate().min(DVec2::splat(REACH));
-                closed(QUADRANTS.map(|sign| sign * corner).to_vec())
+                closed(Outline::rectangle(corner.x, corner.y).corners().to_vec())
             }
         }
     }
@@ -194,53 +194,16 @@ fn circle(radius: f64) -> Vec<DVec2> {
     closed((0..PIECES).map(|i| DVec2::from_angle(step * f64::from(i)) * radius).collect())
 }
 
-/// The corners of a square, counterclockwise.
-const QUADRANTS: [DVec2; 4] =
-    [DVec2::NEG_ONE, DVec2::new(1.0, -1.0), DVec2::ONE, DVec2::new(-1.0, 1.0)];
-
 impl HomogeneousRegion {
     fn edges(&self) -> Vec<Edge> {
-        if let RegionBorder::Convex(shape) = &self.border {
-            return vec![Edge { points: shape.around(), far: FarSide::Outside }];
-        }
-        // A large square, cut by one plane after the other; with each corner, the face whose side
-        // starts there.
-        let mut corners: Vec<(DVec2, Option<&Face>)> =
-            QUADRANTS.map(|corner| (corner * REACH, None)).to_vec();
-        for face in self.faces() {
-            let height = |p: DVec2| face.plane.normal.truncate().dot(p) - face.plane.offset;
-            let mut kept = Vec::new();
-            for (i, &(a, on)) in corners.iter().enumerate() {
-                let b = corners[(i + 1) % corners.len()].0;
-                let (at_a, at_b) = (height(a), height(b));
-                let crossing = a + (b - a) * (at_a / (at_a - at_b));
-                match (at_a <= 0.0, at_b <= 0.0) {
-                    (true, true) => kept.push((a, on)),
-                    (true, false) => kept.extend([(a, on), (crossing, Some(face))]),
-                    (false, true) => kept.push((crossing, on)),
-                    (false, false) => {}
-                }
+        let side =
+            |face: &Face| face.side.map(|side| Edge { points: side.to_vec(), far: face.far });
+        match &self.border {
+            RegionBorder::Convex(shape) => {
+                vec![Edge { points: shape.around(), far: FarSide::Outside }]
             }
-            corners = kept;
+            RegionBorder::Faces(faces) => faces.iter().filter_map(side).collect(),
         }
-        // A corner that a plane just touches has made a side without length.
-        let n = corners.len();
-        let long = (0..n).filter(|&i| !near(corners[i].0, corners[(i + 1) % n].0));
-        let corners: Vec<_> = long.map(|i| corners[i]).collect();
-        let n = corners.len();
-        // Cutting something so large has rounded much: the corners once more, from their two faces.
-        let exact = |i: usize| {
-            let (rough, on) = corners[i % n];
-            let (Some(a), Some(b)) = (corners[(i + n - 1) % n].1, on) else { return rough };
-            let (p, q) = (a.plane.normal.truncate(), b.plane.normal.truncate());
-            (b.plane.offset * p.perp() - a.plane.offset * q.perp()) / p.perp_dot(q)
-        };
-        (0..n)
-            .map(|i| Edge {
-                points: vec![exact(i), exact(i + 1)],
-                far: corners[i].1.map_or(FarSide::Outside, |face| face.far),
-            })
-            .collect()
     }
 }
 

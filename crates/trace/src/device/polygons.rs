@@ -42,14 +42,14 @@ pub(super) fn polygonal(parts: &[PolygonPart], extent: Extent) -> Result<Structu
     for (index, piece) in pieces.iter().enumerate() {
         let mut faces = Vec::new();
         for (edge, (from, to)) in piece.outline.sides().enumerate() {
-            let normal = Wall::new(from, to, extent).normal();
+            let normal = Wall::new(from, to, extent).normal;
             let plane = Plane { normal, offset: normal.truncate().dot(from) };
             let along = (to - from).normalize();
             let stretches = stretches(parts, &pieces, index, edge);
             let last = stretches.len() - 1;
             for (number, Stretch { from, to, far }) in stretches.into_iter().enumerate() {
                 let until = if number == last { f64::INFINITY } else { along.dot(to) };
-                faces.push(Face { until, ..Face::new(plane, far) });
+                faces.push(Face { until, side: Some([from, to]), ..Face::new(plane, far) });
                 if far == FarSide::Outside {
                     surfaces.push(Surface::wall(Wall::new(from, to, extent), piece.itself));
                 }

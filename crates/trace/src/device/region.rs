@@ -1,7 +1,7 @@
 //! Regions of a device, each filled with one medium.
 
 use super::{ClosedFormRegion, Coating, Convex, FarSide};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::Plane;
 use optics::medium::{Medium, ModeKind};
 use optics::propagation::{
@@ -81,13 +81,15 @@ pub struct Face {
     /// Where the face ends, if the next one goes on in its plane: the coordinate (cm) along z × normal.
     /// Infinite for the last face in its plane.
     pub until: f64,
+    /// From where to where it runs in the plane z = 0, counterclockwise around the region, for drawings.
+    pub side: Option<[DVec2; 2]>,
 }
 
 impl Face {
     /// A whole plane face.
     #[must_use]
     pub fn new(plane: Plane, far: FarSide) -> Self {
-        Self { plane, far, until: f64::INFINITY }
+        Self { plane, far, until: f64::INFINITY, side: None }
     }
 }
 

@@ -133,11 +133,11 @@ impl Surface {
                 (distance, -cylinder.outward(Border::Outer, at(distance)))
             }
             _ if departed => return None,
-            Shape::Wall(wall) if direction.dot(wall.normal()) >= 0.0 => return None,
-            Shape::Wall(wall) => (wall.hit(origin, direction)?, wall.normal()),
+            Shape::Wall(wall) if direction.dot(wall.normal) >= 0.0 => return None,
+            Shape::Wall(wall) => (wall.hit(origin, direction)?, wall.normal),
             Shape::Sheet(wall) => {
-                let facing = -direction.dot(wall.normal());
-                (wall.hit(origin, direction)?, wall.normal() * facing.signum())
+                let facing = -direction.dot(wall.normal);
+                (wall.hit(origin, direction)?, wall.normal * facing.signum())
             }
             Shape::Cap(cap) => (cap.hit(origin, direction)?, cap.normal),
             Shape::Disc(disc) => (disc.hit(origin, direction)?, disc.normal),

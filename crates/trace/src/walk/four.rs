@@ -7,7 +7,8 @@ use crate::device::InnerRay;
 /// Traces four rays at once. Each tree is what [`Tracer::trace`] makes of its ray alone.
 #[derive(Clone, Debug)]
 pub struct FourTracers<'a, const N: usize> {
-    tracers: [Tracer<'a, N>; 4],
+    /// The tracers; each keeps what it has [traced](Tracer::traced) last.
+    pub tracers: [Tracer<'a, N>; 4],
 }
 
 impl<'a, const N: usize> FourTracers<'a, N> {
@@ -15,12 +16,6 @@ impl<'a, const N: usize> FourTracers<'a, N> {
     #[must_use]
     pub fn new(tracer: &Tracer<'a, N>) -> Self {
         Self { tracers: std::array::from_fn(|_| tracer.clone()) }
-    }
-
-    /// The tracers; each keeps what it has [traced](Tracer::traced) last.
-    #[must_use]
-    pub fn each(&self) -> &[Tracer<'a, N>; 4] {
-        &self.tracers
     }
 
     /// Follows four rays to the end of every branch. See [`Tracer::trace`].

@@ -4,6 +4,7 @@ use super::neighbours::side_by_side;
 use super::{FourTracers, Launch, Leaf, Limits, Outcome, Tracer};
 use crate::assembly::Assembly;
 use num_complex::Complex64;
+use std::error::Error;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Fewest and most rays that one thread takes at a time.
@@ -16,6 +17,14 @@ const BATCHES: usize = 16;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("stopped")]
 pub struct Stopped;
+
+impl Stopped {
+    /// Whether an error says so, or one that has caused it.
+    #[must_use]
+    pub fn is_in(error: &(dyn Error + 'static)) -> bool {
+        std::iter::successors(Some(error), |error| (**error).source()).any(<dyn Error>::is::<Self>)
+    }
+}
 
 /// What became of many rays: the leaves of all of them, ray by ray, the strongest of each first.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -87,7 +96,7 @@ impl LeafTable {
         let mut ended = Vec::with_capacity(launches.len());
         for four in side_by_side(&launches).chunks(4) {
             tracers.trace(&std::array::from_fn(|i| launches[four[i.min(four.len() - 1)]]));
-            for (ray, tracer) in four.iter().zip(tracers.each()) {
+            for (ray, tracer) in four.iter().zip(&tracers.tracers) {
                 let (leaves, outcome) = tracer.traced();
                 let first = all_leaves.len();
                 all_leaves.extend_from_slice(leaves);

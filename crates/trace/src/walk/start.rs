@@ -67,13 +67,7 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
             }
             waves => {
                 for (wave, amplitudes) in waves.iter().zip(amplitudes(branch, waves)) {
-                    let part = branch.as_wave(wave, amplitudes);
-                    if self.follows(part.power) {
-                        self.waiting.push(part);
-                        if let Some(part) = self.waiting.last_mut() {
-                            part.update_survival(self.limits.min_power);
-                        }
-                    }
+                    self.await_turn(branch.as_wave(wave, amplitudes));
                 }
                 false
             }

@@ -128,12 +128,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
         let parted = region.parted(branch.position, branch.wave_vector);
         let Some([(a, in_a), (b, in_b)]) = parted else { return false };
-        for mut part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
-            if self.follows(part.power) {
-                part.update_survival(self.limits.min_power);
-                self.waiting.push(part);
-            }
-        }
+        self.await_turn(branch.part(a, in_a, in_b));
+        self.await_turn(branch.part(b, in_b, in_a));
         true
     }
 

@@ -258,6 +258,14 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         follows
     }
 
+    /// Keeps a branch for later if it is to be followed.
+    pub(super) fn await_turn(&mut self, mut branch: Branch<N>) {
+        if self.follows(branch.power) {
+            branch.update_survival(self.limits.min_power);
+            self.waiting.push(branch);
+        }
+    }
+
     /// Gives up a branch that cannot be followed: it does not go on.
     pub(super) fn lose(&mut self, power: [f64; N]) -> bool {
         self.outcome.stats.lost += 1;
