@@ -3,6 +3,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::long;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -73,10 +74,10 @@ fn killed(arguments: &[&str], clear: bool) {
         .map(|(path, bytes)| (path.strip_prefix(whole.path()).unwrap().to_owned(), bytes))
         .collect();
     let desk = desk();
-    const KILLS: u32 = 12;
-    for number in 1..=KILLS {
+    let kills = long::count(6, 12);
+    for number in 1..=kills {
         let mut child = cloakroom(desk.path(), arguments).spawn().unwrap();
-        std::thread::sleep(time * number / (KILLS - 1));
+        std::thread::sleep(time * number / (kills - 1));
         // It may have ended.
         let _ = child.kill();
         child.wait().unwrap();

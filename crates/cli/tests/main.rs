@@ -6,6 +6,8 @@ mod bad_input;
 mod book;
 mod commands;
 mod faults;
+#[path = "../../cloakroom/tests/long.rs"]
+mod long;
 mod measuring;
 mod release;
 mod running;

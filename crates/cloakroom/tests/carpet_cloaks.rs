@@ -195,7 +195,7 @@ fn keys_that_do_not_go_together_are_told_apart() {
         ("grating-carpet", "period = 61.0", "period", "1 to 1000 of them"),
         ("quasi-conformal-carpet", "w = 51.0", "w", "fit into the device"),
         ("quasi-conformal-carpet", "w = 1.0", "w", "at least"),
-        ("quasi-conformal-carpet", "h = 20.0\nw = 4.0", "h", "too steep"),
+        ("quasi-conformal-carpet", "h = 80.0\nw = 25.0\nheight = 100.0", "h", "too steep"),
     ] {
         let text = format!("[[device]]\nkind = \"{kind}\"\n{keys}\n");
         let message = refusal(&text);

@@ -1,5 +1,6 @@
 //! Devices that stand in bodies, and rays that start in media.
 
+use crate::long::count;
 use crate::rays::{Numbers, assembly, launch, refusal};
 use cloakroom::assembly::Assembly;
 use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
@@ -72,7 +73,7 @@ fn a_pane_with_air_in_it_is_two_panes() {
     };
     let mut numbers = Numbers(3);
     let mut compared = 0;
-    for _ in 0..20 {
+    for _ in 0..count(5, 20) {
         let rotation = numbers.between(-40.0, 40.0);
         let glass = |thickness: f64| format!("thickness = {thickness}\npermittivity = 6\n");
         let hollow = slab(rotation, 0.0, &glass(6.0))
@@ -83,7 +84,7 @@ fn a_pane_with_air_in_it_is_two_panes() {
             let from = DVec3::new(-40.0, 10.0 * numbers.next(), 10.0 * numbers.next());
             let ray = launch(from, 10.0 * numbers.direction() - from);
             let [(one, lost), (other, also_lost)] = [&hollow, &panes].map(|assembly| {
-                let mut tracer = Tracer::new(assembly, LIMITS);
+                let mut tracer = Tracer::new(assembly, Limits { min_power: 1e-7, ..LIMITS });
                 let (leaves, outcome) = tracer.trace(&ray);
                 (leaves.to_vec(), outcome.stats.lost)
             });
@@ -100,7 +101,7 @@ fn a_pane_with_air_in_it_is_two_panes() {
             }
         }
     }
-    assert!(compared > 2000, "{compared}");
+    assert!(compared > 500, "{compared}");
 }
 
 #[test]

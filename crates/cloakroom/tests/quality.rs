@@ -1,6 +1,7 @@
 //! Tables of cloaking quality, against scenes whose figures are known.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::long;
 use cloakroom::measure::{Constraint, Plan, QualityError, QualityTable, Sweep, quality};
 use cloakroom::render::{RenderError, Supervision};
 use cloakroom::scene_file;
@@ -170,14 +171,16 @@ fn draws_give_means_with_errors_that_shrink_as_one_over_root_n() {
     // Small errors displace in proportion.
     let ratio = few.figure(2, "displacement_rms_cm") / few.figure(1, "displacement_rms_cm");
     assert!(ratio > 1.6 && ratio < 2.4, "{ratio}");
-    let many = table(128, "device.0.imperfection.error=0.02");
+    let draws = long::count(32, 128);
+    let many = table(draws, "device.0.imperfection.error=0.02");
+    let shrink = (f64::from(draws) / 8.0).sqrt();
     for name in
         ["displacement_rms_cm", "direction_error_rms_deg", "time_of_flight_difference_mean_ns"]
     {
         let (rough, fine) = (error(&few, 2, name), error(&many, 0, name));
         // 8 draws know their error to 27 % (one standard deviation).
         let ratio = rough / fine;
-        assert!(ratio > 4.0 * 0.4 && ratio < 4.0 * 1.7, "{name}: {ratio}");
+        assert!(ratio > shrink * 0.4 && ratio < shrink * 1.7, "{name}: {ratio}");
         // The means agree within their errors.
         let off = few.figure(2, name) - many.figure(0, name);
         assert!(off.abs() < 4.0 * rough.hypot(fine), "{name}: {off} {rough} {fine}");

@@ -1,6 +1,6 @@
 //! A branch of a ray tree on its way.
 
-use super::event::{NO_EVENTS, fingerprint};
+use super::event::fingerprint;
 use super::{Launch, Leaf, LeafEnd};
 use crate::assembly::DepartedSurface;
 use crate::device::InnerRay;
@@ -66,7 +66,7 @@ impl<const N: usize> Branch<N> {
             departed: None,
             standstills: 0,
             met_device: false,
-            path: NO_EVENTS,
+            path: 0,
             mode: ModeKind::Shared,
             virtual_point: None,
         }

@@ -6,7 +6,7 @@ use super::Launch;
 const DISTANCE: f64 = 100.0;
 
 /// A ray's number, where its line comes closest to the world's origin, and where it goes.
-type Line = (usize, [f64; 6]);
+type RayLine = (usize, [f64; 6]);
 
 /// The numbers of the rays, neighbours side by side: their lines are divided in halves across the widest spread, down
 /// to fours.
@@ -17,12 +17,12 @@ pub(super) fn side_by_side<const N: usize>(launches: &[Launch<N>]) -> Vec<usize>
         let goes = direction * DISTANCE;
         (number, [place.x, place.y, place.z, goes.x, goes.y, goes.z])
     };
-    let mut lines: Vec<Line> = launches.iter().enumerate().map(line).collect();
+    let mut lines: Vec<RayLine> = launches.iter().enumerate().map(line).collect();
     divide(&mut lines);
     lines.into_iter().map(|(number, _)| number).collect()
 }
 
-fn divide(lines: &mut [Line]) {
+fn divide(lines: &mut [RayLine]) {
     if lines.len() <= 4 {
         return;
     }
