@@ -7,6 +7,8 @@ use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 /// What is written smaller before a command is run; `small.sh` does the rest.
 const SMALLER: [(&str, &str); 9] = [
@@ -50,39 +52,63 @@ const WHERE_THERE_IS: [(&str, &str); 4] = [
     ("man -l", "man --version"),
 ];
 
+/// What came of the commands of a page.
+#[derive(Default)]
+struct Tried {
+    run: usize,
+    failed: Vec<String>,
+    elsewhere: [bool; ELSEWHERE.len()],
+}
+
 #[test]
 fn every_command_runs() {
-    let (mut run, mut failed) = (0, Vec::new());
-    let mut elsewhere = ELSEWHERE.map(|_| false);
-    for page in pages() {
-        let commands = commands(&page);
-        if commands.is_empty() {
+    let (pages, next) = (pages(), AtomicUsize::new(0));
+    let work = || {
+        let pages = std::iter::from_fn(|| pages.get(next.fetch_add(1, Ordering::Relaxed)));
+        pages.map(tried).collect::<Vec<Tried>>()
+    };
+    let all: Vec<Tried> = thread::scope(|scope| {
+        let workers = [scope.spawn(work), scope.spawn(work)];
+        workers.into_iter().flat_map(|worker| worker.join().unwrap()).collect()
+    });
+    let failed: Vec<&str> = all.iter().flat_map(|page| &page.failed).map(String::as_str).collect();
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+    let run: usize = all.iter().map(|page| page.run).sum();
+    assert!(run > 60, "only {run} commands were found");
+    for (i, (start, _)) in ELSEWHERE.iter().enumerate() {
+        assert!(
+            all.iter().any(|page| page.elsewhere[i]),
+            "no page has a command `{start}` any more"
+        );
+    }
+}
+
+/// Runs the commands of a page in a folder of its own.
+fn tried(page: &Page) -> Tried {
+    let mut tried = Tried::default();
+    let commands = commands(page);
+    if commands.is_empty() {
+        return tried;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    furnish(folder.path());
+    for command in commands {
+        if let Some(i) = ELSEWHERE.iter().position(|(start, _)| command.starts_with(start)) {
+            tried.elsewhere[i] = true;
             continue;
         }
-        let folder = tempfile::tempdir().unwrap();
-        furnish(folder.path());
-        for command in commands {
-            if let Some(i) = ELSEWHERE.iter().position(|(start, _)| command.starts_with(start)) {
-                elsewhere[i] = true;
-                continue;
-            }
-            let missing =
-                WHERE_THERE_IS.iter().find(|(part, test)| command.contains(part) && !works(test));
-            if missing.is_some() {
-                continue;
-            }
-            let smaller = SMALLER.iter().fold(command.clone(), |text, (a, b)| text.replace(a, b));
-            run += 1;
-            if let Err(words) = shell(&smaller, folder.path()) {
-                failed.push(format!("{}: {command}\n{words}", page.path));
-            }
+        let missing =
+            WHERE_THERE_IS.iter().find(|(part, test)| command.contains(part) && !works(test));
+        if missing.is_some() {
+            continue;
+        }
+        let smaller = SMALLER.iter().fold(command.clone(), |text, (a, b)| text.replace(a, b));
+        tried.run += 1;
+        if let Err(words) = shell(&smaller, folder.path()) {
+            tried.failed.push(format!("{}: {command}\n{words}", page.path));
         }
     }
-    assert!(failed.is_empty(), "{}", failed.join("\n"));
-    assert!(run > 60, "only {run} commands were found");
-    for ((start, _), met) in ELSEWHERE.iter().zip(elsewhere) {
-        assert!(met, "no page has a command `{start}` any more");
-    }
+    tried
 }
 
 #[test]

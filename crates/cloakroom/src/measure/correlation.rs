@@ -238,7 +238,7 @@ fn smooth(n: usize) -> usize {
 /// The transform of a size that [`smooth`] gives. (The library's planner knows all sizes; compiling it takes longer than all
 /// else here.)
 fn fft(size: usize, way: FftDirection) -> Arc<dyn Fft<f64>> {
-    if size % 3 != 0 {
+    if !size.is_multiple_of(3) {
         return Arc::new(Radix4::new(size, way));
     }
     Arc::new(MixedRadix::new(Arc::new(Radix4::new(size / 3, way)), Arc::new(Butterfly3::new(way))))

@@ -78,7 +78,6 @@ impl Screen {
 
     /// Image coordinates (u, v) of points of the plane, from 0 to 1 to the right and down, for a ray that looks
     /// along `direction`: upright and unmirrored from either side.
-    #[must_use]
     #[inline]
     pub fn image_position(&self, direction: DVec3) -> impl Fn(DVec3) -> [f64; 2] {
         let front = self.parts(direction).x.signum();

@@ -23,7 +23,6 @@ pub enum Convex {
 
 impl Convex {
     /// The space that it takes up; what has no end reaches to [`REACH`].
-    #[must_use]
     pub fn solid(&self) -> Solid {
         match *self {
             Self::Ball(sphere) => Solid::ball(sphere.radius),

@@ -148,7 +148,6 @@ impl Hull {
     }
 
     /// The solids that it fills.
-    #[must_use]
     pub fn solids(&self) -> &[Solid] {
         &self.solids
     }
