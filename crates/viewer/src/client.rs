@@ -115,13 +115,17 @@ impl Client {
         let source = self.server.opened.source_of(name);
         let _one = lock(&self.server.reading);
         let millions = MOST_PIXELS / 1_000_000;
+        let words = |problem: LoadProblem| match &problem {
+            LoadProblem::TooLarge => {
+                format!("the photograph is too large: at most {millions} million pixels")
+            }
+            LoadProblem::Empty => format!("this {}", LoadProblem::NotAnImage),
+            LoadProblem::NotAnImage | LoadProblem::OtherFormat(_) => format!("this {problem}"),
+            LoadProblem::Unsupported(_) => format!("this image {problem}"),
+            _ => "this image is damaged or cut short".to_owned(),
+        };
         let image =
-            load_bytes(&source, bytes, MOST_PIXELS).map_err(|error| match error.problem {
-                LoadProblem::TooLarge => {
-                    format!("the photograph is too large: at most {millions} million pixels")
-                }
-                problem => format!("this image {problem}"),
-            })?;
+            load_bytes(&source, bytes, MOST_PIXELS).map_err(|error| words(error.problem))?;
         let (width, height) = (image.width, image.height);
         // The old one makes room.
         *lock(&self.uploaded) = None;

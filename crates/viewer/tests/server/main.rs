@@ -175,7 +175,7 @@ fn photographs_are_read_with_care() {
     for (bytes, part) in [
         (&png[..png.len() / 2], "damaged"),
         (&b"GIF89a\x01\x00\x01\x00\x00\x00\x00"[..], "only PNG, JPEG and EXR"),
-        (&b""[..], "is empty"),
+        (&b""[..], "not an image"),
         (&b"hello, world, this is no image"[..], "not an image"),
         (&bomb[..], ""),
     ] {
