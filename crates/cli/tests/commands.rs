@@ -79,9 +79,9 @@ fn a_large_image_in_strips_is_the_whole_image() {
     let folder = tempfile::tempdir().unwrap();
     let render = |names: &[&str]| {
         let mut command = cloakroom();
-        command.arg("render").arg(paper("7d"));
+        command.arg("render").arg(paper("6a"));
         // More pixels than a strip has.
-        command.args(["--set", "camera.resolution=[2300, 1900]", "--set", "camera.samples=1"]);
+        command.args(["--set", "camera.resolution=[4200, 1001]", "--set", "camera.samples=1"]);
         for name in names {
             command.arg("-o").arg(folder.path().join(name));
         }

@@ -11,12 +11,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 /// What is written smaller before a command is run; `small.sh` does the rest.
-const SMALLER: [(&str, &str); 9] = [
+const SMALLER: [(&str, &str); 10] = [
     ("cargo run --release -- ", "cloakroom "),
     ("--frames 120", "--frames 3"),
     ("--frames 100", "--frames 3"),
     ("--frames 50", "--frames 3"),
     ("--frames-only 0..29", "--frames-only 0..1"),
+    ("--size 1600x1200", "--size 80x60"),
     ("--draws 20", "--draws 2"),
     ("--draws 8", "--draws 2"),
     ("--tile 0,0,2048,2048", "--tile 0,0,40,30"),

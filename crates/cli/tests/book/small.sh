@@ -6,16 +6,17 @@ words="$*"
 scene="--set camera.resolution=[40,30] --set camera.samples=1"
 case "$1" in
   render | animate) run "$@" $scene ;;
-  quality) run "$@" --set camera.resolution=[24,18] --set camera.samples=1 --set trace.min_power=0.01 ;;
+  quality) run "$@" --set camera.resolution=[12,9] --set camera.samples=1 --set trace.min_power=0.01 ;;
   figures | gallery) run "$@" $(unless --size 40x30) $(unless --samples 1) ;;
   flux) run "$@" $(unless --rays 64) $(unless --samples 2) ;;
   view)
     # It serves until Ctrl-C: wait for its address.
     "$CLOAKROOM" "$@" --no-open --port 0 > address &
     page=$!
-    for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
-      [ -s address ] && break
-      sleep 0.5
+    tries=200
+    until [ -s address ] || [ $tries = 0 ]; do
+      sleep 0.1
+      tries=$((tries - 1))
     done
     kill -TERM $page
     wait $page

@@ -8,7 +8,7 @@ use super::sweep::{Sweep, SweepError};
 use super::{MeasureError, Plan, View, empty, ideal, survey};
 use crate::keys::hint;
 use crate::render::{
-    ChannelSet, PreparedScene, PreparedSceneError, RenderError, Supervision, render,
+    ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Supervision, render,
 };
 use crate::scene::Scene;
 use crate::scene_file::{Loaded, SceneFileError};
@@ -120,8 +120,12 @@ fn same_view(one: &Scene, other: &Scene) -> bool {
         && one.surroundings == other.surroundings
 }
 
-fn prepared<'s>(scene: &'s Scene, loaded: &Loaded) -> Result<PreparedScene<'s>, QualityError> {
-    PreparedScene::new(scene).map_err(|error| located(loaded, &error))
+fn prepared<'s>(
+    scene: &'s Scene,
+    loaded: &Loaded,
+    images: &mut Images,
+) -> Result<PreparedScene<'s>, QualityError> {
+    PreparedScene::with_images(scene, images).map_err(|error| located(loaded, &error))
 }
 
 /// Renders the scene of every combination, its ideal and its empty view, and measures them; where the scene is random,
@@ -134,6 +138,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
     let mut stats = TraceStats::default();
     let mut rows = Vec::new();
     let mut metadata = Vec::new();
+    let mut images = Images::default();
     let mut last_empty: Option<(Scene, View)> = None;
     for Combination { settings, held, loaded } in &plan.scenes {
         let scene = &loaded.scene;
@@ -147,10 +152,10 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
                 (supervision.rows_done)(u64::from(scene.camera.resolution[1]));
                 view
             }
-            _ => View::of(&picture(&prepared(&empty(scene), loaded)?)?)?,
+            _ => View::of(&picture(&prepared(&empty(scene), loaded, &mut images)?)?)?,
         };
         let wanted_scene = ideal(scene);
-        let wanted_prepared = prepared(&wanted_scene, loaded)?;
+        let wanted_prepared = prepared(&wanted_scene, loaded, &mut images)?;
         let wanted = if wanted_scene.devices.is_empty() {
             (supervision.rows_done)(u64::from(scene.camera.resolution[1]));
             empty.clone()
@@ -160,7 +165,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
         let mut statistics = Statistics::default();
         for draw in 0..plan.draws_of(scene) {
             let scene = &drawn(scene, draw);
-            let drawn = prepared(scene, loaded)?;
+            let drawn = prepared(scene, loaded, &mut images)?;
             let shown = picture(&drawn)?;
             let view = View::of(&shown)?;
             let rays = survey(&drawn, &wanted_prepared, supervision)?;

@@ -38,13 +38,16 @@ impl Drawing {
         }
         let paper = Rectangle::new().set("width", w).set("height", h).set("fill", "#ffffff");
         document = document.add(paper);
+        // Neighbours share their clip.
+        let (mut clipped, mut last) = (0, None);
         for (index, element) in self.elements.iter().enumerate() {
-            if let Some(clip) = &element.clip {
+            if let Some(clip) = element.clip.as_ref().filter(|clip| last != Some(*clip)) {
                 let path = path(contours(clip)).set("clip-rule", "evenodd");
                 let id = format!("clip{index}");
                 document = document.add(ClipPath::new().set("id", id).add(path));
+                (clipped, last) = (index, Some(clip));
             }
-            document = document.add(node(element, index, source));
+            document = document.add(node(element, clipped, index, source));
         }
         format!("{document}\n")
     }
@@ -52,13 +55,14 @@ impl Drawing {
 
 fn node(
     element: &Element,
+    clip: usize,
     index: usize,
     source: &dyn Fn(usize, &RgbImage) -> Option<String>,
 ) -> Group {
     let mut group = Group::new().set("class", element.class);
     if element.clip.is_some() {
         // The clip is in the coordinates of the sheet: it belongs to the group, not to an image in it.
-        group = group.set("clip-path", format!("url(#clip{index})"));
+        group = group.set("clip-path", format!("url(#clip{clip})"));
     }
     match &element.shape {
         Shape::Area(loops) => {

@@ -5,12 +5,13 @@ use cloakroom::assembly::Assembly;
 use cloakroom::device::FactValue;
 use cloakroom::measure::{Region, Survey, View, correlation, survey};
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, PreparedScene, Supervision, assembly, render};
+use cloakroom::render::{ChannelSet, Images, PreparedScene, Supervision, assembly, render};
 use cloakroom::scene::Scene;
 use cloakroom::scene_file;
 use cloakroom::trace::{Launch, Leaf, Limits, PathSegment, Tracer};
 use glam::DVec3;
 use optics::wave::transverse_basis;
+use std::cell::RefCell;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -35,6 +36,8 @@ pub(super) const GAUSSIAN: &str = "[[device]]\nkind = \"double-gaussian-cloak\"\
 /// Makes and measures; stops when it is asked to.
 pub(super) struct Fixture<'s> {
     pub stop: &'s AtomicBool,
+    /// Those of the scenes so far.
+    pub images: RefCell<Images>,
 }
 
 /// A device as the paper's camera sees it.
@@ -76,10 +79,14 @@ impl Fixture<'_> {
         Ok(loaded.map_err(Box::new)?.scene)
     }
 
+    fn prepared<'a>(&self, scene: &'a Scene) -> Result<PreparedScene<'a>> {
+        Ok(PreparedScene::with_images(scene, &mut self.images.borrow_mut())?)
+    }
+
     /// The picture of a device.
     pub fn show(&self, device: &str, polarizer: &str) -> Result<Shown> {
         let scene = Self::scene(device, polarizer)?;
-        let prepared = PreparedScene::new(&scene)?;
+        let prepared = self.prepared(&scene)?;
         let supervision = Supervision { rows_done: &|_| {}, stop: self.stop };
         let picture = render(&prepared, ChannelSet::Everything, &supervision)?.picture;
         Ok(Shown { view: View::of(&picture)?, picture })
@@ -93,7 +100,7 @@ impl Fixture<'_> {
     /// Where the rays of a device's picture go, against those of the empty view.
     fn survey(&self, device: &str, polarizer: &str) -> Result<Survey> {
         let (scene, empty) = (Self::scene(device, polarizer)?, Self::scene("", polarizer)?);
-        let (prepared, ideal) = (PreparedScene::new(&scene)?, PreparedScene::new(&empty)?);
+        let (prepared, ideal) = (self.prepared(&scene)?, self.prepared(&empty)?);
         let supervision = Supervision { rows_done: &|_| {}, stop: self.stop };
         Ok(survey(&prepared, &ideal, &supervision)?)
     }

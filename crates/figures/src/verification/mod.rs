@@ -20,6 +20,7 @@ use cloakroom::scene_file::SceneFileError;
 use cloakroom::trace::Stopped;
 use finding::Page;
 use fixture::Fixture;
+use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Why the paper could not be gone through.
@@ -79,7 +80,7 @@ pub fn steps() -> u64 {
 ///
 /// If the work was stopped, or a picture could not be made.
 pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Result<Vec<Finding>> {
-    let fixture = Fixture { stop };
+    let fixture = Fixture { stop, images: RefCell::default() };
     let mut page = Page::default();
     for check in CHECKS {
         if stop.load(Ordering::Relaxed) {

@@ -2,6 +2,7 @@
 
 use super::Numbers;
 use super::hamiltonian::{Dual, follow, spherical};
+use crate::long;
 use glam::DVec3;
 use optics::medium::ModeKind;
 use optics::propagation::reference::{self, ReferenceRay, SquaredIndex};
@@ -57,7 +58,7 @@ fn fisheye(r: f64) -> (f64, f64) {
 /// Rays through a lens against Hamilton's equations of p² = n².
 fn check(lens: CentralLens, index: impl Fn(f64) -> (f64, f64) + Copy, least: f64) {
     let mut numbers = Numbers(7);
-    for _ in 0..300 {
+    for _ in 0..long::count(40, 300) {
         let (position, d) = entry(&mut numbers, least);
         let r = numbers.between(0.1, 1.0) * RADIUS;
         assert!((lens.index(r) / index(r).0 - 1.0).abs() < 1e-10, "{r}");
@@ -181,7 +182,7 @@ fn the_transmuted_sphere_against_hamiltons_equations() {
         assert!((sphere.extraordinary_index(r) / extraordinary_index(r).0 - 1.0).abs() < 1e-11);
     }
     let mut numbers = Numbers(3);
-    for _ in 0..300 {
+    for _ in 0..long::count(40, 300) {
         let (position, d) = entry(&mut numbers, 0.05);
         let x = position / RADIUS;
         let impact = x.cross(d).length();

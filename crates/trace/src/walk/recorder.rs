@@ -63,8 +63,29 @@ pub struct Line {
     pub leaves: bool,
 }
 
-/// All pieces of the tree of a ray. `weights` are the shares of the launched polarizations; a leaf is followed for
-/// `reach` (cm).
+/// What is drawn of a tree: light that is caught in a device goes to and fro in it for ever, or through the same point.
+struct Drawn<const N: usize> {
+    segments: Vec<PathSegment<N>>,
+    /// Segments are drawn that begin at less optical path and are longer than this, cm.
+    until: f64,
+    shortest: f64,
+}
+
+impl<const N: usize> PathRecorder<N> for Drawn<N> {
+    fn record(&mut self, leg: impl FnOnce() -> PathSegment<N>) {
+        let leg = leg();
+        let moves = leg
+            .path
+            .windows(2)
+            .any(|ends| ends[0].position.distance(ends[1].position) > self.shortest);
+        if moves && leg.optical_path < self.until {
+            self.segments.push(leg);
+        }
+    }
+}
+
+/// The pieces of the tree of a ray. `weights` are the shares of the launched polarizations; a leaf is followed for
+/// `reach` (cm), light that does not leave for 100 times that.
 #[must_use]
 pub fn lines<const N: usize>(
     assembly: &Assembly,
@@ -74,7 +95,8 @@ pub fn lines<const N: usize>(
     reach: f64,
 ) -> Vec<Line> {
     let weighed = |power: [f64; N]| power.iter().zip(weights).map(|(p, w)| p * w).sum();
-    let mut tracer = Tracer::new(assembly, limits).watched(Vec::new());
+    let drawn = Drawn { segments: Vec::new(), until: 100.0 * reach, shortest: 1e-9 * reach };
+    let mut tracer = Tracer::new(assembly, limits).watched(drawn);
     let (leaves, _) = tracer.trace(launch);
     let mut lines: Vec<Line> = leaves
         .iter()
@@ -90,7 +112,7 @@ pub fn lines<const N: usize>(
             leaves: true,
         })
         .collect();
-    lines.extend(tracer.recorder().drain(..).map(|leg| {
+    lines.extend(tracer.recorder().segments.drain(..).map(|leg| {
         let pose = leg.inside.map(|(device, _)| assembly.devices()[usize::from(device)].pose);
         let point = |at: PathPoint| PathPoint {
             position: pose.map_or(at.position, |pose| pose.to_world(at.position)),

@@ -1,5 +1,6 @@
 //! Thousands of messages that make no sense: each is answered with an error and nothing else.
 
+use crate::long;
 use crate::page::{Heard, Page, Server, look};
 use serde_json::{Value, json};
 use tokio_tungstenite::tungstenite::Message;
@@ -127,7 +128,8 @@ fn malformed_messages_are_answered_with_an_error_and_nothing_else() {
     let server = Server::start(0);
     let mut random = Random(20_131_105);
     let mut errors = 0;
-    for _ in 0..50 {
+    let pages = long::count(12, 50);
+    for _ in 0..pages {
         let mut page = server.page();
         for _ in 0..100 {
             page.socket.send(Message::text(spoiled(&mut random))).unwrap();
@@ -141,7 +143,7 @@ fn malformed_messages_are_answered_with_an_error_and_nothing_else() {
         page.say(&look(9, 5.0, 1));
         page.finished(9);
     }
-    assert!(errors > 3000, "{errors}");
+    assert!(errors > 60 * pages, "{errors}");
 }
 
 /// Reads on until the answer to the message that only an error can answer.
