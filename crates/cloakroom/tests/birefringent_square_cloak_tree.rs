@@ -30,6 +30,10 @@ const DESIGNS: [(Design, &str); 3] = [
     (Design::Matched, "impedance-matched"),
 ];
 
+fn of_components([x, y, z]: [Complex64; 3]) -> ComplexVector {
+    ComplexVector { re: DVec3::new(x.re, y.re, z.re), im: DVec3::new(x.im, y.im, z.im) }
+}
+
 fn assembly(material: &str, rounded: bool, rotation: f64, length: Option<f64>) -> Assembly {
     let mut text = format!(
         "[[device]]\nkind = \"square-cloak\"\nmaterial = \"{material}\"\nrounded = {rounded}\n\
@@ -83,7 +87,7 @@ fn differences(ours: &Leaf<POLARIZATIONS>, plain: &PlainLeaf<POLARIZATIONS>) -> 
     let mut worst = [0.0f64; 2];
     for (i, fields) in plain.fields.iter().enumerate() {
         let [x, y, z, ..] = *fields;
-        let field = ComplexVector::from_components([x, y, z]) - ours.electric[i];
+        let field = of_components([x, y, z]) - ours.electric[i];
         worst[0] = worst[0].max((ours.power[i] - poynting(fields).length()).abs());
         worst[1] = worst[1].max(field.norm_squared().sqrt());
     }
@@ -122,8 +126,7 @@ impl Comparison {
     ) {
         let (origin, direction) = ray;
         let electric = polarizations(direction);
-        let launch =
-            Launch { origin, direction, electric: electric.map(ComplexVector::from_components) };
+        let launch = Launch { origin, direction, electric: electric.map(of_components) };
         let (leaves, outcome) = tracer.trace(&launch);
         if outcome.stats.endless > 0 {
             // Trapped for good between the ends.

@@ -33,7 +33,7 @@ fn prism(glass: bool) -> Assembly {
     } else {
         Vec::new()
     };
-    let outline = Outline::new(corners.to_vec());
+    let outline = Outline { corners: corners.to_vec() };
     let hull = Hull::new(Solid::Prism { outline, extent: Extent::ENDLESS });
     let structure = Structure { regions, surfaces, hull };
     Assembly::new(vec![Placed { pose: Pose::new(DVec3::ZERO, 0.0), structure }])

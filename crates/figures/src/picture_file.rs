@@ -2,7 +2,9 @@
 
 use super::drawing::DrawingFormat;
 use super::{ColorScale, IllustrationError, ScalarMap};
-use cloakroom::output::{Format, OutputError, Picture, RgbImage, to_srgb, write, write_png};
+use cloakroom::output::{
+    Format, OutputError, Picture, RgbImage, format_of, to_srgb, write, write_png,
+};
 use std::path::Path;
 
 /// A format of files of pictures.
@@ -21,12 +23,9 @@ impl PictureFormat {
     ///
     /// [`OutputError::UnknownFormat`] for any other ending.
     pub fn of(path: &Path) -> Result<Self, OutputError> {
-        match DrawingFormat::known(path) {
-            None | Some(DrawingFormat::Png) => Format::of(path).map(Self::Pixels).map_err(|_| {
-                OutputError::unknown_format(path, ".png, .exr or .npz, for a map also .svg or .pdf")
-            }),
-            Some(format) => Ok(Self::Map(format)),
-        }
+        let [png, exr, npz] = [Format::Png, Format::Exr, Format::Npz].map(Self::Pixels);
+        let [svg, pdf] = [DrawingFormat::Svg, DrawingFormat::Pdf].map(Self::Map);
+        format_of(path, &[("png", png), ("exr", exr), ("npz", npz), ("svg", svg), ("pdf", pdf)])
     }
 
     /// Whether a file of the format shows what people see, and is no data.
@@ -115,6 +114,6 @@ mod tests {
         }
         assert!(written("f.npz", map).is_ok());
         let message = PictureFormat::of("a.jpg".as_ref()).expect_err("unknown").to_string();
-        assert!(message.contains(".png, .exr or .npz, for a map also .svg or .pdf"), "{message}");
+        assert!(message.contains(".png, .exr, .npz, .svg or .pdf"), "{message}");
     }
 }

@@ -3,7 +3,7 @@
 use crate::quantity::with_unit;
 use crate::{Curve, CurvePoint, DrawingFormat, IllustrationError, Plot, PlotPanel};
 use cloakroom::measure::{QualityTable, Row, combinations, name_and_unit};
-use cloakroom::output::{OutputError, ending};
+use cloakroom::output::{OutputError, format_of};
 use std::path::Path;
 
 /// What a plot shows unless it is told otherwise.
@@ -28,13 +28,10 @@ impl TableFormat {
     ///
     /// [`OutputError::UnknownFormat`] for any other ending.
     pub fn of(path: &Path) -> Result<Self, OutputError> {
-        match ending(path).as_deref() {
-            Some("csv") => Ok(Self::Csv),
-            Some("npz") => Ok(Self::Npz),
-            _ => DrawingFormat::known(path)
-                .map(Self::Plot)
-                .ok_or_else(|| OutputError::unknown_format(path, ".csv, .npz, .svg, .pdf or .png")),
-        }
+        let [svg, pdf, png] =
+            [DrawingFormat::Svg, DrawingFormat::Pdf, DrawingFormat::Png].map(Self::Plot);
+        let data = [("csv", Self::Csv), ("npz", Self::Npz)];
+        format_of(path, &[data[0], data[1], ("svg", svg), ("pdf", pdf), ("png", png)])
     }
 }
 

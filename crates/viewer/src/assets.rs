@@ -1,25 +1,21 @@
 //! The files of the page, carried in the program: nothing is read from the disk.
 
-/// An asset of the folder `page`.
-macro_rules! asset {
-    ($path:literal, $file:literal, $kind:literal) => {
-        ($path, $kind, include_bytes!(concat!("../page/", $file)))
+/// Files of the folder `page` by their media types.
+macro_rules! assets {
+    ($($kind:literal: $($file:literal)+;)+) => {
+        &[$($((
+            concat!("/", $file),
+            concat!($kind, "; charset=utf-8"),
+            include_bytes!(concat!("../page/", $file)),
+        )),+),+]
     };
 }
 
 /// All of them: their paths in the address, media types, and what they hold.
-pub(crate) static ASSETS: &[(&str, &str, &[u8])] = &[
-    asset!("/", "index.html", "text/html; charset=utf-8"),
-    asset!("/style.css", "style.css", "text/css; charset=utf-8"),
-    asset!("/icon.svg", "icon.svg", "image/svg+xml"),
-    asset!("/gestures.js", "gestures.js", "text/javascript; charset=utf-8"),
-    asset!("/main.js", "main.js", "text/javascript; charset=utf-8"),
-    asset!("/choices.js", "choices.js", "text/javascript; charset=utf-8"),
-    asset!("/state.js", "state.js", "text/javascript; charset=utf-8"),
-    asset!("/orbit.js", "orbit.js", "text/javascript; charset=utf-8"),
-    asset!("/connection.js", "connection.js", "text/javascript; charset=utf-8"),
-    asset!("/picture.js", "picture.js", "text/javascript; charset=utf-8"),
-    asset!("/section.js", "section.js", "text/javascript; charset=utf-8"),
-    asset!("/controls.js", "controls.js", "text/javascript; charset=utf-8"),
-    asset!("/numbers.js", "numbers.js", "text/javascript; charset=utf-8"),
-];
+pub(crate) static ASSETS: &[(&str, &str, &[u8])] = assets! {
+    "text/html": "index.html";
+    "text/css": "style.css";
+    "image/svg+xml": "icon.svg";
+    "text/javascript": "gestures.js" "main.js" "choices.js" "state.js" "orbit.js" "connection.js" "picture.js" "section.js"
+        "controls.js" "numbers.js";
+};

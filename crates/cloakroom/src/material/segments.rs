@@ -3,7 +3,7 @@
 use super::{MaterialError, chosen};
 use crate::assembly::Assembly;
 use crate::device::{HomogeneousRegion, Region};
-use crate::output::{OutputError, WriteSeek, ending, write_whole};
+use crate::output::{OutputError, WriteSeek, format_of, write_whole};
 use crate::scene::Scene;
 use glam::{DMat3, DVec2, DVec3};
 use optics::medium::{Medium, principal_axes};
@@ -110,11 +110,11 @@ pub fn segments(
 ///
 /// If the ending is another, or the file cannot be written.
 pub fn write_segments(segments: &[Segment], path: &Path) -> Result<(), OutputError> {
-    match ending(path).as_deref() {
-        Some("csv") => write_whole(path, |out| csv(segments, out)),
-        Some("json") => write_whole(path, |out| Ok(serde_json::to_writer_pretty(out, segments)?)),
-        _ => Err(OutputError::unknown_format(path, ".csv or .json")),
-    }
+    let is_json = format_of(path, &[("csv", false), ("json", true)])?;
+    write_whole(path, |out| match is_json {
+        true => Ok(serde_json::to_writer_pretty(out, segments)?),
+        false => csv(segments, out),
+    })
 }
 
 fn csv(segments: &[Segment], out: &mut dyn WriteSeek) -> io::Result<()> {

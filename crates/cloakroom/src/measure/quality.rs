@@ -120,14 +120,6 @@ fn same_view(one: &Scene, other: &Scene) -> bool {
         && one.surroundings == other.surroundings
 }
 
-fn prepared<'s>(
-    scene: &'s Scene,
-    loaded: &Loaded,
-    images: &mut Images,
-) -> Result<PreparedScene<'s>, QualityError> {
-    PreparedScene::with_images(scene, images).map_err(|error| located(loaded, &error))
-}
-
 /// Renders the scene of every combination, its ideal and its empty view, and measures them; where the scene is random,
 /// every draw of it.
 ///
@@ -142,6 +134,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
     let mut last_empty: Option<(Scene, View)> = None;
     for Combination { settings, held, loaded } in &plan.scenes {
         let scene = &loaded.scene;
+        let failed = |error| located(loaded, &error);
         let mut picture = |prepared: &PreparedScene<'_>| {
             let rendered = render(prepared, ChannelSet::Everything, supervision)?;
             stats += rendered.stats;
@@ -152,10 +145,13 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
                 (supervision.rows_done)(u64::from(scene.camera.resolution[1]));
                 view
             }
-            _ => View::of(&picture(&prepared(&empty(scene), loaded, &mut images)?)?)?,
+            _ => View::of(&picture(
+                &PreparedScene::with_images(&empty(scene), &mut images).map_err(failed)?,
+            )?)?,
         };
         let wanted_scene = ideal(scene);
-        let wanted_prepared = prepared(&wanted_scene, loaded, &mut images)?;
+        let wanted_prepared =
+            PreparedScene::with_images(&wanted_scene, &mut images).map_err(failed)?;
         let wanted = if wanted_scene.devices.is_empty() {
             (supervision.rows_done)(u64::from(scene.camera.resolution[1]));
             empty.clone()
@@ -165,7 +161,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
         let mut statistics = Statistics::default();
         for draw in 0..plan.draws_of(scene) {
             let scene = &drawn(scene, draw);
-            let drawn = prepared(scene, loaded, &mut images)?;
+            let drawn = PreparedScene::with_images(scene, &mut images).map_err(failed)?;
             let shown = picture(&drawn)?;
             let view = View::of(&shown)?;
             let rays = survey(&drawn, &wanted_prepared, supervision)?;

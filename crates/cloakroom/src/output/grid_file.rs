@@ -1,6 +1,6 @@
 //! Data on a regular grid of cells, into files: NPZ, VTK image data and CSV.
 
-use super::{OutputError, ending, write_npz, write_whole};
+use super::{OutputError, format_of, write_npz, write_whole};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use glam::DVec3;
 use ndarray::ShapeBuilder;
@@ -89,12 +89,7 @@ impl GridFormat {
     ///
     /// [`OutputError::UnknownFormat`] for any other ending.
     pub fn of(path: &Path) -> Result<Self, OutputError> {
-        match ending(path).as_deref() {
-            Some("npz") => Ok(Self::Npz),
-            Some("vti") => Ok(Self::Vti),
-            Some("csv") => Ok(Self::Csv),
-            _ => Err(OutputError::unknown_format(path, ".npz, .vti or .csv")),
-        }
+        format_of(path, &[("npz", Self::Npz), ("vti", Self::Vti), ("csv", Self::Csv)])
     }
 }
 

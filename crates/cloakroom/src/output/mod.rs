@@ -40,7 +40,7 @@ pub enum OutputError {
         /// Which file.
         path: PathBuf,
         /// The endings there are for what it is to hold.
-        known: &'static str,
+        known: String,
     },
     /// The picture has no image: this channel is missing.
     #[error("the picture has no channel `{0}`")]
@@ -59,11 +59,6 @@ impl OutputError {
         };
         Self::Write { path: path.to_owned(), reason }
     }
-
-    /// For a file whose name has none of the endings `known`.
-    pub fn unknown_format(path: &Path, known: &'static str) -> Self {
-        Self::UnknownFormat { path: path.to_owned(), known }
-    }
 }
 
 /// The error of the system beneath those that encoders wrap around it.
@@ -79,6 +74,22 @@ fn innermost(error: &io::Error) -> &io::Error {
 #[must_use]
 pub fn ending(path: &Path) -> Option<String> {
     path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase())
+}
+
+/// The format that the ending of a file's name asks for, of those known.
+///
+/// # Errors
+///
+/// [`OutputError::UnknownFormat`] for any other ending.
+pub fn format_of<T: Copy>(path: &Path, known: &[(&str, T)]) -> Result<T, OutputError> {
+    let ending = ending(path);
+    let format = known.iter().find(|(name, _)| ending.as_deref() == Some(name));
+    format.map(|(_, format)| *format).ok_or_else(|| {
+        let names: Vec<String> = known.iter().map(|(name, _)| format!(".{name}")).collect();
+        let (last, others) = names.split_last().expect("formats");
+        let known = format!("{} or {last}", others.join(", "));
+        OutputError::UnknownFormat { path: path.to_owned(), known }
+    })
 }
 
 /// A format of picture files.
@@ -99,12 +110,7 @@ impl Format {
     ///
     /// [`OutputError::UnknownFormat`] for any other ending.
     pub fn of(path: &Path) -> Result<Self, OutputError> {
-        match ending(path).as_deref() {
-            Some("png") => Ok(Self::Png),
-            Some("exr") => Ok(Self::Exr),
-            Some("npz") => Ok(Self::Npz),
-            _ => Err(OutputError::unknown_format(path, ".png, .exr or .npz")),
-        }
+        format_of(path, &[("png", Self::Png), ("exr", Self::Exr), ("npz", Self::Npz)])
     }
 }
 

@@ -5,10 +5,11 @@
 //! waves of the medium, whatever the medium is. The null space at each is its fields; at a double
 //! eigenvalue it has two dimensions, and any basis does.
 
-use faer::Mat;
-use faer::linalg::solvers::Solve;
 use glam::{DMat3, DVec3};
+use nalgebra::DMatrix;
 use num_complex::Complex64;
+
+type Matrix = DMatrix<Complex64>;
 
 /// E and H of a wave, in the world's frame.
 pub type Fields = [Complex64; 6];
@@ -34,10 +35,10 @@ struct Wave {
 const ONE_ROOT: f64 = 1e-10;
 
 /// The left-hand side of Maxwell's equations as a matrix.
-fn maxwell(material: &Material, p: [Complex64; 3]) -> Mat<Complex64> {
+fn maxwell(material: &Material, p: [Complex64; 3]) -> Matrix {
     let zero = Complex64::ZERO;
     let curl = [[zero, -p[2], p[1]], [p[2], zero, -p[0]], [-p[1], p[0], zero]];
-    Mat::from_fn(6, 6, |i, j| match (i < 3, j < 3) {
+    Matrix::from_fn(6, 6, |i, j| match (i < 3, j < 3) {
         (true, true) => curl[i][j],
         (true, false) => (-material.permeability.col(j - 3)[i]).into(),
         (false, true) => material.permittivity.col(j)[i - 3].into(),
@@ -46,10 +47,10 @@ fn maxwell(material: &Material, p: [Complex64; 3]) -> Mat<Complex64> {
 }
 
 /// A reflection along no axis in particular, I - 2 w wᵀ/w².
-fn reflection() -> Mat<Complex64> {
+fn reflection() -> Matrix {
     let w: [f64; 6] = [0.31, -0.74, 0.52, 0.93, -0.18, 0.65];
     let square: f64 = w.iter().map(|x| x * x).sum();
-    Mat::from_fn(6, 6, |i, j| (f64::from(u8::from(i == j)) - 2.0 * w[i] * w[j] / square).into())
+    Matrix::from_fn(6, 6, |i, j| (f64::from(u8::from(i == j)) - 2.0 * w[i] * w[j] / square).into())
 }
 
 fn complex(v: DVec3) -> [Complex64; 3] {
@@ -69,11 +70,12 @@ fn waves(material: &Material, t: DVec3, n: DVec3) -> Vec<Wave> {
     let shift = Complex64::new(0.37, 0.61);
     let void = Material { permittivity: DMat3::ZERO, permeability: DMat3::ZERO };
     let slope = maxwell(&void, complex(n));
-    let matrix = maxwell(material, wave_vector(t, shift, n)).partial_piv_lu().solve(&slope);
-    let mut values = matrix.eigenvalues().expect("six eigenvalues");
-    values.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+    let matrix =
+        maxwell(material, wave_vector(t, shift, n)).lu().solve(&slope).expect("no eigenvalue");
+    let mut values = matrix.schur().eigenvalues().expect("six eigenvalues");
+    values.as_mut_slice().sort_by(|a, b| b.norm().total_cmp(&a.norm()));
     let mut roots: Vec<(Complex64, usize)> = Vec::new();
-    for value in &values[..4] {
+    for value in &values.as_slice()[..4] {
         let q = shift - 1.0 / value;
         match roots.iter_mut().find(|(other, _)| (*other - q).norm() < ONE_ROOT) {
             Some((mean, count)) => {
@@ -91,7 +93,7 @@ fn waves(material: &Material, t: DVec3, n: DVec3) -> Vec<Wave> {
             // Turned out of all symmetry, in which the singular value decomposition may not converge.
             let turned = &turn * maxwell(material, wave_vector(t, q, n)) * &turn;
             // Singular values are sorted, the largest first.
-            let vectors = &turn * turned.svd().expect("singular vectors").V();
+            let vectors = &turn * turned.svd(false, true).v_t.expect("singular vectors").adjoint();
             let basis = (6 - count..6).map(|j| std::array::from_fn(|i| vectors[(i, j)])).collect();
             Wave { q, basis }
         })
@@ -158,12 +160,12 @@ pub fn scatter<const N: usize>(
     };
     let size = if to.is_some() { 4 } else { 2 };
     assert_eq!(columns.len(), size, "waves out of an interface");
-    let matrix = Mat::from_fn(size, size, |row, j| {
+    let matrix = Matrix::from_fn(size, size, |row, j| {
         let (reflected, f) = &columns[j];
         tangential(f, row) * if *reflected { 1.0 } else { -1.0 }
     });
-    let right = Mat::from_fn(size, N, |row, i| -tangential(&fields[i], row));
-    let amplitudes = matrix.full_piv_lu().solve(&right);
+    let right = Matrix::from_fn(size, N, |row, i| -tangential(&fields[i], row));
+    let amplitudes = matrix.full_piv_lu().solve(&right).expect("amplitudes");
     let mut first_column = 0;
     let mut outgoing = Vec::new();
     for (reflected, wave) in out {

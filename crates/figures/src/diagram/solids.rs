@@ -88,7 +88,7 @@ impl Solids<'_> {
     fn add_device(&mut self, placed: &Placed) {
         let structure = &placed.structure;
         let section = structure.cross_section();
-        let is_ball = structure.hull.solids().iter().all(|solid| {
+        let is_ball = structure.hull.solids.iter().all(|solid| {
             let whole = match solid {
                 Solid::Hollow { whole, .. } => whole.as_ref(),
                 solid => solid,
@@ -109,7 +109,7 @@ impl Solids<'_> {
         let outer = outer.filter(|contour| !section.metal.contains(contour));
         let parts = outer.map(|c| (c, false)).chain(section.metal.iter().map(|c| (c, true)));
         for (contour, metal) in parts {
-            if is_ball && !structure.hull.solids().is_empty() {
+            if is_ball && !structure.hull.solids.is_empty() {
                 self.add_ball(placed, contour, metal);
             } else {
                 self.add_prism(placed, contour, ends, metal);
@@ -166,7 +166,7 @@ impl Solids<'_> {
             };
             (0..=AROUND).map(at)
         };
-        let cut = placed.structure.hull.solids().iter().find_map(|solid| match solid {
+        let cut = placed.structure.hull.solids.iter().find_map(|solid| match solid {
             Solid::CutBall { ball, .. } => Some(*ball),
             _ => None,
         });

@@ -2,7 +2,7 @@
 
 use super::super::IllustrationError;
 use super::Drawing;
-use cloakroom::output::{OutputError, ending, write_png, write_whole};
+use cloakroom::output::{OutputError, format_of, write_png, write_whole};
 use std::path::Path;
 
 /// A format of files of drawings.
@@ -23,18 +23,7 @@ impl DrawingFormat {
     ///
     /// [`OutputError::UnknownFormat`] for any other ending.
     pub fn of(path: &Path) -> Result<Self, OutputError> {
-        Self::known(path).ok_or_else(|| OutputError::unknown_format(path, ".svg, .pdf or .png"))
-    }
-
-    /// The format that the ending of a file's name asks for, if it is one of a drawing.
-    #[must_use]
-    pub fn known(path: &Path) -> Option<Self> {
-        match ending(path).as_deref() {
-            Some("svg") => Some(Self::Svg),
-            Some("pdf") => Some(Self::Pdf),
-            Some("png") => Some(Self::Png),
-            _ => None,
-        }
+        format_of(path, &[("svg", Self::Svg), ("pdf", Self::Pdf), ("png", Self::Png)])
     }
 }
 

@@ -75,8 +75,7 @@ impl Face {
 
     /// Half the height of capitals, in type of size 1.
     pub(super) fn half_capital(self) -> f64 {
-        let height = self.font().capital_height().map_or(0.7, |h| f64::from(h) * self.scale());
-        0.5 * height
+        0.5 * self.font().capital_height().map_or(0.7, |h| f64::from(h) * self.scale())
     }
 
     fn advance(self, c: char) -> f64 {

@@ -271,5 +271,5 @@ fn outline(shape: &[DVec2]) -> Outline {
     if turn(&points) < 0.0 {
         points.reverse();
     }
-    Outline::new(points)
+    Outline { corners: points }
 }

@@ -52,7 +52,7 @@ impl<'s> Convex<'s> {
     pub fn of(solid: &'s Solid) -> Option<Self> {
         let upright = |section, extent| Self { section, extent, pose: Pose::IDENTITY };
         match solid {
-            Solid::Prism { outline, .. } if outline.corners().is_empty() => None,
+            Solid::Prism { outline, .. } if outline.corners.is_empty() => None,
             Solid::Prism { outline, extent } => Some(upright(Section::Outline(outline), *extent)),
             Solid::Cylinder { centre, radius, extent } => {
                 Some(upright(Section::Disc { centre: *centre, radius: *radius }, *extent))
@@ -93,8 +93,8 @@ impl<'s> Convex<'s> {
                 axis: self.pose.axis(),
                 radius,
             }),
-            Section::Outline(outline) if outline.corners().len() == 2 => {
-                let (a, b) = (outline.corners()[0], outline.corners()[1]);
+            Section::Outline(outline) if outline.corners.len() == 2 => {
+                let (a, b) = (outline.corners[0], outline.corners[1]);
                 let along = (b - a).normalize_or_zero();
                 let across = 4.0 * along.perp();
                 for (normal, offset) in [
@@ -121,7 +121,7 @@ impl<'s> Convex<'s> {
         let (middle, radius) = match self.section {
             Section::Disc { centre, radius } => (centre, radius),
             Section::Outline(outline) => {
-                let corners = outline.corners();
+                let corners = &outline.corners;
                 let middle = corners.iter().sum::<DVec2>() / corners.len() as f64;
                 let far = corners.iter().map(|corner| corner.distance(middle));
                 (middle, far.fold(0.0, f64::max))
@@ -232,7 +232,7 @@ impl<'s> Convex<'s> {
                 own.truncate().dot(centre) + radius * own.truncate().length()
             }
             Section::Outline(outline) => {
-                let corners = outline.corners().iter();
+                let corners = outline.corners.iter();
                 corners.map(|corner| own.truncate().dot(*corner)).fold(f64::NEG_INFINITY, f64::max)
             }
         };

@@ -171,7 +171,7 @@ impl FloorCurve {
     /// Whether an outline lies inside as a whole.
     pub(super) fn encloses(&self, outline: &Outline) -> bool {
         // What leaves between two corners comes back before the second.
-        outline.corners().iter().all(|corner| self.contains(*corner))
+        outline.corners.iter().all(|corner| self.contains(*corner))
             && outline.sides().all(|(from, to)| {
                 self.first_hit(from, to - from, 0.0).is_none_or(|hit| hit.t > 1.0)
             })

@@ -57,7 +57,7 @@ impl Hole {
                 let beside = |at: DVec2| at.distance(*centre);
                 let reach = match section(body, *extent) {
                     Section::Outline(outline) => {
-                        outline.corners().iter().map(|corner| beside(*corner)).fold(0.0, f64::max)
+                        outline.corners.iter().map(|corner| beside(*corner)).fold(0.0, f64::max)
                     }
                     Section::Disc(middle, size) => beside(middle) + size,
                     Section::Tilted(body) => body.greatest(*extent, |at| beside(at.truncate())),
@@ -116,7 +116,7 @@ pub(super) fn farthest(body: &Solid, point: DVec3) -> f64 {
     match body {
         Solid::Nothing => 0.0,
         Solid::Prism { outline, extent } => {
-            let corners = outline.corners().iter();
+            let corners = outline.corners.iter();
             let beside = corners.map(|corner| corner.distance(point.truncate()));
             beside.fold(0.0, f64::max).hypot(along(extent))
         }

@@ -7,25 +7,21 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct Outline {
-    corners: Vec<DVec2>,
+    /// The corners.
+    pub corners: Vec<DVec2>,
 }
 
 impl Outline {
-    /// The convex polygon with the given corners, counterclockwise.
-    pub fn new(corners: Vec<DVec2>) -> Self {
-        Self { corners }
-    }
-
     /// A rectangle centred on the origin.
     pub fn rectangle(half_width: f64, half_height: f64) -> Self {
         let (w, h) = (half_width, half_height);
-        Self::new([(-w, -h), (w, -h), (w, h), (-w, h)].map(DVec2::from).to_vec())
+        Self { corners: [(-w, -h), (w, -h), (w, h), (-w, h)].map(DVec2::from).to_vec() }
     }
 
     /// A circle, with corners on it.
     pub fn circle(centre: DVec2, radius: f64) -> Self {
         let corner = |k: u32| centre + radius * DVec2::from_angle(TAU * f64::from(k) / 96.0);
-        Self::new((0..96).map(corner).collect())
+        Self { corners: (0..96).map(corner).collect() }
     }
 
     /// The smallest convex polygon around points.
@@ -34,7 +30,7 @@ impl Outline {
         points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
         points.dedup();
         if points.len() < 3 {
-            return Self::new(points);
+            return Self { corners: points };
         }
         let chain = |points: &mut dyn Iterator<Item = DVec2>| {
             let mut chain: Vec<DVec2> = Vec::new();
@@ -51,13 +47,7 @@ impl Outline {
         };
         let mut corners = chain(&mut points.iter().copied());
         corners.extend(chain(&mut points.iter().rev().copied()));
-        Self::new(corners)
-    }
-
-    /// The corners.
-    #[must_use]
-    pub fn corners(&self) -> &[DVec2] {
-        &self.corners
+        Self { corners }
     }
 
     /// The sides, from corner to corner.
@@ -149,7 +139,8 @@ mod tests {
     #[test]
     fn squares_that_touch_do_not_overlap() {
         let square = Outline::rectangle(1.0, 1.0);
-        let moved = |by: DVec2| Outline::new(square.corners.iter().map(|c| *c + by).collect());
+        let moved =
+            |by: DVec2| Outline { corners: square.corners.iter().map(|c| *c + by).collect() };
         assert!(!square.overlaps(&moved(DVec2::new(2.0, 0.5)), 1e-9));
         assert!(square.overlaps(&moved(DVec2::new(1.99, 0.5)), 1e-9));
         assert!(!square.overlaps(&moved(DVec2::new(0.0, -2.5)), 1e-9));

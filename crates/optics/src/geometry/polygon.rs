@@ -106,7 +106,7 @@ impl Polygon {
 
     /// A convex part as an outline.
     pub fn outline(&self, part: &ConvexPart) -> Outline {
-        Outline::new(part.iter().map(|&i| self.corners[i]).collect())
+        Outline { corners: part.iter().map(|&i| self.corners[i]).collect() }
     }
 
     /// Triangles that make up the polygon.
@@ -235,7 +235,7 @@ mod tests {
         let mut sides = vec![0; n];
         for part in &parts {
             assert!(polygon.is_convex(part), "{part:?}");
-            area += 0.5 * doubled_area(polygon.outline(part).corners());
+            area += 0.5 * doubled_area(&polygon.outline(part).corners);
             for [i, j] in edges(part) {
                 if (i + 1) % n == j {
                     sides[i] += 1;

@@ -96,7 +96,7 @@ impl Solid {
             Self::Nothing => false,
             Self::Prism { outline, extent } => {
                 between(extent)
-                    && outline.corners().len() > 2
+                    && outline.corners.len() > 2
                     && outline.sides().all(|(a, b)| below(0.0, (b - a).perp_dot(at - a)))
             }
             Self::Cylinder { centre, radius, extent } => {
@@ -120,7 +120,7 @@ impl Solid {
         match self {
             Self::Nothing => None,
             Self::Prism { outline, extent } => {
-                let corners = || outline.corners().iter().copied();
+                let corners = || outline.corners.iter().copied();
                 Some(boxed([corners().reduce(DVec2::min)?, corners().reduce(DVec2::max)?], extent))
             }
             Self::Cylinder { centre, radius, extent } => {
@@ -166,11 +166,11 @@ impl Solid {
             }
             Self::Prism { outline, extent } => {
                 let mut corners: Vec<DVec2> =
-                    outline.corners().iter().map(|c| pose.point_to_world(*c)).collect();
+                    outline.corners.iter().map(|c| pose.point_to_world(*c)).collect();
                 if axis.z < 0.0 {
                     corners.reverse();
                 }
-                Self::Prism { outline: Outline::new(corners), extent: extent.placed(pose) }
+                Self::Prism { outline: Outline { corners }, extent: extent.placed(pose) }
             }
             Self::Cylinder { centre, radius, extent } => Self::Cylinder {
                 centre: pose.point_to_world(*centre),
@@ -282,7 +282,7 @@ impl Solid {
     fn sheet(&self) -> Option<[DVec3; 4]> {
         match self {
             Self::Prism { outline, extent } => {
-                let [a, b] = outline.corners() else { return None };
+                let [a, b] = &outline.corners[..] else { return None };
                 let [low, high] = [extent.min.max(-REACH), extent.max.min(REACH)];
                 Some([a.extend(low), b.extend(low), b.extend(high), a.extend(high)])
             }
@@ -297,13 +297,13 @@ impl Solid {
     /// at [`REACH`].
     pub fn shadow(&self) -> Outline {
         match self {
-            Self::Nothing => Outline::new(Vec::new()),
+            Self::Nothing => Outline { corners: Vec::new() },
             Self::Prism { outline, .. } => outline.clone(),
             Self::Cylinder { centre, radius, .. } => Outline::circle(*centre, *radius),
             Self::Ball { centre, radius } => Outline::circle(centre.truncate(), *radius),
             Self::CutBall { centre, ball } => {
                 let around = Outline::circle(DVec2::ZERO, 1.0);
-                let tips = around.corners().iter().map(|at| ball.farthest_along(at.extend(0.0)));
+                let tips = around.corners.iter().map(|at| ball.farthest_along(at.extend(0.0)));
                 Outline::hull(tips.map(|tip| (*centre + tip).truncate()).collect())
             }
             Self::Hollow { whole, .. } => whole.shadow(),

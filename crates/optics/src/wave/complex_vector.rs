@@ -23,12 +23,6 @@ impl ComplexVector {
         Self { re, im }
     }
 
-    /// A vector from its three components.
-    pub fn from_components(components: [Complex64; 3]) -> Self {
-        let [x, y, z] = components;
-        Self { re: DVec3::new(x.re, y.re, z.re), im: DVec3::new(x.im, y.im, z.im) }
-    }
-
     /// The three components.
     #[must_use]
     pub fn components(self) -> [Complex64; 3] {

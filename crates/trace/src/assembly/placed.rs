@@ -48,12 +48,12 @@ impl Placed {
     /// The space that the device takes up in the world.
     #[must_use]
     pub fn solids(&self) -> Vec<Solid> {
-        self.structure.hull.solids().iter().map(|solid| solid.placed(&self.pose)).collect()
+        self.structure.hull.solids.iter().map(|solid| solid.placed(&self.pose)).collect()
     }
 
     /// The sheet of its thin mirror in the world, if it has one.
     pub(super) fn thin_mirror(&self) -> Option<Solid> {
-        self.structure.hull.thin_mirror().map(|mirror| mirror.placed(&self.pose))
+        self.structure.hull.thin_mirror.as_ref().map(|mirror| mirror.placed(&self.pose))
     }
 
     /// The least and the greatest coordinates of the device and its thin mirror; `None` if it is nowhere.

@@ -125,7 +125,7 @@ impl Screen {
     pub fn cut_by(&self, assembly: &Assembly) -> Option<usize> {
         let ends = [-self.half_height, self.half_height].map(|y| DVec2::new(0.0, y));
         let extent = Extent { min: -self.half_width, max: self.half_width };
-        let sheet = Solid::Prism { outline: Outline::new(ends.to_vec()), extent };
+        let sheet = Solid::Prism { outline: Outline { corners: ends.to_vec() }, extent };
         let [forward, up, across] = self.axes;
         let rotation = DMat3::from_cols(forward, up, across);
         let sheet = sheet.placed(&Pose::from_rotation(self.middle, rotation));

@@ -141,7 +141,7 @@ impl Site {
     fn box_between(&self, bottom: f64, top: f64) -> Outline {
         let Truncation { x_min, x_max, .. } = self.cut;
         let corners = [(x_min, bottom), (x_max, bottom), (x_max, top), (x_min, top)];
-        Outline::new(corners.map(DVec2::from).to_vec())
+        Outline { corners: corners.map(DVec2::from).to_vec() }
     }
 
     /// Adds the floor on the left and on the right.
@@ -155,7 +155,7 @@ impl Site {
             surfaces.push(Surface::mirror(Wall::new(ends[0], ends[1], self.extent)));
         }
         let line = [-outer, outer].map(|x| DVec2::new(x, 0.0));
-        let hull = hull.with_thin_mirror(Outline::new(line.to_vec()), self.extent);
+        let hull = hull.with_thin_mirror(Outline { corners: line.to_vec() }, self.extent);
         Structure { regions, surfaces, hull }
     }
 }

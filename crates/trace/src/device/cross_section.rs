@@ -101,16 +101,16 @@ impl Structure {
             points: corners.iter().map(|corner| *corner - origin.truncate()).collect(),
             closed: corners.len() > 2,
         };
-        let shadow = |solid: &Solid| solid.placed(pose).shadow().corners().to_vec();
-        let parts: Vec<Vec<DVec2>> = self.hull.solids().iter().map(shadow).collect();
+        let shadow = |solid: &Solid| solid.placed(pose).shadow().corners;
+        let parts: Vec<Vec<DVec2>> = self.hull.solids.iter().map(shadow).collect();
         let whole = Outline::hull(parts.concat());
         // What has neither regions nor is a body is metal.
         let body = self.hull.body;
         let is_metal = self.regions.is_empty() && body.is_none();
-        let mirror = self.hull.thin_mirror().map(shadow);
+        let mirror = self.hull.thin_mirror.as_ref().map(shadow);
         let metal = parts.iter().filter(|_| is_metal).chain(&mirror);
         let metal: Vec<Contour> = metal.map(|part| contour(part)).collect();
-        let outlines = if is_metal { metal.clone() } else { vec![contour(whole.corners())] };
+        let outlines = if is_metal { metal.clone() } else { vec![contour(&whole.corners)] };
         let (body_medium, regions) = (self.body_medium(), Vec::new());
         let section = CrossSection { outlines, regions, metal, body, body_medium, is_shadow: true };
         (section, Pose::new(origin, 0.0))
@@ -176,7 +176,7 @@ impl Convex {
             Self::CutBall(ball) => closed(ball.section(PIECES)),
             Self::Box { half } => {
                 let corner = half.truncate().min(DVec2::splat(REACH));
-                closed(Outline::rectangle(corner.x, corner.y).corners().to_vec())
+                closed(Outline::rectangle(corner.x, corner.y).corners)
             }
         }
     }

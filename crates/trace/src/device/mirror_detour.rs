@@ -38,7 +38,7 @@ impl Device for MirrorDetour {
         let (surfaces, solids) = mirrors(s, l)
             .into_iter()
             .map(|[from, to]| {
-                let outline = Outline::new(vec![from, to]);
+                let outline = Outline { corners: vec![from, to] };
                 (Surface::mirror(Wall::new(from, to, extent)), Solid::Prism { outline, extent })
             })
             .unzip();

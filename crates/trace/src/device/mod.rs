@@ -271,7 +271,8 @@ fn refuse_other_views(request: Request, reason: &str) -> Result<(), KeyError> {
 fn flat_strip(half_width: f64, extent: Extent) -> Structure {
     let ends = [DVec2::new(half_width, 0.0), DVec2::new(-half_width, 0.0)];
     let surfaces = vec![Surface::mirror(Wall::new(ends[0], ends[1], extent))];
-    let hull = Hull::new(Solid::Nothing).with_thin_mirror(Outline::new(ends.to_vec()), extent);
+    let hull =
+        Hull::new(Solid::Nothing).with_thin_mirror(Outline { corners: ends.to_vec() }, extent);
     Structure { regions: Vec::new(), surfaces, hull }
 }
 

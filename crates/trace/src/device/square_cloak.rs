@@ -116,7 +116,7 @@ fn square(
     }
     let structure = polygonal(&parts, extent)
         .map_err(|_| of_kappa("the segments overlap by rounding".to_owned()))?;
-    let outline = Outline::new(if recipe.is_some() { square } else { rhombus }.to_vec());
+    let outline = Outline { corners: if recipe.is_some() { square } else { rhombus }.to_vec() };
     let whole = Solid::Prism { outline, extent };
     let hull =
         if open_core { Hull { filled: Some(whole), ..structure.hull } } else { Hull::new(whole) };

@@ -51,9 +51,11 @@ pub struct Body {
 /// The space a device takes up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hull {
-    pub(super) solids: Vec<Solid>,
+    /// The solids that it fills.
+    pub solids: Vec<Solid>,
     pub(super) reach: Reach,
-    pub(super) thin_mirror: Option<Solid>,
+    /// The sheet of its thin mirror, if it has one.
+    pub thin_mirror: Option<Solid>,
     /// Bare metal below a floor: it holds only that part of the solids.
     pub metal: Option<FloorCurve>,
     /// The body that it is the hull of, which may overlap other bodies.
@@ -126,12 +128,6 @@ impl Hull {
         Self { thin_mirror: Some(sheet), reach, ..self }
     }
 
-    /// The sheet of its thin mirror, if it has one.
-    #[must_use]
-    pub fn thin_mirror(&self) -> Option<&Solid> {
-        self.thin_mirror.as_ref()
-    }
-
     /// The hull of a cloak around a hidden region that is air, and free: `filled` without `hole`.
     #[must_use]
     pub fn around(hole: Hole, filled: Solid) -> Self {
@@ -145,11 +141,6 @@ impl Hull {
             && self.thin_mirror.is_none()
             && self.metal.is_none()
             && self.filled.is_none()
-    }
-
-    /// The solids that it fills.
-    pub fn solids(&self) -> &[Solid] {
-        &self.solids
     }
 
     /// Whether a ray (in the device's frame) comes near enough that it may meet the device.

@@ -74,11 +74,9 @@ struct Drawn<const N: usize> {
 impl<const N: usize> PathRecorder<N> for Drawn<N> {
     fn record(&mut self, leg: impl FnOnce() -> PathSegment<N>) {
         let leg = leg();
-        let moves = leg
-            .path
-            .windows(2)
-            .any(|ends| ends[0].position.distance(ends[1].position) > self.shortest);
-        if moves && leg.optical_path < self.until {
+        let moves =
+            |ends: &[PathPoint]| ends[0].position.distance(ends[1].position) > self.shortest;
+        if leg.optical_path < self.until && leg.path.windows(2).any(moves) {
             self.segments.push(leg);
         }
     }

@@ -126,7 +126,7 @@ proptest! {
     ) {
         // Two sheets have no common depth, however they cross.
         let sheet = |solid: &Solid| {
-            matches!(solid, Solid::Prism { outline, .. } if outline.corners().len() < 3)
+            matches!(solid, Solid::Prism { outline, .. } if outline.corners.len() < 3)
         };
         prop_assume!(!sheet(&a) || !sheet(&b));
         let (a, b) = (a.placed(&pose), b.placed(&other));
@@ -177,7 +177,7 @@ proptest! {
         let rod = Solid::cylinder(0.7, Extent::centred(Some(2.0)));
         let endless = Solid::cylinder(0.7, Extent::ENDLESS);
         let sheet = Solid::Prism {
-            outline: Outline::new(vec![DVec2::new(0.0, -0.9), DVec2::new(0.0, 0.9)]),
+            outline: Outline { corners: vec![DVec2::new(0.0, -0.9), DVec2::new(0.0, 0.9)] },
             extent: Extent::centred(Some(2.0)),
         };
         let standing = [DVec3::new(1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, -2.0), DVec3::ONE];
@@ -290,7 +290,7 @@ proptest! {
     #[test]
     fn sheets_lie_on_each_other_wherever_both_are(pose in poses(), turn in -180.0..180.0) {
         let sheet = |half: f64, extent: Extent| Solid::Prism {
-            outline: Outline::new(vec![DVec2::new(-half, 0.0), DVec2::new(half, 0.0)]),
+            outline: Outline { corners: vec![DVec2::new(-half, 0.0), DVec2::new(half, 0.0)] },
             extent,
         };
         let large = sheet(5.0, Extent::centred(Some(10.0))).placed(&pose);
@@ -313,7 +313,7 @@ proptest! {
 
 #[test]
 fn a_device_on_its_head_is_an_upright_one() {
-    let roof = Outline::new(vec![DVec2::ZERO, DVec2::new(2.0, 0.0), DVec2::new(0.0, 1.0)]);
+    let roof = Outline { corners: vec![DVec2::ZERO, DVec2::new(2.0, 0.0), DVec2::new(0.0, 1.0)] };
     let solid = Solid::Prism { outline: roof, extent: Extent { min: 0.0, max: 3.0 } };
     let turned = solid.placed(&Pose::with_axis(DVec3::X, 0.0, DVec3::NEG_Z));
     let Solid::Prism { outline, extent } = &turned else { panic!("{turned:?}") };

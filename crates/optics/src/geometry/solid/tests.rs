@@ -41,7 +41,7 @@ fn corners_and_rims_are_where_they_are() {
     assert!(!cylinder.overlaps(&moved(&ball, rim * 1.0001), SLACK));
     assert!(ball.overlaps(&moved(&cylinder, -rim * 0.9999), SLACK));
     let sheet = Solid::Prism {
-        outline: Outline::new(vec![DVec2::new(0.0, -5.0), DVec2::new(0.0, 5.0)]),
+        outline: Outline { corners: vec![DVec2::new(0.0, -5.0), DVec2::new(0.0, 5.0)] },
         extent: Extent::centred(Some(4.0)),
     };
     assert!(sheet.overlaps(&moved(&ball, DVec3::new(0.99, 3.0, 1.0)), SLACK));
@@ -191,7 +191,7 @@ fn parts_of_a_ball_are_in_the_way_where_they_are() {
         assert!(part.is_within(&around(half)) && !part.is_within(&around(half - 1e-6)));
         assert!(part.is_within(&moved(&Solid::ball(2.0), pose.origin)));
         let shadow = part.shadow();
-        let tips = shadow.corners().iter().map(|at| at.x).fold(f64::MIN, f64::max);
+        let tips = shadow.corners.iter().map(|at| at.x).fold(f64::MIN, f64::max);
         assert!((tips - high.x).abs() < 1e-2 && part.contains(pose.origin - out * 1.9));
         assert!(!part.holds(pose.origin + out * (offset + 1e-9)));
     }

@@ -1,21 +1,22 @@
-//! The eigenvectors of a double eigenvalue.
+//! The eigenvectors of an eigenvalue, which may be double.
 
 use crate::wave::{Number, solve};
 
-/// An eigenvector of `matrix` to the double eigenvalue `q`, orthogonal to `other`; `None` if there is
-/// none, as at grazing incidence.
+/// An eigenvector of `matrix` to the eigenvalue `q`, or to a double one the vector orthogonal to `other`; `None` if
+/// there is none, as at grazing incidence.
 ///
-/// An eigensolver's own two vectors may be as good as parallel, or not numbers. This is inverse
-/// iteration: the shift by a few roundings brings out the plane of eigenvectors against all else.
+/// This is inverse iteration: a shift by a few roundings brings out the eigenvector, a larger one the plane of a double
+/// eigenvalue, against all else.
 pub(super) fn eigenvector_across<T: Number>(
     matrix: &[[T; 4]; 4],
     q: T,
     other: Option<[T; 4]>,
 ) -> Option<[T; 4]> {
     let size = norm(matrix.as_flattened()).max(1e-300);
+    let shift = size * if other.is_some() { 1e-13 } else { 2e-16 };
     let mut shifted = *matrix;
     for (i, row) in shifted.iter_mut().enumerate() {
-        row[i] -= q + T::from(1e-13 * size);
+        row[i] -= q + T::from(shift);
     }
     let unit = other.map(normalized);
     let free = |vector: [T; 4]| match unit {
@@ -34,7 +35,7 @@ pub(super) fn eigenvector_across<T: Number>(
 }
 
 /// Whether a vector solves the eigenvalue equation well enough to go on with.
-pub(super) fn is_eigenvector<T: Number>(matrix: &[[T; 4]; 4], q: T, vector: &[T; 4]) -> bool {
+fn is_eigenvector<T: Number>(matrix: &[[T; 4]; 4], q: T, vector: &[T; 4]) -> bool {
     let residual: [T; 4] = std::array::from_fn(|i| {
         let image = (0..4).fold(T::from(0.0), |sum, j| sum + matrix[i][j] * vector[j]);
         image - q * vector[i]

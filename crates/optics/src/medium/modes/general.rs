@@ -1,23 +1,23 @@
 //! Modes of any medium: Berreman's eigenproblem for the tangential fields.
 
 use super::absorbing::forwardness;
-use super::double_root::{eigenvector_across, is_eigenvector};
+use super::double_root::eigenvector_across;
 use super::local::mutual_flux;
 use super::refinement::{Maxwell, best};
 use super::{BothWays, LocalMode, LocalModes, ModeKind};
 use crate::medium::{Medium, Tensor};
 use crate::wave::{Frame, Number, dot};
 use arrayvec::ArrayVec;
-use faer::Mat;
-use faer::traits::ComplexField;
+use nalgebra::{ComplexField, Const, Matrix4, Schur};
 use num_complex::Complex64;
 use std::ops::Mul;
 
-/// q ψ = matrix ψ with ψ = (E·first, E·second, H·first, H·second).
+/// q ψ = matrix ψ with scale ψ = (E·first, E·second, H·first, H·second).
 pub(super) struct Berreman<T> {
     maxwell: Maxwell<T>,
     matrix: [[T; 4]; 4],
-    /// The normal components of E and H, as rows acting on ψ.
+    scale: [f64; 4],
+    /// The normal components of E and H, as rows acting on the tangential ones.
     lift: [[T; 4]; 2],
 }
 
@@ -50,8 +50,9 @@ impl<T: Number> Berreman<T> {
                 k2 * magnetic[2] + dot(e[0], electric),
             ]
         });
-        let matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
-        Self { maxwell, matrix, lift: [normal_e, normal_h] }
+        let mut matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
+        let scale = balance(&mut matrix);
+        Self { maxwell, matrix, scale, lift: [normal_e, normal_h] }
     }
 
     /// How far the worst of some modes is from solving Maxwell's equations.
@@ -61,19 +62,20 @@ impl<T: Number> Berreman<T> {
         residual.fold(0.0, |worst, one| if one.is_nan() { f64::INFINITY } else { one.max(worst) })
     }
 
-    fn eigenpairs(&self) -> [Eigenpair; 4]
+    /// The eigenvalues by Schur's form, which `values` reads, and their vectors.
+    fn eigenpairs(
+        &self,
+        values: impl FnOnce(&Schur<T, Const<4>>) -> Option<[Complex64; 4]>,
+    ) -> [Eigenpair; 4]
     where
-        T: ComplexField<Real = f64>,
+        T: ComplexField<RealField = f64>,
     {
         let matrix = self.complex_matrix();
-        Mat::from_fn(4, 4, |i, j| self.matrix[i][j]).eigen().map_or(FALLBACK, |eigen| {
-            let (values, vectors) = (eigen.S().column_vector(), eigen.U());
-            std::array::from_fn(|j| {
-                let field: [Complex64; 4] = std::array::from_fn(|i| vectors[(i, j)]);
-                // Of a double root the eigensolver may return a vector of zeros or a wrong one.
-                let sound = is_eigenvector(&matrix, values[j], &field);
-                let found = if sound { None } else { eigenvector_across(&matrix, values[j], None) };
-                (values[j], found.unwrap_or(field))
+        let schur = Matrix4::from_fn(|i, j| self.matrix[i][j]).try_schur(f64::EPSILON, MOST_ROUNDS);
+        schur.as_ref().and_then(values).map_or(FALLBACK, |values| {
+            std::array::from_fn(|i| {
+                let field = eigenvector_across(&matrix, values[i], None);
+                (values[i], field.unwrap_or(FALLBACK[i].1))
             })
         })
     }
@@ -84,6 +86,7 @@ impl<T: Number> Berreman<T> {
 
     /// The mode of an eigenpair, made better where the eigenvalues differ much in size.
     fn mode<U: Number + From<T> + Mul<T, Output = U>>(&self, q: U, field: [U; 4]) -> LocalMode<U> {
+        let field = std::array::from_fn(|i| field[i] * U::from(T::from(self.scale[i])));
         let normal = self
             .lift
             .map(|row| row.into_iter().zip(field).fold(U::default(), |sum, (a, b)| sum + b * a));
@@ -95,6 +98,28 @@ impl<T: Number> Berreman<T> {
 fn unnamed<T>(q: T, [e0, e1, h0, h1]: [T; 4], [normal_e, normal_h]: [T; 2]) -> LocalMode<T> {
     let (electric, magnetic) = ([e0, e1, normal_e], [h0, h1, normal_h]);
     LocalMode { kind: ModeKind::First, propagating: true, q, electric, magnetic }
+}
+
+/// Makes rows and columns of a matrix, off the diagonal, of one size, by powers of two on the diagonal, which are returned:
+/// the small eigenvalues of an uneven matrix would drown in the rounding of the large ones (Parlett & Reinsch 1969).
+fn balance<T: Number>(matrix: &mut [[T; 4]; 4]) -> [f64; 4] {
+    let mut scale = [1.0; 4];
+    for i in (0..4).cycle().take(16) {
+        let others = (0..4).filter(|j| *j != i);
+        let size = |entry: T| entry.magnitude_squared();
+        let [row, column] = others.fold([0.0; 2], |[row, column], j| {
+            [row + size(matrix[i][j]), column + size(matrix[j][i])]
+        });
+        let factor = (0.25 * (row / column).log2()).round().exp2();
+        if factor.is_normal() {
+            scale[i] *= factor;
+            for j in 0..4 {
+                matrix[i][j] = matrix[i][j] * T::from(factor.recip());
+                matrix[j][i] = matrix[j][i] * T::from(factor);
+            }
+        }
+    }
+    scale
 }
 
 /// The reciprocal of the normal-normal entry, which an indefinite tensor may have zero.
@@ -168,7 +193,7 @@ impl Berreman<Complex64> {
     }
 
     fn complex_modes(&self) -> [[LocalMode<Complex64>; 2]; 2] {
-        let mut pairs = self.eigenpairs();
+        let mut pairs = self.eigenpairs(|schur| schur.eigenvalues().map(Into::into));
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         separate_double_roots(&self.matrix, &mut pairs, size);
         let mut modes = pairs.map(|(q, field)| self.mode(q, field));
@@ -180,7 +205,7 @@ impl Berreman<Complex64> {
 
 impl Berreman<f64> {
     fn lossless_modes(&self, known: Option<f64>) -> Lossless {
-        let mut pairs = self.eigenpairs();
+        let mut pairs = self.eigenpairs(|schur| Some(schur.complex_eigenvalues().into()));
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         // Evanescent ones come as conjugates; the real ones in order show which are double.
         pairs.sort_by(|(a, _), (b, _)| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
@@ -247,6 +272,9 @@ fn parts_across(field: [Complex64; 4]) -> [Complex64; 4] {
     let phase = if square.norm() > 0.0 { (square / square.norm()).sqrt() } else { Complex64::ONE };
     field.map(|c| c / phase)
 }
+
+/// Rounds of the eigensolver; it takes about ten.
+const MOST_ROUNDS: usize = 1000;
 
 /// Should the eigensolver ever give up: no waves but decaying ones without fields that matter.
 const FALLBACK: [Eigenpair; 4] = {

@@ -59,12 +59,10 @@ impl Series {
         // under which such a rotation shrinks fastest.
         let slope = PI * bump.height / bump.width;
         let damping = 1.0 / (1.0 + slope * slope);
-        if slope > STEEPEST {
-            return None;
-        }
+        let rounds = if slope > STEEPEST { 0 } else { MOST_ROUNDS };
         let mut x = grid.clone();
         let mut b = vec![0.0; count];
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..rounds {
             let y: Vec<f64> = x.iter().map(|x| bump.height_at(*x)).collect();
             let mean = y.iter().sum::<f64>() / points as f64;
             let virtual_height = height - mean;
