@@ -19,7 +19,7 @@ pub(super) struct Footprint {
     /// Square of the major axis' true length, below 1 where the image is magnified.
     pub(super) major_squared: f32,
     /// The row of probes; `None` for one probe.
-    row: Option<Row>,
+    pub(super) row: Option<Row>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,12 +66,6 @@ impl Footprint {
             Row { length: (major - round).sqrt(), direction: [x / norm, y / norm] }
         });
         Self { width_squared, major_squared, row }
-    }
-
-    /// Whether one probe in the middle stands for the patch.
-    #[inline]
-    pub(super) fn is_round(&self) -> bool {
-        self.row.is_none()
     }
 
     /// Calls `visit` with the offset from the middle, in texels, and the weight of each probe. The

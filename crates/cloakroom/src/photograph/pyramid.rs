@@ -141,7 +141,7 @@ impl Pyramid {
         // Far outside there is nothing but the edge.
         let [u, v] = texels(position.map(|x| if x.is_nan() { 0.5 } else { x.clamp(-4.0, 5.0) }));
         let mut sum = [0.0; 3];
-        if footprint.is_round() {
+        if footprint.row.is_none() {
             self.add_probe(&mut sum, [u, v], 1.0, &plan);
         } else {
             footprint.probes(|offset, weight| {

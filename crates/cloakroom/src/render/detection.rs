@@ -76,11 +76,6 @@ impl<const N: usize> Detection<N> {
         }
     }
 
-    /// Whether nothing but images is wanted.
-    pub fn images_alone(&self) -> bool {
-        !(self.times || self.stokes || self.first_face)
-    }
-
     /// The ray to launch for a camera ray.
     pub fn launch(&self, camera: &Camera, ray: &CameraRay) -> Launch<N> {
         let (horizontal, vertical) = camera.polarization_basis(ray.direction);

@@ -307,7 +307,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
         let spacing = 1.0 / f64::from(samples).sqrt();
         let mut stats = TraceStats::default();
         let any = &self.tracers.tracers[0];
-        if self.detection.images_alone()
+        if !(self.detection.times || self.detection.stokes || self.detection.first_face)
             && rays.iter().all(|ray| any.meets_nothing(ray.origin, ray.direction))
             && expose_unhindered(self.prepared, self.detection, &rays, spacing, pixels)
         {

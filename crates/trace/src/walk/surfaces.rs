@@ -192,7 +192,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             self.lose(branch.power);
             return None;
         };
-        if medium.absorbs() && !self.absorb(branch, way) {
+        if medium.absorbs() && !self.extinguish(branch, branch.attenuation.dot(way)) {
             return None;
         }
         if passage.extinction > 0.0 && !self.extinguish(branch, passage.extinction) {

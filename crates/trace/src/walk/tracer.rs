@@ -201,13 +201,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
     }
 
-    /// Takes from a branch what an absorbing medium keeps of it on a straight way; whether what is left
+    /// Takes from a branch what an absorbing medium keeps of it, given ∫ Im n ds along the way, cm; whether what is left
     /// is to be followed, for else it is pruned.
-    pub(super) fn absorb(&mut self, branch: &mut Branch<N>, way: DVec3) -> bool {
-        self.extinguish(branch, branch.attenuation.dot(way))
-    }
-
-    /// As [`Self::absorb`], given ∫ Im n ds along the way, cm.
     pub(super) fn extinguish(&mut self, branch: &mut Branch<N>, extinction: f64) -> bool {
         // Power never grows along a ray: rounding must not have it so.
         let depth = (self.assembly.vacuum_wave_number * extinction).max(0.0);

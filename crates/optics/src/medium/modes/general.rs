@@ -72,10 +72,10 @@ impl<T: Number> Berreman<T> {
     {
         let matrix = self.complex_matrix();
         let schur = Matrix4::from_fn(|i, j| self.matrix[i][j]).try_schur(f64::EPSILON, MOST_ROUNDS);
-        schur.as_ref().and_then(values).map_or(FALLBACK, |values| {
+        schur.as_ref().and_then(values).map_or_else(fallback, |values| {
             std::array::from_fn(|i| {
                 let field = eigenvector_across(&matrix, values[i], None);
-                (values[i], field.unwrap_or(FALLBACK[i].1))
+                (values[i], field.unwrap_or(fallback()[i].1))
             })
         })
     }
@@ -277,25 +277,15 @@ fn parts_across(field: [Complex64; 4]) -> [Complex64; 4] {
 const MOST_ROUNDS: usize = 1000;
 
 /// Should the eigensolver ever give up: no waves but decaying ones without fields that matter.
-const FALLBACK: [Eigenpair; 4] = {
-    const ZERO: Complex64 = Complex64::ZERO;
-    const ONE: Complex64 = Complex64::ONE;
-    let up = Complex64::new(0.0, 1.0);
-    let down = Complex64::new(0.0, -1.0);
-    [
-        (up, [ONE, ZERO, ZERO, Complex64::I]),
-        (up, [ZERO, ONE, Complex64::I, ZERO]),
-        (down, [ONE, ZERO, ZERO, down]),
-        (down, [ZERO, ONE, down, ZERO]),
-    ]
-};
+fn fallback() -> [Eigenpair; 4] {
+    let (z, o, i) = (Complex64::ZERO, Complex64::ONE, Complex64::I);
+    [(i, [o, z, z, i]), (i, [z, o, i, z]), (-i, [o, z, z, -i]), (-i, [z, o, -i, z])]
+}
 
 /// The eigenvector of a real eigenvalue, which may carry a common phase.
 fn real_part(field: [Complex64; 4]) -> [f64; 4] {
-    let largest = field
-        .iter()
-        .copied()
-        .fold(Complex64::ONE * 0.0, |a, b| if b.norm_sqr() > a.norm_sqr() { b } else { a });
+    let largest = field.into_iter().max_by(|a, b| a.norm_sqr().total_cmp(&b.norm_sqr()));
+    let largest = largest.unwrap_or_default();
     let turn = largest.conj() / largest.norm();
     field.map(|c| (c * turn).re)
 }
@@ -342,9 +332,8 @@ fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>], size: 
         }
         ([a], [b, ..]) => LocalModes::Complex(ordered([normalized(a).complex(), decaying(b)])),
         (_, [a, b, ..]) => LocalModes::Complex(ordered([decaying(a), decaying(b)])),
-        _ => LocalModes::Complex(ordered([FALLBACK[0], FALLBACK[1]].map(|(q, field)| LocalMode {
-            propagating: false,
-            ..unnamed(q, field, [Complex64::ZERO; 2])
+        _ => LocalModes::Complex(ordered([0, 1].map(|i| fallback()[i]).map(|(q, field)| {
+            LocalMode { propagating: false, ..unnamed(q, field, [Complex64::ZERO; 2]) }
         }))),
     }
 }
