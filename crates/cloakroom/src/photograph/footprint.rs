@@ -23,7 +23,7 @@ pub(super) struct Footprint {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Row {
+pub(super) struct Row {
     /// In texels.
     length: f32,
     /// A unit vector.
