@@ -13,13 +13,20 @@ use pulp::{Simd, WithSimd, bytemuck};
 /// How many rays go side by side.
 pub(crate) const LANES: usize = 4;
 
-/// Does `work` with the widest instructions there are. All that it calls must be inlined into it.
+/// Does `work` with instructions for four numbers, or gives it back where the processor has none. All that it calls must be
+/// inlined into it.
 #[inline]
-pub(crate) fn side_by_side<W: WithSimd>(work: W) -> W::Output {
+pub(crate) fn side_by_side<W: WithSimd>(work: W) -> Result<W::Output, W> {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = pulp::x86::V3::try_new() {
-        return Simd::vectorize(simd, work);
+        return Ok(Simd::vectorize(simd, work));
     }
+    Err(work)
+}
+
+/// Does `work` with the instructions of any processor, in ten times the code.
+#[cfg(test)]
+pub(crate) fn portably<W: WithSimd>(work: W) -> W::Output {
     work.with_simd(pulp::Scalar256b)
 }
 
@@ -350,12 +357,12 @@ mod tests {
             })
         };
         let (a, b): ([Complex64; LANES], [Complex64; LANES]) = (numbers(0.7), numbers(1.9));
-        let wide = side_by_side(Product(a, b));
+        let wide = side_by_side(Product(a, b)).unwrap_or_else(portably);
         let portable = Product(a, b).with_simd(pulp::Scalar256b);
         for i in 0..LANES {
             assert!((wide.0[i] - portable.0[i]).norm() < 1e-12);
             assert_eq!(wide.1[i], portable.1[i]);
-            let same = side_by_side(Product([a[i]; LANES], [b[i]; LANES]));
+            let same = side_by_side(Product([a[i]; LANES], [b[i]; LANES])).unwrap_or_else(portably);
             assert_eq!((wide.0[i], wide.1[i]), (same.0[3], same.1[3]));
             let alone = a[i].conj() * b[i] - a[i] * b[i].re + Complex64::i() * b[i];
             assert!((wide.0[i] - alone).norm() < 1e-12);

@@ -2,9 +2,9 @@
 
 /// Files of the folder `page` by their media types.
 macro_rules! assets {
-    ($($kind:literal: $($file:literal)+;)+) => {
+    ($($kind:literal: $($path:literal $file:literal)+;)+) => {
         &[$($((
-            concat!("/", $file),
+            $path,
             concat!($kind, "; charset=utf-8"),
             include_bytes!(concat!("../page/", $file)),
         )),+),+]
@@ -13,9 +13,10 @@ macro_rules! assets {
 
 /// All of them: their paths in the address, media types, and what they hold.
 pub(crate) static ASSETS: &[(&str, &str, &[u8])] = assets! {
-    "text/html": "index.html";
-    "text/css": "style.css";
-    "image/svg+xml": "icon.svg";
-    "text/javascript": "gestures.js" "main.js" "choices.js" "state.js" "orbit.js" "connection.js" "picture.js" "section.js"
-        "controls.js" "numbers.js";
+    "text/html": "/" "index.html";
+    "text/css": "/style.css" "style.css";
+    "image/svg+xml": "/icon.svg" "icon.svg";
+    "text/javascript": "/gestures.js" "gestures.js" "/main.js" "main.js" "/choices.js" "choices.js" "/state.js" "state.js"
+        "/orbit.js" "orbit.js" "/connection.js" "connection.js" "/picture.js" "picture.js" "/section.js" "section.js"
+        "/controls.js" "controls.js" "/numbers.js" "numbers.js";
 };

@@ -189,8 +189,7 @@ async fn guard(State(server): State<Arc<Server>>, request: Request, next: Next) 
 
 /// One of the page's files.
 async fn asset(uri: Uri) -> Response {
-    let asked = if uri.path() == "/" { "/index.html" } else { uri.path() };
-    match ASSETS.iter().find(|(path, ..)| *path == asked) {
+    match ASSETS.iter().find(|(path, ..)| *path == uri.path()) {
         Some((_, kind, bytes)) => ([(header::CONTENT_TYPE, *kind)], *bytes).into_response(),
         None => (StatusCode::NOT_FOUND, "there is no such page\n").into_response(),
     }

@@ -44,6 +44,26 @@ pub(crate) trait LaneMap {
     fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S>;
 }
 
+/// The same of whichever map it is.
+macro_rules! of_each {
+    ($of:expr, $map:ident => $same:expr) => {
+        match $of {
+            $crate::transformation::ConformalMap::Gaussian($map) => $same,
+            $crate::transformation::ConformalMap::Grating($map) => $same,
+            $crate::transformation::ConformalMap::QuasiConformal($map) => $same,
+            $crate::transformation::ConformalMap::Flat($map) => $same,
+        }
+    };
+}
+pub(crate) use of_each;
+
+impl LaneMap for ConformalMap {
+    #[inline(never)]
+    fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S> {
+        of_each!(self, map => map.jets(zeta))
+    }
+}
+
 /// A rectangle that a half-space device is cut to: x_min <= x <= x_max, y <= y_max, above the floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Truncation {
@@ -153,12 +173,7 @@ impl ConformalMap {
     /// Value and derivatives at a virtual point.
     #[inline]
     pub fn jet(&self, zeta: Complex64) -> MapJet {
-        match self {
-            Self::Gaussian(map) => map.jet(zeta),
-            Self::Grating(map) => map.jet(zeta),
-            Self::QuasiConformal(map) => map.jet(zeta),
-            Self::Flat(map) => map.jet(zeta),
-        }
+        of_each!(self, map => map.jet(zeta))
     }
 
     /// The length over which the map varies, cm.
@@ -176,10 +191,7 @@ impl ConformalMap {
     /// takes. The quasi-conformal map is nearly singular at the feet of the bump, where the floor's curvature
     /// jumps: measured, nothing can be counted on there.
     pub(crate) fn smoothness(&self) -> f64 {
-        match self {
-            Self::Gaussian(_) | Self::Grating(_) | Self::Flat(_) => 100.0,
-            Self::QuasiConformal(_) => 3.0,
-        }
+        if matches!(self, Self::QuasiConformal(_)) { 3.0 } else { 100.0 }
     }
 
     /// The longest step about a virtual point, `usual` being what suits the map where it varies most, cm.
@@ -205,19 +217,13 @@ impl ConformalMap {
     /// The least height y of the floor, cm.
     #[must_use]
     pub fn trough(&self) -> f64 {
-        match self {
-            Self::Grating(map) => -map.height,
-            _ => self.level(),
-        }
+        if let Self::Grating(map) = self { -map.height } else { self.level() }
     }
 
     /// The height y of the floor far from what is on it, cm.
     #[must_use]
     pub fn level(&self) -> f64 {
-        match self {
-            Self::Flat(map) => map.level,
-            _ => 0.0,
-        }
+        if let Self::Flat(map) = self { map.level } else { 0.0 }
     }
 
     /// The virtual X of the floor point above physical `x`.
@@ -266,10 +272,7 @@ impl ConformalMap {
 
     /// The parameter of [`Self::profile`] at physical `x`.
     pub(crate) fn profile_parameter(&self, x: f64) -> f64 {
-        match self {
-            Self::Gaussian(_) | Self::Grating(_) | Self::Flat(_) => self.floor_parameter(x),
-            Self::QuasiConformal(_) => x,
-        }
+        if matches!(self, Self::QuasiConformal(_)) { x } else { self.floor_parameter(x) }
     }
 
     /// The parameters between two others at which [`Self::profile`] changes the sense of its bend, in

@@ -222,7 +222,7 @@ mod tests {
     use pulp::WithSimd;
 
     use super::*;
-    use crate::lanes::side_by_side;
+    use crate::lanes::{portably, side_by_side};
 
     /// Error relative to the function, or to its neighbourhood where it has zeros.
     fn error(t: Complex64) -> f64 {
@@ -264,7 +264,9 @@ mod tests {
                 Complex64::new(8.0 * (1.3 * x).sin(), 3.0 + 4.5 * (0.7 * x).cos())
             });
             // Alone, products are rounded before they are added.
-            for (four, alone) in side_by_side(Four(t)).into_iter().zip(t.map(faddeeva)) {
+            for (four, alone) in
+                side_by_side(Four(t)).unwrap_or_else(portably).into_iter().zip(t.map(faddeeva))
+            {
                 assert!((four - alone).norm() < 1e-14 * alone.norm().max(0.3), "{t:?}");
             }
         }

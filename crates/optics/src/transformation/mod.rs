@@ -11,7 +11,7 @@ mod radial;
 mod strip_to_rhombus;
 
 pub use conformal::{ConformalMap, ConformalMapError, MapJet, Truncation};
-pub(crate) use conformal::{JetLanes, LaneMap};
+pub(crate) use conformal::{JetLanes, LaneMap, of_each};
 pub use flat::FlatMap;
 pub use gaussian::GaussianMap;
 pub use grating::GratingMap;

@@ -113,9 +113,9 @@ fn balance<T: Number>(matrix: &mut [[T; 4]; 4]) -> [f64; 4] {
         let factor = (0.25 * (row / column).log2()).round().exp2();
         if factor.is_normal() {
             scale[i] *= factor;
-            for j in 0..4 {
-                matrix[i][j] = matrix[i][j] * T::from(factor.recip());
-                matrix[j][i] = matrix[j][i] * T::from(factor);
+            matrix[i] = matrix[i].map(|entry| entry * T::from(factor.recip()));
+            for row in matrix.iter_mut() {
+                row[i] = row[i] * T::from(factor);
             }
         }
     }

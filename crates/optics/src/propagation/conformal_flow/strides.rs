@@ -8,7 +8,7 @@ use super::points::{PointLanes, Points};
 use crate::lanes::{ComplexLanes, LANES, Lanes, side_by_side};
 use crate::propagation::nystrom::order_eight::ErrorWeight;
 use crate::propagation::nystrom::{Motion, Stage, order_eight, order_four};
-use crate::transformation::{ConformalMap, LaneMap};
+use crate::transformation::{LaneMap, of_each};
 
 /// How a ray moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,15 +68,16 @@ pub(super) struct Move<'w> {
     pub to: &'w mut StepResult,
 }
 
-impl Move<'_> {
+impl<'w> Move<'w> {
     pub fn take(self) {
-        // Which map it is is settled once for a step, not at every evaluation.
-        match &self.flow.map {
-            ConformalMap::Gaussian(map) => side_by_side(Through(map, self)),
-            ConformalMap::Grating(map) => side_by_side(Through(map, self)),
-            ConformalMap::QuasiConformal(map) => side_by_side(Through(map, self)),
-            ConformalMap::Flat(map) => side_by_side(Through(map, self)),
-        }
+        // Which map it is is settled once for a step, not at every evaluation; portable code is one for all maps.
+        let map = &self.flow.map;
+        let taken = of_each!(map, map => self.side_by_side(map));
+        taken.unwrap_or_else(|this| Through(map, this).with_simd(pulp::Scalar256b));
+    }
+
+    fn side_by_side<M: LaneMap>(self, map: &'w M) -> Result<(), Self> {
+        side_by_side(Through(map, self)).map_err(|Through(_, this)| this)
     }
 
     #[inline(always)]
