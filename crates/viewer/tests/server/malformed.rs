@@ -128,7 +128,7 @@ fn malformed_messages_are_answered_with_an_error_and_nothing_else() {
     let server = Server::start(0);
     let mut random = Random(20_131_105);
     let mut errors = 0;
-    let pages = long::count(12, 50);
+    let pages = long::count(6, 50);
     for _ in 0..pages {
         let mut page = server.page();
         for _ in 0..100 {
