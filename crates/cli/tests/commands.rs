@@ -1,6 +1,7 @@
 //! The commands at work: what they print and write.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::long;
 use crate::running::{cloakroom, json, paper, stdout};
 use serde_json::Value;
 use std::fs;
@@ -79,7 +80,7 @@ fn a_large_image_in_strips_is_the_whole_image() {
     let folder = tempfile::tempdir().unwrap();
     let render = |names: &[&str]| {
         let mut command = cloakroom();
-        command.arg("render").arg(paper("6a"));
+        command.arg("render").arg(paper(long::count("6a", "7d")));
         // More pixels than a strip has.
         command.args(["--set", "camera.resolution=[4200, 1001]", "--set", "camera.samples=1"]);
         for name in names {

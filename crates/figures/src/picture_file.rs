@@ -25,7 +25,9 @@ impl PictureFormat {
     pub fn of(path: &Path) -> Result<Self, OutputError> {
         let [png, exr, npz] = [Format::Png, Format::Exr, Format::Npz].map(Self::Pixels);
         let [svg, pdf] = [DrawingFormat::Svg, DrawingFormat::Pdf].map(Self::Map);
+        let known = ".png, .exr or .npz, for a map also .svg or .pdf".to_owned();
         format_of(path, &[("png", png), ("exr", exr), ("npz", npz), ("svg", svg), ("pdf", pdf)])
+            .map_err(|_| OutputError::UnknownFormat { path: path.to_owned(), known })
     }
 
     /// Whether a file of the format shows what people see, and is no data.
@@ -114,6 +116,6 @@ mod tests {
         }
         assert!(written("f.npz", map).is_ok());
         let message = PictureFormat::of("a.jpg".as_ref()).expect_err("unknown").to_string();
-        assert!(message.contains(".png, .exr, .npz, .svg or .pdf"), "{message}");
+        assert!(message.contains(".png, .exr or .npz, for a map also .svg or .pdf"), "{message}");
     }
 }

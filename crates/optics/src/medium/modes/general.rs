@@ -1,7 +1,7 @@
 //! Modes of any medium: Berreman's eigenproblem for the tangential fields.
 
 use super::absorbing::forwardness;
-use super::double_root::eigenvector_across;
+use super::eigenvector::eigenvector;
 use super::local::mutual_flux;
 use super::refinement::{Maxwell, best};
 use super::{BothWays, LocalMode, LocalModes, ModeKind};
@@ -74,7 +74,7 @@ impl<T: Number> Berreman<T> {
         let schur = Matrix4::from_fn(|i, j| self.matrix[i][j]).try_schur(f64::EPSILON, MOST_ROUNDS);
         schur.as_ref().and_then(values).map_or_else(fallback, |values| {
             std::array::from_fn(|i| {
-                let field = eigenvector_across(&matrix, values[i], None);
+                let field = eigenvector(&matrix, values[i], None);
                 (values[i], field.unwrap_or(fallback()[i].1))
             })
         })
@@ -234,7 +234,7 @@ impl Berreman<f64> {
             if real[i].0 - q >= DOUBLE * size {
                 continue;
             }
-            match eigenvector_across(&self.matrix, q, Some(first)) {
+            match eigenvector(&self.matrix, q, Some(first)) {
                 Some(second) => real[i].1 = second,
                 None => along_the_surface = true,
             }
@@ -258,7 +258,7 @@ fn separate_double_roots(matrix: &[[Complex64; 4]; 4], pairs: &mut [Eigenpair], 
         for j in i + 1..pairs.len() {
             let (q, first) = pairs[i];
             if (pairs[j].0 - q).norm() < 1e-12 * size
-                && let Some(second) = eigenvector_across(matrix, q, Some(first))
+                && let Some(second) = eigenvector(matrix, q, Some(first))
             {
                 pairs[j] = (q, second);
             }
@@ -284,9 +284,8 @@ fn fallback() -> [Eigenpair; 4] {
 
 /// The eigenvector of a real eigenvalue, which may carry a common phase.
 fn real_part(field: [Complex64; 4]) -> [f64; 4] {
-    let largest = field.into_iter().max_by(|a, b| a.norm_sqr().total_cmp(&b.norm_sqr()));
-    let largest = largest.unwrap_or_default();
-    let turn = largest.conj() / largest.norm();
+    let most = field.into_iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap_or_default();
+    let turn = most.conj() / most.norm();
     field.map(|c| (c * turn).re)
 }
 

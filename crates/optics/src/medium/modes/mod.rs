@@ -5,7 +5,7 @@
 //! misleading in hyperbolic and negative-index media.
 
 mod absorbing;
-mod double_root;
+mod eigenvector;
 mod general;
 mod local;
 mod refinement;

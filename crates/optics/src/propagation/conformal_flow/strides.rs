@@ -68,16 +68,13 @@ pub(super) struct Move<'w> {
     pub to: &'w mut StepResult,
 }
 
-impl<'w> Move<'w> {
+impl Move<'_> {
     pub fn take(self) {
         // Which map it is is settled once for a step, not at every evaluation; portable code is one for all maps.
         let map = &self.flow.map;
-        let taken = of_each!(map, map => self.side_by_side(map));
-        taken.unwrap_or_else(|this| Through(map, this).with_simd(pulp::Scalar256b));
-    }
-
-    fn side_by_side<M: LaneMap>(self, map: &'w M) -> Result<(), Self> {
-        side_by_side(Through(map, self)).map_err(|Through(_, this)| this)
+        let with_instructions =
+            of_each!(map, map => side_by_side(Through(map, self)).map_err(|Through(_, this)| this));
+        with_instructions.unwrap_or_else(|this| Through(map, this).with_simd(pulp::Scalar256b));
     }
 
     #[inline(always)]

@@ -7,7 +7,7 @@ use crate::wave::{Number, solve};
 ///
 /// This is inverse iteration: a shift by a few roundings brings out the eigenvector, a larger one the plane of a double
 /// eigenvalue, against all else.
-pub(super) fn eigenvector_across<T: Number>(
+pub(super) fn eigenvector<T: Number>(
     matrix: &[[T; 4]; 4],
     q: T,
     other: Option<[T; 4]>,
