@@ -1,7 +1,7 @@
 //! Numbers for what a page shows: power, times of flight, and likeness to what should be seen.
 
 use cloakroom::measure::{
-    FlightFigures, MeasureError, Region, View, bare, compare, empty, ideal, survey,
+    FlightFigures, Region, View, bare, empty, ideal, structural_similarity, survey,
 };
 use cloakroom::output::Picture;
 use cloakroom::render::{ChannelSet, Images, PreparedScene, Supervision, render};
@@ -38,10 +38,10 @@ pub(crate) fn figures(
     let (prepared, ideal) = (prepared(&scene, images)?, prepared(&wanted_scene, images)?);
     let rays = survey(&prepared, &ideal, &supervision)?;
     let silhouette = Region::new(view.width, rays.silhouette.clone()).ok();
-    let likeness = |of: &View, to: &View| -> Result<Value, MeasureError> {
-        let comparison = compare(to, of, silhouette.as_ref())?;
-        let figures = comparison.region.as_ref().unwrap_or(&comparison.picture);
-        Ok(json!({ "structural_similarity": figures.structural_similarity }))
+    let everything = Region::whole(&view);
+    let likeness = |of: &View, to: &View| {
+        let region = silhouette.as_ref().unwrap_or(&everything);
+        json!({ "structural_similarity": structural_similarity(to, of, region) })
     };
     let mean = |name: &str| {
         let (region, samples) = (silhouette.as_ref()?, &shown.channel(name)?.samples);
@@ -59,9 +59,9 @@ pub(crate) fn figures(
         "time_of_flight_difference_maximum_ns": flight.map(|flight| flight.maximum_ns),
         "time_of_flight_difference_mean_ns": flight.map(|flight| flight.mean_ns),
         "displacement_rms_cm": rays.displacement_rms_cm,
-        "to_ideal": likeness(&view, &wanted)?,
-        "to_empty": likeness(&view, &nothing)?,
-        "bare_to_empty": bare.map(|bare| likeness(&bare, &nothing)).transpose()?,
+        "to_ideal": likeness(&view, &wanted),
+        "to_empty": likeness(&view, &nothing),
+        "bare_to_empty": bare.map(|bare| likeness(&bare, &nothing)),
     }))
 }
 
