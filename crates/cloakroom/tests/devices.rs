@@ -119,6 +119,11 @@ fn launches(count: u32) -> impl Iterator<Item = Launch<2>> {
     launches_around(count, [80.0, 60.0], DVec3::new(30.0, 24.0, 30.0))
 }
 
+/// Whether a ray starts in air: one that starts in a slab that absorbs and runs along it never comes out.
+fn starts_in_air(assembly: &Assembly, launch: &Launch<2>) -> bool {
+    assembly.region_around(launch.origin, launch.direction) == Ok(None)
+}
+
 fn is_birefringent(device: &str) -> bool {
     device.contains("uniaxial")
 }
@@ -157,6 +162,9 @@ fn leaves_are_sound_waves_in_air() {
         let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-9, tolerance: 1e-6 });
         for launch in launches(if is_birefringent(&what) { count(8, 100) } else { count(40, 500) })
         {
+            if !starts_in_air(&assembly, &launch) {
+                continue;
+            }
             let (leaves, _) = tracer.trace(&launch);
             assert!(!leaves.is_empty(), "{what}{launch:?}");
             for leaf in leaves {
@@ -185,6 +193,9 @@ fn the_way_back_leads_home() {
         for launch in launches(count(120, 600)) {
             // From beyond the widest floor: on its way home a ray must not meet it after the start.
             let launch = Launch { origin: launch.origin - 400.0 * launch.direction, ..launch };
+            if !starts_in_air(&assembly, &launch) {
+                continue;
+            }
             let (leaves, _) = tracer.trace(&launch);
             let leaf = strongest(leaves);
             let there = leaf.power[0] + leaf.power[1];

@@ -8,7 +8,7 @@ use super::{BothWays, LocalMode, LocalModes, ModeKind};
 use crate::medium::{Medium, Tensor};
 use crate::wave::{Frame, Number, dot};
 use arrayvec::ArrayVec;
-use nalgebra::{ComplexField, Const, Matrix4, Schur};
+use nalgebra::{ComplexField, Const, Matrix4, Schur, Vector4};
 use num_complex::Complex64;
 use std::ops::Mul;
 
@@ -71,7 +71,15 @@ impl<T: Number> Berreman<T> {
         T: ComplexField<RealField = f64>,
     {
         let matrix = self.complex_matrix();
-        let schur = Matrix4::from_fn(|i, j| self.matrix[i][j]).try_schur(f64::EPSILON, MOST_ROUNDS);
+        let own = Matrix4::from_fn(|i, j| self.matrix[i][j]);
+        let schur = own.try_schur(f64::EPSILON, MOST_ROUNDS).or_else(|| {
+            // Its shifts can run in a circle where several eigenvalues have one size, but hardly again in another basis.
+            MIRRORS.iter().find_map(|across| {
+                let across = Vector4::from(across.map(T::from)).normalize();
+                let mirror = Matrix4::identity() - across * across.transpose() * T::from(2.0);
+                (mirror * own * mirror).try_schur(f64::EPSILON, MOST_ROUNDS)
+            })
+        });
         schur.as_ref().and_then(values).map_or_else(fallback, |values| {
             std::array::from_fn(|i| {
                 let field = eigenvector(&matrix, values[i], None);
@@ -274,7 +282,11 @@ fn parts_across(field: [Complex64; 4]) -> [Complex64; 4] {
 }
 
 /// Rounds of the eigensolver; it takes about ten.
-const MOST_ROUNDS: usize = 1000;
+const MOST_ROUNDS: usize = 200;
+
+/// Normals of mirrors that have no symmetry in common with a matrix.
+const MIRRORS: [[f64; 4]; 3] =
+    [[0.53, -0.37, 0.61, 0.46], [0.19, 0.83, -0.27, 0.44], [-0.71, 0.31, 0.52, 0.37]];
 
 /// Should the eigensolver ever give up: no waves but decaying ones without fields that matter.
 fn fallback() -> [Eigenpair; 4] {
@@ -305,13 +317,14 @@ fn by_heading(
     // Half of the propagating ones head each way; the rank, where rounding at grazing incidence
     // hides the sign.
     real.sort_by(|a, b| b.flux().total_cmp(&a.flux()));
+    orthogonalize_in_flux(&mut real, size);
     evanescent.sort_by(|a, b| b.q.im.total_cmp(&a.q.im));
     let (r, e) = (real.len() / 2, evanescent.len() / 2);
-    [gathered(&real[..r], &evanescent[..e], size), gathered(&real[r..], &evanescent[e..], size)]
+    [gathered(&real[..r], &evanescent[..e]), gathered(&real[r..], &evanescent[e..])]
 }
 
-/// Two modes of one heading, normalized, orthogonal in flux and in order.
-fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>], size: f64) -> LocalModes {
+/// Two modes of one heading, normalized and in order.
+fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>]) -> LocalModes {
     let normalized = |mode: &LocalMode<f64>| {
         let flux = mode.flux().abs().max(1e-15);
         mode.scaled(flux.sqrt().recip())
@@ -319,21 +332,25 @@ fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>], size: 
     let decaying =
         |mode: &LocalMode<Complex64>| LocalMode { propagating: false, ..mode.normalized() };
     match (real, evanescent) {
-        ([a, b], _) => {
-            let (a, b) = (normalized(a), normalized(b));
-            // Computed vectors of close roots are orthogonal only as far as the roots are apart.
-            let b = if (a.q - b.q).abs() < 1e-3 * size {
-                normalized(&added(b, &a, -mutual_flux(&a, &b) / a.flux()))
-            } else {
-                b
-            };
-            LocalModes::Real(ordered([a, b]))
-        }
+        ([a, b], _) => LocalModes::Real(ordered([normalized(a), normalized(b)])),
         ([a], [b, ..]) => LocalModes::Complex(ordered([normalized(a).complex(), decaying(b)])),
         (_, [a, b, ..]) => LocalModes::Complex(ordered([decaying(a), decaying(b)])),
         _ => LocalModes::Complex(ordered([0, 1].map(|i| fallback()[i]).map(|(q, field)| {
             LocalMode { propagating: false, ..unnamed(q, field, [Complex64::ZERO; 2]) }
         }))),
+    }
+}
+
+/// Makes modes orthogonal in flux, as those of a lossless medium are: computed ones are as far as their roots are apart.
+fn orthogonalize_in_flux(modes: &mut [LocalMode<f64>], size: f64) {
+    for i in 1..modes.len() {
+        for j in 0..i {
+            let share = mutual_flux(&modes[j], &modes[i]) / modes[j].flux();
+            // At grazing incidence there may be no flux: only what Maxwell's equations do not feel.
+            if (share * (modes[i].q - modes[j].q)).abs() < 1e-14 * size {
+                modes[i] = added(modes[i], &modes[j], -share);
+            }
+        }
     }
 }
 
