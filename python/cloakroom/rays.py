@@ -101,7 +101,7 @@ def trace(
     ------
     TypeError, ValueError
         If an array is of a wrong type or shape, a number is not finite, a direction is zero, a field is not transverse,
-        or a ray starts in metal, an opaque body or a round birefringent medium; the message names the argument or the ray.
+        or a ray starts in metal or an opaque body; the message names the argument or the ray.
     MemoryError
         If the leaves would not fit into the memory that is free.
 

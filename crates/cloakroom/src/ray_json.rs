@@ -140,7 +140,7 @@ fn transverse(components: [[f64; 2]; 3], direction: DVec3) -> Result<ComplexVect
 ///
 /// # Errors
 ///
-/// If a ray makes no sense or starts in metal, an opaque body or a round birefringent medium (the first such one is named), there is not enough memory for the
+/// If a ray makes no sense or starts in metal or an opaque body (the first such one is named), there is not enough memory for the
 /// leaves, or the work was stopped.
 pub fn leaf_table(
     assembly: &Assembly,
@@ -160,8 +160,8 @@ pub fn leaf_table(
         let launch = ray(index).launch().map_err(wrong)?;
         assembly.region_around(launch.origin, launch.direction).map_err(|device| {
             wrong(format!(
-                "it starts inside device {device} (counted from 0), in metal, an opaque body or a round \
-                 birefringent medium; rays start in air or in another medium"
+                "it starts inside device {device} (counted from 0), in metal or an opaque \
+                 body; rays start in air or in another medium"
             ))
         })?;
         Ok(launch)
@@ -173,7 +173,7 @@ pub fn leaf_table(
 ///
 /// # Errors
 ///
-/// If a ray makes no sense or starts in metal, an opaque body or a round birefringent medium, or the work was stopped.
+/// If a ray makes no sense or starts in metal or an opaque body, or the work was stopped.
 pub fn trace_rays(
     assembly: &Assembly,
     limits: Limits,

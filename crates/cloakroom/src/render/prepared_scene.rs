@@ -52,7 +52,7 @@ pub enum PreparedSceneError {
     },
     /// The camera is where there is no light.
     #[error(
-        "the camera stands inside device {device} (counted from 0), in metal, an opaque body or a round birefringent medium; \
+        "the camera stands inside device {device} (counted from 0), in metal or an opaque body; \
          it must stand in air or in another medium"
     )]
     CameraInside {

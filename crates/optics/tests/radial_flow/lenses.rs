@@ -1,7 +1,7 @@
 //! Graded balls.
 
 use super::Numbers;
-use super::hamiltonian::{Dual, follow, spherical};
+use super::hamiltonian::{Dual, Phase, follow, spherical};
 use crate::long;
 use glam::DVec3;
 use optics::medium::ModeKind;
@@ -9,7 +9,7 @@ use optics::propagation::reference::{self, ReferenceRay, SquaredIndex};
 use optics::propagation::{CentralLens, TransmutedSphere};
 use std::f64::consts::PI;
 
-const RADIUS: f64 = 3.0;
+pub const RADIUS: f64 = 3.0;
 
 /// n and dn/dr at a radius.
 type Profile = fn(f64) -> (f64, f64);
@@ -174,6 +174,18 @@ fn extraordinary_index(r: f64) -> (f64, f64) {
     (n, (beta.cos() / slope / x - n / x) / RADIUS)
 }
 
+/// p_r²/ε_o + p_t²/ε_e = 1, or p² = ε_o.
+pub fn transmuted(mode: ModeKind) -> impl Fn(Phase) -> Dual {
+    move |phase| {
+        let (r, radial, across) = spherical(phase);
+        let ordinary = Dual::constant((PI + 1.0).powi(2));
+        let extraordinary = r.through(extraordinary_index);
+        let of_across =
+            if mode == ModeKind::Extraordinary { extraordinary * extraordinary } else { ordinary };
+        (radial / ordinary + across / of_across - Dual::constant(1.0)) * Dual::constant(0.5)
+    }
+}
+
 #[test]
 fn the_transmuted_sphere_against_hamiltons_equations() {
     assert!((extraordinary_index(1e-6 * RADIUS).0 - (PI + 1.0) / 3.0).abs() < 1e-5);
@@ -189,13 +201,8 @@ fn the_transmuted_sphere_against_hamiltons_equations() {
         let around = (d - x * x.dot(d)) / impact;
         let radial = TransmutedSphere::ORDINARY_INDEX * (1.0 - impact * impact).sqrt();
         let p = around * impact - x * radial;
-        let dispersion = |phase| {
-            let (r, radial, across) = spherical(phase);
-            let n = r.through(extraordinary_index);
-            let ordinary = Dual::constant((PI + 1.0).powi(2));
-            (radial / ordinary + across / (n * n) - Dual::constant(1.0)) * Dual::constant(0.5)
-        };
-        let expected = follow(position, p, dispersion, |r| RADIUS - r.length(), 0.2);
+        let wave = transmuted(ModeKind::Extraordinary);
+        let expected = follow(position, p, wave, |r| RADIUS - r.length(), 0.2);
         let found = sphere.advance(position, p, ModeKind::Extraordinary);
         let tolerance = 1e-9 / position.dot(d).abs();
         assert!(found.position.distance(expected.position) < tolerance * RADIUS);

@@ -3,6 +3,7 @@
 mod hamiltonian;
 mod lenses;
 mod shells;
+mod within;
 
 use glam::DVec3;
 

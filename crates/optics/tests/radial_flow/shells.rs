@@ -11,8 +11,8 @@ use optics::propagation::{
 use optics::transformation::{RadialMap, Symmetry};
 use optics::wave::ComplexVector;
 
-const A: f64 = 1.0;
-const B: f64 = 2.0;
+pub const A: f64 = 1.0;
+pub const B: f64 = 2.0;
 const K: f64 = 2.0;
 
 fn constant(value: f64) -> Dual {
@@ -25,7 +25,7 @@ fn s_of(r: Dual) -> Dual {
 }
 
 /// p·Mp = det M for M = diag(s, 1/s, k² s).
-fn matched_cylinder(phase: Phase) -> Dual {
+pub fn matched_cylinder(phase: Phase) -> Dual {
     let (r, radial, around) = cylindrical(phase);
     let s = s_of(r);
     let axial = constant(K * K) * s;
@@ -33,14 +33,14 @@ fn matched_cylinder(phase: Phase) -> Dual {
 }
 
 /// p·Mp = det M for M = diag(k s², k, k).
-fn matched_sphere(phase: Phase) -> Dual {
+pub fn matched_sphere(phase: Phase) -> Dual {
     let (r, radial, across) = spherical(phase);
     let s2 = s_of(r) * s_of(r);
     (s2 * radial + across - constant(K * K) * s2) * constant(0.5 * K)
 }
 
 /// (p·a)²/ε_o + (p × a)²/ε_e = 1 for the optic axis a, or p² = ε_o.
-fn uniaxial(axis: OpticAxis, mode: ModeKind) -> impl Fn(Phase) -> Dual {
+pub fn uniaxial(axis: OpticAxis, mode: ModeKind) -> impl Fn(Phase) -> Dual {
     move |phase| {
         let (r, radial, around) = cylindrical(phase);
         let axial = phase[5] * phase[5];
@@ -88,7 +88,7 @@ fn enter(
     })
 }
 
-fn compare(found: &RadialEnd, expected: &End, tolerance: f64, what: &str) {
+pub fn compare(found: &RadialEnd, expected: &End, tolerance: f64, what: &str) {
     let off = found.position.distance(expected.position);
     assert!(off < tolerance, "{what}: position off by {off}");
     let off = found.wave_vector.distance(expected.wave_vector) / found.wave_vector.length();

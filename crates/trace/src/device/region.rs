@@ -176,17 +176,6 @@ impl Region {
         local.as_ref()
     }
 
-    /// Whether rays can start within: the closed forms of round birefringent media take them from border to border.
-    #[must_use]
-    pub fn can_be_started_in(&self) -> bool {
-        match self {
-            Self::Homogeneous(_) | Self::Conformal(_) | Self::ClosedForm(_) => true,
-            Self::Radial(region) => {
-                matches!(region.flow, RadialFlow::Transformed(_) | RadialFlow::Lens(_))
-            }
-        }
-    }
-
     /// The speed of light times the time of flight along a passage of that optical path and straight length, cm.
     #[must_use]
     #[inline]

@@ -13,7 +13,7 @@ impl Assembly {
     ///
     /// # Errors
     ///
-    /// The number of the device in whose metal, opaque inside, or round birefringent medium it would start.
+    /// The number of the device in whose metal or opaque inside it would start.
     pub fn region_around(
         &self,
         point: DVec3,
@@ -34,7 +34,6 @@ impl Assembly {
         } else {
             device.structure.region_at(device.pose.to_local(point)).map(|(region, _)| region)
         };
-        let region = region.filter(|region| device.region(*region).can_be_started_in());
         // Devices are numbered in 16 bits.
         region.map(|region| Some((number as u16, region))).ok_or(number)
     }

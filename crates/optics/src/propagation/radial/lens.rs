@@ -110,7 +110,19 @@ impl CentralLens {
         let (x, d) = (position / self.radius, wave_vector.normalize());
         let normal = plane_normal(x, d);
         let (at, onward, path) = match self.profile {
-            Profile::Eaton(angle) => eaton_from_within(x, d, normal, angle / PI, share),
+            Profile::Eaton(angle) => {
+                let turn = angle / PI;
+                let radial = x.try_normalize().unwrap_or(d);
+                let c = eaton_parameter(turn, x.length().max(NEAREST)).tanh();
+                // r n = √(1 - c²), of which these are the components across the radius and along it.
+                let size = (1.0 - c * c).sqrt();
+                let (l, inward) = (size * radial.cross(d).length(), size * -radial.dot(d));
+                let way = EatonWayOut::new(turn, c, l, inward);
+                let here = way.at(share);
+                let outward = radial.rotate_axis(normal, here.swept);
+                let onward = outward * way.cosine() + normal.cross(outward) * l;
+                (outward * eaton_radius(turn, here.c), onward, here.path)
+            }
             Profile::Luneburg => {
                 // r² = 1 + (x² - 1) cos 2σ + x·p sin 2σ
                 let p = d * (2.0 - x.length_squared()).sqrt();
@@ -195,38 +207,45 @@ fn first_rise(a: f64, b: f64) -> f64 {
     2.0 * over.atan2(under)
 }
 
-/// The point at a share of the way to the surface of a ray from `x` within a ball of Eaton's family of radius 1, the
-/// vector along the ray where that comes out, and the optical path.
-fn eaton_from_within(
-    x: DVec3,
-    d: DVec3,
-    normal: DVec3,
+/// The way to the surface of a ray from a point within a ball of Eaton's family of radius 1, `turn` being 1/m.
+pub(super) struct EatonWayOut {
     turn: f64,
-    share: f64,
-) -> (DVec3, DVec3, f64) {
-    let radial = x.try_normalize().unwrap_or(d);
-    let c = eaton_parameter(turn, x.length().max(NEAREST)).tanh();
-    // r n = √(1 - c²), of which these are the components across the radius and along it.
-    let size = (1.0 - c * c).sqrt();
-    let (l, inward) = (size * radial.cross(d).length(), size * -radial.dot(d));
-    let s = c.hypot(inward);
-    let done = |phase: f64| {
-        // From where the whole ray comes in, around the turning point at π/2.
-        let psi = phase.min(PI - phase);
-        let (sin, cos) = psi.sin_cos();
-        let swept = (l * sin).atan2(cos) * turn + s.atan2(l) - (s * cos).atan2(l);
-        let path = turn * psi + s * (1.0 - cos);
-        if phase <= FRAC_PI_2 {
-            return (path, swept);
-        }
-        (turn * PI + 2.0 * s - path, turn * PI + 2.0 * s.atan2(l) - swept)
-    };
-    let start = c.atan2(inward);
-    let phase = start + share * (PI - start);
-    let [(from, before), (to, after)] = [start, phase].map(done);
-    let outward = radial.rotate_axis(normal, after - before);
-    let onward = outward * s + normal.cross(outward) * l;
-    (outward * eaton_radius(turn, s * phase.sin()), onward, to - from)
+    /// Sine and cosine of the angle to the radius at the surface.
+    l: f64,
+    s: f64,
+    /// Where it starts: from 0 at the surface over the turning point at π/2 to π.
+    start: f64,
+}
+
+impl EatonWayOut {
+    /// From c, see [`EatonWay::c`], with L and the part of r n along the radius, inwards.
+    pub fn new(turn: f64, c: f64, l: f64, inward: f64) -> Self {
+        Self { turn, l, s: c.hypot(inward), start: c.atan2(inward) }
+    }
+
+    /// The cosine of the angle to the radius at the surface.
+    pub fn cosine(&self) -> f64 {
+        self.s
+    }
+
+    /// The point at a share of the way.
+    pub fn at(&self, share: f64) -> EatonWay {
+        let Self { turn, l, s, start } = *self;
+        let done = |phase: f64| {
+            // From where the whole ray comes in, around the turning point at π/2.
+            let psi = phase.min(PI - phase);
+            let (sin, cos) = psi.sin_cos();
+            let swept = (l * sin).atan2(cos) * turn + s.atan2(l) - (s * cos).atan2(l);
+            let path = turn * psi + s * (1.0 - cos);
+            if phase <= FRAC_PI_2 {
+                return (path, swept);
+            }
+            (turn * PI + 2.0 * s - path, turn * PI + 2.0 * s.atan2(l) - swept)
+        };
+        let phase = start + share * (PI - start);
+        let [(from, before), (to, after)] = [start, phase].map(done);
+        EatonWay { c: s * phase.sin(), swept: after - before, path: to - from }
+    }
 }
 
 /// A point of a way through a ball of Eaton's family, of radius 1.

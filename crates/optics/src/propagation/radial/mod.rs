@@ -95,9 +95,8 @@ impl RadialFlow {
         }
     }
 
-    /// Follows a ray from a point of the border, where it has the given wave vector and is the given
-    /// wave of the medium, to the next point of the border. It must run into the medium or along its
-    /// border. In an isotropic medium it may start within, too.
+    /// Follows a ray from a point of the medium or its border, where it has the given wave vector and is the given
+    /// wave of the medium, to the next point of the border. On the border it must run into the medium or along it.
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
         match self {
             Self::Lens(lens) => lens.advance(position, wave_vector),
