@@ -104,8 +104,7 @@ impl<const N: usize> Branch<N> {
             let share = along[i].norm_sqr() / (along[i].norm_sqr() + beside[i].norm_sqr());
             let share = if share.is_nan() { 0.0 } else { share };
             part.power[i] = self.power[i] * share;
-            let unit = ComplexVector::from(field.normalize());
-            part.electric[i] = unit.scaled(along[i]);
+            part.electric[i] = ComplexVector::from(field.normalize()).scaled(along[i]);
         }
         part.mode = mode;
         part.path = fingerprint(self.path, mode);

@@ -28,8 +28,7 @@ impl Assembly {
             },
         };
         let device = &self.devices()[number];
-        let opaque = device.structure.is_opaque();
-        let region = if device.body().is_some() && !opaque {
+        let region = if device.body().is_some() && !device.structure.is_opaque() {
             Some(0)
         } else {
             device.structure.region_at(device.pose.to_local(point)).map(|(region, _)| region)
@@ -53,9 +52,7 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
         branch.enter_frame(&device.pose);
         branch.place = Place::Region { device: number, region };
         let found = device.region(region).enter_if_within(branch.position);
-        let Some((virtual_point, medium)) = found else {
-            return self.lose(branch.power);
-        };
+        let Some((virtual_point, medium)) = found else { return self.lose(branch.power) };
         branch.virtual_point = virtual_point;
         let waves = medium.waves_along_ray(branch.direction);
         match waves.as_slice() {

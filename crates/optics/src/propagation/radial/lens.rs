@@ -73,40 +73,12 @@ impl CentralLens {
 
     /// The point at a share of the way that [`Self::advance`] takes.
     pub(super) fn way_point(&self, position: DVec3, wave_vector: DVec3, share: f64) -> PathPoint {
-        if self.is_within(position) {
-            let way = self.way_from_within(position, wave_vector, share);
-            return PathPoint { position: way.position, optical_path: way.optical_path };
-        }
-        let (x, d) = (position.normalize(), wave_vector.normalize());
-        let normal = plane_normal(x, d);
-        let cosine = x.dot(d);
-        let (position, path) = match self.profile {
-            Profile::Eaton(angle) => {
-                let way = EatonWay::new(x, d, angle / PI, share);
-                (x.rotate_axis(normal, way.swept) * eaton_radius(angle / PI, way.c), way.path)
-            }
-            Profile::Luneburg => {
-                // An ellipse about the centre.
-                let (sin, cos) = (FRAC_PI_2 * share).sin_cos();
-                (x * cos + d * sin, FRAC_PI_2 * share - cosine * sin * sin)
-            }
-            Profile::Fisheye => {
-                // The stereographic image of a great circle.
-                let (sin, cos) = (PI * share).sin_cos();
-                let across = x * cos + (d - x * cosine) * sin;
-                (across / (1.0 - cosine * sin), PI * share)
-            }
-        };
-        PathPoint { position: position * self.radius, optical_path: path * self.radius }
+        let way = self.way_to(position, wave_vector, share);
+        PathPoint { position: way.position, optical_path: way.optical_path }
     }
 
-    /// Whether a point is not one of the surface.
-    fn is_within(&self, position: DVec3) -> bool {
-        position.length() < (1.0 - AT_SURFACE) * self.radius
-    }
-
-    /// The point at a share of the way to the surface of a ray that starts within.
-    fn way_from_within(&self, position: DVec3, wave_vector: DVec3, share: f64) -> RadialEnd {
+    /// A share of the way to the surface, from there or from within.
+    fn way_to(&self, position: DVec3, wave_vector: DVec3, share: f64) -> RadialEnd {
         let (x, d) = (position / self.radius, wave_vector.normalize());
         let normal = plane_normal(x, d);
         let (at, onward, path) = match self.profile {
@@ -161,8 +133,8 @@ impl CentralLens {
 
     /// Follows a ray from a point of the ball or its surface to where it comes out.
     pub fn advance(&self, position: DVec3, wave_vector: DVec3) -> RadialEnd {
-        if self.is_within(position) {
-            let end = self.way_from_within(position, wave_vector, 1.0);
+        if position.length() < (1.0 - AT_SURFACE) * self.radius {
+            let end = self.way_to(position, wave_vector, 1.0);
             // On the surface, where the index is 1, to the last bit.
             let position = end.outward * self.radius;
             return RadialEnd { position, wave_vector: end.direction, ..end };
@@ -198,7 +170,7 @@ impl CentralLens {
 }
 
 /// Closer to the surface than this share of the radius a ray starts on it.
-const AT_SURFACE: f64 = 1e-9;
+pub(super) const AT_SURFACE: f64 = 1e-9;
 
 /// The first angle, from 0 to 2π, at which a cos φ + b sin φ, which is negative at 0, grows through zero.
 fn first_rise(a: f64, b: f64) -> f64 {
@@ -207,13 +179,13 @@ fn first_rise(a: f64, b: f64) -> f64 {
     2.0 * over.atan2(under)
 }
 
-/// The way to the surface of a ray from a point within a ball of Eaton's family of radius 1, `turn` being 1/m.
+/// The way to the surface of a ray from a point of a ball of Eaton's family of radius 1, `turn` being 1/m: with L and S the
+/// sine and cosine of the angle to the radius at the surface, c = S sin ψ, ψ from 0 to the turning point at π/2 to π.
 pub(super) struct EatonWayOut {
     turn: f64,
-    /// Sine and cosine of the angle to the radius at the surface.
     l: f64,
     s: f64,
-    /// Where it starts: from 0 at the surface over the turning point at π/2 to π.
+    /// The ψ at which it starts.
     start: f64,
 }
 
@@ -256,25 +228,6 @@ pub(super) struct EatonWay {
     pub swept: f64,
     /// The optical path.
     pub path: f64,
-}
-
-impl EatonWay {
-    /// The point at a share of the way of a ray from `x` along `d`, `turn` being 1/m. With L and S the sine and
-    /// cosine of the angle to the radius, c = S sin ψ, ψ from 0 to the turning point at π/2.
-    pub fn new(x: DVec3, d: DVec3, turn: f64, share: f64) -> Self {
-        let (s, l) = ((-x.dot(d)).max(0.0), x.cross(d).length());
-        let half = |psi: f64| {
-            let (sin, cos) = psi.sin_cos();
-            let swept = (l * sin).atan2(cos) * turn + s.atan2(l) - (s * cos).atan2(l);
-            (turn * psi + s * (1.0 - cos), swept, s * sin)
-        };
-        let (path, swept, c) = half(FRAC_PI_2 * (1.0 - (2.0 * share - 1.0).abs()));
-        if share <= 0.5 {
-            return Self { c, swept, path };
-        }
-        let (most, around, _) = half(FRAC_PI_2);
-        Self { c, swept: 2.0 * around - swept, path: 2.0 * most - path }
-    }
 }
 
 /// r/R of Eaton's family at c, see [`EatonWay::c`]: 2 v^(1 - 1/m)/(1 + v²).

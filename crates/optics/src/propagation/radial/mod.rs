@@ -124,7 +124,7 @@ impl RadialFlow {
             (_, Some(path)) => path.way_point(position, share),
             (Self::Lens(lens), _) => lens.way_point(position, wave_vector, share),
             (Self::Transmuted(sphere), _) if mode == ModeKind::Extraordinary => {
-                sphere.way_point(position, wave_vector, share)
+                sphere.way(position, wave_vector).point(share)
             }
             (Self::Transformed(shell), _) => straight_in(&shell.map, position, &end, share),
             (Self::Uniaxial(cylinder), _) if !cylinder.comes_to_core(mode) => {
