@@ -62,6 +62,15 @@ class Interface:
     #: Shares of the incident normal flux: (N, 4, 2), or (N, 2, 2) for metal. Rows are the outgoing modes (reflected 1,
     #: 2, transmitted 1, 2), columns the incident ones; NaN for evanescent incident modes.
     power: NDArray[np.float64]
+    #: Amplitudes of the outgoing modes for an incident mode of amplitude 1, with the modes' own fields, those at the
+    #: interface; complex, of the shape of ``power``. Evanescent modes have theirs.
+    amplitudes: NDArray[np.complex128]
+    #: Jones matrices of reflection for fields of unit size; (N, 2, 2), complex, NaN where a medium is not isotropic. Rows
+    #: are s and p of the wave that leaves, columns s and p of the wave that comes. The field of p lies along s x k/\|k\|, k
+    #: being each wave's own wave vector: r_p = (n2 cos a1 - n1 cos a2)/(n2 cos a1 + n1 cos a2).
+    jones_reflected: NDArray[np.complex128]
+    #: Jones matrices of transmission; ``None`` for metal.
+    jones_transmitted: NDArray[np.complex128] | None
     #: The sum of the reflected shares for each incident mode; (N, 2), NaN for evanescent ones.
     total_reflected: NDArray[np.float64]
     #: The sum of the transmitted shares for each incident mode; (N, 2), NaN for evanescent ones.

@@ -2,7 +2,9 @@
 
 use crate::errors::{Failure, value_error};
 use crate::supervision::supervised;
-use cloakroom::interface_json::{InterfaceReport, InterfaceRequest, ModeReport};
+use cloakroom::interface_json::{
+    ComplexMatrix, InterfaceReport, InterfaceRequest, JonesReport, ModeReport,
+};
 use glam::DVec3;
 use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis};
 use num_complex::Complex64;
@@ -115,10 +117,28 @@ pub fn interface<'py>(
             of(&reports[i])[column].unwrap_or(f64::NAN)
         })
     };
+    let amplitudes = Array3::from_shape_fn((reports.len(), outgoing, 2), |(i, row, column)| {
+        complex(reports[i].amplitudes[row][column])
+    });
+    let jones = |of: fn(&JonesReport) -> Option<ComplexMatrix>| {
+        Array3::from_shape_fn((reports.len(), 2, 2), |(i, row, column)| {
+            let matrix = reports[i].jones.as_ref().and_then(of);
+            complex(matrix.map_or([f64::NAN; 2], |matrix| matrix[row][column]))
+        })
+    };
     arrays.set_item("power", power.into_pyarray(py))?;
+    arrays.set_item("amplitudes", amplitudes.into_pyarray(py))?;
+    let reflected = jones(|jones| Some(jones.reflected));
+    arrays.set_item("jones_reflected", reflected.into_pyarray(py))?;
+    let transmitted = beyond.is_some().then(|| jones(|jones| jones.transmitted).into_pyarray(py));
+    arrays.set_item("jones_transmitted", transmitted)?;
     arrays.set_item("total_reflected", total(|r| r.total_reflected).into_pyarray(py))?;
     arrays.set_item("total_transmitted", total(|r| r.total_transmitted).into_pyarray(py))?;
     Ok(arrays)
+}
+
+fn complex([re, im]: [f64; 2]) -> Complex64 {
+    Complex64::new(re, im)
 }
 
 /// Pairs of modes as arrays (N, 2, 3) and (N, 2).
@@ -128,11 +148,8 @@ fn modes<'py>(
     of: impl Fn(&InterfaceReport) -> &[ModeReport],
 ) -> Result<Bound<'py, PyDict>, Failure> {
     let shape = (reports.len(), 2, 3);
-    let complex = |field: fn(&ModeReport) -> &[[f64; 2]; 3]| {
-        Array3::from_shape_fn(shape, |(i, mode, axis)| {
-            let [re, im] = field(&of(&reports[i])[mode])[axis];
-            Complex64::new(re, im)
-        })
+    let field = |field: fn(&ModeReport) -> &[[f64; 2]; 3]| {
+        Array3::from_shape_fn(shape, |(i, mode, axis)| complex(field(&of(&reports[i])[mode])[axis]))
     };
     let poynting = Array3::from_shape_fn(shape, |(i, mode, axis)| {
         of(&reports[i])[mode].poynting.map_or(f64::NAN, |poynting| poynting[axis])
@@ -140,10 +157,10 @@ fn modes<'py>(
     let propagating =
         Array2::from_shape_fn((reports.len(), 2), |(i, mode)| of(&reports[i])[mode].propagating);
     let arrays = PyDict::new(py);
-    arrays.set_item("wave_vector", complex(|mode| &mode.wave_vector).into_pyarray(py))?;
+    arrays.set_item("wave_vector", field(|mode| &mode.wave_vector).into_pyarray(py))?;
     arrays.set_item("poynting", poynting.into_pyarray(py))?;
-    arrays.set_item("electric_field", complex(|mode| &mode.electric_field).into_pyarray(py))?;
-    arrays.set_item("magnetic_field", complex(|mode| &mode.magnetic_field).into_pyarray(py))?;
+    arrays.set_item("electric_field", field(|mode| &mode.electric_field).into_pyarray(py))?;
+    arrays.set_item("magnetic_field", field(|mode| &mode.magnetic_field).into_pyarray(py))?;
     arrays.set_item("propagating", propagating.into_pyarray(py))?;
     Ok(arrays)
 }

@@ -6,7 +6,8 @@ mod tests;
 
 pub use read::{InterfaceError, InterfaceRequest};
 
-use optics::interface::Scattering;
+use num_complex::Complex64;
+use optics::interface::{JonesMatrices, Scattering};
 use optics::medium::Mode;
 use optics::wave::ComplexVector;
 use serde::Serialize;
@@ -33,10 +34,40 @@ pub struct InterfaceReport {
     /// the incident ones: each the share of the incident normal flux. `null` for evanescent
     /// incident modes, 0 for evanescent outgoing ones.
     pub power: Vec<[Option<f64>; 2]>,
+    /// The amplitudes of the outgoing modes for an incident mode of amplitude 1, by the same rows and columns, each as
+    /// [re, im]: with the modes' own fields, those at the interface. Evanescent modes have theirs.
+    pub amplitudes: Vec<[[f64; 2]; 2]>,
+    /// The same for fields of unit size, in s and p; `null` where a medium is not isotropic.
+    pub jones: Option<JonesReport>,
     /// The sum of the reflected shares, for each incident mode.
     pub total_reflected: [Option<f64>; 2],
     /// The sum of the transmitted shares, for each incident mode.
     pub total_transmitted: [Option<f64>; 2],
+}
+
+/// Two rows of complex numbers, each as [re, im].
+pub type ComplexMatrix = [[[f64; 2]; 2]; 2];
+
+/// What an interface of isotropic media makes of electric fields of unit size, see [`JonesMatrices`]: rows s and p of the
+/// wave that leaves, columns s and p of the wave that comes, each number as [re, im].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct JonesReport {
+    /// Of the wave that is reflected.
+    pub reflected: ComplexMatrix,
+    /// Of the wave beyond; `null` in metal.
+    pub transmitted: Option<ComplexMatrix>,
+}
+
+impl From<JonesMatrices> for JonesReport {
+    fn from(jones: JonesMatrices) -> Self {
+        let pairs = |matrix: [[Complex64; 2]; 2]| matrix.map(|row| row.map(pair));
+        Self { reflected: pairs(jones.reflected), transmitted: jones.transmitted.map(pairs) }
+    }
+}
+
+/// A complex number as [re, im].
+fn pair(number: Complex64) -> [f64; 2] {
+    [number.re, number.im]
 }
 
 /// One mode.
@@ -56,7 +87,7 @@ pub struct ModeReport {
 
 impl From<&Mode> for ModeReport {
     fn from(mode: &Mode) -> Self {
-        let components = |v: ComplexVector| v.components().map(|c| [c.re, c.im]);
+        let components = |v: ComplexVector| v.components().map(pair);
         Self {
             wave_vector: components(mode.wave_vector),
             poynting: mode.is_propagating().then(|| mode.poynting().to_array()),
@@ -90,6 +121,8 @@ impl InterfaceRequest {
             reflected: report(&scattering.reflected),
             transmitted: transmitted.map(ModeReport::from).collect(),
             power: (0..rows).map(share).collect(),
+            amplitudes: scattering.amplitudes[..rows].iter().map(|row| row.map(pair)).collect(),
+            jones: scattering.jones.map(JonesReport::from),
             total_reflected: sum(0),
             total_transmitted: sum(2),
         })

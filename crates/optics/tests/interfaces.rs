@@ -6,9 +6,10 @@ use crate::long::count;
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 use optics::interface::{
-    IncidentWave, Reflectionless, Side, reflect_at_conductor, split, transmit_antireflection,
+    IncidentWave, Reflectionless, Scattering, Side, reflect_at_conductor, split,
+    transmit_antireflection,
 };
-use optics::medium::{Medium, MediumError};
+use optics::medium::{Medium, MediumError, Tensor};
 use optics::wave::{ComplexVector, poynting, transverse_basis};
 use proptest::prelude::*;
 
@@ -271,6 +272,62 @@ fn dielectrics_follow_fresnel() {
             let along = back_p.direction.cross(DVec3::Z);
             assert!((back_p.electric[0].dot_real(along) * scale - p).norm() < 1e-13, "{angle}");
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(count(100, 2000)))]
+
+    /// Fresnel's equations with complex permittivities and permeabilities, total reflection and evanescent waves included.
+    #[test]
+    fn jones_matrices_are_fresnels(
+        here in (0.3..4.0f64, prop_oneof![Just(0.0), 0.0..2.0f64], 0.3..4.0f64),
+        there in (-3.0..4.0f64, prop_oneof![Just(0.0), 0.05..2.0f64], 0.3..4.0f64),
+        normal in unit_vector(),
+        direction in unit_vector(),
+        size in 0.05..2.0f64,
+    ) {
+        prop_assume!(there.0.abs() > 0.1);
+        let along = (direction - normal * direction.dot(normal)).normalize() * size;
+        let [(e1, m1), (e2, m2)] = [here, there].map(|(re, im, mu)| (Complex64::new(re, im), mu));
+        let q = |e: Complex64, m: f64| {
+            let root = (e * m - size * size).sqrt();
+            if root.im < 0.0 { -root } else { root }
+        };
+        let (q1, q2) = (q(e1, m1), q(e2, m2));
+        let (s1, s2, p1, p2) = (q1 / m1, q2 / m2, e2 * q1, e1 * q2);
+        // Fields of p are those of H times its impedance.
+        let [n1, n2] = [e1 * m1, e2 * m2].map(|square| {
+            let root = square.sqrt();
+            if root.re + root.im < 0.0 { -root } else { root }
+        });
+        let h_to_e = n1 * m2 / (n2 * m1);
+        let expected = [
+            [(s1 - s2) / (s1 + s2), (p1 - p2) / (p1 + p2)],
+            [2.0 * s1 / (s1 + s2), 2.0 * p1 / (p1 + p2) * h_to_e],
+        ];
+        let medium = |e: Complex64, m: f64| {
+            let scalar = |re: f64, im: f64| Tensor {
+                re: DMat3::from_diagonal(DVec3::splat(re)),
+                im: DMat3::from_diagonal(DVec3::splat(im)),
+            };
+            Medium::new(scalar(e.re, e.im), scalar(m, 0.0)).unwrap()
+        };
+        let solved = Scattering::new(&medium(e1, m1), Some(&medium(e2, m2)), along, normal);
+        let found = solved.jones.unwrap();
+        for (matrix, expected) in [found.reflected, found.transmitted.unwrap()].iter().zip(expected) {
+            for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let wanted = if row == column { expected[row] } else { Complex64::ZERO };
+                let scale = 1.0 + expected[row].norm();
+                let off = (matrix[row][column] - wanted).norm() / scale;
+                prop_assert!(off < 1e-10, "{row} {column} {off} {solved:?} {expected:?}");
+            }
+        }
+        // Metal: no field along it.
+        let metal = Scattering::new(&medium(e1, m1), None, along, normal).jones.unwrap();
+        prop_assert!((metal.reflected[0][0] + 1.0).norm() < 1e-12);
+        prop_assert!((metal.reflected[1][1] - 1.0).norm() < 1e-12);
+        prop_assert!(metal.transmitted.is_none());
     }
 }
 

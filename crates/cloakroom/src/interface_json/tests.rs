@@ -31,6 +31,16 @@ fn glass_reflects_four_percent() {
         assert!((float(&answer["power"][column][column]) - 0.04).abs() < 1e-15);
     }
     assert_eq!(answer["power"].as_array().map(Vec::len), Some(4));
+    for (matrix, of_s, of_p) in [("reflected", -0.2, 0.2), ("transmitted", 0.8, 0.8)] {
+        let jones = &answer["jones"][matrix];
+        assert!((float(&jones[0][0][0]) - of_s).abs() < 1e-15, "{jones}");
+        assert!((float(&jones[1][1][0]) - of_p).abs() < 1e-15, "{jones}");
+        assert_eq!([&jones[0][1][0], &jones[1][0][1]].map(float), [0.0; 2], "{jones}");
+    }
+    // Modes carry unit flux: their amplitudes squared are the powers.
+    let amplitude = &answer["amplitudes"][2][0];
+    let power = float(&amplitude[0]).powi(2) + float(&amplitude[1]).powi(2);
+    assert!((power - float(&answer["power"][2][0])).abs() < 1e-15, "{amplitude}");
     let mode = &answer["transmitted"][0];
     assert_eq!(mode["wave_vector"][0], json!([1.5, 0.0]));
     assert_eq!(mode["propagating"], json!(true));
@@ -76,6 +86,8 @@ fn metal_mixes_the_waves_of_a_crystal() {
     let answer = solve(&request);
     assert_eq!(answer["transmitted"], json!([]));
     assert_eq!(answer["power"].as_array().map(Vec::len), Some(2));
+    assert_eq!(answer["amplitudes"].as_array().map(Vec::len), Some(2));
+    assert_eq!(answer["jones"], json!(null));
     for column in 0..2 {
         let sum: f64 = (0..2).map(|row| float(&answer["power"][row][column])).sum();
         assert!((sum - 1.0).abs() < 1e-14);

@@ -23,7 +23,7 @@ mod splitting;
 pub use coating::transmit_antireflection;
 pub use conductor::reflect_at_conductor;
 pub use reflectionless::Reflectionless;
-pub use scattering::Scattering;
+pub use scattering::{JonesMatrices, Scattering};
 
 use crate::medium::{Medium, ModeKind};
 use crate::wave::ComplexVector;

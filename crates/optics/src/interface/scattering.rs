@@ -25,6 +25,24 @@ pub struct Scattering {
     /// incidence is lossless. Where the fluxes of the two modes in an absorbing medium have cross
     /// terms, each mode takes its part of them.
     pub power: [Option<[f64; 4]>; 2],
+    /// The same amplitudes as of fields of unit size; `None` unless the media on both sides are isotropic, or one is and
+    /// the other is a conductor.
+    pub jones: Option<JonesMatrices>,
+}
+
+/// What an interface of isotropic media makes of electric fields, by Fresnel's equations: rows are s and p of the wave
+/// that leaves, columns those of the wave that comes.
+///
+/// The field of s lies along a unit vector s across the plane of incidence, the same for all waves; that of p along
+/// s × k/√(k·k), k being each wave's own wave vector and the root that whose parts have a positive sum: |k| of a wave that
+/// propagates, i|k·k|^½ in a metal without loss. So, between dielectrics,
+/// r_s = (n₁ cos θ₁ - n₂ cos θ₂)/(n₁ cos θ₁ + n₂ cos θ₂) and r_p = (n₂ cos θ₁ - n₁ cos θ₂)/(n₂ cos θ₁ + n₁ cos θ₂).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JonesMatrices {
+    /// Of the wave that is reflected.
+    pub reflected: [[Complex64; 2]; 2],
+    /// Of the wave beyond; `None` in a conductor.
+    pub transmitted: Option<[[Complex64; 2]; 2]>,
 }
 
 impl Scattering {
@@ -62,12 +80,37 @@ impl Scattering {
             Some(if lossless && sum > 0.0 { flux.map(|flux| flux / sum) } else { flux })
         });
         let in_world = |modes: [LocalMode<Complex64>; 2]| modes.map(|m| m.in_world(&frame, along));
-        Self {
-            incident: in_world(forward),
-            reflected: in_world(backward),
-            transmitted: onward.map(in_world),
-            amplitudes,
-            power,
-        }
+        let (incident, reflected) = (in_world(forward), in_world(backward));
+        let transmitted = onward.map(in_world);
+        let isotropic =
+            incident_medium.is_isotropic() && transmitted_medium.is_none_or(Medium::is_isotropic);
+        let jones = isotropic.then(|| {
+            let [r1, r2, t1, t2] = amplitudes;
+            JonesMatrices {
+                reflected: jones(&incident, &reflected, [r1, r2]),
+                transmitted: transmitted.as_ref().map(|modes| jones(&incident, modes, [t1, t2])),
+            }
+        });
+        Self { incident, reflected, transmitted, amplitudes, power, jones }
     }
+}
+
+/// Amplitudes between modes s and p of isotropic media as those of fields of unit size.
+fn jones(
+    incident: &[Mode; 2],
+    outgoing: &[Mode; 2],
+    amplitudes: [[Complex64; 2]; 2],
+) -> [[Complex64; 2]; 2] {
+    // A multiple of the unit vector across the plane of incidence.
+    let across = incident[0].electric;
+    let sizes = |[s, p]: &[Mode; 2]| {
+        let root = p.wave_vector.dot(p.wave_vector).sqrt();
+        let root = if root.re + root.im < 0.0 { -root } else { root };
+        let along = across.cross(p.wave_vector).scaled(root.inv());
+        [s.electric.dot(across), p.electric.dot(along)]
+    };
+    let (from, to) = (sizes(incident), sizes(outgoing));
+    std::array::from_fn(|row| {
+        std::array::from_fn(|column| amplitudes[row][column] * to[row] / from[column])
+    })
 }
