@@ -45,7 +45,8 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
     pub fn first_face(&self, launch: &Launch<N>) -> Option<FirstFace<N>> {
         let limits = Limits { min_power: 0.0, ..self.limits };
         let mut stopped = Tracer::new(self.assembly, limits).watched(None);
-        stopped.screen = self.screen;
+        (stopped.screen, stopped.screen_touches) = (self.screen, self.screen_touches);
+        stopped.stands_alone = self.stands_alone;
         stopped.trace(launch);
         *stopped.recorder()
     }
