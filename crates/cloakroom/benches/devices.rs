@@ -1,7 +1,7 @@
 //! Rays through every device of the catalogue, one at a time, as `cloakroom trace` follows them; a new
 //! device, and each word that one of its keys takes, is here by itself.
 //!
-//! `cargo assembly -p cloakroom --bench devices`; items are rays. What a device's error is for, `trace.tolerance`,
+//! `cargo bench -p cloakroom --bench devices`; items are rays. What a device's error is for, `trace.tolerance`,
 //! is the default, 1e-6 cm; branches are followed down to the default share of the power, too. In `surfaces` items are
 //! what they meet.
 

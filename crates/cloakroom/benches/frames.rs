@@ -1,6 +1,6 @@
 //! Whole frames at 256 x 256 pixels, 1 sample each, and what comes before the first pixel.
 //!
-//! `cargo assembly -p cloakroom --bench frames`; items are pixels.
+//! `cargo bench -p cloakroom --bench frames`; items are pixels.
 
 use cloakroom::photograph::{self, Edges, Pyramid};
 use cloakroom::render::{ChannelSet, PreparedScene, Supervision, render};
