@@ -6,7 +6,7 @@ use crate::pictures::picture_of;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
 use cloakroom::flux::{self as light, Direction, FluxError, Sampling};
-use cloakroom::measure::{self, Plan, Region, Sweep, View};
+use cloakroom::measure::{self, PixelMask, Sweep, SweepPlan, View};
 use cloakroom::output;
 use cloakroom::photograph::ImageSource;
 use cloakroom_figures::verification;
@@ -48,9 +48,9 @@ pub fn quality(
     let region = match (mask, rectangle) {
         (Some(mask), _) => {
             let width = mask.shape()[1].max(1);
-            Some(Region::new(width, mask.as_array().iter().copied().collect()))
+            Some(PixelMask::new(width, mask.as_array().iter().copied().collect()))
         }
-        (None, Some(rectangle)) => Some(Region::rectangle(&first, rectangle)),
+        (None, Some(rectangle)) => Some(PixelMask::rectangle(&first, rectangle)),
         (None, None) => None,
     };
     let region = region.transpose()?;
@@ -73,7 +73,7 @@ pub fn sweep(
     let sweeps: Vec<Sweep> =
         sweeps.into_iter().map(|(key, values)| Sweep { key, values }).collect();
     let table = supervised(py, progress.as_ref(), |watch, supervision| {
-        let plan = Plan::new(sweeps, Vec::new(), |further| scene.reload(further))?;
+        let plan = SweepPlan::new(sweeps, Vec::new(), |further| scene.reload(further))?;
         watch.begin(plan.steps());
         Ok(measure::quality(&plan, supervision)?)
     })?;

@@ -29,7 +29,7 @@ pub fn fit<'py>(
 ) -> Result<Bound<'py, PyDict>, Failure> {
     let (lists, place) = lists(table)?;
     let keys = || lists.iter().copied().flatten();
-    let fitted = PyDict::new(py);
+    let values = PyDict::new(py);
     for (name, object) in entries {
         let name: String = name.extract()?;
         let Some(key) = keys().find(|key| key.name == name) else {
@@ -37,9 +37,9 @@ pub fn fit<'py>(
             return Err(PyTypeError::new_err(unknown("key", &name, &place, &known)).into());
         };
         let value = key.check(&value_of(&name, &object)?).map_err(value_error)?;
-        fitted.set_item(name, object_of(py, &value)?)?;
+        values.set_item(name, object_of(py, &value)?)?;
     }
-    Ok(fitted)
+    Ok(values)
 }
 
 /// The lists of keys of a table or a kind of device, and how messages call it.

@@ -3,7 +3,7 @@
 use crate::arguments::AnimateArguments;
 use crate::interruption::{self, STOP};
 use crate::progress::supervised;
-use crate::render::tell_rarities;
+use crate::render::warn_of_cut_branches;
 use crate::report::{Failure, Result, say};
 use crate::scene;
 use cloakroom::output;
@@ -125,7 +125,7 @@ fn render(
         }
         Ok::<_, Failure>(())
     })?;
-    tell_rarities(&stats);
+    warn_of_cut_branches(&stats);
     if skipped > 0 {
         say(&format!("{skipped} of {} frames were there already", scenes.len()));
     }

@@ -3,7 +3,7 @@
 use crate::arguments::CompareArguments;
 use crate::report::{self, Failure, Result};
 use crate::scene;
-use cloakroom::measure::{Comparison, Figures, MeasureError, Region, View, compare};
+use cloakroom::measure::{Comparison, Figures, MeasureError, PixelMask, View, compare};
 use std::fmt::Write;
 
 /// Compares two pictures.
@@ -12,14 +12,14 @@ pub fn run(arguments: &CompareArguments) -> Result<()> {
     let (first, second) = (View::read(&arguments.first)?, View::read(&arguments.second)?);
     let region = match (&arguments.mask, arguments.region) {
         (Some(mask), _) => {
-            Some(Region::bright(&View::read(mask)?).map_err(|error| match error {
+            Some(PixelMask::bright(&View::read(mask)?).map_err(|error| match error {
                 MeasureError::EmptyRegion => {
                     Failure::Failed(format!("{}: nothing in this mask is white", mask.display()))
                 }
                 error => error.into(),
             })?)
         }
-        (None, Some(rectangle)) => Some(Region::rectangle(&first, rectangle)?),
+        (None, Some(rectangle)) => Some(PixelMask::rectangle(&first, rectangle)?),
         (None, None) => None,
     };
     let comparison = compare(&first, &second, region.as_ref()).map_err(|error| match error {

@@ -34,7 +34,7 @@ pub fn run(arguments: &FluxArguments) -> Result<()> {
     })?;
     let mut stats = TraceStats::default();
     measured.incidences.iter().for_each(|incidence| stats += incidence.stats);
-    render::tell_rarities(&stats);
+    render::warn_of_cut_branches(&stats);
     for (path, format) in files {
         write(&measured, axis, format, path)?;
     }

@@ -4,10 +4,10 @@ use crate::arguments::QualityArguments;
 use crate::files::{check_writable, formats};
 use crate::interruption;
 use crate::progress::supervised;
-use crate::render::tell_rarities;
+use crate::render::warn_of_cut_branches;
 use crate::report::{self, Result};
 use crate::scene;
-use cloakroom::measure::{Constraint, Plan, QualityTable, Sweep, quality};
+use cloakroom::measure::{Constraint, QualityTable, Sweep, SweepPlan, quality};
 use cloakroom_figures::{TableFormat, write_table};
 use std::fmt::Write;
 
@@ -32,13 +32,13 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let load = |further: &[String]| scene::load(&arguments.scene, further);
     let holds =
         arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;
-    let plan = Plan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;
+    let plan = SweepPlan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;
     plan.check_columns(&arguments.plot)?;
     check_writable(&arguments.outputs)?;
     let _busy = interruption::busy();
     let table =
         supervised(plan.steps(), "measuring", |_, supervision| quality(&plan, supervision))?;
-    tell_rarities(&table.stats);
+    warn_of_cut_branches(&table.stats);
     for (path, format) in formats {
         write_table(&table, format, &arguments.plot, path)?;
     }

@@ -88,7 +88,7 @@ fn in_strips(prepared: &PreparedScene<'_>, scene: &Scene, path: &Path) -> Result
     });
     failure.map_or(Ok(()), Err)?;
     written?;
-    tell_rarities(&stats);
+    warn_of_cut_branches(&stats);
     Ok(())
 }
 
@@ -116,7 +116,7 @@ pub fn picture(prepared: &PreparedScene<'_>, wanted: ChannelSet, what: &str) -> 
 
 /// The picture, once it has been said what was rare in it.
 fn told(rendered: Rendered) -> Picture {
-    tell_rarities(&rendered.stats);
+    warn_of_cut_branches(&rendered.stats);
     rendered.picture
 }
 
@@ -126,7 +126,7 @@ pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage> {
 }
 
 /// Says what was rare, if anything was.
-pub fn tell_rarities(stats: &TraceStats) {
+pub fn warn_of_cut_branches(stats: &TraceStats) {
     for (count, what) in [
         (stats.endless, "of ray trees without end were cut, the weakest first"),
         (stats.lost, "could not be followed through a device"),

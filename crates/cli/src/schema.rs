@@ -3,7 +3,7 @@
 use crate::devices::all_keys;
 use crate::report::{self, Result};
 use cloakroom::device::CATALOGUE;
-use cloakroom::keys::{Key, KeyKind, Limits};
+use cloakroom::keys::{Key, KeyKind, ValueRange};
 use cloakroom::scene::{Placement, TABLES};
 use cloakroom::scene_file;
 use std::fmt::{self, Write};
@@ -58,7 +58,7 @@ fn allowed(key: &Key) -> String {
         // The rows that follow name the keys.
         (KeyKind::Table { .. }, _) => "a table".to_owned(),
         (KeyKind::Tables { .. }, _) => "a list of tables".to_owned(),
-        (_, Limits::Finite) => key.describe(),
+        (_, ValueRange::Finite) => key.describe(),
         (_, limits) => format!("{}, {}", key.describe(), limits.describe()),
     }
 }

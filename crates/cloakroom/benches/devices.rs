@@ -117,7 +117,7 @@ impl PathRecorder<2> for Surfaces {
     }
 }
 
-/// The same by surfaces: an item is a leg of a branch with the interface at its end, two events.
+/// The same by surfaces: an item is a segment of a branch with the interface at its end, two events.
 #[divan::bench(args = devices())]
 fn surfaces(bencher: Bencher, name: &str) {
     let scene = scene(name);

@@ -1,7 +1,7 @@
 //! The exported material against closed forms, and its files read back.
 
 use cloakroom::material::{
-    Frame, MaterialError, Region, Resolution, sample, segments, write_segments,
+    CellContent, Frame, MaterialError, Resolution, sample, segments, write_segments,
 };
 use cloakroom::output::{GridFile, GridValues, write_grid};
 use cloakroom::render::{Supervision, assembly};
@@ -72,24 +72,24 @@ fn the_square_cloak_has_the_tensors_of_its_map() {
         }
         let (outer, inner) = (x.abs() + y.abs() - d, x.abs() / d + y.abs() / (kappa * d) - 1.0);
         let expected = if outer > 0.0 {
-            Region::Air
+            CellContent::Air
         } else if inner < 0.0 {
-            Region::Metal
+            CellContent::Metal
         } else {
-            Region::Material
+            CellContent::Material
         };
         assert_eq!(region, expected as u8, "{x} {y}");
         seen[usize::from(region)] += 1;
         let sign = (x * y).signum();
         match expected {
-            Region::Material => {
+            CellContent::Material => {
                 for tensor in tensors {
                     assert!(near(tensor, [xx, yy, scale, sign * xy, 0.0, 0.0], 1e-14), "{x} {y}");
                 }
                 // The determinant is that of the third principal value.
                 assert!((index - scale.cbrt()).abs() < 1e-14);
             }
-            Region::Metal => assert!(index.is_nan() && tensors[0][0].is_nan()),
+            CellContent::Metal => assert!(index.is_nan() && tensors[0][0].is_nan()),
             _ => assert_eq!((index, tensors[1]), (1.0, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0])),
         }
     }
@@ -106,7 +106,7 @@ fn the_cylinder_cloak_has_the_tensors_of_its_radii() {
         let r = x.hypot(y);
         if r < a {
             hidden += 1;
-            assert_eq!(region, Region::Hidden as u8);
+            assert_eq!(region, CellContent::Hidden as u8);
         } else if r < b {
             let s = (r - a) / r;
             let (cos, sin) = (x / r, y / r);
@@ -136,7 +136,7 @@ fn the_graded_cloak_has_the_index_of_its_map() {
         let grid = cells(&format!("{scene}{keys}"), Frame::Device, [50, 56, 1]);
         let mut least = f64::INFINITY;
         for ([x, y, _], region, index, tensors) in points(&grid) {
-            if region != Region::Material as u8 {
+            if region != CellContent::Material as u8 {
                 continue;
             }
             least = least.min(index);
@@ -191,7 +191,7 @@ fn the_frame_of_the_world_turns_grid_and_tensors() {
         }
         let (_, own_region, _, [own_e, _]) = own[row + 21 * (20 - column)];
         assert_eq!(*region, own_region);
-        if own_region == Region::Material as u8 {
+        if own_region == CellContent::Material as u8 {
             assert!(near(*e, [own_e[1], own_e[0], own_e[2], -own_e[3], 0.0, 0.0], 1e-13));
         }
     }
@@ -302,7 +302,7 @@ fn tables_have_a_line_for_every_cell() {
     for (row, (middle, region, index, [e, _])) in rows.iter().zip(points(&grid)) {
         let number = |i: usize| row[i].parse::<f64>().expect("a number");
         assert_eq!([number(0), number(1), number(2)], middle);
-        assert_eq!(row[3], Region::WORDS[usize::from(region)]);
+        assert_eq!(row[3], CellContent::WORDS[usize::from(region)]);
         assert_eq!(number(4).to_bits(), index.to_bits());
         assert_eq!([5, 6, 7, 8, 9, 10].map(|i| number(i).to_bits()), e.map(f64::to_bits));
     }

@@ -2,15 +2,15 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::long;
-use cloakroom::measure::{Constraint, Plan, QualityError, QualityTable, Sweep, quality};
+use cloakroom::measure::{Constraint, QualityError, QualityTable, Sweep, SweepPlan, quality};
 use cloakroom::render::{RenderError, Supervision};
 use cloakroom::scene_file;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-fn plan(scene: &str, sweeps: &[&str]) -> Result<Plan, QualityError> {
+fn plan(scene: &str, sweeps: &[&str]) -> Result<SweepPlan, QualityError> {
     let sweeps = sweeps.iter().map(|text| Sweep::parse(text).unwrap()).collect();
-    Plan::new(sweeps, Vec::new(), |more| scene_file::parse(scene, "test", Path::new(""), more))
+    SweepPlan::new(sweeps, Vec::new(), |more| scene_file::parse(scene, "test", Path::new(""), more))
 }
 
 fn measured(scene: &str, sweeps: &[&str]) -> QualityTable {
@@ -152,7 +152,7 @@ fn draws_give_means_with_errors_that_shrink_as_one_over_root_n() {
     let table = |draws: u32, sweep: &str| {
         let sweeps = vec![Sweep::parse(sweep).unwrap()];
         let load = |more: &[String]| scene_file::parse(ERRONEOUS, "test", folder.path(), more);
-        let plan = Plan::new(sweeps, Vec::new(), load).unwrap().with_draws(draws).unwrap();
+        let plan = SweepPlan::new(sweeps, Vec::new(), load).unwrap().with_draws(draws).unwrap();
         let (done, stop) = (AtomicU64::new(0), AtomicBool::new(false));
         let count = |rows| {
             done.fetch_add(rows, Ordering::Relaxed);
@@ -211,7 +211,7 @@ fn a_held_fact_stays_while_keys_are_swept() {
     let held = |hold: &str, sweep: &str| {
         let (sweeps, holds) =
             (vec![Sweep::parse(sweep).unwrap()], vec![Constraint::parse(hold).unwrap()]);
-        Plan::new(sweeps, holds, |more| scene_file::parse(scene, "test", Path::new(""), more))
+        SweepPlan::new(sweeps, holds, |more| scene_file::parse(scene, "test", Path::new(""), more))
     };
     let plan = held("device.0.w=cloaked_area_cm2", "device.0.h=3,4.25").unwrap();
     plan.check_columns(&["device.0.w".to_owned()]).unwrap();

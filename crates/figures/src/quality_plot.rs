@@ -2,7 +2,7 @@
 
 use crate::quantity::with_unit;
 use crate::{Curve, CurvePoint, DrawingFormat, IllustrationError, Plot, PlotPanel};
-use cloakroom::measure::{QualityTable, Row, combinations, name_and_unit};
+use cloakroom::measure::{QualityRow, QualityTable, combinations, name_and_unit};
 use cloakroom::output::{OutputError, format_of};
 use std::path::Path;
 
@@ -93,7 +93,7 @@ pub fn quality_plot(table: &QualityTable, names: &[String]) -> Result<Plot, Illu
     }
     let panel = |name: &String| {
         let index = table.column(name)?;
-        let point = |(chosen, row): (&Vec<usize>, &Row)| {
+        let point = |(chosen, row): (&Vec<usize>, &QualityRow)| {
             let place = axis.map_or(0, |i| chosen[i]);
             let x = numbers.as_ref().map_or(place as f64, |numbers| numbers[place]);
             let error = Some(row.standard_errors[index]).filter(|error| error.is_finite());
@@ -127,14 +127,14 @@ pub fn quality_plot(table: &QualityTable, names: &[String]) -> Result<Plot, Illu
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cloakroom::measure::{Column, Row, Sweep};
+    use cloakroom::measure::{Column, QualityRow, Sweep};
     use cloakroom::trace::TraceStats;
 
     fn table() -> QualityTable {
         let sweep = |text: &str| Sweep::parse(text).expect("a sweep");
         let sweeps =
             vec![sweep("camera.polarizer=horizontal,vertical"), sweep("device.0.rotation=0..10:5")];
-        let rows = combinations(&sweeps).expect("few").into_iter().map(|chosen| Row {
+        let rows = combinations(&sweeps).expect("few").into_iter().map(|chosen| QualityRow {
             settings: sweeps.iter().zip(&chosen).map(|(s, i)| s.values[*i].clone()).collect(),
             numbers: vec![chosen[1] as f64, if chosen == [1, 2] { f64::NAN } else { 0.5 }],
             standard_errors: vec![0.25; 2],

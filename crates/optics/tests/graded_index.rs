@@ -22,8 +22,8 @@ fn flow(square: impl Fn(DVec2) -> f64, steps: usize, extent: Extent, core: f64) 
     let spline = GridSpline::new(-HALF, spacing, count, &samples).unwrap();
     let cut = Truncation { x_min: -HALF.x, x_max: HALF.x, y_max: HALF.y };
     let map = ConformalMap::Flat(FlatMap::new(-HALF.y, 4.0));
-    let unevenness = IndexPerturbation::within(spline, |[_, high]| high > core).unwrap();
-    ConformalFlow::new(map, cut, extent, 1.0).with_unevenness(unevenness)
+    let index_perturbation = IndexPerturbation::within(spline, |[_, high]| high > core).unwrap();
+    ConformalFlow::new(map, cut, extent, 1.0).with_index_perturbation(index_perturbation)
 }
 
 /// Numbers from 0 to 1 that fill a square evenly.
@@ -144,7 +144,7 @@ fn flat_ends_round_borders_and_round_cores_are_met_where_they_are() {
     let map = ConformalMap::Flat(FlatMap::new(-12.0, 4.0));
     let disc = ConformalFlow::new(map, cut, Extent::ENDLESS, 1.0)
         .between(None, Some(rim))
-        .with_unevenness(IndexPerturbation::new(spline).unwrap());
+        .with_index_perturbation(IndexPerturbation::new(spline).unwrap());
     for k in 0..200 {
         let [a, b, c] = spread(k);
         let inward = DVec2::from_angle(TAU * a);

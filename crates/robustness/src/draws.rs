@@ -1,6 +1,6 @@
 //! Numbers, words and choices from the bytes of a fuzzer, or from a seed.
 
-use cloakroom::keys::Limits;
+use cloakroom::keys::ValueRange;
 use cloakroom::split_mix::{STEP, mix};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -83,12 +83,12 @@ impl Draws<'_> {
     }
 
     /// Any finite number, as a rule near a usual one and, but for a few, within limits.
-    pub fn number(&mut self, usual: f64, limits: Limits) -> f64 {
+    pub fn number(&mut self, usual: f64, limits: ValueRange) -> f64 {
         let (low, high) = match limits {
-            Limits::Between(low, high) | Limits::Within(low, high) => (low, high),
-            Limits::Whole(low, high) => (low as f64, high as f64),
-            Limits::Positive => (0.0, f64::INFINITY),
-            Limits::Finite => (f64::NEG_INFINITY, f64::INFINITY),
+            ValueRange::Between(low, high) | ValueRange::Within(low, high) => (low, high),
+            ValueRange::Whole(low, high) => (low as f64, high as f64),
+            ValueRange::Positive => (0.0, f64::INFINITY),
+            ValueRange::Finite => (f64::NEG_INFINITY, f64::INFINITY),
         };
         let size = if usual == 0.0 { 1.0 } else { usual };
         let number = match self.below(16) {

@@ -2,7 +2,7 @@
 
 use crate::draws::Draws;
 use cloakroom::device::{CATALOGUE, Entry};
-use cloakroom::keys::{Key, KeyKind, Limits};
+use cloakroom::keys::{Key, KeyKind, ValueRange};
 use cloakroom::scene::{Placement, TABLES};
 use std::f64::consts::TAU;
 use toml::{Table, Value};
@@ -76,7 +76,7 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
     use cloakroom::keys::Value as Default;
     let limits = key.limits;
     let (min, max) = match limits {
-        Limits::Whole(min, max) => (min, max),
+        ValueRange::Whole(min, max) => (min, max),
         _ => (i64::MIN, i64::MAX),
     };
     let default = (key.default)();
@@ -116,7 +116,7 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
         }
         KeyKind::ChoiceOrNumber { options } => match draws.below(2) {
             0 => (*draws.pick(options)).into(),
-            _ => draws.number(30.0, Limits::Finite).into(),
+            _ => draws.number(30.0, ValueRange::Finite).into(),
         },
         KeyKind::Tensor => tensor(draws),
         KeyKind::Polygon => polygon(draws),
@@ -130,7 +130,7 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
 }
 
 /// Numbers on a grid, mostly near one another.
-fn samples(draws: &mut Draws<'_>, limits: Limits) -> Value {
+fn samples(draws: &mut Draws<'_>, limits: ValueRange) -> Value {
     let [rows, columns] = [0, 1].map(|_| if draws.chance(8) { 3 } else { 4 + draws.below(6) });
     let mut row = || -> Value {
         let number = |_| match draws.chance(1) {
@@ -149,10 +149,10 @@ pub(crate) fn tensor(draws: &mut Draws<'_>) -> Value {
     let mut lossy = draws.chance(60);
     let principal = |draws: &mut Draws<'_>| {
         let sign = if draws.chance(40) { -1.0 } else { 1.0 };
-        draws.number(1.5, Limits::Finite) * sign
+        draws.number(1.5, ValueRange::Finite) * sign
     };
     let loss = |draws: &mut Draws<'_>| {
-        if lossy { draws.number(LOSS, Limits::Within(0.0, f64::MAX)) } else { 0.0 }
+        if lossy { draws.number(LOSS, ValueRange::Within(0.0, f64::MAX)) } else { 0.0 }
     };
     match shape {
         0 | 1 => principal(draws).into(),
@@ -195,7 +195,7 @@ fn polygon(draws: &mut Draws<'_>) -> Value {
     let middle = [draws.between(-8.0, 8.0), draws.between(-8.0, 8.0)];
     let corner = |i: usize, draws: &mut Draws<'_>| {
         let corner = if wild {
-            [draws.number(3.0, Limits::Finite), draws.number(3.0, Limits::Finite)]
+            [draws.number(3.0, ValueRange::Finite), draws.number(3.0, ValueRange::Finite)]
         } else {
             let angle = TAU * (i as f64 + draws.between(-0.4, 0.4)) / count as f64;
             let radius = draws.between(0.5, 8.0);

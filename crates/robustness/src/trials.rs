@@ -189,7 +189,7 @@ fn interfaces(bytes: &[u8]) {
     let transmitted = if draws.chance(30) { json!("metal") } else { medium(&mut draws) };
     let normal = draws.direction();
     let (across, _) = transverse_basis(normal, DVec3::Z, DVec3::X);
-    let size = draws.number(1.0, cloakroom::keys::Limits::Finite);
+    let size = draws.number(1.0, cloakroom::keys::ValueRange::Finite);
     let request = json!({
         "incident": incident, "transmitted": transmitted,
         "normal": normal.to_array(), "tangential": (across * size).to_array(),

@@ -1,7 +1,7 @@
 //! Numbers for what a page shows: power, times of flight, and likeness to what should be seen.
 
 use cloakroom::measure::{
-    FlightFigures, Region, View, bare, empty, ideal, structural_similarity, survey,
+    FlightFigures, PixelMask, View, bare, empty, ideal, structural_similarity, survey,
 };
 use cloakroom::output::Picture;
 use cloakroom::render::{ChannelSet, Images, PreparedScene, Supervision, render};
@@ -37,8 +37,8 @@ pub(crate) fn figures(
     let view = View::of(&shown)?;
     let (prepared, ideal) = (prepared(&scene, images)?, prepared(&wanted_scene, images)?);
     let rays = survey(&prepared, &ideal, &supervision)?;
-    let silhouette = Region::new(view.width, rays.silhouette.clone()).ok();
-    let everything = Region::whole(&view);
+    let silhouette = PixelMask::new(view.width, rays.silhouette.clone()).ok();
+    let everything = PixelMask::whole(&view);
     let likeness = |of: &View, to: &View| {
         let region = silhouette.as_ref().unwrap_or(&everything);
         json!({ "structural_similarity": structural_similarity(to, of, region) })
@@ -51,7 +51,7 @@ pub(crate) fn figures(
     Ok(json!({
         "width_pixels": view.width,
         "height_pixels": view.height,
-        "silhouette_share": silhouette.as_ref().map_or(0.0, Region::share),
+        "silhouette_share": silhouette.as_ref().map_or(0.0, PixelMask::share),
         "delivered": mean("delivered"),
         "escaped": mean("escaped"),
         "absorbed": mean("absorbed"),

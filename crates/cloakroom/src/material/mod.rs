@@ -6,7 +6,7 @@ mod sampling;
 mod segments;
 
 pub use grid::{Frame, Resolution};
-pub use sampling::{Region, SymmetricTensor, sample};
+pub use sampling::{CellContent, SymmetricTensor, sample};
 pub use segments::{Segment, segments, write_segments};
 
 use crate::assembly::{Assembly, Placed};

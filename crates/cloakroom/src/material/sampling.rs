@@ -15,7 +15,7 @@ use std::sync::atomic::Ordering;
 /// What is in a cell of a grid: its code in files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Region {
+pub enum CellContent {
     /// Air outside of the device.
     Air = 0,
     /// The device's material.
@@ -26,7 +26,7 @@ pub enum Region {
     Hidden = 3,
 }
 
-impl Region {
+impl CellContent {
     /// The words for the codes, in their order.
     pub const WORDS: [&'static str; 4] = ["air", "material", "metal", "hidden"];
 }
@@ -37,14 +37,14 @@ pub type SymmetricTensor = [f64; 6];
 /// One cell.
 #[derive(Clone, Copy)]
 struct Point {
-    region: Region,
+    region: CellContent,
     index: f64,
     /// Permittivity and permeability.
     real: [SymmetricTensor; 2],
     imaginary: [SymmetricTensor; 2],
 }
 
-/// The material of a device on a grid: arrays `region` (see [`Region`]), `index` (of an anisotropic medium the
+/// The material of a device on a grid: arrays `region` (see [`CellContent`]), `index` (of an anisotropic medium the
 /// geometric mean, [`optics::medium::Medium::mean_index`]), `permittivity` and `permeability`, and where the
 /// device absorbs `permittivity_imaginary` and `permeability_imaginary`. Metal has no numbers: NaN.
 ///
@@ -94,9 +94,9 @@ fn point(placed: &Placed, frame: Frame, at: glam::DVec3) -> Point {
         imaginary: [[0.0 * value; 6]; 2],
     };
     let medium = match placed.structure.material_at(local) {
-        MaterialAt::Air => return empty(Region::Air, 1.0),
-        MaterialAt::HiddenAir => return empty(Region::Hidden, 1.0),
-        MaterialAt::Metal | MaterialAt::Opaque => return empty(Region::Metal, f64::NAN),
+        MaterialAt::Air => return empty(CellContent::Air, 1.0),
+        MaterialAt::HiddenAir => return empty(CellContent::Hidden, 1.0),
+        MaterialAt::Metal | MaterialAt::Opaque => return empty(CellContent::Metal, f64::NAN),
         MaterialAt::Medium(medium) => medium,
     };
     let (permittivity, permeability) = medium.tensors();
@@ -105,7 +105,7 @@ fn point(placed: &Placed, frame: Frame, at: glam::DVec3) -> Point {
     let tensors = if is_world { tensors.map(turned) } else { tensors };
     let six = |m: &DMat3| [m.x_axis.x, m.y_axis.y, m.z_axis.z, m.x_axis.y, m.y_axis.z, m.x_axis.z];
     Point {
-        region: Region::Material,
+        region: CellContent::Material,
         index: medium.mean_index(),
         real: tensors.map(|Tensor { re, .. }| six(&re)),
         imaginary: tensors.map(|Tensor { im, .. }| six(&im)),
@@ -119,7 +119,7 @@ fn arrays(points: &[Point]) -> Vec<GridArray> {
     };
     let regions = points.iter().map(|point| point.region as u8).collect();
     let mut arrays = vec![
-        array("region", GridValues::Codes(regions, &Region::WORDS)),
+        array("region", GridValues::Codes(regions, &CellContent::WORDS)),
         array("index", GridValues::Numbers(points.iter().map(|point| point.index).collect())),
         array("permittivity", tensors(&|point| point.real[0])),
         array("permeability", tensors(&|point| point.real[1])),
@@ -136,7 +136,7 @@ fn arrays(points: &[Point]) -> Vec<GridArray> {
 fn described(scene: &Scene, device: usize, frame: Frame) -> Vec<(String, String)> {
     let frame = if frame == Frame::World { "world" } else { "device" };
     let codes: Vec<String> =
-        (0..).zip(Region::WORDS).map(|(i, word)| format!("{i} {word}")).collect();
+        (0..).zip(CellContent::WORDS).map(|(i, word)| format!("{i} {word}")).collect();
     let own = [
         ("device", device.to_string()),
         ("frame", frame.to_owned()),

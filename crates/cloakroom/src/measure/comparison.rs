@@ -1,7 +1,7 @@
 //! Two views held against each other.
 
 use super::{
-    BestShift, DEFAULT_PIXELS_PER_DEGREE, MeasureError, Region, View, best_shift, correlation,
+    BestShift, DEFAULT_PIXELS_PER_DEGREE, MeasureError, PixelMask, View, best_shift, correlation,
     flip, structural_similarity,
 };
 use serde::Serialize;
@@ -61,7 +61,7 @@ pub struct FlightFigures {
 impl FlightFigures {
     /// How late a view is against the empty one over a region; `None` where it has no times.
     #[must_use]
-    pub fn delays(view: &View, region: &Region) -> Option<Self> {
+    pub fn delays(view: &View, region: &PixelMask) -> Option<Self> {
         let times = view.time_of_flight.as_ref()?;
         let differences = view.time_of_flight_difference.as_ref()?;
         Self::of(region.indices().map(|i| (differences[i], times[i] - differences[i])))
@@ -95,18 +95,18 @@ impl FlightFigures {
 /// # Errors
 ///
 /// If the sizes differ, or there is not enough memory.
-pub fn compare(a: &View, b: &View, region: Option<&Region>) -> Result<Comparison, MeasureError> {
+pub fn compare(a: &View, b: &View, region: Option<&PixelMask>) -> Result<Comparison, MeasureError> {
     let size = [a.width, a.height];
-    let others = [Some([b.width, b.height]), region.map(Region::size)];
+    let others = [Some([b.width, b.height]), region.map(PixelMask::size)];
     if let Some(second) = others.into_iter().flatten().find(|other| *other != size) {
         return Err(MeasureError::SizesDiffer { first: size, second });
     }
     let differences = flip(a, b, DEFAULT_PIXELS_PER_DEGREE);
-    let over = |region: &Region| figures(a, b, region, &differences);
+    let over = |region: &PixelMask| figures(a, b, region, &differences);
     Ok(Comparison {
         width_pixels: a.width,
         height_pixels: a.height,
-        picture: over(&Region::whole(a))?,
+        picture: over(&PixelMask::whole(a))?,
         region: region.map(over).transpose()?,
     })
 }
@@ -114,7 +114,7 @@ pub fn compare(a: &View, b: &View, region: Option<&Region>) -> Result<Comparison
 fn figures(
     a: &View,
     b: &View,
-    region: &Region,
+    region: &PixelMask,
     differences: &[f64],
 ) -> Result<Figures, MeasureError> {
     let channels = [0, 1, 2].map(|color| (&a.light[color], &b.light[color]));
@@ -187,7 +187,7 @@ pub(super) mod tests {
         for plane in &mut b.light {
             plane[57] = 1.0 - plane[57];
         }
-        let right = Region::rectangle(&a, [30, 0, 26, 40]).expect("inside");
+        let right = PixelMask::rectangle(&a, [30, 0, 26, 40]).expect("inside");
         let comparison = compare(&a, &b, Some(&right)).expect("one size");
         assert!(comparison.picture.flip > 0.0 && comparison.picture.rms_difference[0] > 0.0);
         let part = comparison.region.expect("a region");
@@ -219,7 +219,7 @@ pub(super) mod tests {
         let [a, _] = patterns();
         let message = compare(&a, &even(0.0), None).expect_err("must fail").to_string();
         assert!(message.contains("56 x 40") && message.contains("20 x 16"), "{message}");
-        let region = Region::whole(&even(0.0));
+        let region = PixelMask::whole(&even(0.0));
         assert!(compare(&a, &a, Some(&region)).is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! Normalized cross-correlation, as cloaks were judged by before: Halimeh, Schmied & Wegener, Opt. Express 19,
 //! 6078 (2011).
 
-use super::{MeasureError, Region, View};
+use super::{MeasureError, PixelMask, View};
 use num_complex::Complex64;
 use rayon::prelude::*;
 use rustfft::algorithm::butterflies::Butterfly3;
@@ -30,7 +30,7 @@ pub struct BestShift {
 ///
 /// Planes and region must be of one size.
 #[must_use]
-pub fn correlation(a: &[f64], b: &[f64], region: &Region) -> Option<f64> {
+pub fn correlation(a: &[f64], b: &[f64], region: &PixelMask) -> Option<f64> {
     pearson(region.indices().map(|i| (a[i], b[i])))
 }
 
@@ -66,7 +66,7 @@ fn pearson(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
 pub fn best_shift(
     a: &View,
     b: &View,
-    region: &Region,
+    region: &PixelMask,
 ) -> Result<[Option<BestShift>; 3], MeasureError> {
     let transform = Transform::new(a)?;
     let everywhere = transform.forward(|_| Complex64::ONE);
@@ -135,7 +135,7 @@ impl Transform {
         &self,
         a: &[f64],
         b: &[f64],
-        region: &Region,
+        region: &PixelMask,
         everywhere: &[Complex64],
         inside: &[Complex64],
         count: &[Complex64],
@@ -196,7 +196,13 @@ impl Transform {
     }
 
     /// The correlation at a shift.
-    fn shifted(&self, a: &[f64], b: &[f64], region: &Region, shift: [i64; 2]) -> Option<BestShift> {
+    fn shifted(
+        &self,
+        a: &[f64],
+        b: &[f64],
+        region: &PixelMask,
+        shift: [i64; 2],
+    ) -> Option<BestShift> {
         let pairs = region.indices().filter_map(|i| {
             let x = usize::try_from((i % self.width) as i64 - shift[0]).ok()?;
             let y = usize::try_from((i / self.width) as i64 - shift[1]).ok()?;
@@ -267,7 +273,7 @@ mod tests {
     #[test]
     fn contrast_and_brightness_do_not_count() {
         let [a, b] = patterns();
-        let all = Region::whole(&a);
+        let all = PixelMask::whole(&a);
         let plane = &a.light[0];
         let of = |f: &dyn Fn(f64) -> f64| {
             correlation(plane, &plane.iter().map(|v| f(*v)).collect::<Vec<_>>(), &all)
@@ -277,7 +283,7 @@ mod tests {
         assert!((of(&|v| 1.0 - v).expect("contrast") + 1.0).abs() < 1e-14);
         assert_eq!(of(&|_| 0.3), None);
         // By hand: (1, 2, 3) and (1, 3, 2) have 1/2.
-        let small = Region::new(3, vec![true; 3]).expect("pixels");
+        let small = PixelMask::new(3, vec![true; 3]).expect("pixels");
         let half = correlation(&[1.0, 2.0, 3.0], &[1.0, 3.0, 2.0], &small).expect("contrast");
         assert!((half - 0.5).abs() < 1e-15);
         assert!(correlation(&a.light[2], &b.light[2], &all).expect("contrast") < 0.7);
@@ -296,14 +302,14 @@ mod tests {
             })
             .collect();
         let (a, b) = (gray(width, first), gray(width, moved));
-        let best = best_shift(&a, &b, &Region::whole(&a)).expect("memory");
+        let best = best_shift(&a, &b, &PixelMask::whole(&a)).expect("memory");
         for best in best {
             let best = best.expect("contrast");
             assert_eq!(best.shift_pixels, [5, -3]);
             assert!((best.correlation - 1.0).abs() < 1e-12);
         }
         // So is a part of it.
-        let part = Region::rectangle(&b, [10, 4, 9, 7]).expect("inside");
+        let part = PixelMask::rectangle(&b, [10, 4, 9, 7]).expect("inside");
         let best = best_shift(&a, &b, &part).expect("memory")[0].expect("contrast");
         assert_eq!(best.shift_pixels, [5, -3]);
         assert!((best.correlation - 1.0).abs() < 1e-12);
@@ -317,7 +323,7 @@ mod tests {
             gray(width, noise(width + 1, height)[..width * height].to_vec()),
         );
         let mask = (0..width * height).map(|i| i % width > 3 && i % 5 != 0).collect();
-        let region = Region::new(width, mask).expect("pixels");
+        let region = PixelMask::new(width, mask).expect("pixels");
         let found = best_shift(&a, &b, &region).expect("memory")[0].expect("contrast");
         let transform = Transform::new(&a).expect("memory");
         let mut plain: Option<BestShift> = None;
@@ -343,9 +349,9 @@ mod tests {
     #[test]
     fn without_contrast_there_is_no_best_shift() {
         let (a, b) = (even(0.5), even(0.25));
-        assert_eq!(best_shift(&a, &b, &Region::whole(&a)).expect("memory"), [None; 3]);
+        assert_eq!(best_shift(&a, &b, &PixelMask::whole(&a)).expect("memory"), [None; 3]);
         let [pattern, _] = patterns();
-        let best = best_shift(&pattern, &pattern, &Region::whole(&pattern)).expect("memory");
+        let best = best_shift(&pattern, &pattern, &PixelMask::whole(&pattern)).expect("memory");
         assert_eq!(best.map(|best| best.map(|best| best.shift_pixels)), [Some([0, 0]); 3]);
     }
 }

@@ -1,7 +1,7 @@
 //! What is measured of one scene, as named numbers.
 
 use super::{
-    Column, Comparison, Figures, FlightFigures, MeasureError, Region, Survey, View, compare,
+    Column, Comparison, Figures, FlightFigures, MeasureError, PixelMask, Survey, View, compare,
 };
 use crate::output::Picture;
 
@@ -39,8 +39,8 @@ impl Measured {
         [wanted, empty]: [&View; 2],
         rays: Survey,
     ) -> Result<Self, MeasureError> {
-        let silhouette = Region::new(view.width, rays.silhouette.clone()).ok();
-        let share = silhouette.as_ref().map_or(0.0, Region::share);
+        let silhouette = PixelMask::new(view.width, rays.silhouette.clone()).ok();
+        let share = silhouette.as_ref().map_or(0.0, PixelMask::share);
         let likeness = [
             Some(compare(wanted, view, silhouette.as_ref())?),
             Some(compare(empty, view, silhouette.as_ref())?),

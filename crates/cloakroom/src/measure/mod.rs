@@ -1,23 +1,23 @@
 //! Numbers for what pictures show: how alike two views are, how well a device does over a range of its
 //! settings.
 //!
-//! - [`View`] is a picture to be measured, from memory or a file; [`Region`] a part of it.
+//! - [`View`] is a picture to be measured, from memory or a file; [`PixelMask`] a part of it.
 //! - [`compare`] holds two views against each other: correlation, structural similarity, FLIP, times of
 //!   flight, power.
 //! - [`survey`](survey()) asks the rays themselves: where they land, against where they should.
 //! - [`quality`](quality()) does both for every combination of swept keys ([`Sweep`]).
 
 mod comparison;
+mod constraint;
 mod correlation;
 mod counterparts;
 mod flip;
-mod hold;
 mod measured;
+mod pixel_mask;
 mod plan;
 mod plane;
 mod quality;
 mod quality_files;
-mod region;
 mod statistics;
 mod structural_similarity;
 mod survey;
@@ -25,15 +25,15 @@ mod sweep;
 mod view;
 
 pub use comparison::{Comparison, Figures, FlightFigures, Shifted, compare};
+pub use constraint::{Constraint, ConstraintError};
 pub use correlation::{BestShift, best_shift, correlation};
 pub use counterparts::{bare, empty, ideal};
 pub use flip::{DEFAULT_PIXELS_PER_DEGREE, flip};
-pub use hold::{Constraint, ConstraintError};
 pub use measured::columns;
-pub use plan::Plan;
-pub use quality::{Column, QualityError, QualityTable, Row, UnknownColumn, quality};
+pub use pixel_mask::PixelMask;
+pub use plan::SweepPlan;
+pub use quality::{Column, QualityError, QualityRow, QualityTable, UnknownColumn, quality};
 pub use quality_files::name_and_unit;
-pub use region::Region;
 pub use structural_similarity::structural_similarity;
 pub use survey::{CLOAKED_WITHIN_CM, Survey, survey};
 pub use sweep::{Sweep, SweepError, combinations};

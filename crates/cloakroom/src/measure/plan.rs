@@ -1,6 +1,6 @@
 //! What is to be measured, read and checked before the work.
 
-use super::hold::Constraint;
+use super::constraint::Constraint;
 use super::quality::{QualityError, UnknownColumn, find_column, located};
 use super::quality_files::name_and_unit;
 use super::sweep::{Sweep, combinations};
@@ -12,7 +12,7 @@ use crate::scene_file::{Loaded, SceneFileError};
 
 /// A sweep with all its scenes read.
 #[derive(Debug)]
-pub struct Plan {
+pub struct SweepPlan {
     pub(super) sweeps: Vec<Sweep>,
     pub(super) holds: Vec<Constraint>,
     pub(super) scenes: Vec<Combination>,
@@ -29,7 +29,7 @@ pub(super) struct Combination {
     pub loaded: Loaded,
 }
 
-impl Plan {
+impl SweepPlan {
     /// Reads the scene of every combination; `load` reads the scene with further overrides, such as
     /// `device.0.rotation=5`. Every scene is built once, so that what cannot be is told before the work. Held keys follow
     /// the swept ones so that a computed fact of their device stays what it is in the scene without sweeps.

@@ -1,11 +1,11 @@
 //! How well the devices of a scene do what they are for, over a range of settings.
 
-use super::hold::ConstraintError;
+use super::constraint::ConstraintError;
 use super::measured::Measured;
 use super::plan::{Combination, drawn};
 use super::statistics::Statistics;
 use super::sweep::{Sweep, SweepError};
-use super::{MeasureError, Plan, View, empty, ideal, survey};
+use super::{MeasureError, SweepPlan, View, empty, ideal, survey};
 use crate::keys::hint;
 use crate::render::{
     ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Supervision, render,
@@ -64,7 +64,7 @@ pub struct Column {
 
 /// The figures of one combination of settings.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct QualityRow {
     /// The value of each swept key, as it is written.
     pub settings: Vec<String>,
     /// A number for each column, the mean over the draws that have one; NaN where none has, as without a silhouette.
@@ -81,7 +81,7 @@ pub struct QualityTable {
     /// What the numbers of each row are.
     pub columns: Vec<Column>,
     /// A row for each combination, the last sweep running fastest.
-    pub rows: Vec<Row>,
+    pub rows: Vec<QualityRow>,
     /// How many draws of the devices' random errors the numbers are means of.
     pub draws: u32,
     /// Rare events over all rays of the pictures.
@@ -126,7 +126,10 @@ fn same_view(one: &Scene, other: &Scene) -> bool {
 /// # Errors
 ///
 /// If a picture cannot be made or measured, or the work was stopped.
-pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTable, QualityError> {
+pub fn quality(
+    plan: &SweepPlan,
+    supervision: &Supervision<'_>,
+) -> Result<QualityTable, QualityError> {
     let mut stats = TraceStats::default();
     let mut rows = Vec::new();
     let mut metadata = Vec::new();
@@ -172,7 +175,7 @@ pub fn quality(plan: &Plan, supervision: &Supervision<'_>) -> Result<QualityTabl
             }
         }
         let of_held = |other: f64| std::iter::repeat_n(other, held.len());
-        rows.push(Row {
+        rows.push(QualityRow {
             settings: settings.clone(),
             numbers: held.iter().copied().chain(statistics.means()).collect(),
             standard_errors: of_held(0.0).chain(statistics.standard_errors()).collect(),

@@ -1,6 +1,6 @@
 //! Tables of quality as data: CSV, NPZ and JSON.
 
-use super::quality::{QualityTable, Row};
+use super::quality::{QualityRow, QualityTable};
 use crate::device::{CATALOGUE, Imperfection};
 use crate::keys::Key;
 use crate::output::{OutputError, write_npz, write_whole};
@@ -38,7 +38,7 @@ impl QualityTable {
         write_npz(path, &self.metadata, |npz| {
             for (i, sweep) in self.sweeps.iter().enumerate() {
                 if sweep.numbers().is_some() {
-                    let value = |row: &Row| row.settings[i].parse().unwrap_or(f64::NAN);
+                    let value = |row: &QualityRow| row.settings[i].parse().unwrap_or(f64::NAN);
                     let values: Vec<f64> = self.rows.iter().map(value).collect();
                     npz.add(&sweep.key, values.len(), &values)?;
                 }
@@ -57,7 +57,7 @@ impl QualityTable {
         let mut figures = Vec::new();
         for (i, column) in self.columns.iter().enumerate() {
             let values =
-                |of: fn(&Row) -> &Vec<f64>| self.rows.iter().map(|row| of(row)[i]).collect();
+                |of: fn(&QualityRow) -> &Vec<f64>| self.rows.iter().map(|row| of(row)[i]).collect();
             figures.push((column.name.clone(), values(|row| &row.numbers)));
             if self.has_errors() {
                 let name = format!("{}_standard_error", column.name);
@@ -82,7 +82,7 @@ impl QualityTable {
         let named = |numbers: &[f64]| -> Map<String, Value> {
             names().zip(numbers.iter().map(|number| (*number).into())).collect()
         };
-        let row = |row: &Row| {
+        let row = |row: &QualityRow| {
             let settings = keys().zip(row.settings.iter().map(|text| text.clone().into()));
             let settings: Map<String, Value> = settings.collect();
             let mut entry = json!({ "settings": settings, "figures": named(&row.numbers) });

@@ -2,7 +2,7 @@
 //! Process. 13, 600 (2004), in a window of 11 x 11 pixels with a Gaussian weight of 1.5 pixels.
 
 use super::plane::{Plane, gaussian};
-use super::{Region, View};
+use super::{PixelMask, View};
 use crate::photograph::encode;
 
 /// The constants K1 and K2 of the paper, and the range L of the signal.
@@ -14,7 +14,7 @@ const K: [f64; 2] = [0.01, 0.03];
 ///
 /// Views and region must be of one size.
 #[must_use]
-pub fn structural_similarity(a: &View, b: &View, region: &Region) -> f64 {
+pub fn structural_similarity(a: &View, b: &View, region: &PixelMask) -> f64 {
     let [a, b] = [a, b].map(|view| Plane { width: view.width, values: luminance(view) });
     let kernel = gaussian(1.5, 5);
     let blur = |plane: &Plane| plane.filtered(&kernel, &kernel).values;
@@ -48,7 +48,7 @@ mod tests {
         // use_sample_covariance=False, data_range=1, of the encoded luminances; it leaves out the windows that
         // reach beyond the picture.
         let [a, b] = patterns();
-        let inner = Region::rectangle(&a, [5, 5, a.width - 10, a.height - 10]).expect("inside");
+        let inner = PixelMask::rectangle(&a, [5, 5, a.width - 10, a.height - 10]).expect("inside");
         let similarity = structural_similarity(&a, &b, &inner);
         assert!((similarity - 0.821_930_126_820_459_7).abs() < 1e-6, "{similarity}");
         assert!((structural_similarity(&a, &a, &inner) - 1.0).abs() < 1e-14);
@@ -58,7 +58,7 @@ mod tests {
     fn even_pictures_differ_by_their_luminance_alone() {
         // (2 x y + C1) / (x² + y² + C1) with x = 1 and y = 0.5 after encoding.
         let (white, gray) = (even(1.0), even(crate::photograph::decode(0.5)));
-        let similarity = structural_similarity(&white, &gray, &Region::whole(&white));
+        let similarity = structural_similarity(&white, &gray, &PixelMask::whole(&white));
         assert!((similarity - (1.0 + 1e-4) / (1.25 + 1e-4)).abs() < 1e-9, "{similarity}");
     }
 }

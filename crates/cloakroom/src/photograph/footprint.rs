@@ -19,11 +19,11 @@ pub(super) struct Footprint {
     /// Square of the major axis' true length, below 1 where the image is magnified.
     pub(super) major_squared: f32,
     /// The row of probes; `None` for one probe.
-    pub(super) row: Option<Row>,
+    pub(super) row: Option<ProbeRow>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Row {
+pub(super) struct ProbeRow {
     /// In texels.
     length: f32,
     /// A unit vector.
@@ -63,7 +63,7 @@ impl Footprint {
             let (x, y) =
                 if uu >= vv { (half_difference + root, uv) } else { (uv, root - half_difference) };
             let norm = (x * x + y * y).sqrt();
-            Row { length: (major - round).sqrt(), direction: [x / norm, y / norm] }
+            ProbeRow { length: (major - round).sqrt(), direction: [x / norm, y / norm] }
         });
         Self { width_squared, major_squared, row }
     }
@@ -75,7 +75,7 @@ impl Footprint {
     /// one is as long as what is left, so that a new cell begins without weight.
     #[inline]
     pub(super) fn probes(&self, mut visit: impl FnMut([f32; 2], f32)) {
-        let Some(Row { length, direction }) = self.row else {
+        let Some(ProbeRow { length, direction }) = self.row else {
             return visit([0.0, 0.0], 1.0);
         };
         let (half, cell) = (0.5 * length, self.width_squared.sqrt());

@@ -30,7 +30,7 @@ const FADE: f32 = 0.8;
 /// Smallest averaging width d, in texels: keeps the weights smooth.
 const MIN_WIDTH: f32 = 0.25;
 
-/// What lies beyond the left and right edge of an image. Beyond top and bottom, the edge goes on.
+/// What lies beyond the left and right edge of an image. FarSide top and bottom, the edge goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edges {
     /// The edge goes on.
@@ -58,7 +58,7 @@ struct Level {
 }
 
 /// How the levels answer each probe of a patch.
-struct Plan {
+struct LevelMix {
     level: usize,
     /// Averaging width d on this level, in its texels.
     width: f32,
@@ -154,7 +154,7 @@ impl Pyramid {
 
     /// Adds what a probe in the middle of `at`, in texels of the image, sees.
     #[inline]
-    fn add_probe(&self, sum: &mut [f32; 3], at: [f64; 2], weight: f32, plan: &Plan) {
+    fn add_probe(&self, sum: &mut [f32; 3], at: [f64; 2], weight: f32, plan: &LevelMix) {
         let mut add = |level: usize, width: f32, weight: f32| {
             let level = self.level(level);
             let at = [at[0] * level.scale[0], at[1] * level.scale[1]];
@@ -169,11 +169,11 @@ impl Pyramid {
         }
     }
 
-    fn plan(&self, footprint: &Footprint) -> Plan {
+    fn plan(&self, footprint: &Footprint) -> LevelMix {
         if footprint.major_squared < 1.0 {
             // Magnified, towards a quadratic spline.
             let width = (1.0 - footprint.major_squared.sqrt()).max(MIN_WIDTH);
-            return Plan { level: 0, width, next: MIN_WIDTH, fade: 0.0 };
+            return LevelMix { level: 0, width, next: MIN_WIDTH, fade: 0.0 };
         }
         let last = self.coarser.len();
         // d^2 / 12 + 1/4 on the level at hand.
@@ -190,7 +190,7 @@ impl Pyramid {
             next = (3.0 * variance - 3.0).max(0.0).sqrt().max(MIN_WIDTH);
             fade = (share - FADE) / (1.0 - FADE);
         }
-        Plan { level, width, next, fade }
+        LevelMix { level, width, next, fade }
     }
 }
 

@@ -25,7 +25,7 @@ impl ChannelSet {
 
 /// One channel of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channel {
+pub enum ChannelKind {
     /// The image through the camera's polarizer, linear light: red 0, green 1, blue 2.
     Image(usize),
     /// The image through a horizontal polarizer.
@@ -59,7 +59,7 @@ pub enum Channel {
     FirstFaceReflectance,
 }
 
-impl Channel {
+impl ChannelKind {
     /// All channels in the order of files, with their names there: those that every file of data holds, then those that
     /// a scene must ask for.
     const NAMES: [(Self, &str); 22] = [
@@ -138,7 +138,10 @@ mod tests {
             let mut settings = PictureSettings { map, ..PictureSettings::default() };
             let channels = channels.iter().map(|&word| word.into()).collect();
             settings.set("channels", crate::keys::Value::List(channels)).expect("known");
-            Channel::of(wanted, &settings).into_iter().map(Channel::name).collect::<Vec<_>>()
+            ChannelKind::of(wanted, &settings)
+                .into_iter()
+                .map(ChannelKind::name)
+                .collect::<Vec<_>>()
         };
         assert_eq!(names(ChannelSet::Everything, &[], MapChannel::None).len(), 16);
         assert_eq!(
@@ -162,6 +165,6 @@ mod tests {
             assert!(names(ChannelSet::Everything, &[word], MapChannel::None).len() > 16, "{word}");
         }
         let all = names(ChannelSet::Everything, OPTIONAL_CHANNELS, MapChannel::None);
-        assert_eq!(all.len(), Channel::NAMES.len());
+        assert_eq!(all.len(), ChannelKind::NAMES.len());
     }
 }

@@ -1,12 +1,12 @@
 //! The film: the channels of a picture while it is being exposed, band by band.
 
-use super::{Channel, Tile};
-use crate::output::{Channel as FileChannel, Samples};
+use super::{ChannelKind, Tile};
+use crate::output::{Channel, Samples};
 
 /// The planes of a picture, row by row.
 pub(super) struct Film {
     tile: Tile,
-    planes: Vec<(Channel, Samples)>,
+    planes: Vec<(ChannelKind, Samples)>,
 }
 
 /// A band of rows of every plane, to be exposed by one thread.
@@ -17,7 +17,7 @@ pub(super) struct Band<'f> {
     pub width: usize,
     /// How many rows it has.
     pub rows: usize,
-    planes: Vec<(Channel, BandPlane<'f>)>,
+    planes: Vec<(ChannelKind, BandPlane<'f>)>,
 }
 
 enum BandPlane<'f> {
@@ -28,7 +28,7 @@ enum BandPlane<'f> {
 
 impl Film {
     /// For a tile of a picture.
-    pub fn new(tile: Tile, channels: &[Channel]) -> Self {
+    pub fn new(tile: Tile, channels: &[ChannelKind]) -> Self {
         let pixels = tile.width as usize * tile.height as usize;
         let planes = channels.iter().map(|channel| (*channel, channel.blank(pixels))).collect();
         Self { tile, planes }
@@ -60,10 +60,10 @@ impl Film {
     }
 
     /// The channels as they go into a file.
-    pub fn into_channels(self) -> Vec<FileChannel> {
+    pub fn into_channels(self) -> Vec<Channel> {
         self.planes
             .into_iter()
-            .map(|(channel, samples)| FileChannel { name: channel.name().to_owned(), samples })
+            .map(|(channel, samples)| Channel { name: channel.name().to_owned(), samples })
             .collect()
     }
 }
@@ -71,7 +71,7 @@ impl Film {
 impl Band<'_> {
     /// Sets the pixel at `index`, counted row by row from the start of the band, from a function
     /// that gives the value of each channel; red 0, green 1 and blue 2 of it where it holds colors.
-    pub fn set(&mut self, index: usize, value: impl Fn(Channel, usize) -> f64) {
+    pub fn set(&mut self, index: usize, value: impl Fn(ChannelKind, usize) -> f64) {
         for (channel, plane) in &mut self.planes {
             match plane {
                 BandPlane::F32(values) => values[index] = value(*channel, 0) as f32,

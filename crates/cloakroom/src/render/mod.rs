@@ -16,7 +16,7 @@ mod pulses;
 mod sampling;
 mod tile;
 
-pub use channels::{Channel, ChannelSet};
+pub use channels::{ChannelKind, ChannelSet};
 pub use images::Images;
 pub use prepared_scene::{PreparedScene, PreparedSceneError, assembly, limits, ray_limits};
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
@@ -159,7 +159,7 @@ fn expose_film<const N: usize>(
     let Tile { width, height, .. } = tile;
     let settings = &prepared.scene.picture;
     let detection = detection.with_options(wanted, settings);
-    let channels = Channel::of(wanted, settings);
+    let channels = ChannelKind::of(wanted, settings);
     let bytes: usize = channels.iter().map(|channel| channel.blank(1).bytes()).sum();
     // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
     let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2) as u64;

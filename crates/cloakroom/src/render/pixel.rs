@@ -1,6 +1,6 @@
 //! What one pixel gathers from its samples.
 
-use super::Channel;
+use super::ChannelKind;
 
 /// Running sums over the samples of one pixel.
 #[derive(Clone, Copy, Debug, Default)]
@@ -52,24 +52,24 @@ impl Pixel {
 
     /// The value of a channel, the pixel having had `samples` samples; `color` says which of red 0,
     /// green 1 and blue 2 where the channel holds all three.
-    pub fn value(&self, channel: Channel, color: usize, samples: f64) -> f64 {
+    pub fn value(&self, channel: ChannelKind, color: usize, samples: f64) -> f64 {
         match channel {
-            Channel::Image(i) => self.image[i] / samples,
-            Channel::Horizontal(i) => self.horizontal[i] / samples,
-            Channel::Vertical(i) => self.vertical[i] / samples,
+            ChannelKind::Image(i) => self.image[i] / samples,
+            ChannelKind::Horizontal(i) => self.horizontal[i] / samples,
+            ChannelKind::Vertical(i) => self.vertical[i] / samples,
             // 0/0 is the NaN that says: no leaf has reached the photograph, no surface was met.
-            Channel::TimeOfFlight => self.time / self.time_weight,
-            Channel::TimeOfFlightSpread => (self.variance / self.time_weight).sqrt(),
-            Channel::TimeOfFlightDifference => self.difference / self.difference_weight,
-            Channel::Delivered => self.delivered / samples,
-            Channel::Escaped => self.escaped / samples,
-            Channel::Absorbed => self.absorbed / samples,
-            Channel::Pruned => self.pruned / samples,
-            Channel::FirstFaceReflectance => self.reflected / self.surfaces_met,
-            Channel::ExtraordinaryShare => {
+            ChannelKind::TimeOfFlight => self.time / self.time_weight,
+            ChannelKind::TimeOfFlightSpread => (self.variance / self.time_weight).sqrt(),
+            ChannelKind::TimeOfFlightDifference => self.difference / self.difference_weight,
+            ChannelKind::Delivered => self.delivered / samples,
+            ChannelKind::Escaped => self.escaped / samples,
+            ChannelKind::Absorbed => self.absorbed / samples,
+            ChannelKind::Pruned => self.pruned / samples,
+            ChannelKind::FirstFaceReflectance => self.reflected / self.surfaces_met,
+            ChannelKind::ExtraordinaryShare => {
                 self.extraordinary / (self.ordinary + self.extraordinary)
             }
-            Channel::Stokes(k) => self.stokes[k][color] / samples,
+            ChannelKind::Stokes(k) => self.stokes[k][color] / samples,
         }
     }
 }

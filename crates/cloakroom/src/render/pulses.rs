@@ -3,7 +3,7 @@
 use super::detection::Detection;
 use super::exposure::{empty_time_of_flight, time_of_flight};
 use super::pixel::Pixel;
-use super::{Channel, PreparedScene};
+use super::{ChannelKind, PreparedScene};
 use crate::trace::Tracer;
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
@@ -142,8 +142,8 @@ fn list<const N: usize>(
         pulses,
         resolution_ns,
         empty_time_of_flight_ns: empty,
-        mean_time_of_flight_ns: number(Channel::TimeOfFlight),
-        time_of_flight_spread_ns: number(Channel::TimeOfFlightSpread),
+        mean_time_of_flight_ns: number(ChannelKind::TimeOfFlight),
+        time_of_flight_spread_ns: number(ChannelKind::TimeOfFlightSpread),
         escaped,
         absorbed: detection.detected(&outcome.absorbed) + ended,
         pruned: detection.detected(&outcome.pruned),

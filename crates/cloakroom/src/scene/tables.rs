@@ -2,7 +2,7 @@
 
 use super::Polarizer;
 use crate::device::{Imperfection, Show};
-use crate::keys::{Given, Key, Limits};
+use crate::keys::{Given, Key, ValueRange};
 use crate::photograph::ImageSource;
 use cloakroom_trace::{choice, table};
 use glam::DVec3;
@@ -31,26 +31,26 @@ table! {
     /// +x, 40 degrees wide.
     pub struct CameraSettings {
         /// Where the camera stands.
-        position: DVec3 = DVec3::new(-100.0, 0.0, 0.0), "cm", in Limits::COORDINATE,
+        position: DVec3 = DVec3::new(-100.0, 0.0, 0.0), "cm", in ValueRange::COORDINATE,
         /// The point in the middle of the picture.
-        target: DVec3 = DVec3::new(50.0, 0.0, 0.0), "cm", in Limits::COORDINATE,
+        target: DVec3 = DVec3::new(50.0, 0.0, 0.0), "cm", in ValueRange::COORDINATE,
         /// The direction that is up in the picture; it need not be perpendicular to the view.
         up: DVec3 = DVec3::Y,
         /// Whether rays leave from one point or side by side.
         projection: Projection,
         /// Horizontal field of view of a perspective camera.
-        field_of_view: Given<f64> = Given::by_default(40.0), "degrees", in Limits::Between(0.0, 180.0),
+        field_of_view: Given<f64> = Given::by_default(40.0), "degrees", in ValueRange::Between(0.0, 180.0),
         /// Width of the view of an orthographic camera, which needs it.
-        width: Option<f64>, "cm", in Limits::LENGTH,
+        width: Option<f64>, "cm", in ValueRange::LENGTH,
         /// Width and height of the picture in pixels.
-        resolution: [u32; 2] = [1024, 768], in Limits::Whole(1, MOST),
+        resolution: [u32; 2] = [1024, 768], in ValueRange::Whole(1, MOST),
         /// Camera rays per pixel.
-        samples: u32 = 4, in Limits::Whole(1, MOST),
+        samples: u32 = 4, in ValueRange::Whole(1, MOST),
         /// Spends samples where the picture has edges: blocks of 2 x 2 pixels whose first samples (a quarter of them, at
         /// least 4) differ by no more than so many 8-bit steps get no others. 0: all pixels get all samples.
-        adaptive: f64, "8-bit steps", in Limits::Within(0.0, 255.0),
+        adaptive: f64, "8-bit steps", in ValueRange::Within(0.0, 255.0),
         /// Chooses where in its pixel each sample lies.
-        seed: u64, in Limits::SEED,
+        seed: u64, in ValueRange::SEED,
         /// The polarizer before the lens; an angle is counted from horizontal, counterclockwise as the camera sees it.
         polarizer: Polarizer, "degrees",
     }
@@ -60,7 +60,7 @@ table! {
     /// The light that fills the scene.
     pub struct Light {
         /// Wavelength in vacuum; used by absorption only.
-        wavelength_nm: f64 = 550.0, "nm", in Limits::Within(1e-3, 1e12),
+        wavelength_nm: f64 = 550.0, "nm", in ValueRange::Within(1e-3, 1e12),
     }
 }
 
@@ -70,9 +70,9 @@ table! {
         /// What hangs there: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to the scene file.
         image: ImageSource = ImageSource::BuiltIn("bookshelf"),
         /// Short for `position = [x, 0, 0]`.
-        x: Given<f64> = Given::by_default(50.0), "cm", in Limits::COORDINATE,
+        x: Given<f64> = Given::by_default(50.0), "cm", in ValueRange::COORDINATE,
         /// Its middle; not together with `x`.
-        position: Given<DVec3> = Given::by_default(DVec3::new(50.0, 0.0, 0.0)), "cm", in Limits::COORDINATE,
+        position: Given<DVec3> = Given::by_default(DVec3::new(50.0, 0.0, 0.0)), "cm", in ValueRange::COORDINATE,
         /// The direction that it faces, of any length. It has two sides: who looks straight at either sees it upright
         /// and unmirrored.
         normal: DVec3 = DVec3::NEG_X,
@@ -80,7 +80,7 @@ table! {
         up: DVec3 = DVec3::Y,
         /// Its width; the height follows from the image. By default 110 cm for the builtin photograph, for others the
         /// smallest that covers the camera's view.
-        width: Option<f64>, "cm", in Limits::LENGTH,
+        width: Option<f64>, "cm", in ValueRange::LENGTH,
     }
 }
 
@@ -88,7 +88,7 @@ table! {
     /// What rays see that hit nothing: a color or an image.
     pub struct SurroundingsSettings {
         /// Linear red, green and blue seen by rays that hit nothing.
-        color: Given<[f64; 3]> = Given::by_default([0.0; 3]), in Limits::Within(0.0, 1e30),
+        color: Given<[f64; 3]> = Given::by_default([0.0; 3]), in ValueRange::Within(0.0, 1e30),
         /// An equirectangular image of the surroundings instead of a color, relative to the scene file.
         image: Option<ImageSource>,
     }
@@ -98,9 +98,9 @@ table! {
     /// How rays are followed.
     pub struct TraceSettings {
         /// Branches of a ray weaker than this share of it are not followed but counted as pruned.
-        min_power: Given<f64> = Given::by_default(1e-4), in Limits::Within(0.0, 1.0),
+        min_power: Given<f64> = Given::by_default(1e-4), in ValueRange::Within(0.0, 1.0),
         /// Largest error of position and optical path on leaving a device.
-        tolerance: f64 = 1e-6, "cm", in Limits::Positive,
+        tolerance: f64 = 1e-6, "cm", in ValueRange::Positive,
     }
 }
 
@@ -182,14 +182,14 @@ table! {
         /// its mirror.
         core: Core,
         /// Turns the device about its own z axis, counterclockwise seen from the end that the axis points to.
-        rotation: f64, "degrees", in Limits::ANGLE,
+        rotation: f64, "degrees", in ValueRange::ANGLE,
         /// Where the device's own z axis points, of any length: the shortest turn of z to it, after `rotation`; to -z by
         /// 180 degrees about x.
         axis: DVec3 = DVec3::Z,
         /// Where the device's own origin lies.
-        position: DVec3, "cm", in Limits::COORDINATE,
+        position: DVec3, "cm", in ValueRange::COORDINATE,
         /// Whole length along the device's z axis; endless where it is absent.
-        length: Option<f64>, "cm", in Limits::LENGTH,
+        length: Option<f64>, "cm", in ValueRange::LENGTH,
         /// How what is made of it differs from its design: random errors, levels, a limited range, loss.
         imperfection: Option<Imperfection>,
     }
@@ -199,13 +199,13 @@ table! {
     /// A rectangle on which light is received, from the side that its normal points to.
     pub struct Receiver {
         /// The middle of the rectangle on which light is received.
-        position: DVec3 = DVec3::new(50.0, 0.0, 0.0), "cm", in Limits::COORDINATE,
+        position: DVec3 = DVec3::new(50.0, 0.0, 0.0), "cm", in ValueRange::COORDINATE,
         /// The direction that it faces, of any length: light is received from there.
         normal: DVec3 = DVec3::NEG_X,
         /// Its size across the z axis.
-        width: f64 = 60.0, "cm", in Limits::LENGTH,
+        width: f64 = 60.0, "cm", in ValueRange::LENGTH,
         /// Its size along the z axis; of no matter where all devices are endless along z.
-        length: f64 = 60.0, "cm", in Limits::LENGTH,
+        length: f64 = 60.0, "cm", in ValueRange::LENGTH,
     }
 }
 

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::device::{CATALOGUE, Entry};
-use crate::keys::{Key, KeyKind, Limits};
+use crate::keys::{Key, KeyKind, ValueRange};
 use crate::scene::{Placement, TABLES};
 
 /// The JSON Schema (draft 2020-12) of a scene file, made from the lists of keys and the catalogue
@@ -121,17 +121,17 @@ fn tensor(number: Value) -> Value {
     json!({ "anyOf": [number, pair, rows] })
 }
 
-fn number(limits: Limits) -> Value {
+fn number(limits: ValueRange) -> Value {
     match limits {
-        Limits::Finite => json!({ "type": "number" }),
-        Limits::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
-        Limits::Between(low, high) => {
+        ValueRange::Finite => json!({ "type": "number" }),
+        ValueRange::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
+        ValueRange::Between(low, high) => {
             json!({ "type": "number", "exclusiveMinimum": low, "exclusiveMaximum": high })
         }
-        Limits::Within(low, high) => {
+        ValueRange::Within(low, high) => {
             json!({ "type": "number", "minimum": low, "maximum": high })
         }
-        Limits::Whole(low, high) => {
+        ValueRange::Whole(low, high) => {
             json!({ "type": "integer", "minimum": low, "maximum": high })
         }
     }

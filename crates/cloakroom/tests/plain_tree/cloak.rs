@@ -5,7 +5,7 @@ use glam::{DMat2, DMat3, DVec2, DVec3};
 
 /// What lies beyond a face of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Beyond {
+pub enum FarSide {
     Air,
     Metal,
     Triangle(usize),
@@ -15,7 +15,7 @@ pub enum Beyond {
 #[derive(Clone, Debug)]
 pub struct Triangle {
     pub corners: [DVec2; 3],
-    pub beyond: [Beyond; 3],
+    pub beyond: [FarSide; 3],
     pub material: Material,
 }
 
@@ -100,7 +100,7 @@ impl Cloak {
             let turned = |tensor: DMat3| turn3 * tensor * turn3.transpose();
             Triangle {
                 corners: corners.map(|corner| turn * (corner * *sign)),
-                beyond: [Beyond::Air, Beyond::Triangle(neighbour), Beyond::Metal],
+                beyond: [FarSide::Air, FarSide::Triangle(neighbour), FarSide::Metal],
                 material: Material {
                     permittivity: turned(permittivity),
                     permeability: turned(permeability),

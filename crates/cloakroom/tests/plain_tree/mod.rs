@@ -6,7 +6,7 @@
 pub mod cloak;
 pub mod waves;
 
-use cloak::{Beyond, Cloak};
+use cloak::{Cloak, FarSide};
 use glam::{DVec2, DVec3};
 use waves::{AIR, Fields, Outgoing, in_air, poynting, scatter};
 
@@ -105,15 +105,15 @@ impl Cloak {
     }
 
     /// The first surface that a ray in air meets: how far, which, and what lies behind.
-    fn first_met(&self, o: DVec3, d: DVec3) -> Option<(f64, Surface, Beyond)> {
+    fn first_met(&self, o: DVec3, d: DVec3) -> Option<(f64, Surface, FarSide)> {
         let mut met = Vec::new();
         for (i, triangle) in self.triangles.iter().enumerate() {
             for side in 0..3 {
-                if triangle.beyond[side] == Beyond::Air
+                if triangle.beyond[side] == FarSide::Air
                     && let Some(s) = self.crossing(i, side, o, d)
                     && (o.z + s * d.z).abs() < self.half_length
                 {
-                    met.push((s, Surface::Side(i, side), Beyond::Triangle(i)));
+                    met.push((s, Surface::Side(i, side), FarSide::Triangle(i)));
                 }
             }
         }
@@ -121,8 +121,8 @@ impl Cloak {
         if to_end > 0.0 && to_end.is_finite() {
             let at = (o + d * to_end).truncate();
             match self.triangle_at(at) {
-                Some(triangle) => met.push((to_end, Surface::End, Beyond::Triangle(triangle))),
-                None if self.metal_at(at) => met.push((to_end, Surface::End, Beyond::Metal)),
+                Some(triangle) => met.push((to_end, Surface::End, FarSide::Triangle(triangle))),
+                None if self.metal_at(at) => met.push((to_end, Surface::End, FarSide::Metal)),
                 None => {}
             }
         }
@@ -135,7 +135,7 @@ impl Cloak {
             triangle.beyond.iter().enumerate().all(|(i, beyond)| {
                 let (a, b) = (triangle.corners[i], triangle.corners[(i + 1) % 3]);
                 let centre_side = (b - a).perp_dot(-a).signum();
-                *beyond != Beyond::Metal || (b - a).perp_dot(point - a) * centre_side > 0.0
+                *beyond != FarSide::Metal || (b - a).perp_dot(point - a) * centre_side > 0.0
             })
         })
     }
@@ -163,11 +163,11 @@ impl Cloak {
             return tree;
         };
         let mut waiting = Vec::new();
-        let mut walk = Walk { tree: &mut tree, waiting: &mut waiting, min_power };
+        let mut walk = GrowingTree { tree: &mut tree, waiting: &mut waiting, min_power };
         let position = origin + direction * s;
         let n = self.normal(surface, direction);
         let into = match beyond {
-            Beyond::Triangle(index) => Some(index),
+            FarSide::Triangle(index) => Some(index),
             _ => None,
         };
         let material = into.map(|index| &self.triangles[index].material);
@@ -176,14 +176,14 @@ impl Cloak {
             walk.go_on((place, surface), position, (s, 0), (direction, n), out);
         }
         while let Some(branch) = waiting.pop() {
-            let mut walk = Walk { tree: &mut tree, waiting: &mut waiting, min_power };
+            let mut walk = GrowingTree { tree: &mut tree, waiting: &mut waiting, min_power };
             self.step(branch, &mut walk);
         }
         tree
     }
 
     /// From one surface of a triangle to the next.
-    fn step<const N: usize>(&self, branch: Branch<N>, walk: &mut Walk<N>) {
+    fn step<const N: usize>(&self, branch: Branch<N>, walk: &mut GrowingTree<N>) {
         let d = ray(&branch.fields);
         let triangle = &self.triangles[branch.triangle];
         let sides = (0..3).map(|side| Surface::Side(branch.triangle, side));
@@ -193,7 +193,7 @@ impl Cloak {
             Some((s, surface, triangle.beyond[side]))
         });
         let to_end = (self.half_length * d.z.signum() - branch.position.z) / d.z;
-        let end = (to_end.is_finite()).then_some((to_end, Surface::End, Beyond::Air));
+        let end = (to_end.is_finite()).then_some((to_end, Surface::End, FarSide::Air));
         let Some((s, surface, beyond)) = ahead.chain(end).min_by(|a, b| a.0.total_cmp(&b.0)) else {
             panic!("a ray lost at a corner");
         };
@@ -202,11 +202,11 @@ impl Cloak {
         let optical_path = branch.optical_path + branch.wave_vector.dot(step);
         let n = self.normal(surface, d);
         let (onward, place, next) = match beyond {
-            Beyond::Air => (Some(&AIR), None, surface),
-            Beyond::Metal => (None, None, surface),
-            Beyond::Triangle(neighbour) => {
+            FarSide::Air => (Some(&AIR), None, surface),
+            FarSide::Metal => (None, None, surface),
+            FarSide::Triangle(neighbour) => {
                 let side = |side: &usize| {
-                    self.triangles[neighbour].beyond[*side] == Beyond::Triangle(branch.triangle)
+                    self.triangles[neighbour].beyond[*side] == FarSide::Triangle(branch.triangle)
                 };
                 let shared = (0..3).find(side).expect("a common side");
                 let other = &self.triangles[neighbour];
@@ -221,13 +221,13 @@ impl Cloak {
     }
 }
 
-struct Walk<'a, const N: usize> {
+struct GrowingTree<'a, const N: usize> {
     tree: &'a mut PlainTree<N>,
     waiting: &'a mut Vec<Branch<N>>,
     min_power: f64,
 }
 
-impl<const N: usize> Walk<'_, N> {
+impl<const N: usize> GrowingTree<'_, N> {
     /// Keeps an outgoing wave as a branch in a triangle, or as a leaf in air.
     fn go_on(
         &mut self,

@@ -81,8 +81,8 @@ pub(super) fn wavefronts(
     const MOST: u32 = 4000;
     let is_metal = |at: DVec3| {
         assembly.devices().iter().any(|placed| {
-            let occupant = placed.structure.material_at(placed.pose.to_local(at));
-            matches!(occupant, MaterialAt::Metal | MaterialAt::Opaque)
+            let material = placed.structure.material_at(placed.pose.to_local(at));
+            matches!(material, MaterialAt::Metal | MaterialAt::Opaque)
         })
     };
     // Near, and without metal between them.

@@ -71,7 +71,7 @@ fn a_perfect_cloak_leaves_wavefronts_plane() {
 fn the_lens_of_luneburg_has_its_focus_on_its_far_side() {
     let settings = DiagramSettings { rays: 9, width: Some(18.0), ..DiagramSettings::default() };
     let scene = scene("[[device]]\nkind = \"luneburg-lens\"");
-    let assembly = assembly(&scene).expect("a bench");
+    let assembly = assembly(&scene).expect("an assembly");
     let devices = Devices::new(&assembly);
     let scenery = Scenery::new(devices.bounds().expect("bounds"), 0.0, &settings);
     for launch in settings.source.launches(&scene, &settings, &scenery) {

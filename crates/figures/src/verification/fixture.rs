@@ -3,7 +3,7 @@
 use super::{Result, VerificationError};
 use cloakroom::assembly::Assembly;
 use cloakroom::device::FactValue;
-use cloakroom::measure::{Region, Survey, View, correlation, survey};
+use cloakroom::measure::{PixelMask, Survey, View, correlation, survey};
 use cloakroom::output::Picture;
 use cloakroom::render::{ChannelSet, Images, PreparedScene, Supervision, assembly, render};
 use cloakroom::scene::Scene;
@@ -106,8 +106,8 @@ impl Fixture<'_> {
     }
 
     /// The silhouette of a device.
-    pub fn silhouette(&self, device: &str) -> Result<Region> {
-        Ok(Region::new(160, self.survey(device, "horizontal")?.silhouette)?)
+    pub fn silhouette(&self, device: &str) -> Result<PixelMask> {
+        Ok(PixelMask::new(160, self.survey(device, "horizontal")?.silhouette)?)
     }
 
     /// Root mean square displacement at the photograph, cm.
@@ -136,7 +136,7 @@ pub(super) fn strongest(leaves: &[Leaf<2>], light: usize) -> Result<Leaf<2>> {
 }
 
 /// The mean over red, green and blue of the correlation over a region.
-pub(super) fn likeness(a: &View, b: &View, region: &Region) -> Result<f64> {
+pub(super) fn likeness(a: &View, b: &View, region: &PixelMask) -> Result<f64> {
     let of_colors = a.light.iter().zip(&b.light).map(|(a, b)| correlation(a, b, region));
     Ok(of_colors.sum::<Option<f64>>().ok_or("contrast")? / 3.0)
 }
@@ -188,24 +188,25 @@ pub(super) fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
     Launch { origin, direction, electric: [h.into(), v.into()] }
 }
 
-/// The strongest leaf of a ray's vertical light, and how often its way is reflected within a segment: where two legs on
+/// The strongest leaf of a ray's vertical light, and how often its way is reflected within a segment: where two segments on
 /// end lie in one. The device must stand in the frame of the scene.
 pub(super) fn reflected_inside(assembly: &Assembly, ray: &Launch<2>) -> Result<(Leaf<2>, usize)> {
     let mut tracer = tracer(assembly, 1e-6).watched(Vec::new());
     let (leaves, _) = tracer.trace(ray);
     let main = strongest(leaves, 1)?;
-    let legs: &Vec<PathSegment<2>> = tracer.recorder();
+    let segments: &Vec<PathSegment<2>> = tracer.recorder();
     let (mut at, mut path) = (main.position, main.optical_path);
     let mut way = Vec::new();
-    // Back from the leaf, along what ends where the next leg starts.
-    let ends = |leg: &&PathSegment<2>, at: DVec3, path: f64| {
-        let end = leg.path.last().map(|end| (end.position, leg.optical_path + end.optical_path));
+    // Back from the leaf, along what ends where the next segment starts.
+    let ends = |segment: &&PathSegment<2>, at: DVec3, path: f64| {
+        let end =
+            segment.path.last().map(|end| (end.position, segment.optical_path + end.optical_path));
         end.is_some_and(|(place, sum)| place.distance(at) < 1e-9 && (sum - path).abs() < 1e-9)
-            && leg.optical_path < path - 1e-9
+            && segment.optical_path < path - 1e-9
     };
-    while let Some(leg) = legs.iter().find(|leg| ends(leg, at, path)) {
-        way.push(leg.inside);
-        (at, path) = (leg.path[0].position, leg.optical_path);
+    while let Some(segment) = segments.iter().find(|segment| ends(segment, at, path)) {
+        way.push(segment.inside);
+        (at, path) = (segment.path[0].position, segment.optical_path);
     }
     let reflected = way.windows(2).filter(|pair| pair[0].is_some() && pair[0] == pair[1]);
     Ok((main, reflected.count()))

@@ -6,7 +6,7 @@ use super::fixture::{
     likeness, square, strongest, tracer,
 };
 use super::{Result, VerificationError};
-use cloakroom::measure::Region;
+use cloakroom::measure::PixelMask;
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
 
@@ -66,7 +66,7 @@ pub(super) fn views(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let cloaked = fixture.show(GAUSSIAN, "none")?.view;
     let bare = fixture.show(&metal, "none")?.view;
     let silhouette = fixture.silhouette(&metal)?;
-    let whole = Region::whole(&empty);
+    let whole = PixelMask::whole(&empty);
     let like = |view, region| likeness(&empty, view, region);
     let [with, without] = [like(&cloaked, &silhouette)?, like(&bare, &silhouette)?];
     let [all_with, all_without] = [like(&cloaked, &whole)?, like(&bare, &whole)?];

@@ -56,11 +56,13 @@ impl Hole {
             (Self::Round(Solid::Cylinder { centre, radius, extent }), _) => {
                 let beside = |at: DVec2| at.distance(*centre);
                 let reach = match section(body, *extent) {
-                    Section::Outline(outline) => {
+                    WidestSection::Outline(outline) => {
                         outline.corners.iter().map(|corner| beside(*corner)).fold(0.0, f64::max)
                     }
-                    Section::Disc(middle, size) => beside(middle) + size,
-                    Section::Tilted(body) => body.greatest(*extent, |at| beside(at.truncate())),
+                    WidestSection::Disc(middle, size) => beside(middle) + size,
+                    WidestSection::Tilted(body) => {
+                        body.greatest(*extent, |at| beside(at.truncate()))
+                    }
                 };
                 reach <= radius + slack
             }
@@ -68,11 +70,11 @@ impl Hole {
             (Self::Lens { curve, pose, extent }, _) => {
                 let body = body.placed(&pose.inverse());
                 match section(&body, *extent) {
-                    Section::Outline(outline) => curve.encloses(outline),
-                    Section::Disc(middle, size) => {
+                    WidestSection::Outline(outline) => curve.encloses(outline),
+                    WidestSection::Disc(middle, size) => {
                         curve.contains(middle) && curve.depth(middle) >= size - slack
                     }
-                    Section::Tilted(body) => {
+                    WidestSection::Tilted(body) => {
                         let points = body.extremes(*extent).into_iter();
                         curve.encloses(&Outline::hull(points.map(DVec3::truncate).collect()))
                     }
@@ -83,7 +85,7 @@ impl Hole {
 }
 
 /// The widest cross-section of a body.
-enum Section<'s> {
+enum WidestSection<'s> {
     Outline(&'s Outline),
     /// Middle and radius.
     Disc(DVec2, f64),
@@ -92,20 +94,23 @@ enum Section<'s> {
 }
 
 /// The widest cross-section of a body between two z.
-fn section(body: &Solid, extent: Extent) -> Section<'_> {
+fn section(body: &Solid, extent: Extent) -> WidestSection<'_> {
     match body {
-        Solid::Prism { outline, .. } => Section::Outline(outline),
-        Solid::Cylinder { centre, radius, .. } => Section::Disc(*centre, *radius),
+        Solid::Prism { outline, .. } => WidestSection::Outline(outline),
+        Solid::Cylinder { centre, radius, .. } => WidestSection::Disc(*centre, *radius),
         // To a round hole a cut ball is the whole one.
         Solid::Ball { centre, radius }
         | Solid::CutBall { centre, ball: CutBall { sphere: Sphere { radius }, .. } } => {
             let aside = extent.distance(centre.z);
-            Section::Disc(centre.truncate(), (radius * radius - aside * aside).max(0.0).sqrt())
+            WidestSection::Disc(
+                centre.truncate(),
+                (radius * radius - aside * aside).max(0.0).sqrt(),
+            )
         }
         Solid::Hollow { whole, .. } => section(whole, extent),
-        Solid::Nothing => Section::Disc(DVec2::ZERO, 0.0),
+        Solid::Nothing => WidestSection::Disc(DVec2::ZERO, 0.0),
         Solid::Tilted { .. } => {
-            Convex::of(body).map_or(Section::Disc(DVec2::ZERO, 0.0), Section::Tilted)
+            Convex::of(body).map_or(WidestSection::Disc(DVec2::ZERO, 0.0), WidestSection::Tilted)
         }
     }
 }

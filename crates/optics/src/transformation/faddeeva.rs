@@ -25,7 +25,7 @@ const LOWEST_ROW: i64 = -5;
 const TERMS: usize = 12;
 
 /// Taylor coefficients c_n about a grid point, in the order in which they are summed.
-struct Patch {
+struct TaylorTerms {
     re: [f64; TERMS],
     im: [f64; TERMS],
 }
@@ -34,7 +34,7 @@ struct Patch {
 /// the first half; what comes of it, halved again, by d².
 const ORDER: [usize; TERMS] = [0, 4, 8, 2, 6, 10, 1, 5, 9, 3, 7, 11];
 
-static TABLE: LazyLock<Vec<Patch>> = LazyLock::new(|| {
+static TABLE: LazyLock<Vec<TaylorTerms>> = LazyLock::new(|| {
     (0..COLUMNS * ROWS)
         .map(|index| {
             let (column, row) = (index / ROWS, index % ROWS);
@@ -174,14 +174,14 @@ fn continued_fraction(t: Complex64) -> Complex64 {
 
 /// c_n of w_F(t0 + d) = Σ c_n d^n; from w_F'' = -2 t w_F' - 2 w_F follows the recurrence
 /// c_{n+2} = -2 (t0 c_{n+1} + c_n)/(n + 2).
-fn patch(t0: Complex64) -> Patch {
+fn patch(t0: Complex64) -> TaylorTerms {
     let mut c = [Complex64::ZERO; TERMS];
     c[0] = by_quadrature(t0);
     c[1] = Complex64::new(0.0, FRAC_2_SQRT_PI) - 2.0 * t0 * c[0];
     for n in 0..TERMS - 2 {
         c[n + 2] = -2.0 * (t0 * c[n + 1] + c[n]) / (n + 2) as f64;
     }
-    Patch { re: ORDER.map(|n| c[n].re), im: ORDER.map(|n| c[n].im) }
+    TaylorTerms { re: ORDER.map(|n| c[n].re), im: ORDER.map(|n| c[n].im) }
 }
 
 /// w_F to 1e-15 for Re t >= 0 by the trapezoidal or midpoint rule with the residue of the pole at t

@@ -28,7 +28,7 @@ fn an_even_unevenness_is_none() {
     let short = Extent { min: -10.0, max: 10.0 };
     let even = flow(short, 1.1);
     let uneven = flow(short, 1.1)
-        .with_unevenness(IndexPerturbation::new(grid(2.0, |_| 1.0)).expect("positive"));
+        .with_index_perturbation(IndexPerturbation::new(grid(2.0, |_| 1.0)).expect("positive"));
     let mut dice = Dice(77);
     for _ in 0..300 {
         let (start, p) = dice.enter(&even, short);
@@ -55,7 +55,7 @@ fn uneven_rays_obey_the_physical_ray_equation() {
     for k in 0..60 {
         let (extent, c) = [(Extent::ENDLESS, 1.0), (short, 1.0), (short, 1.1456)][k % 3];
         let flow = flow(extent, c)
-            .with_unevenness(IndexPerturbation::new(spline.clone()).expect("positive"));
+            .with_index_perturbation(IndexPerturbation::new(spline.clone()).expect("positive"));
         for (start, p, end) in legs(&flow, dice.enter(&flow, extent), 1e-8) {
             if steepness(&end) < 0.02 {
                 continue;
@@ -88,7 +88,7 @@ fn uneven_rays_can_be_reversed() {
     // Along z without an end, hills of the index can guide light for ever.
     let extent = Extent { min: -50.0, max: 50.0 };
     let flow = flow(extent, 1.0)
-        .with_unevenness(IndexPerturbation::new(grid(0.5, hills)).expect("positive"));
+        .with_index_perturbation(IndexPerturbation::new(grid(0.5, hills)).expect("positive"));
     let mut dice = Dice(99);
     for _ in 0..200 {
         let (start, p) = dice.enter(&flow, extent);

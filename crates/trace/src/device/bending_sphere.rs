@@ -2,7 +2,7 @@
 
 use super::round::{ball, lens_alone};
 use super::{Device, Fact, Request, Structure};
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use optics::propagation::{CentralLens, RadialFlow};
 
 crate::table! {
@@ -10,9 +10,9 @@ crate::table! {
     /// default. Hannay & Haeusser 1993.
     pub struct BendingSphere {
         /// Radius of the ball.
-        radius: f64 = 10.0, "cm", in Limits::LENGTH,
+        radius: f64 = 10.0, "cm", in ValueRange::LENGTH,
         /// By how much each ray is turned; 180 is Eaton's lens and 360 the invisible sphere.
-        angle: f64 = 90.0, "degrees", in Limits::Within(0.0, 720.0),
+        angle: f64 = 90.0, "degrees", in ValueRange::Within(0.0, 720.0),
     }
 }
 

@@ -8,7 +8,7 @@ use super::{
     Shape, Structure, Surface,
 };
 use crate::key;
-use crate::keys::{Given, KeyError, Limits};
+use crate::keys::{Given, KeyError, ValueRange};
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::geometry::{Cylinder, Extent, Sphere};
@@ -38,20 +38,20 @@ crate::table! {
         /// is z.
         shape: BodyShape,
         /// Thickness of a slab, along x.
-        thickness: Given<f64> = Given::by_default(5.0), "cm", in Limits::LENGTH,
+        thickness: Given<f64> = Given::by_default(5.0), "cm", in ValueRange::LENGTH,
         /// Size of a box along x, y and z.
-        size: Given<DVec3> = Given::by_default(DVec3::splat(10.0)), "cm", in Limits::LENGTH,
+        size: Given<DVec3> = Given::by_default(DVec3::splat(10.0)), "cm", in ValueRange::LENGTH,
         /// Radius of a sphere or cylinder.
-        radius: Given<f64> = Given::by_default(5.0), "cm", in Limits::LENGTH,
+        radius: Given<f64> = Given::by_default(5.0), "cm", in ValueRange::LENGTH,
         /// Relative permittivity, in the device's frame; symmetric.
         permittivity: Given<Tensor> = Given::by_default(1.0.into()),
         /// Relative permeability, in the device's frame; symmetric.
         permeability: Given<Tensor> = Given::by_default(1.0.into()),
         /// Speed of light over the speed of a pulse in it, for times of flight; where it is absent, the size of the
         /// index, 1 at least.
-        group_index: Option<f64>, in Limits::Within(1.0, 1e9),
+        group_index: Option<f64>, in ValueRange::Within(1.0, 1e9),
         /// Where bodies overlap, the one of the larger priority is there.
-        priority: i64, in Limits::Whole(-1_000_000, 1_000_000),
+        priority: i64, in ValueRange::Whole(-1_000_000, 1_000_000),
         /// What an opaque body shows: { color = [red, green, blue] }, linear, or { image = "file" }: whole and upright
         /// on each face of a box and each end of a cylinder, once around a sphere or the side of a cylinder.
         surface: Option<BodySurface>,
@@ -62,7 +62,7 @@ crate::table! {
     /// What an opaque body shows.
     pub struct BodySurface {
         /// Linear red, green and blue that it sends out everywhere.
-        color: Given<[f64; 3]> = Given::by_default([0.5; 3]), in Limits::Within(0.0, 1e30),
+        color: Given<[f64; 3]> = Given::by_default([0.5; 3]), in ValueRange::Within(0.0, 1e30),
         /// An image on it instead of a color: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to the scene
         /// file.
         image: Option<PathBuf>,

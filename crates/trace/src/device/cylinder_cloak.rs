@@ -4,7 +4,7 @@
 use super::round::{check_radii, metal_cylinder, tube};
 use super::{Device, Fact, Request, Show, Structure};
 use crate::key;
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use glam::DVec3;
 use optics::geometry::Extent;
 use optics::propagation::{OpticAxis, RadialFlow, TransformedShell, UniaxialCylinder};
@@ -29,9 +29,9 @@ crate::table! {
     /// Schurig & Smith 2006, Cai et al. 2007.
     pub struct CylinderCloak {
         /// Radius of the metal cylinder; below outer.
-        inner: f64 = 4.0, "cm", in Limits::LENGTH,
+        inner: f64 = 4.0, "cm", in ValueRange::LENGTH,
         /// Radius of the cloak.
-        outer: f64 = 10.0, "cm", in Limits::LENGTH,
+        outer: f64 = 10.0, "cm", in ValueRange::LENGTH,
         /// What the shell is made of: eps = mu, or a uniaxial dielectric with its optic axis along the radius or around
         /// the cylinder.
         material: ShellMaterial,

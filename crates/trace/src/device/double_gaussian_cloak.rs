@@ -10,7 +10,7 @@ use super::{
     Structure, Surface, carpet,
 };
 use crate::key;
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use glam::{DVec2, DVec3};
 use optics::geometry::{
     Cap, CurvedSide, Extent, FloorCurve, Hole, MetalBack, Outline, Pose, Solid, Wall,
@@ -23,13 +23,13 @@ crate::table! {
     /// conformal map. Design (iv) of Halimeh & Wegener 2013.
     pub struct DoubleGaussianCloak {
         /// Width parameter of the map.
-        w: f64 = 10.02, "cm", in Limits::LENGTH,
+        w: f64 = 10.02, "cm", in ValueRange::LENGTH,
         /// Half the height of the metal lens; below 0.886 w.
-        h: f64 = 4.25, "cm", in Limits::LENGTH,
+        h: f64 = 4.25, "cm", in ValueRange::LENGTH,
         /// Size of the cut along x.
-        width: f64 = 50.0, "cm", in Limits::LENGTH,
+        width: f64 = 50.0, "cm", in ValueRange::LENGTH,
         /// Size of the cut along y; above twice h.
-        height: f64 = 57.14, "cm", in Limits::LENGTH,
+        height: f64 = 57.14, "cm", in ValueRange::LENGTH,
         /// Reflect at the cut, and at the border of an open core, as the index step asks for; false is a perfect
         /// antireflection coating.
         fresnel: bool = true,

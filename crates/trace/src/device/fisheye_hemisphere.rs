@@ -4,7 +4,7 @@ use super::closed_form::filled;
 use super::round::lens_alone;
 use super::{ClosedFormBorder, Device, Fact, Request, Structure};
 use crate::key;
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use glam::{DVec3, DVec4};
 use optics::geometry::{CutBall, FlatOrRound, Plane, Sphere};
 use optics::propagation::{ClosedForm, CurvedRay, SquaredIndex, first_way_out};
@@ -16,14 +16,14 @@ crate::table! {
     /// parallel light, straight onto the cut, meets at such a point. Maxwell 1854.
     pub struct FisheyeHemisphere {
         /// Radius of the ball that is cut.
-        radius: f64 = 10.0, "cm", in Limits::LENGTH,
+        radius: f64 = 10.0, "cm", in ValueRange::LENGTH,
         /// Index at the round surface; it is twice that at the centre of the ball.
-        index: f64 = 1.0, in Limits::Within(0.1, 100.0),
+        index: f64 = 1.0, in ValueRange::Within(0.1, 100.0),
         /// The direction in which the cut looks, out of the device, in the device's frame; of any length.
         cut_normal: DVec3 = DVec3::NEG_X,
         /// How far from the centre of the ball it is cut, along `cut_normal`; less than half of the ball is left where
         /// it is negative.
-        cut_distance: f64, "cm", in Limits::COORDINATE,
+        cut_distance: f64, "cm", in ValueRange::COORDINATE,
     }
 }
 

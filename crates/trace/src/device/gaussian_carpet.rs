@@ -4,7 +4,7 @@
 //! A conformal map, [`GaussianMap`], so the index 1/|f'| is exact: the bump looks like flat floor.
 
 use super::{Device, Fact, Request, Structure, carpet};
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
 crate::table! {
@@ -12,15 +12,15 @@ crate::table! {
     /// double-Gaussian cloak. Schmied, Halimeh & Wegener 2010.
     pub struct GaussianCarpet {
         /// Width parameter of the map.
-        w: f64 = 10.02, "cm", in Limits::LENGTH,
+        w: f64 = 10.02, "cm", in ValueRange::LENGTH,
         /// Height of the metal bump; below 0.886 w.
-        h: f64 = 4.25, "cm", in Limits::LENGTH,
+        h: f64 = 4.25, "cm", in ValueRange::LENGTH,
         /// Size of the device along x.
-        width: f64 = 50.0, "cm", in Limits::LENGTH,
+        width: f64 = 50.0, "cm", in ValueRange::LENGTH,
         /// Height of the device above the floor's level; above the bump.
-        height: f64 = 28.57, "cm", in Limits::LENGTH,
+        height: f64 = 28.57, "cm", in ValueRange::LENGTH,
         /// Whole width along x of the mirror floor that the device stands on; 0 for none.
-        floor: f64 = 400.0, "cm", in Limits::LENGTH_OR_ZERO,
+        floor: f64 = 400.0, "cm", in ValueRange::LENGTH_OR_ZERO,
     }
 }
 

@@ -10,7 +10,7 @@ use super::{
     ConformalRegion, Device, Fact, FarSide, Region, Request, Shape, Show, Structure, Surface,
 };
 use crate::key;
-use crate::keys::{KeyError, Limits, Sampled, Samples};
+use crate::keys::{KeyError, Sampled, Samples, ValueRange};
 use glam::DVec2;
 use optics::geometry::{Cap, Extent, Outline, Solid, Wall};
 use optics::propagation::{ConformalFlow, GridSpline, Half, IndexPerturbation};
@@ -34,16 +34,16 @@ crate::table! {
         /// The refractive index on a regular grid from border to border: rows of numbers, one row for each x from the
         /// least to the largest, in it one number for each y; four at least either way. Or the name of a .npy file,
         /// relative to the scene file. Between them the square of the index is a bicubic spline.
-        index: Option<Sampled>, in Limits::Between(0.0, 1000.0),
+        index: Option<Sampled>, in ValueRange::Between(0.0, 1000.0),
         /// The border: the rectangle of the grid, or the largest circle about the middle of it.
         shape: GradedShape,
         /// Size of the grid along x, from its first sample to its last.
-        width: f64 = 40.0, "cm", in Limits::LENGTH,
+        width: f64 = 40.0, "cm", in ValueRange::LENGTH,
         /// Size of the grid along y, from its first sample to its last.
-        height: f64 = 40.0, "cm", in Limits::LENGTH,
+        height: f64 = 40.0, "cm", in ValueRange::LENGTH,
         /// Radius of a metal cylinder along z in the middle, which the medium surrounds; 0 for none. The samples within
         /// go on smoothly for about ten steps of the grid; what they are beyond does not matter.
-        inner: f64, "cm", in Limits::LENGTH_OR_ZERO,
+        inner: f64, "cm", in ValueRange::LENGTH_OR_ZERO,
     }
 }
 
@@ -106,7 +106,7 @@ impl Plan {
         open_core: bool,
     ) -> Result<Structure, KeyError> {
         let DVec2 { x, y } = self.half;
-        // Beyond a round border, its box is not there.
+        // FarSide a round border, its box is not there.
         let margin = if self.rim.is_some() { 1.5 } else { 1.0 };
         let cut = Truncation { x_min: -margin * x, x_max: margin * x, y_max: margin * y };
         let map = ConformalMap::Flat(FlatMap::new(-margin * y, VARIES * (2.0 * x.max(y))));
@@ -114,13 +114,13 @@ impl Plan {
             self.core.is_none_or(|core| farthest >= core)
                 && self.rim.is_none_or(|rim| nearest <= rim)
         };
-        let unevenness = IndexPerturbation::within(square, reach).ok_or_else(|| {
+        let index_perturbation = IndexPerturbation::within(square, reach).ok_or_else(|| {
             let message = "between the samples the index falls to 0; take a finer grid, or a larger least index";
             KeyError::at(key!(Graded.index), message)
         })?;
         let flow = ConformalFlow::new(map, cut, extent, 1.0)
             .between(self.core, self.rim)
-            .with_unevenness(unevenness);
+            .with_index_perturbation(index_perturbation);
         let far_of_core = if open_core { FarSide::Outside } else { FarSide::Conductor };
         let region = ConformalRegion::new(flow, Half::Upper, FarSide::Outside);
         let regions = vec![Region::Conformal(ConformalRegion { core: far_of_core, ..region })];

@@ -6,7 +6,7 @@
 
 use super::{Device, Fact, Request, Structure, carpet};
 use crate::key;
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use optics::transformation::{ConformalMap, GratingMap, Truncation};
 
 crate::table! {
@@ -14,15 +14,15 @@ crate::table! {
     /// & Wegener 2010.
     pub struct GratingCarpet {
         /// How far the metal swings above and below the floor's level; below period/(2 pi).
-        h: f64 = 1.5, "cm", in Limits::LENGTH,
+        h: f64 = 1.5, "cm", in ValueRange::LENGTH,
         /// Period of the grating along x; at most the width.
-        period: f64 = 20.0, "cm", in Limits::LENGTH,
+        period: f64 = 20.0, "cm", in ValueRange::LENGTH,
         /// Size of the device along x.
-        width: f64 = 60.0, "cm", in Limits::LENGTH,
+        width: f64 = 60.0, "cm", in ValueRange::LENGTH,
         /// Height of the device above the floor's level; above the bump.
-        height: f64 = 28.57, "cm", in Limits::LENGTH,
+        height: f64 = 28.57, "cm", in ValueRange::LENGTH,
         /// Whole width along x of the mirror floor that the device stands on; 0 for none.
-        floor: f64 = 400.0, "cm", in Limits::LENGTH_OR_ZERO,
+        floor: f64 = 400.0, "cm", in ValueRange::LENGTH_OR_ZERO,
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::round::{ball, lens_alone};
 use super::{Device, Fact, Request, Structure};
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use optics::propagation::{CentralLens, RadialFlow, TransmutedSphere};
 use optics::wave::SPEED_OF_LIGHT;
 use std::f64::consts::TAU;
@@ -23,7 +23,7 @@ crate::table! {
     /// circumference; it hides nothing but itself. Minano 2006, regularized after Tyc & Leonhardt 2008.
     pub struct InvisibleSphere {
         /// Radius of the ball.
-        radius: f64 = 10.0, "cm", in Limits::LENGTH,
+        radius: f64 = 10.0, "cm", in ValueRange::LENGTH,
         /// A graded index that is infinite at the centre, or its regularized form, a uniaxial dielectric with its axis
         /// along the radius: then the extraordinary wave sees the invisible sphere and the ordinary one a ball of
         /// glass.

@@ -2,7 +2,7 @@
 
 use super::round::{ball, lens_alone};
 use super::{Device, Fact, Request, Structure};
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use optics::propagation::{CentralLens, RadialFlow};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -16,7 +16,7 @@ macro_rules! lens {
             $(#[doc = $about])+
             pub struct $name {
                 /// Radius of the ball.
-                radius: f64 = 10.0, "cm", in Limits::LENGTH,
+                radius: f64 = 10.0, "cm", in ValueRange::LENGTH,
             }
         }
 

@@ -7,7 +7,7 @@
 
 use super::{Device, Fact, Hull, Request, Structure, Surface};
 use crate::key;
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use glam::DVec2;
 use optics::geometry::{Extent, Outline, Solid, Wall};
 use optics::wave::SPEED_OF_LIGHT;
@@ -17,9 +17,9 @@ crate::table! {
     /// direction, and even there late. The trivial cloak of the introduction of Halimeh & Wegener 2013.
     pub struct MirrorDetour {
         /// By how much light is led aside; rays within it of the axis are led around.
-        offset: f64 = 8.0, "cm", in Limits::LENGTH,
+        offset: f64 = 8.0, "cm", in ValueRange::LENGTH,
         /// Half the size along x; `offset` at least.
-        half_length: f64 = 20.0, "cm", in Limits::LENGTH,
+        half_length: f64 = 20.0, "cm", in ValueRange::LENGTH,
     }
 }
 

@@ -29,8 +29,8 @@ mod grating_carpet;
 mod imperfection;
 mod invisible_sphere;
 mod lenses;
+mod material_at;
 mod mirror_detour;
-mod occupant;
 mod polygons;
 mod prisms;
 mod quasi_conformal_carpet;
@@ -49,7 +49,7 @@ pub use cylinder_cloak::ShellMaterial;
 pub use graded::GradedShape;
 pub use imperfection::Imperfection;
 pub use invisible_sphere::SphereMaterial;
-pub use occupant::MaterialAt;
+pub use material_at::MaterialAt;
 pub use optics::geometry::REACH;
 pub use prisms::PrismOfMedium;
 pub use region::{

@@ -5,7 +5,7 @@
 use super::polygons::{PolygonPart, polygonal};
 use super::{Device, Fact, Request, Show, Structure};
 use crate::key;
-use crate::keys::{Given, KeyError, Limits};
+use crate::keys::{Given, KeyError, ValueRange};
 use glam::DVec2;
 use optics::geometry::{Extent, Polygon, PolygonError, SAME_POINT};
 use optics::medium::Tensor;
@@ -24,7 +24,7 @@ crate::table! {
     /// One of the prisms of [`Prisms`].
     pub struct PrismOfMedium {
         /// The corners of its cross-section in the xy-plane, one after the other; it may be concave.
-        corners: Option<Vec<[f64; 2]>>, "cm", in Limits::COORDINATE,
+        corners: Option<Vec<[f64; 2]>>, "cm", in ValueRange::COORDINATE,
         /// Relative permittivity, in the device's frame; symmetric.
         permittivity: Given<Tensor> = Given::by_default(1.0.into()),
         /// Relative permeability, in the device's frame; symmetric.

@@ -6,7 +6,7 @@
 
 use super::{Device, Fact, Request, Structure, carpet};
 use crate::key;
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use optics::transformation::{ConformalMap, ConformalMapError, QuasiConformalMap, Truncation};
 
 crate::table! {
@@ -14,15 +14,15 @@ crate::table! {
     /// quasi-conformal map of a box. Li & Pendry 2008, Ergin et al. 2010.
     pub struct QuasiConformalCarpet {
         /// Height of the metal bump.
-        h: f64 = 4.25, "cm", in Limits::LENGTH,
+        h: f64 = 4.25, "cm", in ValueRange::LENGTH,
         /// Whole width of the bump; at most that of the device.
-        w: f64 = 28.0, "cm", in Limits::LENGTH,
+        w: f64 = 28.0, "cm", in ValueRange::LENGTH,
         /// Size of the device along x.
-        width: f64 = 50.0, "cm", in Limits::LENGTH,
+        width: f64 = 50.0, "cm", in ValueRange::LENGTH,
         /// Height of the device above the floor's level; above the bump.
-        height: f64 = 28.57, "cm", in Limits::LENGTH,
+        height: f64 = 28.57, "cm", in ValueRange::LENGTH,
         /// Whole width along x of the mirror floor that the device stands on; 0 for none.
-        floor: f64 = 400.0, "cm", in Limits::LENGTH_OR_ZERO,
+        floor: f64 = 400.0, "cm", in ValueRange::LENGTH_OR_ZERO,
     }
 }
 

@@ -3,7 +3,7 @@
 use super::round::{ball, check_radii, metal_ball, no_length};
 use super::{Device, Fact, Request, Show, Structure};
 use crate::key;
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use glam::DVec3;
 use optics::geometry::Extent;
 use optics::propagation::{RadialFlow, TransformedShell};
@@ -15,9 +15,9 @@ crate::table! {
     /// Pendry, Schurig & Smith 2006.
     pub struct SphereCloak {
         /// Radius of the metal ball; below outer.
-        inner: f64 = 4.0, "cm", in Limits::LENGTH,
+        inner: f64 = 4.0, "cm", in ValueRange::LENGTH,
         /// Radius of the cloak.
-        outer: f64 = 10.0, "cm", in Limits::LENGTH,
+        outer: f64 = 10.0, "cm", in ValueRange::LENGTH,
     }
 }
 

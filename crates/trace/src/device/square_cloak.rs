@@ -8,7 +8,7 @@
 use super::polygons::{PolygonPart, polygonal};
 use super::{Device, Fact, Hull, Request, Show, Structure};
 use crate::key;
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::{Extent, Outline, Polygon, Solid};
 use optics::medium::{Medium, Tensor};
@@ -34,10 +34,10 @@ crate::table! {
         /// negative (ii), which cloak horizontal polarization only.
         material: SegmentMaterial,
         /// Side of the square.
-        side: f64 = 14.1, "cm", in Limits::LENGTH,
+        side: f64 = 14.1, "cm", in ValueRange::LENGTH,
         /// Ratio of the rhombus's diagonals; 1/sqrt(3) gives corners of 60 and 120 degrees.
-        // Beyond the limits, the tensors are too lopsided for double precision.
-        kappa: f64 = 0.577_350_269_189_625_8, in Limits::Within(0.001, 0.999),
+        // FarSide the limits, the tensors are too lopsided for double precision.
+        kappa: f64 = 0.577_350_269_189_625_8, in ValueRange::Within(0.001, 0.999),
         /// Use the paper's rounded material values 3.27, 0.31, 2.366 and 33.54 degrees instead of the exact ones.
         rounded: bool,
     }

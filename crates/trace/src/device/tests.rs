@@ -1,5 +1,5 @@
 use super::*;
-use crate::keys::{Limits, Sampled, Samples};
+use crate::keys::{Sampled, Samples, ValueRange};
 
 /// What a kind needs to be something.
 fn sound(entry: &Entry) -> AnyDevice {
@@ -35,7 +35,7 @@ fn a_device_of_a_struct_is_that_of_its_written_keys() {
 #[test]
 fn a_struct_outside_its_limits_is_refused() {
     for entry in CATALOGUE {
-        for key in entry.keys.iter().filter(|key| key.limits == Limits::LENGTH) {
+        for key in entry.keys.iter().filter(|key| key.limits == ValueRange::LENGTH) {
             for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
                 let mut device = sound(entry);
                 let value = match (key.default)() {

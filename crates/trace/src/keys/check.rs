@@ -2,34 +2,34 @@
 
 use super::nearest::nearest;
 use super::value::{Value, items_of, number_text, quoted};
-use super::{BUILT_IN_IMAGES, BUILT_IN_PREFIX, Key, KeyKind, Limits, Samples, find, tensor};
+use super::{BUILT_IN_IMAGES, BUILT_IN_PREFIX, Key, KeyKind, Samples, ValueRange, find, tensor};
 
-impl Limits {
+impl ValueRange {
     /// Whether a number is allowed; NaN and the infinities never are.
     pub fn allow(&self, number: f64) -> bool {
         number.is_finite()
             && match *self {
-                Limits::Finite => true,
-                Limits::Positive => number > 0.0,
-                Limits::Between(low, high) => number > low && number < high,
-                Limits::Within(low, high) => number >= low && number <= high,
-                Limits::Whole(low, high) => (low as f64..=high as f64).contains(&number),
+                ValueRange::Finite => true,
+                ValueRange::Positive => number > 0.0,
+                ValueRange::Between(low, high) => number > low && number < high,
+                ValueRange::Within(low, high) => number >= low && number <= high,
+                ValueRange::Whole(low, high) => (low as f64..=high as f64).contains(&number),
             }
     }
 
     /// What is allowed, to be read after "must be": "above 0", "from 0 to 1".
     pub fn describe(&self) -> String {
         match *self {
-            Limits::Finite => "a finite number".to_owned(),
-            Limits::Positive => "above 0".to_owned(),
-            Limits::Between(low, high) => {
+            ValueRange::Finite => "a finite number".to_owned(),
+            ValueRange::Positive => "above 0".to_owned(),
+            ValueRange::Between(low, high) => {
                 format!("above {} and below {}", number_text(low), number_text(high))
             }
-            Limits::Within(low, high) => {
+            ValueRange::Within(low, high) => {
                 format!("from {} to {}", number_text(low), number_text(high))
             }
-            Limits::Whole(low, i64::MAX) => format!("{low} or above"),
-            Limits::Whole(low, high) => format!("from {low} to {high}"),
+            ValueRange::Whole(low, i64::MAX) => format!("{low} or above"),
+            ValueRange::Whole(low, high) => format!("from {low} to {high}"),
         }
     }
 }
@@ -213,7 +213,7 @@ impl Key {
 
     fn limit_integer(&self, name: &str, integer: i64) -> Result<(), String> {
         match self.limits {
-            Limits::Whole(min, max) if !(min..=max).contains(&integer) => {
+            ValueRange::Whole(min, max) if !(min..=max).contains(&integer) => {
                 Err(format!("{name} is {integer}; it must be {}", self.limits.describe()))
             }
             _ => Ok(()),

@@ -40,7 +40,7 @@ pub struct Key {
     /// The unit of its numbers, `""` for bare ones.
     pub unit: &'static str,
     /// What its numbers may be.
-    pub limits: Limits,
+    pub limits: ValueRange,
     /// The value where the key is absent; `None` if absence itself means something.
     pub default: fn() -> Option<Value>,
 }
@@ -97,7 +97,7 @@ pub enum KeyKind {
 
 /// The allowed values of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Limits {
+pub enum ValueRange {
     /// Any finite number.
     Finite,
     /// Above zero.
@@ -110,7 +110,7 @@ pub enum Limits {
     Whole(i64, i64),
 }
 
-impl Limits {
+impl ValueRange {
     /// Of a length in cm, 10 nm to 10 km: beyond, what is far and what is near share no digits.
     pub const LENGTH: Self = Self::Within(1e-6, Self::FARTHEST);
 

@@ -61,7 +61,7 @@ pub fn find(keys: &'static [Key], name: &str) -> Result<&'static Key, KeyError> 
 /// is not that of the type), the unit of its numbers and their limits:
 ///
 /// ```
-/// use cloakroom_trace::keys::{Limits, Table};
+/// use cloakroom_trace::keys::{ValueRange, Table};
 ///
 /// cloakroom_trace::choice! {
 ///     /// What a plate is made of.
@@ -79,11 +79,11 @@ pub fn find(keys: &'static [Key], name: &str) -> Result<&'static Key, KeyError> 
 ///         /// What it is made of.
 ///         material: Material,
 ///         /// How thick it is.
-///         thickness: f64 = 0.5, "cm", in Limits::LENGTH,
+///         thickness: f64 = 0.5, "cm", in ValueRange::LENGTH,
 ///         /// How many of them stand in a row.
-///         count: u32 = 1, in Limits::Whole(1, 100),
+///         count: u32 = 1, in ValueRange::Whole(1, 100),
 ///         /// Its whole length; endless where it is absent.
-///         length: Option<f64>, "cm", in Limits::LENGTH,
+///         length: Option<f64>, "cm", in ValueRange::LENGTH,
 ///     }
 /// }
 ///
@@ -208,7 +208,7 @@ macro_rules! table {
     };
     (@default) => { Default::default() };
     (@default $default:expr) => { $default };
-    (@limits) => { $crate::keys::Limits::Finite };
+    (@limits) => { $crate::keys::ValueRange::Finite };
     (@limits $limits:expr) => { $limits };
 }
 

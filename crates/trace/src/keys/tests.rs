@@ -35,17 +35,17 @@ crate::table! {
     pub struct Everything {
         /// Length of a side,
         /// in two lines.
-        side: f64 = 14.1, "cm", in Limits::LENGTH,
+        side: f64 = 14.1, "cm", in ValueRange::LENGTH,
         /// Whole length.
-        length: Option<f64>, "cm", in Limits::Positive,
+        length: Option<f64>, "cm", in ValueRange::Positive,
         /// A ratio.
-        kappa: f64 = 0.5, in Limits::Between(0.0, 1.0),
+        kappa: f64 = 0.5, in ValueRange::Between(0.0, 1.0),
         /// Of which it matters whether it is given.
-        power: Given<f64> = Given::by_default(0.25), in Limits::Within(0.0, 1.0),
+        power: Given<f64> = Given::by_default(0.25), in ValueRange::Within(0.0, 1.0),
         /// Samples.
-        samples: u32 = 4, in Limits::Whole(1, 65_536),
+        samples: u32 = 4, in ValueRange::Whole(1, 65_536),
         /// Seed.
-        seed: u64, in Limits::SEED,
+        seed: u64, in ValueRange::SEED,
         /// A flag.
         rounded: bool,
         /// A choice.
@@ -53,9 +53,9 @@ crate::table! {
         /// Some of a few words.
         channels: Vec<Channel>,
         /// A vector.
-        color: [f64; 3] = [0.0; 3], in Limits::Within(0.0, 255.0),
+        color: [f64; 3] = [0.0; 3], in ValueRange::Within(0.0, 255.0),
         /// A pair.
-        resolution: [u32; 2] = [4, 3], in Limits::Whole(1, 65_536),
+        resolution: [u32; 2] = [4, 3], in ValueRange::Whole(1, 65_536),
         /// An image.
         image: PathBuf = SHELF.into(),
         /// An image.
@@ -63,9 +63,9 @@ crate::table! {
         /// A tensor.
         permittivity: Tensor = 1.0.into(),
         /// Corners.
-        corners: Option<Vec<[f64; 2]>>, "cm", in Limits::COORDINATE,
+        corners: Option<Vec<[f64; 2]>>, "cm", in ValueRange::COORDINATE,
         /// Numbers on a grid.
-        index: Option<Sampled>, in Limits::Between(0.0, 1000.0),
+        index: Option<Sampled>, in ValueRange::Between(0.0, 1000.0),
         /// A table.
         inner: Option<Inner>,
         /// Tables.
@@ -77,7 +77,7 @@ crate::table! {
     /// A table within.
     pub struct Inner {
         /// A size.
-        size: f64 = 1.0, "cm", in Limits::Positive,
+        size: f64 = 1.0, "cm", in ValueRange::Positive,
         /// A picture.
         picture: Option<PathBuf>,
     }
@@ -101,7 +101,7 @@ fn the_declaration_gives_keys_and_defaults() {
     assert_eq!(Inner::SUMMARY, "A table within.");
     let side = &Everything::KEYS[0];
     assert_eq!((side.name, side.doc), ("side", "Length of a side, in two lines."));
-    assert_eq!((side.unit, side.limits), ("cm", Limits::LENGTH));
+    assert_eq!((side.unit, side.limits), ("cm", ValueRange::LENGTH));
     let table = Everything::default();
     assert_eq!((table.side, table.length, table.samples, table.seed), (14.1, None, 4, 0));
     assert_eq!(table.power, Given { value: 0.25, given: false });
@@ -255,15 +255,17 @@ fn numbers_must_be_finite() {
 
 #[test]
 fn limits_include_their_ends_where_they_say_so() {
-    assert!(!Limits::Positive.allow(0.0) && Limits::Positive.allow(f64::MIN_POSITIVE));
-    assert!(Limits::LENGTH_OR_ZERO.allow(0.0) && !Limits::LENGTH_OR_ZERO.allow(-1e-300));
+    assert!(!ValueRange::Positive.allow(0.0) && ValueRange::Positive.allow(f64::MIN_POSITIVE));
+    assert!(ValueRange::LENGTH_OR_ZERO.allow(0.0) && !ValueRange::LENGTH_OR_ZERO.allow(-1e-300));
     assert!(
-        Limits::LENGTH.allow(1e-6) && !Limits::LENGTH.allow(9e-7) && !Limits::LENGTH.allow(2e6)
+        ValueRange::LENGTH.allow(1e-6)
+            && !ValueRange::LENGTH.allow(9e-7)
+            && !ValueRange::LENGTH.allow(2e6)
     );
-    assert!(Limits::COORDINATE.allow(-1e6) && !Limits::COORDINATE.allow(-2e6));
-    assert!(!Limits::Between(0.0, 1.0).allow(0.0) && !Limits::Between(0.0, 1.0).allow(1.0));
-    assert!(Limits::Within(0.0, 1.0).allow(0.0) && Limits::Within(0.0, 1.0).allow(1.0));
-    assert!(!Limits::Finite.allow(f64::NAN) && !Limits::Finite.allow(f64::INFINITY));
+    assert!(ValueRange::COORDINATE.allow(-1e6) && !ValueRange::COORDINATE.allow(-2e6));
+    assert!(!ValueRange::Between(0.0, 1.0).allow(0.0) && !ValueRange::Between(0.0, 1.0).allow(1.0));
+    assert!(ValueRange::Within(0.0, 1.0).allow(0.0) && ValueRange::Within(0.0, 1.0).allow(1.0));
+    assert!(!ValueRange::Finite.allow(f64::NAN) && !ValueRange::Finite.allow(f64::INFINITY));
 }
 
 #[test]

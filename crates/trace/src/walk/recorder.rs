@@ -11,7 +11,7 @@ pub trait PathRecorder<const N: usize> {
     const STOPS_AT_SURFACE: bool = false;
 
     /// Called for each piece of a branch's way from surface to surface.
-    fn record(&mut self, leg: impl FnOnce() -> PathSegment<N>);
+    fn record(&mut self, segment: impl FnOnce() -> PathSegment<N>);
 
     /// Called with the waves that leave the first surface, if rays end there.
     fn stopped(&mut self, _waves: &[OutgoingWave<N>]) {}
@@ -47,8 +47,8 @@ impl<const N: usize> PathRecorder<N> for () {
 }
 
 impl<const N: usize> PathRecorder<N> for Vec<PathSegment<N>> {
-    fn record(&mut self, leg: impl FnOnce() -> PathSegment<N>) {
-        self.push(leg());
+    fn record(&mut self, segment: impl FnOnce() -> PathSegment<N>) {
+        self.push(segment());
     }
 }
 
@@ -72,12 +72,12 @@ struct Drawn<const N: usize> {
 }
 
 impl<const N: usize> PathRecorder<N> for Drawn<N> {
-    fn record(&mut self, leg: impl FnOnce() -> PathSegment<N>) {
-        let leg = leg();
+    fn record(&mut self, segment: impl FnOnce() -> PathSegment<N>) {
+        let segment = segment();
         let moves =
             |ends: &[PathPoint]| ends[0].position.distance(ends[1].position) > self.shortest;
-        if leg.optical_path < self.until && leg.path.windows(2).any(moves) {
-            self.segments.push(leg);
+        if segment.optical_path < self.until && segment.path.windows(2).any(moves) {
+            self.segments.push(segment);
         }
     }
 }
@@ -110,14 +110,14 @@ pub fn lines<const N: usize>(
             leaves: true,
         })
         .collect();
-    lines.extend(tracer.recorder().segments.drain(..).map(|leg| {
-        let pose = leg.inside.map(|(device, _)| assembly.devices()[usize::from(device)].pose);
+    lines.extend(tracer.recorder().segments.drain(..).map(|segment| {
+        let pose = segment.inside.map(|(device, _)| assembly.devices()[usize::from(device)].pose);
         let point = |at: PathPoint| PathPoint {
             position: pose.map_or(at.position, |pose| pose.to_world(at.position)),
-            optical_path: leg.optical_path + at.optical_path,
+            optical_path: segment.optical_path + at.optical_path,
         };
-        let points = leg.path.iter().map(|at| point(*at)).collect();
-        Line { power: weighed(leg.power), points, leaves: false }
+        let points = segment.path.iter().map(|at| point(*at)).collect();
+        Line { power: weighed(segment.power), points, leaves: false }
     }));
     lines
 }

@@ -13,8 +13,8 @@
 
 use pulp::Simd;
 
+use super::index_perturbation::IndexPerturbation;
 use super::points::PointLanes;
-use super::unevenness::IndexPerturbation;
 use crate::lanes::{ComplexLanes, Lanes};
 use crate::propagation::nystrom::{Field, Stage};
 use crate::transformation::{JetLanes, LaneMap};
@@ -42,9 +42,9 @@ pub(super) struct EvenForce<'w, S: Simd, M> {
 }
 
 /// Where the index is uneven, too.
-pub(super) struct UnevenForce<'w, S: Simd, M> {
+pub(super) struct PerturbedForce<'w, S: Simd, M> {
     pub even: EvenForce<'w, S, M>,
-    pub unevenness: &'w IndexPerturbation,
+    pub index_perturbation: &'w IndexPerturbation,
 }
 
 /// What is found at virtual points.
@@ -95,7 +95,7 @@ impl<S: Simd, M: LaneMap> Force<S, 2> for EvenForce<'_, S, M> {
     }
 }
 
-impl<S: Simd, M: LaneMap> Field<S, 3> for UnevenForce<'_, S, M> {
+impl<S: Simd, M: LaneMap> Field<S, 3> for PerturbedForce<'_, S, M> {
     type Jet = UnevenJet<S>;
 
     #[inline(always)]
@@ -124,10 +124,10 @@ impl<S: Simd, M: LaneMap> Field<S, 3> for UnevenForce<'_, S, M> {
     }
 }
 
-impl<S: Simd, M: LaneMap> Force<S, 3> for UnevenForce<'_, S, M> {
+impl<S: Simd, M: LaneMap> Force<S, 3> for PerturbedForce<'_, S, M> {
     #[inline(always)]
     fn found(&self, map: JetLanes<S>) -> UnevenJet<S> {
-        let factors = map.f.values().map(|z| self.unevenness.look(z));
+        let factors = map.f.values().map(|z| self.index_perturbation.look(z));
         let square = map.f.re.with(factors.map(|(square, _)| square));
         UnevenJet { map, square, gradient: map.f.with(factors.map(|(_, gradient)| gradient)) }
     }

@@ -13,12 +13,12 @@
 mod crossing;
 mod forces;
 mod frame;
+mod index_perturbation;
 mod path;
 mod points;
 mod ray_packet;
 mod step_control;
 mod strides;
-mod unevenness;
 
 use std::sync::Arc;
 
@@ -28,10 +28,10 @@ use thiserror::Error;
 
 use self::crossing::EventFunctions;
 use self::frame::transport;
+pub use self::index_perturbation::IndexPerturbation;
 use self::points::Point;
 use self::ray_packet::RayPacket;
 use self::step_control::StepControl;
-pub use self::unevenness::IndexPerturbation;
 use crate::geometry::Extent;
 use crate::lanes::LANES;
 use crate::transformation::{ConformalMap, Truncation};
@@ -133,9 +133,9 @@ pub enum FlowError {
 /// its grid.
 const MAX_STEPS: u32 = 20_000;
 
-/// What is off where the mirror is met, its bulge magnifies on the way out: such a leg is followed with
-/// this share of the tolerance.
-const MIRROR_MAGNIFIES: f64 = 0.1;
+/// Reflection at the mirror's bump, a curved surface, makes the error of position and direction grow: a way that leads
+/// to the mirror is followed with this share of the tolerance.
+const MIRROR_TOLERANCE: f64 = 0.1;
 
 /// How far (relative to the map's scale) a start may lie outside by rounding.
 const BORDER_SLACK: f64 = 1e-9;
@@ -161,7 +161,7 @@ pub struct ConformalFlow {
     index_scale: f64,
     events: EventFunctions,
     slack: f64,
-    unevenness: Option<Arc<IndexPerturbation>>,
+    index_perturbation: Option<Arc<IndexPerturbation>>,
 }
 
 impl ConformalFlow {
@@ -171,7 +171,7 @@ impl ConformalFlow {
         let slack = BORDER_SLACK * map.scale();
         let (rim, core) = (f64::INFINITY, f64::INFINITY);
         let events = EventFunctions::new(&cut, extent, rim, core, map.scale());
-        Self { map, cut, extent, rim, core, index_scale, events, slack, unevenness: None }
+        Self { map, cut, extent, rim, core, index_scale, events, slack, index_perturbation: None }
     }
 
     /// The same medium (all of it in the upper half) within the radius `rim` about the z axis and beyond the radius
@@ -209,7 +209,8 @@ impl ConformalFlow {
     #[must_use]
     pub fn index_range(&self) -> (f64, f64) {
         let (least, largest) = self.map.index_range(&self.cut);
-        let [low, high] = self.unevenness.as_ref().map_or([1.0; 2], |uneven| uneven.bounds());
+        let [low, high] =
+            self.index_perturbation.as_ref().map_or([1.0; 2], |uneven| uneven.bounds());
         (self.index_scale * least * low, self.index_scale * largest * high)
     }
 

@@ -3,7 +3,7 @@
 use pulp::{Simd, WithSimd};
 
 use super::ConformalFlow;
-use super::forces::{EvenForce, Force, UnevenForce};
+use super::forces::{EvenForce, Force, PerturbedForce};
 use super::points::{PointLanes, Points};
 use crate::lanes::{ComplexLanes, LANES, Lanes, side_by_side};
 use crate::propagation::nystrom::order_eight::ErrorWeight;
@@ -153,9 +153,11 @@ impl<M: LaneMap> WithSimd for Through<'_, M> {
         let Self(map, step) = self;
         let p_z = Lanes::new(simd, step.rays.p_z);
         let even = EvenForce { map, p_z, index_scale: Lanes::splat(simd, step.flow.index_scale) };
-        match &step.flow.unevenness {
+        match &step.flow.index_perturbation {
             None => step.under(simd, &even),
-            Some(unevenness) => step.under(simd, &UnevenForce { even, unevenness }),
+            Some(index_perturbation) => {
+                step.under(simd, &PerturbedForce { even, index_perturbation })
+            }
         }
     }
 }

@@ -74,7 +74,7 @@ impl TransmutedSphere {
     }
 
     /// The way out of the extraordinary wave: that in the invisible sphere, the radius stretched.
-    pub(super) fn way(&self, position: DVec3, wave_vector: DVec3) -> WayOut {
+    pub(super) fn way(&self, position: DVec3, wave_vector: DVec3) -> ExtraordinaryWay {
         let x = position.length() / self.radius;
         let from = position.try_normalize().unwrap_or(wave_vector.normalize());
         let normal = plane_normal(from, wave_vector.normalize());
@@ -88,7 +88,7 @@ impl TransmutedSphere {
         // In the invisible sphere r n = sin γ; the radial part of the wave vector is n_o times as much of itself.
         let inward = -sine * wave_vector.dot(from) / Self::ORDINARY_INDEX;
         let way = EatonWayOut::new(2.0, cosine, tangential, inward);
-        WayOut { way, from, normal, tangential, radius: self.radius }
+        ExtraordinaryWay { way, from, normal, tangential, radius: self.radius }
     }
 
     /// Follows a ray of either wave from a point of the ball or its surface to where it comes out.
@@ -135,7 +135,7 @@ impl TransmutedSphere {
 }
 
 /// The way of the extraordinary wave to the surface.
-pub(super) struct WayOut {
+pub(super) struct ExtraordinaryWay {
     way: EatonWayOut,
     /// The direction of its start from the centre.
     from: DVec3,
@@ -145,7 +145,7 @@ pub(super) struct WayOut {
     radius: f64,
 }
 
-impl WayOut {
+impl ExtraordinaryWay {
     /// The point at a share of it.
     pub fn point(&self, share: f64) -> PathPoint {
         let way = self.way.at(share);

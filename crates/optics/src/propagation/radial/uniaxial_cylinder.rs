@@ -86,7 +86,7 @@ impl UniaxialCylinder {
 
     /// Follows a ray of either wave from a point of the border to the next point of it.
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
-        let leg = if self.comes_to_core(mode) {
+        let end = if self.comes_to_core(mode) {
             self.straight(position, wave_vector)
         } else if let Some(path) = self.turning_path(position, wave_vector, mode) {
             self.turning(position, wave_vector, path)
@@ -94,21 +94,21 @@ impl UniaxialCylinder {
             // Those of the other axis that are aimed at the axis, too, as their neighbours in the plane.
             self.virtually_straight(position, wave_vector)
         };
-        let (here, there) = (self.point(position), self.point(leg.position));
+        let (here, there) = (self.point(position), self.point(end.position));
         let direction = if mode == ModeKind::Extraordinary {
-            there.extraordinary_ray(leg.wave_vector)
+            there.extraordinary_ray(end.wave_vector)
         } else {
-            leg.wave_vector
+            end.wave_vector
         };
-        let field = there.field(leg.wave_vector, mode);
+        let field = there.field(end.wave_vector, mode);
         RadialEnd {
-            border: leg.border,
-            position: leg.position,
-            wave_vector: leg.wave_vector,
+            border: end.border,
+            position: end.position,
+            wave_vector: end.wave_vector,
             direction: direction.normalize(),
-            optical_path: leg.optical_path,
+            optical_path: end.optical_path,
             transport: transport(here.field(wave_vector, mode), field),
-            outward: leg.outward,
+            outward: end.outward,
         }
     }
 

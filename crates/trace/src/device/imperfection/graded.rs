@@ -61,10 +61,10 @@ pub(super) fn apply(
     }
     let squares: Vec<f64> = factor.iter().map(|factor| factor * factor).collect();
     let spline = GridSpline::new(grid.corner, DVec2::splat(grid.spacing), grid.count, &squares);
-    let unevenness = spline.ok().and_then(IndexPerturbation::new).ok_or_else(|| {
+    let index_perturbation = spline.ok().and_then(IndexPerturbation::new).ok_or_else(|| {
         KeyError::at(TABLE, "with this imperfection the index is not above 0 everywhere")
     })?;
-    region.flow = region.flow.clone().with_unevenness(unevenness);
+    region.flow = region.flow.clone().with_index_perturbation(index_perturbation);
     Ok(())
 }
 

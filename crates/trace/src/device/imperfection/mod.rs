@@ -7,7 +7,7 @@ mod homogeneous;
 mod tests;
 
 use super::{Region, Structure};
-use crate::keys::{KeyError, Limits};
+use crate::keys::{KeyError, ValueRange};
 use deviates::Deviates;
 
 crate::table! {
@@ -21,23 +21,23 @@ crate::table! {
     pub struct Imperfection {
         /// Relative standard deviation of a random error: of the index of a graded medium, or of each principal value of
         /// the permittivity and the permeability of each homogeneous segment or body.
-        error: f64, in Limits::Within(0.0, 0.5),
+        error: f64, in ValueRange::Within(0.0, 0.5),
         /// The length l over which the error of a graded index is correlated, as exp(-r^2/(2 l^2)).
-        correlation: f64 = 2.0, "cm", in Limits::LENGTH,
+        correlation: f64 = 2.0, "cm", in ValueRange::LENGTH,
         /// The least value that can be made, of the index of a graded medium or of a principal value; smaller ones become
         /// this one.
-        minimum: Option<f64>, in Limits::Within(-1e6, 1e6),
+        minimum: Option<f64>, in ValueRange::Within(-1e6, 1e6),
         /// The largest value that can be made; larger ones become this one.
-        maximum: Option<f64>, in Limits::Within(-1e6, 1e6),
+        maximum: Option<f64>, in ValueRange::Within(-1e6, 1e6),
         /// How many values can be made, at equal steps from the minimum to the maximum (where these are absent, those of
         /// the design); 0 for any.
-        levels: u32, in Limits::Whole(0, 1_000_000),
+        levels: u32, in ValueRange::Whole(0, 1_000_000),
         /// The standard deviation of the Gaussian that smooths what a range and levels make of a graded index.
-        resolution: f64 = 0.5, "cm", in Limits::LENGTH,
+        resolution: f64 = 0.5, "cm", in ValueRange::LENGTH,
         /// Imaginary part of the permittivity, and of a permeability other than 1, over the real part.
-        loss_tangent: f64, in Limits::Within(0.0, 0.1),
+        loss_tangent: f64, in ValueRange::Within(0.0, 0.1),
         /// The seed of the random errors.
-        seed: u64, in Limits::SEED,
+        seed: u64, in ValueRange::SEED,
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec2;
 use num_complex::Complex64;
 
 use super::step_control::StepControl;
-use super::{ConformalFlow, MIRROR_MAGNIFIES};
+use super::{ConformalFlow, MIRROR_TOLERANCE};
 use crate::propagation::GridSpline;
 use crate::transformation::MapJet;
 
@@ -19,11 +19,11 @@ pub struct IndexPerturbation {
     scale: f64,
 }
 
-/// Grid cells over which an unevenness is taken to vary.
+/// Grid cells over which a perturbation is taken to vary.
 const CELLS_A_SCALE: f64 = 4.0;
 
 impl IndexPerturbation {
-    /// The unevenness whose factor ρ has the square `square`; `None` if that is not positive everywhere. The grid should
+    /// The perturbation whose factor ρ has the square `square`; `None` if that is not positive everywhere. The grid should
     /// reach a few cells beyond the device, and resolve what varies in about four cells.
     #[must_use]
     pub fn new(square: GridSpline) -> Option<Self> {
@@ -59,22 +59,24 @@ impl IndexPerturbation {
 }
 
 impl ConformalFlow {
-    /// The same medium with an index that is uneven: ρ times that of the map. The unevenness is that of the upper half
+    /// The same medium with an index that is uneven: ρ times that of the map. The perturbation is that of the upper half
     /// plane, in which the lower half is looked at as its mirror image.
-    pub fn with_unevenness(self, unevenness: IndexPerturbation) -> Self {
-        Self { unevenness: Some(Arc::new(unevenness)), ..self }.with_events()
+    pub fn with_index_perturbation(self, index_perturbation: IndexPerturbation) -> Self {
+        Self { index_perturbation: Some(Arc::new(index_perturbation)), ..self }.with_events()
     }
 
     /// Whether the index is not that of the map alone.
     #[must_use]
     pub fn is_uneven(&self) -> bool {
-        self.unevenness.is_some()
+        self.index_perturbation.is_some()
     }
 
     /// The length over which the medium varies, cm.
     pub(super) fn scale(&self) -> f64 {
         let own = self.map.scale();
-        self.unevenness.as_ref().map_or(own, |unevenness| unevenness.scale.min(own))
+        self.index_perturbation
+            .as_ref()
+            .map_or(own, |index_perturbation| index_perturbation.scale.min(own))
     }
 
     /// How exactly rays are to be followed for a tolerance, cm, that meet the mirror or do not.
@@ -83,13 +85,16 @@ impl ConformalFlow {
         // errors of many short steps add up.
         let uneven = self.is_uneven();
         let smoothness = if uneven { 0.3 } else { self.map.smoothness() };
-        let share = if uneven || to_mirror { MIRROR_MAGNIFIES } else { 1.0 };
+        let share = if uneven || to_mirror { MIRROR_TOLERANCE } else { 1.0 };
         StepControl::new(self.scale(), smoothness, share * tolerance, uneven)
     }
 
     /// c ρ at a physical point of the upper half.
     pub(super) fn index_scale_at(&self, z: Complex64) -> f64 {
-        let square = self.unevenness.as_ref().map_or(1.0, |unevenness| unevenness.look(z).0);
+        let square = self
+            .index_perturbation
+            .as_ref()
+            .map_or(1.0, |index_perturbation| index_perturbation.look(z).0);
         self.index_scale * square.sqrt()
     }
 

@@ -4,13 +4,13 @@ use super::{MeasureError, View};
 
 /// Some of the pixels of a picture, one at least.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Region {
+pub struct PixelMask {
     width: usize,
     /// Whether each pixel belongs to it.
     pub(super) mask: Vec<bool>,
 }
 
-impl Region {
+impl PixelMask {
     /// The pixels that are true, row by row from the top left.
     ///
     /// # Errors
@@ -102,17 +102,17 @@ mod tests {
 
     #[test]
     fn rectangles_lie_in_the_picture() {
-        let region = Region::rectangle(&view(), [1, 1, 2, 2]).expect("a region");
+        let region = PixelMask::rectangle(&view(), [1, 1, 2, 2]).expect("a region");
         assert_eq!(region.indices().collect::<Vec<_>>(), [5, 6, 9, 10]);
         assert_eq!((region.size(), region.pixels()), ([4, 3], 4));
-        assert!(Region::rectangle(&view(), [3, 0, 2, 1]).is_err());
-        assert!(Region::rectangle(&view(), [0, 0, 0, 1]).is_err());
-        assert!(Region::rectangle(&view(), [usize::MAX, 0, 2, 1]).is_err());
+        assert!(PixelMask::rectangle(&view(), [3, 0, 2, 1]).is_err());
+        assert!(PixelMask::rectangle(&view(), [0, 0, 0, 1]).is_err());
+        assert!(PixelMask::rectangle(&view(), [usize::MAX, 0, 2, 1]).is_err());
     }
 
     #[test]
     fn masks_are_what_is_bright() {
-        let region = Region::bright(&view()).expect("a region");
+        let region = PixelMask::bright(&view()).expect("a region");
         // Half of white is 0.214 in linear light: from 3/11 on.
         assert_eq!(region.indices().next(), Some(3));
         assert!((region.share() - 0.75).abs() < 1e-15);
