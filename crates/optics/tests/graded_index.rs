@@ -4,7 +4,9 @@
 use glam::{DVec2, DVec3};
 use num_complex::Complex64;
 use optics::geometry::Extent;
-use optics::propagation::{Boundary, ConformalFlow, FlowEnd, GridSpline, Half, IndexPerturbation};
+use optics::propagation::{
+    Boundary, ConformalEnd, ConformalFlow, GridSpline, Half, IndexPerturbation,
+};
 use optics::transformation::{ConformalMap, FlatMap, Truncation};
 use std::f64::consts::TAU;
 
@@ -79,19 +81,23 @@ fn first_fall(start: DVec3, p: DVec3, inside: impl Fn(DVec3) -> f64) -> f64 {
     high
 }
 
-fn check_swing(flow: &ConformalFlow, k: u32, inside: impl Fn(DVec3) -> f64) -> Option<FlowEnd> {
+fn check_swing(
+    flow: &ConformalFlow,
+    k: u32,
+    inside: impl Fn(DVec3) -> f64,
+) -> Option<ConformalEnd> {
     let (start, p) = enter(k, oscillator, 0.6);
     let entry = flow.virtual_point(Half::Upper, start).unwrap();
     let end = flow.advance_from(&entry, p, 1e-9).unwrap();
-    let steep = end.wave_vector.normalize().dot(end.normal).abs();
+    let steep = end.wave_vector.normalize().dot(end.outward).abs();
     if steep < 0.05 {
         return None;
     }
     let (at, wave, path) = swung(start, p, first_fall(start, p, inside));
-    assert!((end.at.position - at).length() < 1e-9, "{k}: {} {at}", end.at.position);
+    assert!((end.position - at).length() < 1e-9, "{k}: {} {at}", end.position);
     assert!((end.wave_vector - wave).length() < 1e-9, "{k}: {} {wave}", end.wave_vector);
     assert!((end.optical_path - path).abs() < 1e-9, "{k}: {} {path}", end.optical_path);
-    assert!((end.wave_vector.length() - end.at.index).abs() < 1e-12);
+    assert!((end.wave_vector.length() - end.virtual_point.index).abs() < 1e-12);
     Some(end)
 }
 
@@ -106,9 +112,9 @@ fn rays_swing_where_the_squared_index_is_a_parabola() {
         let flow = flow(oscillator, steps, Extent::ENDLESS, 0.0);
         let ends: Vec<_> = (0..300).filter_map(|k| check_swing(&flow, k, in_rectangle)).collect();
         for side in [Boundary::XMax, Boundary::YMax, Boundary::Floor] {
-            assert!(ends.iter().filter(|end| end.boundary == side).count() > 20, "{side:?}");
+            assert!(ends.iter().filter(|end| end.surface == side).count() > 20, "{side:?}");
         }
-        assert!(ends.iter().all(|end| end.normal.dot(end.wave_vector) > 0.0));
+        assert!(ends.iter().all(|end| end.outward.dot(end.wave_vector) > 0.0));
     }
 }
 
@@ -121,19 +127,19 @@ fn flat_ends_round_borders_and_round_cores_are_met_where_they_are() {
     let around = |r: DVec3| in_rectangle(r).min(1.5 - r.z.abs()).min(far(r) - core);
     let ends: Vec<_> = (0..300).filter_map(|k| check_swing(&cored, k, around)).collect();
     for side in [Boundary::Core, Boundary::XMax, Boundary::ZMin, Boundary::ZMax] {
-        assert!(ends.iter().filter(|end| end.boundary == side).count() > 10, "{side:?}");
+        assert!(ends.iter().filter(|end| end.surface == side).count() > 10, "{side:?}");
     }
-    for end in ends.iter().filter(|end| end.boundary == Boundary::Core) {
-        let p = end.at.position;
+    for end in ends.iter().filter(|end| end.surface == Boundary::Core) {
+        let p = end.position;
         assert!(
-            (far(p) - core).abs() < 1e-14 && (end.normal + p.with_z(0.0) / core).length() < 1e-14
+            (far(p) - core).abs() < 1e-14 && (end.outward + p.with_z(0.0) / core).length() < 1e-14
         );
         // Reflected, it goes on from there.
-        let back = end.wave_vector - 2.0 * end.wave_vector.dot(end.normal) * end.normal;
-        let on = cored.advance_from(&end.at, back, 1e-9).unwrap();
+        let back = end.wave_vector - 2.0 * end.wave_vector.dot(end.outward) * end.outward;
+        let on = cored.advance_from(&end.virtual_point, back, 1e-9).unwrap();
         // The index draws rays that are nearly along the core back to it.
-        let steep = back.normalize().dot(end.normal).abs() > 0.4;
-        assert!(!steep || on.boundary != Boundary::Core);
+        let steep = back.normalize().dot(end.outward).abs() > 0.4;
+        assert!(!steep || on.surface != Boundary::Core);
     }
     // A disc: from point to point of its border.
     let cut = Truncation { x_min: -12.0, x_max: 12.0, y_max: 12.0 };
@@ -156,10 +162,10 @@ fn flat_ends_round_borders_and_round_cores_are_met_where_they_are() {
         // The first points are beyond by rounding.
         let tau = first_fall(start, p, |r| rim * (1.0 + 1e-13) - far(r));
         let (at, wave, path) = swung(start, p, tau);
-        assert_eq!(end.boundary, Boundary::Rim);
-        assert!((end.at.position - at).length() < 1e-8 && (end.wave_vector - wave).length() < 1e-9);
+        assert_eq!(end.surface, Boundary::Rim);
+        assert!((end.position - at).length() < 1e-8 && (end.wave_vector - wave).length() < 1e-9);
         assert!((end.optical_path - path).abs() < 1e-8);
-        assert!((end.normal - at.with_z(0.0) / rim).length() < 1e-9);
+        assert!((end.outward - at.with_z(0.0) / rim).length() < 1e-9);
     }
     assert!(disc.virtual_point(Half::Upper, DVec3::new(6.0, 6.0, 0.0)).is_err());
     assert!(cored.virtual_point(Half::Upper, DVec3::new(1.0, 2.0, 0.0)).is_err());
@@ -191,8 +197,8 @@ fn off_the_line(flow: &ConformalFlow, k: u32) -> f64 {
     let (start, p) = enter(k, square, 0.0);
     let entry = flow.virtual_point(Half::Upper, start).unwrap();
     let end = flow.advance_from(&entry, p, 1e-11).unwrap();
-    assert_ne!(end.boundary, Boundary::Core);
-    let [[from, bent], [to, bent_back]] = [start, end.at.position].map(|r| unfolded(complex(r)));
+    assert_ne!(end.surface, Boundary::Core);
+    let [[from, bent], [to, bent_back]] = [start, end.position].map(|r| unfolded(complex(r)));
     // dζ = ζ' dz.
     let along = bent * complex(p);
     let along = along / along.norm();

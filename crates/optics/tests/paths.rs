@@ -155,7 +155,7 @@ fn rays_above_a_bump() {
             let p = half.mirrored(DVec3::new(1.0, up, aside).normalize() * virtual_point.index);
             let end = flow.advance_from(&virtual_point, p, 1e-8).expect("an end");
             let path = flow.path(&virtual_point, p, 1e-8).expect("a path");
-            check_ends(&path, start, end.at.position, end.optical_path, "bump");
+            check_ends(&path, start, end.position, end.optical_path, "bump");
             assert!(path.len() > 20, "{}", path.len());
             let off = worst_piece(&path, |at| flow.index(half, at).expect("an index"));
             assert!(off < 1e-3, "{off}");

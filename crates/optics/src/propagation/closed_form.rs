@@ -5,9 +5,9 @@
 //! the plane of the ray: in it the electric field turns with the ray.
 
 pub use super::reference::SquaredIndex;
-use super::turn_in_plane;
+use super::{PathEnd, turn_in_plane};
 use crate::geometry::{FlatOrRound, first_along};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use std::fmt::Debug;
 
 /// An isotropic medium of graded index whose rays are plane curves, known in closed form.
@@ -52,31 +52,14 @@ pub fn first_way_out([c, b, a]: [f64; 3]) -> Option<[f64; 2]> {
     Some(if b > 0.0 { [-2.0 * c, b + root] } else { [root - b, 2.0 * a] })
 }
 
-/// A ray at the end of its way through a region.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WayOut {
-    /// The number of the surface through which it comes.
-    pub surface: u16,
-    /// Where it is, on the surface.
-    pub ray: CurvedRay,
-    /// The parameter of its way.
-    pub parameter: f64,
-    /// The optical path, cm.
-    pub optical_path: f64,
-    /// What takes the electric field along, |Re(E × H*)| being kept.
-    pub transport: DMat3,
-    /// The unit normal of the surface, out of the region.
-    pub outward: DVec3,
-}
-
-/// Follows a ray from a point within some surfaces, or on them, to the first that it comes through; `None` if it comes
-/// through none.
+/// Follows a ray from a point within some surfaces, or on them, to the first that it comes through, and the parameter of
+/// its way there; `None` if it comes through none. The surface's number is that in their order.
 #[must_use]
 pub fn follow(
     medium: &dyn ClosedForm,
     start: &CurvedRay,
     surfaces: impl Iterator<Item = FlatOrRound>,
-) -> Option<WayOut> {
+) -> Option<(PathEnd<u16>, f64)> {
     let met = (0u16..).zip(surfaces).filter_map(|(number, surface)| {
         Some((medium.way_out(start, &surface)?, (number, surface)))
     });
@@ -88,15 +71,18 @@ pub fn follow(
     let [from, to] = [start, &ray].map(|ray| ray.wave_vector.normalize());
     let turn = turn_in_plane(normal(from, before.gradient), from, to);
     let sound = ray.position.is_finite() && ray.wave_vector.is_finite();
-    sound.then(|| WayOut {
+    let end = || PathEnd {
         surface: number,
-        ray,
-        parameter,
+        position: ray.position,
+        virtual_point: (),
+        wave_vector: ray.wave_vector,
+        direction: to,
         optical_path,
         // |Re(E × H*)| = n |E|².
         transport: turn * (before.value / after.value).powf(0.25),
         outward: surface.outward(ray.position),
-    })
+    };
+    sound.then(|| (end(), parameter))
 }
 
 /// The unit normal of the plane in which a ray of that direction runs; any if it runs along the gradient.

@@ -7,12 +7,12 @@ mod radial;
 pub mod reference;
 mod spline;
 
-pub use closed_form::{ClosedForm, CurvedRay, SquaredIndex, WayOut, first_way_out, follow};
+pub use closed_form::{ClosedForm, CurvedRay, SquaredIndex, first_way_out, follow};
 pub use conformal_flow::{
-    Boundary, ConformalFlow, FlowEnd, FlowError, Half, IndexPerturbation, VirtualPoint,
+    Boundary, ConformalEnd, ConformalFlow, FlowError, Half, IndexPerturbation, VirtualPoint,
 };
 pub use radial::{
-    Border, CentralLens, OpticAxis, RadialEnd, RadialFlow, TransformedShell, TransmutedSphere,
+    Border, CentralLens, OpticAxis, RadialFlow, TransformedShell, TransmutedSphere,
     UniaxialCylinder,
 };
 
@@ -27,6 +27,27 @@ pub struct PathPoint {
     pub position: DVec3,
     /// The optical path from the start of the path, cm.
     pub optical_path: f64,
+}
+
+/// How a ray arrives at the end of its way through a medium, still inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathEnd<Surface, Virtual = ()> {
+    /// The surface where it ends.
+    pub surface: Surface,
+    /// Where, on the surface, cm.
+    pub position: DVec3,
+    /// What is known of the point in virtual space, to go on from after a reflection.
+    pub virtual_point: Virtual,
+    /// The wave vector before refraction or reflection.
+    pub wave_vector: DVec3,
+    /// The unit vector of the ray there, that of the Poynting vector.
+    pub direction: DVec3,
+    /// The optical path from start to end, cm.
+    pub optical_path: f64,
+    /// What takes the electric field of the wave from start to end, |Re(E × H*)| being kept.
+    pub transport: DMat3,
+    /// The unit normal of the surface, out of the medium.
+    pub outward: DVec3,
 }
 
 /// The rotation that keeps `normal` and takes the unit vector `from`, across it, to `to`.

@@ -5,7 +5,7 @@ use optics::geometry::Extent;
 use optics::propagation::{Boundary, ConformalFlow, FlowError, Half, VirtualPoint};
 use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
-use super::rays::{CUT, Dice, flow, legs};
+use super::rays::{CUT, Dice, flow, legs, turn};
 
 #[test]
 fn ends_on_the_border_and_on_shell_with_a_rotation() {
@@ -14,16 +14,16 @@ fn ends_on_the_border_and_on_shell_with_a_rotation() {
     let mut dice = Dice(77);
     for _ in 0..2000 {
         for (start, p, end) in legs(&flow, dice.enter(&flow, short), 1e-6) {
-            let VirtualPoint { position, index, virtual_position, .. } = end.at;
-            let n = flow.index(end.at.half, position).expect("a point of the medium");
+            let VirtualPoint { position, index, virtual_position, .. } = end.virtual_point;
+            let n = flow.index(end.virtual_point.half, position).expect("a point of the medium");
             assert!((end.wave_vector.length() - index).abs() < 2e-15 * index);
             assert!((n - index).abs() < 1e-12);
             assert!(
-                end.wave_vector.dot(end.normal) >= -1e-12
-                    && (end.normal.length() - 1.0).abs() < 1e-14
+                end.wave_vector.dot(end.outward) >= -1e-12
+                    && (end.outward.length() - 1.0).abs() < 1e-14
             );
             assert!((end.wave_vector.z - p.z).abs() < 1e-15);
-            let limit = match end.boundary {
+            let limit = match end.surface {
                 Boundary::XMin => position.x - CUT.x_min,
                 Boundary::XMax => position.x - CUT.x_max,
                 Boundary::YMax => position.y.abs() - CUT.y_max,
@@ -35,10 +35,11 @@ fn ends_on_the_border_and_on_shell_with_a_rotation() {
             assert!(limit.abs() < 1e-13, "{limit:e} {end:?}");
             let image = flow.map().jet(virtual_position).f;
             assert!((image.re - position.x).hypot(image.im - position.y.abs()) < 2e-13);
-            let straightness = end.transport * end.transport.transpose() - DMat3::IDENTITY;
+            let turn = turn(&start, &end);
+            let straightness = turn * turn.transpose() - DMat3::IDENTITY;
             assert!(straightness.to_cols_array().iter().all(|e| e.abs() < 1e-14));
-            assert!((end.transport.determinant() - 1.0).abs() < 1e-14);
-            let carried = end.transport * p / start.index - end.wave_vector / index;
+            assert!((turn.determinant() - 1.0).abs() < 1e-14);
+            let carried = turn * p / start.index - end.wave_vector / index;
             assert!(carried.length() < 1e-8, "{}", carried.length());
         }
     }
@@ -55,16 +56,16 @@ fn starts_on_the_border_go_on_or_end_at_once() {
         flow.advance_from(start, start.index * direction.normalize(), 1e-6).expect("a ray")
     };
     assert_eq!(go(&top, DVec3::new(0.1, 1.0, 0.2)).optical_path, 0.0);
-    assert_eq!(go(&top, DVec3::new(0.1, 1.0, 0.2)).boundary, Boundary::YMax);
+    assert_eq!(go(&top, DVec3::new(0.1, 1.0, 0.2)).surface, Boundary::YMax);
     assert!(go(&top, DVec3::new(0.1, -1.0, 0.2)).optical_path > 1.0);
     assert_eq!(go(&at(25.0, 3.0), DVec3::new(1e-3, 1.0, 0.0)).optical_path, 0.0);
     assert!(go(&at(25.0, 3.0), DVec3::new(-1e-3, 1.0, 0.0)).optical_path > 1e-3);
     let floor = at(2.0, flow.map().floor_height_at(2.0));
     assert_eq!(floor.virtual_position.im, 0.0);
-    assert_eq!(go(&floor, DVec3::NEG_Y).boundary, Boundary::Floor);
-    assert_eq!(go(&floor, DVec3::Y).boundary, Boundary::YMax);
+    assert_eq!(go(&floor, DVec3::NEG_Y).surface, Boundary::Floor);
+    assert_eq!(go(&floor, DVec3::Y).surface, Boundary::YMax);
     // Corners, and the middle line at the tip, where both halves meet.
-    assert_eq!(go(&at(-25.0, CUT.y_max), DVec3::new(1.0, -1.0, 0.0)).boundary, Boundary::Floor);
+    assert_eq!(go(&at(-25.0, CUT.y_max), DVec3::new(1.0, -1.0, 0.0)).surface, Boundary::Floor);
     let tip = at(25.0, flow.map().floor_height_at(25.0));
     assert!(go(&tip, DVec3::new(-1.0, 0.3, 0.1)).optical_path > 10.0);
 }
@@ -92,7 +93,7 @@ fn misses_no_crossing_of_straight_paths() {
             let end = flow.advance_from(&start, p, 1e-6).expect("a ray");
             for share in 1..500 {
                 let share = f64::from(share) / 500.0;
-                let way = end.at.virtual_position - start.virtual_position;
+                let way = end.virtual_point.virtual_position - start.virtual_position;
                 let zeta = start.virtual_position + share * way;
                 let z = flow.map().jet(zeta).f;
                 let inside = [z.re - cut.x_min, cut.x_max - z.re, cut.y_max - z.im, zeta.im];
@@ -131,5 +132,5 @@ fn leaves_a_border_it_nearly_touches() {
     let direction =
         DVec3::new(0.954_058_304_274_097_1, 0.031_478_774_922_878_43, -0.297_962_814_416_479_15);
     let end = flow.advance_from(&start, direction * start.index, 1e-6).expect("a way out");
-    assert_eq!(end.boundary, Boundary::XMax);
+    assert_eq!(end.surface, Boundary::XMax);
 }

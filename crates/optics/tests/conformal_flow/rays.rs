@@ -1,8 +1,8 @@
 //! Rays to try, always the same ones.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use optics::geometry::Extent;
-use optics::propagation::{Boundary, ConformalFlow, FlowEnd, Half, VirtualPoint};
+use optics::propagation::{Boundary, ConformalEnd, ConformalFlow, Half, VirtualPoint};
 use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
 pub const W: f64 = 10.02;
@@ -77,21 +77,26 @@ pub fn legs(
     flow: &ConformalFlow,
     (start, wave_vector): (VirtualPoint, DVec3),
     tolerance: f64,
-) -> Vec<(VirtualPoint, DVec3, FlowEnd)> {
+) -> Vec<(VirtualPoint, DVec3, ConformalEnd)> {
     let (mut at, mut p, mut legs) = (start, wave_vector, Vec::new());
     for _ in 0..4 {
         let end = flow.advance_from(&at, p, tolerance).expect("the ray gets through");
         legs.push((at, p, end));
-        if end.boundary != Boundary::Floor {
+        if end.surface != Boundary::Floor {
             break;
         }
-        at = end.at;
-        p = end.wave_vector - 2.0 * end.wave_vector.dot(end.normal) * end.normal;
+        at = end.virtual_point;
+        p = end.wave_vector - 2.0 * end.wave_vector.dot(end.outward) * end.outward;
     }
     legs
 }
 
+/// The rotation of the transport from start to end, without what keeps the power.
+pub fn turn(start: &VirtualPoint, end: &ConformalEnd) -> DMat3 {
+    end.transport * (end.virtual_point.index / start.index).sqrt()
+}
+
 /// The sine of the angle between a ray and the face it arrives at.
-pub fn steepness(end: &FlowEnd) -> f64 {
-    end.wave_vector.normalize().dot(end.normal)
+pub fn steepness(end: &ConformalEnd) -> f64 {
+    end.wave_vector.normalize().dot(end.outward)
 }

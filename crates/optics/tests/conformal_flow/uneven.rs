@@ -1,6 +1,6 @@
 //! An index that is uneven, against the physical ray equation.
 
-use super::rays::{CUT, Dice, flow, legs, steepness};
+use super::rays::{CUT, Dice, flow, legs, steepness, turn};
 use super::uneven_reference;
 use glam::DVec2;
 use optics::geometry::Extent;
@@ -37,8 +37,8 @@ fn an_even_unevenness_is_none() {
         if steepness(&a) < 0.02 {
             continue;
         }
-        assert_eq!(a.boundary, b.boundary);
-        assert!((a.at.position - b.at.position).length() < 1e-8, "{a:?} {b:?}");
+        assert_eq!(a.surface, b.surface);
+        assert!((a.position - b.position).length() < 1e-8, "{a:?} {b:?}");
         assert!((a.wave_vector - b.wave_vector).length() < 1e-9);
         assert!((a.optical_path - b.optical_path).abs() < 1e-8);
         let turned = a.transport - b.transport;
@@ -63,17 +63,17 @@ fn uneven_rays_obey_the_physical_ray_equation() {
             let exact =
                 uneven_reference(&start, p, extent, c, |at| spline.look(at)).expect("a ray");
             let coarse = flow.advance_from(&start, p, 1e-6).expect("the same ray");
-            let field = end.transport * p.normalize().any_orthonormal_vector();
+            let field = turn(&start, &end) * p.normalize().any_orthonormal_vector();
             let off = [
-                (end.at.position - exact.position).length(),
-                (coarse.at.position - exact.position).length(),
+                (end.position - exact.position).length(),
+                (coarse.position - exact.position).length(),
                 (end.optical_path - exact.optical_path).abs(),
                 (field - exact.electric_field).length(),
             ];
             for (worst, off) in worst.iter_mut().zip(off) {
                 *worst = worst.max(off);
             }
-            floors += u32::from(end.boundary == Boundary::Floor);
+            floors += u32::from(end.surface == Boundary::Floor);
             compared += 1;
         }
     }
@@ -94,15 +94,15 @@ fn uneven_rays_can_be_reversed() {
         let (start, p) = dice.enter(&flow, extent);
         let there = flow.advance_from(&start, p, 1e-8).expect("a ray");
         let back = flow
-            .virtual_point(there.at.half, there.at.position)
+            .virtual_point(there.virtual_point.half, there.position)
             .and_then(|start| flow.advance_from(&start, -there.wave_vector, 1e-8));
         let back = back.expect("the same ray");
         if steepness(&there) < 2e-2 || steepness(&back) < 2e-2 {
             continue;
         }
-        assert!((back.at.position - start.position).length() < 1e-7);
+        assert!((back.position - start.position).length() < 1e-7);
         assert!((back.optical_path - there.optical_path).abs() < 1e-7);
-        assert!((there.wave_vector.length() - there.at.index).abs() < 1e-10);
+        assert!((there.wave_vector.length() - there.virtual_point.index).abs() < 1e-10);
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use optics::geometry::Extent;
 use optics::medium::{Heading, ModeKind};
 use optics::propagation::{
-    Border, OpticAxis, RadialEnd, RadialFlow, TransformedShell, UniaxialCylinder,
+    Border, OpticAxis, PathEnd, RadialFlow, TransformedShell, UniaxialCylinder,
 };
 use optics::transformation::{RadialMap, Symmetry};
 use optics::wave::ComplexVector;
@@ -88,7 +88,7 @@ fn enter(
     })
 }
 
-pub fn compare(found: &RadialEnd, expected: &End, tolerance: f64, what: &str) {
+pub fn compare(found: &PathEnd<Border>, expected: &End, tolerance: f64, what: &str) {
     let off = found.position.distance(expected.position);
     assert!(off < tolerance, "{what}: position off by {off}");
     let off = found.wave_vector.distance(expected.wave_vector) / found.wave_vector.length();
@@ -127,7 +127,7 @@ fn check(
             0.1,
         );
         let found = flow.advance(start.position, start.wave_vector, mode);
-        assert_eq!(found.border, Border::Outer);
+        assert_eq!(found.surface, Border::Outer);
         compare(&found, &expected, 1e-9 / graze, &format!("{flow:?} {mode:?} {d}"));
         let medium = flow.medium(found.position).expect("a medium");
         let field = ComplexVector::from(found.transport * start.electric.re);
@@ -204,7 +204,7 @@ fn short_shells_end_where_they_end() {
             if sine < 0.02 {
                 continue;
             }
-            ends[match found.border {
+            ends[match found.surface {
                 Border::Outer => 0,
                 Border::Bottom => 1,
                 _ => 2,
@@ -223,14 +223,14 @@ fn straight_ordinary_waves_come_to_the_core() {
     let p = p.with_z((K * K - p.length_squared()).sqrt());
     let start = DVec3::new(B, 0.0, 0.0);
     let end = shell.advance(start, p, ModeKind::Ordinary);
-    assert_eq!(end.border, Border::Inner);
+    assert_eq!(end.surface, Border::Inner);
     assert!((end.position.truncate().length() - A).abs() < 1e-15);
     assert!((end.position - start).cross(p).length() < 1e-14);
     assert!((end.optical_path - K * end.position.distance(start)).abs() < 1e-14);
     assert!(end.outward.dot(end.position) < 0.0);
     let reflected = p - end.outward * (2.0 * p.dot(end.outward));
     let out = shell.advance(end.position, reflected, ModeKind::Ordinary);
-    assert_eq!(out.border, Border::Outer);
+    assert_eq!(out.surface, Border::Outer);
     assert!((out.position.truncate().length() - B).abs() < 1e-14);
 }
 

@@ -62,7 +62,7 @@ fn rays_that_start_within_against_hamiltons_equations() {
             let p = wave.wave_vector;
             let found = flow.advance(start, p, mode);
             let graze = found.direction.dot(found.outward);
-            let to_core = found.border == Border::Inner;
+            let to_core = found.surface == Border::Inner;
             if turns < 0.1 || graze < 0.1 || (core == 0.0 && p.cross(start).length() < 0.2 * outer)
             {
                 continue;

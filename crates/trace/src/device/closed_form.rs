@@ -73,21 +73,15 @@ impl ClosedFormRegion {
     }
 
     pub(super) fn advance(&self, ray: &InnerRay) -> Option<Passage> {
-        let end = follow(self.medium.as_ref(), &curved(ray), self.border.bounds())?;
-        Some(Passage {
-            wave_vector: end.ray.wave_vector,
-            direction: end.ray.wave_vector.normalize(),
-            transport: Some(end.transport),
-            optical_path: end.optical_path,
-            ..Passage::straight(ray, end.ray.position, end.surface, end.outward, FarSide::Outside)
-        })
+        let (end, _) = follow(self.medium.as_ref(), &curved(ray), self.border.bounds())?;
+        Some(Passage::graded(ray, &end, end.surface, FarSide::Outside))
     }
 
     /// Points along the way of a ray to the border, in that many pieces.
     pub(super) fn path(&self, ray: &InnerRay, pieces: u32) -> Vec<PathPoint> {
         let start = curved(ray);
         let end = follow(self.medium.as_ref(), &start, self.border.bounds());
-        let last = end.map_or(0.0, |end| end.parameter);
+        let last = end.map_or(0.0, |(_, parameter)| parameter);
         let at = |piece: u32| {
             let parameter = last * f64::from(piece) / f64::from(pieces);
             let (CurvedRay { position, .. }, optical_path) =

@@ -5,7 +5,8 @@ use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::Plane;
 use optics::medium::{Medium, ModeKind};
 use optics::propagation::{
-    Border, Boundary, ConformalFlow, FlowEnd, Half, PathPoint, RadialFlow, VirtualPoint,
+    Border, Boundary, ConformalEnd, ConformalFlow, Half, PathEnd, PathPoint, RadialFlow,
+    VirtualPoint,
 };
 
 /// Straight pieces that a closed form's path is drawn with.
@@ -331,6 +332,19 @@ impl Passage {
             coating: Coating::None,
         }
     }
+
+    /// A way through a graded medium to a bare surface.
+    #[must_use]
+    #[inline]
+    pub fn graded<S, V>(ray: &InnerRay, end: &PathEnd<S, V>, face: u16, far: FarSide) -> Self {
+        Self {
+            wave_vector: end.wave_vector,
+            direction: end.direction,
+            transport: Some(end.transport),
+            optical_path: end.optical_path,
+            ..Self::straight(ray, end.position, face, end.outward, far)
+        }
+    }
 }
 
 impl ConformalRegion {
@@ -352,36 +366,28 @@ impl ConformalRegion {
         let ends = self.flow.advance_four(&starts, tolerance);
         std::array::from_fn(|i| {
             let end = ends[i].as_ref()?.as_ref().ok()?;
-            Some(self.passage(&starts[i]?.0, end))
+            Some(self.passage(rays[i].as_ref()?, end))
         })
     }
 
-    fn passage(&self, start: &VirtualPoint, end: &FlowEnd) -> Passage {
-        let far = match end.boundary {
+    fn passage(&self, ray: &InnerRay, end: &ConformalEnd) -> Passage {
+        let far = match end.surface {
             Boundary::Floor => self.floor,
             Boundary::Core => self.core,
             // Below the floor's level, in the troughs of a grating, the ends are metal.
             Boundary::XMin | Boundary::XMax
-                if self.half.mirrored(end.at.position).y < self.flow.map().level() =>
+                if self.half.mirrored(end.position).y < self.flow.map().level() =>
             {
                 FarSide::Conductor
             }
             _ => FarSide::Outside,
         };
         Passage {
-            position: end.at.position,
-            wave_vector: end.wave_vector,
-            direction: end.wave_vector.normalize(),
-            // |Re(E × H*)| = n |E|² is what stays.
-            transport: Some(end.transport * (start.index / end.at.index).sqrt()),
-            optical_path: end.optical_path,
             // Im n = n tan δ/2 to first order.
             extinction: 0.5 * self.loss_tangent * end.optical_path,
-            virtual_point: Some(end.at),
-            face: end.boundary as u16,
-            outward: end.normal,
-            far,
+            virtual_point: Some(end.virtual_point),
             coating: if far == FarSide::Conductor { Coating::None } else { self.coating },
+            ..Passage::graded(ray, end, end.surface as u16, far)
         }
     }
 }
@@ -396,14 +402,8 @@ impl RadialRegion {
         }
         let end = self.flow.advance(ray.position, ray.wave_vector, ray.mode);
         let sound = end.position.is_finite() && end.wave_vector.is_finite();
-        let far = if end.border == Border::Inner { self.inner } else { FarSide::Outside };
-        sound.then(|| Passage {
-            wave_vector: end.wave_vector,
-            direction: end.direction,
-            transport: Some(end.transport),
-            optical_path: end.optical_path,
-            ..Passage::straight(ray, end.position, end.border as u16, end.outward, far)
-        })
+        let far = if end.surface == Border::Inner { self.inner } else { FarSide::Outside };
+        sound.then(|| Passage::graded(ray, &end, end.surface as u16, far))
     }
 
     /// Whether a ray has come out of an open core into a wave that no ray of the core can be in but those in

@@ -32,6 +32,7 @@ pub use self::index_perturbation::IndexPerturbation;
 use self::points::Point;
 use self::ray_packet::RayPacket;
 use self::step_control::StepControl;
+use super::PathEnd;
 use crate::geometry::Extent;
 use crate::lanes::LANES;
 use crate::transformation::{ConformalMap, Truncation};
@@ -90,22 +91,8 @@ pub struct VirtualPoint {
     pub index: f64,
 }
 
-/// How a ray arrives at the border, still inside.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlowEnd {
-    /// The part of the border.
-    pub boundary: Boundary,
-    /// Where: on the border, to continue from after a reflection; its index is the one inside.
-    pub at: VirtualPoint,
-    /// The wave vector p before refraction or reflection, |p| = n.
-    pub wave_vector: DVec3,
-    /// The optical path from start to end, cm.
-    pub optical_path: f64,
-    /// The rotation of the transverse electric field (and of the direction) from start to end.
-    pub transport: DMat3,
-    /// The outward unit normal of the border; at the floor it points into the metal.
-    pub normal: DVec3,
-}
+/// How a ray arrives at the border: the index of its virtual point is the one inside.
+pub type ConformalEnd = PathEnd<Boundary, VirtualPoint>;
 
 /// Why a ray could not be followed.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
@@ -271,7 +258,7 @@ impl ConformalFlow {
         start: &VirtualPoint,
         wave_vector: DVec3,
         tolerance: f64,
-    ) -> Result<FlowEnd, FlowError> {
+    ) -> Result<ConformalEnd, FlowError> {
         let [end, ..] =
             self.advance_four(&[Some((*start, wave_vector)), None, None, None], tolerance);
         end.unwrap_or(Err(FlowError::Outside))
@@ -283,7 +270,7 @@ impl ConformalFlow {
         &self,
         starts: &[Option<(VirtualPoint, DVec3)>; LANES],
         tolerance: f64,
-    ) -> [Option<Result<FlowEnd, FlowError>>; LANES] {
+    ) -> [Option<Result<ConformalEnd, FlowError>>; LANES] {
         let mut packet = RayPacket::new(self, starts, tolerance);
         while packet.moves(self) {}
         std::array::from_fn(|i| {
@@ -298,7 +285,7 @@ impl ConformalFlow {
         momentum.im < 0.0 && x > self.cut.x_min && x < self.cut.x_max
     }
 
-    fn end(&self, start: &VirtualPoint, arrival: &Arrival) -> FlowEnd {
+    fn end(&self, start: &VirtualPoint, arrival: &Arrival) -> ConformalEnd {
         let Arrival { control, begin, mut end, boundary } = *arrival;
         let half = start.half;
         let mut position = DVec3::new(end.jet.f.re, end.jet.f.im, end.z);
@@ -329,18 +316,23 @@ impl ConformalFlow {
                 mirror * turn * mirror
             }
         };
-        FlowEnd {
-            boundary,
-            at: VirtualPoint {
-                half,
-                position: half.mirrored(position),
-                virtual_position: end.zeta,
-                index: index_scale / end.jet.stretch(),
-            },
-            wave_vector: half.mirrored(DVec3::new(p.re, p.im, control.p_z)),
+        let virtual_point = VirtualPoint {
+            half,
+            position: half.mirrored(position),
+            virtual_position: end.zeta,
+            index: index_scale / end.jet.stretch(),
+        };
+        let wave_vector = half.mirrored(DVec3::new(p.re, p.im, control.p_z));
+        PathEnd {
+            surface: boundary,
+            position: virtual_point.position,
+            virtual_point,
+            wave_vector,
+            direction: wave_vector.normalize(),
             optical_path: self.index_scale * self.index_scale * end.tau,
-            transport,
-            normal: half.mirrored(normal),
+            // |Re(E × H*)| = n |E|².
+            transport: transport * (start.index / virtual_point.index).sqrt(),
+            outward: half.mirrored(normal),
         }
     }
 }

@@ -32,7 +32,7 @@ impl ConformalFlow {
         if wave_vector.z == 0.0 && !self.is_uneven() {
             // A straight line in virtual space.
             let end = self.advance_from(start, wave_vector, tolerance)?;
-            let (from, to) = (start.virtual_position, end.at.virtual_position);
+            let (from, to) = (start.virtual_position, end.virtual_point.virtual_position);
             let pieces = ((to - from).norm() / spacing).ceil().max(1.0) as u32;
             let tau = end.optical_path / speed;
             return Ok((0..=pieces)

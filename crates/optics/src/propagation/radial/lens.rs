@@ -1,7 +1,7 @@
 //! Balls of graded index with closed-form transfers: Eaton's family, Luneburg's lens and Maxwell's
 //! fish-eye.
 
-use super::{Border, PathPoint, RadialEnd, first_way_out, plane_normal, turn_in_plane};
+use super::{Border, PathEnd, PathPoint, first_way_out, plane_normal, turn_in_plane};
 use crate::medium::Medium;
 use glam::{DMat3, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -78,7 +78,7 @@ impl CentralLens {
     }
 
     /// A share of the way to the surface, from there or from within.
-    fn way_to(&self, position: DVec3, wave_vector: DVec3, share: f64) -> RadialEnd {
+    fn way_to(&self, position: DVec3, wave_vector: DVec3, share: f64) -> PathEnd<Border> {
         let (x, d) = (position / self.radius, wave_vector.normalize());
         let normal = plane_normal(x, d);
         let (at, onward, path) = match self.profile {
@@ -120,8 +120,9 @@ impl CentralLens {
         let index = index_at(at.length());
         // |Re(E × H*)| = n |E|².
         let kept = (index_at(x.length()) / index).sqrt();
-        RadialEnd {
-            border: Border::Outer,
+        PathEnd {
+            virtual_point: (),
+            surface: Border::Outer,
             position: at * self.radius,
             wave_vector: onward * index,
             direction: onward,
@@ -132,12 +133,12 @@ impl CentralLens {
     }
 
     /// Follows a ray from a point of the ball or its surface to where it comes out.
-    pub fn advance(&self, position: DVec3, wave_vector: DVec3) -> RadialEnd {
+    pub fn advance(&self, position: DVec3, wave_vector: DVec3) -> PathEnd<Border> {
         if position.length() < (1.0 - AT_SURFACE) * self.radius {
             let end = self.way_to(position, wave_vector, 1.0);
             // On the surface, where the index is 1, to the last bit.
             let position = end.outward * self.radius;
-            return RadialEnd { position, wave_vector: end.direction, ..end };
+            return PathEnd { position, wave_vector: end.direction, ..end };
         }
         let x = position.normalize();
         let d = wave_vector.normalize();
@@ -157,8 +158,9 @@ impl CentralLens {
         };
         let outward = end.normalize();
         let direction = direction.normalize();
-        RadialEnd {
-            border: Border::Outer,
+        PathEnd {
+            virtual_point: (),
+            surface: Border::Outer,
             position: outward * self.radius,
             wave_vector: direction,
             direction,

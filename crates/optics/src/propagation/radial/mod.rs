@@ -17,11 +17,11 @@ pub use transformed_shell::TransformedShell;
 pub use transmuted_sphere::TransmutedSphere;
 pub use uniaxial_cylinder::{OpticAxis, UniaxialCylinder};
 
-use super::{PathPoint, first_way_out, turn_in_plane};
+use super::{PathEnd, PathPoint, first_way_out, turn_in_plane};
 pub use crate::geometry::Border;
 use crate::medium::{Medium, ModeKind};
 use crate::transformation::RadialMap;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// A radially symmetric medium.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,26 +34,6 @@ pub enum RadialFlow {
     Transformed(TransformedShell),
     /// A cylindrical shell of graded uniaxial dielectric.
     Uniaxial(UniaxialCylinder),
-}
-
-/// How a ray arrives at the border of a radial medium, still inside.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[must_use]
-pub struct RadialEnd {
-    /// The part of the border.
-    pub border: Border,
-    /// Where, on the border, cm.
-    pub position: DVec3,
-    /// The wave vector before refraction or reflection.
-    pub wave_vector: DVec3,
-    /// The unit vector of the ray there.
-    pub direction: DVec3,
-    /// The optical path from start to end, cm.
-    pub optical_path: f64,
-    /// What takes the electric field of the wave from start to end, |Re(E × H*)| being kept.
-    pub transport: DMat3,
-    /// The unit normal of the border, out of the medium.
-    pub outward: DVec3,
 }
 
 impl RadialFlow {
@@ -97,7 +77,7 @@ impl RadialFlow {
 
     /// Follows a ray from a point of the medium or its border, where it has the given wave vector and is the given
     /// wave of the medium, to the next point of the border. On the border it must run into the medium or along it.
-    pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
+    pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> PathEnd<Border> {
         match self {
             Self::Lens(lens) => lens.advance(position, wave_vector),
             Self::Transmuted(sphere) => sphere.advance(position, wave_vector, mode),
@@ -148,12 +128,12 @@ impl RadialFlow {
 }
 
 /// A point of a straight way.
-fn straight(from: DVec3, end: &RadialEnd, share: f64) -> PathPoint {
+fn straight(from: DVec3, end: &PathEnd<Border>, share: f64) -> PathPoint {
     PathPoint { position: from.lerp(end.position, share), optical_path: share * end.optical_path }
 }
 
 /// A point of a way that is straight in virtual space.
-fn straight_in(map: &RadialMap, from: DVec3, end: &RadialEnd, share: f64) -> PathPoint {
+fn straight_in(map: &RadialMap, from: DVec3, end: &PathEnd<Border>, share: f64) -> PathPoint {
     let [start, stop] = [from, end.position].map(|at| map.to_virtual(at));
     PathPoint {
         position: map.to_physical(start.lerp(stop, share)),

@@ -1,6 +1,6 @@
 //! Impedance-matched cylindrical and spherical cloaks.
 
-use super::{Border, RadialEnd};
+use super::{Border, PathEnd};
 use crate::geometry::{Cylinder, Extent, Sphere};
 use crate::medium::Medium;
 use crate::transformation::{RadialMap, Symmetry};
@@ -36,7 +36,7 @@ impl TransformedShell {
     }
 
     /// Follows a ray from a point of the border to where it comes out. It never comes to the hole.
-    pub fn advance(&self, position: DVec3, wave_vector: DVec3) -> RadialEnd {
+    pub fn advance(&self, position: DVec3, wave_vector: DVec3) -> PathEnd<Border> {
         let map = &self.map;
         let momentum = map.jacobian(position) * wave_vector;
         let line = VirtualLine::new(map, self.extent, position, momentum);
@@ -44,8 +44,9 @@ impl TransformedShell {
         // S = J S'/det J, and |S| is to stay.
         let power = |at: DVec3| (map.jacobian(at) * momentum).length() / map.determinant(at);
         let factor = (power(position) / power(line.position)).sqrt();
-        RadialEnd {
-            border: line.border,
+        PathEnd {
+            virtual_point: (),
+            surface: line.border,
             position: line.position,
             wave_vector: inverse * momentum,
             direction: (map.jacobian(line.position) * momentum).normalize(),

@@ -2,7 +2,7 @@
 
 use super::lens::{AT_SURFACE, EatonWayOut};
 use super::uniaxial_wave::{UniaxialPoint, transport};
-use super::{Border, PathPoint, RadialEnd, plane_normal};
+use super::{Border, PathEnd, PathPoint, plane_normal};
 use crate::geometry::Sphere;
 use crate::medium::{Medium, ModeKind};
 use glam::{DMat3, DVec3};
@@ -92,14 +92,15 @@ impl TransmutedSphere {
     }
 
     /// Follows a ray of either wave from a point of the ball or its surface to where it comes out.
-    pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
+    pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> PathEnd<Border> {
         let index = Self::ORDINARY_INDEX;
         if mode != ModeKind::Extraordinary {
             let direction = wave_vector.normalize();
             let distance = Sphere { radius: self.radius }.time_to_leave(position, direction);
             let outward = (position + direction * distance).normalize();
-            return RadialEnd {
-                border: Border::Outer,
+            return PathEnd {
+                virtual_point: (),
+                surface: Border::Outer,
                 position: outward * self.radius,
                 wave_vector,
                 direction,
@@ -118,8 +119,9 @@ impl TransmutedSphere {
             local.field_across(p, way.normal, mode)
         };
         let here = self.extraordinary_index(position.length()).powi(2);
-        RadialEnd {
-            border: Border::Outer,
+        PathEnd {
+            virtual_point: (),
+            surface: Border::Outer,
             position: outward * self.radius,
             wave_vector: along + onward,
             // Along εp, the extraordinary index at the surface being 1.

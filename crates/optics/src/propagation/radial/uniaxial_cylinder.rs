@@ -3,7 +3,7 @@
 use super::core_integrals::RadialQuadratic;
 use super::transformed_shell::VirtualLine;
 use super::uniaxial_wave::{UniaxialPoint, transport};
-use super::{PathPoint, RadialEnd};
+use super::{PathEnd, PathPoint};
 use crate::geometry::{Border, Cylinder, Extent};
 use crate::medium::{Medium, ModeKind};
 use crate::transformation::{RadialMap, Symmetry, root_in_bracket};
@@ -85,7 +85,7 @@ impl UniaxialCylinder {
     }
 
     /// Follows a ray of either wave from a point of the border to the next point of it.
-    pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> RadialEnd {
+    pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> PathEnd<Border> {
         let end = if self.comes_to_core(mode) {
             self.straight(position, wave_vector)
         } else if let Some(path) = self.turning_path(position, wave_vector, mode) {
@@ -101,8 +101,9 @@ impl UniaxialCylinder {
             end.wave_vector
         };
         let field = there.field(end.wave_vector, mode);
-        RadialEnd {
-            border: end.border,
+        PathEnd {
+            virtual_point: (),
+            surface: end.border,
             position: end.position,
             wave_vector: end.wave_vector,
             direction: direction.normalize(),
