@@ -182,7 +182,7 @@ mod tests {
             // 2 h (sqrt(pi) w - h) = A.
             let exact = (0.5 * target / h + h) / std::f64::consts::PI.sqrt();
             let found = hold.solve(&other, target, &[]);
-            // FarSide h/w = 0.886 there is no such map.
+            // Beyond h/w = 0.886 there is no such map.
             if h / exact > 0.886 {
                 let message = found.expect_err("no such map").to_string();
                 assert!(message.contains("no value from"), "{message}");

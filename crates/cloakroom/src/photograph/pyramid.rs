@@ -30,7 +30,7 @@ const FADE: f32 = 0.8;
 /// Smallest averaging width d, in texels: keeps the weights smooth.
 const MIN_WIDTH: f32 = 0.25;
 
-/// What lies beyond the left and right edge of an image. FarSide top and bottom, the edge goes on.
+/// What lies beyond the left and right edge of an image. Beyond top and bottom, the edge goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edges {
     /// The edge goes on.

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 /// A wave through an interface between isotropic media whose reflection is suppressed by a perfect
 /// antireflection coating: refracted, all of its power transmitted, each polarization on its own.
-/// FarSide the critical angle, and into media in which the polarizations part, it behaves as at the
+/// Beyond the critical angle, and into media in which the polarizations part, it behaves as at the
 /// bare interface.
 #[must_use]
 pub fn transmit_antireflection<const N: usize>(

@@ -85,7 +85,7 @@ impl GridSpline {
         Ok(Self { corner, spacing, count: [mx, my], coefficients: coefficients_xy })
     }
 
-    /// Value and gradient (1/cm) at a point. FarSide the grid the outermost pieces go on.
+    /// Value and gradient (1/cm) at a point. Beyond the grid the outermost pieces go on.
     #[inline]
     #[must_use]
     pub fn look(&self, point: DVec2) -> (f64, DVec2) {

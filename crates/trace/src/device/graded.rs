@@ -106,7 +106,7 @@ impl Plan {
         open_core: bool,
     ) -> Result<Structure, KeyError> {
         let DVec2 { x, y } = self.half;
-        // FarSide a round border, its box is not there.
+        // Beyond a round border, its box is not there.
         let margin = if self.rim.is_some() { 1.5 } else { 1.0 };
         let cut = Truncation { x_min: -margin * x, x_max: margin * x, y_max: margin * y };
         let map = ConformalMap::Flat(FlatMap::new(-margin * y, VARIES * (2.0 * x.max(y))));

@@ -115,7 +115,7 @@ pub(super) fn upright(
 pub(super) fn pierced(end: &Shape, core: (f64, FarSide), far: FarSide) -> Vec<Surface> {
     let (radius, far_of_core) = core;
     let part = |far, part| Surface { part, ..Surface::new(end.clone(), far) };
-    let mut surfaces = vec![part(far, Part::FarSide(radius))];
+    let mut surfaces = vec![part(far, Part::Without(radius))];
     if far_of_core != FarSide::Outside && radius > 0.0 {
         surfaces.push(part(far_of_core, Part::Within(radius)));
     }

@@ -36,7 +36,7 @@ crate::table! {
         /// Side of the square.
         side: f64 = 14.1, "cm", in ValueRange::LENGTH,
         /// Ratio of the rhombus's diagonals; 1/sqrt(3) gives corners of 60 and 120 degrees.
-        // FarSide the limits, the tensors are too lopsided for double precision.
+        // Beyond the limits, the tensors are too lopsided for double precision.
         kappa: f64 = 0.577_350_269_189_625_8, in ValueRange::Within(0.001, 0.999),
         /// Use the paper's rounded material values 3.27, 0.31, 2.366 and 33.54 degrees instead of the exact ones.
         rounded: bool,

@@ -58,7 +58,7 @@ pub enum Part {
     /// Within a circle about the z axis of this radius, cm.
     Within(f64),
     /// Without a circle about the z axis of this radius, cm.
-    FarSide(f64),
+    Without(f64),
     /// Above the floor of a conformal map, of its upper half or of its mirror image under y -> -y.
     AboveFloor(ConformalMap, Half),
     /// Below the floor of a conformal map, and above that of its mirror image if there is one.
@@ -81,7 +81,7 @@ impl Part {
         match self {
             Self::Whole => true,
             Self::Within(radius) => point.truncate().length_squared() < radius * radius,
-            Self::FarSide(radius) => point.truncate().length_squared() >= radius * radius,
+            Self::Without(radius) => point.truncate().length_squared() >= radius * radius,
             Self::AboveFloor(map, Half::Upper) => height(map, point.y) >= 0.0,
             Self::AboveFloor(map, Half::Lower) => point.y < 0.0 && height(map, -point.y) >= 0.0,
             Self::BelowFloor { map, mirrored } => {

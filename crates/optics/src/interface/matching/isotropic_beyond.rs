@@ -46,7 +46,7 @@ impl<const N: usize> Scattered<'_, N> {
         }
     }
 
-    /// The amplitudes of both reflected modes. FarSide, H·first = -(q/µ) E·second and H·second = (ε/q) E·first, the
+    /// The amplitudes of both reflected modes. Beyond, H·first = -(q/µ) E·second and H·second = (ε/q) E·first, the
     /// latter times q to hold at grazing incidence: what both fail by must vanish in the sum.
     fn reflected<T: Number>(
         &self,
