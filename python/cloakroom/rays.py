@@ -71,6 +71,7 @@ def trace(
     polarization: Literal["horizontal", "vertical"] | ArrayLike = "horizontal",
     *,
     min_power: float | None = None,
+    coherent: bool = False,
     progress: Progress = False,
 ) -> Traced:
     """Traces rays through the devices of a scene, on all cores. The photograph and the camera play no part.
@@ -88,7 +89,10 @@ def trace(
         themselves, across the rays and of any norm.
     min_power : float, optional
         Branches below this share of a ray's power are pruned; by default what the scene's ``trace.min_power`` says,
-        else 1e-9.
+        else 1e-9, or 1e-20 if `coherent`.
+    coherent : bool, default False
+        Leaves of one direction are added as fields, as light of the scene's wavelength and bandwidth does in the far
+        field: one leaf each, at the place of the strongest. Thin films and plates need it.
     progress : bool or callable, default False
         ``True`` for a line on standard error, or a function that is called with the rays done and all rays.
 
@@ -144,6 +148,7 @@ def trace(
             word,
             spread.get("polarization"),
             min_power,
+            bool(coherent),
             tell,
         )
     return Traced(**arrays)

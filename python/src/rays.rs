@@ -4,7 +4,7 @@ use crate::errors::Failure;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
 use cloakroom::ray_json::{Polarization, RayRequest, leaf_table};
-use cloakroom::render::ray_limits;
+use cloakroom::render::ray_settings;
 use ndarray::{Array2, ArrayView2, Axis, ShapeError};
 use num_complex::Complex64;
 use numpy::{IntoPyArray, PyReadonlyArray2};
@@ -23,13 +23,14 @@ pub fn trace<'py>(
     polarization: &str,
     fields: Option<PyReadonlyArray2<'py, Complex64>>,
     min_power: Option<f64>,
+    coherent: bool,
     progress: Option<Py<PyAny>>,
 ) -> Result<Bound<'py, PyDict>, Failure> {
     let (origins, directions) = (origins.as_array(), directions.as_array());
     let fields = fields.as_ref().map(PyReadonlyArray2::as_array);
     let vertical = polarization == "vertical";
     let count = origins.len_of(Axis(0));
-    let limits = ray_limits(scene.scene(), min_power);
+    let settings = ray_settings(scene.scene(), min_power, coherent);
     let ray = |index: usize| {
         let row = |array: &ArrayView2<'_, f64>| std::array::from_fn(|axis| array[[index, axis]]);
         let polarization = match &fields {
@@ -46,7 +47,7 @@ pub fn trace<'py>(
         let assembly = scene.assembly()?;
         watch.begin(count as u64);
         let (done, stop) = (supervision.rows_done, supervision.stop);
-        Ok(leaf_table(assembly, limits, count, &ray, done, stop)?)
+        Ok(leaf_table(assembly, settings, count, &ray, done, stop)?)
     })?;
     let arrays = PyDict::new(py);
     arrays.set_item("ray", table.ray.into_pyarray(py))?;

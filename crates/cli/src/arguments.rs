@@ -179,7 +179,10 @@ pub struct TraceArguments {
     /// The rays: a JSON file, or - for standard input.
     #[arg(long, value_name = "FILE")]
     pub rays: PathBuf,
-    /// Prune branches below this share of the launched power [default: the scene's, else 1e-9].
+    /// Add leaves of one direction as fields, as light of the scene's wavelength and bandwidth does in the far field.
+    #[arg(long)]
+    pub coherent: bool,
+    /// Prune branches below this share of the launched power [default: the scene's, else 1e-9, with --coherent 1e-20].
     #[arg(long, value_name = "P")]
     pub min_power: Option<f64>,
     /// How many threads work.

@@ -23,7 +23,7 @@ pub fn run(arguments: &TraceArguments) -> Result<()> {
     if let Some(p) = arguments.min_power.filter(|p| !(0.0..=1.0).contains(p)) {
         return Err(Failure::Usage(format!("--min-power is {p}; it must be from 0 to 1")));
     }
-    let limits = render::ray_limits(&loaded.scene, arguments.min_power);
+    let settings = render::ray_settings(&loaded.scene, arguments.min_power, arguments.coherent);
     let (text, name) = read(&arguments.rays)?;
     let rays: Vec<RayRequest> = serde_json::from_str(&text).map_err(|error| {
         Failure::Failed(format!(
@@ -33,7 +33,7 @@ pub fn run(arguments: &TraceArguments) -> Result<()> {
         ))
     })?;
     let busy = interruption::busy();
-    let reports = trace_rays(&assembly, limits, &rays, &STOP).map_err(|error| match error {
+    let reports = trace_rays(&assembly, settings, &rays, &STOP).map_err(|error| match error {
         RayError::Stopped(_) => Failure::Interrupted,
         error => Failure::Failed(format!("{name}: {error}")),
     })?;

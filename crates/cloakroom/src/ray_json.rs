@@ -2,7 +2,7 @@
 
 use crate::assembly::Assembly;
 use crate::memory::{self, Shortage};
-use crate::trace::{Launch, LeafTable, Limits, Stopped};
+use crate::trace::{Launch, LeafTable, RaySettings, Stopped};
 use glam::DVec3;
 use optics::wave::{ComplexVector, transverse_basis, unit};
 use serde::{Deserialize, Serialize};
@@ -144,7 +144,7 @@ fn transverse(components: [[f64; 2]; 3], direction: DVec3) -> Result<ComplexVect
 /// leaves, or the work was stopped.
 pub fn leaf_table(
     assembly: &Assembly,
-    limits: Limits,
+    settings: impl Into<RaySettings>,
     count: usize,
     ray: &(impl Fn(usize) -> RayRequest + Sync),
     done: &(dyn Fn(u64) + Sync),
@@ -166,7 +166,7 @@ pub fn leaf_table(
         })?;
         Ok(launch)
     };
-    LeafTable::trace(assembly, limits, count, &launch, done, stop)
+    LeafTable::trace(assembly, settings, count, &launch, done, stop)
 }
 
 /// Traces rays, in order.
@@ -176,11 +176,11 @@ pub fn leaf_table(
 /// If a ray makes no sense or starts in metal or an opaque body, or the work was stopped.
 pub fn trace_rays(
     assembly: &Assembly,
-    limits: Limits,
+    settings: impl Into<RaySettings>,
     rays: &[RayRequest],
     stop: &AtomicBool,
 ) -> Result<Vec<RayReport>, RayError> {
-    let table = leaf_table(assembly, limits, rays.len(), &|i| rays[i].clone(), &|_| {}, stop)?;
+    let table = leaf_table(assembly, settings, rays.len(), &|i| rays[i].clone(), &|_| {}, stop)?;
     let mut leaves = (0..table.ray.len()).peekable();
     let leaf = |leaf: usize| LeafReport {
         position: Some(table.position[leaf]).filter(|position| !position[0].is_nan()),
@@ -206,7 +206,7 @@ mod tests {
 
     use super::*;
 
-    use crate::trace::Tracer;
+    use crate::trace::{Limits, Tracer};
     use crate::{render, scene_file};
     use std::path::Path;
 

@@ -1,10 +1,11 @@
 //! From leaves to light: what each leaf sees, through a filter as wide as its share of the pixel.
 
 use super::detection::Detection;
+use super::interference::Interference;
 use super::pixel::{Pixel, Pulses};
 use super::prepared_scene::{PreparedScene, Surroundings};
 use crate::scene::CameraRay;
-use crate::trace::{FirstFace, Leaf, Outcome};
+use crate::trace::{FirstFace, Leaf, Outcome, Pair};
 use glam::{DQuat, DVec3};
 use optics::wave::{SPEED_OF_LIGHT, arriving_stokes};
 
@@ -18,6 +19,13 @@ pub(super) struct Traced<'t, const N: usize> {
     pub first_face: Option<FirstFace<N>>,
 }
 
+/// Memory to work in, kept from ray to ray.
+#[derive(Debug, Default)]
+pub(super) struct Working {
+    pulses: Pulses,
+    interference: Interference,
+}
+
 /// Adds to a pixel what one camera ray sees. `across` and `down` are its neighbours one pixel away
 /// along the picture's axes; `spacing` is the spacing of samples in pixels.
 pub(super) fn expose<const N: usize>(
@@ -26,28 +34,20 @@ pub(super) fn expose<const N: usize>(
     [here, across, down]: [&Traced<'_, N>; 3],
     spacing: f64,
     pixel: &mut Pixel,
-    pulses: &mut Pulses,
+    Working { pulses, interference }: &mut Working,
 ) {
     pulses.clear();
+    interference.seen.clear();
     pixel.absorbed += detection.detected(&here.outcome.absorbed);
     pixel.pruned += detection.detected(&here.outcome.pruned);
     for leaf in here.leaves {
         let power = detection.detected(&leaf.power);
         let screen = leaf.distance_to(&prepared.screen);
-        match (leaf.body(), screen) {
-            (Some(_), _) => pixel.absorbed += power,
-            (None, Some(distance)) => {
-                pixel.delivered += power;
-                if detection.times {
-                    pulses.push((time_of_flight(leaf, distance), power));
-                }
-            }
-            (None, None) => pixel.escaped += power,
-        }
         let beside =
             |alone| [across, down].map(|neighbour| Neighbour { here, leaf, neighbour, alone });
         let among_all = beside(None);
         let light = light(prepared, leaf, screen, &among_all, spacing);
+        interference.seen.push((screen, light));
         add(&mut pixel.image, power, light);
         if detection.separate {
             for (i, sum) in [&mut pixel.horizontal, &mut pixel.vertical].into_iter().enumerate() {
@@ -70,6 +70,22 @@ pub(super) fn expose<const N: usize>(
             }
         }
     }
+    let rays = [&here.ray, &across.ray];
+    interference.find(prepared, here.leaves, rays, |leaf| detection.detected(&leaf.power));
+    interfere(detection, here.leaves, interference, pixel);
+    for (number, leaf) in here.leaves.iter().enumerate() {
+        let power = detection.detected(&leaf.power) * interference.gain(number);
+        match (leaf.body(), interference.seen[number].0) {
+            (Some(_), _) => pixel.absorbed += power,
+            (None, Some(distance)) => {
+                pixel.delivered += power;
+                if detection.times {
+                    pulses.push((time_of_flight(leaf, distance), power));
+                }
+            }
+            (None, None) => pixel.escaped += power,
+        }
+    }
     if let Some(face) = &here.first_face {
         pixel.surfaces_met += 1.0;
         pixel.reflected += detection.detected(&face.reflected);
@@ -79,6 +95,46 @@ pub(super) fn expose<const N: usize>(
     if detection.times {
         pixel.add_pulses(pulses, empty_time_of_flight(prepared, &here.ray));
     }
+}
+
+/// Adds to a pixel what leaves that interfere see more or less than each alone, and works out their gains.
+fn interfere<const N: usize>(
+    detection: &Detection<N>,
+    leaves: &[Leaf<N>],
+    interference: &mut Interference,
+    pixel: &mut Pixel,
+) {
+    let power = |pair: &Pair| std::array::from_fn(|i| pair.power(leaves, i));
+    for pair in &interference.pairs {
+        let [one, other] = pair.leaves.map(|leaf| interference.seen[leaf].1);
+        let light = std::array::from_fn(|color| (one[color] * other[color]).sqrt());
+        let power = power(pair);
+        add(&mut pixel.image, detection.detected(&power), light);
+        if detection.separate {
+            for (i, sum) in [&mut pixel.horizontal, &mut pixel.vertical].into_iter().enumerate() {
+                if pair
+                    .leaves
+                    .iter()
+                    .all(|leaf| leaves[*leaf].survives_alone[i] || !detection.alone)
+                {
+                    add(sum, power[i], light);
+                }
+            }
+        }
+        if detection.stokes {
+            let coherency = pair.coherency(leaves);
+            let [h, v] = [power[0], power[1]];
+            let stokes = [(h + v) / 2.0, (h - v) / 2.0, coherency.re, coherency.im];
+            for (sum, stokes) in pixel.stokes.iter_mut().zip(stokes) {
+                add(sum, stokes, light);
+            }
+        }
+    }
+    interference.share_out(
+        leaves,
+        |leaf| detection.detected(&leaf.power),
+        |pair| detection.detected(&power(pair)),
+    );
 }
 
 /// Adds to the pixels of a 2 x 2 block what they see past every device, where all its rays end on the

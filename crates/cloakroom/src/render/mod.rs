@@ -10,6 +10,7 @@ mod detection;
 mod exposure;
 mod film;
 mod images;
+mod interference;
 mod pixel;
 mod prepared_scene;
 mod pulses;
@@ -18,7 +19,9 @@ mod tile;
 
 pub use channels::{ChannelKind, ChannelSet};
 pub use images::Images;
-pub use prepared_scene::{PreparedScene, PreparedSceneError, assembly, limits, ray_limits};
+pub use prepared_scene::{
+    PreparedScene, PreparedSceneError, assembly, coherence, limits, ray_settings,
+};
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
 pub use tile::{MergeError, Tile, TileError, merge, merge_images};
 
@@ -27,9 +30,9 @@ use crate::scene::Scene;
 use crate::trace::{FourTracers, Stopped, TraceStats, Tracer};
 use contrast::{Contrast, first_look};
 use detection::Detection;
-use exposure::{Traced, expose, expose_unhindered};
+use exposure::{Traced, Working, expose, expose_unhindered};
 use film::{Band, Film};
-use pixel::{Pixel, Pulses};
+use pixel::Pixel;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -231,7 +234,7 @@ struct Exposer<'a, const N: usize> {
     prepared: &'a PreparedScene<'a>,
     detection: &'a Detection<N>,
     tracers: FourTracers<'a, N>,
-    pulses: Pulses,
+    working: Working,
 }
 
 impl<'a, const N: usize> Exposer<'a, N> {
@@ -242,7 +245,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
             tracers: FourTracers::new(
                 &Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen),
             ),
-            pulses: Vec::new(),
+            working: Working::default(),
         }
     }
 
@@ -325,7 +328,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
         });
         for (i, pixel) in pixels.iter_mut().enumerate() {
             let rays = [&block[i], &block[i ^ 1], &block[i ^ 2]];
-            expose(self.prepared, self.detection, rays, spacing, pixel, &mut self.pulses);
+            expose(self.prepared, self.detection, rays, spacing, pixel, &mut self.working);
         }
         stats
     }

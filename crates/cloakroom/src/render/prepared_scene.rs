@@ -6,7 +6,7 @@ use crate::assembly::{Assembly, MOST_DEVICES, Placed, Screen};
 use crate::keys::KeyError;
 use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
 use crate::scene::{Projection, Scene};
-use crate::trace::Limits;
+use crate::trace::{Coherence, Limits, RaySettings};
 use std::sync::Arc;
 
 /// Width of the builtin photograph, cm.
@@ -145,16 +145,47 @@ pub fn limits(scene: &Scene) -> Limits {
     Limits { min_power: scene.trace.min_power.value, tolerance: scene.trace.tolerance }
 }
 
+/// The threshold where leaves can interfere: 1e-4 of the power is 1e-2 of the field.
+const INTERFERENCE_MIN_POWER: f64 = 1e-8;
+
+/// How exactly paths are known where leaves can interfere, as a share of the wavelength.
+const INTERFERENCE_TOLERANCE: f64 = 1e-3;
+
+/// The limits of a picture: closer ones than those of the scene where its devices make light interfere.
+fn limits_in(scene: &Scene, assembly: &Assembly) -> Limits {
+    const CM_PER_NM: f64 = 1e-7;
+    let limits = limits(scene);
+    if assembly.least_path_difference() > coherence(scene).reach() {
+        return limits;
+    }
+    let given = scene.trace.min_power.given;
+    let min_power = if given { limits.min_power } else { INTERFERENCE_MIN_POWER };
+    let paths = INTERFERENCE_TOLERANCE * scene.light.wavelength_nm * CM_PER_NM;
+    Limits { min_power, tolerance: limits.tolerance.min(paths) }
+}
+
 /// The threshold of given rays where nothing else is said.
 const RAY_MIN_POWER: f64 = 1e-9;
 
-/// The limits for tracing given rays: the threshold is the given one, else that which the scene writes, else 1e-9.
+/// The same where fields are added: 1e-10 in the field.
+const COHERENT_MIN_POWER: f64 = 1e-20;
+
+/// The light of a scene.
 #[must_use]
-pub fn ray_limits(scene: &Scene, min_power: Option<f64>) -> Limits {
+pub fn coherence(scene: &Scene) -> Coherence {
+    Coherence::new(scene.light.wavelength_nm, scene.light.bandwidth_nm)
+}
+
+/// How given rays are traced: the threshold is the given one, else that which the scene writes, else 1e-9, or 1e-20 if
+/// leaves are to be added as fields (`coherent`).
+#[must_use]
+pub fn ray_settings(scene: &Scene, min_power: Option<f64>, coherent: bool) -> RaySettings {
     let settings = &scene.trace;
     let written = Some(settings.min_power.value).filter(|_| settings.min_power.given);
-    let min_power = min_power.or(written).unwrap_or(RAY_MIN_POWER);
-    Limits { min_power, tolerance: settings.tolerance }
+    let least = if coherent { COHERENT_MIN_POWER } else { RAY_MIN_POWER };
+    let min_power = min_power.or(written).unwrap_or(least);
+    let limits = Limits { min_power, tolerance: settings.tolerance };
+    RaySettings { limits, coherence: coherent.then(|| coherence(scene)) }
 }
 
 /// What rays see that hit nothing.
@@ -173,6 +204,8 @@ pub struct PreparedScene<'s> {
     pub assembly: Assembly,
     /// The limits within which rays are followed.
     pub limits: Limits,
+    /// How light interferes.
+    pub coherence: Coherence,
     /// The rectangle in space on which the photograph is.
     pub screen: Screen,
     /// The photograph.
@@ -229,16 +262,9 @@ impl<'s> PreparedScene<'s> {
         };
         let body_surfaces =
             assembly.devices().iter().enumerate().map(surface).collect::<Result<_, _>>()?;
+        let (limits, coherence) = (limits_in(scene, &assembly), coherence(scene));
         images.keep(&scene.body_images().collect::<Vec<_>>());
-        Ok(Self {
-            scene,
-            assembly,
-            limits: limits(scene),
-            screen,
-            image,
-            surroundings,
-            body_surfaces,
-        })
+        Ok(Self { scene, assembly, limits, coherence, screen, image, surroundings, body_surfaces })
     }
 
     /// The surface of an opaque body.

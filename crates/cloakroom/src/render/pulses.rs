@@ -2,9 +2,10 @@
 
 use super::detection::Detection;
 use super::exposure::{empty_time_of_flight, time_of_flight};
+use super::interference::Interference;
 use super::pixel::Pixel;
 use super::{ChannelKind, PreparedScene};
-use crate::trace::Tracer;
+use crate::trace::{Leaf, Tracer};
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
 use serde::Serialize;
@@ -106,9 +107,17 @@ fn list<const N: usize>(
     let ray = camera.ray(x, y);
     let mut tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
     let (leaves, outcome) = tracer.trace(&detection.launch(camera, &ray));
+    let mut interference = Interference::default();
+    let sights = leaves.iter().map(|leaf| (leaf.distance_to(&prepared.screen), [0.0; 3]));
+    interference.seen.extend(sights);
+    let detected = |leaf: &Leaf<N>| detection.detected(&leaf.power);
+    interference.find(prepared, leaves, [&ray, &camera.ray(x + 1.0, y)], detected);
+    interference.share_out(leaves, detected, |pair| {
+        detection.detected(&std::array::from_fn(|i| pair.power(leaves, i)))
+    });
     let (mut arrivals, mut escaped, mut ended) = (Vec::new(), 0.0, 0.0);
-    for leaf in leaves {
-        let power = detection.detected(&leaf.power);
+    for (number, leaf) in leaves.iter().enumerate() {
+        let power = detected(leaf) * interference.gain(number);
         match (leaf.body(), leaf.distance_to(&prepared.screen)) {
             (Some(_), _) => ended += power,
             (None, Some(distance)) if power > 0.0 => arrivals.push(Arrival {

@@ -59,8 +59,11 @@ table! {
 table! {
     /// The light that fills the scene.
     pub struct Light {
-        /// Wavelength in vacuum; used by absorption only.
+        /// Wavelength in vacuum: the mean of the line; used by absorption and interference.
         wavelength_nm: f64 = 550.0, "nm", in ValueRange::Within(1e-3, 1e12),
+        /// Full width at half maximum of the line, a Gaussian: light whose paths differ by less than about the square
+        /// of the wavelength over it interferes; 0 is light of one wavelength.
+        bandwidth_nm: f64 = 100.0, "nm", in ValueRange::Within(0.0, 1e12),
     }
 }
 

@@ -262,6 +262,29 @@ impl Solid {
         }
     }
 
+    /// The least distance between two parallel planes that it fits between, cm; a hole does not count.
+    #[must_use]
+    pub fn thickness(&self) -> f64 {
+        match self {
+            Self::Nothing => 0.0,
+            Self::Prism { outline, extent } => {
+                let width = |(a, b): (DVec2, DVec2)| {
+                    let along = (b - a).normalize_or_zero();
+                    let beside = outline.corners.iter().map(|at| along.perp_dot(*at - a).abs());
+                    beside.fold(0.0, f64::max)
+                };
+                outline.sides().map(width).fold(extent.max - extent.min, f64::min)
+            }
+            Self::Cylinder { radius, extent, .. } => (2.0 * radius).min(extent.max - extent.min),
+            Self::Ball { radius, .. } => 2.0 * radius,
+            Self::CutBall { ball, .. } => {
+                (ball.sphere.radius + ball.plane.offset).min(2.0 * ball.sphere.radius)
+            }
+            Self::Hollow { whole, .. } => whole.thickness(),
+            Self::Tilted { solid, .. } => solid.thickness(),
+        }
+    }
+
     /// Whether two thin sheets lie on each other.
     #[must_use]
     pub fn coincides(&self, other: &Self, slack: f64) -> bool {

@@ -275,6 +275,18 @@ impl Medium {
         if e < 0.0 && m < 0.0 { -size } else { size }
     }
 
+    /// The difference of its largest and its least index over the principal axes, of the real parts; 0 if it is
+    /// isotropic.
+    #[must_use]
+    pub fn birefringence(&self) -> f64 {
+        if self.is_isotropic() {
+            return 0.0;
+        }
+        let tensors = [self.real.permittivity, self.real.permeability];
+        let [e, m] = tensors.map(|tensor| principal_axes(&tensor).0.abs());
+        (e.max_element() * m.max_element()).sqrt() - (e.min_element() * m.min_element()).sqrt()
+    }
+
     /// The optic axis of a uniaxial medium, a unit vector of either sense.
     #[must_use]
     pub fn optic_axis(&self) -> Option<DVec3> {

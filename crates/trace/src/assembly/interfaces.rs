@@ -23,7 +23,7 @@ impl Interfaces {
                 Some(Region::Homogeneous(region)) => Some(&region.medium),
                 _ => None,
             },
-            FarSide::Seam(_) | FarSide::Conductor | FarSide::Opaque => None,
+            FarSide::Seam(_) | FarSide::Conductor | FarSide::Opaque | FarSide::Polarizer => None,
         };
         let between = |from: &Medium, far: FarSide, normal: DVec3| {
             Reflectionless::between(from, medium(far)?, normal)

@@ -154,7 +154,9 @@ impl Surface {
     /// The surface in the plane z = 0: nothing for the ends of a device.
     fn edge(&self) -> Option<Edge> {
         let points = match &self.shape {
-            Shape::Wall(wall) | Shape::Sheet(wall) => wall.ends().to_vec(),
+            Shape::Wall(wall) | Shape::Sheet(wall) | Shape::Polarizer { wall, .. } => {
+                wall.ends().to_vec()
+            }
             Shape::Convex(shape) => shape.around(),
             Shape::BallHole(sphere) => circle(sphere.radius),
             Shape::Round(cylinder) | Shape::RoundHole(cylinder) => circle(cylinder.radius),

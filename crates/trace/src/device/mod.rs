@@ -31,6 +31,7 @@ mod invisible_sphere;
 mod lenses;
 mod material_at;
 mod mirror_detour;
+mod polarizer;
 mod polygons;
 mod prisms;
 mod quasi_conformal_carpet;
@@ -235,6 +236,7 @@ catalogue! {
     lenses::FisheyeLens,
     fisheye_hemisphere::FisheyeHemisphere,
     mirror_detour::MirrorDetour,
+    polarizer::Polarizer,
     prisms::Prisms,
     graded::Graded,
     graded_box::GradedBox,

@@ -1,6 +1,6 @@
 //! What every device is made of: regions filled with media, and the surfaces that light outside of it meets.
 
-use super::{Convex, Region, Surface};
+use super::{Convex, Region, Shape, Surface};
 use glam::DVec3;
 use optics::geometry::{Extent, FloorCurve, Hole, Outline, Pose, Solid};
 
@@ -17,6 +17,8 @@ pub enum FarSide {
     Conductor,
     /// An opaque body: rays end on it.
     Opaque,
+    /// A polarizer: what its surface passes goes on through what is around the device.
+    Polarizer,
 }
 
 /// How two media meet at a surface.
@@ -204,6 +206,18 @@ impl Structure {
     #[must_use]
     pub fn is_opaque(&self) -> bool {
         self.hull.body.is_some() && self.regions.is_empty()
+    }
+
+    /// Whether it is a polarizer, which stands in air.
+    #[must_use]
+    pub fn polarizes(&self) -> bool {
+        self.surfaces.iter().any(|surface| surface.far == FarSide::Polarizer)
+    }
+
+    /// Where the surface of that number lies, if there is one.
+    #[must_use]
+    pub fn shape(&self, surface: u16) -> Option<&Shape> {
+        self.surfaces.get(usize::from(surface)).map(|surface| &surface.shape)
     }
 
     /// The nearest surface that a ray outside meets, from zero on, `departed` being the one it has just left.

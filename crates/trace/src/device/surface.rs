@@ -26,6 +26,13 @@ pub enum Shape {
     Wall(Wall),
     /// A plane piece that extends along z, met from both sides.
     Sheet(Wall),
+    /// A polarizing plane piece that extends along z, met from both sides.
+    Polarizer {
+        /// The piece.
+        wall: Wall,
+        /// The unit vector in its plane along which light passes.
+        axis: DVec3,
+    },
     /// A flat end of a polygonal prism.
     Cap(Cap),
     /// A flat end of a round cylinder.
@@ -135,7 +142,7 @@ impl Surface {
             _ if departed => return None,
             Shape::Wall(wall) if direction.dot(wall.normal) >= 0.0 => return None,
             Shape::Wall(wall) => (wall.hit(origin, direction)?, wall.normal),
-            Shape::Sheet(wall) => {
+            Shape::Sheet(wall) | Shape::Polarizer { wall, .. } => {
                 let facing = -direction.dot(wall.normal);
                 (wall.hit(origin, direction)?, wall.normal * facing.signum())
             }

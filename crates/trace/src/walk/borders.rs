@@ -139,7 +139,8 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
             Ahead::Body(number) => (number, FarSide::Region(0)),
         };
         Some(match far {
-            FarSide::Outside => Destination::Air,
+            // Between a medium and a polarizer there is a gap of air, however thin.
+            FarSide::Outside | FarSide::Polarizer => Destination::Air,
             FarSide::Conductor => Destination::Conductor,
             FarSide::Opaque => Destination::End(LeafEnd::Body(number)),
             FarSide::Region(region) | FarSide::Seam(region) => {

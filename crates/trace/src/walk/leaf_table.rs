@@ -1,7 +1,7 @@
 //! Many rays at once, their leaves side by side in arrays.
 
 use super::neighbours::side_by_side;
-use super::{FourTracers, Launch, Leaf, Limits, Outcome, Tracer};
+use super::{Coherence, FourTracers, Launch, Leaf, Limits, Outcome, Tracer};
 use crate::assembly::Assembly;
 use num_complex::Complex64;
 use std::error::Error;
@@ -23,6 +23,21 @@ impl Stopped {
     #[must_use]
     pub fn is_in(error: &(dyn Error + 'static)) -> bool {
         std::iter::successors(Some(error), |error| (**error).source()).any(<dyn Error>::is::<Self>)
+    }
+}
+
+/// How rays are followed, and what becomes of their leaves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RaySettings {
+    /// How far branches are followed.
+    pub limits: Limits,
+    /// The light whose leaves of one direction are added as fields; absent: each leaf stays as it is.
+    pub coherence: Option<Coherence>,
+}
+
+impl From<Limits> for RaySettings {
+    fn from(limits: Limits) -> Self {
+        Self { limits, coherence: None }
     }
 }
 
@@ -59,21 +74,22 @@ impl LeafTable {
     /// The error of the first ray that `launch` refuses, or [`Stopped`].
     pub fn trace<E: From<Stopped> + Send>(
         assembly: &Assembly,
-        limits: Limits,
+        settings: impl Into<RaySettings>,
         count: usize,
         launch: &(impl Fn(usize) -> Result<Launch<1>, E> + Sync),
         done: &(dyn Fn(u64) + Sync),
         stop: &AtomicBool,
     ) -> Result<Self, E> {
+        let settings = settings.into();
         let size = (count / (BATCHES * crate::parallel::threads())).clamp(BATCH[0], BATCH[1]);
         let batches = crate::parallel::map(count.div_ceil(size), |batch| {
             if stop.load(Ordering::Relaxed) {
                 return Err(E::from(Stopped));
             }
-            let mut tracers = FourTracers::new(&Tracer::<1>::new(assembly, limits));
+            let mut tracers = FourTracers::new(&Tracer::<1>::new(assembly, settings.limits));
             let rays = batch * size..count.min((batch + 1) * size);
             let number = rays.len() as u64;
-            let table = Self::of_batch(&mut tracers, rays, launch)?;
+            let table = Self::of_batch(&mut tracers, settings.coherence, rays, launch)?;
             done(number);
             Ok(table)
         });
@@ -87,6 +103,7 @@ impl LeafTable {
 
     fn of_batch<E>(
         tracers: &mut FourTracers<'_, 1>,
+        coherence: Option<Coherence>,
         rays: std::ops::Range<usize>,
         launch: &impl Fn(usize) -> Result<Launch<1>, E>,
     ) -> Result<Self, E> {
@@ -99,7 +116,10 @@ impl LeafTable {
             for (ray, tracer) in four.iter().zip(&tracers.tracers) {
                 let (leaves, outcome) = tracer.traced();
                 let first = all_leaves.len();
-                all_leaves.extend_from_slice(leaves);
+                match &coherence {
+                    Some(coherence) => all_leaves.extend(coherence.gather(leaves)),
+                    None => all_leaves.extend_from_slice(leaves),
+                }
                 ended.push((*ray, first..all_leaves.len(), *outcome));
             }
         }

@@ -6,6 +6,7 @@
 
 mod borders;
 mod branch;
+mod coherence;
 mod event;
 mod first_face;
 mod four;
@@ -17,9 +18,10 @@ mod start;
 mod surfaces;
 mod tracer;
 
+pub use coherence::{Coherence, Pair, Way};
 pub use first_face::FirstFace;
 pub use four::FourTracers;
 pub use leaf::{Leaf, LeafEnd, Outcome, TraceStats};
-pub use leaf_table::{LeafTable, Stopped};
+pub use leaf_table::{LeafTable, RaySettings, Stopped};
 pub use recorder::{Line, PathRecorder, PathSegment, lines};
 pub use tracer::{Launch, Limits, Tracer};

@@ -5,7 +5,7 @@ use super::branch::{Branch, Place};
 use super::event::Event;
 use super::{LeafEnd, PathRecorder, PathSegment, Tracer};
 use crate::assembly::{Ahead, DepartedSurface, slack_at};
-use crate::device::{Coating, FarSide, Passage, Region, SurfaceHit};
+use crate::device::{Coating, FarSide, Passage, Region, Shape, SurfaceHit};
 use glam::DVec3;
 use optics::interface::{
     OutgoingWave, OutgoingWaves, Reflectionless, Side, reflect_at_conductor, split_down_to,
@@ -13,6 +13,7 @@ use optics::interface::{
 };
 use optics::medium::{Medium, ModeKind};
 use optics::propagation::PathPoint;
+use optics::wave::ComplexVector;
 
 /// The square of the largest wave vector that is followed, a billion times the largest index of refraction. Light
 /// that runs into a corner of a hyperbolic medium gets there: each face makes it shorter, and it never comes out.
@@ -118,7 +119,37 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 branch.departed = Some(DepartedSurface::met(number, hit));
                 true
             }
+            FarSide::Polarizer => self.polarize(branch, number, hit),
         }
+    }
+
+    /// Takes a branch in air through a polarizer, which absorbs the rest.
+    fn polarize(&mut self, branch: &mut Branch<N>, number: u16, hit: &SurfaceHit) -> bool {
+        let device = self.assembly.device(number);
+        let Some(Shape::Polarizer { axis, .. }) = device.structure.shape(hit.surface) else {
+            return self.lose(branch.power);
+        };
+        let axis = device.pose.vector_to_world(*axis);
+        let across = axis - branch.direction * axis.dot(branch.direction);
+        // Light that runs along the axis has no field along it.
+        let field = across.normalize_or_zero();
+        let amplitudes = branch.electric.map(|electric| electric.dot_real(field));
+        let wave = OutgoingWave {
+            side: Side::Transmitted,
+            mode: branch.mode,
+            wave_vector: branch.wave_vector,
+            attenuation: branch.attenuation,
+            direction: branch.direction,
+            electric: amplitudes.map(|amplitude| ComplexVector::from(field).scaled(amplitude)),
+            power: amplitudes.map(|amplitude| amplitude.norm_sqr()),
+        };
+        for (i, absorbed) in self.outcome.absorbed.iter_mut().enumerate() {
+            *absorbed += branch.power[i] - wave.power[i];
+        }
+        let event = Event::Surface { device: number, surface: hit.surface };
+        self.go_on(branch, &[wave], event, |branch, _| {
+            branch.departed = Some(DepartedSurface::met(number, hit));
+        })
     }
 
     /// Whether a branch in a region starts as several waves that then part: each goes on alone.
@@ -235,6 +266,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 None => self.refract(branch, medium, (number, next), &interface(), |_| ()),
             },
             FarSide::Opaque => self.end(branch, LeafEnd::Body(number)),
+            // Polarizers have no region that could end there.
+            FarSide::Polarizer => self.lose(branch.power),
             FarSide::Outside => {
                 // It has met no surface from outside, which it may meet next unless the device is convex.
                 let departed = device.departed(number, None);

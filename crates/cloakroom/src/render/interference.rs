@@ -1,0 +1,143 @@
+//! Which leaves of a camera ray interfere: those that see the same thing, by ways of about the same length.
+
+use super::prepared_scene::PreparedScene;
+use crate::scene::CameraRay;
+use crate::trace::{Leaf, LeafEnd, Pair, Way};
+use glam::DVec3;
+
+/// What a leaf sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sight {
+    Photograph,
+    Body(u16),
+    Surroundings,
+}
+
+/// The pairs of leaves of a camera ray that interfere. It keeps its memory from ray to ray.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Interference {
+    /// The pairs.
+    pub pairs: Vec<Pair>,
+    /// What each leaf's power is multiplied by, as one of those that it interferes with; none without pairs.
+    gain: Vec<f64>,
+    /// The distance of each leaf to the photograph, cm, and its light.
+    pub seen: Vec<(Option<f64>, [f64; 3])>,
+    ways: Vec<Way>,
+    /// For each leaf the power of the cluster of which it is the first.
+    alone: Vec<f64>,
+    /// For each leaf, one that it interferes with: they lead to the first of a cluster.
+    clusters: Vec<usize>,
+}
+
+impl Interference {
+    /// Finds the pairs of a ray, what each leaf sees being known; `across` is its neighbour one pixel away, and
+    /// `detected` the power of a leaf.
+    pub fn find<const N: usize>(
+        &mut self,
+        prepared: &PreparedScene<'_>,
+        leaves: &[Leaf<N>],
+        [here, across]: [&CameraRay; 2],
+        detected: impl Fn(&Leaf<N>) -> f64,
+    ) {
+        self.pairs.clear();
+        if leaves.len() < 2 {
+            return;
+        }
+        for (first, leaf) in leaves.iter().enumerate() {
+            let distance = |number: usize| self.seen[number].0;
+            let sight = sight(leaf, distance(first));
+            let same = |number: &usize| self::sight(&leaves[*number], distance(*number)) == sight;
+            if (0..first).any(|number| same(&number)) {
+                continue;
+            }
+            let group = || (first..leaves.len()).filter(same);
+            let strongest = group().fold(first, |strongest, number| {
+                let louder = detected(&leaves[number]) > detected(&leaves[strongest]);
+                if louder { number } else { strongest }
+            });
+            let far = &leaves[strongest];
+            let point = seen(far, distance(strongest));
+            let turned = across.direction - here.direction;
+            let moved = across.origin - here.origin;
+            let way = |number: usize| {
+                let leaf = &leaves[number];
+                let seen = seen(leaf, distance(number));
+                let phase_length = match sight {
+                    Sight::Surroundings => leaf.phase_length(far.direction, DVec3::ZERO),
+                    _ => leaf.phase_length(leaf.direction, point),
+                };
+                Way { leaf: number, seen, phase_length }
+            };
+            self.ways.clear();
+            self.ways.extend(group().filter(|number| leaves[*number].is_in_air()).map(way));
+            let width = match sight {
+                Sight::Surroundings => turned.length(),
+                _ => (turned * point.distance(here.origin) + moved).length(),
+            };
+            prepared.coherence.add_pairs(&mut self.ways, width, &mut self.pairs);
+        }
+    }
+
+    /// What the power of a leaf is multiplied by.
+    pub fn gain(&self, leaf: usize) -> f64 {
+        self.gain.get(leaf).copied().unwrap_or(1.0)
+    }
+
+    /// Works out the gains, `detected` being the power of a leaf and `together` what a pair adds to that of its leaves.
+    pub fn share_out<const N: usize>(
+        &mut self,
+        leaves: &[Leaf<N>],
+        detected: impl Fn(&Leaf<N>) -> f64,
+        together: impl Fn(&Pair) -> f64,
+    ) {
+        self.gain.clear();
+        if self.pairs.is_empty() {
+            return;
+        }
+        self.clusters.clear();
+        self.clusters.extend(0..leaves.len());
+        for pair in &self.pairs {
+            let [one, other] = pair.leaves.map(|leaf| first(&self.clusters, leaf));
+            self.clusters[one.max(other)] = one.min(other);
+        }
+        self.gain.resize(leaves.len(), 0.0);
+        // The sum over each cluster stands with its first leaf.
+        for (number, leaf) in leaves.iter().enumerate() {
+            self.gain[first(&self.clusters, number)] += detected(leaf);
+        }
+        self.alone.clone_from(&self.gain);
+        for pair in &self.pairs {
+            self.gain[first(&self.clusters, pair.leaves[0])] += together(pair);
+        }
+        for number in (0..leaves.len()).rev() {
+            let first = first(&self.clusters, number);
+            // Rounding may leave less than nothing of light that goes out.
+            self.gain[number] = (self.gain[first] / self.alone[first]).max(0.0);
+        }
+    }
+}
+
+/// The first leaf of a cluster.
+fn first(clusters: &[usize], mut leaf: usize) -> usize {
+    while clusters[leaf] != leaf {
+        leaf = clusters[leaf];
+    }
+    leaf
+}
+
+fn sight<const N: usize>(leaf: &Leaf<N>, screen: Option<f64>) -> Sight {
+    match (leaf.end, screen) {
+        (LeafEnd::Body(body), _) => Sight::Body(body),
+        (_, Some(_)) => Sight::Photograph,
+        (_, None) => Sight::Surroundings,
+    }
+}
+
+/// The point that a leaf sees, or its direction where it goes away.
+fn seen<const N: usize>(leaf: &Leaf<N>, screen: Option<f64>) -> DVec3 {
+    match (leaf.end, screen) {
+        (LeafEnd::Body(_), _) => leaf.position,
+        (_, Some(distance)) => leaf.position + leaf.direction * distance,
+        (_, None) => leaf.direction,
+    }
+}

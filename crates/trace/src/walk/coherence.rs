@@ -1,0 +1,196 @@
+//! Leaves that see the same thing add as fields where their paths are alike, as powers where they are not.
+//!
+//! The coherency matrix of the light that arrives from an incoherent source is the sum over pairs of ways i and j of
+//! g_ij w_ij (E_i · E_j*) exp(i k0 (l_i - l_j)), with their fields E and phase lengths l. A Gaussian line gives
+//! g = exp(-(π (l_i - l_j)/L)²/(4 ln 2)) with the coherence length L = λ²/Δλ; w is a Gaussian of the distance between
+//! the places that they see. Both kernels are positive definite: there is no negative light.
+
+use super::{Leaf, LeafEnd};
+use glam::DVec3;
+use num_complex::Complex64;
+use optics::wave::ComplexVector;
+use std::f64::consts::{LN_2, PI, TAU};
+
+/// Below this, a pair of ways does not count: its fields add as powers.
+const LEAST_DEGREE: f64 = 1e-12;
+
+/// Directions that differ by no more than this are one.
+const SAME_DIRECTION: f64 = 1e-9;
+
+/// Light with a Gaussian line, or of one wavelength.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coherence {
+    /// k0, 1/cm.
+    wave_number: f64,
+    /// L, cm; infinite for one wavelength.
+    length: f64,
+}
+
+/// A way of light to a source.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    /// Its number among the leaves.
+    pub leaf: usize,
+    /// What it sees: a place, cm, or a direction.
+    pub seen: DVec3,
+    /// The optical path to the point at which the ways are compared, cm.
+    pub phase_length: f64,
+}
+
+/// Two ways that interfere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// The numbers of their leaves.
+    pub leaves: [usize; 2],
+    /// g w exp(i k0 (l_0 - l_1)).
+    pub degree: Complex64,
+}
+
+impl Coherence {
+    /// Light of a mean wavelength in vacuum and a bandwidth (full width at half maximum), nm.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use cloakroom_trace::walk::Coherence;
+    /// let light = Coherence::new(550.0, 100.0);
+    /// assert!((light.length() - 3.025e-4).abs() < 1e-12);
+    /// assert!(light.degree(2.0 * light.length()).norm() < 1e-5);
+    /// assert_eq!(Coherence::new(550.0, 0.0).length(), f64::INFINITY);
+    /// ```
+    #[must_use]
+    pub fn new(wavelength_nm: f64, bandwidth_nm: f64) -> Self {
+        const CM_PER_NM: f64 = 1e-7;
+        let wavelength = wavelength_nm * CM_PER_NM;
+        Self { wave_number: TAU / wavelength, length: wavelength * (wavelength_nm / bandwidth_nm) }
+    }
+
+    /// The coherence length L, cm.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// The largest difference of phase lengths at which light interferes, cm.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.length * (-4.0 * LN_2 * LEAST_DEGREE.ln()).sqrt() / PI
+    }
+
+    /// g exp(i k0 l) for a difference l of phase lengths, cm.
+    #[must_use]
+    pub fn degree(&self, difference: f64) -> Complex64 {
+        let share = PI * difference / self.length;
+        let visibility = (-share * share / (4.0 * LN_2)).exp();
+        Complex64::from_polar(visibility, self.wave_number * difference)
+    }
+
+    /// Adds the pairs of ways that interfere; `width` is that of w, the standard deviation of the distance between what
+    /// they see. The order of the ways is changed.
+    pub fn add_pairs(&self, ways: &mut [Way], width: f64, pairs: &mut Vec<Pair>) {
+        ways.sort_by(|a, b| a.phase_length.total_cmp(&b.phase_length));
+        let reach = self.reach();
+        for (i, one) in ways.iter().enumerate() {
+            for other in &ways[i + 1..] {
+                let difference = other.phase_length - one.phase_length;
+                if difference.is_nan() || difference > reach {
+                    break;
+                }
+                let apart = (other.seen - one.seen).length() / width;
+                // Two that see the same point do so however narrow the width is.
+                let together =
+                    if one.seen == other.seen { 1.0 } else { (-0.5 * apart * apart).exp() };
+                let degree = self.degree(-difference) * together;
+                if degree.norm() > LEAST_DEGREE {
+                    pairs.push(Pair { leaves: [one.leaf, other.leaf], degree });
+                }
+            }
+        }
+    }
+
+    /// Adds leaves of one direction and one end as fields, as they would arrive in the far field: one leaf each, at the
+    /// place of the strongest. Its electric field is that of the mean wavelength, scaled to its power.
+    #[must_use]
+    pub fn gather(&self, leaves: &[Leaf<1>]) -> Vec<Leaf<1>> {
+        let mut order: Vec<usize> = (0..leaves.len()).collect();
+        order.sort_by(|a, b| leaves[*b].power[0].total_cmp(&leaves[*a].power[0]));
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for number in order {
+            let leaf = &leaves[number];
+            let same = |group: &&mut Vec<usize>| {
+                let first = &leaves[group[0]];
+                let turned = (first.direction - leaf.direction).length();
+                turned <= SAME_DIRECTION && first.end == leaf.end && leaf.is_in_air()
+            };
+            match groups.iter_mut().find(same) {
+                Some(group) => group.push(number),
+                None => groups.push(vec![number]),
+            }
+        }
+        let (mut ways, mut pairs) = (Vec::new(), Vec::new());
+        let gathered = groups.into_iter().map(|group| {
+            let first = leaves[group[0]];
+            ways.clear();
+            pairs.clear();
+            ways.extend(group.iter().map(|&leaf| Way {
+                leaf,
+                seen: DVec3::ZERO,
+                phase_length: leaves[leaf].phase_length(first.direction, first.position),
+            }));
+            self.add_pairs(&mut ways, 1.0, &mut pairs);
+            let alone: f64 = group.iter().map(|leaf| leaves[*leaf].power[0]).sum();
+            let together = |pair: &Pair| pair.power(leaves, 0);
+            // Of light that goes out, rounding may leave less than nothing.
+            let power = (alone + pairs.iter().map(together).sum::<f64>()).max(0.0);
+            let start = first.phase_length(first.direction, first.position);
+            let field = ways.iter().fold(ComplexVector::ZERO, |sum, way| {
+                let phase = Complex64::cis(self.wave_number * (way.phase_length - start));
+                sum + leaves[way.leaf].electric[0].scaled(phase)
+            });
+            let size = field.norm_squared();
+            let electric = match group.len() {
+                1 => first.electric[0],
+                _ if size > 0.0 => field * (power / size).sqrt(),
+                _ => field,
+            };
+            Leaf { power: [power], electric: [electric], ..first }
+        });
+        gathered.collect()
+    }
+}
+
+impl Pair {
+    /// What the pair adds to the sum of the powers of its leaves, for one of the launched polarizations.
+    #[must_use]
+    pub fn power<const N: usize>(&self, leaves: &[Leaf<N>], polarization: usize) -> f64 {
+        let [one, other] = self.leaves.map(|leaf| leaves[leaf].electric[polarization]);
+        2.0 * (self.degree * one.dot(other.conj())).re
+    }
+
+    /// What the pair adds to the element of the coherency matrix between the first two launched polarizations.
+    #[must_use]
+    pub fn coherency<const N: usize>(&self, leaves: &[Leaf<N>]) -> Complex64 {
+        let [[a, b], [c, d]] =
+            self.leaves.map(|leaf| [leaves[leaf].electric[0], leaves[leaf].electric[1]]);
+        self.degree * a.dot(d.conj()) + self.degree.conj() * c.dot(b.conj())
+    }
+}
+
+impl<const N: usize> Leaf<N> {
+    /// The optical path to the plane through a point across its direction, cm; to one far off if `direction` is that of
+    /// a way to there.
+    #[must_use]
+    pub fn phase_length(&self, direction: DVec3, point: DVec3) -> f64 {
+        self.optical_path + direction.dot(point - self.position)
+    }
+
+    /// Whether it runs on through air or has ended in air, where |E|² is its power.
+    #[must_use]
+    pub fn is_in_air(&self) -> bool {
+        const ROUNDING: f64 = 1e-6;
+        let same = |i: usize| {
+            (self.electric[i].norm_squared() - self.power[i]).abs() <= ROUNDING * self.power[i]
+        };
+        self.end == LeafEnd::Away || (0..N).all(same)
+    }
+}
