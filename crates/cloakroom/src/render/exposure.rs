@@ -70,8 +70,8 @@ pub(super) fn expose<const N: usize>(
             }
         }
     }
-    let rays = [&here.ray, &across.ray];
-    interference.find(prepared, here.leaves, rays, |leaf| detection.detected(&leaf.power));
+    interference
+        .find(prepared, here.leaves, here.ray.origin, |leaf| detection.detected(&leaf.power));
     interfere(detection, here.leaves, interference, pixel);
     for (number, leaf) in here.leaves.iter().enumerate() {
         let power = detection.detected(&leaf.power) * interference.gain(number);
@@ -109,6 +109,8 @@ fn interfere<const N: usize>(
         let [one, other] = pair.leaves.map(|leaf| interference.seen[leaf].1);
         let light = std::array::from_fn(|color| (one[color] * other[color]).sqrt());
         let power = power(pair);
+        // What some leaves have more of, others have less; the rest belongs to branches that were pruned.
+        pixel.pruned -= detection.detected(&power);
         add(&mut pixel.image, detection.detected(&power), light);
         if detection.separate {
             for (i, sum) in [&mut pixel.horizontal, &mut pixel.vertical].into_iter().enumerate() {

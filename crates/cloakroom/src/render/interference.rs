@@ -1,7 +1,6 @@
 //! Which leaves of a camera ray interfere: those that see the same thing, by ways of about the same length.
 
 use super::prepared_scene::PreparedScene;
-use crate::scene::CameraRay;
 use crate::trace::{Leaf, LeafEnd, Pair, Way};
 use glam::DVec3;
 
@@ -30,13 +29,13 @@ pub(super) struct Interference {
 }
 
 impl Interference {
-    /// Finds the pairs of a ray, what each leaf sees being known; `across` is its neighbour one pixel away, and
-    /// `detected` the power of a leaf.
+    /// Finds the pairs of a ray that starts at `camera`, what each leaf sees being known; `detected` is the power of a
+    /// leaf.
     pub fn find<const N: usize>(
         &mut self,
         prepared: &PreparedScene<'_>,
         leaves: &[Leaf<N>],
-        [here, across]: [&CameraRay; 2],
+        camera: DVec3,
         detected: impl Fn(&Leaf<N>) -> f64,
     ) {
         self.pairs.clear();
@@ -57,8 +56,6 @@ impl Interference {
             });
             let far = &leaves[strongest];
             let point = seen(far, distance(strongest));
-            let turned = across.direction - here.direction;
-            let moved = across.origin - here.origin;
             let way = |number: usize| {
                 let leaf = &leaves[number];
                 let seen = seen(leaf, distance(number));
@@ -71,8 +68,8 @@ impl Interference {
             self.ways.clear();
             self.ways.extend(group().filter(|number| leaves[*number].is_in_air()).map(way));
             let width = match sight {
-                Sight::Surroundings => turned.length(),
-                _ => (turned * point.distance(here.origin) + moved).length(),
+                Sight::Surroundings => prepared.pixel.angle,
+                _ => prepared.pixel.width_at(point.distance(camera)),
             };
             prepared.coherence.add_pairs(&mut self.ways, width, &mut self.pairs);
         }

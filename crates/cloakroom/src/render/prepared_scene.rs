@@ -5,7 +5,7 @@ use super::body_surface::BodySurface;
 use crate::assembly::{Assembly, MOST_DEVICES, Placed, Screen};
 use crate::keys::KeyError;
 use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
-use crate::scene::{Projection, Scene};
+use crate::scene::{Camera, Projection, Scene};
 use crate::trace::{Coherence, Limits, RaySettings};
 use std::sync::Arc;
 
@@ -151,6 +151,29 @@ const INTERFERENCE_MIN_POWER: f64 = 1e-8;
 /// How exactly paths are known where leaves can interfere, as a share of the wavelength.
 const INTERFERENCE_TOLERANCE: f64 = 1e-3;
 
+/// The width of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PixelWidth {
+    /// The angle between the rays of two neighbours.
+    pub angle: f64,
+    /// How far apart they start, cm.
+    start: f64,
+}
+
+impl PixelWidth {
+    fn of(camera: &Camera) -> Self {
+        let [x, y] = camera.resolution.map(|pixels| 0.5 * f64::from(pixels));
+        let (one, other) = (camera.ray(x, y), camera.ray(x + 1.0, y));
+        let angle = (other.direction - one.direction).length();
+        Self { angle, start: (other.origin - one.origin).length() }
+    }
+
+    /// At a distance from the camera, cm.
+    pub fn width_at(self, distance: f64) -> f64 {
+        self.start + self.angle * distance
+    }
+}
+
 /// The limits of a picture: closer ones than those of the scene where its devices make light interfere.
 fn limits_in(scene: &Scene, assembly: &Assembly) -> Limits {
     const CM_PER_NM: f64 = 1e-7;
@@ -206,6 +229,8 @@ pub struct PreparedScene<'s> {
     pub limits: Limits,
     /// How light interferes.
     pub coherence: Coherence,
+    /// How wide a pixel is in the middle of the picture.
+    pub(super) pixel: PixelWidth,
     /// The rectangle in space on which the photograph is.
     pub screen: Screen,
     /// The photograph.
@@ -264,7 +289,18 @@ impl<'s> PreparedScene<'s> {
             assembly.devices().iter().enumerate().map(surface).collect::<Result<_, _>>()?;
         let (limits, coherence) = (limits_in(scene, &assembly), coherence(scene));
         images.keep(&scene.body_images().collect::<Vec<_>>());
-        Ok(Self { scene, assembly, limits, coherence, screen, image, surroundings, body_surfaces })
+        let pixel = PixelWidth::of(&scene.camera);
+        Ok(Self {
+            scene,
+            assembly,
+            limits,
+            coherence,
+            pixel,
+            screen,
+            image,
+            surroundings,
+            body_surfaces,
+        })
     }
 
     /// The surface of an opaque body.

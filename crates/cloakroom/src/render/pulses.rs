@@ -5,7 +5,7 @@ use super::exposure::{empty_time_of_flight, time_of_flight};
 use super::interference::Interference;
 use super::pixel::Pixel;
 use super::{ChannelKind, PreparedScene};
-use crate::trace::{Leaf, Tracer};
+use crate::trace::{Leaf, Pair, Tracer};
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
 use serde::Serialize;
@@ -111,10 +111,11 @@ fn list<const N: usize>(
     let sights = leaves.iter().map(|leaf| (leaf.distance_to(&prepared.screen), [0.0; 3]));
     interference.seen.extend(sights);
     let detected = |leaf: &Leaf<N>| detection.detected(&leaf.power);
-    interference.find(prepared, leaves, [&ray, &camera.ray(x + 1.0, y)], detected);
-    interference.share_out(leaves, detected, |pair| {
-        detection.detected(&std::array::from_fn(|i| pair.power(leaves, i)))
-    });
+    interference.find(prepared, leaves, ray.origin, detected);
+    let together =
+        |pair: &Pair| detection.detected(&std::array::from_fn(|i| pair.power(leaves, i)));
+    interference.share_out(leaves, detected, together);
+    let moved: f64 = interference.pairs.iter().map(together).sum();
     let (mut arrivals, mut escaped, mut ended) = (Vec::new(), 0.0, 0.0);
     for (number, leaf) in leaves.iter().enumerate() {
         let power = detected(leaf) * interference.gain(number);
@@ -155,7 +156,8 @@ fn list<const N: usize>(
         time_of_flight_spread_ns: number(ChannelKind::TimeOfFlightSpread),
         escaped,
         absorbed: detection.detected(&outcome.absorbed) + ended,
-        pruned: detection.detected(&outcome.pruned),
+        // What some leaves have more of, others have less; the rest belongs to branches that were pruned.
+        pruned: detection.detected(&outcome.pruned) - moved,
     }
 }
 

@@ -127,35 +127,55 @@ impl Coherence {
                 None => groups.push(vec![number]),
             }
         }
-        let (mut ways, mut pairs) = (Vec::new(), Vec::new());
         let gathered = groups.into_iter().map(|group| {
             let first = leaves[group[0]];
-            ways.clear();
-            pairs.clear();
-            ways.extend(group.iter().map(|&leaf| Way {
-                leaf,
-                seen: DVec3::ZERO,
-                phase_length: leaves[leaf].phase_length(first.direction, first.position),
-            }));
-            self.add_pairs(&mut ways, 1.0, &mut pairs);
-            let alone: f64 = group.iter().map(|leaf| leaves[*leaf].power[0]).sum();
-            let together = |pair: &Pair| pair.power(leaves, 0);
-            // Of light that goes out, rounding may leave less than nothing.
-            let power = (alone + pairs.iter().map(together).sum::<f64>()).max(0.0);
-            let start = first.phase_length(first.direction, first.position);
-            let field = ways.iter().fold(ComplexVector::ZERO, |sum, way| {
-                let phase = Complex64::cis(self.wave_number * (way.phase_length - start));
-                sum + leaves[way.leaf].electric[0].scaled(phase)
+            if group.len() == 1 {
+                return first;
+            }
+            let mut waves: Vec<(f64, ComplexVector)> = (group.iter())
+                .map(|number| &leaves[*number])
+                .map(|leaf| (leaf.phase_length(first.direction, first.position), leaf))
+                .map(|(length, leaf)| (length - first.optical_path, leaf.electric[0]))
+                .collect();
+            waves.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let power = self.power(&mut waves);
+            let field = waves.iter().fold(ComplexVector::ZERO, |sum, (length, field)| {
+                sum + field.scaled(Complex64::cis(self.wave_number * length))
             });
             let size = field.norm_squared();
-            let electric = match group.len() {
-                1 => first.electric[0],
-                _ if size > 0.0 => field * (power / size).sqrt(),
-                _ => field,
-            };
+            let electric = if size > 0.0 { field * (power / size).sqrt() } else { field };
             Leaf { power: [power], electric: [electric], ..first }
         });
         gathered.collect()
+    }
+}
+
+impl Coherence {
+    /// The power of waves of one direction, by rising phase length (cm). Those of the same length become one: of the many
+    /// ways through plates, many are as long.
+    fn power(&self, waves: &mut Vec<(f64, ComplexVector)>) -> f64 {
+        const SAME_LENGTH: f64 = 1e-10;
+        waves.dedup_by(|(length, field), (first, sum)| {
+            let same = *length - *first <= SAME_LENGTH * self.length;
+            if same {
+                let phase = Complex64::cis(self.wave_number * (*length - *first));
+                *sum = *sum + field.scaled(phase);
+            }
+            same
+        });
+        let mut power = 0.0;
+        for (i, (length, field)) in waves.iter().enumerate() {
+            power += field.norm_squared();
+            for (longer, other) in &waves[i + 1..] {
+                let difference = longer - length;
+                if difference.is_nan() || difference > self.reach() {
+                    break;
+                }
+                power += 2.0 * (self.degree(difference) * other.dot(field.conj())).re;
+            }
+        }
+        // Of light that goes out, rounding may leave less than nothing.
+        power.max(0.0)
     }
 }
 
