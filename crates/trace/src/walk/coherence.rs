@@ -5,6 +5,7 @@
 //! g = exp(-(π (l_i - l_j)/L)²/(4 ln 2)) with the coherence length L = λ²/Δλ; w is a Gaussian of the distance between
 //! the places that they see. Both kernels are positive definite: there is no negative light.
 
+use super::branch::Branch;
 use super::{Leaf, LeafEnd};
 use glam::DVec3;
 use num_complex::Complex64;
@@ -13,6 +14,9 @@ use std::f64::consts::{LN_2, PI, TAU};
 
 /// Below this, a pair of ways does not count: its fields add as powers.
 const LEAST_DEGREE: f64 = 1e-12;
+
+/// Phase lengths that differ by no more than this, as a share of the coherence length, are one.
+const SAME_LENGTH: f64 = 1e-10;
 
 /// Directions that differ by no more than this are one.
 const SAME_DIRECTION: f64 = 1e-9;
@@ -154,7 +158,6 @@ impl Coherence {
     /// The power of waves of one direction, by rising phase length (cm). Those of the same length become one: of the many
     /// ways through plates, many are as long.
     fn power(&self, waves: &mut Vec<(f64, ComplexVector)>) -> f64 {
-        const SAME_LENGTH: f64 = 1e-10;
         waves.dedup_by(|(length, field), (first, sum)| {
             let same = *length - *first <= SAME_LENGTH * self.length;
             if same {
@@ -176,6 +179,44 @@ impl Coherence {
         }
         // Of light that goes out, rounding may leave less than nothing.
         power.max(0.0)
+    }
+}
+
+/// Wave vectors that differ by no more than this are one.
+const SAME_WAVE: f64 = 1e-11;
+
+/// Branches of one wave that are no further apart than this run together, cm.
+const BESIDE: f64 = 5e-3;
+
+impl Coherence {
+    /// Adds the field of another branch to one that is the same plane wave, of the same phase length; whether it is.
+    pub(super) fn join<const N: usize>(&self, branch: &mut Branch<N>, other: &Branch<N>) -> bool {
+        let apart = branch.position - other.position;
+        let length = other.optical_path - branch.optical_path + branch.wave_vector.dot(apart);
+        let same = |a: DVec3, b: DVec3| (a - b).abs().max_element() <= SAME_WAVE;
+        let together = branch.place == other.place
+            && branch.mode == other.mode
+            && branch.departed == other.departed
+            && apart.length() <= BESIDE
+            && length.abs() <= SAME_LENGTH * self.length
+            && same(branch.wave_vector, other.wave_vector)
+            && same(branch.attenuation, other.attenuation);
+        if together {
+            let phase = Complex64::cis(self.wave_number * length);
+            for i in 0..N {
+                // Power is the square of the field but for what is the same in both.
+                let scale = if branch.power[i] > other.power[i] {
+                    branch.power[i] / branch.electric[i].norm_squared()
+                } else {
+                    other.power[i] / other.electric[i].norm_squared()
+                };
+                branch.electric[i] = branch.electric[i] + other.electric[i].scaled(phase);
+                let power = scale * branch.electric[i].norm_squared();
+                branch.power[i] = if power.is_finite() { power } else { 0.0 };
+                branch.survives_alone[i] |= other.survives_alone[i];
+            }
+        }
+        together
     }
 }
 

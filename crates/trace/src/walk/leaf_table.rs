@@ -86,7 +86,11 @@ impl LeafTable {
             if stop.load(Ordering::Relaxed) {
                 return Err(E::from(Stopped));
             }
-            let mut tracers = FourTracers::new(&Tracer::<1>::new(assembly, settings.limits));
+            let tracer = Tracer::<1>::new(assembly, settings.limits);
+            let mut tracers = FourTracers::new(&match settings.coherence {
+                Some(coherence) => tracer.joining(coherence),
+                None => tracer,
+            });
             let rays = batch * size..count.min((batch + 1) * size);
             let number = rays.len() as u64;
             let table = Self::of_batch(&mut tracers, settings.coherence, rays, launch)?;

@@ -1,7 +1,7 @@
 //! The walk along the ray tree.
 
 use super::branch::{Branch, Place, largest};
-use super::{Leaf, Outcome, PathRecorder};
+use super::{Coherence, Leaf, Outcome, PathRecorder};
 use crate::assembly::{Assembly, Screen};
 use crate::device::{InnerRay, Passage};
 use glam::DVec3;
@@ -42,6 +42,9 @@ const NO_POWER: f64 = 1e-24;
 /// The share of the power that rounding may take at an interface.
 const LEAK: f64 = 1e-10;
 
+/// Where fields may have cancelled, the least power of which that share is asked.
+const CANCELLED: f64 = 1e-6;
+
 /// Traces rays. It keeps its memory from ray to ray: make one a thread. `W` is who watches it, nobody as a rule.
 #[derive(Clone, Debug)]
 pub struct Tracer<'a, const N: usize, W = ()> {
@@ -55,6 +58,8 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     events: u32,
     threshold: f64,
     pub(super) recorder: W,
+    /// The light whose branches become one where they run together.
+    joining: Option<Coherence>,
     /// Whether the screen touches a device.
     pub(super) screen_touches: bool,
     /// Whether nothing touches what rays leave: there is one device at most, no body, and the screen is apart.
@@ -87,6 +92,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             assembly,
             limits: Limits { min_power: limits.min_power.max(NO_POWER), ..limits },
             screen: None,
+            joining: None,
             screen_touches: false,
             stands_alone: assembly.simple,
             waiting: Vec::new(),
@@ -110,6 +116,13 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let screen_touches = screen.touches(self.assembly);
         let stands_alone = self.assembly.simple && !screen_touches;
         Self { screen_touches, stands_alone, screen: Some(screen), ..self }
+    }
+
+    /// Makes one branch of those that run together, as fields: in plates the ways are many, and the waves few. Their
+    /// leaves are to be [gathered](Coherence::gather); power that interference moves between leaves is in no account.
+    #[must_use]
+    pub fn joining(self, coherence: Coherence) -> Self {
+        Self { joining: Some(coherence), ..self }
     }
 
     /// Follows one ray to the end of every branch: the leaves, in the order the tree was walked,
@@ -140,7 +153,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.waiting.clear();
         (self.events, self.threshold) = (0, self.limits.min_power);
         if !self.start(branch) {
-            *branch = self.waiting.pop()?;
+            *branch = self.next()?;
         }
         self.walk(branch)
     }
@@ -153,7 +166,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         passage: Option<&Passage>,
     ) -> Option<(u16, u16)> {
         if !self.pass(branch, region, passage) {
-            *branch = self.waiting.pop()?;
+            *branch = self.next()?;
         }
         self.walk(branch)
     }
@@ -194,9 +207,30 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                     }
                 }
             };
-            if !goes_on {
+            if self.joining.is_some() {
+                if goes_on {
+                    self.waiting.push(*branch);
+                }
+                *branch = self.next()?;
+            } else if !goes_on {
                 *branch = *self.waiting.last()?;
                 self.waiting.truncate(self.waiting.len() - 1);
+            }
+        }
+    }
+
+    /// The branch to be followed next: the last that waits, or where branches are joined the one of the shortest path
+    /// with all that run together with it.
+    fn next(&mut self) -> Option<Branch<N>> {
+        let Some(coherence) = self.joining else { return self.waiting.pop() };
+        loop {
+            let paths = self.waiting.iter().map(|branch| branch.optical_path).enumerate();
+            let (shortest, _) = paths.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+            let mut branch = self.waiting.swap_remove(shortest);
+            self.waiting.retain(|other| !coherence.join(&mut branch, other));
+            // Their fields may have cancelled.
+            if self.follows(branch.power) {
+                return Some(branch);
             }
         }
     }
@@ -234,9 +268,11 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             return;
         }
         let mut lost = false;
+        // Fields that have cancelled where branches were joined have few digits.
+        let least = if self.joining.is_some() { CANCELLED } else { 0.0 };
         for (i, power) in branch.power.iter().enumerate() {
             self.outcome.pruned[i] += weak[i];
-            if rest[i].abs() > LEAK * power {
+            if rest[i].abs() > LEAK * power.max(least) {
                 self.outcome.pruned[i] += rest[i];
                 lost = true;
             }
