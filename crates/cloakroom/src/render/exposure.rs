@@ -109,16 +109,11 @@ fn interfere<const N: usize>(
         let [one, other] = pair.leaves.map(|leaf| interference.seen[leaf].1);
         let light = std::array::from_fn(|color| (one[color] * other[color]).sqrt());
         let power = power(pair);
-        // What some leaves have more of, others have less; the rest belongs to branches that were pruned.
-        pixel.pruned -= detection.detected(&power);
         add(&mut pixel.image, detection.detected(&power), light);
         if detection.separate {
             for (i, sum) in [&mut pixel.horizontal, &mut pixel.vertical].into_iter().enumerate() {
-                if pair
-                    .leaves
-                    .iter()
-                    .all(|leaf| leaves[*leaf].survives_alone[i] || !detection.alone)
-                {
+                let survives = |leaf: &usize| leaves[*leaf].survives_alone[i];
+                if !detection.alone || pair.leaves.iter().all(survives) {
                     add(sum, power[i], light);
                 }
             }
@@ -132,7 +127,7 @@ fn interfere<const N: usize>(
             }
         }
     }
-    interference.share_out(
+    pixel.pruned -= interference.share_out(
         leaves,
         |leaf| detection.detected(&leaf.power),
         |pair| detection.detected(&power(pair)),

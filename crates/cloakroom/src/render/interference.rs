@@ -4,6 +4,9 @@ use super::prepared_scene::PreparedScene;
 use crate::trace::{Leaf, LeafEnd, Pair, Way};
 use glam::DVec3;
 
+/// Leaves that see places further apart than this, in widths of a pixel, do not interfere: w is below 1e-12.
+const FARTHEST: f64 = 7.5;
+
 /// What a leaf sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sight {
@@ -39,39 +42,39 @@ impl Interference {
         detected: impl Fn(&Leaf<N>) -> f64,
     ) {
         self.pairs.clear();
-        if leaves.len() < 2 {
-            return;
-        }
-        for (first, leaf) in leaves.iter().enumerate() {
-            let distance = |number: usize| self.seen[number].0;
-            let sight = sight(leaf, distance(first));
-            let same = |number: &usize| self::sight(&leaves[*number], distance(*number)) == sight;
-            if (0..first).any(|number| same(&number)) {
-                continue;
-            }
-            let group = || (first..leaves.len()).filter(same);
-            let strongest = group().fold(first, |strongest, number| {
-                let louder = detected(&leaves[number]) > detected(&leaves[strongest]);
-                if louder { number } else { strongest }
-            });
+        let Some(coherence) = prepared.coherence.filter(|_| leaves.len() > 1) else { return };
+        self.clusters.clear();
+        self.clusters.extend((0..leaves.len()).filter(|number| leaves[*number].is_in_air()));
+        // Each of the strongest with those that see the same place as it.
+        while self.clusters.len() > 1 {
+            let power = |number: usize| detected(&leaves[number]);
+            let strongest = (self.clusters.iter().copied())
+                .reduce(|best, number| if power(number) > power(best) { number } else { best });
+            let Some(strongest) = strongest else { return };
             let far = &leaves[strongest];
+            let distance = |number: usize| self.seen[number].0;
+            let sight = sight(far, distance(strongest));
             let point = seen(far, distance(strongest));
-            let way = |number: usize| {
-                let leaf = &leaves[number];
-                let seen = seen(leaf, distance(number));
-                let phase_length = match sight {
-                    Sight::Surroundings => leaf.phase_length(far.direction, DVec3::ZERO),
-                    _ => leaf.phase_length(leaf.direction, point),
-                };
-                Way { leaf: number, seen, phase_length }
-            };
-            self.ways.clear();
-            self.ways.extend(group().filter(|number| leaves[*number].is_in_air()).map(way));
             let width = match sight {
                 Sight::Surroundings => prepared.pixel.angle,
                 _ => prepared.pixel.width_at(point.distance(camera)),
             };
-            prepared.coherence.add_pairs(&mut self.ways, width, &mut self.pairs);
+            self.ways.clear();
+            for &number in &self.clusters {
+                let leaf = &leaves[number];
+                let seen = seen(leaf, distance(number));
+                let same = self::sight(leaf, distance(number)) == sight;
+                if same && seen.distance(point) <= FARTHEST * width {
+                    let phase_length = match sight {
+                        Sight::Surroundings => leaf.phase_length(far.direction, DVec3::ZERO),
+                        _ => leaf.phase_length(leaf.direction, point),
+                    };
+                    self.ways.push(Way { leaf: number, seen, phase_length });
+                }
+            }
+            let gathered = &self.ways;
+            self.clusters.retain(|number| gathered.iter().all(|way| way.leaf != *number));
+            coherence.add_pairs(&mut self.ways, width, &mut self.pairs);
         }
     }
 
@@ -80,20 +83,22 @@ impl Interference {
         self.gain.get(leaf).copied().unwrap_or(1.0)
     }
 
-    /// Works out the gains, `detected` being the power of a leaf and `together` what a pair adds to that of its leaves.
+    /// Works out the gains, `detected` being the power of a leaf and `together` what a pair adds to that of its leaves,
+    /// and returns the sum of what is added: it is missing in branches that were pruned. Parallel pairs alone count:
+    /// of the fringes of others it is the mean.
     pub fn share_out<const N: usize>(
         &mut self,
         leaves: &[Leaf<N>],
         detected: impl Fn(&Leaf<N>) -> f64,
         together: impl Fn(&Pair) -> f64,
-    ) {
+    ) -> f64 {
         self.gain.clear();
-        if self.pairs.is_empty() {
-            return;
+        if !self.pairs.iter().any(|pair| pair.is_parallel(leaves)) {
+            return 0.0;
         }
         self.clusters.clear();
         self.clusters.extend(0..leaves.len());
-        for pair in &self.pairs {
+        for pair in self.pairs.iter().filter(|pair| pair.is_parallel(leaves)) {
             let [one, other] = pair.leaves.map(|leaf| first(&self.clusters, leaf));
             self.clusters[one.max(other)] = one.min(other);
         }
@@ -103,14 +108,18 @@ impl Interference {
             self.gain[first(&self.clusters, number)] += detected(leaf);
         }
         self.alone.clone_from(&self.gain);
-        for pair in &self.pairs {
-            self.gain[first(&self.clusters, pair.leaves[0])] += together(pair);
+        let mut added = 0.0;
+        for pair in self.pairs.iter().filter(|pair| pair.is_parallel(leaves)) {
+            let more = together(pair);
+            self.gain[first(&self.clusters, pair.leaves[0])] += more;
+            added += more;
         }
         for number in (0..leaves.len()).rev() {
             let first = first(&self.clusters, number);
             // Rounding may leave less than nothing of light that goes out.
             self.gain[number] = (self.gain[first] / self.alone[first]).max(0.0);
         }
+        added
     }
 }
 

@@ -174,13 +174,18 @@ impl PixelWidth {
     }
 }
 
-/// The limits of a picture: closer ones than those of the scene where its devices make light interfere.
-fn limits_in(scene: &Scene, assembly: &Assembly) -> Limits {
+/// Whether the leaves of a picture are added as fields: where the scene writes a bandwidth, has a polarizer, or a device
+/// so thin that light within it interferes. Elsewhere paths coincide here and there by chance, and branches are
+/// pruned that would have to be followed for their fields.
+#[must_use]
+fn interferes(scene: &Scene, assembly: &Assembly) -> bool {
+    scene.light.bandwidth_nm.given || assembly.least_path_difference() <= coherence(scene).reach()
+}
+
+/// The limits of a picture whose leaves are added as fields, closer than those of the scene.
+fn interference_limits(scene: &Scene) -> Limits {
     const CM_PER_NM: f64 = 1e-7;
     let limits = limits(scene);
-    if assembly.least_path_difference() > coherence(scene).reach() {
-        return limits;
-    }
     let given = scene.trace.min_power.given;
     let min_power = if given { limits.min_power } else { INTERFERENCE_MIN_POWER };
     let paths = INTERFERENCE_TOLERANCE * scene.light.wavelength_nm * CM_PER_NM;
@@ -196,7 +201,7 @@ const COHERENT_MIN_POWER: f64 = 1e-20;
 /// The light of a scene.
 #[must_use]
 pub fn coherence(scene: &Scene) -> Coherence {
-    Coherence::new(scene.light.wavelength_nm, scene.light.bandwidth_nm)
+    Coherence::new(scene.light.wavelength_nm, scene.light.bandwidth_nm.value)
 }
 
 /// How given rays are traced: the threshold is the given one, else that which the scene writes, else 1e-9, or 1e-20 if
@@ -227,8 +232,8 @@ pub struct PreparedScene<'s> {
     pub assembly: Assembly,
     /// The limits within which rays are followed.
     pub limits: Limits,
-    /// How light interferes.
-    pub coherence: Coherence,
+    /// How light interferes, where it is looked at: a scene that says so, with a polarizer or thin devices.
+    pub coherence: Option<Coherence>,
     /// How wide a pixel is in the middle of the picture.
     pub(super) pixel: PixelWidth,
     /// The rectangle in space on which the photograph is.
@@ -287,7 +292,8 @@ impl<'s> PreparedScene<'s> {
         };
         let body_surfaces =
             assembly.devices().iter().enumerate().map(surface).collect::<Result<_, _>>()?;
-        let (limits, coherence) = (limits_in(scene, &assembly), coherence(scene));
+        let coherence = interferes(scene, &assembly).then(|| coherence(scene));
+        let limits = if coherence.is_some() { interference_limits(scene) } else { limits(scene) };
         images.keep(&scene.body_images().collect::<Vec<_>>());
         let pixel = PixelWidth::of(&scene.camera);
         Ok(Self {

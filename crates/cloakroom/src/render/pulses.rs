@@ -114,8 +114,7 @@ fn list<const N: usize>(
     interference.find(prepared, leaves, ray.origin, detected);
     let together =
         |pair: &Pair| detection.detected(&std::array::from_fn(|i| pair.power(leaves, i)));
-    interference.share_out(leaves, detected, together);
-    let moved: f64 = interference.pairs.iter().map(together).sum();
+    let moved = interference.share_out(leaves, detected, together);
     let (mut arrivals, mut escaped, mut ended) = (Vec::new(), 0.0, 0.0);
     for (number, leaf) in leaves.iter().enumerate() {
         let power = detected(leaf) * interference.gain(number);
@@ -156,7 +155,6 @@ fn list<const N: usize>(
         time_of_flight_spread_ns: number(ChannelKind::TimeOfFlightSpread),
         escaped,
         absorbed: detection.detected(&outcome.absorbed) + ended,
-        // What some leaves have more of, others have less; the rest belongs to branches that were pruned.
         pruned: detection.detected(&outcome.pruned) - moved,
     }
 }

@@ -63,7 +63,7 @@ table! {
         wavelength_nm: f64 = 550.0, "nm", in ValueRange::Within(1e-3, 1e12),
         /// Full width at half maximum of the line, a Gaussian: light whose paths differ by less than about the square
         /// of the wavelength over it interferes; 0 is light of one wavelength.
-        bandwidth_nm: f64 = 100.0, "nm", in ValueRange::Within(0.0, 1e12),
+        bandwidth_nm: Given<f64> = Given::by_default(100.0), "nm", in ValueRange::Within(0.0, 1e12),
     }
 }
 

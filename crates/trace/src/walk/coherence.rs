@@ -228,6 +228,14 @@ impl Pair {
         2.0 * (self.degree * one.dot(other.conj())).re
     }
 
+    /// Whether both run in one direction: then what they have more of together, others have less. The fringes of others
+    /// have their maxima and minima side by side.
+    #[must_use]
+    pub fn is_parallel<const N: usize>(&self, leaves: &[Leaf<N>]) -> bool {
+        let [one, other] = self.leaves.map(|leaf| leaves[leaf].direction);
+        (one - other).length() <= SAME_DIRECTION
+    }
+
     /// What the pair adds to the element of the coherency matrix between the first two launched polarizations.
     #[must_use]
     pub fn coherency<const N: usize>(&self, leaves: &[Leaf<N>]) -> Complex64 {

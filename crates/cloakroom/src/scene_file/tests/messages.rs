@@ -48,7 +48,10 @@ fn unknown_words_are_answered_with_known_ones() {
             "[[device]]\nkind = 'square-cloak'\nrotaton = 5",
             "3:1: unknown key `rotaton` in a square-cloak; did you mean `rotation`?",
         ),
-        ("[light]\ncolor = 5", "2:1: unknown key `color` in [light]; known keys: wavelength_nm"),
+        (
+            "[light]\ncolor = 5",
+            "2:1: unknown key `color` in [light]; known keys: wavelength_nm, bandwidth_nm",
+        ),
         (
             "[picture]\nmap = 'time_of_fligth'",
             "2:7: map is \"time_of_fligth\"; it must be \"none\", \"time_of_flight\", \
