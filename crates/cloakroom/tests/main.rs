@@ -32,3 +32,4 @@ mod rays;
 mod square_cloak;
 mod stokes;
 mod touching;
+mod touching_pairs;
