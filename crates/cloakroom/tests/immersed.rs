@@ -1,6 +1,6 @@
 //! Devices that stand in bodies, and rays that start in media.
 
-use crate::equation_of_motion::{GradedHalf, gaussian, refract};
+use crate::equation_of_motion::{GradedHalf, fresnel, gaussian, refract};
 use crate::long::count;
 use crate::rays::{Numbers, assembly, launch, refusal};
 use cloakroom::assembly::Assembly;
@@ -317,8 +317,22 @@ fn light_goes_into_a_carpet_in_glass_and_out_by_the_equation_of_motion() {
         };
         let nearest = leaves.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
         assert!(off(nearest) < 1e-7, "{:e} {ray:?} {nearest:?} {out:?}", off(nearest));
-        // Four borders, at each of which most of the light goes on.
-        assert!(nearest.power[0] + nearest.power[1] > 0.5, "{ray:?} {nearest:?}");
+        // Through each of four borders goes what Fresnel's equations say of s or of p, or what is between.
+        let through = |before: DVec3, beyond: DVec3, normal: DVec3| {
+            fresnel(before.dot(normal), beyond.dot(normal), before.length(), beyond.length())
+        };
+        let borders = [
+            through(outside, in_glass, DVec3::NEG_Y),
+            through(in_glass, in_carpet, DVec3::NEG_Y),
+            out.transmitted,
+            through(out.direction * INDEX, direction, normal),
+        ];
+        let least: f64 = borders.iter().map(|[s, p]| s.min(*p)).product();
+        let most: f64 = borders.iter().map(|[s, p]| s.max(*p)).product();
+        assert!(
+            nearest.power.iter().all(|power| (least - 1e-7..most + 1e-7).contains(power)),
+            "{least} {most} {ray:?} {nearest:?}"
+        );
         compared += 1;
         mirrored += u32::from(out.mirrored);
     }
