@@ -381,3 +381,27 @@ fn light_in_metal_is_seen() {
     guard.see(&way, None);
     assert!((guard.deepest.0 - 1.5).abs() < 1e-9, "{:?}", guard.deepest);
 }
+
+#[test]
+fn bare_metal_beside_another_device_sends_light_back_twice() {
+    // From the flank of the bump to its slope, and on: the same curved surface is met again.
+    let metal = Metal::Triangle(DVec2::new(2.5, 1.7), 0.0);
+    let carpet = "kind = \"gaussian-carpet\"\nw = 4\nh = 1.7\nwidth = 16\nheight = 8\nlength = 12\n\
+                  floor = 0\nshow = \"bare\"\n";
+    let block = "kind = \"body\"\nshape = \"box\"\nposition = [0, -60, 0]\nsize = [1, 1, 1]\n";
+    for scene in
+        [format!("[[device]]\n{carpet}"), format!("[[device]]\n{carpet}[[device]]\n{block}")]
+    {
+        let assembly = assembly(&scene);
+        let from = DVec3::new(-75.65248864504684, 8.861979943570812, -8.55665947216152);
+        let along = DVec3::new(0.9883195716285171, -0.1274860746435289, 0.08349685687502995);
+        let mut tracer = Tracer::new(&assembly, LIMITS);
+        let ray = launch(from, along);
+        let (leaves, outcome) = tracer.trace(&ray);
+        outcome.assert_balanced(leaves, 1e-9, &ray);
+        for leaf in leaves {
+            let end = leaf.position + leaf.direction * 100.0;
+            assert!(metal.deepest(leaf.position, end) < DEEP, "{scene}{leaf:?}");
+        }
+    }
+}
