@@ -1,4 +1,5 @@
-//! Pairs of devices of all kinds that touch, in any pose: all power is accounted for, and no light is in metal.
+//! Pairs of devices of all kinds that touch, in any pose: all power is accounted for, and no light
+//! is in metal.
 
 use crate::long::count;
 use crate::rays::{Numbers, assembly, launch};
@@ -247,8 +248,8 @@ impl std::fmt::Debug for Pair<'_> {
 }
 
 impl<'a> Pair<'a> {
-    /// Devices side by side along x, each touching by a side, at a place of one decimal; half of the pairs upright, half
-    /// turned about any axis.
+    /// Devices side by side along x, each touching by a side, at a place of one decimal; half of
+    /// the pairs upright, half turned about any axis.
     fn new(sorts: [&'a Sort; 2], sides: [Side; 2], numbers: &mut Numbers) -> Self {
         let at = numbers.tenths(-5.0, 5.0);
         let is_turned = numbers.next() < 0.5;
