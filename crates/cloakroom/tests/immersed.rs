@@ -1,10 +1,12 @@
 //! Devices that stand in bodies, and rays that start in media.
 
+use crate::equation_of_motion::{GradedHalf, fresnel, gaussian, refract};
 use crate::long::count;
 use crate::rays::{Numbers, assembly, launch, refusal};
 use cloakroom::assembly::Assembly;
 use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::{DVec2, DVec3};
+use std::f64::consts::TAU;
 
 const LIMITS: Limits = Limits { min_power: 1e-9, tolerance: 1e-8 };
 
@@ -12,9 +14,7 @@ const LIMITS: Limits = Limits { min_power: 1e-9, tolerance: 1e-8 };
 fn strongest_of(assembly: &Assembly, ray: &Launch<2>) -> Option<Leaf<2>> {
     let mut tracer = Tracer::new(assembly, LIMITS);
     let (leaves, outcome) = tracer.trace(ray);
-    assert_eq!(outcome.stats.lost, 0, "{ray:?}");
-    let sum = leaves.iter().map(|leaf| leaf.power[0]).sum::<f64>();
-    assert!((sum + outcome.absorbed[0] + outcome.pruned[0] - 1.0).abs() < 1e-9, "{sum}");
+    outcome.assert_balanced(leaves, 1e-9, ray);
     (!leaves.is_empty()).then(|| crate::rays::strongest(leaves))
 }
 
@@ -83,12 +83,12 @@ fn a_pane_with_air_in_it_is_two_panes() {
         for _ in 0..10 {
             let from = DVec3::new(-40.0, 10.0 * numbers.next(), 10.0 * numbers.next());
             let ray = launch(from, 10.0 * numbers.direction() - from);
-            let [(one, lost), (other, also_lost)] = [&hollow, &panes].map(|assembly| {
+            let [one, other] = [&hollow, &panes].map(|assembly| {
                 let mut tracer = Tracer::new(assembly, Limits { min_power: 1e-7, ..LIMITS });
                 let (leaves, outcome) = tracer.trace(&ray);
-                (leaves.to_vec(), outcome.stats.lost)
+                outcome.assert_balanced(leaves, 1e-9, &ray);
+                leaves.to_vec()
             });
-            assert_eq!((lost, also_lost), (0, 0), "{ray:?}");
             for leaf in one.iter().filter(|leaf| leaf.power[0] > 1e-6) {
                 compared += 1;
                 let same = |other: &&Leaf<2>| {
@@ -268,4 +268,73 @@ fn nothing_starts_in_metal() {
     // A device that only reaches into a body.
     let half = "[[device]]\nkind = \"sphere-cloak\"\nposition = [30, 0, 0]\n";
     assert!(refusal(&(half.to_owned() + OF_AIR)).contains("overlaps"));
+}
+
+#[test]
+fn light_goes_into_a_carpet_in_glass_and_out_by_the_equation_of_motion() {
+    const INDEX: f64 = 1.5;
+    let scene = assembly(include_str!("../../../scenes/gallery/carpet-in-glass.toml"));
+    let mut carpet = GradedHalf::new(gaussian(8.0, 3.4), 1.0, [20.0, 20.0], 0.012);
+    carpet.outside = INDEX;
+    // The block, which stands on the floor.
+    let (low, high) = (DVec3::new(-35.0, 0.0, -30.0), DVec3::new(35.0, 40.0, 30.0));
+    let mut tracer = Tracer::new(&scene, LIMITS);
+    let mut numbers = Numbers(31);
+    let (mut compared, mut mirrored) = (0, 0);
+    for _ in 0..count(80, 600) {
+        // Onto the top of the block, and then onto that of the carpet.
+        let top = DVec3::new(numbers.between(-19.5, 19.5), 20.0, numbers.between(-12.0, 12.0));
+        let across = DVec2::from_angle(numbers.between(0.0, TAU)) * numbers.between(0.0, 0.8);
+        let outside = DVec3::new(across.x, -(1.0 - across.length_squared()).sqrt(), across.y);
+        let Some(in_glass) = refract(outside, DVec3::NEG_Y, INDEX * INDEX) else { continue };
+        let entry = top - in_glass * (20.0 / -in_glass.y);
+        if entry.x.abs() > 34.9 || entry.z.abs() > 29.9 {
+            continue;
+        }
+        let index = carpet.squared_index(top).value;
+        let Some(in_carpet) = refract(in_glass, DVec3::NEG_Y, index) else { continue };
+        let path = 40.0 + INDEX * entry.distance(top);
+        let Some(out) = carpet.out(top, in_carpet, path) else { continue };
+        // Out of the glass by its nearest face; not again onto the floor, or out of the ends of the carpet.
+        let faces = DVec3::select(out.direction.cmpgt(DVec3::ZERO), high, low);
+        let ways = (faces - out.position) / out.direction;
+        let way = ways.min_element();
+        let normal =
+            DVec3::select(ways.cmpeq(DVec3::splat(way)), out.direction.signum(), DVec3::ZERO);
+        if out.direction.y < 0.0 || out.position.z.abs() > 19.9 {
+            continue;
+        }
+        let Some(direction) = refract(out.direction * INDEX, normal, 1.0) else { continue };
+        let position = out.position + out.direction * way;
+        let path = out.optical_path + INDEX * way;
+        let ray = launch(entry - outside * 40.0, outside);
+        let (leaves, outcome) = tracer.trace(&ray);
+        outcome.assert_balanced(leaves, 1e-9, &ray);
+        let off = |leaf: &Leaf<2>| {
+            (leaf.position.distance(position))
+                .max((leaf.optical_path - path).abs())
+                .max(10.0 * leaf.direction.distance(direction))
+        };
+        let nearest = leaves.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+        assert!(off(nearest) < 1e-7, "{:e} {ray:?} {nearest:?} {out:?}", off(nearest));
+        // Through each of four borders goes what Fresnel's equations say of s or of p, or what is between.
+        let through = |before: DVec3, beyond: DVec3, normal: DVec3| {
+            fresnel(before.dot(normal), beyond.dot(normal), before.length(), beyond.length())
+        };
+        let borders = [
+            through(outside, in_glass, DVec3::NEG_Y),
+            through(in_glass, in_carpet, DVec3::NEG_Y),
+            out.transmitted,
+            through(out.direction * INDEX, direction, normal),
+        ];
+        let least: f64 = borders.iter().map(|[s, p]| s.min(*p)).product();
+        let most: f64 = borders.iter().map(|[s, p]| s.max(*p)).product();
+        assert!(
+            nearest.power.iter().all(|power| (least - 1e-7..most + 1e-7).contains(power)),
+            "{least} {most} {ray:?} {nearest:?}"
+        );
+        compared += 1;
+        mirrored += u32::from(out.mirrored);
+    }
+    assert!(compared > count(30, 200) && mirrored > count(25, 150), "{compared} {mirrored}");
 }

@@ -22,13 +22,9 @@ fn seen(assembly: &Assembly) -> Vec<Vec<(f64, DVec3, DVec3, f64)>> {
                 0.2 * ((13.0 * share).fract() - 0.5),
                 0.3 * ((5.0 * share).fract() - 0.5),
             );
-            let (leaves, outcome) = tracer.trace(&launch(origin, slant));
-            for i in 0..2 {
-                let power = leaves.iter().map(|leaf| leaf.power[i]).sum::<f64>()
-                    + outcome.absorbed[i]
-                    + outcome.pruned[i];
-                assert!((power - 1.0).abs() < 1e-9, "{power}");
-            }
+            let ray = launch(origin, slant);
+            let (leaves, outcome) = tracer.trace(&ray);
+            outcome.assert_balanced(leaves, 1e-9, &ray);
             let mut found: Vec<_> = leaves
                 .iter()
                 .map(|leaf| (leaf.power[0], leaf.position, leaf.direction, leaf.optical_path))
@@ -118,6 +114,7 @@ fn loss_takes_what_beer_and_lambert_say() {
     let (leaves, outcome) = tracer.trace(&launch(DVec3::new(-50.0, 0.0, 0.0), DVec3::X));
     let wave_number = std::f64::consts::TAU / 1e-4;
     let exact = (-2.0 * wave_number * 1.5 * 2e-6 * 4.0).exp();
+    outcome.assert_balanced(leaves, 1e-9, &scene);
     assert!((leaves[0].power[0] - exact).abs() < 1e-9, "{} {exact}", leaves[0].power[0]);
     assert!((outcome.absorbed[0] - (1.0 - exact)).abs() < 1e-9);
 }
@@ -197,7 +194,8 @@ fn a_lossy_graded_cloak_absorbs_along_the_optical_path() {
     let limits = Limits { min_power: 0.0, ..LIMITS };
     let ray = launch(DVec3::new(-50.0, 3.0, 0.0), DVec3::new(1.0, -0.05, 0.1));
     let mut tracer = Tracer::new(&ideal, limits);
-    let (leaves, _) = tracer.trace(&ray);
+    let (leaves, outcome) = tracer.trace(&ray);
+    outcome.assert_balanced(leaves, 1e-9, &ray);
     assert_eq!(leaves.len(), 1);
     let exit = leaves[0];
     // The optical path within: all of it less that in air before.

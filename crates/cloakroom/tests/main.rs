@@ -33,4 +33,5 @@ mod rays;
 mod square_cloak;
 mod stokes;
 mod touching;
+mod touching_pairs;
 mod transfer_matrix;

@@ -24,6 +24,8 @@ pub struct GradedHalf {
     pub height: f64,
     /// The step of the coarser of two integrations, cm.
     pub step: f64,
+    /// The index around it.
+    pub outside: f64,
     nearby: Cell<Complex64>,
 }
 
@@ -56,7 +58,7 @@ impl GradedHalf {
     /// The medium of a map cut at half a width and a height, followed in steps of a length.
     pub fn new(jet: Jet, index_scale: f64, [half_width, height]: [f64; 2], step: f64) -> Self {
         let nearby = Cell::new(Complex64::I * height);
-        Self { jet, index_scale, half_width, height, step, nearby }
+        Self { jet, index_scale, half_width, height, step, outside: 1.0, nearby }
     }
 
     /// The virtual point of a physical one by Newton's method, from the last one found.
@@ -136,13 +138,13 @@ impl GradedHalf {
                 return None;
             }
             let across = p - out * p.dot(out);
-            let slack = 1.0 - across.length_squared();
+            let slack = self.outside.powi(2) - across.length_squared();
             if slack.abs() < 0.02 {
                 return None;
             }
             if slack > 0.0 {
-                let direction = across + out * slack.sqrt();
-                let transmitted = fresnel(p.dot(out), slack.sqrt(), p.length(), 1.0);
+                let direction = (across + out * slack.sqrt()) / self.outside;
+                let transmitted = fresnel(p.dot(out), slack.sqrt(), p.length(), self.outside);
                 return Some(Expected {
                     position: at,
                     direction,

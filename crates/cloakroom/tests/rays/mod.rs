@@ -4,7 +4,8 @@ use cloakroom::assembly::Assembly;
 use cloakroom::render::PreparedSceneError;
 use cloakroom::scene_file;
 use cloakroom::trace::{Launch, Leaf};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+use optics::geometry::Pose;
 use optics::wave::transverse_basis;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -28,6 +29,16 @@ pub fn refusal(scene: &str) -> String {
     };
     let error = cloakroom::render::assembly(&loaded.scene).unwrap_err();
     loaded.locations.error_at(&error.key(), error.to_string()).to_string()
+}
+
+/// The keys of a device's pose that put its origin and its axes to where they are given.
+pub fn placed(origin: DVec3, rotation: &DMat3) -> String {
+    // The axis is turned along; what is left is a rotation about it.
+    let axis = rotation.z_axis;
+    let upright = Pose::with_axis(DVec3::ZERO, 0.0, axis).rotation().transpose() * *rotation;
+    let turn = upright.x_axis.y.atan2(upright.x_axis.x).to_degrees();
+    let (origin, axis) = (origin.to_array(), axis.to_array());
+    format!("position = {origin:?}\nrotation = {turn:?}\naxis = {axis:?}\n")
 }
 
 /// A ray of horizontal and vertical polarization.
@@ -79,6 +90,22 @@ impl Numbers {
     /// The next one, in another interval.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.next()
+    }
+
+    /// One of a list.
+    pub fn of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
+        &list[(self.next() * list.len() as f64) as usize]
+    }
+
+    /// A number of one decimal in an interval.
+    pub fn tenths(&mut self, low: f64, high: f64) -> f64 {
+        (10.0 * self.between(low, high)).round() / 10.0
+    }
+
+    /// A pose about any axis, its origin within 30 cm of the world's.
+    pub fn pose(&mut self) -> Pose {
+        let origin = self.direction() * self.between(0.0, 30.0);
+        Pose::with_axis(origin, self.between(0.0, TAU), self.direction())
     }
 
     /// A direction, evenly on the sphere.

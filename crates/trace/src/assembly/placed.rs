@@ -27,6 +27,11 @@ impl DepartedSurface {
     pub fn met(device: u16, hit: &SurfaceHit) -> Self {
         Self { device, surface: Some(hit.surface) }
     }
+
+    /// What a ray has left that comes to a surface, which it may have left itself: a curved one is met again.
+    pub fn unless_met(self, device: u16, hit: &SurfaceHit) -> Option<Self> {
+        (self != Self::met(device, hit)).then_some(self)
+    }
 }
 
 impl Placed {

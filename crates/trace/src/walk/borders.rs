@@ -76,7 +76,8 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
         }
         let (guest, hit) = hit?;
         let at = origin + direction * hit.distance;
-        let met = match self.assembly.ahead(at, direction, branch.departed) {
+        let departed = branch.departed.and_then(|departed| departed.unless_met(guest, &hit));
+        let met = match self.assembly.ahead(at, direction, departed) {
             ahead @ Ahead::Surface(..) => Met::Device(ahead),
             ahead @ Ahead::Body(there) if there != body => Met::Device(ahead),
             Ahead::Air | Ahead::Body(_) => Met::Grazed(DepartedSurface::met(guest, &hit)),

@@ -74,7 +74,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         if !self.moves(branch, hit.distance) {
             return false;
         }
-        match self.assembly.ahead(branch.position, branch.direction, branch.departed) {
+        let departed = branch.departed.and_then(|departed| departed.unless_met(number, &hit));
+        match self.assembly.ahead(branch.position, branch.direction, departed) {
             Ahead::Surface(number, hit) => self.enter(branch, number, &hit),
             Ahead::Body(body) if body == number => self.enter(branch, number, &hit),
             ahead @ Ahead::Body(_) => {

@@ -1,0 +1,408 @@
+//! Pairs of devices of all kinds that touch, in any pose: all power is accounted for, and no light
+//! is in metal.
+
+use crate::long::count;
+use crate::rays::{Numbers, assembly, launch};
+use cloakroom::assembly::{Assembly, Placed};
+use cloakroom::trace::{Launch, LeafEnd, Limits, PathRecorder, PathSegment, Tracer};
+use glam::{DMat3, DQuat, DVec2, DVec3};
+use optics::geometry::Pose;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+
+const LIMITS: Limits = Limits { min_power: 1e-3, tolerance: 1e-6 };
+
+/// How deep in metal rounding may put light, cm.
+const DEEP: f64 = 1e-6;
+
+/// Convex metal about the origin of a device's frame, or what is surely in it.
+#[derive(Clone, Copy, Debug)]
+enum Metal {
+    None,
+    Box(DVec3),
+    Ball(f64),
+    Cylinder(f64, f64),
+    /// Half its diagonals along x and y; as all devices here, 12 cm long.
+    Rhombus(DVec2),
+    /// Half its base, the height of its tip, and the level of its base.
+    Triangle(DVec2, f64),
+}
+
+impl Metal {
+    /// How deep a point lies in it, cm, less than 0 outside.
+    fn depth(self, at: DVec3) -> f64 {
+        let below_sides = |half: DVec2, at: DVec3| {
+            let beside = 1.0 - at.x.abs() / half.x - at.y.abs() / half.y;
+            (beside / half.recip().length()).min(6.0 - at.z.abs())
+        };
+        match self {
+            Self::None => f64::NEG_INFINITY,
+            Self::Box(half) => (half - at.abs()).min_element(),
+            Self::Ball(radius) => radius - at.length(),
+            Self::Cylinder(radius, half) => {
+                (radius - at.truncate().length()).min(half - at.z.abs())
+            }
+            Self::Rhombus(half) => below_sides(half, at),
+            Self::Triangle(half, level) => {
+                below_sides(half, at - DVec3::Y * level).min(at.y - level)
+            }
+        }
+    }
+
+    /// How deep a straight way gets into it.
+    fn deepest(self, mut from: DVec3, mut to: DVec3) -> f64 {
+        // The depth is concave along it, and grows no faster than the way.
+        while self.depth(from.midpoint(to)) + 0.5 * from.distance(to) > DEEP
+            && from.distance(to) > 1e-8
+        {
+            let [a, b] = [from.lerp(to, 0.4), from.lerp(to, 0.6)];
+            if self.depth(a) < self.depth(b) { from = a } else { to = b }
+        }
+        self.depth(from.midpoint(to))
+    }
+}
+
+/// A device in its own frame.
+struct Sort {
+    text: String,
+    metal: Metal,
+    device: Placed,
+}
+
+impl Sort {
+    fn new(text: impl Into<String>, metal: Metal) -> Self {
+        let text = text.into();
+        let device = assembly(&format!("[[device]]\n{text}")).devices()[0].clone();
+        Self { text, metal, device }
+    }
+
+    /// How far it reaches along a direction.
+    fn reach(&self, normal: DVec3) -> f64 {
+        let turn = DMat3::from_quat(DQuat::from_rotation_arc(normal, DVec3::X));
+        let pose = Pose::from_rotation(DVec3::ZERO, turn);
+        let hull = &self.device.structure.hull;
+        let solids = hull.solids.iter().chain(&hull.thin_mirror);
+        let ends = solids.filter_map(|solid| solid.placed(&pose).bounds());
+        ends.map(|[_, high]| high.x).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// A side of a device by which it touches: its normal and how far out it is.
+type Side = (DVec3, f64);
+
+/// All kinds, some 10 cm large and of finite length.
+fn all_sorts() -> Vec<Sort> {
+    let d = 14.1 * FRAC_1_SQRT_2;
+    let rhombus = Metal::Rhombus(DVec2::new(d, d / 3f64.sqrt()));
+    let lens = Metal::Rhombus(DVec2::new(4.0, 2.5));
+    let (rod, ball) = (Metal::Cylinder(2.0, 6.0), Metal::Ball(2.0));
+    let glass = "permittivity = 2.25";
+    let rows = (0..8).map(|i| {
+        let index = |j: i32| 1.2 + 0.02 * f64::from(i * (7 - i) + j);
+        format!("{:?}", (0..8).map(index).collect::<Vec<_>>())
+    });
+    let index =
+        format!("index = [{}]\nwidth = 10\nheight = 10", rows.collect::<Vec<_>>().join(", "));
+    let tensor = "permittivity = [[2.2, 0.1, 0], [0.1, 2.4, 0], [0, 0, 2.7]]";
+    let lossy = "permittivity = [2.25, 1e-6]";
+    let carpet = "width = 16\nheight = 8\nlength = 12\nfloor";
+    let sorts = [
+        ("square-cloak", "length = 12".to_owned(), rhombus),
+        ("square-cloak", "length = 12\nmaterial = \"positive-uniaxial\"".into(), rhombus),
+        ("square-cloak", "length = 12\nmaterial = \"negative-uniaxial\"".into(), rhombus),
+        ("square-cloak", "length = 12\ncore = \"open\"".into(), Metal::None),
+        ("square-cloak", "length = 12\nshow = \"bare\"".into(), rhombus),
+        (
+            "double-gaussian-cloak",
+            "w = 6\nh = 2.5\nwidth = 20\nheight = 20\nlength = 12".into(),
+            lens,
+        ),
+        ("cylinder-cloak", "inner = 2\nouter = 5\nlength = 12".into(), rod),
+        (
+            "cylinder-cloak",
+            "inner = 2\nouter = 5\nlength = 12\nmaterial = \"radial-uniaxial\"".into(),
+            rod,
+        ),
+        (
+            "cylinder-cloak",
+            "inner = 2\nouter = 5\nlength = 12\nmaterial = \"azimuthal-uniaxial\"".into(),
+            rod,
+        ),
+        ("sphere-cloak", "inner = 2\nouter = 5".into(), ball),
+        ("invisible-sphere", "radius = 5".into(), Metal::None),
+        ("invisible-sphere", "radius = 5\nmaterial = \"regularized\"".into(), Metal::None),
+        ("bending-sphere", "radius = 5".into(), Metal::None),
+        ("bending-sphere", "radius = 5\nangle = 45".into(), Metal::None),
+        ("eaton-lens", "radius = 5".into(), Metal::None),
+        ("luneburg-lens", "radius = 5".into(), Metal::None),
+        ("fisheye-lens", "radius = 5".into(), Metal::None),
+        ("fisheye-hemisphere", "radius = 5\ncut_distance = 1".into(), Metal::None),
+        ("mirror-detour", "offset = 3\nhalf_length = 6\nlength = 12".into(), Metal::None),
+        (
+            "prisms",
+            format!(
+                "length = 8\n[[device.prism]]\ncorners = [[0, 0], [4, -2], [0, 5], [-4, -2]]\n{glass}\n\
+                 [[device.prism]]\ncorners = [[0, 0], [-4, -2], [4, -2]]\n{tensor}"
+            ),
+            Metal::None,
+        ),
+        ("graded", format!("{index}\nlength = 12"), Metal::None),
+        ("graded", format!("{index}\nlength = 12\nshape = \"circle\"\ninner = 2"), rod),
+        ("graded-box", "sides = [8, 10, 12]".into(), Metal::None),
+        ("body", format!("shape = \"sphere\"\n{glass}"), Metal::None),
+        ("body", format!("shape = \"box\"\n{tensor}"), Metal::None),
+        ("body", format!("shape = \"cylinder\"\nradius = 3\nlength = 8\n{lossy}"), Metal::None),
+        (
+            "body",
+            "shape = \"box\"\nsize = [6, 8, 10]\npermittivity = -1.5\npermeability = -1".into(),
+            Metal::None,
+        ),
+        (
+            "gaussian-carpet",
+            format!("w = 4\nh = 1.7\n{carpet} = 0"),
+            Metal::Triangle(DVec2::new(2.5, 1.7), 0.0),
+        ),
+        (
+            "gaussian-carpet",
+            format!("w = 4\nh = 1.7\n{carpet} = 18\nshow = \"bare\""),
+            Metal::Triangle(DVec2::new(2.5, 1.7), 0.0),
+        ),
+        (
+            "grating-carpet",
+            format!("h = 0.5\nperiod = 8\n{carpet} = 20"),
+            Metal::Triangle(DVec2::new(0.7, 0.5), 0.0),
+        ),
+        (
+            "quasi-conformal-carpet",
+            format!("w = 10\nh = 1.7\n{carpet} = 0"),
+            Metal::Triangle(DVec2::new(2.5, 1.7), 0.0),
+        ),
+    ];
+    sorts
+        .into_iter()
+        .map(|(kind, keys, metal)| Sort::new(format!("kind = \"{kind}\"\n{keys}\n"), metal))
+        .collect()
+}
+
+/// A block of metal or of what is opaque, of sizes of one decimal, and a side of it.
+fn metal_block(numbers: &mut Numbers) -> (Sort, Side) {
+    let half = DVec3::from_array([0; 3].map(|_| numbers.tenths(0.1, 4.0)));
+    let DVec3 { x, y, z } = half;
+    let opaque = "surface = { color = [1, 1, 1] }";
+    let prism = format!(
+        "[[device.prism]]\nmetal = true\ncorners = [[{x}, {y}], [-{x}, {y}], [-{x}, -{y}], [{x}, -{y}]]"
+    );
+    let body = |shape: &str| format!("kind = \"body\"\nshape = \"{shape}\"\n{opaque}\n");
+    let length = format!("length = {:.1}", 2.0 * z);
+    let round = Metal::Cylinder(x, z);
+    let (text, metal, side) = match (6.0 * numbers.next()) as usize {
+        0 => {
+            let endless = half.with_z(f64::INFINITY);
+            (format!("kind = \"prisms\"\n{prism}\n"), Metal::Box(endless), (DVec3::X, x))
+        }
+        1 => {
+            let side = *numbers.of(&[(DVec3::X, x), (DVec3::NEG_Y, y), (DVec3::Z, z)]);
+            (format!("kind = \"prisms\"\n{length}\n{prism}\n"), Metal::Box(half), side)
+        }
+        2 => {
+            let side = *numbers.of(&[(DVec3::NEG_X, x), (DVec3::Y, y), (DVec3::NEG_Z, z)]);
+            let size = format!("size = [{:.1}, {:.1}, {:.1}]\n", 2.0 * x, 2.0 * y, 2.0 * z);
+            (body("box") + &size, Metal::Box(half), side)
+        }
+        3 => {
+            let side = (numbers.direction(), x);
+            (format!("{}radius = {x}\n", body("sphere")), Metal::Ball(x), side)
+        }
+        4 => (format!("{}radius = {x}\n{length}\n", body("cylinder")), round, (DVec3::NEG_Z, z)),
+        _ => (format!("{}radius = {x}\n{length}\n", body("cylinder")), round, (DVec3::NEG_Y, x)),
+    };
+    (Sort::new(text, metal), side)
+}
+
+/// A direction by which a device may touch another: often that of a face of it, or across its axis.
+fn normal(numbers: &mut Numbers) -> DVec3 {
+    let sign = numbers.of(&[1.0, -1.0]);
+    match (4.0 * numbers.next()) as usize {
+        0 => *numbers.of(&DVec3::AXES) * *sign,
+        1 => DVec3::new(FRAC_1_SQRT_2, FRAC_1_SQRT_2 * sign, 0.0) * *numbers.of(&[1.0, -1.0]),
+        2 => DVec2::from_angle(numbers.between(0.0, TAU)).extend(0.0),
+        _ => numbers.direction(),
+    }
+}
+
+/// Two devices that touch at a plane.
+struct Pair<'a> {
+    sorts: [&'a Sort; 2],
+    assembly: Assembly,
+    /// The frame in which they touch at the plane x = `at`.
+    pose: Pose,
+    at: f64,
+}
+
+impl std::fmt::Debug for Pair<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (sort, device) in self.sorts.iter().zip(self.assembly.devices()) {
+            write!(f, "[[device]]\n{}{:?}\n", sort.text, device.pose)?;
+        }
+        Ok(())
+    }
+}
+
+impl<'a> Pair<'a> {
+    /// Devices side by side along x, each touching by a side, at a place of one decimal; half of
+    /// the pairs upright, half turned about any axis.
+    fn new(sorts: [&'a Sort; 2], sides: [Side; 2], numbers: &mut Numbers) -> Self {
+        let at = numbers.tenths(-5.0, 5.0);
+        let is_turned = numbers.next() < 0.5;
+        let pose = if is_turned { numbers.pose() } else { Pose::IDENTITY };
+        let devices = [0, 1].map(|i| {
+            let (normal, reach) = sides[i];
+            let along = if i == 0 { DVec3::X } else { DVec3::NEG_X };
+            let roll = if is_turned { numbers.between(0.0, TAU) } else { 0.0 };
+            let turn = DMat3::from_rotation_x(roll)
+                * DMat3::from_quat(DQuat::from_rotation_arc(normal, along));
+            // A number as one writes it, where that is short.
+            let x = ((at - along.x * reach) * 1e12).round() / 1e12;
+            let own = Pose::from_rotation(DVec3::X * x, turn);
+            Placed { pose: pose.after(&own), structure: sorts[i].device.structure.clone() }
+        });
+        let pair = Self { sorts, assembly: Assembly::new(devices.to_vec()), pose, at };
+        assert_eq!(pair.assembly.overlap(), None, "{pair:?}");
+        pair
+    }
+
+    /// A ray onto the plane, from before it or from beyond.
+    fn ray(&self, before: bool, numbers: &mut Numbers) -> Launch<2> {
+        let mut across =
+            |half: f64| DVec2::new(numbers.between(-half, half), numbers.between(-half, half));
+        let (target, from) = (across(3.0), across(60.0));
+        let far = if before { -80.0 } else { 80.0 };
+        let (target, from) = (target.extend(self.at), from.extend(self.at + far));
+        let [target, from] = [target, from].map(|p| self.pose.to_world(DVec3::new(p.z, p.x, p.y)));
+        launch(from, target - from)
+    }
+
+    /// Follows a ray: all of its power is accounted for, and none of it is in metal.
+    fn follow(&self, ray: &Launch<2>) {
+        let guard = Guard { pair: self, deepest: (0.0, None) };
+        let mut tracer = Tracer::new(&self.assembly, LIMITS).watched(guard);
+        let (leaves, outcome) = tracer.trace(ray);
+        outcome.assert_balanced(leaves, 1e-9, &(self, ray));
+        let away = leaves.iter().filter(|leaf| leaf.end == LeafEnd::Away);
+        let ways: Vec<_> =
+            away.map(|leaf| [leaf.position, leaf.position + leaf.direction * 1000.0]).collect();
+        let guard = tracer.recorder();
+        ways.iter().for_each(|way| guard.see(way, None));
+        let (deepest, place) = guard.deepest;
+        assert!(deepest <= DEEP, "{deepest} deep in metal at {place:?}\n{self:?}{ray:?}");
+    }
+}
+
+/// Watches how deep light gets into metal.
+struct Guard<'a> {
+    pair: &'a Pair<'a>,
+    deepest: (f64, Option<[DVec3; 2]>),
+}
+
+impl Guard<'_> {
+    /// A way in the world, in a device or in air.
+    fn see(&mut self, way: &[DVec3], inside: Option<usize>) {
+        let devices = self.pair.assembly.devices();
+        for (number, (sort, device)) in self.pair.sorts.iter().zip(devices).enumerate() {
+            // In a graded medium only the points of the drawn way are exact.
+            let bent = inside == Some(number) && way.len() > 2;
+            for ends in way.windows(2) {
+                let [from, to] = [ends[0], ends[1]].map(|at| device.pose.to_local(at));
+                let depth = if bent {
+                    sort.metal.depth(from).max(sort.metal.depth(to))
+                } else {
+                    sort.metal.deepest(from, to)
+                };
+                if depth > self.deepest.0 {
+                    self.deepest = (depth, Some([ends[0], ends[1]]));
+                }
+            }
+        }
+    }
+}
+
+impl PathRecorder<2> for Guard<'_> {
+    fn record(&mut self, leg: impl FnOnce() -> PathSegment<2>) {
+        let leg = leg();
+        let inside = leg.inside.map(|(device, _)| usize::from(device));
+        let pose = inside.map(|device| self.pair.assembly.devices()[device].pose);
+        let world = |at: DVec3| pose.map_or(at, |pose| pose.to_world(at));
+        let way: Vec<_> = leg.path.iter().map(|at| world(at.position)).collect();
+        self.see(&way, inside);
+    }
+}
+
+#[test]
+fn light_never_goes_through_metal_that_touches_a_device() {
+    let sorts = all_sorts();
+    let mut numbers = Numbers(7);
+    for round in 0..count(1500, 40_000) {
+        let sort = &sorts[round % sorts.len()];
+        let normal = normal(&mut numbers);
+        let (block, side) = metal_block(&mut numbers);
+        let pair = Pair::new([sort, &block], [(normal, sort.reach(normal)), side], &mut numbers);
+        for _ in 0..4 {
+            pair.follow(&pair.ray(true, &mut numbers));
+        }
+    }
+}
+
+#[test]
+fn every_pair_of_kinds_that_touch_balances() {
+    let sorts = all_sorts();
+    let mut numbers = Numbers(19);
+    for _ in 0..count(1, 20) {
+        for one in &sorts {
+            for other in &sorts {
+                let sides = [one, other].map(|sort| {
+                    let normal = normal(&mut numbers);
+                    (normal, sort.reach(normal))
+                });
+                let pair = Pair::new([one, other], sides, &mut numbers);
+                for before in [true, false] {
+                    pair.follow(&pair.ray(before, &mut numbers));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn light_in_metal_is_seen() {
+    let sorts =
+        [Sort::new("kind = \"body\"\npermittivity = 2.25\nshape = \"box\"\n", Metal::Ball(2.0))];
+    let side = |normal| (normal, 5.0);
+    let pair = Pair::new([&sorts[0], &sorts[0]], [side(DVec3::X), side(DVec3::X)], &mut Numbers(3));
+    let mut guard = Guard { pair: &pair, deepest: (0.0, None) };
+    let way = [-20.0, 20.0].map(|x| pair.pose.to_world(DVec3::new(x, 0.5, 0.0)));
+    guard.see(&way, None);
+    assert!((guard.deepest.0 - 1.5).abs() < 1e-9, "{:?}", guard.deepest);
+}
+
+#[test]
+fn bare_metal_beside_another_device_sends_light_back_twice() {
+    // From the flank of the bump to its slope, and on: the same curved surface is met again.
+    let metal = Metal::Triangle(DVec2::new(2.5, 1.7), 0.0);
+    let carpet = "kind = \"gaussian-carpet\"\nw = 4\nh = 1.7\nwidth = 16\nheight = 8\nlength = 12\n\
+                  floor = 0\nshow = \"bare\"\n";
+    let block = "kind = \"body\"\nshape = \"box\"\nposition = [0, -60, 0]\nsize = [1, 1, 1]\n";
+    for scene in
+        [format!("[[device]]\n{carpet}"), format!("[[device]]\n{carpet}[[device]]\n{block}")]
+    {
+        let assembly = assembly(&scene);
+        let from = DVec3::new(-75.65248864504684, 8.861979943570812, -8.55665947216152);
+        let along = DVec3::new(0.9883195716285171, -0.1274860746435289, 0.08349685687502995);
+        let mut tracer = Tracer::new(&assembly, LIMITS);
+        let ray = launch(from, along);
+        let (leaves, outcome) = tracer.trace(&ray);
+        outcome.assert_balanced(leaves, 1e-9, &ray);
+        for leaf in leaves {
+            let end = leaf.position + leaf.direction * 100.0;
+            assert!(metal.deepest(leaf.position, end) < DEEP, "{scene}{leaf:?}");
+        }
+    }
+}
