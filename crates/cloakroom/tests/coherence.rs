@@ -26,26 +26,20 @@ fn to_scene(v: DVec3) -> DVec3 {
 fn slabs(layers: &[Layer]) -> String {
     let mut scene = String::new();
     let mut x = 0.0;
-    let rows = |tensor: DMat3| {
-        let row = |i: DVec3| {
-            let at = |j: DVec3| (i.dot(tensor * j), to_scene(j));
-            let mut entries = [0.0; 3];
-            for (entry, axis) in [DVec3::X, DVec3::Y, DVec3::Z].map(at) {
-                entries[axis.to_array().iter().position(|a| *a == 1.0).unwrap()] = entry;
-            }
-            entries
-        };
-        // The rows in the order of the scene: z, x, y.
-        format!("{:?}", [DVec3::Z, DVec3::X, DVec3::Y].map(row))
+    // The axes of the scene in the frame of the transfer matrix.
+    let axes = [DVec3::Z, DVec3::X, DVec3::Y];
+    let rows = |re: &DMat3, im: &DMat3| {
+        let entry = |i: DVec3, j: DVec3| [i.dot(*re * j), i.dot(*im * j)];
+        format!("{:?}", axes.map(|i| axes.map(|j| entry(i, j))))
     };
-    for Layer { permittivity, permeability, thickness, .. } in layers {
+    for Layer { permittivity, permeability, loss, thickness } in layers {
         writeln!(
             scene,
             "[[device]]\nkind = \"body\"\nshape = \"slab\"\nthickness = {thickness:?}\n\
              position = [{:?}, 0, 0]\npermittivity = {}\npermeability = {}",
             x + 0.5 * thickness,
-            rows(*permittivity),
-            rows(*permeability),
+            rows(permittivity, loss),
+            rows(permeability, &DMat3::ZERO),
         )
         .unwrap();
         x += thickness;
@@ -117,6 +111,38 @@ fn random_stacks_are_those_of_the_transfer_matrix_and_keep_the_power() {
             let power = expected.norm_squared();
             assert!((leaf.power[0] - power).abs() < 1e-9, "{leaf:?} {power} {layers:?}");
             assert!((overlap - power).abs() < 1e-9, "{leaf:?} {expected:?} {layers:?}");
+        }
+    }
+}
+
+#[test]
+fn stacks_that_absorb_are_those_of_the_transfer_matrix() {
+    let mut numbers = Numbers(32);
+    for _ in 0..count(40, 2000) {
+        let layers: Vec<Layer> = (0..1 + (numbers.next() * 3.0) as usize)
+            .map(|_| {
+                let layer = layer(&mut numbers, [2e-6, 3e-4]);
+                let loss = numbers.between(0.001, 0.3);
+                let isotropic = layer.permittivity == DMat3::IDENTITY * layer.permittivity.x_axis.x;
+                let loss = if isotropic {
+                    DMat3::IDENTITY * loss
+                } else {
+                    tensor(&mut numbers, 0.2 * loss, loss)
+                };
+                Layer { loss, ..layer }
+            })
+            .collect();
+        let k = numbers.between(0.0, 0.8);
+        let fields = polarizations(k, (1.0 - k * k).sqrt());
+        let exact = jones(&layers, WAVE_NUMBER, k);
+        for (s, p) in [(1.0, 0.0), (0.0, 1.0), (0.6, 0.8)] {
+            let leaves = gathered(&slabs(&layers), k, fields[0] * s + fields[1] * p, 0.0);
+            for leaf in &leaves {
+                let expected = expected(&exact, k, [s, p], leaf.direction.x > 0.0);
+                let power = expected.norm_squared();
+                let off = leaf.power[0] - power;
+                assert!(off.abs() < 1e-9, "{off:e} {leaf:?} {power} {layers:?}");
+            }
         }
     }
 }

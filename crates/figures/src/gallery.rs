@@ -120,6 +120,8 @@ pub static EXHIBITS: &[Exhibit] = &[
         "independent", "omni", "Maxwell, Camb. Dublin Math. J. 8, 188 (1854)"),
     exhibit!("fisheye-hemisphere" => "Half of Maxwell's fish-eye", "Graded index: parallel light onto the cut meets on the round side",
         "independent", "from the cut", "Maxwell, Camb. Dublin Math. J. 8, 188 (1854)"),
+    exhibit!("quartz-wedge" => "Wedge between crossed polarizers", "Quartz, 0 to 0.6 mm: ten orders in a line of 10 nm",
+        "dependent", "any", "this program"),
     exhibit!("open-core" => "Free-space cloak (iii), open", "Air in the hidden region, and a red ball; turned by 14°",
         "independent", "uni", "this program"),
     exhibit!("prisms" => "Device of one's own", "Prisms of any tensors: here those of cloak (iii), turned by 10°",

@@ -115,6 +115,17 @@ impl Assembly {
         self.devices.iter().map(of).fold(f64::INFINITY, f64::min)
     }
 
+    /// Whether a medium of a device takes power from light.
+    #[must_use]
+    pub fn absorbs(&self) -> bool {
+        let absorbs = |region: &Region| match region {
+            Region::Homogeneous(region) => region.medium.absorbs(),
+            Region::Conformal(region) => region.loss_tangent > 0.0,
+            Region::Radial(_) | Region::ClosedForm(_) => false,
+        };
+        self.devices.iter().any(|device| device.structure.regions.iter().any(absorbs))
+    }
+
     /// The devices, in the order of the scene.
     #[must_use]
     pub fn devices(&self) -> &[Placed] {

@@ -119,12 +119,18 @@ impl LeafTable {
             tracers.trace(&std::array::from_fn(|i| launches[four[i.min(four.len() - 1)]]));
             for (ray, tracer) in four.iter().zip(&tracers.tracers) {
                 let (leaves, outcome) = tracer.traced();
-                let first = all_leaves.len();
+                let (first, mut outcome) = (all_leaves.len(), *outcome);
                 match &coherence {
-                    Some(coherence) => all_leaves.extend(coherence.gather(leaves)),
+                    Some(coherence) => {
+                        all_leaves.extend(coherence.gather(leaves));
+                        if tracer.assembly.absorbs() {
+                            let out: f64 = all_leaves[first..].iter().map(|l| l.power[0]).sum();
+                            outcome.absorbed[0] = 1.0 - out - outcome.pruned[0];
+                        }
+                    }
                     None => all_leaves.extend_from_slice(leaves),
                 }
-                ended.push((*ray, first..all_leaves.len(), *outcome));
+                ended.push((*ray, first..all_leaves.len(), outcome));
             }
         }
         ended.sort_by_key(|(ray, ..)| *ray);
