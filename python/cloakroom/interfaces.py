@@ -71,9 +71,10 @@ class Interface:
     jones_reflected: NDArray[np.complex128]
     #: Jones matrices of transmission; ``None`` for metal.
     jones_transmitted: NDArray[np.complex128] | None
-    #: The sum of the reflected shares for each incident mode; (N, 2), NaN for evanescent ones.
+    #: The share of the normal flux that is reflected, for each incident mode; (N, 2), NaN for evanescent ones. In a medium
+    #: that absorbs it is the sum of the rows and what the two modes carry together beyond what each carries alone.
     total_reflected: NDArray[np.float64]
-    #: The sum of the transmitted shares for each incident mode; (N, 2), NaN for evanescent ones.
+    #: The same of what is transmitted.
     total_transmitted: NDArray[np.float64]
 
 

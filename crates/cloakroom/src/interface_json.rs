@@ -39,9 +39,10 @@ pub struct InterfaceReport {
     pub amplitudes: Vec<[[f64; 2]; 2]>,
     /// The same for fields of unit size, in s and p; `null` where a medium is not isotropic.
     pub jones: Option<JonesReport>,
-    /// The sum of the reflected shares, for each incident mode.
+    /// The share of the normal flux that is reflected, for each incident mode: the sum of its rows and, in a medium that
+    /// absorbs, what the two modes carry together beyond what each carries alone.
     pub total_reflected: [Option<f64>; 2],
-    /// The sum of the transmitted shares, for each incident mode.
+    /// The same of what is transmitted.
     pub total_transmitted: [Option<f64>; 2],
 }
 
@@ -111,8 +112,12 @@ impl InterfaceRequest {
         self.check(&scattering)?;
         let rows = if transmitted.is_some() { 4 } else { 2 };
         let share = |row: usize| scattering.power.map(|column| column.map(|shares| shares[row]));
-        let sum = |first: usize| {
-            scattering.power.map(|column| column.map(|shares| shares[first] + shares[first + 1]))
+        let total = |side: usize| {
+            std::array::from_fn(|column| {
+                let (shares, together) =
+                    scattering.power[column].zip(scattering.interference[column])?;
+                Some(shares[2 * side] + shares[2 * side + 1] + together[side])
+            })
         };
         let report = |modes: &[Mode; 2]| [(&modes[0]).into(), (&modes[1]).into()];
         let transmitted = scattering.transmitted.iter().flatten();
@@ -123,24 +128,24 @@ impl InterfaceRequest {
             power: (0..rows).map(share).collect(),
             amplitudes: scattering.amplitudes[..rows].iter().map(|row| row.map(pair)).collect(),
             jones: scattering.jones.map(JonesReport::from),
-            total_reflected: sum(0),
-            total_transmitted: sum(2),
+            total_reflected: total(0),
+            total_transmitted: total(1),
         })
     }
 
     /// Whether the waves solve Maxwell's equations, and their powers add up.
     fn check(&self, scattering: &Scattering) -> Result<(), InterfaceError> {
-        let Scattering { incident, reflected, transmitted, power, .. } = scattering;
+        let Scattering { incident, reflected, transmitted, power, interference, .. } = scattering;
         let here = incident.iter().chain(reflected).map(|mode| self.incident.residual(mode));
         let beyond = self.transmitted.iter().zip(transmitted);
         let beyond =
             beyond.flat_map(|(medium, modes)| modes.iter().map(|mode| medium.residual(mode)));
         let solved = here.chain(beyond).all(|residual| residual < RESIDUAL);
-        let adds_up = |shares: &[f64; 4]| {
-            let sum: f64 = shares.iter().sum();
+        let adds_up = |(shares, together): ([f64; 4], [f64; 2])| {
+            let sum = shares.iter().chain(&together).sum::<f64>();
             sum.is_finite() && (self.incident.absorbs() || (sum - 1.0).abs() < RESIDUAL)
         };
-        if solved && power.iter().flatten().all(adds_up) {
+        if solved && power.iter().zip(interference).filter_map(|(a, b)| a.zip(*b)).all(adds_up) {
             return Ok(());
         }
         Err(InterfaceError::at(

@@ -324,3 +324,58 @@ fn what_a_wave_plate_makes_of_horizontal_light_has_the_handedness_of_a_retarder(
         assert!((0..3).all(|i| off(i) < 0.15), "{waves} {found:?}");
     }
 }
+
+#[test]
+fn light_goes_back_through_plates_that_absorb_as_it_came() {
+    let mut numbers = Numbers(33);
+    let mut compared = 0;
+    while compared < count(100, 4000) {
+        let permittivity = tensor(&mut numbers, 1.5, 4.0);
+        let strength = 10f64.powf(numbers.between(-9.0, -4.5));
+        let loss = tensor(&mut numbers, 0.1 * strength, strength);
+        let rows = [DVec3::X, DVec3::Y, DVec3::Z].map(|i| {
+            [DVec3::X, DVec3::Y, DVec3::Z].map(|j| [i.dot(permittivity * j), i.dot(loss * j)])
+        });
+        let assembly = assembly(&format!(
+            "[[device]]\nkind = \"body\"\nshape = \"slab\"\nthickness = 0.5\npermittivity = {rows:?}\n"
+        ));
+        let limits = Limits { min_power: 1e-9, tolerance: 1e-9 };
+        let mut tracer = Tracer::<1>::new(&assembly, limits);
+        let from = numbers.direction() * 10.0;
+        let ray = launch(from, numbers.direction() * 0.5 - from);
+        let turn = TAU * numbers.next();
+        let [h, v] = ray.electric;
+        let electric = h * turn.cos() + v.scaled(Complex64::new(0.0, turn.sin()));
+        let there = Launch { origin: from, direction: ray.direction, electric: [electric] };
+        let (leaves, outcome) = tracer.trace(&there);
+        outcome.assert_balanced(leaves, 1e-9, &there);
+        // The two waves that go straight through; others share their ways with further ones.
+        let mut through: Vec<Leaf<1>> = leaves
+            .iter()
+            .filter(|leaf| leaf.direction.dot(ray.direction) > 0.999)
+            .copied()
+            .collect();
+        through.sort_by(|a, b| a.optical_path.total_cmp(&b.optical_path));
+        for leaf in through.into_iter().take(2).filter(|leaf| leaf.power[0] > 1e-4) {
+            let sent = leaf.electric[0].conj() * leaf.power[0].sqrt().recip();
+            let start = leaf.position + leaf.direction * 3.0;
+            let back = Launch { origin: start, direction: -leaf.direction, electric: [sent] };
+            let (returned, _) = tracer.trace(&back);
+            // It comes back on its line, by the same way.
+            let same = |other: &&Leaf<1>| {
+                let beside = (other.position - from).reject_from(ray.direction).length();
+                let whole = leaf.optical_path + 3.0;
+                let way = other.optical_path + (other.position - from).length();
+                other.direction.dot(ray.direction) < 1e-12 - 1.0
+                    && beside < 1e-6
+                    && (way - whole).abs() < 1e-6
+            };
+            let power: f64 = (returned.iter().filter(same))
+                .map(|other| other.electric[0].dot(electric).norm_sqr())
+                .sum();
+            let off = power / leaf.power[0] - 1.0;
+            assert!(off.abs() < 1e-11, "{off:e} {strength:e} {leaf:?} {returned:?}");
+            compared += 1;
+        }
+    }
+}

@@ -79,10 +79,16 @@ fn examine(worst: &mut Worst, from: &Medium, to: Option<&Medium>, s: &Scattering
         raise(&mut worst.jump, jump(s, column, normal));
         assert!(power.iter().all(|p| p.is_finite() && *p >= 0.0), "{power:?}");
         if !from.absorbs() {
-            raise(&mut worst.share, (power.iter().sum::<f64>() - 1.0).abs());
+            let together = s.interference[column].unwrap();
+            let sum = power.iter().chain(&together).sum::<f64>();
             let [incident, outgoing] = fluxes(s, column, normal);
             let error = (outgoing - incident).abs();
             let size = largest_wave(s, column);
+            if to.is_some_and(Medium::absorbs) {
+                raise(&mut worst.energy, (sum - 1.0).abs() / size);
+            } else {
+                raise(&mut worst.share, (sum - 1.0).abs());
+            }
             raise(&mut worst.energy, error / size);
             if size < MODERATE {
                 raise(&mut worst.energy_of_moderate_waves, error);
@@ -156,7 +162,9 @@ fn closed_forms_agree_with_the_eigenproblem() {
         let degenerate = |m: &[Mode; 2]| named(&m[0], &m[1]);
         if degenerate(&closed.incident) {
             let sum = |s: &Scattering, row: usize| {
-                s.power.iter().flatten().map(|p| p[row] + p[row + 1]).sum::<f64>()
+                let rows = s.power.iter().flatten().map(|p| p[row] + p[row + 1]);
+                let together = s.interference.iter().flatten().map(|of| of[row / 2]);
+                rows.chain(together).sum::<f64>()
             };
             for row in [0, 2] {
                 let difference = (sum(&closed, row) - sum(&general, row)).abs();
@@ -172,6 +180,7 @@ fn closed_forms_agree_with_the_eigenproblem() {
             };
             assert_eq!(closed.power[i].is_some(), general.power[j].is_some(), "{from:?}");
             let (Some(p), Some(q)) = (closed.power[i], general.power[j]) else { continue };
+            let together = [closed.interference[i], general.interference[j]].map(Option::unwrap);
             let sides = [
                 (0, Some((&closed.reflected, &general.reflected))),
                 (2, closed.transmitted.as_ref().zip(general.transmitted.as_ref())),
@@ -180,7 +189,9 @@ fn closed_forms_agree_with_the_eigenproblem() {
                 let Some((ours, theirs)) = modes else { continue };
                 let swapped = usize::from(!named(&ours[0], &theirs[0]));
                 if degenerate(ours) {
-                    raise(&mut worst, (p[row] + p[row + 1] - q[row] - q[row + 1]).abs());
+                    let [ours, theirs] = together.map(|of| of[row / 2]);
+                    let sums = [p[row] + p[row + 1] + ours, q[row] + q[row + 1] + theirs];
+                    raise(&mut worst, (sums[0] - sums[1]).abs());
                 } else {
                     for k in 0..2 {
                         raise(&mut worst, (p[row + k] - q[row + (k ^ swapped)]).abs());

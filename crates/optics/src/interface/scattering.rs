@@ -1,7 +1,7 @@
 //! The whole scattering matrix of an interface between modes.
 
 use super::Side;
-use super::matching::{amplitudes, fluxes};
+use super::matching::{amplitudes, fluxes, interference};
 use crate::medium::{LocalMode, Medium, Mode, Tangential};
 use crate::wave::Frame;
 use glam::DVec3;
@@ -22,9 +22,11 @@ pub struct Scattering {
     pub amplitudes: [[Complex64; 2]; 4],
     /// Shares of the incident normal flux, by the same rows and columns; 0 for evanescent outgoing
     /// modes, `None` for evanescent incident ones. The shares of a column add up to 1 if the medium of
-    /// incidence is lossless. Where the fluxes of the two modes in an absorbing medium have cross
-    /// terms, each mode takes its part of them.
+    /// incidence is lossless, with [`Self::interference`].
     pub power: [Option<[f64; 4]>; 2],
+    /// What the two reflected modes, and the two transmitted ones, carry away from the interface together beyond what each
+    /// carries alone, by the same columns: 0 in lossless media, of either sign in absorbing ones.
+    pub interference: [Option<[f64; 2]>; 2],
     /// The same amplitudes as of fields of unit size; `None` unless the media on both sides are isotropic, or one is and
     /// the other is a conductor.
     pub jones: Option<JonesMatrices>,
@@ -64,20 +66,32 @@ impl Scattering {
         let onward = transmitted_medium.map(|medium| medium.onward(&frame, along).complex());
         let [a, b] = &forward;
         let amplitudes = amplitudes([a, b], &backward, onward.as_ref());
-        let lossless = !incident_medium.absorbs();
+        let absorbs = |medium: &Medium| medium.absorbs();
+        let lossless = !absorbs(incident_medium) && !transmitted_medium.is_some_and(absorbs);
         let power = std::array::from_fn(|column| {
             if !forward[column].propagating {
                 return None;
             }
             let [r1, r2, t1, t2] = amplitudes.map(|row| row[column]);
-            let [[r1], [r2]] = fluxes(Side::Reflected, &backward, [&[r1], &[r2]], true);
-            let [[t1], [t2]] = onward
-                .as_ref()
-                .map_or([[0.0]; 2], |modes| fluxes(Side::Transmitted, modes, [&[t1], &[t2]], true));
+            let [[r1], [r2]] = fluxes(&backward, [&[r1], &[r2]]);
+            let [[t1], [t2]] =
+                (onward.as_ref()).map_or([[0.0]; 2], |modes| fluxes(modes, [&[t1], &[t2]]));
             let flux = [r1, r2, t1, t2];
             // Over the sum where it must be 1: the same but for rounding near grazing incidence.
             let sum: f64 = flux.iter().sum();
             Some(if lossless && sum > 0.0 { flux.map(|flux| flux / sum) } else { flux })
+        });
+        let interference = std::array::from_fn(|column| {
+            let [r1, r2, t1, t2] = amplitudes.map(|row| row[column]);
+            let back = if absorbs(incident_medium) {
+                interference(Side::Reflected, &backward, [r1, r2])
+            } else {
+                0.0
+            };
+            let on = (onward.as_ref())
+                .filter(|_| transmitted_medium.is_some_and(absorbs))
+                .map_or(0.0, |modes| interference(Side::Transmitted, modes, [t1, t2]));
+            forward[column].propagating.then_some([back, on])
         });
         let in_world = |modes: [LocalMode<Complex64>; 2]| modes.map(|m| m.in_world(&frame, along));
         let (incident, reflected) = (in_world(forward), in_world(backward));
@@ -91,7 +105,7 @@ impl Scattering {
                 transmitted: transmitted.as_ref().map(|modes| jones(&incident, modes, [t1, t2])),
             }
         });
-        Self { incident, reflected, transmitted, amplitudes, power, jones }
+        Self { incident, reflected, transmitted, amplitudes, power, interference, jones }
     }
 }
 

@@ -330,9 +330,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         interface: &Interface,
         back: impl Fn(&mut Branch<N>),
     ) -> bool {
-        let waves = reflect_at_conductor(medium, &branch.incident(), interface.onward);
+        let mut waves = reflect_at_conductor(medium, &branch.incident(), interface.onward);
         if waves.is_empty() {
             return self.lose(branch.power);
+        }
+        if medium.absorbs() {
+            self.check_account(branch, &mut waves, [0.0; N], true);
         }
         self.go_on(branch, &waves, interface.event, |branch, _| back(branch))
     }
@@ -452,6 +455,6 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 waves.extend(transmit_antireflection(from, to, &wave, normal));
             }
         }
-        self.check_account(branch, waves, weak);
+        self.check_account(branch, waves, weak, from.absorbs() || to.absorbs());
     }
 }

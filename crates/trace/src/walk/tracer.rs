@@ -252,12 +252,14 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     }
 
     /// Counts power as pruned that an interface has left in waves too weak to follow, and as lost what it could
-    /// not hand on: the account must not leak, even where numbers fail.
+    /// not hand on: the account must not leak, even where numbers fail. In media that absorb, waves carry together what
+    /// none of them carries alone, of either sign: that counts as absorbed where they part.
     pub(super) fn check_account(
         &mut self,
         branch: &Branch<N>,
         waves: &mut OutgoingWaves<N>,
         weak: [f64; N],
+        absorbing: bool,
     ) {
         let rest: [f64; N] = std::array::from_fn(|i| {
             branch.power[i] - waves.iter().map(|wave| wave.power[i]).sum::<f64>() - weak[i]
@@ -272,6 +274,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let least = if self.joining.is_some() { CANCELLED } else { 0.0 };
         for (i, power) in branch.power.iter().enumerate() {
             self.outcome.pruned[i] += weak[i];
+            if absorbing {
+                self.outcome.absorbed[i] += rest[i];
+                continue;
+            }
             if rest[i].abs() > LEAK * power.max(least) {
                 self.outcome.pruned[i] += rest[i];
                 lost = true;

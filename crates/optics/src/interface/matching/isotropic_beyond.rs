@@ -22,7 +22,7 @@ impl<const N: usize> Scattered<'_, N> {
             let q = layer.forward();
             (Some(q), self.reflected(incident, backward, layer, q))
         };
-        let back = fluxes(Side::Reflected, backward, [&amplitudes[0], &amplitudes[1]], false);
+        let back = fluxes(backward, [&amplitudes[0], &amplitudes[1]]);
         let fields: [[Complex64; 2]; N] = std::array::from_fn(|i| {
             [0, 1].map(|axis| {
                 let arriving: Complex64 =

@@ -44,8 +44,7 @@ pub(super) fn split_into_modes<const N: usize>(
         return scattered.weak;
     }
     let onward = &transmitted_medium.map(|medium| medium.onward(&frame, tangential));
-    let absorbing = [Some(incident_medium), transmitted_medium]
-        .map(|medium| medium.is_some_and(Medium::absorbs));
+    let absorbing = incident_medium.absorbs() || transmitted_medium.is_some_and(Medium::absorbs);
     let onward_real = onward.as_ref().map(LocalModes::real);
     match (arriving_real, onward_real) {
         (Some((arriving, backward)), None | Some(Some(_))) => {
@@ -161,9 +160,10 @@ impl<const N: usize> Scattered<'_, N> {
         backward: &[LocalMode<T>; 2],
         onward: Option<&[LocalMode<T>; 2]>,
         normal_component: f64,
-        absorbing: [bool; 2],
+        absorbing: bool,
     ) {
-        let outgoing = match self.incident(arriving, normal_component).as_slice() {
+        let incident = self.incident(arriving, normal_component);
+        let outgoing = match incident.as_slice() {
             [(a, in_a), (b, in_b)] => {
                 let with = amplitudes([*a, *b], backward, onward);
                 with.map(|[with_a, with_b]| {
@@ -176,13 +176,27 @@ impl<const N: usize> Scattered<'_, N> {
             _ => return,
         };
         let [r1, r2, t1, t2] = &outgoing;
-        let back = fluxes(Side::Reflected, backward, [r1, r2], absorbing[0]);
-        let on = onward.map_or([[0.0; N]; 2], |onward| {
-            fluxes(Side::Transmitted, onward, [t1, t2], absorbing[1])
-        });
-        // Over the sum, not over the incident flux: the same in a lossless medium, but for rounding
-        // near grazing incidence, which would show in the account of the power.
-        let total = std::array::from_fn(|i| back[0][i] + back[1][i] + on[0][i] + on[1][i]);
+        let back = fluxes(backward, [r1, r2]);
+        let on = onward.map_or([[0.0; N]; 2], |onward| fluxes(onward, [t1, t2]));
+        let total = if absorbing {
+            // Modes carry what they carry alone; what they carry together belongs to none.
+            std::array::from_fn(|i| {
+                let alone =
+                    |(mode, parts): &Incident<'_, T, N>| mode.flux().abs() * parts[i].norm_sqr();
+                let alone: f64 = incident.iter().map(alone).sum();
+                match incident.as_slice() {
+                    [(a, in_a), (b, in_b)] => {
+                        let mutual: Complex64 = mutual_flux(*a, *b).into();
+                        alone + 2.0 * (in_a[i] * in_b[i].conj() * mutual).re
+                    }
+                    _ => alone,
+                }
+            })
+        } else {
+            // Over the sum, not over the incident flux: the same, but for rounding near grazing incidence, which
+            // would show in the account of the power.
+            std::array::from_fn(|i| back[0][i] + back[1][i] + on[0][i] + on[1][i])
+        };
         let shares = Shares::of(self.splitting.wave.power, total);
         self.one_side(Side::Reflected, backward, [r1, r2], &back, &shares);
         if let Some(onward) = onward {
@@ -215,8 +229,10 @@ impl<const N: usize> Scattered<'_, N> {
             && b.propagating
             && apart.norm_sqr() <= (ONE_WAVE * ONE_WAVE) * (1.0 + a.q.magnitude_squared());
         if one_wave {
-            let power: [f64; N] =
-                std::array::from_fn(|i| (fluxes[0][i] + fluxes[1][i]) * shares.power[i]);
+            let power: [f64; N] = std::array::from_fn(|i| {
+                let together = interference(side, modes, amplitudes.map(|of| of[i]));
+                (fluxes[0][i] + fluxes[1][i] + together).max(0.0) * shares.power[i]
+            });
             if self.is_strong(power) {
                 let [ea, eb] = [a, b].map(|mode| frame.complex_vector(mode.electric));
                 // The same ray, but in absorbing media, where p's and s's part a little: their mean.
@@ -285,32 +301,29 @@ impl<const N: usize> Scattered<'_, N> {
 
 /// The outgoing normal fluxes of modes of the given amplitudes; those that do not propagate have none.
 pub(super) fn fluxes<T: Number, const N: usize>(
-    side: Side,
     modes: &[LocalMode<T>; 2],
     amplitudes: [&[Complex64; N]; 2],
-    cross_terms: bool,
 ) -> Fluxes<N> {
-    let [a, b] = modes;
-    let mut flux: Fluxes<N> = std::array::from_fn(|mode| {
+    std::array::from_fn(|mode| {
         if modes[mode].propagating {
             amplitudes[mode].map(|amplitude| amplitude.norm_sqr())
         } else {
             [0.0; N]
         }
-    });
-    if cross_terms && a.propagating && b.propagating {
-        // As in absorbing media; each mode takes its part of them.
-        let mutual: Complex64 = mutual_flux(a, b).into();
-        let orientation = if side == Side::Reflected { -1.0 } else { 1.0 };
-        for i in 0..N {
-            let interference = (amplitudes[0][i] * amplitudes[1][i].conj() * mutual).re;
-            let sum = flux[0][i] + flux[1][i];
-            if sum > 0.0 {
-                let scale = (1.0 + 2.0 * orientation * interference / sum).max(0.0);
-                flux[0][i] *= scale;
-                flux[1][i] *= scale;
-            }
-        }
+    })
+}
+
+/// What two modes on one side carry out of the interface together beyond what each carries alone: nothing in a lossless
+/// medium, where they are orthogonal in flux.
+pub(super) fn interference<T: Number>(
+    side: Side,
+    [a, b]: &[LocalMode<T>; 2],
+    [in_a, in_b]: [Complex64; 2],
+) -> f64 {
+    if !a.propagating || !b.propagating {
+        return 0.0;
     }
-    flux
+    let mutual: Complex64 = mutual_flux(a, b).into();
+    let orientation = if side == Side::Reflected { -1.0 } else { 1.0 };
+    2.0 * orientation * (in_a * in_b.conj() * mutual).re
 }
