@@ -40,14 +40,14 @@ pub enum Command {
         /// The interfaces: a JSON file, or - for standard input.
         interfaces: PathBuf,
     },
-    /// Make the figures of Halimeh & Wegener, Opt. Express 21, 9457 (2013): the setting (1), drawn as
-    /// PNG and SVG, and the pictures (2-9).
+    /// Make the figures of Halimeh & Wegener, Opt. Express 21, 9457 (2013): the setting (1) and the
+    /// pictures (2-9); what is drawn as PNG, SVG and PDF.
     Figures(FiguresArguments),
     /// Make a picture and a map of times of flight of every device, and the table of them all.
     Gallery(GalleryArguments),
     /// Measure how much light comes through to a plane behind the devices, for nothing, bare metal and the cloak.
     Flux(FluxArguments),
-    /// Draw a ray diagram of a scene, or its setting, as SVG or PNG.
+    /// Draw a ray diagram of a scene, or its setting, as SVG, PDF or PNG.
     Diagram(DiagramArguments),
     /// Write what a device is made of, for fabrication and full-wave solvers: its index and tensors on a grid,
     /// or its segments as a table.
@@ -129,8 +129,8 @@ pub struct MergeArguments {
     /// The tiles, all .npz or all .png; they must cover the picture and not overlap.
     #[arg(required = true)]
     pub tiles: Vec<PathBuf>,
-    /// A file to write; its ending decides: .png, .exr or .npz; .png alone where the tiles are .png. May be given several
-    /// times.
+    /// A file to write; its ending decides: .png, .exr or .npz, for a map also .svg or .pdf; .png alone where the tiles
+    /// are .png. May be given several times.
     #[arg(short, long = "output", value_name = "FILE", required = true)]
     pub outputs: Vec<PathBuf>,
 }

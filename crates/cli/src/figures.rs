@@ -50,8 +50,8 @@ fn make(
     if chosen.len() == PANELS.iter().filter(|panel| panel.figure == number).count() {
         let title = format!("Figure {number}. {}", TITLES[number - 1]);
         let drawing = sheet(&title, &on_sheet);
-        let files = ["png", "pdf"].map(|ending| file(&number.to_string(), ending, arguments));
-        write_drawing(&drawing, &title, &metadata, drawing.pixels(), &files)?;
+        let name = file(&number.to_string(), arguments);
+        write_drawing(&drawing, &title, &metadata, drawing.pixels(), &name)?;
     }
     Ok(())
 }
@@ -59,7 +59,7 @@ fn make(
 /// A panel that has been written, for its sheet: what it shows, the colors of a map, and the metadata.
 type Shown = (RgbImage, Option<ColorBar>, Vec<(String, String)>);
 
-/// Renders a panel and writes it.
+/// Renders a panel and writes it; a map is drawn.
 fn rendered(
     views: &mut Views,
     index: usize,
@@ -68,26 +68,29 @@ fn rendered(
 ) -> Result<Shown> {
     let picture = views.picture(index, images)?;
     let Subject { panel, loaded, .. } = &views.subjects[index];
-    let image = rgb(&loaded.scene, &picture)?;
-    let map = loaded.scene.picture.map.name();
-    let map = map.map(|channel| ScalarMap::new(&picture, channel, None)).transpose()?;
-    write_png(&image, &picture.metadata, &file(panel.name, "png", arguments))?;
-    Ok((image, map.map(|map| map.bar), picture.metadata))
+    let name = file(panel.name, arguments);
+    let Some(channel) = loaded.scene.picture.map.name() else {
+        let image = rgb(&loaded.scene, &picture)?;
+        write_png(&image, &picture.metadata, &name.with_extension("png"))?;
+        return Ok((image, None, picture.metadata));
+    };
+    let map = ScalarMap::new(&picture, channel, None)?;
+    let drawing = map.draw(loaded.scene.picture.color_bar);
+    let metadata = picture.metadata;
+    let image = write_drawing(&drawing, panel.caption, &metadata, drawing.pixels(), &name)?;
+    Ok((image, Some(map.bar), metadata))
 }
 
-/// Draws the setting of a panel and writes it, in pixels and as lines.
+/// Draws the setting of a panel and writes it.
 fn drawn(panel: &Panel, loaded: &Loaded, arguments: &FiguresArguments) -> Result<Shown> {
     let Setting { drawing, metadata, .. } =
         cloakroom_figures::setting(&loaded.scene).map_err(|e| scene::located(loaded, &e))?;
-    let size = arguments.panels.size;
-    let image = drawing.to_image(size)?;
-    write_png(&image, &metadata, &file(panel.name, "png", arguments))?;
-    let files = ["svg", "pdf"].map(|ending| file(panel.name, ending, arguments));
-    write_drawing(&drawing, panel.caption, &metadata, size, &files)?;
+    let (size, name) = (arguments.panels.size, file(panel.name, arguments));
+    let image = write_drawing(&drawing, panel.caption, &metadata, size, &name)?;
     Ok((image, None, metadata))
 }
 
-/// The file of a panel or of a sheet.
-fn file(name: &str, ending: &str, arguments: &FiguresArguments) -> PathBuf {
-    arguments.out.join(format!("fig{name}.{ending}"))
+/// The files of a panel or of a sheet, without their endings.
+fn file(name: &str, arguments: &FiguresArguments) -> PathBuf {
+    arguments.out.join(format!("fig{name}"))
 }

@@ -27,8 +27,8 @@ pub fn run(arguments: &GalleryArguments) -> Result<()> {
     }
     if chosen.len() == EXHIBITS.len() {
         let drawing = table(gallery::TITLE, &rows);
-        let files = ["gallery.png", "gallery.pdf"].map(|name| arguments.out.join(name));
-        write_drawing(&drawing, gallery::TITLE, &metadata, drawing.pixels(), &files)?;
+        let name = arguments.out.join("gallery");
+        write_drawing(&drawing, gallery::TITLE, &metadata, drawing.pixels(), &name)?;
     }
     Ok(())
 }
@@ -48,9 +48,8 @@ fn make(
     let file = |ending: &str| arguments.out.join(format!("{}{ending}", exhibit.name));
     write_png(&image, &picture.metadata, &file(".png"))?;
     let drawing = map.draw(true);
-    let files = ["-time-of-flight.png", "-time-of-flight.pdf"].map(file);
     let title = format!("{}: {}", exhibit.title, map.bar.quantity.title);
-    write_drawing(&drawing, &title, &picture.metadata, drawing.pixels(), &files)?;
+    write_drawing(&drawing, &title, &picture.metadata, drawing.pixels(), &file("-time-of-flight"))?;
     merge(metadata, &picture.metadata);
     Ok(TableRow {
         title: exhibit.title.to_owned(),

@@ -2,20 +2,21 @@
 
 use crate::arguments::MergeArguments;
 use crate::files::{check_writable, formats};
-use crate::render::rgb;
 use crate::report::{Failure, Result};
 use cloakroom::output::{self, Format};
 use cloakroom::render;
 use cloakroom::scene_file;
+use cloakroom_figures::{PictureFormat, write_picture};
 use std::path::Path;
 
 /// Puts tiles together and writes every file asked for.
 pub fn run(arguments: &MergeArguments) -> Result<()> {
     let tiles = formats(&arguments.tiles, Format::of)?;
-    let outputs = formats(&arguments.outputs, Format::of)?;
+    let outputs = formats(&arguments.outputs, PictureFormat::of)?;
     check_writable(&arguments.outputs)?;
-    let all = |files: &[(&Path, Format)], format| files.iter().all(|(_, own)| *own == format);
-    if all(&tiles, Format::Npz) {
+    let all = |wanted| tiles.iter().all(|(_, format)| *format == wanted);
+    let png = PictureFormat::Pixels(Format::Png);
+    if all(Format::Npz) {
         let mut parts = Vec::new();
         for (path, _) in tiles {
             let picture = output::read_npz(path)?;
@@ -23,18 +24,19 @@ pub fn run(arguments: &MergeArguments) -> Result<()> {
         }
         let picture = render::merge(&parts)?;
         for (path, format) in outputs {
-            if format != Format::Png {
+            if !format.is_shown() {
                 output::write(&picture, path)?;
                 continue;
             }
-            // The scene says whether a PNG shows the image or a map.
+            // The scene says whether the image or a map is to be seen.
             let scene = picture.metadata.iter().find(|(key, _)| key == "scene");
             let text = scene.map_or("", |(_, text)| text);
             let loaded = scene_file::parse(text, "the scene of the tiles", Path::new(""), &[])?;
-            output::write_png(&rgb(&loaded.scene, &picture)?, &picture.metadata, path)?;
+            let shown = &loaded.scene.picture;
+            write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)?;
         }
         Ok(())
-    } else if all(&tiles, Format::Png) && all(&outputs, Format::Png) {
+    } else if all(Format::Png) && outputs.iter().all(|(_, format)| *format == png) {
         let mut parts = Vec::new();
         for (path, _) in tiles {
             let (image, metadata) = output::read_png(path)?;

@@ -5,7 +5,7 @@ use crate::report::{Result, wrote};
 use cloakroom::output::{self, RgbImage};
 use cloakroom::scene_file::{self, Loaded};
 use cloakroom_figures::{Drawing, DrawingFormat};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Reads the scene of a panel, with what the command line changes in it, and with more overrides.
 pub fn load(scene: &str, name: &str, arguments: &PanelArguments, more: &[&str]) -> Result<Loaded> {
@@ -30,19 +30,23 @@ pub fn write_png(image: &RgbImage, metadata: &[(String, String)], path: &Path) -
     Ok(())
 }
 
-/// Writes a drawing as each of some files, and says so; a PNG has so many pixels.
+/// Writes a drawing in all formats under one name without an ending, and says so; the PNG, which is given back, has so
+/// many pixels.
 pub fn write_drawing(
     drawing: &Drawing,
     title: &str,
     metadata: &[(String, String)],
     pixels: [u32; 2],
-    files: &[PathBuf],
-) -> Result<()> {
-    for path in files {
-        drawing.write(DrawingFormat::of(path)?, title, metadata, pixels, path)?;
-        wrote(path);
+    name: &Path,
+) -> Result<RgbImage> {
+    let image = drawing.to_image(pixels)?;
+    write_png(&image, metadata, &name.with_extension("png"))?;
+    for (ending, format) in [("svg", DrawingFormat::Svg), ("pdf", DrawingFormat::Pdf)] {
+        let path = name.with_extension(ending);
+        drawing.write(format, title, metadata, pixels, &path)?;
+        wrote(&path);
     }
-    Ok(())
+    Ok(image)
 }
 
 /// Adds a panel's metadata to that of its sheet: what differs from panel to panel, one after the other.

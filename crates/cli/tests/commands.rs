@@ -242,8 +242,11 @@ fn figures_come_as_panels_and_sheets() {
         let panel = image::open(out.join(format!("{name}.png"))).unwrap();
         assert_eq!((panel.width(), panel.height()), (96, 72), "{name}");
     }
-    assert!(out.join("fig6.png").is_file());
-    assert!(!out.join("fig8.png").exists());
+    // What is drawn is lines, too; a picture is not.
+    for name in ["fig6.png", "fig6.svg", "fig6.pdf", "fig6d.svg", "fig6d.pdf", "fig8d.svg"] {
+        assert!(out.join(name).is_file(), "{name}");
+    }
+    assert!(!out.join("fig6a.svg").exists() && !out.join("fig8.png").exists());
 }
 
 #[test]
@@ -282,9 +285,11 @@ fn the_gallery_has_a_picture_and_a_map_of_each_exhibit() {
     let expected = [
         "eaton-lens-time-of-flight.pdf",
         "eaton-lens-time-of-flight.png",
+        "eaton-lens-time-of-flight.svg",
         "eaton-lens.png",
         "square-cloak-time-of-flight.pdf",
         "square-cloak-time-of-flight.png",
+        "square-cloak-time-of-flight.svg",
         "square-cloak.png",
     ];
     assert_eq!(names, expected);
@@ -308,6 +313,7 @@ fn the_table_of_the_gallery_is_made_with_all_of_it() {
     command.assert().success();
     let table = image::open(folder.path().join("gallery.png")).unwrap();
     assert!(table.width() > 1000 && table.height() > 1000);
+    assert!(["svg", "pdf"].iter().all(|e| folder.path().join(format!("gallery.{e}")).is_file()));
 }
 
 #[test]
@@ -329,7 +335,7 @@ fn the_setting_is_drawn() {
         let svg = fs::read_to_string(plain.join(format!("{panel}.svg"))).unwrap();
         assert!(svg.contains(&format!("aria-label=\"{label}\"")) && svg.contains("[[device]]"));
     }
-    for name in ["fig1.png", "fig1.pdf", "fig1a.pdf"] {
+    for name in ["fig1.png", "fig1.svg", "fig1.pdf", "fig1a.pdf"] {
         assert!(plain.join(name).is_file(), "{name}");
     }
     // The photograph in the drawing is the one that is looked at.

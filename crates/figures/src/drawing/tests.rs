@@ -1,5 +1,9 @@
 use super::*;
+use crate::{ScalarMap, SheetPanel, TablePicture, TableRow, sheet, table};
+use cloakroom::output::{Channel, Picture, Samples};
 use image::Rgb;
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::{Options, Tree};
 
 const RED: Ink = Ink::new([255, 0, 0]);
 
@@ -145,6 +149,37 @@ fn a_pdf_is_a_page_as_large_as_on_paper() {
     }
     let svg = drawing.to_svg("", &[]);
     assert!(svg.contains("width=\"50.8mm\"") && svg.contains("height=\"25.4mm\""), "{svg}");
+}
+
+#[test]
+fn an_svg_shows_what_the_png_beside_it_does() {
+    let numbers = (0..61 * 43).map(|i: i32| f64::from(i * i % 97) * 1e-15).collect();
+    let samples = Samples::F64(numbers);
+    let channels = vec![Channel { name: "time_of_flight_difference".to_owned(), samples }];
+    let picture = Picture { width: 61, height: 43, channels, metadata: Vec::new() };
+    let map = ScalarMap::new(&picture, "time_of_flight_difference", None).expect("a map");
+    let panel = SheetPanel {
+        image: map.image.clone(),
+        label: "(a)".to_owned(),
+        caption: "a map".to_owned(),
+        bar: Some(map.bar.clone()),
+    };
+    let pictures = vec![TablePicture::new(&map.image), TablePicture::of_map(&map, "")];
+    let row =
+        TableRow { title: "A row".to_owned(), words: vec![("of", "one".to_owned())], pictures };
+    let drawings =
+        [map.draw(false), map.draw(true), sheet("A sheet", &[panel]), table("A table", &[row])];
+    for drawing in drawings {
+        let svg = Drawing { mm: 1.0, ..drawing.clone() }.to_svg("A < B", &[]);
+        roxmltree::Document::parse(&svg).expect("XML");
+        let [width, height] = drawing.pixels();
+        let mut pixels = Pixmap::new(width, height).expect("pixels");
+        // A pixel a unit.
+        let tree = Tree::from_str(&svg.replace("mm\"", "\""), &Options::default()).expect("SVG");
+        resvg::render(&tree, Transform::identity(), &mut pixels.as_mut());
+        let png = drawing.to_image([width, height]).expect("an image");
+        assert!(pixels.data().chunks_exact(4).map(|pixel| &pixel[..3]).eq(png.chunks_exact(3)));
+    }
 }
 
 #[test]
