@@ -211,8 +211,9 @@ fn check_interface(request: &InterfaceRequest) {
         let finite = fields.iter().all(|field| field.re.is_finite() && field.im.is_finite());
         assert!(finite && mode.poynting().is_finite(), "{mode:?}: {request:?}");
     }
-    for power in solved.power.iter().flatten() {
-        let sum: f64 = power.iter().sum();
+    for (power, together) in solved.power.iter().zip(&solved.interference) {
+        let Some((power, together)) = power.as_ref().zip(together.as_ref()) else { continue };
+        let sum = power.iter().chain(together).sum::<f64>();
         // Light in an absorbing medium interferes with what is reflected, and that carries power, too.
         let adds_up = incident.absorbs() || (sum - 1.0).abs() <= rays::BALANCE;
         let sound = power.iter().all(|share| share.is_finite() && *share >= 0.0) && adds_up;

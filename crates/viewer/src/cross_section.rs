@@ -41,7 +41,7 @@ fn device(settings: &DeviceSettings, placed: &Placed) -> Value {
     let region = |section: &Section<'_>| json!({ "border": all(&section.border), "graded": section.region.is_graded() });
     let regions: Vec<Value> = section.regions.iter().map(region).collect();
     let metal = |contour: &Contour| json!({ "points": points(contour), "closed": contour.closed });
-    let metal: Vec<Value> = section.metal.iter().map(metal).collect();
+    let metal: Vec<Value> = section.metal.iter().chain(&section.polarizers).map(metal).collect();
     let body = section.body.map(|_| match settings.appearance() {
         None => json!("medium"),
         Some(Appearance::Color(color)) => json!(color),

@@ -45,6 +45,10 @@ impl Sketch<'_> {
             let area = Shape::Area(self.subject.places(self.view, &section.outlines));
             self.add_within("medium", area).filled(MEDIUM).stroked(INK, THIN);
         }
+        for contour in &section.polarizers {
+            let points = self.subject.on_sheet(self.view, &contour.points);
+            self.add_within("polarizer", Shape::Line(points)).stroked(INK, THICK);
+        }
         for contour in &section.metal {
             let points = self.subject.on_sheet(self.view, &contour.points);
             if contour.closed {

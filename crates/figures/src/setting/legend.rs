@@ -127,6 +127,9 @@ fn add_entries(entries: &mut Vec<Entry>, subjects: &[(&Subject<'_>, bool)]) {
                 add(Sample::Line((axis.ink, THICK)), plain(words));
             }
         }
+        if !section.polarizers.is_empty() {
+            add(Sample::Line((INK, THICK)), plain("polarizer"));
+        }
         for contour in &section.metal {
             if contour.closed {
                 add(Sample::Area(METAL), plain("metal"));

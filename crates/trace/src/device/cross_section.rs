@@ -51,6 +51,8 @@ pub struct CrossSection<'s> {
     pub regions: Vec<Section<'s>>,
     /// The surfaces of metal: closed contours are full of it, open ones are thin mirrors.
     pub metal: Vec<Contour>,
+    /// The lines of polarizers.
+    pub polarizers: Vec<Contour>,
     /// The medium that fills the outlines, if the device is a body of one.
     pub body_medium: Option<&'s Medium>,
     /// The body that fills the outlines, if the device is one.
@@ -73,6 +75,7 @@ impl Structure {
             body: self.hull.body,
             is_shadow: false,
             metal: joined(metal),
+            polarizers: joined(outside.iter().filter(|edge| edge.far == FarSide::Polarizer)),
             regions: sections
                 .map(|(region, edges)| Section { border: joined(edges), region })
                 .collect(),
@@ -104,15 +107,23 @@ impl Structure {
         let shadow = |solid: &Solid| solid.placed(pose).shadow().corners;
         let parts: Vec<Vec<DVec2>> = self.hull.solids.iter().map(shadow).collect();
         let whole = Outline::hull(parts.concat());
-        // What has neither regions nor is a body is metal.
+        // What has neither regions nor is a body or a polarizer is metal.
         let body = self.hull.body;
-        let is_metal = self.regions.is_empty() && body.is_none();
+        let is_metal = self.regions.is_empty() && body.is_none() && !self.polarizes();
         let mirror = self.hull.thin_mirror.as_ref().map(shadow);
         let metal = parts.iter().filter(|_| is_metal).chain(&mirror);
         let metal: Vec<Contour> = metal.map(|part| contour(part)).collect();
         let outlines = if is_metal { metal.clone() } else { vec![contour(&whole.corners)] };
-        let (body_medium, regions) = (self.body_medium(), Vec::new());
-        let section = CrossSection { outlines, regions, metal, body, body_medium, is_shadow: true };
+        let polarizers = parts.iter().filter(|_| self.polarizes()).map(|part| contour(part));
+        let section = CrossSection {
+            outlines,
+            regions: Vec::new(),
+            metal,
+            polarizers: polarizers.collect(),
+            body_medium: self.body_medium(),
+            body,
+            is_shadow: true,
+        };
         (section, Pose::new(origin, 0.0))
     }
 }

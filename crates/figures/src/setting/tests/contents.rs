@@ -46,6 +46,9 @@ fn all_shapes_of_a_scene_are_there() {
             for contour in &section.metal {
                 demand(if contour.closed { "metal" } else { "mirror" }, &contour.points);
             }
+            for contour in &section.polarizers {
+                demand("polarizer", &contour.points);
+            }
             if section.body.is_some() {
                 assert_eq!(section.outlines.len(), 1, "{text}");
                 demand("body", &section.outlines[0].points);

@@ -35,7 +35,7 @@ impl<const N: usize> Scattered<'_, N> {
         let on = onward.map_or([0.0; N], |q| fields.map(|field| flux(layer.fluxes(q), field)));
         // Over the sum, not over the incident flux: the same, but for rounding near grazing incidence.
         let total: [f64; N] = std::array::from_fn(|i| back[0][i] + back[1][i] + on[i]);
-        let shares = Shares::of(self.splitting.wave.power, total);
+        let shares = Shares::of(self.splitting.wave.power, total, false);
         let amplitudes = [&amplitudes[0], &amplitudes[1]];
         self.one_side(Side::Reflected, backward, amplitudes, &back, &shares);
         let Some(q) = onward else { return };

@@ -111,13 +111,15 @@ struct Shares<const N: usize> {
     power: [f64; N],
     /// Their square roots.
     field: [f64; N],
+    /// Whether a medium absorbs: what modes carry together then is in no mode's power.
+    absorbing: bool,
 }
 
 impl<const N: usize> Shares<N> {
-    /// Of the incident powers, given the sums of all outgoing fluxes.
-    fn of(power: [f64; N], total: [f64; N]) -> Self {
+    /// Of the incident powers, given the incident fluxes or, the same without absorption, the sums of all outgoing ones.
+    fn of(power: [f64; N], total: [f64; N], absorbing: bool) -> Self {
         let power = std::array::from_fn(|i| if total[i] > 0.0 { power[i] / total[i] } else { 0.0 });
-        Self { power, field: power.map(f64::sqrt) }
+        Self { power, field: power.map(f64::sqrt), absorbing }
     }
 }
 
@@ -197,7 +199,7 @@ impl<const N: usize> Scattered<'_, N> {
             // would show in the account of the power.
             std::array::from_fn(|i| back[0][i] + back[1][i] + on[0][i] + on[1][i])
         };
-        let shares = Shares::of(self.splitting.wave.power, total);
+        let shares = Shares::of(self.splitting.wave.power, total, absorbing);
         self.one_side(Side::Reflected, backward, [r1, r2], &back, &shares);
         if let Some(onward) = onward {
             self.one_side(Side::Transmitted, onward, [t1, t2], &on, &shares);
@@ -230,7 +232,12 @@ impl<const N: usize> Scattered<'_, N> {
             && apart.norm_sqr() <= (ONE_WAVE * ONE_WAVE) * (1.0 + a.q.magnitude_squared());
         if one_wave {
             let power: [f64; N] = std::array::from_fn(|i| {
-                let together = interference(side, modes, amplitudes.map(|of| of[i]));
+                // In the sum of all outgoing fluxes there is nothing of it.
+                let together = if shares.absorbing {
+                    interference(side, modes, amplitudes.map(|of| of[i]))
+                } else {
+                    0.0
+                };
                 (fluxes[0][i] + fluxes[1][i] + together).max(0.0) * shares.power[i]
             });
             if self.is_strong(power) {
