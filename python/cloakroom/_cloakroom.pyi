@@ -104,6 +104,7 @@ def trace(
     polarization: str,
     fields: NDArray[np.complex128] | None,
     min_power: float | None,
+    coherent: bool,
     progress: _Tell,
 ) -> dict[str, NDArray[Any]]: ...
 def interface(

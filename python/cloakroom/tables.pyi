@@ -573,6 +573,39 @@ class Body(Device):
     @property
     def thickness(self) -> float: ...
 
+class Polarizer(Device):
+    def __init__(
+        self,
+        *,
+        angle: float | None = ...,
+        axis: ArrayLike | None = ...,
+        core: Literal["metal", "open"] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
+        length: float | None = ...,
+        position: ArrayLike | None = ...,
+        rotation: float | None = ...,
+        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        width: float | None = ...,
+    ) -> None: ...
+    @property
+    def angle(self) -> float: ...
+    @property
+    def axis(self) -> list[Any]: ...
+    @property
+    def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
+    @property
+    def length(self) -> float | None: ...
+    @property
+    def position(self) -> list[Any]: ...
+    @property
+    def rotation(self) -> float: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    @property
+    def width(self) -> float: ...
+
 class GaussianCarpet(Device):
     def __init__(
         self,
@@ -742,8 +775,11 @@ class Light(Table):
     def __init__(
         self,
         *,
+        bandwidth_nm: float | None = ...,
         wavelength_nm: float | None = ...,
     ) -> None: ...
+    @property
+    def bandwidth_nm(self) -> float: ...
     @property
     def wavelength_nm(self) -> float: ...
 
@@ -828,4 +864,4 @@ class TraceSettings(Table):
     @property
     def tolerance(self) -> float: ...
 
-__all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name", "SquareCloak", "DoubleGaussianCloak", "CylinderCloak", "SphereCloak", "InvisibleSphere", "BendingSphere", "EatonLens", "LuneburgLens", "FisheyeLens", "FisheyeHemisphere", "MirrorDetour", "Prisms", "Graded", "GradedBox", "Body", "GaussianCarpet", "GratingCarpet", "QuasiConformalCarpet", "Camera", "Light", "Photograph", "PictureSettings", "Receiver", "Surroundings", "TraceSettings"]
+__all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name", "SquareCloak", "DoubleGaussianCloak", "CylinderCloak", "SphereCloak", "InvisibleSphere", "BendingSphere", "EatonLens", "LuneburgLens", "FisheyeLens", "FisheyeHemisphere", "MirrorDetour", "Prisms", "Graded", "GradedBox", "Body", "Polarizer", "GaussianCarpet", "GratingCarpet", "QuasiConformalCarpet", "Camera", "Light", "Photograph", "PictureSettings", "Receiver", "Surroundings", "TraceSettings"]

@@ -231,3 +231,22 @@ def test_bad_interfaces_are_told(arguments: tuple, error: type[Exception], messa
     with pytest.raises(error) as raised:
         interface(*arguments)
     assert message in str(raised.value)
+
+
+def test_films_reflect_as_their_thickness_has_it() -> None:
+    film = Scene(light={"bandwidth_nm": 0}, devices=cloakroom.Body(shape="slab", thickness=92e-7, permittivity=2.25))
+    traced = trace(film, [-1, 0, 0], [1, 0, 0], coherent=True)
+    # |r|^2 = 4 r0^2 sin^2(b)/(...) of Airy's formula, b the phase of one way.
+    r, phase = -0.2, 2 * np.pi * 1.5 * 92 / 550
+    airy = r * (1 - np.exp(2j * phase)) / (1 - r**2 * np.exp(2j * phase))
+    reflected = traced.power[traced.direction[:, 0] < 0]
+    np.testing.assert_allclose(reflected, [abs(airy) ** 2], atol=1e-12)
+    np.testing.assert_allclose(traced.power.sum(), 1, atol=1e-12)
+    assert len(trace(film, [-1, 0, 0], [1, 0, 0]).ray) > 4
+
+
+def test_crossed_polarizers_are_dark() -> None:
+    crossed = Scene(devices=[cloakroom.Polarizer(position=(-5, 0, 0)), cloakroom.Polarizer(position=(5, 0, 0), angle=90)])
+    traced = trace(crossed, [-50, 1, 2], [1, 0, 0])
+    assert len(traced.ray) == 0
+    np.testing.assert_allclose(traced.absorbed, 1)
