@@ -95,9 +95,9 @@ fn solve(mut a: Matrix, mut b: [Complex64; 4]) -> [Complex64; 4] {
         b.swap(column, pivot);
         for row in column + 1..4 {
             let factor = a[row][column] / a[column][column];
-            for l in column..4 {
-                let above = a[column][l];
-                a[row][l] -= factor * above;
+            let above = a[column];
+            for (entry, above) in a[row].iter_mut().zip(above).skip(column) {
+                *entry -= factor * above;
             }
             let above = b[column];
             b[row] -= factor * above;

@@ -79,7 +79,7 @@ fn examine(worst: &mut Worst, from: &Medium, to: Option<&Medium>, s: &Scattering
         raise(&mut worst.jump, jump(s, column, normal));
         assert!(power.iter().all(|p| p.is_finite() && *p >= 0.0), "{power:?}");
         if !from.absorbs() {
-            let together = s.interference[column].unwrap();
+            let together = s.interference[column].expect("as there is a power");
             let sum = power.iter().chain(&together).sum::<f64>();
             let [incident, outgoing] = fluxes(s, column, normal);
             let error = (outgoing - incident).abs();
@@ -180,7 +180,8 @@ fn closed_forms_agree_with_the_eigenproblem() {
             };
             assert_eq!(closed.power[i].is_some(), general.power[j].is_some(), "{from:?}");
             let (Some(p), Some(q)) = (closed.power[i], general.power[j]) else { continue };
-            let together = [closed.interference[i], general.interference[j]].map(Option::unwrap);
+            let together = [closed.interference[i], general.interference[j]]
+                .map(|of| of.expect("as there is a power"));
             let sides = [
                 (0, Some((&closed.reflected, &general.reflected))),
                 (2, closed.transmitted.as_ref().zip(general.transmitted.as_ref())),
