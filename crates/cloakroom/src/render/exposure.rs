@@ -38,6 +38,20 @@ pub(super) fn expose<const N: usize>(
 ) {
     pulses.clear();
     interference.seen.clear();
+    let coherent = prepared.coherence.is_some();
+    let mut book = |pixel: &mut Pixel, leaf: &Leaf<N>, screen: Option<f64>, power: f64| match (
+        leaf.body(),
+        screen,
+    ) {
+        (Some(_), _) => pixel.absorbed += power,
+        (None, Some(distance)) => {
+            pixel.delivered += power;
+            if detection.times {
+                pulses.push((time_of_flight(leaf, distance), power));
+            }
+        }
+        (None, None) => pixel.escaped += power,
+    };
     pixel.absorbed += detection.detected(&here.outcome.absorbed);
     pixel.pruned += detection.detected(&here.outcome.pruned);
     for leaf in here.leaves {
@@ -47,7 +61,11 @@ pub(super) fn expose<const N: usize>(
             |alone| [across, down].map(|neighbour| Neighbour { here, leaf, neighbour, alone });
         let among_all = beside(None);
         let light = light(prepared, leaf, screen, &among_all, spacing);
-        interference.seen.push((screen, light));
+        if coherent {
+            interference.seen.push((screen, light));
+        } else {
+            book(pixel, leaf, screen, power);
+        }
         add(&mut pixel.image, power, light);
         if detection.separate {
             for (i, sum) in [&mut pixel.horizontal, &mut pixel.vertical].into_iter().enumerate() {
@@ -70,20 +88,13 @@ pub(super) fn expose<const N: usize>(
             }
         }
     }
-    interference
-        .find(prepared, here.leaves, here.ray.origin, |leaf| detection.detected(&leaf.power));
-    interfere(detection, here.leaves, interference, pixel);
-    for (number, leaf) in here.leaves.iter().enumerate() {
-        let power = detection.detected(&leaf.power) * interference.gain(number);
-        match (leaf.body(), interference.seen[number].0) {
-            (Some(_), _) => pixel.absorbed += power,
-            (None, Some(distance)) => {
-                pixel.delivered += power;
-                if detection.times {
-                    pulses.push((time_of_flight(leaf, distance), power));
-                }
-            }
-            (None, None) => pixel.escaped += power,
+    if coherent {
+        let detected = |leaf: &Leaf<N>| detection.detected(&leaf.power);
+        interference.find(prepared, here.leaves, here.ray.origin, detected);
+        interfere(detection, here.leaves, interference, pixel);
+        for (number, leaf) in here.leaves.iter().enumerate() {
+            let power = detected(leaf) * interference.gain(number);
+            book(pixel, leaf, interference.seen[number].0, power);
         }
     }
     if let Some(face) = &here.first_face {
