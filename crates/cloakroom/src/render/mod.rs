@@ -326,6 +326,8 @@ impl<'a, const N: usize> Exposer<'a, N> {
                 if self.detection.first_face { tracer.first_face(&launches[i]) } else { None };
             Traced { ray: rays[i], leaves, outcome, first_face }
         });
+        let coherent = self.prepared.coherence.is_some();
+        let expose = if coherent { expose::<N, true> } else { expose::<N, false> };
         for (i, pixel) in pixels.iter_mut().enumerate() {
             let rays = [&block[i], &block[i ^ 1], &block[i ^ 2]];
             expose(self.prepared, self.detection, rays, spacing, pixel, &mut self.working);

@@ -5,7 +5,7 @@ use super::exposure::{empty_time_of_flight, time_of_flight};
 use super::interference::Interference;
 use super::pixel::Pixel;
 use super::{ChannelKind, PreparedScene};
-use crate::trace::{Leaf, Pair, Tracer};
+use crate::trace::Tracer;
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
 use serde::Serialize;
@@ -108,16 +108,10 @@ fn list<const N: usize>(
     let mut tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
     let (leaves, outcome) = tracer.trace(&detection.launch(camera, &ray));
     let mut interference = Interference::default();
-    let sights = leaves.iter().map(|leaf| (leaf.distance_to(&prepared.screen), [0.0; 3]));
-    interference.seen.extend(sights);
-    let detected = |leaf: &Leaf<N>| detection.detected(&leaf.power);
-    interference.find(prepared, leaves, ray.origin, detected);
-    let together =
-        |pair: &Pair| detection.detected(&std::array::from_fn(|i| pair.power(leaves, i)));
-    let moved = interference.share_out(leaves, detected, together);
+    interference.find(prepared, detection, leaves, ray.origin);
     let (mut arrivals, mut escaped, mut ended) = (Vec::new(), 0.0, 0.0);
     for (number, leaf) in leaves.iter().enumerate() {
-        let power = detected(leaf) * interference.gain(number);
+        let power = detection.detected(&leaf.power) * interference.gain(number);
         match (leaf.body(), leaf.distance_to(&prepared.screen)) {
             (Some(_), _) => ended += power,
             (None, Some(distance)) if power > 0.0 => arrivals.push(Arrival {
@@ -155,7 +149,7 @@ fn list<const N: usize>(
         time_of_flight_spread_ns: number(ChannelKind::TimeOfFlightSpread),
         escaped,
         absorbed: detection.detected(&outcome.absorbed) + ended,
-        pruned: detection.detected(&outcome.pruned) - moved,
+        pruned: detection.detected(&outcome.pruned) - interference.added,
     }
 }
 

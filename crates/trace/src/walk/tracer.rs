@@ -153,7 +153,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.waiting.clear();
         (self.events, self.threshold) = (0, self.limits.min_power);
         if !self.start(branch) {
-            *branch = self.next()?;
+            self.take_next(branch)?;
         }
         self.walk(branch)
     }
@@ -166,7 +166,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         passage: Option<&Passage>,
     ) -> Option<(u16, u16)> {
         if !self.pass(branch, region, passage) {
-            *branch = self.next()?;
+            self.take_next(branch)?;
         }
         self.walk(branch)
     }
@@ -207,30 +207,37 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                     }
                 }
             };
-            if self.joining.is_some() {
-                if goes_on {
-                    self.waiting.push(*branch);
-                }
-                *branch = self.next()?;
-            } else if !goes_on {
-                *branch = *self.waiting.last()?;
-                self.waiting.truncate(self.waiting.len() - 1);
+            if !goes_on {
+                self.take_next(branch)?;
+            } else if self.joining.is_some() {
+                self.waiting.push(*branch);
+                self.take_next(branch)?;
             }
         }
     }
 
-    /// The branch to be followed next: the last that waits, or where branches are joined the one of the shortest path
-    /// with all that run together with it.
-    fn next(&mut self) -> Option<Branch<N>> {
-        let Some(coherence) = self.joining else { return self.waiting.pop() };
+    /// Puts in place of a branch the one to be followed next: the last that waits, or where branches are joined the one
+    /// of the shortest path with all that run together with it. None if none waits.
+    #[inline(always)]
+    fn take_next(&mut self, branch: &mut Branch<N>) -> Option<()> {
+        if let Some(coherence) = self.joining {
+            return self.take_joined(branch, coherence);
+        }
+        *branch = *self.waiting.last()?;
+        self.waiting.truncate(self.waiting.len() - 1);
+        Some(())
+    }
+
+    #[cold]
+    fn take_joined(&mut self, branch: &mut Branch<N>, coherence: Coherence) -> Option<()> {
         loop {
             let paths = self.waiting.iter().map(|branch| branch.optical_path).enumerate();
             let (shortest, _) = paths.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
-            let mut branch = self.waiting.swap_remove(shortest);
-            self.waiting.retain(|other| !coherence.join(&mut branch, other));
+            *branch = self.waiting.swap_remove(shortest);
+            self.waiting.retain(|other| !coherence.join(branch, other));
             // Their fields may have cancelled.
             if self.follows(branch.power) {
-                return Some(branch);
+                return Some(());
             }
         }
     }
@@ -270,20 +277,24 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             return;
         }
         let mut lost = false;
-        // Fields that have cancelled where branches were joined have few digits.
-        let least = if self.joining.is_some() { CANCELLED } else { 0.0 };
         for (i, power) in branch.power.iter().enumerate() {
             self.outcome.pruned[i] += weak[i];
             if absorbing {
                 self.outcome.absorbed[i] += rest[i];
                 continue;
             }
-            if rest[i].abs() > LEAK * power.max(least) {
+            if rest[i].abs() > LEAK * power && !self.has_cancelled(rest[i]) {
                 self.outcome.pruned[i] += rest[i];
                 lost = true;
             }
         }
         self.outcome.stats.lost += u64::from(lost);
+    }
+
+    /// Whether a rest of power is that of fields that have cancelled where branches were joined: they have few digits.
+    #[cold]
+    fn has_cancelled(&self, rest: f64) -> bool {
+        self.joining.is_some() && rest.abs() <= LEAK * CANCELLED
     }
 
     /// Whether a branch of that power is followed; else it is pruned, and need not be made.

@@ -39,7 +39,7 @@ impl ConformalFlow {
                 .map(|k| {
                     let share = f64::from(k) / f64::from(pieces);
                     let zeta = from + (to - from) * share;
-                    point(self.map.jet(zeta).f, start.position.z, tau * share)
+                    point(self.map.jet(zeta).f, start.z, tau * share)
                 })
                 .collect());
         }

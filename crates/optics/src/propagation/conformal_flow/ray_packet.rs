@@ -95,7 +95,7 @@ impl RayPacket {
             packet.rays.p_z[i] = p.z;
             packet.here.zeta.put(i, start.virtual_position);
             packet.here.momentum.put(i, Complex64::new(p.x, p.y));
-            packet.here.z[i] = start.half.mirrored(start.position).z;
+            packet.here.z[i] = start.z;
         }
         packet.set_out(flow, &control, tolerance);
         packet
