@@ -17,6 +17,7 @@ mod glass_prism;
 mod graded;
 mod immersed;
 mod imperfection;
+#[path = "../../optics/tests/long.rs"]
 mod long;
 mod material;
 mod mirror_detour;

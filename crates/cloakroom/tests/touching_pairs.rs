@@ -176,6 +176,7 @@ fn all_sorts() -> Vec<Sort> {
             format!("w = 10\nh = 1.7\n{carpet} = 0"),
             Metal::Triangle(DVec2::new(2.5, 1.7), 0.0),
         ),
+        ("polarizer", "width = 10\nlength = 12\nangle = 30".into(), Metal::None),
     ];
     sorts
         .into_iter()
