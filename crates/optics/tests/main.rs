@@ -2,6 +2,7 @@
 
 mod birefringence;
 mod conformal_flow;
+mod conical_refraction;
 mod graded_index;
 mod grazing;
 mod hyperbolic_cuts;

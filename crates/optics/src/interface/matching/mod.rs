@@ -14,6 +14,9 @@ use num_complex::Complex64;
 /// Normal components closer than this are those of one wave, that both modes are.
 const ONE_WAVE: f64 = 1e-12;
 
+/// On the axis of a biaxial medium one wave vector has a cone of rays; rays closer than this are one.
+const ONE_RAY: f64 = 1e-9;
+
 /// Splits a wave at the interface of any two media, or at a conductor: adds the outgoing waves that are strong enough;
 /// the power of the others.
 pub(super) fn split_into_modes<const N: usize>(
@@ -230,7 +233,7 @@ impl<const N: usize> Scattered<'_, N> {
         let one_wave = a.propagating
             && b.propagating
             && apart.norm_sqr() <= (ONE_WAVE * ONE_WAVE) * (1.0 + a.q.magnitude_squared());
-        if one_wave {
+        if one_wave && share_ray(modes) {
             let power: [f64; N] = std::array::from_fn(|i| {
                 // In the sum of all outgoing fluxes there is nothing of it.
                 let together = if shares.absorbing {
@@ -304,6 +307,13 @@ impl<const N: usize> Scattered<'_, N> {
             power,
         });
     }
+}
+
+/// Whether two modes of one wave vector have one ray. s and p do; in absorbing media theirs part a little. Where the
+/// modes have no such names they are two of the plane of fields, each with its own ray on the cone.
+fn share_ray<T: Number>([a, b]: &[LocalMode<T>; 2]) -> bool {
+    let ray = |mode: &LocalMode<T>| DVec3::from(mode.poynting()).normalize_or_zero();
+    matches!(a.kind, ModeKind::S | ModeKind::P) || ray(a).distance(ray(b)) <= ONE_RAY
 }
 
 /// The outgoing normal fluxes of modes of the given amplitudes; those that do not propagate have none.
