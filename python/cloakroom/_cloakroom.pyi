@@ -105,6 +105,7 @@ def trace(
     fields: NDArray[np.complex128] | None,
     min_power: float | None,
     coherent: bool,
+    group_delay: bool,
     progress: _Tell,
 ) -> dict[str, NDArray[Any]]: ...
 def interface(

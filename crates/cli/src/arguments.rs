@@ -182,6 +182,9 @@ pub struct TraceArguments {
     /// Add leaves of one direction as fields, as light of the scene's wavelength and bandwidth does in the far field.
     #[arg(long)]
     pub coherent: bool,
+    /// Give `group_path` for each leaf, too: the speed of light times what a pulse takes, cm.
+    #[arg(long)]
+    pub group_delay: bool,
     /// Prune branches below this share of the launched power [default: the scene's, else 1e-9, with --coherent 1e-20].
     #[arg(long, value_name = "P")]
     pub min_power: Option<f64>,

@@ -36,7 +36,7 @@ fn prism(glass: bool) -> Assembly {
     let outline = Outline { corners: corners.to_vec() };
     let hull = Hull::new(Solid::Prism { outline, extent: Extent::ENDLESS });
     let structure = Structure { regions, surfaces, hull };
-    Assembly::new(vec![Placed { pose: Pose::new(DVec3::ZERO, 0.0), structure }])
+    Assembly::new(vec![Placed::new(Pose::new(DVec3::ZERO, 0.0), structure)])
 }
 
 /// The ray from the camera through `through` along `direction`, and its strongest leaf.

@@ -15,6 +15,7 @@ mod equation_of_motion;
 mod first_face;
 mod glass_prism;
 mod graded;
+mod group_delay;
 mod immersed;
 mod imperfection;
 #[path = "../../optics/tests/long.rs"]

@@ -264,7 +264,7 @@ impl<'a> Pair<'a> {
             // A number as one writes it, where that is short.
             let x = ((at - along.x * reach) * 1e12).round() / 1e12;
             let own = Pose::from_rotation(DVec3::X * x, turn);
-            Placed { pose: pose.after(&own), structure: sorts[i].device.structure.clone() }
+            Placed::new(pose.after(&own), sorts[i].device.structure.clone())
         });
         let pair = Self { sorts, assembly: Assembly::new(devices.to_vec()), pose, at };
         assert_eq!(pair.assembly.overlap(), None, "{pair:?}");

@@ -5,6 +5,7 @@ mod conformal_flow;
 mod conical_refraction;
 mod graded_index;
 mod grazing;
+mod group_path;
 mod hyperbolic_cuts;
 mod interfaces;
 mod interfaces_million;

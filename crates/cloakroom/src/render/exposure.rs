@@ -23,6 +23,8 @@ pub(super) struct Traced<'t, const N: usize> {
 #[derive(Debug, Default)]
 pub(super) struct Working {
     pulses: Pulses,
+    /// The same, with what each takes as a pulse.
+    group_pulses: Pulses,
     interference: Interference,
 }
 
@@ -35,9 +37,10 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
     [here, across, down]: [&Traced<'_, N>; 3],
     spacing: f64,
     pixel: &mut Pixel,
-    Working { pulses, interference }: &mut Working,
+    Working { pulses, group_pulses, interference }: &mut Working,
 ) {
     pulses.clear();
+    group_pulses.clear();
     if COHERENT {
         interference.find(prepared, detection, here.leaves, here.ray.origin);
         pixel.pruned -= interference.added;
@@ -54,6 +57,9 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
                 pixel.delivered += arriving;
                 if detection.times {
                     pulses.push((time_of_flight(leaf, distance), arriving));
+                }
+                if detection.group_delays {
+                    group_pulses.push((group_delay(leaf, distance), arriving));
                 }
             }
             (None, None) => pixel.escaped += arriving,
@@ -97,7 +103,9 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
         pixel.extraordinary += detection.detected(&face.extraordinary);
     }
     if detection.times {
-        pixel.add_pulses(pulses, empty_time_of_flight(prepared, &here.ray));
+        let empty = empty_time_of_flight(prepared, &here.ray);
+        pixel.times.add(pulses, empty);
+        pixel.group_delays.add(group_pulses, empty);
     }
 }
 
@@ -165,6 +173,11 @@ pub(super) fn expose_unhindered<const N: usize>(
 
 /// Time of flight of a leaf that ends on the photograph, `distance` (cm) on, in ns.
 pub(super) fn time_of_flight<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f64 {
+    (leaf.delay_path + distance) / SPEED_OF_LIGHT
+}
+
+/// What a pulse takes on a leaf that ends on the photograph, `distance` (cm) on, in ns.
+pub(super) fn group_delay<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f64 {
     (leaf.group_path + distance) / SPEED_OF_LIGHT
 }
 

@@ -239,12 +239,12 @@ struct Exposer<'a, const N: usize> {
 
 impl<'a, const N: usize> Exposer<'a, N> {
     fn new(prepared: &'a PreparedScene<'a>, detection: &'a Detection<N>) -> Self {
+        let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
+        let tracer = if detection.group_delays { tracer.with_group_delays() } else { tracer };
         Self {
             prepared,
             detection,
-            tracers: FourTracers::new(
-                &Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen),
-            ),
+            tracers: FourTracers::new(&tracer),
             working: Working::default(),
         }
     }

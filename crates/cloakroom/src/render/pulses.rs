@@ -1,7 +1,7 @@
 //! The pulses of one pixel: what a short flash of the photograph looks like there.
 
 use super::detection::Detection;
-use super::exposure::{empty_time_of_flight, time_of_flight};
+use super::exposure::{empty_time_of_flight, group_delay, time_of_flight};
 use super::interference::Interference;
 use super::pixel::Pixel;
 use super::{ChannelKind, PreparedScene};
@@ -48,6 +48,8 @@ pub struct Pulse {
     pub time_of_flight_ns: f64,
     /// The same less that of the empty view, ns; `None` where the empty view misses the photograph.
     pub delay_ns: Option<f64>,
+    /// What it takes as a pulse, ns, where the time of flight is that of the phase; `None` behind media that absorb.
+    pub group_delay_ns: Option<f64>,
     /// Its share of the power.
     pub power: f64,
     /// Where on the photograph it comes from, the strongest first.
@@ -105,7 +107,9 @@ fn list<const N: usize>(
     let camera = &prepared.scene.camera;
     let [x, y] = pixel.map(|i| f64::from(i) + 0.5);
     let ray = camera.ray(x, y);
-    let mut tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
+    let mut tracer = Tracer::new(&prepared.assembly, prepared.limits)
+        .with_screen(prepared.screen)
+        .with_group_delays();
     let (leaves, outcome) = tracer.trace(&detection.launch(camera, &ray));
     let mut interference = Interference::default();
     interference.find(prepared, detection, leaves, ray.origin);
@@ -116,6 +120,7 @@ fn list<const N: usize>(
             (Some(_), _) => ended += power,
             (None, Some(distance)) if power > 0.0 => arrivals.push(Arrival {
                 time: time_of_flight(leaf, distance),
+                group_delay: group_delay(leaf, distance),
                 power,
                 // On the plane to the last digit.
                 position: prepared.screen.foot(leaf.position + leaf.direction * distance),
@@ -126,7 +131,7 @@ fn list<const N: usize>(
     }
     let empty = empty_time_of_flight(prepared, &ray);
     let mut sums = Pixel::default();
-    sums.add_pulses(&arrivals.iter().map(|a| (a.time, a.power)).collect::<Vec<_>>(), empty);
+    sums.times.add(&arrivals.iter().map(|a| (a.time, a.power)).collect::<Vec<_>>(), empty);
     let number = |channel| Some(sums.value(channel, 0, 1.0)).filter(|value| value.is_finite());
     let tolerance = prepared.limits.tolerance;
     let resolution_ns = tolerance / SPEED_OF_LIGHT;
@@ -157,6 +162,7 @@ fn list<const N: usize>(
 #[derive(Clone, Copy, Debug)]
 struct Arrival {
     time: f64,
+    group_delay: f64,
     power: f64,
     position: DVec3,
 }
@@ -168,6 +174,7 @@ impl Pulse {
         // Relative to the first arrival: differences of yoctoseconds survive.
         let first = arrivals.first().map_or(0.0, |arrival| arrival.time);
         let later: f64 = arrivals.iter().map(|a| (a.time - first) * a.power).sum::<f64>() / power;
+        let group = arrivals.iter().map(|a| a.group_delay * a.power).sum::<f64>() / power;
         let mut landings: Vec<Landing> = Vec::new();
         for arrival in arrivals {
             let near = |landing: &&mut Landing| {
@@ -185,6 +192,7 @@ impl Pulse {
         Self {
             time_of_flight_ns: first + later,
             delay_ns: empty.map(|empty| first - empty + later),
+            group_delay_ns: Some(group).filter(|group| group.is_finite()),
             power,
             landings,
         }

@@ -158,6 +158,14 @@ impl PictureSettings {
     pub fn asks_for(&self, channel: &str) -> bool {
         self.channels.iter().any(|held| held.word() == channel) || self.map.name() == Some(channel)
     }
+
+    /// Whether it asks for any channel of what pulses take.
+    #[must_use]
+    pub fn asks_for_group_delay(&self) -> bool {
+        ["group_delay", "group_delay_spread", "group_delay_difference"]
+            .iter()
+            .any(|channel| self.asks_for(channel))
+    }
 }
 
 impl DeviceSettings {

@@ -2,7 +2,7 @@
 //! Faddeeva function, or of the crate's inversion; and against itself.
 
 mod border;
-mod rays;
+pub mod rays;
 mod uneven;
 
 use std::cell::Cell;

@@ -247,7 +247,7 @@ impl Assembly {
             Some(DepartedSurface { surface: None, .. }) => return None,
             departed => departed.and_then(|departed| departed.surface),
         };
-        let Placed { pose, structure } = self.devices.get(usize::from(number))?;
+        let Placed { pose, structure, .. } = self.devices.get(usize::from(number))?;
         structure.first_hit(pose.to_local(origin), pose.vector_to_local(direction), last)
     }
 

@@ -1,6 +1,6 @@
 //! A device at its place.
 
-use crate::device::{Body, Region, Structure, SurfaceHit};
+use crate::device::{Body, Dispersion, Region, Structure, SurfaceHit};
 use glam::DVec3;
 use optics::geometry::{Pose, Solid};
 use optics::medium::Medium;
@@ -12,6 +12,8 @@ pub struct Placed {
     pub pose: Pose,
     /// What it is made of.
     pub structure: Structure,
+    /// How its media depend on the frequency.
+    pub dispersion: Dispersion,
 }
 
 /// What a ray has just left, and does not meet next.
@@ -35,6 +37,12 @@ impl DepartedSurface {
 }
 
 impl Placed {
+    /// A device in a place.
+    #[must_use]
+    pub fn new(pose: Pose, structure: Structure) -> Self {
+        Self { pose, structure, dispersion: Dispersion::default() }
+    }
+
     /// What a ray has left that runs away from this device, the `number`th: the surface that is given, or all of the
     /// device if it is convex.
     #[inline]

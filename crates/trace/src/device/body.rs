@@ -47,8 +47,8 @@ crate::table! {
         permittivity: Given<Tensor> = Given::by_default(1.0.into()),
         /// Relative permeability, in the device's frame; symmetric.
         permeability: Given<Tensor> = Given::by_default(1.0.into()),
-        /// Speed of light over the speed of a pulse in it, for times of flight; where it is absent, the size of the
-        /// index, 1 at least.
+        /// Speed of light over the speed of a pulse in it, for `group_delay`, and for times of flight where the phase runs
+        /// backwards; where it is absent, as the `dispersion` says.
         group_index: Option<f64>, in ValueRange::Within(1.0, 1e9),
         /// Where bodies overlap, the one of the larger priority is there.
         priority: i64, in ValueRange::Whole(-1_000_000, 1_000_000),

@@ -4,7 +4,7 @@ use super::{Convex, FarSide, Hull, InnerRay, Passage, Region, Shape, Structure, 
 use glam::DVec3;
 use optics::geometry::{CutBall, FlatOrRound, Plane, TOUCHING};
 use optics::medium::Medium;
-use optics::propagation::{ClosedForm, CurvedRay, PathPoint, follow};
+use optics::propagation::{ClosedForm, CurvedRay, PathPoint, follow, group_path_along};
 use std::sync::Arc;
 
 /// A convex region of a medium whose rays are known in closed form; around it is what is around the device.
@@ -79,16 +79,27 @@ impl ClosedFormRegion {
 
     /// Points along the way of a ray to the border, in that many pieces.
     pub(super) fn path(&self, ray: &InnerRay, pieces: u32) -> Vec<PathPoint> {
+        let way = self.way(ray);
+        (0..=pieces).map(|piece| way(f64::from(piece) / f64::from(pieces))).collect()
+    }
+
+    /// Points of that way, by shares of it.
+    fn way(&self, ray: &InnerRay) -> impl Fn(f64) -> PathPoint {
         let start = curved(ray);
         let end = follow(self.medium.as_ref(), &start, self.border.bounds());
         let last = end.map_or(0.0, |(_, parameter)| parameter);
-        let at = |piece: u32| {
-            let parameter = last * f64::from(piece) / f64::from(pieces);
+        move |share| {
             let (CurvedRay { position, .. }, optical_path) =
-                self.medium.way_point(&start, parameter);
+                self.medium.way_point(&start, last * share);
             PathPoint { position, optical_path }
-        };
-        (0..=pieces).map(at).collect()
+        }
+    }
+
+    /// The speed of light times the time that a pulse takes on that way, cm, at the least dispersion that causality allows:
+    /// the group index is n or 1/n, whichever is larger.
+    pub(super) fn causal_group_path(&self, ray: &InnerRay, tolerance: f64) -> f64 {
+        let ratio = |position: DVec3, _| self.medium.squared_index(position).value.recip().max(1.0);
+        group_path_along(self.way(ray), ratio, tolerance)
     }
 }
 

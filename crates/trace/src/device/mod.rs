@@ -78,6 +78,16 @@ crate::choice! {
     }
 }
 
+crate::choice! {
+    /// How the medium of a device depends on the frequency: what a pulse takes.
+    pub enum Dispersion {
+        /// As little as causality allows: no device can be faster.
+        Causal = "causal",
+        /// Not at all: a pulse takes what its phase takes.
+        None = "none",
+    }
+}
+
 /// What every device is asked for beside its own keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Request {

@@ -1,6 +1,6 @@
 //! Regions of a device, each filled with one medium.
 
-use super::{ClosedFormRegion, Coating, Convex, FarSide};
+use super::{ClosedFormRegion, Coating, Convex, Dispersion, FarSide};
 use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::Plane;
 use optics::medium::{Medium, ModeKind};
@@ -8,6 +8,7 @@ use optics::propagation::{
     Border, Boundary, ConformalEnd, ConformalFlow, Half, PathEnd, PathPoint, RadialFlow,
     VirtualPoint,
 };
+use optics::wave::ComplexVector;
 
 /// Straight pieces that a closed form's path is drawn with.
 const PIECES: u32 = 96;
@@ -57,7 +58,7 @@ pub struct ConformalRegion {
 pub struct HomogeneousRegion {
     /// What fills it.
     pub medium: Medium,
-    /// The speed of light over that of a pulse; absent: the size of the index, in a body 1 at least.
+    /// The speed of light over that of a pulse; absent: as the dispersion says.
     pub group_index: Option<f64>,
     /// Where it ends.
     pub border: RegionBorder,
@@ -177,19 +178,45 @@ impl Region {
         local.as_ref()
     }
 
-    /// The speed of light times the time of flight along a passage of that optical path and straight length, cm.
+    /// The speed of light times the time that a pulse takes on the way of a ray to `end`, cm, to within about `tolerance`
+    /// (cm); `electric` is a field of the ray, of any size. NaN in media that absorb, unless they are without dispersion.
     #[must_use]
-    #[inline]
-    pub fn group_path(&self, optical_path: f64, way: DVec3) -> f64 {
+    pub fn group_path(
+        &self,
+        ray: &InnerRay,
+        electric: ComplexVector,
+        end: &Passage,
+        dispersion: Dispersion,
+        tolerance: f64,
+    ) -> f64 {
+        let straight = (end.position - ray.position).length();
+        if let Self::Homogeneous(HomogeneousRegion { group_index: Some(index), .. }) = self {
+            return index * straight;
+        }
+        if dispersion == Dispersion::None {
+            // Where the phase runs backwards a pulse does not.
+            let backwards = straight.max(-end.optical_path);
+            return if end.optical_path < 0.0 { backwards } else { end.optical_path };
+        }
         match self {
-            Self::Homogeneous(HomogeneousRegion { group_index: Some(index), .. }) => {
-                index * way.length()
+            Self::Homogeneous(region) => {
+                straight * region.medium.causal_group_index(ray.wave_vector, electric)
             }
-            Self::Homogeneous(HomogeneousRegion { border: RegionBorder::Convex(_), .. }) => {
-                optical_path.abs().max(way.length())
+            Self::Conformal(region) if region.loss_tangent == 0.0 => {
+                let path = region.start(ray).and_then(|start| {
+                    region.flow.causal_group_path(&start, ray.wave_vector, tolerance).ok()
+                });
+                path.unwrap_or(f64::NAN)
             }
-            _ if optical_path < 0.0 => way.length().max(-optical_path),
-            _ => optical_path,
+            Self::Conformal(_) => f64::NAN,
+            Self::Radial(region) if region.inner == FarSide::Outside && region.turns_back(ray) => {
+                0.0
+            }
+            Self::Radial(region) => {
+                let InnerRay { position, wave_vector, mode, .. } = *ray;
+                region.flow.causal_group_path(position, wave_vector, mode, tolerance)
+            }
+            Self::ClosedForm(region) => region.causal_group_path(ray, tolerance),
         }
     }
 

@@ -24,8 +24,11 @@ pub struct Leaf<const N: usize> {
     pub survives_alone: [bool; N],
     /// Optical path length from the ray's origin to `position`, cm.
     pub optical_path: f64,
-    /// The speed of light times the time of flight from the ray's origin to `position`, cm: the optical
-    /// path length, but in media of negative index and those with a group index of their own.
+    /// The speed of light times the time of flight from the ray's origin to `position`, cm: the delay of the phase, which
+    /// is the optical path, but where the phase runs backwards that of a pulse.
+    pub delay_path: f64,
+    /// The speed of light times what a pulse takes, cm; NaN where that is not known, in media that absorb, and where the
+    /// tracer has not been [asked](super::Tracer::with_group_delays).
     pub group_path: f64,
     /// Where it ends.
     pub end: LeafEnd,

@@ -66,7 +66,6 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             ],
         });
         branch.optical_path += hit.distance;
-        branch.group_path += hit.distance;
         branch.met_device = true;
         if self.assembly.simple {
             return self.enter(branch, number, &hit);
@@ -217,6 +216,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             inside: Some((number, region_number)),
             path: region.path(&branch.inner_ray(), passage, self.limits.tolerance),
         });
+        if self.wants_group_path(passage.optical_path) {
+            let dispersion = self.assembly.device(number).dispersion;
+            let (ray, field) = (branch.inner_ray(), branch.strongest_field());
+            let group = region.group_path(&ray, field, passage, dispersion, self.limits.tolerance);
+            branch.delay(passage, group);
+        }
         branch.position = passage.position;
         branch.met_device = true;
         let medium = region.medium(passage.position, passage.virtual_point.as_ref(), graded);
@@ -233,7 +238,6 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         branch.wave_vector = passage.wave_vector;
         branch.direction = passage.direction;
         branch.optical_path += passage.optical_path;
-        branch.group_path += region.group_path(passage.optical_path, way);
         branch.virtual_point = passage.virtual_point;
         if let Some(transport) = passage.transport {
             branch.electric = branch.electric.map(|field| field.transformed(&transport));

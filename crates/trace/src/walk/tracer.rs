@@ -60,6 +60,8 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     pub(super) recorder: W,
     /// The light whose branches become one where they run together.
     joining: Option<Coherence>,
+    /// Whether leaves are to know what a pulse takes.
+    group_delays: bool,
     /// Whether the screen touches a device.
     pub(super) screen_touches: bool,
     /// Whether nothing touches what rays leave: there is one device at most, no body, and the screen is apart.
@@ -93,6 +95,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             limits: Limits { min_power: limits.min_power.max(NO_POWER), ..limits },
             screen: None,
             joining: None,
+            group_delays: false,
             screen_touches: false,
             stands_alone: assembly.simple,
             waiting: Vec::new(),
@@ -125,6 +128,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         Self { joining: Some(coherence), ..self }
     }
 
+    /// Works out what a pulse takes, too, [`Leaf::group_path`].
+    #[must_use]
+    pub fn with_group_delays(self) -> Self {
+        Self { group_delays: true, ..self }
+    }
+
     /// Follows one ray to the end of every branch: the leaves, in the order the tree was walked,
     /// and the account of the rest of the power. A ray that starts in a medium is launched in those waves of it whose rays
     /// run along its direction; one that starts in metal is lost.
@@ -152,6 +161,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.outcome = Outcome::default();
         self.waiting.clear();
         (self.events, self.threshold) = (0, self.limits.min_power);
+        if self.group_delays {
+            branch.dispersion = 0.0;
+        }
         if !self.start(branch) {
             self.take_next(branch)?;
         }
@@ -240,6 +252,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 return Some(());
             }
         }
+    }
+
+    /// Whether what a pulse takes on a way of that optical path is asked for, by itself or as the time of flight.
+    #[inline]
+    pub(super) fn wants_group_path(&self, optical_path: f64) -> bool {
+        self.group_delays || optical_path < 0.0
     }
 
     /// Takes from a branch what an absorbing medium keeps of it, given ∫ Im n ds along the way, cm; whether what is left
