@@ -70,8 +70,8 @@ fn shells_delay_pulses_as_the_derivative_of_their_phase_says() {
     let k = OUTER / (OUTER - INNER);
     let s = |r: f64| (r - INNER) / r;
     let mut seen = 0.0;
-    for (height, climb) in [(0.3, 0.0), (2.0, 0.0), (-5.0, 0.4), (8.5, -0.2), (9.9, 0.1)] {
-        let start = DVec3::new(-(OUTER * OUTER - height * height as f64).sqrt(), height, 0.0);
+    for (height, climb) in [(0.3_f64, 0.0), (2.0, 0.0), (-5.0, 0.4), (8.5, -0.2), (9.9, 0.1)] {
+        let start = DVec3::new(-(OUTER * OUTER - height * height).sqrt(), height, 0.0);
         let p = DVec3::new(1.0, 0.0, climb).normalize();
         let cylinder = RadialMap::new(INNER, OUTER, Symmetry::Axis);
         let sphere = RadialMap::new(INNER, OUTER, Symmetry::Centre);

@@ -213,7 +213,7 @@ impl Berreman<Complex64> {
 
 impl Berreman<f64> {
     fn lossless_modes(&self, known: Option<f64>) -> Lossless {
-        let mut pairs = self.eigenpairs(|schur| Some(eigenvalues(&schur.clone().unpack().1)));
+        let mut pairs = self.eigenpairs(|schur| Some(eigenvalues(&schur.unpack().1)));
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         // Evanescent ones come as conjugates; the real ones in order show which are double.
         pairs.sort_by(|(a, _), (b, _)| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
