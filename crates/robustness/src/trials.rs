@@ -96,13 +96,13 @@ fn look_at(loaded: &Loaded) {
 /// Traces rays singly and four at a time: what must hold holds, and both ways agree to the last bit.
 fn trace(assembly: &Assembly, limits: Limits, launches: &[Launch<2>]) {
     let limits = Limits { min_power: limits.min_power.max(LEAST_POWER), ..limits };
-    let mut tracer = Tracer::new(assembly, limits);
+    let mut tracer = rays::timed(Tracer::new(assembly, limits), assembly);
     let mut four = FourTracers::new(&tracer);
     let launches: Vec<Launch<2>> =
         launches.iter().filter(|launch| rays::starts_in_air(assembly, launch)).copied().collect();
     for launch in &launches {
         let (leaves, outcome) = tracer.trace(launch);
-        if let Err(fault) = rays::examine(leaves, outcome) {
+        if let Err(fault) = rays::examine(launch.origin, leaves, outcome) {
             panic!("{fault:?} of {launch:?}: {leaves:?}, {outcome:?}");
         }
     }

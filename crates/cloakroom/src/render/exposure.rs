@@ -176,9 +176,9 @@ pub(super) fn time_of_flight<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f
     (leaf.delay_path + distance) / SPEED_OF_LIGHT
 }
 
-/// What a pulse takes on a leaf that ends on the photograph, `distance` (cm) on, in ns.
+/// What a pulse takes on a leaf that ends on the photograph, `distance` (cm) on, in ns; NaN where it is not known.
 pub(super) fn group_delay<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f64 {
-    (leaf.group_path + distance) / SPEED_OF_LIGHT
+    (leaf.group_path.unwrap_or(f64::NAN) + distance) / SPEED_OF_LIGHT
 }
 
 /// Time of flight (ns) of a camera ray in the empty scene, if it meets the photograph.

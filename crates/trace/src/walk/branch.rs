@@ -37,7 +37,7 @@ pub(super) struct Branch<const N: usize> {
     pub optical_path: f64,
     /// What ways on which the phase runs backwards add to the optical path in the time of flight, cm.
     pub backwards: f64,
-    /// What dispersion adds to the optical path for a pulse, cm; NaN where nobody asks.
+    /// What dispersion adds to the optical path for a pulse, cm; NaN where it is not known, or nobody asks.
     pub dispersion: f64,
     /// What it has just left, if it runs outside of it now: in air or in the body around it.
     pub departed: Option<DepartedSurface>,
@@ -192,7 +192,7 @@ impl<const N: usize> Branch<N> {
             survives_alone: self.survives_alone,
             optical_path: self.optical_path,
             delay_path: self.optical_path + self.backwards,
-            group_path: self.optical_path + self.dispersion,
+            group_path: Some(self.optical_path + self.dispersion).filter(|path| !path.is_nan()),
             end,
             path: self.path,
         }

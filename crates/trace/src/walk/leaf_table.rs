@@ -166,8 +166,8 @@ impl LeafTable {
             self.direction.push(leaf.direction.to_array());
             self.power.push(leaf.power[0]);
             self.optical_path.push(if leaf.met_device { leaf.optical_path } else { 0.0 });
-            let flies = leaf.met_device || leaf.group_path.is_nan();
-            self.group_path.push(if flies { leaf.group_path } else { 0.0 });
+            let group_path = leaf.group_path.map(|path| if leaf.met_device { path } else { 0.0 });
+            self.group_path.push(group_path.unwrap_or(f64::NAN));
             self.electric_field.push(leaf.electric[0].components());
         }
         // What ends on opaque bodies is absorbed there.
