@@ -7,6 +7,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use cloakroom::render::Tile;
 use cloakroom::scene::OPTIONAL_CHANNELS;
+use cloakroom::scene_file::Override;
 pub use measuring::*;
 use std::path::PathBuf;
 use values::{frames_only, map_range, pixel, size};
@@ -90,7 +91,7 @@ pub struct SceneArguments {
     pub scene: PathBuf,
     /// Override a key of the scene, as in camera.samples=16 or device.0.rotation=5.
     #[arg(long = "set", value_name = "KEY=VALUE")]
-    pub overrides: Vec<String>,
+    pub overrides: Vec<Override>,
 }
 
 /// How many threads work.
@@ -259,7 +260,7 @@ pub struct ViewArguments {
     pub scene: Option<PathBuf>,
     /// Override a key of the scene, as in device.0.rotation=5.
     #[arg(long = "set", value_name = "KEY=VALUE")]
-    pub overrides: Vec<String>,
+    pub overrides: Vec<Override>,
     /// The port on this machine; the next free one if it is taken, any free one if 0.
     #[arg(long, value_name = "N", default_value_t = 8420)]
     pub port: u16,

@@ -8,7 +8,7 @@ use cloakroom::output::{read_npz, read_png};
 use cloakroom::photograph::{Edges, ImageSource, Pyramid, Texels, load_bytes};
 use cloakroom::ray_json::{RayRequest, trace_rays};
 use cloakroom::render;
-use cloakroom::scene_file::{self, Loaded};
+use cloakroom::scene_file::{self, Loaded, Override};
 use cloakroom::trace::{FourTracers, Launch, Limits, Tracer};
 use cloakroom_figures::gallery::EXHIBITS;
 use glam::DVec3;
@@ -62,7 +62,7 @@ fn nowhere() -> &'static Path {
 fn scene_file(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let (text, overrides) = text.split_once("\n---\n").unwrap_or((text, ""));
-    let overrides: Vec<String> = overrides.lines().map(str::to_owned).collect();
+    let overrides: Vec<Override> = overrides.lines().map(Override::from).collect();
     match scene_file::parse(text, "a.toml", nowhere(), &overrides) {
         Err(error) => assert!(!error.to_string().is_empty()),
         Ok(loaded) => {

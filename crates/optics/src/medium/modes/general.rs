@@ -1,6 +1,5 @@
 //! Modes of any medium: Berreman's eigenproblem for the tangential fields.
 
-use super::absorbing::forwardness;
 use super::eigenvector::eigenvector;
 use super::local::mutual_flux;
 use super::refinement::{Maxwell, best};
@@ -205,7 +204,7 @@ impl Berreman<Complex64> {
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         separate_double_roots(&self.matrix, &mut pairs, size);
         let mut modes = pairs.map(|(q, field)| self.mode(q, field));
-        modes.sort_by(|a, b| forwardness(b).total_cmp(&forwardness(a)));
+        modes.sort_by(|a, b| b.forwardness().total_cmp(&a.forwardness()));
         let [a, b, c, d] = modes;
         [ordered([a, b]), ordered([d, c])]
     }
