@@ -1,7 +1,7 @@
 //! The tables of a scene file but a device's own.
 
 use super::Polarizer;
-use crate::device::{Imperfection, Show};
+use crate::device::{CoatingLayer, Imperfection, Metal, Show};
 use crate::keys::{Given, Key, ValueRange};
 use crate::photograph::ImageSource;
 use cloakroom_trace::{choice, table};
@@ -193,6 +193,11 @@ table! {
         position: DVec3, "cm", in ValueRange::COORDINATE,
         /// Whole length along the device's z axis; endless where it is absent.
         length: Option<f64>, "cm", in ValueRange::LENGTH,
+        /// Thin layers on all of its surfaces that face the outside, from the outside inwards; each a table with its
+        /// thickness and its index or permittivity.
+        coating: Vec<CoatingLayer>,
+        /// What its metal is of: { index = [n, k] }; a perfect conductor by default.
+        metal: Option<Metal>,
         /// How what is made of it differs from its design: random errors, levels, a limited range, loss.
         imperfection: Option<Imperfection>,
     }
