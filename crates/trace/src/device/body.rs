@@ -4,8 +4,8 @@
 //! glass of water is three bodies, and light goes from one into the other without any air between.
 
 use super::{
-    Body, Coating, Convex, Device, Fact, FarSide, HomogeneousRegion, Hull, Region, RegionBorder, Request,
-    Shape, Structure, Surface,
+    Body, Coating, Convex, Device, Fact, FarSide, HomogeneousRegion, Hull, Region, RegionBorder,
+    Request, Shape, Structure, Surface,
 };
 use crate::key;
 use crate::keys::{Given, KeyError, ValueRange};

@@ -118,9 +118,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     fn enter(&mut self, branch: &mut Branch<N>, number: u16, hit: &SurfaceHit) -> bool {
         let device = self.assembly.device(number);
         let event = Event::Surface { device: number, surface: hit.surface };
-        let interface = || {
-            Interface { onward: -hit.outward, between: device.between(hit.coating), event }
-        };
+        let interface =
+            || Interface { onward: -hit.outward, between: device.between(hit.coating), event };
         let back = |branch: &mut Branch<N>| {
             branch.leave_frame(&device.pose);
             branch.departed = device.departed(number, Some(hit.surface));
@@ -277,8 +276,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     ) -> bool {
         let device = self.assembly.device(number);
         let event = Event::Face { device: number, region, face: passage.face };
-        let interface = || {
-            Interface { onward: passage.outward, between: device.between(passage.coating), event }
+        let interface = || Interface {
+            onward: passage.outward,
+            between: device.between(passage.coating),
+            event,
         };
         let known = self.assembly.interfaces(number).exit(region, passage.face);
         match passage.far {

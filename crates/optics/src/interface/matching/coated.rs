@@ -105,9 +105,9 @@ pub fn split_coated<const N: usize>(
         return scattered.weak;
     };
     let onward = onward.filter(|_| !absorber);
-    let [t1, t2] = fields.through.map(|[with_1, with_2]| {
-        std::array::from_fn(|i| with_1 * s1[i] + with_2 * s2[i])
-    });
+    let [t1, t2] = fields
+        .through
+        .map(|[with_1, with_2]| std::array::from_fn(|i| with_1 * s1[i] + with_2 * s2[i]));
     let absorbing = absorber
         || incident_medium.absorbs()
         || medium.is_some_and(Medium::absorbs)
@@ -130,8 +130,7 @@ struct TransferredFields {
     through: Matrix,
 }
 
-const IDENTITY: Matrix =
-    [[Complex64::ONE, Complex64::ZERO], [Complex64::ZERO, Complex64::ONE]];
+const IDENTITY: Matrix = [[Complex64::ONE, Complex64::ZERO], [Complex64::ZERO, Complex64::ONE]];
 
 impl TransferredFields {
     /// Those of waves that run on, or at a conductor.
