@@ -35,7 +35,7 @@ fn prism(glass: bool) -> Assembly {
     };
     let outline = Outline { corners: corners.to_vec() };
     let hull = Hull::new(Solid::Prism { outline, extent: Extent::ENDLESS });
-    let structure = Structure { regions, surfaces, hull };
+    let structure = Structure::new(regions, surfaces, hull);
     Assembly::new(vec![Placed::new(Pose::new(DVec3::ZERO, 0.0), structure)])
 }
 

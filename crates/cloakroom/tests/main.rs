@@ -8,6 +8,7 @@ mod birefringent_square_cloak_tree;
 mod body;
 mod carpet_cloaks;
 mod closed_form;
+mod coatings;
 mod coherence;
 mod devices;
 mod double_gaussian_cloak;

@@ -1,6 +1,7 @@
 //! All tests of light in matter, in one program: one is linked faster than many.
 
 mod birefringence;
+mod coatings;
 mod conformal_flow;
 mod conical_refraction;
 mod graded_index;

@@ -1,7 +1,7 @@
 //! The tables of a scene file but a device's own.
 
 use super::Polarizer;
-use crate::device::{Dispersion, Imperfection, Show};
+use crate::device::{CoatingLayer, Dispersion, Imperfection, Metal, Show};
 use crate::keys::{Given, Key, ValueRange};
 use crate::photograph::ImageSource;
 use cloakroom_trace::{choice, table};
@@ -204,6 +204,11 @@ table! {
         /// How its media depend on the frequency: what a pulse takes, in `group_delay` and where the phase runs backwards.
         /// `causal`: as little as causality allows, a bound for every real device; `none`: as the phase.
         dispersion: Dispersion,
+        /// Thin layers on all of its surfaces that face the outside, from the outside inwards; each a table with its
+        /// thickness and its index or permittivity.
+        coating: Vec<CoatingLayer>,
+        /// What its metal is of: { index = [n, k] }; a perfect conductor by default.
+        metal: Option<Metal>,
         /// How what is made of it differs from its design: random errors, levels, a limited range, loss.
         imperfection: Option<Imperfection>,
     }

@@ -3,6 +3,7 @@
 use crate::device::{Body, Dispersion, Region, Structure, SurfaceHit};
 use glam::DVec3;
 use optics::geometry::{Pose, Solid};
+use optics::interface::FilmLayer;
 use optics::medium::Medium;
 
 /// A device at its place.
@@ -87,6 +88,16 @@ impl Placed {
     /// Its region of that number.
     pub(crate) fn region(&self, number: u16) -> &Region {
         &self.structure.regions[usize::from(number)]
+    }
+
+    /// Its films in the world's frame.
+    pub(super) fn films_in_world(&self) -> Vec<Vec<FilmLayer>> {
+        let turned = |layer: &FilmLayer| {
+            let isotropic = layer.medium.is_isotropic();
+            let turned = || self.medium_in_world(&layer.medium);
+            FilmLayer { medium: if isotropic { layer.medium } else { turned() }, ..*layer }
+        };
+        self.structure.films.iter().map(|film| film.iter().map(turned).collect()).collect()
     }
 
     /// A medium of the device's frame in the world's.

@@ -1,6 +1,6 @@
 //! Convex regions of a medium whose rays are known in closed form.
 
-use super::{Convex, FarSide, Hull, InnerRay, Passage, Region, Shape, Structure, Surface};
+use super::{Coating, Convex, FarSide, Hull, InnerRay, Passage, Region, Shape, Structure, Surface};
 use glam::DVec3;
 use optics::geometry::{CutBall, FlatOrRound, Plane, TOUCHING};
 use optics::medium::Medium;
@@ -14,6 +14,8 @@ pub struct ClosedFormRegion {
     pub medium: Arc<dyn ClosedForm>,
     /// Where it ends.
     pub border: ClosedFormBorder,
+    /// How the medium meets what is outside.
+    pub coating: Coating,
 }
 
 /// The convex shapes between planes and spheres: what a medium whose rays are known in closed form can be cut to.
@@ -27,13 +29,10 @@ pub enum ClosedFormBorder {
 
 /// A device that is one convex region of a medium whose rays are known in closed form.
 pub(super) fn filled(border: ClosedFormBorder, medium: impl ClosedForm + 'static) -> Structure {
-    let region = ClosedFormRegion { medium: Arc::new(medium), border };
+    let region = ClosedFormRegion { medium: Arc::new(medium), border, coating: Coating::None };
     let shape = border.convex();
-    Structure {
-        regions: vec![Region::ClosedForm(region)],
-        surfaces: vec![Surface::new(Shape::Convex(shape), FarSide::Region(0))],
-        hull: Hull::new(shape.solid()),
-    }
+    let surfaces = vec![Surface::new(Shape::Convex(shape), FarSide::Region(0))];
+    Structure::new(vec![Region::ClosedForm(region)], surfaces, Hull::new(shape.solid()))
 }
 
 impl ClosedFormBorder {
@@ -74,7 +73,8 @@ impl ClosedFormRegion {
 
     pub(super) fn advance(&self, ray: &InnerRay) -> Option<Passage> {
         let (end, _) = follow(self.medium.as_ref(), &curved(ray), self.border.bounds())?;
-        Some(Passage::graded(ray, &end, end.surface, FarSide::Outside))
+        let passage = Passage::graded(ray, &end, end.surface, FarSide::Outside);
+        Some(Passage { coating: self.coating, ..passage })
     }
 
     /// Points along the way of a ray to the border, in that many pieces.

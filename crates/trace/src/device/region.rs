@@ -34,6 +34,8 @@ pub struct RadialRegion {
     pub flow: RadialFlow,
     /// What lies beyond its inner border, if it has one.
     pub inner: FarSide,
+    /// How the medium meets what is outside.
+    pub coating: Coating,
 }
 
 /// One half of a cut conformal map above its mirror.
@@ -62,6 +64,8 @@ pub struct HomogeneousRegion {
     pub group_index: Option<f64>,
     /// Where it ends.
     pub border: RegionBorder,
+    /// How the medium meets what is outside of a convex shape; faces say it each for itself.
+    pub coating: Coating,
 }
 
 /// Where a homogeneous region ends.
@@ -83,6 +87,8 @@ pub struct Face {
     /// Where the face ends, if the next one goes on in its plane: the coordinate (cm) along z × normal.
     /// Infinite for the last face in its plane.
     pub until: f64,
+    /// How the media meet there.
+    pub coating: Coating,
     /// From where to where it runs in the plane z = 0, counterclockwise around the region, for drawings.
     pub side: Option<[DVec2; 2]>,
 }
@@ -91,7 +97,7 @@ impl Face {
     /// A whole plane face.
     #[must_use]
     pub fn new(plane: Plane, far: FarSide) -> Self {
-        Self { plane, far, until: f64::INFINITY, side: None }
+        Self { plane, far, until: f64::INFINITY, coating: Coating::None, side: None }
     }
 }
 
@@ -296,10 +302,11 @@ impl Region {
 }
 
 impl HomogeneousRegion {
-    /// A region between planes.
+    /// A region between bare planes.
     #[must_use]
     pub fn between(medium: Medium, faces: Vec<Face>) -> Self {
-        Self { medium, group_index: None, border: RegionBorder::Faces(faces) }
+        let border = RegionBorder::Faces(faces);
+        Self { medium, group_index: None, border, coating: Coating::None }
     }
 
     /// The planes that bound it; none where it is bounded otherwise.
@@ -318,7 +325,8 @@ impl HomogeneousRegion {
             RegionBorder::Convex(shape) => {
                 let (distance, outward) = shape.exit(position, direction)?;
                 let end = position + direction * distance;
-                return Some(Passage::straight(ray, end, 0, outward, FarSide::Outside));
+                let passage = Passage::straight(ray, end, 0, outward, FarSide::Outside);
+                return Some(Passage { coating: self.coating, ..passage });
             }
         };
         // A loop: here it takes fewer instructions than `first_along`.
@@ -337,7 +345,8 @@ impl HomogeneousRegion {
             index += 1;
             face = faces.get(usize::from(index))?;
         }
-        Some(Passage::straight(ray, end, index, face.plane.normal, face.far))
+        let passage = Passage::straight(ray, end, index, face.plane.normal, face.far);
+        Some(Passage { coating: face.coating, ..passage })
     }
 }
 
@@ -405,7 +414,7 @@ impl ConformalRegion {
             Boundary::XMin | Boundary::XMax
                 if self.half.mirrored(end.position).y < self.flow.map().level() =>
             {
-                FarSide::Conductor
+                if self.floor.is_metal() { self.floor } else { FarSide::Conductor }
             }
             _ => FarSide::Outside,
         };
@@ -413,7 +422,7 @@ impl ConformalRegion {
             // Im n = n tan δ/2 to first order.
             extinction: 0.5 * self.loss_tangent * end.optical_path,
             virtual_point: Some(end.virtual_point),
-            coating: if far == FarSide::Conductor { Coating::None } else { self.coating },
+            coating: if far.is_metal() { Coating::None } else { self.coating },
             ..Passage::graded(ray, end, end.surface as u16, far)
         }
     }
@@ -430,7 +439,8 @@ impl RadialRegion {
         let end = self.flow.advance(ray.position, ray.wave_vector, ray.mode);
         let sound = end.position.is_finite() && end.wave_vector.is_finite();
         let far = if end.surface == Border::Inner { self.inner } else { FarSide::Outside };
-        sound.then(|| Passage::graded(ray, &end, end.surface as u16, far))
+        let coating = if far == FarSide::Outside { self.coating } else { Coating::None };
+        sound.then(|| Passage { coating, ..Passage::graded(ray, &end, end.surface as u16, far) })
     }
 
     /// Whether a ray has come out of an open core into a wave that no ray of the core can be in but those in

@@ -1,6 +1,9 @@
 //! The interface of any two media: two modes out on either side, four tangential fields to match.
 
+mod coated;
 mod isotropic_beyond;
+
+pub use coated::{Backing, Film, FilmLayer, split_coated};
 
 use super::isotropic::Layer;
 use super::splitting::Splitting;
@@ -24,14 +27,9 @@ pub(super) fn split_into_modes<const N: usize>(
     transmitted_medium: Option<&Medium>,
     splitting: Splitting<'_, N>,
 ) -> [f64; N] {
-    let Splitting { wave, frame, along, .. } = splitting;
+    let Splitting { wave, frame, .. } = splitting;
     let normal_component = wave.wave_vector.dot(frame.normal);
-    let tangential = if wave.attenuation == DVec3::ZERO {
-        Tangential::Real(along)
-    } else {
-        let decay = [wave.attenuation.dot(frame.first), wave.attenuation.dot(frame.second)];
-        Tangential::Complex([Complex64::new(along, decay[0]), Complex64::new(0.0, decay[1])])
-    };
+    let tangential = tangential(&splitting);
     // Modes are large, and stay where they are made.
     let (arriving, backward) =
         &incident_medium.arriving_and_back(&frame, tangential, normal_component);
@@ -62,6 +60,16 @@ pub(super) fn split_into_modes<const N: usize>(
         }
     }
     scattered.weak
+}
+
+/// The tangential part of the wave vector, which all waves of the interface share.
+fn tangential<const N: usize>(splitting: &Splitting<'_, N>) -> Tangential {
+    let Splitting { wave, frame, along, .. } = splitting;
+    if wave.attenuation == DVec3::ZERO {
+        return Tangential::Real(*along);
+    }
+    let decay = [wave.attenuation.dot(frame.first), wave.attenuation.dot(frame.second)];
+    Tangential::Complex([Complex64::new(*along, decay[0]), Complex64::new(0.0, decay[1])])
 }
 
 /// The outgoing amplitudes, reflected 1, 2, transmitted 1, 2, of `R` incident modes. At a conductor,
@@ -168,19 +176,21 @@ impl<const N: usize> Scattered<'_, N> {
         absorbing: bool,
     ) {
         let incident = self.incident(arriving, normal_component);
-        let outgoing = match incident.as_slice() {
-            [(a, in_a), (b, in_b)] => {
-                let with = amplitudes([*a, *b], backward, onward);
-                with.map(|[with_a, with_b]| {
-                    std::array::from_fn(|i| with_a * in_a[i] + with_b * in_b[i])
-                })
-            }
-            [(mode, parts)] => {
-                amplitudes([*mode], backward, onward).map(|[with]| parts.map(|part| with * part))
-            }
-            _ => return,
-        };
-        let [r1, r2, t1, t2] = &outgoing;
+        if let Some(outgoing) = matched(&incident, backward, onward) {
+            self.share_out(&incident, backward, onward, &outgoing, absorbing);
+        }
+    }
+
+    /// Adds the waves of the given amplitudes, reflected 1, 2, transmitted 1, 2.
+    #[inline]
+    fn share_out<T: Number>(
+        &mut self,
+        incident: &[Incident<'_, T, N>],
+        backward: &[LocalMode<T>; 2],
+        onward: Option<&[LocalMode<T>; 2]>,
+        [r1, r2, t1, t2]: &[[Complex64; N]; 4],
+        absorbing: bool,
+    ) {
         let back = fluxes(backward, [r1, r2]);
         let on = onward.map_or([[0.0; N]; 2], |onward| fluxes(onward, [t1, t2]));
         let total = if absorbing {
@@ -189,7 +199,7 @@ impl<const N: usize> Scattered<'_, N> {
                 let alone =
                     |(mode, parts): &Incident<'_, T, N>| mode.flux().abs() * parts[i].norm_sqr();
                 let alone: f64 = incident.iter().map(alone).sum();
-                match incident.as_slice() {
+                match incident {
                     [(a, in_a), (b, in_b)] => {
                         let mutual: Complex64 = mutual_flux(*a, *b).into();
                         alone + 2.0 * (in_a[i] * in_b[i].conj() * mutual).re
@@ -314,6 +324,27 @@ impl<const N: usize> Scattered<'_, N> {
 fn share_ray<T: Number>([a, b]: &[LocalMode<T>; 2]) -> bool {
     let ray = |mode: &LocalMode<T>| DVec3::from(mode.poynting()).normalize_or_zero();
     matches!(a.kind, ModeKind::S | ModeKind::P) || ray(a).distance(ray(b)) <= ONE_RAY
+}
+
+/// The outgoing amplitudes of an incident wave, for each launched polarization; none without a wave.
+#[inline]
+fn matched<T: Number, const N: usize>(
+    incident: &[Incident<'_, T, N>],
+    backward: &[LocalMode<T>; 2],
+    onward: Option<&[LocalMode<T>; 2]>,
+) -> Option<[[Complex64; N]; 4]> {
+    Some(match incident {
+        [(a, in_a), (b, in_b)] => {
+            let with = amplitudes([*a, *b], backward, onward);
+            with.map(|[with_a, with_b]| {
+                std::array::from_fn(|i| with_a * in_a[i] + with_b * in_b[i])
+            })
+        }
+        [(mode, parts)] => {
+            amplitudes([*mode], backward, onward).map(|[with]| parts.map(|part| with * part))
+        }
+        _ => return None,
+    })
 }
 
 /// The outgoing normal fluxes of modes of the given amplitudes; those that do not propagate have none.
