@@ -15,8 +15,8 @@ from mpmath import mp, mpc, mpf
 
 mp.dps = 40
 
-#: What is one eigenvalue, what flows nowhere: far above rounding, far below what media of a file differ by.
-SAME = mpf(10) ** -12
+#: What is one eigenvalue, and what flows nowhere: far above rounding, far below what tells waves apart.
+SAME = mpf(10) ** -20
 NOTHING = mpf(10) ** -20
 SHIFT = mpc("0.37", "0.21")
 
@@ -162,8 +162,8 @@ def normal_flux(a: list[mpc], b: list[mpc]) -> mpc:
     return (cross_flux + mp.conj(b[0]) * a[3] - mp.conj(b[1]) * a[2]) / 2
 
 
-def eigenspaces(m: list[list[mpc]]) -> list[tuple[mpc, list[list[mpc]]]]:
-    """The distinct eigenvalues of a diagonalizable 4 x 4 matrix, each with a basis of its eigenspace."""
+def eigenspaces(m: list[list[mpc]]) -> list[tuple[mpc, list, list[list[mpc]]]]:
+    """The distinct eigenvalues of a diagonalizable 4 x 4 matrix, each with the projector onto its eigenspace and a basis."""
     # Eigenvalues of opposite signs stall the QR steps, so all are shifted.
     shifted = mp.matrix(m) + SHIFT * mp.eye(4)
     values = [value - SHIFT for value in mp.eig(shifted, left=False, right=False)]
@@ -189,7 +189,7 @@ def eigenspaces(m: list[list[mpc]]) -> list[tuple[mpc, list[list[mpc]]]]:
             basis.append([entry / size for entry in longest])
             along = [sum(mp.conj(b) * c for b, c in zip(basis[-1], column)) for column in columns]
             columns = [[c - a * b for b, c in zip(basis[-1], column)] for a, column in zip(along, columns)]
-        spaces.append((value, basis))
+        spaces.append((value, projector, basis))
     return spaces
 
 
@@ -199,7 +199,7 @@ def _waves(medium: Medium, normal: tuple, tangential: tuple) -> tuple[Pair, Pair
     k = dot(list(tangential), axes[0])
     eps, mu = turned(medium.permittivity, axes), turned(medium.permeability, axes)
     sides: dict[int, list] = {1: [], -1: []}
-    for value, basis in eigenspaces(delta_matrix(eps, mu, k)):
+    for value, _, basis in eigenspaces(delta_matrix(eps, mu, k)):
         if len(basis) == 2 and medium.is_isotropic:
             # s, whose field is across the plane of incidence, then p.
             a, b = basis
