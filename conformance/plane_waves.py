@@ -157,7 +157,7 @@ def product(a: list[list[mpc]], b: list[list[mpc]]) -> list[list[mpc]]:
 
 
 def normal_flux(a: list[mpc], b: list[mpc]) -> mpc:
-    """The part of the flux along z that the tangential fields of two waves carry, each with the other."""
+    """The flux along z that the tangential fields of two waves carry together; linear in the first."""
     cross_flux = a[0] * mp.conj(b[3]) - a[1] * mp.conj(b[2])
     return (cross_flux + mp.conj(b[0]) * a[3] - mp.conj(b[1]) * a[2]) / 2
 

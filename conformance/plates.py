@@ -48,7 +48,7 @@ def _through(layer: dict, axes: list, k: mpf, wave_number: mpf) -> mp.matrix:
 
 def _split(fields: list[mpc], pair: Pair) -> list[mpc]:
     """The amplitudes of flux-orthogonal waves of normal flux +-1 in tangential fields."""
-    return [normal_flux(psi, fields) / normal_flux(psi, psi) for psi in pair.tangential]
+    return [normal_flux(fields, psi) / normal_flux(psi, psi) for psi in pair.tangential]
 
 
 def _fields(pair: Pair, amplitudes: list[mpc]) -> list[mpc]:
