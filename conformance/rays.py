@@ -167,7 +167,7 @@ def _square_cloak(matched: bool, positive: bool) -> list[Cell]:
 def cases() -> list[dict]:
     draw = Draws(11)
     found: list[dict] = []
-    exact = {"position": 1e-10, "direction": 1e-11, "power": 1e-11, "optical_path": 1e-10, "electric_field": 1e-10}
+    exact = {"position": 1e-11, "direction": 1e-12, "power": 1e-12, "optical_path": 1e-11, "electric_field": 1e-12}
 
     def case(name: str, oracle: str, device: str, pose: Pose, trace: Oracle, rays: list[dict], tolerance: dict,
              keys: str = "", least: float = LEAST) -> None:
@@ -349,7 +349,7 @@ def cases() -> list[dict]:
 
     # Graded media with borders: DOP853.
     numeric = "Hamilton's equations by DOP853"
-    precise = {"position": 1e-9, "direction": 1e-10, "power": 1e-10, "optical_path": 1e-9, "electric_field": 1e-9}
+    precise = {"position": 1e-10, "direction": 1e-11, "power": 1e-12, "optical_path": 1e-10, "electric_field": 1e-10}
     finely = "tolerance = 1e-10\n"
     gradient = [0.02, 0.05, -0.03]
     box_medium = graded.Formula(lambda r: (1.5**2 + float(np.dot(gradient, r)), np.array(gradient)))

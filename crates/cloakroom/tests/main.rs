@@ -9,6 +9,7 @@ mod body;
 mod carpet_cloaks;
 mod closed_form;
 mod coherence;
+mod conformance;
 mod devices;
 mod double_gaussian_cloak;
 mod equation_of_motion;
