@@ -215,7 +215,8 @@ fn plates_are_those_of_the_transfer_matrix() {
         assert_eq!(reports.len(), expected.len());
         for ((ray, report), beams) in rays.iter().zip(&reports).zip(&expected) {
             for beam in [&beams.reflected, &beams.transmitted] {
-                let along = |leaf: &&LeafReport| apart_real(&leaf.direction, &beam.direction) < 1e-9;
+                let along =
+                    |leaf: &&LeafReport| apart_real(&leaf.direction, &beam.direction) < 1e-9;
                 let leaves: Vec<&LeafReport> = report.leaves.iter().filter(along).collect();
                 let power: f64 = leaves.iter().map(|leaf| leaf.power).sum();
                 hold((power - beam.power).abs(), tolerance.power, "the power", &name);
