@@ -121,52 +121,67 @@ def fresnel(n1: float, n2: float, normal: Array, p: Array, e: Array) -> list[tup
     return waves
 
 
-def _advance(medium: Medium, borders: list[Border], branch: Branch, leaving: Border | None) -> tuple[Branch, Border, float, complex]:
-    """To the next border, where the parameter at which it is met is refined by Newton's method."""
+Slope = Callable[[float, Array], Array]
 
-    def unpack(y: Array) -> tuple[Array, Array, Array, complex, float]:
-        return y[:3], y[3:6], y[6:9] + 1j * y[9:12], complex(y[12], y[13]), y[14]
+
+def to_border(slope: Slope, values: list[Callable[[Array], float]], y: Array, left: int | None = None) -> tuple[Array, int, float]:
+    """From a state to the first at which one of the values, positive before, vanishes; `left` vanishes at the start.
+
+    Gives that state, which value it is, and the parameter.
+    """
+    settings = {"method": "DOP853", "rtol": TOLERANCE, "atol": TOLERANCE}
+
+    def event(i: int) -> Callable[[float, Array], float]:
+        def value(t: float, y: Array) -> float:
+            return 1.0 if i == left and t < 1e-6 else values[i](y)
+
+        value.terminal, value.direction = True, -1
+        return value
+
+    found = solve_ivp(slope, (0, 1e4), y, events=[event(i) for i in range(len(values))], max_step=2.0, **settings)
+    met = next(i for i, times in enumerate(found.t_events) if len(times))
+    t = found.t_events[met][0]
+    # The event stands on the interpolant; the state at its time, and what is left to the border, on steps of the method.
+    y = solve_ivp(slope, (0, t), y, **settings).y[:, -1]
+    for _ in range(4):
+        here, h = values[met](y), 1e-6
+        step = -here * h / (values[met](y + h * slope(0, y)) - here)
+        if abs(step) < 1e-15:
+            break
+        y = solve_ivp(slope, (0, step), y, **settings).y[:, -1]
+        t += step
+    return y, met, t
+
+
+def _unpack(y: Array) -> tuple[Array, Array, Array, complex, float]:
+    """Place, wave vector, field, what is carried along, and the optical path."""
+    return y[:3], y[3:6], y[6:9] + 1j * y[9:12], complex(y[12], y[13]), y[14]
+
+
+def _advance(medium: Medium, borders: list[Border], branch: Branch, left: Border) -> tuple[Branch, Border, float, complex]:
+    """To the next border; and the index there."""
 
     def slope(_: float, y: Array) -> Array:
-        r, p, e, carried, _ = unpack(y)
+        r, p, e, carried, _ = _unpack(y)
         n2, gradient = medium.squared(r, carried)
         turn = -(e @ gradient) / (2 * n2) * p
         on = medium.carry(p, carried)
         return np.concatenate([p, gradient / 2, turn.real, turn.imag, [on.real, on.imag, n2]])
 
-    def value(border: Border) -> Callable[[float, Array], float]:
-        def event(t: float, y: Array) -> float:
-            if border is leaving and t < 1e-6:
-                return 1.0
-            r, _, _, carried, _ = unpack(y)
-            return border.value(r, carried)
-
-        event.terminal, event.direction = True, -1
-        return event
+    def value(border: Border) -> Callable[[Array], float]:
+        return lambda y: border.value(y[:3], complex(y[12], y[13]))
 
     carried = medium.start(branch.position)
     e = branch.electric
     y = np.concatenate([branch.position, branch.wave_vector, e.real, e.imag, [carried.real, carried.imag, branch.path]])
-    settings = {"method": "DOP853", "rtol": TOLERANCE, "atol": TOLERANCE}
-    found = solve_ivp(slope, (0, 1e4), y, events=[value(border) for border in borders], max_step=2.0, **settings)
-    met = next(i for i, times in enumerate(found.t_events) if len(times))
-    border, y, last = borders[met], found.y_events[met][0], found.t_events[met][0]
-    # The event stands on the interpolant; the state at its time, and what is left to the border, on steps of the method.
-    y = solve_ivp(slope, (0, last), found.y[:, 0], **settings).y[:, -1]
-    for _ in range(4):
-        r, p, _, carried, _ = unpack(y)
-        here, h = border.value(r, carried), 1e-6
-        ahead = y + h * slope(0, y)
-        speed = (border.value(ahead[:3], complex(ahead[12], ahead[13])) - here) / h
-        step = -here / speed
-        if abs(step) < 1e-15:
-            break
-        y = solve_ivp(slope, (0, step), y, **settings).y[:, -1]
-    r, p, e, carried, path = unpack(y)
+    # By identity: borders hold functions.
+    leaving = next(i for i, border in enumerate(borders) if border is left)
+    y, met, _ = to_border(slope, [value(border) for border in borders], y, leaving)
+    r, p, e, carried, path = _unpack(y)
     n = np.sqrt(medium.squared(r, carried)[0])
     e = e - p * (p @ e) / (p @ p)
     end = Branch(r, p * n / np.linalg.norm(p), e / np.linalg.norm(e), branch.power, path)
-    return end, border, n, carried
+    return end, borders[met], n, carried
 
 
 def trace(medium: Medium, borders: list[Border], entry: Border, branch: Branch, least: float) -> list[Branch]:
