@@ -10,6 +10,7 @@ mod carpet_cloaks;
 mod closed_form;
 mod coatings;
 mod coherence;
+mod conformance;
 mod devices;
 mod double_gaussian_cloak;
 mod equation_of_motion;
