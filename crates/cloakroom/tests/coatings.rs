@@ -1,5 +1,5 @@
-//! Coatings of devices, and metals with an index, against the 4 x 4 transfer matrix, Fresnel's equations and the devices that
-//! they must be the same as.
+//! Coatings of devices, and metals with an index, against the 4 x 4 transfer matrix, Fresnel's
+//! equations and the devices that they must be the same as.
 
 use crate::coherence::{WAVE_NUMBER, expected, gathered, slabs, tensor};
 use crate::long::count;
@@ -114,7 +114,8 @@ fn where_coated_bodies_touch_the_layers_of_both_are_between_them() {
     }
 }
 
-/// The share that layers (index, nm) between two indices reflect of s, for the tangential wave vector k: Airy's recursion.
+/// The share that layers (index, nm) between two indices reflect of s, for the tangential wave
+/// vector k: Airy's recursion.
 fn reflectance(first: f64, layers: &[(f64, f64)], last: f64, k: f64) -> f64 {
     let normal = |n: f64| Complex64::from(n * n - k * k).sqrt();
     let (mut r, mut here) = (Complex64::ZERO, normal(last));
@@ -300,7 +301,8 @@ fn neighbouring_prisms_have_the_layers_of_both_between_them() {
 
 #[test]
 fn round_graded_and_cut_devices_take_coatings() {
-    // Each in air, at its border: what the first face reflects is what a coated body of the index there does.
+    // Each in air, at its border: what the first face reflects is what a coated body of the index
+    // there does.
     let film =
         "coating = [{ index = 2.0, thickness_nm = 60 }, { index = 1.3, thickness_nm = 120 }]\n";
     let ray = launch(DVec3::new(-40.0, 1.0, 0.5), DVec3::X);

@@ -193,8 +193,8 @@ table! {
         position: DVec3, "cm", in ValueRange::COORDINATE,
         /// Whole length along the device's z axis; endless where it is absent.
         length: Option<f64>, "cm", in ValueRange::LENGTH,
-        /// Thin layers on all of its surfaces that face the outside, from the outside inwards; each a table with its
-        /// thickness and its index or permittivity.
+        /// Thin layers on all of its surfaces that face the outside, from the outside inwards; each
+        /// a table with its thickness and its index or permittivity.
         coating: Vec<CoatingLayer>,
         /// What its metal is of: { index = [n, k] }; a perfect conductor by default.
         metal: Option<Metal>,

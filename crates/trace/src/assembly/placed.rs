@@ -82,8 +82,8 @@ impl Placed {
         &self.structure.regions[usize::from(number)]
     }
 
-    /// How thick the thinnest part of it is that is of a medium, cm: the least distance between two parallel planes that it fits
-    /// between. `None` without a medium.
+    /// How thick the thinnest part of it is that is of a medium, cm: the least distance between two
+    /// parallel planes that it fits between. `None` without a medium.
     #[must_use]
     pub fn thickness(&self) -> Option<f64> {
         let Structure { regions, hull, .. } = &self.structure;

@@ -316,7 +316,8 @@ impl<const N: usize> Scattered<'_, N> {
     }
 }
 
-/// The outgoing amplitudes of an incident wave, for each launched polarization; none without a wave.
+/// The outgoing amplitudes of an incident wave, for each launched polarization; none without a
+/// wave.
 #[inline]
 fn matched<T: Number, const N: usize>(
     incident: &[Incident<'_, T, N>],
