@@ -303,7 +303,8 @@ fn polarizers_pass_by_the_law_of_malus_and_absorb_the_rest_in_any_pose() {
 
 #[test]
 fn what_a_wave_plate_makes_of_horizontal_light_has_the_handedness_of_a_retarder() {
-    // 1/4, 1/2 and 1 wave at 45 degrees; bare faces reflect, and those with a quarter wave of index √n hardly.
+    // 1/4, 1/2 and 1 wave at 45 degrees; bare faces reflect, and those with a quarter wave of index
+    // √n hardly.
     let (no, ne): (f64, f64) = (1.546, 1.555);
     let index = (0.5 * (no + ne)).sqrt();
     let quarter =

@@ -1,4 +1,5 @@
-//! Thin films against a scalar recursion, against other programs' numbers, and against what any of them must obey.
+//! Thin films against a scalar recursion, against other programs' numbers, and against what any of
+//! them must obey.
 
 use crate::long::count;
 use crate::random_media::{KINDS, Random, medium};
@@ -15,8 +16,8 @@ use std::f64::consts::{PI, TAU};
 const NM: f64 = 1e-7;
 const WAVE_NUMBER: f64 = TAU / (550.0 * NM);
 
-/// The error of amplitudes where light is caught behind a layer through which it tunnels: a resonance magnifies rounding, by up
-/// to 1e5 here.
+/// The error of amplitudes where light is caught behind a layer through which it tunnels: a
+/// resonance magnifies rounding, by up to 1e5 here.
 const RESONANT: f64 = 1e-10;
 
 fn of_index(index: Complex64) -> Medium {
@@ -61,8 +62,8 @@ fn power<const N: usize>(waves: &OutgoingWaves<N>, side: Side) -> [f64; N] {
     std::array::from_fn(|i| waves.iter().filter(|w| w.side == side).map(|w| w.power[i]).sum())
 }
 
-/// A stack of isotropic media of complex indices between two of them, by Airy's recursion with scalar amplitudes: those
-/// reflected and transmitted of tangential fields E_y (s) or H_y (p).
+/// A stack of isotropic media of complex indices between two of them, by Airy's recursion with
+/// scalar amplitudes: those reflected and transmitted of tangential fields E_y (s) or H_y (p).
 fn airy(indices: &[Complex64], depths: &[f64], k: f64, p: bool) -> [Complex64; 2] {
     let normal = |n: Complex64| {
         let q = (n * n - k * k).sqrt();
@@ -87,7 +88,8 @@ fn airy(indices: &[Complex64], depths: &[f64], k: f64, p: bool) -> [Complex64; 2
 
 #[test]
 fn films_are_those_of_other_programs() {
-    // Reflectance and transmittance, s and p, at 550 nm, by the Python package tmm 0.2.0; indices, thicknesses (nm), angle.
+    // Reflectance and transmittance, s and p, at 550 nm, by the Python package tmm 0.2.0; indices,
+    // thicknesses (nm), angle.
     type Case<'a> = (&'a [(f64, f64)], &'a [f64], f64, [[f64; 2]; 2]);
     let cases: [Case<'_>; 4] = [
         (
@@ -139,7 +141,8 @@ fn films_are_those_of_other_programs() {
             assert!((found - t).abs() < 1e-14, "{found} {t}");
         }
     }
-    // A biaxial film on glass at 40 degrees, by pyElli 0.23.1 (Berreman): rows from s, then p, columns to s, then p.
+    // A biaxial film on glass at 40 degrees, by pyElli 0.23.1 (Berreman): rows from s, then p,
+    // columns to s, then p.
     let tensor = DMat3::from_cols_array_2d(&[
         [2.443_482_31, -0.232_374_86, 0.007_366_63],
         [-0.232_374_86, 2.728_881_57, -0.320_892_01],
@@ -309,7 +312,8 @@ fn layers_of_no_thickness_change_nothing_and_layers_of_the_medium_itself_only_ph
         let bare = reflect_at_conductor(&here, &wave, DVec3::Z);
         let found = coated(&here, &none, Backing::Conductor, &wave);
         assert_same(&found, &bare, 1e-7, &what);
-        // Powers of what is transmitted do not see a layer of the medium beyond, nor those of what is reflected.
+        // Powers of what is transmitted do not see a layer of the medium beyond, nor those of what
+        // is reflected.
         let own = [FilmLayer { medium: there, thickness: random.between(0.0, 300.0) * NM }];
         let bare = split(&here, &there, &wave, DVec3::Z);
         let found = coated(&here, &own, Backing::Medium(&there), &wave);
@@ -360,7 +364,8 @@ fn light_goes_back_through_films_as_it_came() {
                 returned.side == Side::Transmitted
                     && (returned.wave_vector + wave.wave_vector).length() < 1e-6
             });
-            // Of two polarizations on one wave, orthogonal in isotropic media, the part that has been launched.
+            // Of two polarizations on one wave, orthogonal in isotropic media, the part that has
+            // been launched.
             let returned: f64 = same
                 .map(|returned| {
                     let (e, f) = (returned.electric[0], wave.electric[0]);

@@ -144,7 +144,8 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
     }
 }
 
-/// A layer of a coating, from nothing to what no light gets through, of a dielectric, a metal or a crystal.
+/// A layer of a coating, from nothing to what no light gets through, of a dielectric, a metal or a
+/// crystal.
 fn layer(draws: &mut Draws<'_>) -> Value {
     let thickness = if draws.chance(20) { 0.0 } else { 10f64.powf(draws.between(0.0, 4.5)) };
     let (name, value) = match draws.below(3) {

@@ -192,7 +192,8 @@ impl DeviceSettings {
         self.placement.core == Core::Open
     }
 
-    /// The structure that is shown, imperfections and coatings included; `number` is the device's in its scene.
+    /// The structure that is shown, imperfections and coatings included; `number` is the device's
+    /// in its scene.
     ///
     /// # Errors
     ///

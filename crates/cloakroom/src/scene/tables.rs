@@ -204,8 +204,8 @@ table! {
         /// How its media depend on the frequency: what a pulse takes, in `group_delay` and where the phase runs backwards.
         /// `causal`: as little as causality allows, a bound for every real device; `none`: as the phase.
         dispersion: Dispersion,
-        /// Thin layers on all of its surfaces that face the outside, from the outside inwards; each a table with its
-        /// thickness and its index or permittivity.
+        /// Thin layers on all of its surfaces that face the outside, from the outside inwards; each
+        /// a table with its thickness and its index or permittivity.
         coating: Vec<CoatingLayer>,
         /// What its metal is of: { index = [n, k] }; a perfect conductor by default.
         metal: Option<Metal>,

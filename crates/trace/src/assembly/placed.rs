@@ -90,6 +90,15 @@ impl Placed {
         &self.structure.regions[usize::from(number)]
     }
 
+    /// How thick the thinnest part of it is that is of a medium, cm: the least distance between two
+    /// parallel planes that it fits between. `None` without a medium.
+    #[must_use]
+    pub fn thickness(&self) -> Option<f64> {
+        let Structure { regions, hull, .. } = &self.structure;
+        let thickness = hull.solids.iter().map(Solid::thickness).reduce(f64::min)?;
+        (!regions.is_empty()).then_some(thickness)
+    }
+
     /// Its films in the world's frame.
     pub(super) fn films_in_world(&self) -> Vec<Vec<FilmLayer>> {
         let turned = |layer: &FilmLayer| {

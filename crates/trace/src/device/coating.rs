@@ -20,7 +20,8 @@ crate::table! {
         thickness_nm: Option<f64>, "nm", in ValueRange::Within(0.0, 1e6),
         /// Its index of refraction n, or [n, k] where it absorbs; instead of `permittivity`.
         index: Option<Complex64>,
-        /// Its relative permittivity, in the device's frame also where the surface is tilted or curved; symmetric.
+        /// Its relative permittivity, in the device's frame also where the surface is tilted or
+        /// curved; symmetric.
         permittivity: Option<Tensor>,
     }
 }
@@ -132,12 +133,14 @@ impl Field for Metal {
 }
 
 impl Structure {
-    /// The same structure with layers, given from the outside inwards, on every surface of it that faces the outside and
-    /// has no layers of its own. On the sheets of thin mirrors they are on both sides.
+    /// The same structure with layers, given from the outside inwards, on every surface of it that
+    /// faces the outside and has no layers of its own. On the sheets of thin mirrors they are on
+    /// both sides.
     ///
     /// # Errors
     ///
-    /// If it is opaque or a polarizer, or has a perfect coating already; the key's name is for the message.
+    /// If it is opaque or a polarizer, or has a perfect coating already; the key's name is for the
+    /// message.
     pub fn coated(mut self, key: &'static str, layers: Vec<FilmLayer>) -> Result<Self, KeyError> {
         if layers.is_empty() {
             return Ok(self);

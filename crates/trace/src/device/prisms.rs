@@ -31,7 +31,8 @@ crate::table! {
         permeability: Given<Tensor> = Given::by_default(1.0.into()),
         /// Whether it is metal: true for a perfect conductor, { index = [n, k] } for another.
         metal: Metal,
-        /// Thin layers on all of its surfaces, from the outside inwards; instead of the device's, where it has any.
+        /// Thin layers on all of its surfaces, from the outside inwards; instead of the device's,
+        /// where it has any.
         coating: Vec<CoatingLayer>,
     }
 }

@@ -53,7 +53,8 @@ pub struct Structure {
     pub surfaces: Vec<Surface>,
     /// The space the device takes up.
     pub hull: Hull,
-    /// The layers on its surfaces, in the order in which light meets them that comes to the surface.
+    /// The layers on its surfaces, in the order in which light meets them that comes to the
+    /// surface.
     pub films: Vec<Vec<FilmLayer>>,
     /// Its metals that are no perfect conductors.
     pub metals: Vec<Medium>,

@@ -9,8 +9,8 @@
 pub struct KeyError {
     /// The key at fault; `None` if no single one is.
     pub key: Option<&'static str>,
-    /// The lists of tables, the outermost first, and the numbers of the tables in them (counted from 0) that hold the key;
-    /// none if it is a key of the device itself.
+    /// The lists of tables, the outermost first, and the numbers of the tables in them (counted
+    /// from 0) that hold the key; none if it is a key of the device itself.
     pub entries: Vec<(&'static str, usize)>,
     /// What is wrong: quantity, value, unit, and what is allowed.
     pub message: String,

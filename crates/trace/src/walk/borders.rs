@@ -117,7 +117,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.cross(branch, medium, passage.coating, ahead, (onward, event))
     }
 
-    /// What is between two media in the world, given the coating of what a branch leaves there and what is ahead of it.
+    /// What is between two media in the world, given the coating of what a branch leaves there and
+    /// what is ahead of it.
     fn between(&self, branch: &Branch<N>, left: Coating, ahead: Ahead) -> Between<'a> {
         let entered = match ahead {
             Ahead::Air => None,
@@ -195,8 +196,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         })
     }
 
-    /// Splits a branch, in the world's frame but still of the place that it leaves, at the border of that place, with its
-    /// coating, to what is ahead.
+    /// Splits a branch, in the world's frame but still of the place that it leaves, at the border
+    /// of that place, with its coating, to what is ahead.
     pub(super) fn cross(
         &mut self,
         branch: &mut Branch<N>,

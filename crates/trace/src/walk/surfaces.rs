@@ -28,7 +28,8 @@ const MOST_STANDSTILLS: u8 = 16;
 pub(super) enum Between<'a> {
     Nothing,
     PerfectCoating,
-    /// The layers of a film in the order in which light meets them: of what it leaves, then of what it enters.
+    /// The layers of a film in the order in which light meets them: of what it leaves, then of what
+    /// it enters.
     Films([&'a [FilmLayer]; 2]),
 }
 
@@ -356,8 +357,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         })
     }
 
-    /// Sends a branch back from metal, a perfect conductor if it is of no medium, into the place where `back` puts it.
-    /// Where a conductor sends nothing back, for a surface has no normal that numbers can hold, light is lost.
+    /// Sends a branch back from metal, a perfect conductor if it is of no medium, into the place
+    /// where `back` puts it. Where a conductor sends nothing back, for a surface has no normal that
+    /// numbers can hold, light is lost.
     pub(super) fn reflect(
         &mut self,
         branch: &mut Branch<N>,

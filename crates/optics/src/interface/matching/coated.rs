@@ -1,9 +1,11 @@
-//! Interfaces with thin films: stacks of layers in which light interferes, or through which it tunnels.
+//! Interfaces with thin films: stacks of layers in which light interferes, or through which it
+//! tunnels.
 //!
-//! All waves that go on beyond a stack span a plane of tangential fields (E, H). It is carried back through the layers
-//! in the modes F, B of each: where it is spanned by F a + B b on a layer's far side, it is spanned by
-//! F + B exp(-i q_B k₀t) b a⁻¹ exp(i q_F k₀t) on its near side. Both exponentials decay, so that metals may be as thick as they
-//! like; and at a conductor, which has no finite admittance, the plane is E = 0.
+//! All waves that go on beyond a stack span a plane of tangential fields (E, H). It is carried back
+//! through the layers in the modes F, B of each: where it is spanned by F a + B b on a layer's far
+//! side, it is spanned by F + B exp(-i q_B k₀t) b a⁻¹ exp(i q_F k₀t) on its near side. Both
+//! exponentials decay, so that metals may be as thick as they like; and at a conductor, which has
+//! no finite admittance, the plane is E = 0.
 
 use super::{Scattered, matched, tangential};
 use crate::interface::splitting::Splitting;
@@ -25,7 +27,8 @@ pub struct FilmLayer {
 /// The layers at an interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film<'a> {
-    /// The layers in the order in which transmitted light meets them: first one part, then the other.
+    /// The layers in the order in which transmitted light meets them: first one part, then the
+    /// other.
     pub layers: [&'a [FilmLayer]; 2],
     /// The wave number in vacuum, 1/cm.
     pub wave_number: f64,
@@ -42,10 +45,11 @@ pub enum Backing<'a> {
     Conductor,
 }
 
-/// Splits a wave at an interface with thin films, as [`split_down_to`](crate::interface::split_down_to) does at a bare one. What
-/// is transmitted starts where the incident wave ends: the films have no thickness but in the phases of the fields.
-/// If nothing absorbs, the powers of the waves add up to that of the incident one; else the rest is
-/// absorbed.
+/// Splits a wave at an interface with thin films, as
+/// [`split_down_to`](crate::interface::split_down_to) does at a bare one. What is transmitted
+/// starts where the incident wave ends: the films have no thickness but in the phases of the
+/// fields. If nothing absorbs, the powers of the waves add up to that of the incident one; else the
+/// rest is absorbed.
 ///
 /// # Example
 ///
@@ -152,7 +156,8 @@ impl TransferredFields {
             std::array::from_fn(|i| [f[0][i], f[1][i], b[0][i], b[1][i]]),
             std::array::from_fn(|i| [p[i], q[i]]),
         );
-        // In the forward waves of the near side: what is left of them on the far side, in the fields there.
+        // In the forward waves of the near side: what is left of them on the far side, in the
+        // fields there.
         let [left_1, left_2] = forward.map(|mode| (Complex64::i() * mode.q * depth).exp());
         let inverse = solve([parts[0], parts[1]], IDENTITY);
         let kept = inverse.map(|[with_1, with_2]| [with_1 * left_1, with_2 * left_2]);
