@@ -34,11 +34,13 @@ class SquareCloak(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         kappa: float | None = ...,
         length: float | None = ...,
         material: Literal["impedance-matched", "positive-uniaxial", "negative-uniaxial"] | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         rounded: bool | None = ...,
@@ -47,6 +49,8 @@ class SquareCloak(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -57,6 +61,8 @@ class SquareCloak(Device):
     def length(self) -> float | None: ...
     @property
     def material(self) -> Literal["impedance-matched", "positive-uniaxial", "negative-uniaxial"]: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -73,12 +79,14 @@ class DoubleGaussianCloak(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         fresnel: bool | None = ...,
         h: float | None = ...,
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         referenced: bool | None = ...,
         rotation: float | None = ...,
@@ -88,6 +96,8 @@ class DoubleGaussianCloak(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -100,6 +110,8 @@ class DoubleGaussianCloak(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -118,11 +130,13 @@ class CylinderCloak(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
         material: Literal["impedance-matched", "radial-uniaxial", "azimuthal-uniaxial"] | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         outer: float | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
@@ -130,6 +144,8 @@ class CylinderCloak(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -140,6 +156,8 @@ class CylinderCloak(Device):
     def length(self) -> float | None: ...
     @property
     def material(self) -> Literal["impedance-matched", "radial-uniaxial", "azimuthal-uniaxial"]: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def outer(self) -> float: ...
     @property
@@ -154,10 +172,12 @@ class SphereCloak(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         outer: float | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
@@ -166,6 +186,8 @@ class SphereCloak(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
@@ -173,6 +195,8 @@ class SphereCloak(Device):
     def inner(self) -> float: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def outer(self) -> float: ...
     @property
@@ -187,10 +211,12 @@ class InvisibleSphere(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         material: Literal["graded", "regularized"] | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -199,6 +225,8 @@ class InvisibleSphere(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
@@ -206,6 +234,8 @@ class InvisibleSphere(Device):
     def length(self) -> float | None: ...
     @property
     def material(self) -> Literal["graded", "regularized"]: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -221,9 +251,11 @@ class BendingSphere(Device):
         *,
         angle: float | None = ...,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -234,11 +266,15 @@ class BendingSphere(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -253,9 +289,11 @@ class EatonLens(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -264,11 +302,15 @@ class EatonLens(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -283,9 +325,11 @@ class LuneburgLens(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -294,11 +338,15 @@ class LuneburgLens(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -313,9 +361,11 @@ class FisheyeLens(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -324,11 +374,15 @@ class FisheyeLens(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -343,12 +397,14 @@ class FisheyeHemisphere(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         cut_distance: float | None = ...,
         cut_normal: ArrayLike | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         index: float | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -356,6 +412,8 @@ class FisheyeHemisphere(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -368,6 +426,8 @@ class FisheyeHemisphere(Device):
     def index(self) -> float: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -382,10 +442,12 @@ class MirrorDetour(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         half_length: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         offset: float | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
@@ -394,6 +456,8 @@ class MirrorDetour(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def half_length(self) -> float: ...
@@ -401,6 +465,8 @@ class MirrorDetour(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def offset(self) -> float: ...
     @property
@@ -415,9 +481,11 @@ class Prisms(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         prism: Sequence[Mapping[str, Any]] | None = ...,
         rotation: float | None = ...,
@@ -426,11 +494,15 @@ class Prisms(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -445,12 +517,14 @@ class Graded(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         index: _Index | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         shape: Literal["rectangle", "circle"] | None = ...,
@@ -460,6 +534,8 @@ class Graded(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -472,6 +548,8 @@ class Graded(Device):
     def inner(self) -> float: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -488,11 +566,13 @@ class GradedBox(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         gradient: ArrayLike | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         index: float | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
@@ -500,6 +580,8 @@ class GradedBox(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -510,6 +592,8 @@ class GradedBox(Device):
     def index(self) -> float: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -524,10 +608,12 @@ class Body(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         group_index: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         permeability: ArrayLike | None = ...,
         permittivity: ArrayLike | None = ...,
         position: ArrayLike | None = ...,
@@ -543,6 +629,8 @@ class Body(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def group_index(self) -> float | None: ...
@@ -550,6 +638,8 @@ class Body(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def permeability(self) -> Any: ...
     @property
@@ -579,9 +669,11 @@ class Polarizer(Device):
         *,
         angle: float | None = ...,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
@@ -592,11 +684,15 @@ class Polarizer(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -611,12 +707,14 @@ class GaussianCarpet(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
@@ -625,6 +723,8 @@ class GaussianCarpet(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -637,6 +737,8 @@ class GaussianCarpet(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -653,12 +755,14 @@ class GratingCarpet(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         period: float | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
@@ -667,6 +771,8 @@ class GratingCarpet(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -679,6 +785,8 @@ class GratingCarpet(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def period(self) -> float: ...
     @property
@@ -695,12 +803,14 @@ class QuasiConformalCarpet(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
@@ -709,6 +819,8 @@ class QuasiConformalCarpet(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -721,6 +833,8 @@ class QuasiConformalCarpet(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
