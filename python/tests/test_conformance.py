@@ -18,7 +18,7 @@ FOLDER = REPOSITORY / "conformance"
 EXACT, INTEGRATED = 1e-12, 3e-11
 
 #: How many rays cases are written again: the last ones, of crystals, take long.
-RAYS = 42
+RAYS = 45
 
 
 def differ(one: object, other: object, tolerance: float, place: str = "") -> str | None:
