@@ -221,6 +221,7 @@ class Book:
         every: bool = True,
     ) -> None:
         """A device, as its part of a scene file, and rays; `every`: the oracle has all leaves."""
+        name += "" if pose is PLAINLY else ", turned" if pose is TURNED else ", tilted"
         traced = _posed(trace, pose)
         # The pose stands before the tables of prisms.
         head, *prisms = device.split("[[device.prism]]")
@@ -342,7 +343,7 @@ def isotropic_bodies() -> list[dict]:
         "a ball of n = -1 that reflects nothing", BALL, [sphere(5.0)], -1.0, -1.0, PLAINLY, rays(2, PLAINLY, ball(5.0))
     )
     body(
-        "a slab of glass, in any pose",
+        "a slab of glass",
         SLAB,
         SLAB_FACES,
         2.25,
