@@ -349,7 +349,7 @@ fn metals_with_an_index_reflect_by_fresnels_equations_and_keep_the_rest() {
     let index = Complex64::new(0.27, 2.9);
     let mut numbers = Numbers(56);
     let mirror = |metal: &str| {
-        format!("[[device]]\nkind = \"prisms\"\nlength = 40\n")
+        "[[device]]\nkind = \"prisms\"\nlength = 40\n".to_owned()
             + &square(10.0, &format!("metal = {metal}\n"))
     };
     for _ in 0..count(200, 5000) {
@@ -367,11 +367,12 @@ fn metals_with_an_index_reflect_by_fresnels_equations_and_keep_the_rest() {
         let r_s = (cos - inner) / (cos + inner);
         let r_p = (index * index * cos - inner) / (index * index * cos + inner);
         let s = ray.direction.cross(normal).normalize();
-        for i in 0..2 {
-            let share = ray.electric[i].dot_real(s).norm_sqr();
+        for ((electric, power), absorbed) in ray.electric.iter().zip(leaves[0].power).zip(absorbed)
+        {
+            let share = electric.dot_real(s).norm_sqr();
             let expected = share * r_s.norm_sqr() + (1.0 - share) * r_p.norm_sqr();
-            assert!((leaves[0].power[i] - expected).abs() < 1e-12, "{expected} {leaves:?}");
-            assert!((absorbed[i] - (1.0 - expected)).abs() < 1e-12);
+            assert!((power - expected).abs() < 1e-12, "{expected} {leaves:?}");
+            assert!((absorbed - (1.0 - expected)).abs() < 1e-12);
         }
     }
     // At normal incidence, by tmm 0.2.0.
