@@ -103,3 +103,30 @@ fn the_empty_view_has_one_pulse_on_time() {
     let error = pulses(&prepared, [12, 0]).unwrap_err().to_string();
     assert_eq!(error, "there is no pixel 12,0; the picture has columns 0 to 11 and rows 0 to 8");
 }
+
+/// In a thick block parts of a beam come to other places, or to an edge: what one ray has of them does not close.
+#[test]
+fn powers_of_a_ray_add_up_in_light_of_one_wavelength() {
+    for device in [
+        "shape = \"box\"\npermittivity = 9",
+        "shape = \"box\"\npermittivity = 2.25\nrotation = 10",
+        "permittivity = 4\nrotation = 20",
+        "permittivity = 4",
+        "thickness = 2e-5\npermittivity = 4\nrotation = 20",
+        "thickness = 2e-5\npermittivity = [4, 0.01]",
+    ] {
+        let text = format!(
+            "[camera]\nresolution = [16, 12]\nsamples = 1\n[light]\nbandwidth_nm = 0\n[[device]]\nkind = \"body\"\n{device}\n"
+        );
+        let scene = scene_file::parse(&text, "test", Path::new(""), &[]).unwrap().scene;
+        let prepared = PreparedScene::new(&scene).unwrap();
+        for pixel in (0..16).flat_map(|x| (0..12).map(move |y| [x, y])) {
+            let list = pulses(&prepared, pixel).unwrap();
+            let shares = [list.delivered, list.escaped, list.absorbed, list.pruned];
+            assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{device} {shares:?}");
+            assert!(shares.iter().all(|share| *share > -1e-6), "{device} {shares:?}");
+            assert!(list.pruned < 1e-3, "{device} {shares:?}");
+            assert!(list.delivered.is_sign_positive());
+        }
+    }
+}

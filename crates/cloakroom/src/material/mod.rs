@@ -79,6 +79,7 @@ fn chosen<'a>(
         Show::Bare => "is shown as bare metal: it has no material",
         Show::Mirror => "is shown as the mirror it imitates: it has no material",
         Show::Cloak if placed.structure.is_opaque() => "is opaque: it has no material",
+        Show::Cloak if placed.structure.polarizes() => "is an ideal sheet: it has no material",
         Show::Cloak if placed.structure.regions.is_empty() => {
             "is made of metal alone: it has no material"
         }

@@ -41,11 +41,13 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
 ) {
     pulses.clear();
     group_pulses.clear();
+    let absorbed = detection.detected(&here.outcome.absorbed);
     if COHERENT {
-        interference.find(prepared, detection, here.leaves, here.ray.origin);
-        pixel.pruned -= interference.added;
+        interference.find(prepared, detection, here.leaves, here.ray.origin, absorbed);
+        let missing = if absorbed > 0.0 { &mut pixel.absorbed } else { &mut pixel.pruned };
+        *missing -= interference.added;
     }
-    pixel.absorbed += detection.detected(&here.outcome.absorbed);
+    pixel.absorbed += absorbed;
     pixel.pruned += detection.detected(&here.outcome.pruned);
     for (number, leaf) in here.leaves.iter().enumerate() {
         let power = detection.detected(&leaf.power);

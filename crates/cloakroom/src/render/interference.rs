@@ -8,6 +8,9 @@ use glam::DVec3;
 /// Leaves that see places further apart than this, in widths of a pixel, do not interfere: w is below 1e-12.
 const FARTHEST: f64 = 7.5;
 
+/// To this the leaves of a ray of which nothing was absorbed add up to it, as fields; else they are booked as powers.
+const OPEN: f64 = 1e-6;
+
 /// What a leaf sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sight {
@@ -21,7 +24,8 @@ enum Sight {
 pub(super) struct Interference {
     /// The pairs.
     pub pairs: Vec<Pair>,
-    /// The power that the pairs add to that of all leaves: it is missing in branches that were pruned.
+    /// The power that the pairs add to that of all leaves: it is missing in what was absorbed, or where nothing was in
+    /// branches that were pruned.
     pub added: f64,
     /// What each leaf's power is multiplied by, as one of those that it interferes with; none without pairs.
     gain: Vec<f64>,
@@ -37,17 +41,25 @@ pub(super) struct Interference {
 }
 
 impl Interference {
-    /// Finds the pairs among the leaves of a ray that starts at `camera`, and the gains of the leaves.
+    /// Finds the pairs among the leaves of a ray that starts at `camera` and of which a share has been `absorbed`, and the
+    /// gains of the leaves.
     pub fn find<const N: usize>(
         &mut self,
         prepared: &PreparedScene<'_>,
         detection: &Detection<N>,
         leaves: &[Leaf<N>],
         camera: DVec3,
+        absorbed: f64,
     ) {
         self.lights.clear();
         self.pair_up(prepared, detection, leaves, camera);
         self.share_out(detection, leaves);
+        // Else the ray alone does not tell: it is one of a beam, of which parts come to an edge or to another place.
+        let closes = self.added.abs() <= OPEN || (absorbed > 0.0 && self.added <= absorbed);
+        if !closes {
+            self.gain.clear();
+            self.added = 0.0;
+        }
     }
 
     fn pair_up<const N: usize>(

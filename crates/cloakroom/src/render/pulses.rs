@@ -112,7 +112,10 @@ fn list<const N: usize>(
         .with_group_delays();
     let (leaves, outcome) = tracer.trace(&detection.launch(camera, &ray));
     let mut interference = Interference::default();
-    interference.find(prepared, detection, leaves, ray.origin);
+    let absorbed = detection.detected(&outcome.absorbed);
+    interference.find(prepared, detection, leaves, ray.origin, absorbed);
+    let [from_absorbed, from_pruned] =
+        if absorbed > 0.0 { [interference.added, 0.0] } else { [0.0, interference.added] };
     let (mut arrivals, mut escaped, mut ended) = (Vec::new(), 0.0, 0.0);
     for (number, leaf) in leaves.iter().enumerate() {
         let power = detection.detected(&leaf.power) * interference.gain(number);
@@ -146,15 +149,16 @@ fn list<const N: usize>(
     }
     PulseList {
         pixel,
-        delivered: pulses.iter().map(|pulse| pulse.power).sum(),
+        // The sum of none would be -0.
+        delivered: pulses.iter().fold(0.0, |sum, pulse| sum + pulse.power),
         pulses,
         resolution_ns,
         empty_time_of_flight_ns: empty,
         mean_time_of_flight_ns: number(ChannelKind::TimeOfFlight),
         time_of_flight_spread_ns: number(ChannelKind::TimeOfFlightSpread),
         escaped,
-        absorbed: detection.detected(&outcome.absorbed) + ended,
-        pruned: detection.detected(&outcome.pruned) - interference.added,
+        absorbed: absorbed - from_absorbed + ended,
+        pruned: detection.detected(&outcome.pruned) - from_pruned,
     }
 }
 

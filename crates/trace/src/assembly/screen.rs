@@ -130,7 +130,9 @@ impl Screen {
         let rotation = DMat3::from_cols(forward, up, across);
         let sheet = sheet.placed(&Pose::from_rotation(self.middle, rotation));
         assembly.devices().iter().position(|device| {
-            let cuts = |solid: &Solid| solid.overlaps(&sheet, TOUCHING);
+            let cuts = |solid: &Solid| {
+                solid.overlaps(&sheet, TOUCHING) || solid.coincides(&sheet, TOUCHING)
+            };
             device.body().is_none() && device.solids().iter().any(cuts)
         })
     }
