@@ -368,28 +368,36 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         interface: &Interface<'_>,
         back: impl Fn(&mut Branch<N>),
     ) -> bool {
-        let (wave, normal) = (branch.incident(), interface.onward);
-        let mut absorbing = metal.is_some();
-        let mut waves = match (metal, interface.between) {
-            (None, Between::Nothing | Between::PerfectCoating) => {
-                reflect_at_conductor(medium, &wave, normal)
-            }
-            (metal, between) => {
-                absorbing |= between.absorbs();
-                let backing = metal.map_or(Backing::Conductor, Backing::Absorber);
-                let mut waves = OutgoingWaves::new();
-                let beyond = (self.film(between), backing);
-                split_coated(medium, beyond, &wave, normal, 0.0, &mut waves);
-                waves
-            }
-        };
-        if waves.is_empty() && !absorbing {
+        if metal.is_some() || matches!(interface.between, Between::Films(_)) {
+            let waves = self.reflected(branch, medium, metal, interface);
+            return self.go_on(branch, &waves, interface.event, |branch, _| back(branch));
+        }
+        let mut waves = reflect_at_conductor(medium, &branch.incident(), interface.onward);
+        if waves.is_empty() {
             return self.lose(branch.power);
         }
-        if absorbing || medium.absorbs() {
+        if medium.absorbs() {
             self.check_account(branch, &mut waves, [0.0; N], true);
         }
         self.go_on(branch, &waves, interface.event, |branch, _| back(branch))
+    }
+
+    /// What metal with an index or with films sends back; the rest is absorbed.
+    #[cold]
+    fn reflected(
+        &mut self,
+        branch: &Branch<N>,
+        medium: &Medium,
+        metal: Option<&Medium>,
+        interface: &Interface<'_>,
+    ) -> OutgoingWaves<N> {
+        let mut waves = OutgoingWaves::new();
+        let backing = metal.map_or(Backing::Conductor, Backing::Absorber);
+        let beyond = (self.film(interface.between), backing);
+        split_coated(medium, beyond, &branch.incident(), interface.onward, 0.0, &mut waves);
+        let absorbing = metal.is_some() || interface.between.absorbs() || medium.absorbs();
+        self.check_account(branch, &mut waves, [0.0; N], absorbing);
+        waves
     }
 
     /// Ends a branch, which does not go on.
@@ -507,7 +515,6 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let wave = branch.incident();
         let mut weak = [0.0; N];
         let normal = interface.onward;
-        let mut absorbing = from.absorbs() || to.absorbs();
         match interface.between {
             Between::Nothing => {
                 weak = split_down_to(from, to, &wave, normal, self.limits.min_power, waves);
@@ -515,12 +522,25 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             Between::PerfectCoating => {
                 waves.extend(transmit_antireflection(from, to, &wave, normal));
             }
-            Between::Films(_) => {
-                absorbing |= interface.between.absorbs();
-                let beyond = (self.film(interface.between), Backing::Medium(to));
-                weak = split_coated(from, beyond, &wave, normal, self.limits.min_power, waves);
-            }
+            Between::Films(_) => return self.split_coated(from, to, branch, interface, waves),
         }
+        self.check_account(branch, waves, weak, from.absorbs() || to.absorbs());
+    }
+
+    /// Splits a branch where films are between the media.
+    #[cold]
+    fn split_coated(
+        &mut self,
+        from: &Medium,
+        to: &Medium,
+        branch: &Branch<N>,
+        interface: &Interface<'_>,
+        waves: &mut OutgoingWaves<N>,
+    ) {
+        let beyond = (self.film(interface.between), Backing::Medium(to));
+        let (wave, normal) = (branch.incident(), interface.onward);
+        let weak = split_coated(from, beyond, &wave, normal, self.limits.min_power, waves);
+        let absorbing = from.absorbs() || to.absorbs() || interface.between.absorbs();
         self.check_account(branch, waves, weak, absorbing);
     }
 }

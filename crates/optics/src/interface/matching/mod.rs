@@ -182,7 +182,7 @@ impl<const N: usize> Scattered<'_, N> {
     }
 
     /// Adds the waves of the given amplitudes, reflected 1, 2, transmitted 1, 2.
-    #[inline]
+    #[inline(always)]
     fn share_out<T: Number>(
         &mut self,
         incident: &[Incident<'_, T, N>],
@@ -326,8 +326,9 @@ fn share_ray<T: Number>([a, b]: &[LocalMode<T>; 2]) -> bool {
     matches!(a.kind, ModeKind::S | ModeKind::P) || ray(a).distance(ray(b)) <= ONE_RAY
 }
 
-/// The outgoing amplitudes of an incident wave, for each launched polarization; none without a wave.
-#[inline]
+/// The outgoing amplitudes of an incident wave, for each launched polarization; none without a
+/// wave.
+#[inline(always)]
 fn matched<T: Number, const N: usize>(
     incident: &[Incident<'_, T, N>],
     backward: &[LocalMode<T>; 2],
