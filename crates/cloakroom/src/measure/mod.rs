@@ -35,7 +35,7 @@ pub use plan::SweepPlan;
 pub use quality::{Column, QualityError, QualityRow, QualityTable, UnknownColumn, quality};
 pub use quality_files::name_and_unit;
 pub use structural_similarity::structural_similarity;
-pub use survey::{CLOAKED_WITHIN_CM, Survey, survey};
+pub use survey::{CLOAKED_WITHIN_CM, IN_PLACE_WITHIN_DEG, Survey, survey};
 pub use sweep::{Sweep, SweepError, combinations};
 pub use view::View;
 
