@@ -1,5 +1,7 @@
 //! What has been found out about a statement, and how it is written down.
 
+use super::fixture::{HALF_VIEW, WIDE_HALF_VIEW};
+use cloakroom::measure::{CLOAKED_WITHIN_CM, IN_PLACE_WITHIN_DEG};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -9,6 +11,8 @@ use std::fmt::Write;
 pub enum Verdict {
     /// It does: a number to the digits that are printed, a limit kept, a comparison that comes out so.
     Agrees,
+    /// A number is off by no more than a tenth of the one that is printed; by how much is said beside it.
+    AgreesClosely,
     /// A number is not off by more than a factor of 3.
     AgreesInOrderOfMagnitude,
     /// It does not.
@@ -16,7 +20,7 @@ pub enum Verdict {
 }
 
 /// One statement of the paper and what was computed.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
     /// Where it stands.
     pub place: &'static str,
@@ -27,8 +31,14 @@ pub struct Finding {
     /// Whether it holds.
     pub verdict: Verdict,
     /// A word why, where it does not quite; else empty.
-    pub remark: &'static str,
+    pub remark: String,
+    /// By how much a number is off the one that is printed, or beyond the limit that is stated, as a share of that;
+    /// 0 where it agrees, `None` where the statement has no number.
+    pub relative_deviation: Option<f64>,
 }
+
+/// The largest deviation of numbers that agree closely.
+const CLOSE: f64 = 0.1;
 
 /// The largest factor between numbers of one order of magnitude.
 const MAGNITUDE: f64 = 3.0;
@@ -56,7 +66,9 @@ impl Verdict {
 
     fn magnitude(computed: f64, printed: f64) -> Self {
         let ratio = computed / printed;
-        if (1.0 / MAGNITUDE..=MAGNITUDE).contains(&ratio) {
+        if (ratio - 1.0).abs() <= CLOSE {
+            Self::AgreesClosely
+        } else if (1.0 / MAGNITUDE..=MAGNITUDE).contains(&ratio) {
             Self::AgreesInOrderOfMagnitude
         } else {
             Self::Differs
@@ -66,6 +78,7 @@ impl Verdict {
     fn words(self) -> &'static str {
         match self {
             Self::Agrees => "agrees",
+            Self::AgreesClosely => "agrees closely",
             Self::AgreesInOrderOfMagnitude => "agrees in order of magnitude",
             Self::Differs => "differs",
         }
@@ -80,7 +93,8 @@ impl Page {
     /// Adds what the paper says at a place, its gist; what was found about it is called on it.
     pub fn says(&mut self, place: &'static str, statement: &'static str) -> &mut Finding {
         let (index, computed, verdict) = (self.0.len(), String::new(), Verdict::Differs);
-        self.0.push(Finding { place, statement, computed, verdict, remark: "" });
+        let (remark, relative_deviation) = (String::new(), None);
+        self.0.push(Finding { place, statement, computed, verdict, remark, relative_deviation });
         &mut self.0[index]
     }
 }
@@ -101,14 +115,55 @@ impl Finding {
     /// A number was computed, against the one that is printed with so many decimals.
     pub(super) fn number(&mut self, computed: f64, printed: (f64, usize, &str)) -> &mut Self {
         let (printed, decimals, unit) = printed;
+        let words = format!("{computed:.decimals$}{unit}");
+        self.computed(words).verdict_on_number(computed, printed, decimals)
+    }
+
+    /// The verdict on a number, against the one that is printed with so many decimals.
+    pub(super) fn verdict_on_number(
+        &mut self,
+        computed: f64,
+        printed: f64,
+        decimals: usize,
+    ) -> &mut Self {
         let verdict = Verdict::number(computed, printed, decimals as i32);
-        self.computed(format!("{computed:.decimals$}{unit}")).verdict(verdict)
+        self.deviation(verdict, computed / printed - 1.0).verdict(verdict)
+    }
+
+    /// The verdict on a number that is said to be at most another.
+    pub(super) fn verdict_on_limit(&mut self, computed: f64, limit: f64) -> &mut Self {
+        let verdict = Verdict::limit(computed, limit);
+        self.deviation(verdict, computed / limit - 1.0).verdict(verdict)
+    }
+
+    fn deviation(&mut self, verdict: Verdict, deviation: f64) -> &mut Self {
+        let off = if verdict == Verdict::Agrees { 0.0 } else { deviation };
+        self.relative_deviation = Some(off);
+        self
+    }
+
+    /// The verdict in words.
+    fn verdict_in_words(&self) -> String {
+        match (self.verdict, self.relative_deviation) {
+            (Verdict::Agrees, _) => Verdict::Agrees.words().to_owned(),
+            (Verdict::AgreesClosely, Some(off)) => {
+                format!("**agrees to {} %**", rounded_up(100.0 * off.abs()))
+            }
+            (verdict, _) => format!("**{}**", verdict.words()),
+        }
     }
 
     /// The finding with a word why.
-    pub(super) fn because(&mut self, remark: &'static str) {
-        self.remark = remark;
+    pub(super) fn because(&mut self, remark: impl Into<String>) {
+        self.remark = remark.into();
     }
+}
+
+/// A positive number to two digits, rounded up.
+fn rounded_up(number: f64) -> String {
+    let decimals = (1.0 - number.log10().floor()).clamp(0.0, 9.0);
+    let scale = 10f64.powf(decimals);
+    format!("{:.*}", decimals as usize, (number * scale).ceil() / scale)
 }
 
 /// Where waves are: this program computes rays alone.
@@ -120,41 +175,59 @@ const WAVES: &str = "\n## Waves\n\n\
 #[must_use]
 pub fn markdown(findings: &[Finding]) -> String {
     let count = |verdict| findings.iter().filter(|finding| finding.verdict == verdict).count();
-    let mut text = String::from(
+    let mut text = format!(
         "# Validation\n\n\
          What of Halimeh & Wegener, Opt. Express 21, 9457 (2013) comes out here. `cloakroom verify` computes this page\n\
          from the scenes of the paper, and a test holds each verdict and its numbers. No number is adjusted to agree.\n\n\
-         A number *agrees* if it does to the digits that are printed, or keeps the limit that is stated; it agrees *in order\n\
-         of magnitude* within a factor of 3. A judgement without a number (good, formidable) agrees if the comparison behind\n\
-         it comes out: nearer to what should be seen than bare metal is, or than the design that it is held against; a\n\
-         reflection is significant from 1 % of the light on, and absent below.\n\
-         Which comparison stands for a judgement, and over which part of the picture, is our choice; the numbers let\n\
-         everyone choose another.\n\n\
-         Pictures are of 160 x 120 pixels with one ray each, `min_power` 1e-4. A correlation is the zero-mean normalized one\n\
-         of linear light at zero shift, the mean of red, green and blue, over the silhouette of the device unless it says\n\
-         otherwise; RMS displacements are at the photograph, from rays. H and V are horizontal and vertical polarization.\n\n",
+         A number *agrees* if it does to the digits that are printed, or keeps the limit that is stated, of which the largest\n\
+         number found is held against it and no mean; it agrees *to x %* if it is off by no more than {}, and *in\n\
+         order of magnitude* within a factor of 3.\n\n\
+         A judgement without a number is judged by rays, for pictures flatter or blame with the photograph, by one rule for all\n\
+         designs. Light is *in place* if it goes within {IN_PLACE_WITHIN_DEG} degree of the direction that it should have and lands within\n\
+         {CLOAKED_WITHIN_CM} cm of where it should: where the same ray lands in the empty view or, where the paper speaks of a flat mirror, in\n\
+         the view of this mirror. Perfect means all of the power to rounding; very good, formidable, great, amazing or remarkable {}\n\
+         of it, good {}, both more than with the bare metal; no cloaking, no more than with the\n\
+         bare metal. A comparison agrees if it comes out so. The mean is over one region for all designs and rotations, the part of\n\
+         the view that all of them cover along the axis: the silhouette of the square cloak there. FLIP, 0 for equal pictures,\n\
+         stands beside it. A reflection is seen, or significant, from {} of the light on. Which rule stands for\n\
+         which word is our choice; the numbers let everyone choose another.\n\n\
+         The paper gives neither the camera's distance nor its field of view. Ours, 100 cm and a half view of {HALF_VIEW} degrees, are an\n\
+         assumption. Where a row hangs on it, the number for a half view of {WIDE_HALF_VIEW} degrees stands in brackets beside it; the\n\
+         verdict is that of {HALF_VIEW} degrees.\n\n\
+         Pictures are of 160 x 120 pixels with one ray each, `min_power` 1e-4. H and V are horizontal and vertical polarization.\n\n",
+        percent(CLOSE, 0),
+        percent(VERY_GOOD, 0),
+        percent(GOOD, 0),
+        percent(SEEN, 0),
     );
     // Writing into a text does not fail.
     let _ = writeln!(
         text,
-        "{} statements: {} agree, {} agree in order of magnitude, {} differ.\n",
+        "{} statements: {} agree, {} agree to {}, {} agree in order of magnitude, {} differ.\n",
         findings.len(),
         count(Verdict::Agrees),
+        count(Verdict::AgreesClosely),
+        percent(CLOSE, 0),
         count(Verdict::AgreesInOrderOfMagnitude),
         count(Verdict::Differs)
     );
     text.push_str("| place | the paper says | computed here | verdict | why |\n");
     text.push_str("| --- | --- | --- | --- | --- |\n");
-    for Finding { place, statement, computed, verdict, remark } in findings {
-        let verdict = match verdict {
-            Verdict::Agrees => verdict.words().to_owned(),
-            _ => format!("**{}**", verdict.words()),
-        };
+    for finding in findings {
+        let Finding { place, statement, computed, remark, .. } = finding;
+        let verdict = finding.verdict_in_words();
         let _ = writeln!(text, "| {place} | {statement} | {computed} | {verdict} | {remark} |");
     }
     text.push_str(WAVES);
     text
 }
+
+/// The share of the power that is in place where a design is called good, and very good.
+pub(super) const GOOD: f64 = 0.5;
+pub(super) const VERY_GOOD: f64 = 0.9;
+
+/// The share of the light that a reflection must have to be seen, or to be significant.
+pub(super) const SEEN: f64 = 0.01;
 
 /// What double precision leaves of equal numbers near 1, and what single precision leaves of equal light.
 pub(super) const DOUBLE: f64 = 2e-13;
@@ -165,14 +238,9 @@ pub(super) fn percent(share: f64, decimals: usize) -> String {
     format!("{:.decimals$} %", 100.0 * share)
 }
 
-/// Numbers for the paper's rotations, one after the other.
-pub(super) fn list(values: [f64; 3]) -> String {
-    values.map(|value| format!("{value:.2}")).join(", ")
-}
-
-/// Whether each number is above that of another list.
-pub(super) fn above(a: [f64; 3], b: [f64; 3]) -> bool {
-    a.iter().zip(b).all(|(a, b)| *a > b)
+/// Numbers in words, one after the other.
+pub(super) fn list<T>(values: &[T], word: impl Fn(&T) -> String) -> String {
+    values.iter().map(word).collect::<Vec<_>>().join(", ")
 }
 
 /// The power of ten that a number, of which what is below `least` is rounding, stays below: that is worth no more
@@ -193,9 +261,11 @@ mod tests {
     #[test]
     fn verdicts_follow_from_numbers() {
         assert_eq!(Verdict::number(11.5126, 11.51, 2), Verdict::Agrees);
-        assert_eq!(Verdict::number(11.516, 11.51, 2), Verdict::AgreesInOrderOfMagnitude);
+        assert_eq!(Verdict::number(11.516, 11.51, 2), Verdict::AgreesClosely);
+        assert_eq!(Verdict::number(12.8, 11.51, 2), Verdict::AgreesInOrderOfMagnitude);
         assert_eq!(Verdict::number(40.0, 11.51, 2), Verdict::Differs);
         assert_eq!(Verdict::limit(0.02, 0.03), Verdict::Agrees);
+        assert_eq!(Verdict::limit(0.032, 0.03), Verdict::AgreesClosely);
         assert_eq!(Verdict::limit(0.05, 0.03), Verdict::AgreesInOrderOfMagnitude);
         assert_eq!(Verdict::limit(0.5, 0.03), Verdict::Differs);
         // Not a number is no agreement.
@@ -207,9 +277,17 @@ mod tests {
         let mut page = Page::default();
         page.says("here", "it is 3").computed("3".to_owned()).verdict(true);
         page.says("there", "it is 3").computed("9".to_owned()).verdict(false).because("It is 9.");
+        page.says("there", "it is 114.83").number(114.7802, (114.83, 2, " cm²"));
+        page.says("there", "it is less than 3 %").verdict_on_limit(0.0319, 0.03);
+        assert_eq!(page.0[2].relative_deviation, Some(114.7802 / 114.83 - 1.0));
         let page = markdown(&page.0);
-        assert!(page.contains("2 statements: 1 agree, 0 agree in order of magnitude, 1 differ."));
-        assert!(page.contains("| there | it is 3 | 9 | **differs** | It is 9. |\n\n## Waves\n"));
+        let sum =
+            "4 statements: 1 agree, 2 agree to 10 %, 0 agree in order of magnitude, 1 differ.";
+        assert!(page.contains(sum));
+        assert!(page.contains("| 114.78 cm² | **agrees to 0.044 %** |"));
+        assert!(page.contains("| **agrees to 6.4 %** |"));
+        assert!(page.contains("| there | it is 3 | 9 | **differs** | It is 9. |\n"));
+        assert!(page.contains(" |\n\n## Waves\n"));
         assert_eq!(below(3e-5, 1e-12, "cm"), "below 1e-4 cm");
         assert_eq!(below(0.0, 2e-13, ""), "below 1e-12");
         assert_eq!(below(4.0, 20.0, "ys"), "below 100 ys");
