@@ -25,7 +25,6 @@ __all__ = [
     "srgb",
     "sweep",
     "threads",
-    "toml_literal",
     "trace",
     "verify",
 ]
@@ -52,7 +51,7 @@ class Scene:
         name: str,
         folder: str,
         is_file: bool,
-        overrides: Sequence[str],
+        overrides: Sequence[tuple[str, object]],
         images: _Images,
     ) -> Scene: ...
     @staticmethod
@@ -65,7 +64,7 @@ class Scene:
     def load(path: str) -> Scene: ...
     def replaced(
         self,
-        overrides: Sequence[str],
+        overrides: Sequence[tuple[str, object]],
         images: _Images,
     ) -> Scene: ...
     @property
@@ -82,7 +81,6 @@ class Scene:
 
 def schema() -> str: ...
 def fit(table: str, entries: dict[str, Any]) -> dict[str, Any]: ...
-def toml_literal(name: str, value: object) -> str: ...
 def render(
     scene: Scene, image_only: bool, tile: Sequence[int] | None, progress: _Tell
 ) -> tuple[dict[str, NDArray[Any]], list[tuple[str, str]], tuple[int, int]]: ...
@@ -105,6 +103,7 @@ def trace(
     fields: NDArray[np.complex128] | None,
     min_power: float | None,
     coherent: bool,
+    group_delay: bool,
     progress: _Tell,
 ) -> dict[str, NDArray[Any]]: ...
 def interface(
@@ -122,7 +121,7 @@ def quality(
 ) -> str: ...
 def sweep(
     scene: Scene,
-    sweeps: Sequence[tuple[str, Sequence[str]]],
+    sweeps: Sequence[tuple[str, Sequence[object]]],
     path: str | None,
     progress: _Tell,
 ) -> str: ...

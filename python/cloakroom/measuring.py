@@ -127,10 +127,9 @@ def sweep(
     if not isinstance(keys, Mapping):
         raise TypeError(f"keys is a {type(keys).__name__}; expected a mapping of keys to lists of values")
     values = {key: _values(key, given) for key, given in keys.items()}
-    written = [(key, [_cloakroom.toml_literal(key, value) for value in given]) for key, given in values.items()]
     file = None if path is None else os.fspath(path)
     with told(progress, "measuring") as tell:
-        table = json.loads(_cloakroom.sweep(scene._native, written, file, tell))
+        table = json.loads(_cloakroom.sweep(scene._native, list(values.items()), file, tell))
     shape = tuple(len(given) for given in values.values())
     grids = np.meshgrid(*(np.asarray(given) for given in values.values()), indexing="ij") if values else []
     columns: dict[str, NDArray[Any]] = dict(zip(values, grids))

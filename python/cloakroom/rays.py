@@ -41,6 +41,9 @@ class Traced:
     absorbed: NDArray[np.float64]
     #: The share of power in branches too weak to follow, for each ray; (N,).
     pruned: NDArray[np.float64]
+    #: The speed of light times what a pulse takes from the ray's origin to ``position``, cm; (M,), 0 where it met no
+    #: device, NaN behind media that absorb. ``None`` if it was not asked for.
+    group_path: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         """How many rays there were."""
@@ -72,6 +75,7 @@ def trace(
     *,
     min_power: float | None = None,
     coherent: bool = False,
+    group_delay: bool = False,
     progress: Progress = False,
 ) -> Traced:
     """Traces rays through the devices of a scene, on all cores. The photograph and the camera play no part.
@@ -93,6 +97,8 @@ def trace(
     coherent : bool, default False
         Leaves of one direction are added as fields, as light of the scene's wavelength and bandwidth does in the far
         field: one leaf each, at the place of the strongest. Thin films and plates need it.
+    group_delay : bool, default False
+        Leaves get `group_path`, too: the speed of light times what a pulse takes.
     progress : bool or callable, default False
         ``True`` for a line on standard error, or a function that is called with the rays done and all rays.
 
@@ -149,6 +155,7 @@ def trace(
             spread.get("polarization"),
             min_power,
             bool(coherent),
+            bool(group_delay),
             tell,
         )
     return Traced(**arrays)

@@ -80,7 +80,7 @@ class Scene:
         if listed:
             given["device"] = listed
         self._images = (tables["photograph"]._image, tables["surroundings"]._image)
-        self._overrides: list[str] = []
+        self._overrides: list[tuple[str, Any]] = []
         self._native = _cloakroom.Scene.of_tables(given, os.getcwd(), self._images)
 
     @staticmethod
@@ -138,7 +138,7 @@ class Scene:
                 raise TypeError(f"keys has the key {key!r}; expected texts such as 'camera.samples'")
             if key.rpartition(".")[2] == "image" and value is not None:
                 value = self._placed_image(key, value, images)
-            added.append(f"{key}={_cloakroom.toml_literal(key, value)}")
+            added.append((key, value))
         scene = object.__new__(Scene)
         scene._images = (images[0], images[1])
         scene._overrides = [*self._overrides, *added]
@@ -248,7 +248,7 @@ def _rebuild(
     name: str,
     folder: str,
     is_file: bool,
-    overrides: list[str],
+    overrides: list[tuple[str, Any]],
     photograph: NDArray[Any] | None,
     surroundings: NDArray[Any] | None,
 ) -> Scene:

@@ -136,7 +136,8 @@ def _key_doc(name: str, description: Mapping[str, Any]) -> str:
     default = f", default {description['default']!r}" if "default" in description else ", optional"
     lines = [f"{name} : {_type_words(description)}{default}"]
     lines += textwrap.wrap(description["description"], 110, initial_indent="    ", subsequent_indent="    ")
-    inner = description.get("properties") or description.get("items", {}).get("properties")
+    forms = [description, description.get("items", {}), *description.get("anyOf", [])]
+    inner = next((form["properties"] for form in forms if "properties" in form), None)
     if inner:
         keys = [f"``{key}`` ({_type_words(of)}): {of['description']}" for key, of in inner.items()]
         for key in ["Its keys:", *keys]:

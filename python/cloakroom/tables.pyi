@@ -35,6 +35,7 @@ class SquareCloak(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         kappa: float | None = ...,
         length: float | None = ...,
@@ -49,6 +50,8 @@ class SquareCloak(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -74,6 +77,7 @@ class DoubleGaussianCloak(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         fresnel: bool | None = ...,
         h: float | None = ...,
         height: float | None = ...,
@@ -90,6 +94,8 @@ class DoubleGaussianCloak(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def fresnel(self) -> bool: ...
     @property
@@ -119,6 +125,7 @@ class CylinderCloak(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
@@ -132,6 +139,8 @@ class CylinderCloak(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -155,6 +164,7 @@ class SphereCloak(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
@@ -167,6 +177,8 @@ class SphereCloak(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -188,6 +200,7 @@ class InvisibleSphere(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         material: Literal["graded", "regularized"] | None = ...,
@@ -200,6 +213,8 @@ class InvisibleSphere(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -222,6 +237,7 @@ class BendingSphere(Device):
         angle: float | None = ...,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
@@ -235,6 +251,8 @@ class BendingSphere(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -254,6 +272,7 @@ class EatonLens(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
@@ -265,6 +284,8 @@ class EatonLens(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -284,6 +305,7 @@ class LuneburgLens(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
@@ -295,6 +317,8 @@ class LuneburgLens(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -314,6 +338,7 @@ class FisheyeLens(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
@@ -325,6 +350,8 @@ class FisheyeLens(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -346,6 +373,7 @@ class FisheyeHemisphere(Device):
         core: Literal["metal", "open"] | None = ...,
         cut_distance: float | None = ...,
         cut_normal: ArrayLike | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         index: float | None = ...,
         length: float | None = ...,
@@ -362,6 +390,8 @@ class FisheyeHemisphere(Device):
     def cut_distance(self) -> float: ...
     @property
     def cut_normal(self) -> list[Any]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -383,6 +413,7 @@ class MirrorDetour(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         half_length: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
@@ -395,6 +426,8 @@ class MirrorDetour(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def half_length(self) -> float: ...
     @property
@@ -416,6 +449,7 @@ class Prisms(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
@@ -427,6 +461,8 @@ class Prisms(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -446,6 +482,7 @@ class Graded(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         index: _Index | None = ...,
@@ -462,6 +499,8 @@ class Graded(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def height(self) -> float: ...
     @property
@@ -489,6 +528,7 @@ class GradedBox(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         gradient: ArrayLike | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         index: float | None = ...,
@@ -502,6 +542,8 @@ class GradedBox(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def gradient(self) -> list[Any]: ...
     @property
@@ -525,6 +567,7 @@ class Body(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         group_index: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
@@ -544,6 +587,8 @@ class Body(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def group_index(self) -> float | None: ...
     @property
@@ -580,6 +625,7 @@ class Polarizer(Device):
         angle: float | None = ...,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         position: ArrayLike | None = ...,
@@ -593,6 +639,8 @@ class Polarizer(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -612,6 +660,7 @@ class GaussianCarpet(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
@@ -627,6 +676,8 @@ class GaussianCarpet(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def floor(self) -> float: ...
     @property
@@ -654,6 +705,7 @@ class GratingCarpet(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
@@ -669,6 +721,8 @@ class GratingCarpet(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def floor(self) -> float: ...
     @property
@@ -696,6 +750,7 @@ class QuasiConformalCarpet(Device):
         *,
         axis: ArrayLike | None = ...,
         core: Literal["metal", "open"] | None = ...,
+        dispersion: Literal["causal", "none"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
@@ -711,6 +766,8 @@ class QuasiConformalCarpet(Device):
     def axis(self) -> list[Any]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none"]: ...
     @property
     def floor(self) -> float: ...
     @property
@@ -811,16 +868,16 @@ class PictureSettings(Table):
     def __init__(
         self,
         *,
-        channels: Sequence[Literal["stokes", "extraordinary_share", "first_face_reflectance"]] | None = ...,
+        channels: Sequence[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay"]] | None = ...,
         color_bar: bool | None = ...,
-        map: Literal["none", "time_of_flight", "time_of_flight_spread", "time_of_flight_difference", "delivered", "escaped", "absorbed", "pruned", "extraordinary_share", "first_face_reflectance"] | None = ...,
+        map: Literal["none", "time_of_flight", "time_of_flight_spread", "time_of_flight_difference", "group_delay", "group_delay_spread", "group_delay_difference", "delivered", "escaped", "absorbed", "pruned", "extraordinary_share", "first_face_reflectance"] | None = ...,
     ) -> None: ...
     @property
-    def channels(self) -> list[Literal["stokes", "extraordinary_share", "first_face_reflectance"]]: ...
+    def channels(self) -> list[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay"]]: ...
     @property
     def color_bar(self) -> bool: ...
     @property
-    def map(self) -> Literal["none", "time_of_flight", "time_of_flight_spread", "time_of_flight_difference", "delivered", "escaped", "absorbed", "pruned", "extraordinary_share", "first_face_reflectance"]: ...
+    def map(self) -> Literal["none", "time_of_flight", "time_of_flight_spread", "time_of_flight_difference", "group_delay", "group_delay_spread", "group_delay_difference", "delivered", "escaped", "absorbed", "pruned", "extraordinary_share", "first_face_reflectance"]: ...
 
 class Receiver(Table):
     def __init__(

@@ -34,7 +34,7 @@ mod _cloakroom {
     #[pymodule_export]
     use super::supervision::{fail_on_purpose, set_threads, threads};
     #[pymodule_export]
-    use super::tables::{fit, schema, toml_literal};
+    use super::tables::{fit, schema};
 
     use pyo3::prelude::*;
 

@@ -5,6 +5,7 @@ use crate::images::Image;
 use crate::pictures::picture_of;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
+use crate::values::value_of;
 use cloakroom::flux::{self as light, Direction, FluxError, Sampling};
 use cloakroom::measure::{self, PixelMask, Sweep, SweepPlan, View};
 use cloakroom::output;
@@ -58,20 +59,23 @@ pub fn quality(
     Ok(serde_json::to_string(&supervised(py, None, |_, _| Ok(compare()?))?)?)
 }
 
-/// Measures a scene for every combination of the values of keys, as overrides write them; `path` may name a table or a
+/// Measures a scene for every combination of the values of keys, by their keys; `path` may name a table or a
 /// plot to write. Gives JSON.
 #[pyfunction]
 pub fn sweep(
     py: Python<'_>,
     scene: &Scene,
-    sweeps: Vec<(String, Vec<String>)>,
+    sweeps: Vec<(String, Vec<Bound<'_, PyAny>>)>,
     path: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
 ) -> Result<String, Failure> {
     let format = path.as_deref().map(TableFormat::of).transpose()?;
     path.as_deref().map_or(Ok(()), output::check_writable)?;
-    let sweeps: Vec<Sweep> =
-        sweeps.into_iter().map(|(key, values)| Sweep { key, values }).collect();
+    let sweep = |(key, values): (String, Vec<Bound<'_, PyAny>>)| {
+        let values = values.iter().map(|value| value_of(&key, value)).collect::<PyResult<_>>()?;
+        Ok(Sweep::through(key, values))
+    };
+    let sweeps = sweeps.into_iter().map(sweep).collect::<PyResult<Vec<Sweep>>>()?;
     let table = supervised(py, progress.as_ref(), |watch, supervision| {
         let plan = SweepPlan::new(sweeps, Vec::new(), |further| scene.reload(further))?;
         watch.begin(plan.steps());

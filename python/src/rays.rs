@@ -24,13 +24,14 @@ pub fn trace<'py>(
     fields: Option<PyReadonlyArray2<'py, Complex64>>,
     min_power: Option<f64>,
     coherent: bool,
+    group_delay: bool,
     progress: Option<Py<PyAny>>,
 ) -> Result<Bound<'py, PyDict>, Failure> {
     let (origins, directions) = (origins.as_array(), directions.as_array());
     let fields = fields.as_ref().map(PyReadonlyArray2::as_array);
     let vertical = polarization == "vertical";
     let count = origins.len_of(Axis(0));
-    let settings = ray_settings(scene.scene(), min_power, coherent);
+    let settings = ray_settings(scene.scene(), min_power, coherent, group_delay);
     let ray = |index: usize| {
         let row = |array: &ArrayView2<'_, f64>| std::array::from_fn(|axis| array[[index, axis]]);
         let polarization = match &fields {
@@ -55,6 +56,9 @@ pub fn trace<'py>(
     arrays.set_item("direction", triples(table.direction)?.into_pyarray(py))?;
     arrays.set_item("power", table.power.into_pyarray(py))?;
     arrays.set_item("optical_path", table.optical_path.into_pyarray(py))?;
+    if group_delay {
+        arrays.set_item("group_path", table.group_path.into_pyarray(py))?;
+    }
     arrays.set_item("electric_field", triples(table.electric_field)?.into_pyarray(py))?;
     arrays.set_item("absorbed", table.absorbed.into_pyarray(py))?;
     arrays.set_item("pruned", table.pruned.into_pyarray(py))?;

@@ -9,18 +9,18 @@ use cloakroom::keys::Value;
 use cloakroom::photograph::ImageSource;
 use cloakroom::render::{PreparedScene, PreparedSceneError, assembly};
 use cloakroom::scene;
-use cloakroom::scene_file::{self, Loaded, SceneFileError};
+use cloakroom::scene_file::{self, Loaded, Override, SceneFileError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-/// A scene that has been read, with overrides such as `camera.samples=16` and images that are arrays.
+/// A scene that has been read, with keys that are set and images that are arrays.
 #[pyclass(frozen, module = "cloakroom._cloakroom")]
 #[derive(Debug)]
 pub struct Scene {
     written: Arc<Written>,
-    overrides: Vec<String>,
+    overrides: Vec<Override>,
     /// The arrays that are the photograph and the surroundings.
     arrays: Arrays,
     loaded: Loaded,
@@ -48,7 +48,7 @@ enum Content {
 }
 
 impl Written {
-    fn read(&self, overrides: &[String], arrays: &Arrays) -> Result<Loaded, SceneFileError> {
+    fn read(&self, overrides: &[Override], arrays: &Arrays) -> Result<Loaded, SceneFileError> {
         let Self { name, folder, .. } = self;
         let mut loaded = match &self.content {
             Content::Text(text) => scene_file::parse(text, name, folder, overrides)?,
@@ -80,6 +80,15 @@ fn hang(arrays: &Arrays, folder: &Path, scene: &mut scene::Scene) {
     }
 }
 
+/// Keys and their values, to be set in a scene.
+fn settings(overrides: Vec<(String, Bound<'_, PyAny>)>) -> PyResult<Vec<Override>> {
+    let setting = |(key, value): (String, Bound<'_, PyAny>)| {
+        let value = value_of(&key, &value)?;
+        Ok(Override::Value { key, value })
+    };
+    overrides.into_iter().map(setting).collect()
+}
+
 #[pymethods]
 impl Scene {
     /// The scene of a text.
@@ -89,11 +98,11 @@ impl Scene {
         name: String,
         folder: PathBuf,
         is_file: bool,
-        overrides: Vec<String>,
+        overrides: Vec<(String, Bound<'_, PyAny>)>,
         images: Images<'_>,
     ) -> Result<Self, Failure> {
         let written = Written { content: Content::Text(text), name, folder, is_file };
-        Self::read(Arc::new(written), overrides, images)
+        Self::read(Arc::new(written), settings(overrides)?, images)
     }
 
     /// The scene of tables by their names, devices in the list `device`.
@@ -124,8 +133,12 @@ impl Scene {
     }
 
     /// The same scene with other overrides and images.
-    fn replaced(&self, overrides: Vec<String>, images: Images<'_>) -> Result<Self, Failure> {
-        Self::read(Arc::clone(&self.written), overrides, images)
+    fn replaced(
+        &self,
+        overrides: Vec<(String, Bound<'_, PyAny>)>,
+        images: Images<'_>,
+    ) -> Result<Self, Failure> {
+        Self::read(Arc::clone(&self.written), settings(overrides)?, images)
     }
 
     /// What it is made from again: the text of its file without overrides, what messages call it, the folder that its
@@ -173,7 +186,7 @@ impl Scene {
 impl Scene {
     fn read(
         written: Arc<Written>,
-        overrides: Vec<String>,
+        overrides: Vec<Override>,
         images: Images<'_>,
     ) -> Result<Self, Failure> {
         let arrays = images.map(|image| image.map(|image| image.source.clone()));
@@ -197,7 +210,7 @@ impl Scene {
     }
 
     /// The same scene read again, with further overrides.
-    pub fn reload(&self, further: &[String]) -> Result<Loaded, SceneFileError> {
+    pub fn reload(&self, further: &[Override]) -> Result<Loaded, SceneFileError> {
         self.written.read(&[&self.overrides, further].concat(), &self.arrays)
     }
 

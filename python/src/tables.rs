@@ -56,9 +56,3 @@ fn lists(table: &str) -> Result<(Vec<&'static [Key]>, String), Failure> {
         }
     }
 }
-
-/// A value as an override writes it.
-#[pyfunction]
-pub fn toml_literal(name: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
-    Ok(scene_file::text(&value_of(name, value)?))
-}

@@ -18,17 +18,22 @@ Run = Callable[..., subprocess.CompletedProcess[str]]
 
 
 @pytest.fixture(scope="session")
-def command() -> Run:
-    """Runs the command line program, which the tests hold the package against."""
+def executable() -> Path:
+    """The command line program, which the tests hold the package against."""
     named = os.environ.get("CLOAKROOM_COMMAND")
     built = [REPOSITORY / "target" / profile / "cloakroom" for profile in ("debug", "release")]
     found = [Path(named).resolve()] if named else [path for path in built if path.exists()]
     if not found:
         pytest.skip("the command cloakroom is not built; CLOAKROOM_COMMAND may name it")
-    newest = max(found, key=lambda path: path.stat().st_mtime)
+    return max(found, key=lambda path: path.stat().st_mtime)
+
+
+@pytest.fixture(scope="session")
+def command(executable: Path) -> Run:
+    """Runs the command line program."""
 
     def run(*arguments: object, check: bool = True) -> subprocess.CompletedProcess[str]:
-        words = [str(newest), *map(str, arguments)]
+        words = [str(executable), *map(str, arguments)]
         return subprocess.run(words, capture_output=True, text=True, check=check, cwd=REPOSITORY)
 
     return run

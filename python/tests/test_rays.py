@@ -250,3 +250,15 @@ def test_crossed_polarizers_are_dark() -> None:
     traced = trace(crossed, [-50, 1, 2], [1, 0, 0])
     assert len(traced.ray) == 0
     np.testing.assert_allclose(traced.absorbed, 1)
+
+
+def test_a_pulse_is_no_faster_than_causality_allows() -> None:
+    slab = cloakroom.Body(shape="slab", thickness=2, permittivity=0.25)
+    traced = trace(Scene(devices=slab), [-1, 0, 0], [1, 0, 0], group_delay=True)
+    assert traced.group_path is not None
+    # One way through: n is 0.5, the group index 2.
+    np.testing.assert_allclose([traced.optical_path[0], traced.group_path[0]], [1, 4], atol=1e-12)
+    assert trace(Scene(devices=slab), [-1, 0, 0], [1, 0, 0]).group_path is None
+    slab = cloakroom.Body(shape="slab", thickness=2, permittivity=0.25, dispersion="none")
+    traced = trace(Scene(devices=slab), [-1, 0, 0], [1, 0, 0], group_delay=True)
+    np.testing.assert_allclose(traced.group_path, traced.optical_path)

@@ -61,6 +61,21 @@ def test_numpy_and_complex_numbers_are_numbers() -> None:
     assert prisms.prism == [{"corners": [[0, 0], [1, 0], [0, 1]], "metal": True}]
 
 
+def test_coatings_and_metals_are_tables_within_a_device() -> None:
+    silver = {"index": 0.06 + 3.6j, "thickness_nm": 25}
+    body = cloakroom.Body(shape="slab", permittivity=2.25, coating=[silver])
+    assert body.coating == [{"index": [0.06, 3.6], "thickness_nm": 25}]
+    carpet = cloakroom.GaussianCarpet(metal={"index": 0.27 + 2.9j})
+    assert carpet.metal == {"index": [0.27, 2.9]} and cloakroom.SquareCloak().metal is None
+    assert "``thickness_nm``" in str(cloakroom.Body.__doc__) and "``index``" in str(cloakroom.GaussianCarpet.__doc__)
+    # What a film of 25 nm on either side of the slab and the metal keep is absorbed.
+    for device in (body, carpet.replace(rotation=90)):
+        traced = cloakroom.trace(cloakroom.Scene(devices=device), [-50, 1, 0], [1, 0, 0])
+        assert traced.absorbed[0] > 0.01
+    with pytest.raises(ValueError, match="thickness_nm is -1 nm"):
+        cloakroom.Body(coating=[{"index": 1.4, "thickness_nm": -1}])
+
+
 @pytest.mark.parametrize(
     ("kind", "keys", "error", "message"),
     [

@@ -7,6 +7,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use cloakroom::render::Tile;
 use cloakroom::scene::OPTIONAL_CHANNELS;
+use cloakroom::scene_file::Override;
 pub use measuring::*;
 use std::path::PathBuf;
 use values::{frames_only, map_range, pixel, size};
@@ -90,7 +91,7 @@ pub struct SceneArguments {
     pub scene: PathBuf,
     /// Override a key of the scene, as in camera.samples=16 or device.0.rotation=5.
     #[arg(long = "set", value_name = "KEY=VALUE")]
-    pub overrides: Vec<String>,
+    pub overrides: Vec<Override>,
 }
 
 /// How many threads work.
@@ -182,6 +183,9 @@ pub struct TraceArguments {
     /// Add leaves of one direction as fields, as light of the scene's wavelength and bandwidth does in the far field.
     #[arg(long)]
     pub coherent: bool,
+    /// Give `group_path` for each leaf, too: the speed of light times what a pulse takes, cm.
+    #[arg(long)]
+    pub group_delay: bool,
     /// Prune branches below this share of the launched power [default: the scene's, else 1e-9, with --coherent 1e-20].
     #[arg(long, value_name = "P")]
     pub min_power: Option<f64>,
@@ -256,7 +260,7 @@ pub struct ViewArguments {
     pub scene: Option<PathBuf>,
     /// Override a key of the scene, as in device.0.rotation=5.
     #[arg(long = "set", value_name = "KEY=VALUE")]
-    pub overrides: Vec<String>,
+    pub overrides: Vec<Override>,
     /// The port on this machine; the next free one if it is taken, any free one if 0.
     #[arg(long, value_name = "N", default_value_t = 8420)]
     pub port: u16,

@@ -4,10 +4,16 @@ use crate::arguments::SceneArguments;
 use crate::devices::fact_lines;
 use crate::report::{self, Result};
 use crate::scene;
+use cloakroom::assembly::Placed;
 use cloakroom::render::{Images, PreparedScene, estimated_seconds};
 use cloakroom::scene::Scene;
 use cloakroom::threads;
 use std::fmt::Write;
+
+/// Bodies of fewer wavelengths than this are films.
+const THIN: f64 = 10.0;
+
+const CM_PER_NM: f64 = 1e-7;
 
 /// Validates a scene and prints facts about it.
 pub fn run(arguments: &SceneArguments) -> Result<()> {
@@ -38,6 +44,17 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
         writeln!(text, "device {index}     {}, shown as {show}, {}", device.kind(), device.turn())?;
         for line in fact_lines(device.facts()) {
             writeln!(text, "             {line}")?;
+        }
+    }
+    for (index, thickness) in prepared.assembly.devices().iter().map(Placed::thickness).enumerate()
+    {
+        let waves = thickness.map(|thickness| thickness / (scene.light.wavelength_nm * CM_PER_NM));
+        if let Some(waves) = waves.filter(|waves| *waves < THIN) {
+            writeln!(
+                text,
+                "warning      device {index} is {waves:.2} wavelengths thick, under {THIN}: rays in it know no waves that \
+                 decay; make it a `coating` of the surface that it lies on"
+            )?;
         }
     }
     let seconds = estimated_seconds(prepared);

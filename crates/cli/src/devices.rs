@@ -3,7 +3,7 @@
 use crate::report::{self, Result};
 use cloakroom::device::{CATALOGUE, Entry, Fact, FactValue};
 use cloakroom::json::json as value_json;
-use cloakroom::keys::{Key, KeyKind};
+use cloakroom::keys::Key;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -39,7 +39,7 @@ fn as_json(entry: &Entry) -> Value {
 fn keys_as_json(keys: &[Key]) -> Value {
     let key = |key: &Key| {
         let mut object = json!({ "name": key.name, "doc": key.doc, "allowed": key.describe(), "default": (key.default)().map(value_json) });
-        if let KeyKind::Table { keys } | KeyKind::Tables { keys } = key.kind {
+        if let Some(keys) = key.kind.inner_keys() {
             object["keys"] = keys_as_json(keys);
         }
         object
@@ -52,7 +52,7 @@ pub fn all_keys(keys: &'static [Key]) -> Vec<(String, &'static Key)> {
     let mut all = Vec::new();
     for key in keys {
         all.push((key.name.to_owned(), key));
-        if let KeyKind::Table { keys } | KeyKind::Tables { keys } = key.kind {
+        if let Some(keys) = key.kind.inner_keys() {
             let within = all_keys(keys).into_iter();
             all.extend(within.map(|(name, inner)| (format!("{}.{name}", key.name), inner)));
         }

@@ -3,23 +3,23 @@
 use crate::arguments::PanelArguments;
 use crate::report::{Result, wrote};
 use cloakroom::output::{self, RgbImage};
-use cloakroom::scene_file::{self, Loaded};
+use cloakroom::scene_file::{self, Loaded, Override};
 use cloakroom_figures::{Drawing, DrawingFormat};
 use std::path::Path;
 
 /// Reads the scene of a panel, with what the command line changes in it, and with more overrides.
 pub fn load(scene: &str, name: &str, arguments: &PanelArguments, more: &[&str]) -> Result<Loaded> {
     let [width, height] = arguments.size;
-    let mut overrides = vec![
-        format!("camera.resolution=[{width}, {height}]"),
-        format!("camera.samples={}", arguments.samples),
+    let mut overrides: Vec<Override> = vec![
+        format!("camera.resolution=[{width}, {height}]").into(),
+        format!("camera.samples={}", arguments.samples).into(),
         // Panels carry no lettering.
-        "picture.color_bar=false".to_owned(),
+        "picture.color_bar=false".into(),
     ];
     if let Some(photo) = &arguments.photo {
-        overrides.push(format!("photograph.image={}", photo.display()));
+        overrides.push(format!("photograph.image={}", photo.display()).into());
     }
-    overrides.extend(more.iter().map(|more| (*more).to_owned()));
+    overrides.extend(more.iter().map(|more| Override::from(*more)));
     Ok(scene_file::parse(scene, &format!("{name}.toml"), Path::new(""), &overrides)?)
 }
 

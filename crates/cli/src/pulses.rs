@@ -25,8 +25,8 @@ fn described(list: &PulseList) -> Result<String, std::fmt::Error> {
     writeln!(text, "pixel {column},{row}")?;
     writeln!(
         text,
-        "{:>18} {:>14} {:>10}  from (y, z) in cm",
-        "time of flight ns", "delay ns", "power"
+        "{:>18} {:>14} {:>14} {:>10}  from (y, z) in cm",
+        "time of flight ns", "delay ns", "group delay ns", "power"
     )?;
     for pulse in &list.pulses {
         let landings: Vec<String> = (pulse.landings.iter())
@@ -36,9 +36,10 @@ fn described(list: &PulseList) -> Result<String, std::fmt::Error> {
             .collect();
         writeln!(
             text,
-            "{:>18.9} {:>14} {:>10.6}  {}",
+            "{:>18.9} {:>14} {:>14} {:>10.6}  {}",
             pulse.time_of_flight_ns,
             time(pulse.delay_ns),
+            time(pulse.group_delay_ns),
             pulse.power,
             landings.join(" ")
         )?;

@@ -9,6 +9,7 @@ use crate::scene;
 use cloakroom::output::{self, Format, Picture};
 use cloakroom::render::{self, ChannelSet, Images, PreparedScene, Rendered, Tile};
 use cloakroom::scene::Scene;
+use cloakroom::scene_file::Override;
 use cloakroom::trace::TraceStats;
 use cloakroom_figures::{IllustrationError, PictureFormat, shown, write_picture};
 use std::io;
@@ -19,7 +20,10 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
     let formats = formats(&arguments.outputs, PictureFormat::of)?;
     scene::use_threads(&arguments.threads)?;
     let data = formats.iter().any(|(_, format)| !format.is_shown());
-    let loaded = scene::load(&arguments.scene, channels(&arguments.channels, data)?.as_slice())?;
+    let loaded = scene::load(
+        &arguments.scene,
+        channels(&arguments.channels, data)?.map(Override::from).as_slice(),
+    )?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;
     let shown = &loaded.scene.picture;
     let wanted = if data { ChannelSet::Everything } else { ChannelSet::for_image(shown) };

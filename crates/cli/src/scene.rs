@@ -4,10 +4,10 @@ use crate::arguments::{SceneArguments, ThreadsArguments};
 use crate::report::{Failure, Result};
 use cloakroom::assembly::Assembly;
 use cloakroom::render::{self, Images, PreparedScene, PreparedSceneError};
-use cloakroom::scene_file::{self, Loaded, SceneFileError};
+use cloakroom::scene_file::{self, Loaded, Override, SceneFileError};
 
 /// Reads a scene with its overrides and further ones after them.
-pub fn load(arguments: &SceneArguments, further: &[String]) -> Result<Loaded, SceneFileError> {
+pub fn load(arguments: &SceneArguments, further: &[Override]) -> Result<Loaded, SceneFileError> {
     scene_file::load(&arguments.scene, &[&arguments.overrides, further].concat())
 }
 

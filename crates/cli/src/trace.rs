@@ -23,7 +23,8 @@ pub fn run(arguments: &TraceArguments) -> Result<()> {
     if let Some(p) = arguments.min_power.filter(|p| !(0.0..=1.0).contains(p)) {
         return Err(Failure::Usage(format!("--min-power is {p}; it must be from 0 to 1")));
     }
-    let settings = render::ray_settings(&loaded.scene, arguments.min_power, arguments.coherent);
+    let TraceArguments { min_power, coherent, group_delay, .. } = *arguments;
+    let settings = render::ray_settings(&loaded.scene, min_power, coherent, group_delay);
     let (text, name) = read(&arguments.rays)?;
     let rays: Vec<RayRequest> = serde_json::from_str(&text).map_err(|error| {
         Failure::Failed(format!(

@@ -220,6 +220,34 @@ fn scenes_are_checked() {
 }
 
 #[test]
+fn films_made_of_bodies_are_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("film.toml");
+    for (thickness, warned) in [("20e-6", true), ("5.4e-4", true), ("5.6e-4", false), ("5", false)]
+    {
+        let slab = format!("shape = \"slab\"\nthickness = {thickness}\npermittivity = 2");
+        let prism = format!(
+            "[[device]]\nkind = \"prisms\"\n[[device.prism]]\npermittivity = 2\n\
+             corners = [[-20, 0], [-20, {thickness}], [-30, {thickness}], [-30, 0]]\n"
+        );
+        let text = format!("[[device]]\nkind = \"body\"\n{slab}\n{prism}");
+        fs::write(&scene, text).unwrap();
+        let text = String::from_utf8(stdout(cloakroom().arg("check").arg(&scene))).unwrap();
+        for device in ["device 0 is", "device 1 is"] {
+            assert_eq!(text.contains(device), warned, "{text}");
+        }
+        assert_eq!(text.contains("make it a `coating`"), warned, "{text}");
+    }
+    // A coating is no body, nor are the sheets of mirrors and polarizers.
+    let text = "[[device]]\nkind = \"body\"\ncoating = [{ index = [0.06, 3.6], thickness_nm = 20 }]\n\
+                [[device]]\nkind = \"polarizer\"\nposition = [-20, 0, 0]\n\
+                [[device]]\nkind = \"mirror-detour\"\nposition = [-60, 0, 0]\n";
+    fs::write(&scene, text).unwrap();
+    let text = String::from_utf8(stdout(cloakroom().arg("check").arg(&scene))).unwrap();
+    assert!(!text.contains("warning"), "{text}");
+}
+
+#[test]
 fn the_schema_knows_every_device() {
     let schema = stdout(cloakroom().arg("schema"));
     let text = String::from_utf8(schema).unwrap();

@@ -6,7 +6,7 @@ mod bad_input;
 mod book;
 mod commands;
 mod faults;
-#[path = "../../cloakroom/tests/long.rs"]
+#[path = "../../optics/tests/long.rs"]
 mod long;
 mod measuring;
 mod release;

@@ -59,6 +59,10 @@ pub struct LeafReport {
     pub power: f64,
     /// Optical path length from the origin to `position`, cm; 0 if it met no device.
     pub optical_path: f64,
+    /// The speed of light times what a pulse takes from the origin to `position`, cm, if it was asked for; NaN, written as
+    /// null, where it is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub group_path: Option<f64>,
     /// Its electric field, each component as [re, im]; |E|² = power.
     pub electric_field: [[f64; 2]; 3],
 }
@@ -180,6 +184,7 @@ pub fn trace_rays(
     rays: &[RayRequest],
     stop: &AtomicBool,
 ) -> Result<Vec<RayReport>, RayError> {
+    let settings = settings.into();
     let table = leaf_table(assembly, settings, rays.len(), &|i| rays[i].clone(), &|_| {}, stop)?;
     let mut leaves = (0..table.ray.len()).peekable();
     let leaf = |leaf: usize| LeafReport {
@@ -187,6 +192,7 @@ pub fn trace_rays(
         direction: table.direction[leaf],
         power: table.power[leaf],
         optical_path: table.optical_path[leaf],
+        group_path: settings.group_delays.then(|| table.group_path[leaf]),
         electric_field: table.electric_field[leaf].map(|c| [c.re, c.im]),
     };
     let report = |ray: usize| {

@@ -1,12 +1,13 @@
 //! Which keys of a scene change from frame to frame, and how.
 
 use crate::measure::{Sweep, SweepError};
+use crate::scene_file::Override;
 
 /// Most frames of a film.
 pub const MOST_FRAMES: usize = 100_000;
 
 /// Keys of a scene that change together, a value a frame.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Timeline {
     sweeps: Vec<Sweep>,
 }
@@ -68,7 +69,8 @@ impl Timeline {
             let sweep = match way(text)? {
                 Some((key, points)) => {
                     let frames = frames.ok_or_else(|| TimelineError::NoCount(text.clone()))?;
-                    Sweep { values: spread(&key, &points, frames), key }
+                    let values = spread(&key, &points, frames);
+                    Sweep::written(key, values)
                 }
                 None => Sweep::parse(text)?,
             };
@@ -92,10 +94,10 @@ impl Timeline {
         self.sweeps.first().map_or(0, |sweep| sweep.values.len())
     }
 
-    /// What a frame, counted from 0, changes in the scene: overrides as `device.0.rotation=3`.
+    /// What a frame, counted from 0, changes in the scene, as in `device.0.rotation=3`.
     #[must_use]
-    pub fn overrides(&self, frame: usize) -> Vec<String> {
-        self.sweeps.iter().map(|sweep| format!("{}={}", sweep.key, sweep.values[frame])).collect()
+    pub fn overrides(&self, frame: usize) -> Vec<Override> {
+        self.sweeps.iter().map(|sweep| sweep.set(frame)).collect()
     }
 }
 
@@ -143,7 +145,7 @@ mod tests {
 
     fn values(text: &str, frames: usize) -> Vec<f64> {
         let timeline = Timeline::new(&[text.to_owned()], Some(frames)).expect("a timeline");
-        let number = |i| timeline.overrides(i)[0].split_once('=')?.1.parse().ok();
+        let number = |i| timeline.overrides(i)[0].to_string().split_once('=')?.1.parse().ok();
         (0..timeline.frames()).map(|i| number(i).expect("a number")).collect()
     }
 
@@ -169,9 +171,11 @@ mod tests {
     fn keys_move_together() {
         let texts = ["a=0..1", "b=5,6,7", "c=1..3:1"].map(str::to_owned);
         let timeline = Timeline::new(&texts, Some(3)).expect("a timeline");
-        assert_eq!(timeline.overrides(1), ["a=0.5", "b=6", "c=2"]);
+        let written = |frame| timeline.overrides(frame).into_iter().map(|each| each.to_string());
+        assert!(written(1).eq(["a=0.5", "b=6", "c=2"]));
         let timeline = Timeline::new(&texts[1..], None).expect("a timeline");
-        assert_eq!(timeline.overrides(2), ["b=7", "c=3"]);
+        let written = |frame| timeline.overrides(frame).into_iter().map(|each| each.to_string());
+        assert!(written(2).eq(["b=7", "c=3"]));
     }
 
     #[test]

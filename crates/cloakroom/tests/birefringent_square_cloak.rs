@@ -144,7 +144,8 @@ fn paths_reversed_carry_the_same_power() {
                     power: [0.0],
                     electric: [ComplexVector::ZERO],
                     optical_path: leaf.optical_path + 5.0,
-                    group_path: 0.0,
+                    delay_path: 0.0,
+                    group_path: None,
                     end: LeafEnd::Away,
                     path: 0,
                 };

@@ -35,8 +35,8 @@ fn prism(glass: bool) -> Assembly {
     };
     let outline = Outline { corners: corners.to_vec() };
     let hull = Hull::new(Solid::Prism { outline, extent: Extent::ENDLESS });
-    let structure = Structure { regions, surfaces, hull };
-    Assembly::new(vec![Placed { pose: Pose::new(DVec3::ZERO, 0.0), structure }])
+    let structure = Structure::new(regions, surfaces, hull);
+    Assembly::new(vec![Placed::new(Pose::new(DVec3::ZERO, 0.0), structure)])
 }
 
 /// The ray from the camera through `through` along `direction`, and its strongest leaf.

@@ -4,7 +4,7 @@
 use crate::long;
 use cloakroom::measure::{Constraint, QualityError, QualityTable, Sweep, SweepPlan, quality};
 use cloakroom::render::{RenderError, Supervision};
-use cloakroom::scene_file;
+use cloakroom::scene_file::{self, Override};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -173,7 +173,7 @@ fn draws_give_means_with_errors_that_shrink_as_one_over_root_n() {
     stripes.save(folder.path().join("stripes.png")).unwrap();
     let table = |draws: u32, sweep: &str| {
         let sweeps = vec![Sweep::parse(sweep).unwrap()];
-        let load = |more: &[String]| scene_file::parse(ERRONEOUS, "test", folder.path(), more);
+        let load = |more: &[Override]| scene_file::parse(ERRONEOUS, "test", folder.path(), more);
         let plan = SweepPlan::new(sweeps, Vec::new(), load).unwrap().with_draws(draws).unwrap();
         let (done, stop) = (AtomicU64::new(0), AtomicBool::new(false));
         let count = |rows| {

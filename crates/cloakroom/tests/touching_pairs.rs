@@ -176,6 +176,7 @@ fn all_sorts() -> Vec<Sort> {
             format!("w = 10\nh = 1.7\n{carpet} = 0"),
             Metal::Triangle(DVec2::new(2.5, 1.7), 0.0),
         ),
+        ("polarizer", "width = 10\nlength = 12\nangle = 30".into(), Metal::None),
     ];
     sorts
         .into_iter()
@@ -263,7 +264,7 @@ impl<'a> Pair<'a> {
             // A number as one writes it, where that is short.
             let x = ((at - along.x * reach) * 1e12).round() / 1e12;
             let own = Pose::from_rotation(DVec3::X * x, turn);
-            Placed { pose: pose.after(&own), structure: sorts[i].device.structure.clone() }
+            Placed::new(pose.after(&own), sorts[i].device.structure.clone())
         });
         let pair = Self { sorts, assembly: Assembly::new(devices.to_vec()), pose, at };
         assert_eq!(pair.assembly.overlap(), None, "{pair:?}");

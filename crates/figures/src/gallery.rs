@@ -139,6 +139,8 @@ pub static EXHIBITS: &[Exhibit] = &[
         "independent", "uni", "this program"),
     exhibit!("tilted-box" => "Tilted box", "Homogeneous glass, n = 1.5; for comparison",
         "independent", "any", "this program"),
+    exhibit!("coated-panes" => "Coated panes", "Glass of n = 1.9: bare, with a quarter wave of √n, with 10 nm of silver",
+        "dependent", "any", "this program"),
 ];
 
 /// The exhibits that a list names, in the order of the gallery; all of them for an empty list.

@@ -1,9 +1,12 @@
 //! All tests of light in matter, in one program: one is linked faster than many.
 
 mod birefringence;
+mod coatings;
 mod conformal_flow;
+mod conical_refraction;
 mod graded_index;
 mod grazing;
+mod group_path;
 mod hyperbolic_cuts;
 mod interfaces;
 mod interfaces_million;

@@ -12,7 +12,7 @@ mod scenes;
 mod trials;
 
 pub use draws::Draws;
-pub use rays::{Fault, examine, launch, starts_in_air};
+pub use rays::{Fault, examine, launch, starts_in_air, timed};
 pub use scenes::scene_of;
 pub use trials::{TRIALS, Trial};
 

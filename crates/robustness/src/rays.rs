@@ -1,8 +1,9 @@
 //! Random rays, and what must hold for the tree of each.
 
 use crate::draws::Draws;
-use cloakroom::assembly::Assembly;
-use cloakroom::trace::{Launch, Leaf, Outcome};
+use cloakroom::assembly::{Assembly, Placed};
+use cloakroom::device::Dispersion;
+use cloakroom::trace::{Launch, Leaf, Outcome, Tracer};
 use glam::DVec3;
 use optics::wave::transverse_basis;
 
@@ -11,6 +12,9 @@ pub(crate) const BALANCE: f64 = 1e-9;
 
 /// How far a leaf's direction may be from unit length, and |E|² from its power.
 const SOUND: f64 = 1e-9;
+
+/// How much sooner than light in air a pulse may come by rounding, as a share of the way.
+const SOONER: f64 = 1e-6;
 
 /// What is wrong with the tree of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +25,8 @@ pub enum Fault {
     Unsound,
     /// What comes out is not what went in, by this share of it.
     Unbalanced(f64),
+    /// A pulse has run faster than light, by so much, cm.
+    Early(f64),
     /// The account adds up, but so many branches could not be followed.
     Lost(u64),
 }
@@ -50,23 +56,35 @@ pub fn launch(draws: &mut Draws<'_>, reach: f64) -> Launch<2> {
     Launch { origin, direction, electric: [h.into(), v.into()] }
 }
 
+/// The same tracer, working out what pulses take unless a device says that its medium has no dispersion: then they may be
+/// faster than light.
+#[must_use]
+pub fn timed<'a>(tracer: Tracer<'a, 2>, assembly: &Assembly) -> Tracer<'a, 2> {
+    let causal = |device: &Placed| device.dispersion == Dispersion::Causal;
+    if assembly.devices().iter().all(causal) { tracer.with_group_delays() } else { tracer }
+}
+
 /// Whether a ray starts in air.
 #[must_use]
 pub fn starts_in_air(assembly: &Assembly, launch: &Launch<2>) -> bool {
     assembly.device_containing(launch.origin).is_none()
 }
 
-/// Looks at the tree of a ray: how far the account of its power is off.
+/// Looks at the tree of a ray that starts at `origin`: how far the account of its power is off.
 ///
 /// # Errors
 ///
 /// What is wrong with it.
-pub fn examine<const N: usize>(leaves: &[Leaf<N>], outcome: &Outcome<N>) -> Result<f64, Fault> {
+pub fn examine<const N: usize>(
+    origin: DVec3,
+    leaves: &[Leaf<N>],
+    outcome: &Outcome<N>,
+) -> Result<f64, Fault> {
     for leaf in leaves {
         let finite = leaf.position.is_finite()
             && leaf.direction.is_finite()
             && leaf.optical_path.is_finite()
-            && leaf.group_path.is_finite()
+            && leaf.delay_path.is_finite()
             && leaf.power.iter().all(|power| power.is_finite())
             && leaf.electric.iter().all(|field| field.norm_squared().is_finite());
         if !finite {
@@ -79,6 +97,12 @@ pub fn examine<const N: usize>(leaves: &[Leaf<N>], outcome: &Outcome<N>) -> Resu
             || sizes.into_iter().any(|(field, power)| (field.norm_squared() - power).abs() > SOUND);
         if unsound {
             return Err(Fault::Unsound);
+        }
+        let straight = leaf.position.distance(origin);
+        if let Some(early) = leaf.group_path.map(|path| straight - path)
+            && early > SOONER * (1.0 + straight)
+        {
+            return Err(Fault::Early(early));
         }
     }
     let off = outcome.imbalance(leaves);

@@ -10,6 +10,9 @@ use toml::{Table, Value};
 /// Imaginary parts around this dim light over centimetres at the default wavelength.
 const LOSS: f64 = 1e-6;
 
+/// The key of lists that need not be there.
+const COATING: &str = "coating";
+
 /// A scene of one to three devices, as the tables of a scene file.
 pub(crate) fn scene(draws: &mut Draws<'_>) -> Table {
     let count = 1 + draws.below(8) / 3;
@@ -63,7 +66,8 @@ fn table(draws: &mut Draws<'_>, keys: &'static [Key], share: u8) -> Table {
     let mut table = Table::new();
     for key in keys {
         let needed =
-            matches!(key.kind, KeyKind::Tables { .. } | KeyKind::Polygon | KeyKind::Samples);
+            matches!(key.kind, KeyKind::Tables { .. } | KeyKind::Polygon | KeyKind::Samples)
+                && key.name != COATING;
         if needed || draws.chance(share) {
             table.insert(key.name.to_owned(), value(draws, key));
         }
@@ -119,14 +123,40 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
             _ => draws.number(30.0, ValueRange::Finite).into(),
         },
         KeyKind::Tensor => tensor(draws),
+        KeyKind::Complex => match draws.below(2) {
+            0 => draws.number(1.5, limits).into(),
+            _ => Value::from([1.5, 2.0].map(|usual| draws.number(usual, limits)).to_vec()),
+        },
         KeyKind::Polygon => polygon(draws),
         KeyKind::Samples => samples(draws, limits),
         KeyKind::Table { keys } => Value::Table(table(draws, keys, 128)),
+        KeyKind::FlagOrTable { keys } => match draws.below(2) {
+            0 => draws.chance(128).into(),
+            _ => Value::Table(table(draws, keys, 230)),
+        },
         KeyKind::Tables { keys } => {
-            let count = 1 + draws.below(4);
+            let (coating, count) = (key.name == COATING, 1 + draws.below(4));
+            if coating && !draws.chance(30) {
+                return (0..count).map(|_| layer(draws)).collect::<Vec<_>>().into();
+            }
             (0..count).map(|_| Value::Table(table(draws, keys, 100))).collect::<Vec<_>>().into()
         }
     }
+}
+
+/// A layer of a coating, from nothing to what no light gets through, of a dielectric, a metal or a
+/// crystal.
+fn layer(draws: &mut Draws<'_>) -> Value {
+    let thickness = if draws.chance(20) { 0.0 } else { 10f64.powf(draws.between(0.0, 4.5)) };
+    let (name, value) = match draws.below(3) {
+        0 => ("index", draws.between(0.1, 4.0).into()),
+        1 => ("index", vec![draws.between(0.0, 3.0), draws.between(0.0, 8.0)].into()),
+        _ => ("permittivity", tensor(draws)),
+    };
+    Value::Table(Table::from_iter([
+        ("thickness_nm".to_owned(), thickness.into()),
+        (name.to_owned(), value),
+    ]))
 }
 
 /// Numbers on a grid, mostly near one another.

@@ -8,7 +8,7 @@ use cloakroom::output::{read_npz, read_png};
 use cloakroom::photograph::{Edges, ImageSource, Pyramid, Texels, load_bytes};
 use cloakroom::ray_json::{RayRequest, trace_rays};
 use cloakroom::render;
-use cloakroom::scene_file::{self, Loaded};
+use cloakroom::scene_file::{self, Loaded, Override};
 use cloakroom::trace::{FourTracers, Launch, Limits, Tracer};
 use cloakroom_figures::gallery::EXHIBITS;
 use glam::DVec3;
@@ -62,7 +62,7 @@ fn nowhere() -> &'static Path {
 fn scene_file(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let (text, overrides) = text.split_once("\n---\n").unwrap_or((text, ""));
-    let overrides: Vec<String> = overrides.lines().map(str::to_owned).collect();
+    let overrides: Vec<Override> = overrides.lines().map(Override::from).collect();
     match scene_file::parse(text, "a.toml", nowhere(), &overrides) {
         Err(error) => assert!(!error.to_string().is_empty()),
         Ok(loaded) => {
@@ -96,13 +96,13 @@ fn look_at(loaded: &Loaded) {
 /// Traces rays singly and four at a time: what must hold holds, and both ways agree to the last bit.
 fn trace(assembly: &Assembly, limits: Limits, launches: &[Launch<2>]) {
     let limits = Limits { min_power: limits.min_power.max(LEAST_POWER), ..limits };
-    let mut tracer = Tracer::new(assembly, limits);
+    let mut tracer = rays::timed(Tracer::new(assembly, limits), assembly);
     let mut four = FourTracers::new(&tracer);
     let launches: Vec<Launch<2>> =
         launches.iter().filter(|launch| rays::starts_in_air(assembly, launch)).copied().collect();
     for launch in &launches {
         let (leaves, outcome) = tracer.trace(launch);
-        if let Err(fault) = rays::examine(leaves, outcome) {
+        if let Err(fault) = rays::examine(launch.origin, leaves, outcome) {
             panic!("{fault:?} of {launch:?}: {leaves:?}, {outcome:?}");
         }
     }

@@ -2,5 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod briefly;
+#[path = "../../optics/tests/long.rs"]
 mod long;
 mod soaked;

@@ -17,11 +17,12 @@ fn scene(text: &str) -> Result<Loaded, String> {
 fn sound(keys: &str, origin: DVec3, direction: DVec3, tolerance: f64) -> TraceStats {
     let loaded = scene(keys).unwrap();
     let assembly = render::assembly(&loaded.scene).unwrap();
-    let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-4, tolerance });
+    let tracer = Tracer::new(&assembly, Limits { min_power: 1e-4, tolerance });
+    let mut tracer = robustness::timed(tracer, &assembly);
     let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
     let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
     let (leaves, outcome) = tracer.trace(&launch);
-    assert!(robustness::examine(leaves, outcome).is_ok(), "{keys}: {leaves:?} {outcome:?}");
+    assert!(robustness::examine(origin, leaves, outcome).is_ok(), "{keys}: {leaves:?} {outcome:?}");
     outcome.stats
 }
 

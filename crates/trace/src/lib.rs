@@ -23,7 +23,7 @@
 //!
 //! let cloak = SquareCloak { side: 10.0, ..SquareCloak::default() };
 //! let structure = cloak.build(Request::default())?;
-//! let assembly = Assembly::new(vec![Placed { pose: Pose::new(DVec3::ZERO, 0.0), structure }]);
+//! let assembly = Assembly::new(vec![Placed::new(Pose::new(DVec3::ZERO, 0.0), structure)]);
 //!
 //! // A batch of rays, side by side along y.
 //! let ray = |number: usize| -> Result<Launch<1>, Stopped> {

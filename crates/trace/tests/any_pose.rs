@@ -117,7 +117,7 @@ fn rays_through_a_tilted_device_are_turned_rays_through_an_upright_one() {
     let mut numbers = Numbers(1);
     let (mut compared, mut apart) = (0, 0);
     for (name, structure) in structures() {
-        let assembly = |pose| Assembly::new(vec![Placed { pose, structure: structure.clone() }]);
+        let assembly = |pose| Assembly::new(vec![Placed::new(pose, structure.clone())]);
         let upright = assembly(Pose::IDENTITY);
         let mut met = 0;
         for n in 0..60 {
@@ -177,7 +177,7 @@ fn a_photograph_in_any_pose_is_met_where_it_is() {
     let cloak = entry("square-cloak").unwrap();
     let assembly = |pose| {
         let structure = device(cloak).build(Request::default()).unwrap();
-        Assembly::new(vec![Placed { pose, structure }])
+        Assembly::new(vec![Placed::new(pose, structure)])
     };
     let at = Pose::new(DVec3::X * 3.0, 0.0);
     let upright = Screen::new(&at, 8.0, 5.0);
@@ -226,7 +226,7 @@ fn leaves_on_a_tilted_opaque_body_end_on_it() {
     for _ in 0..200 {
         let pose = numbers.pose();
         let structure = device.build(request).unwrap();
-        let assembly = Assembly::new(vec![Placed { pose, structure }]);
+        let assembly = Assembly::new(vec![Placed::new(pose, structure)]);
         let launch = turned(&launch(&mut numbers), &pose);
         let (leaves, _) = traced(&assembly, &launch);
         for leaf in leaves.iter().filter(|leaf| leaf.end == LeafEnd::Body(0)) {

@@ -20,7 +20,7 @@ pub enum CellContent {
     Air = 0,
     /// The device's material.
     Material = 1,
-    /// Metal, a perfect conductor.
+    /// Metal.
     Metal = 2,
     /// Air in the hidden region of an open core.
     Hidden = 3,

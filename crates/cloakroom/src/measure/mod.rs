@@ -7,6 +7,7 @@
 //! - [`survey`](survey()) asks the rays themselves: where they land, against where they should.
 //! - [`quality`](quality()) does both for every combination of swept keys ([`Sweep`]).
 
+mod column;
 mod comparison;
 mod constraint;
 mod correlation;
@@ -17,6 +18,7 @@ mod pixel_mask;
 mod plan;
 mod plane;
 mod quality;
+mod quality_error;
 mod quality_files;
 mod statistics;
 mod structural_similarity;
@@ -24,6 +26,7 @@ mod survey;
 mod sweep;
 mod view;
 
+pub use column::{Column, UnknownColumn, name_and_unit};
 pub use comparison::{Comparison, Figures, FlightFigures, Shifted, compare};
 pub use constraint::{Constraint, ConstraintError};
 pub use correlation::{BestShift, best_shift, correlation};
@@ -32,8 +35,8 @@ pub use flip::{DEFAULT_PIXELS_PER_DEGREE, flip};
 pub use measured::columns;
 pub use pixel_mask::PixelMask;
 pub use plan::SweepPlan;
-pub use quality::{Column, QualityError, QualityRow, QualityTable, UnknownColumn, quality};
-pub use quality_files::name_and_unit;
+pub use quality::{QualityRow, QualityTable, quality};
+pub use quality_error::QualityError;
 pub use structural_similarity::structural_similarity;
 pub use survey::{CLOAKED_WITHIN_CM, IN_PLACE_WITHIN_DEG, Survey, survey};
 pub use sweep::{Sweep, SweepError, combinations};

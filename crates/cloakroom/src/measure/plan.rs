@@ -1,14 +1,14 @@
 //! What is to be measured, read and checked before the work.
 
+use super::column::{Column, UnknownColumn, find_column, name_and_unit};
 use super::constraint::Constraint;
-use super::quality::{QualityError, UnknownColumn, find_column, located};
-use super::quality_files::name_and_unit;
-use super::sweep::{Sweep, combinations};
-use super::{Column, SweepError, columns};
+use super::measured::columns;
+use super::quality_error::{QualityError, located};
+use super::sweep::{Sweep, SweepError, combinations};
 use crate::device::Imperfection;
 use crate::render::assembly;
 use crate::scene::Scene;
-use crate::scene_file::{Loaded, SceneFileError};
+use crate::scene_file::{Loaded, Override, SceneFileError};
 
 /// A sweep with all its scenes read.
 #[derive(Debug)]
@@ -40,9 +40,9 @@ impl SweepPlan {
     pub fn new(
         sweeps: Vec<Sweep>,
         holds: Vec<Constraint>,
-        load: impl Fn(&[String]) -> Result<Loaded, SceneFileError>,
+        load: impl Fn(&[Override]) -> Result<Loaded, SceneFileError>,
     ) -> Result<Self, QualityError> {
-        let load = |overrides: &[String]| {
+        let load = |overrides: &[Override]| {
             load(overrides).map_err(|error| QualityError::Scene(Box::new(error)))
         };
         let both = |hold: &&Constraint| sweeps.iter().any(|sweep| sweep.key == hold.key);
@@ -62,16 +62,15 @@ impl SweepPlan {
             holds.iter().map(|hold| hold.target(&scene)).collect::<Result<_, _>>()?
         };
         let scene = |chosen: Vec<usize>| {
-            let settings: Vec<String> =
-                sweeps.iter().zip(chosen).map(|(sweep, i)| sweep.values[i].clone()).collect();
-            let assignment = |(sweep, value): (&Sweep, &String)| format!("{}={value}", sweep.key);
-            let mut overrides: Vec<String> = sweeps.iter().zip(&settings).map(assignment).collect();
-            let swept = overrides.len();
+            let chosen = || sweeps.iter().zip(&chosen);
+            let settings = chosen().map(|(sweep, i)| sweep.values[*i].clone()).collect();
+            let mut overrides: Vec<Override> = chosen().map(|(sweep, i)| sweep.set(*i)).collect();
+            let swept: Vec<String> = overrides.iter().map(ToString::to_string).collect();
             let mut loaded = load(&overrides)?;
             let mut held = Vec::new();
             for (hold, target) in holds.iter().zip(&targets) {
-                let value = hold.solve(&loaded.scene, *target, &overrides[..swept])?;
-                overrides.push(format!("{}={value}", hold.key));
+                let value = hold.solve(&loaded.scene, *target, &swept)?;
+                overrides.push(Override::Value { key: hold.key.clone(), value: value.into() });
                 held.push(value);
                 loaded = load(&overrides)?;
             }

@@ -1,66 +1,15 @@
 //! How well the devices of a scene do what they are for, over a range of settings.
 
-use super::constraint::ConstraintError;
+use super::column::{Column, UnknownColumn, find_column};
 use super::measured::Measured;
-use super::plan::{Combination, drawn};
+use super::plan::{Combination, SweepPlan, drawn};
+use super::quality_error::{QualityError, located};
 use super::statistics::Statistics;
-use super::sweep::{Sweep, SweepError};
-use super::{MeasureError, SweepPlan, View, empty, ideal, survey};
-use crate::keys::hint;
-use crate::render::{
-    ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Supervision, render,
-};
+use super::sweep::Sweep;
+use super::{View, empty, ideal, survey};
+use crate::render::{ChannelSet, Images, PreparedScene, Supervision, render};
 use crate::scene::Scene;
-use crate::scene_file::{Loaded, SceneFileError};
 use crate::trace::TraceStats;
-
-/// Why there is no table.
-#[derive(Debug, thiserror::Error)]
-pub enum QualityError {
-    /// The sweeps make no sense.
-    #[error("{0}")]
-    Sweep(#[from] SweepError),
-    /// A scene cannot be read or built.
-    // What is said to be wrong with an override may be so with a swept value.
-    #[error("{}", .0.to_string().replacen("--set ", "--set or --sweep ", 1))]
-    Scene(Box<SceneFileError>),
-    /// A picture cannot be made, or the work was stopped.
-    #[error("{0}")]
-    Render(#[from] RenderError),
-    /// A picture cannot be measured.
-    #[error("{0}")]
-    Measure(#[from] MeasureError),
-    /// A fact of a device cannot be held.
-    #[error("{0}")]
-    Constraint(#[from] ConstraintError),
-    /// There are so many draws of something that is not random.
-    #[error(
-        "--draws {0}: nothing in the scene is random; give a device an error, as in \
-         --set device.0.imperfection.error=0.01"
-    )]
-    NothingRandom(u32),
-}
-
-/// There is no such figure.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no figure `{name}`{hint}")]
-pub struct UnknownColumn {
-    /// The name asked for.
-    name: String,
-    /// What may have been meant.
-    hint: String,
-}
-
-/// One figure of a table: what it is called in files, and in words.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct Column {
-    /// Its name in files, with the unit.
-    pub name: String,
-    /// What it is, for the axis of a plot.
-    pub title: String,
-    /// Its unit, as plots write it; empty for a bare number.
-    pub unit: &'static str,
-}
 
 /// The figures of one combination of settings.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,18 +48,6 @@ impl QualityTable {
     pub fn column(&self, name: &str) -> Result<usize, UnknownColumn> {
         find_column(&self.columns, name)
     }
-}
-
-/// The place of a column by its name.
-pub(super) fn find_column(columns: &[Column], name: &str) -> Result<usize, UnknownColumn> {
-    columns.iter().position(|column| column.name == name).ok_or_else(|| {
-        let known: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
-        UnknownColumn { name: name.to_owned(), hint: hint(name, &known, "known figures") }
-    })
-}
-
-pub(super) fn located(loaded: &Loaded, error: &PreparedSceneError) -> QualityError {
-    QualityError::Scene(Box::new(loaded.locations.error_at(&error.key(), error.to_string())))
 }
 
 /// Whether the empty views of two scenes are the same.

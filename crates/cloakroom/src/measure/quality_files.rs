@@ -1,10 +1,7 @@
 //! Tables of quality as data: CSV, NPZ and JSON.
 
 use super::quality::{QualityRow, QualityTable};
-use crate::device::{CATALOGUE, Imperfection};
-use crate::keys::Key;
 use crate::output::{OutputError, write_npz, write_whole};
-use crate::scene::{Placement, TABLES};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
@@ -96,28 +93,4 @@ impl QualityTable {
             "sweeps": self.sweeps, "columns": self.columns, "draws": self.draws, "rows": rows,
         })
     }
-}
-
-/// The name of a key in words, and the unit that keys of that name have.
-#[must_use]
-pub fn name_and_unit(key: &str) -> (String, &'static str) {
-    let name = key.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or(key);
-    let words = name.replace('_', " ");
-    let mut letters = words.chars();
-    let title = match letters.next() {
-        // The symbols w and h of a map stay small.
-        Some(first) if words.len() > 1 => first.to_uppercase().chain(letters).collect(),
-        _ => words,
-    };
-    (title, unit_of(name))
-}
-
-/// The unit of a key, from the lists of keys.
-fn unit_of(name: &str) -> &'static str {
-    let devices = CATALOGUE.iter().map(|entry| entry.keys);
-    let tables = TABLES.iter().map(|(_, keys)| *keys);
-    let keys = devices.chain(tables).chain([Placement::KEYS, Imperfection::KEYS]).flatten();
-    let has_unit = |key: &&Key| key.name == name && !key.unit.is_empty();
-    let unit = keys.into_iter().find(has_unit).map_or("", |key| key.unit);
-    if unit == "degrees" { "°" } else { unit }
 }

@@ -1,6 +1,7 @@
 //! Which values of which keys are gone through.
 
-use crate::keys::quoted;
+use crate::keys::{Value, quoted};
+use crate::scene_file::{Override, text};
 
 /// Most pictures that one set of sweeps may ask for.
 const MOST: usize = 100_000;
@@ -9,12 +10,15 @@ const MOST: usize = 100_000;
 const MOST_DECIMALS: usize = 400;
 
 /// One key of a scene and the values it takes, one after the other.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Sweep {
     /// The key, as in `device.0.rotation`.
     pub key: String,
     /// Its values as a scene or an override writes them, one at least.
     pub values: Vec<String>,
+    /// What they are, where they were not given as text.
+    #[serde(skip)]
+    given: Vec<Value>,
 }
 
 /// Why there is nothing to sweep.
@@ -71,7 +75,28 @@ impl Sweep {
         if let Some(value) = values.iter().find(infinite) {
             return Err(refuse(format!("{} is not a finite number", quoted(value, '`'))));
         }
-        Ok(Self { key: key.to_owned(), values })
+        Ok(Self { key: key.to_owned(), values, given: Vec::new() })
+    }
+
+    /// The sweep of a key through values.
+    #[must_use]
+    pub fn through(key: String, given: Vec<Value>) -> Self {
+        Self { key, values: given.iter().map(text).collect(), given }
+    }
+
+    /// The sweep of a key through values that are written.
+    #[must_use]
+    pub fn written(key: String, values: Vec<String>) -> Self {
+        Self { key, values, given: Vec::new() }
+    }
+
+    /// What sets the key to the value of that number.
+    pub(crate) fn set(&self, number: usize) -> Override {
+        let key = self.key.clone();
+        match self.given.get(number) {
+            Some(value) => Override::Value { key, value: value.clone() },
+            None => Override::Text(format!("{key}={}", self.values[number])),
+        }
     }
 
     /// The values as numbers, if all are.

@@ -9,7 +9,7 @@ use std::io::Cursor;
 use exr::meta::MetaData;
 use exr::meta::header::Header;
 
-use super::load::{MAX_MEMORY, MAX_PIXELS};
+use super::linear_image::{MAX_MEMORY, MAX_PIXELS};
 
 /// Largest block, in bytes: as many blocks as there are threads are decoded at once.
 const MAX_BLOCK: u64 = 512 << 20;

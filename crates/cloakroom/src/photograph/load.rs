@@ -8,42 +8,16 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
-use super::source::{ImageSource, LoadError, LoadProblem};
+use super::linear_image::{LinearImage, MAX_MEMORY, MAX_PIXELS, Texels};
+use super::source::{ImageSource, LoadError, LoadProblem, check};
 use super::{exr_limits, jpeg_markers, srgb};
 use crate::input::read_up_to;
 
 #[cfg(test)]
 mod tests;
 
-/// Largest number of pixels of an image.
-pub(super) const MAX_PIXELS: u64 = 400_000_000;
-
-/// Largest memory an image may take while it is read, in bytes.
-pub(super) const MAX_MEMORY: u64 = 4 << 30;
-
 /// Largest image file, in bytes.
 const MAX_FILE: u64 = 2 << 30;
-
-/// An image in linear light.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LinearImage {
-    /// Width in pixels, at least 1.
-    pub width: usize,
-    /// Height in pixels, at least 1.
-    pub height: usize,
-    /// The pixels, row by row from the top left.
-    pub texels: Texels,
-}
-
-/// Red, green and blue of each pixel, row by row from the top left.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Texels {
-    /// 8-bit sRGB values, which stand for the linear light of [`super::decode_table`]. A quarter
-    /// of the memory of floats, and no less exact.
-    Srgb8(Vec<u8>),
-    /// Linear light.
-    Linear(Vec<f32>),
-}
 
 /// Width and height of an image in pixels, as it stands upright, without decoding its pixels.
 ///
@@ -103,34 +77,8 @@ pub fn load_bytes(
 /// Linear light from the bytes of an image file.
 fn read(bytes: &[u8], most_pixels: u64) -> Result<LinearImage, LoadProblem> {
     let image = linear(guarded(|| decode(bytes, most_pixels))?);
-    image.check()?;
+    check(&image)?;
     Ok(image)
-}
-
-impl LinearImage {
-    /// Refuses an image that cannot be looked at.
-    pub(super) fn check(&self) -> Result<(), LoadProblem> {
-        let (width, height) = (self.width, self.height);
-        let pixels = width.saturating_mul(height);
-        if pixels as u64 > MAX_PIXELS {
-            return Err(LoadProblem::TooLarge);
-        }
-        if pixels == 0 {
-            // Below the largest number of pixels, and thus of 32 bits.
-            return Err(LoadProblem::NoPixels([width as u32, height as u32]));
-        }
-        let (count, not_finite) = match &self.texels {
-            Texels::Srgb8(codes) => (codes.len(), None),
-            Texels::Linear(values) => {
-                (values.len(), values.iter().position(|value| !value.is_finite()))
-            }
-        };
-        match not_finite {
-            _ if count != 3 * pixels => Err(LoadProblem::WrongCount(count)),
-            Some(at) => Err(LoadProblem::NotFinite([at / 3 % width, at / 3 / width])),
-            None => Ok(()),
-        }
-    }
 }
 
 /// The bytes of an image file, once its beginning shows that it can be one.

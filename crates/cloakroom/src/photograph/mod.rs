@@ -13,13 +13,15 @@ mod equirectangular;
 mod exr_limits;
 mod footprint;
 mod jpeg_markers;
+mod linear_image;
 mod load;
 mod pyramid;
 mod source;
 mod srgb;
 
 pub use equirectangular::Equirectangular;
-pub use load::{LinearImage, Texels, dimensions, load, load_bytes};
+pub use linear_image::{LinearImage, Texels};
+pub use load::{dimensions, load, load_bytes};
 pub use pyramid::{Edges, Pyramid};
 pub use source::{ImageSource, LoadError, LoadProblem};
 pub use srgb::{decode, decode_table, encode};

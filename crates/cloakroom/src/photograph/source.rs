@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::keys::BUILT_IN_PREFIX;
 
-use super::load::{LinearImage, MAX_MEMORY, MAX_PIXELS};
+use super::linear_image::{LinearImage, MAX_MEMORY, MAX_PIXELS, Texels};
 
 /// The images that come with the program, by name: those of [`BUILT_IN_IMAGES`](crate::keys::BUILT_IN_IMAGES).
 const BUILT_IN: [(&str, &[u8]); 1] = [("bookshelf", include_bytes!("../../assets/bookshelf.jpg"))];
@@ -35,7 +35,7 @@ impl ImageSource {
     /// [`LoadError`] where it has no pixels or too many, its texels are not as many, or one of them is not
     /// finite.
     pub fn memory(image: LinearImage) -> Result<Self, LoadError> {
-        let checked = image.check();
+        let checked = check(&image);
         let image = Self::Memory(Arc::new(image));
         checked.map_err(|problem| LoadError { image: image.clone(), problem })?;
         Ok(image)
@@ -58,6 +58,30 @@ impl std::fmt::Display for ImageSource {
             Self::File(path) => write!(f, "{}", path.display()),
             Self::Memory(image) => write!(f, "array:{}x{}", image.width, image.height),
         }
+    }
+}
+
+/// Refuses an image that cannot be looked at.
+pub(super) fn check(image: &LinearImage) -> Result<(), LoadProblem> {
+    let (width, height) = (image.width, image.height);
+    let pixels = width.saturating_mul(height);
+    if pixels as u64 > MAX_PIXELS {
+        return Err(LoadProblem::TooLarge);
+    }
+    if pixels == 0 {
+        // Below the largest number of pixels, and thus of 32 bits.
+        return Err(LoadProblem::NoPixels([width as u32, height as u32]));
+    }
+    let (count, not_finite) = match &image.texels {
+        Texels::Srgb8(codes) => (codes.len(), None),
+        Texels::Linear(values) => {
+            (values.len(), values.iter().position(|value| !value.is_finite()))
+        }
+    };
+    match not_finite {
+        _ if count != 3 * pixels => Err(LoadProblem::WrongCount(count)),
+        Some(at) => Err(LoadProblem::NotFinite([at / 3 % width, at / 3 / width])),
+        None => Ok(()),
     }
 }
 

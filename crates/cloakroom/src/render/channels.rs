@@ -41,6 +41,13 @@ pub enum ChannelKind {
     /// Time of flight less that of the same camera ray in the empty scene, ns; NaN also where
     /// that ray misses the photograph.
     TimeOfFlightDifference,
+    /// What a pulse takes from the photograph to the camera, ns: as [`Self::TimeOfFlight`]; NaN also behind media that
+    /// absorb.
+    GroupDelay,
+    /// Its standard deviation over the leaves of one camera ray, ns.
+    GroupDelaySpread,
+    /// It less the time of flight of the same camera ray in the empty scene, ns.
+    GroupDelayDifference,
     /// Share of the power that reaches the photograph.
     Delivered,
     /// Share of the power that goes to the surroundings.
@@ -62,7 +69,7 @@ pub enum ChannelKind {
 impl ChannelKind {
     /// All channels in the order of files, with their names there: those that every file of data holds, then those that
     /// a scene must ask for.
-    const NAMES: [(Self, &str); 22] = [
+    const NAMES: [(Self, &str); 25] = [
         (Self::Image(0), "R"),
         (Self::Image(1), "G"),
         (Self::Image(2), "B"),
@@ -85,6 +92,9 @@ impl ChannelKind {
         (Self::Stokes(3), "stokes.S3"),
         (Self::ExtraordinaryShare, "extraordinary_share"),
         (Self::FirstFaceReflectance, "first_face_reflectance"),
+        (Self::GroupDelay, "group_delay"),
+        (Self::GroupDelaySpread, "group_delay_spread"),
+        (Self::GroupDelayDifference, "group_delay_difference"),
     ];
 
     /// Its name in files.
@@ -98,9 +108,12 @@ impl ChannelKind {
     pub fn blank(self, pixels: usize) -> Samples {
         match self {
             // Differences of times go down to yoctoseconds.
-            Self::TimeOfFlight | Self::TimeOfFlightSpread | Self::TimeOfFlightDifference => {
-                Samples::F64(vec![0.0; pixels])
-            }
+            Self::TimeOfFlight
+            | Self::TimeOfFlightSpread
+            | Self::TimeOfFlightDifference
+            | Self::GroupDelay
+            | Self::GroupDelaySpread
+            | Self::GroupDelayDifference => Samples::F64(vec![0.0; pixels]),
             Self::Stokes(_) => Samples::Rgb(vec![[0.0; 3]; pixels]),
             _ => Samples::F32(vec![0.0; pixels]),
         }
@@ -117,6 +130,9 @@ impl ChannelKind {
         // The word with which a scene asks for a channel, where it must.
         let asked = |channel: &Self| match channel {
             Self::Stokes(_) => picture.asks_for("stokes"),
+            Self::GroupDelay | Self::GroupDelaySpread | Self::GroupDelayDifference => {
+                picture.asks_for_group_delay()
+            }
             Self::ExtraordinaryShare | Self::FirstFaceReflectance => {
                 picture.asks_for(channel.name())
             }

@@ -50,11 +50,7 @@ mod tests {
     use super::*;
 
     fn block(light: [f64; 4]) -> [Pixel; 4] {
-        light.map(|light| {
-            let mut pixel = Pixel::default();
-            pixel.image = [light; 3];
-            pixel
-        })
+        light.map(|light| Pixel { image: [light; 3], ..Pixel::default() })
     }
 
     #[test]

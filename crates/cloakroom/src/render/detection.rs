@@ -19,6 +19,8 @@ pub(super) struct Detection<const N: usize> {
     pub alone: bool,
     /// Whether times of flight are wanted.
     pub times: bool,
+    /// Whether what pulses take is wanted.
+    pub group_delays: bool,
     /// Whether the Stokes parameters are wanted: for those the first two are needed.
     pub stokes: bool,
     /// Whether the first surface is looked at on its own.
@@ -56,6 +58,7 @@ impl<const N: usize> Detection<N> {
             separate: N > 1,
             alone: false,
             times: true,
+            group_delays: false,
             stokes: false,
             first_face: false,
         }
@@ -69,6 +72,7 @@ impl<const N: usize> Detection<N> {
         Self {
             separate: self.separate && wanted != ChannelSet::Image,
             times: everything,
+            group_delays: everything && picture.asks_for_group_delay(),
             alone: wanted == ChannelSet::Polarizers,
             stokes: self.separate && asked("stokes"),
             first_face: asked("extraordinary_share") || asked("first_face_reflectance"),

@@ -5,9 +5,9 @@ use super::interference::Interference;
 use super::pixel::{Pixel, Pulses};
 use super::prepared_scene::{PreparedScene, Surroundings};
 use crate::scene::CameraRay;
-use crate::trace::{FirstFace, Leaf, Outcome, Pair};
+use crate::trace::{FirstFace, Leaf, Outcome};
 use glam::{DQuat, DVec3};
-use optics::wave::{SPEED_OF_LIGHT, arriving_stokes};
+use optics::wave::{SPEED_OF_LIGHT, arriving_stokes, stokes_of_coherency};
 
 /// One traced camera ray.
 #[derive(Clone, Copy, Debug)]
@@ -23,48 +23,53 @@ pub(super) struct Traced<'t, const N: usize> {
 #[derive(Debug, Default)]
 pub(super) struct Working {
     pulses: Pulses,
+    /// The same, with what each takes as a pulse.
+    group_pulses: Pulses,
     interference: Interference,
 }
 
 /// Adds to a pixel what one camera ray sees. `across` and `down` are its neighbours one pixel away
-/// along the picture's axes; `spacing` is the spacing of samples in pixels.
-pub(super) fn expose<const N: usize>(
+/// along the picture's axes; `spacing` is the spacing of samples in pixels. `COHERENT` is whether leaves
+/// may interfere in the scene: what that takes costs nothing elsewhere.
+pub(super) fn expose<const N: usize, const COHERENT: bool>(
     prepared: &PreparedScene<'_>,
     detection: &Detection<N>,
     [here, across, down]: [&Traced<'_, N>; 3],
     spacing: f64,
     pixel: &mut Pixel,
-    Working { pulses, interference }: &mut Working,
+    Working { pulses, group_pulses, interference }: &mut Working,
 ) {
     pulses.clear();
-    interference.seen.clear();
-    let coherent = prepared.coherence.is_some();
-    let mut book = |pixel: &mut Pixel, leaf: &Leaf<N>, screen: Option<f64>, power: f64| match (
-        leaf.body(),
-        screen,
-    ) {
-        (Some(_), _) => pixel.absorbed += power,
-        (None, Some(distance)) => {
-            pixel.delivered += power;
-            if detection.times {
-                pulses.push((time_of_flight(leaf, distance), power));
-            }
-        }
-        (None, None) => pixel.escaped += power,
-    };
+    group_pulses.clear();
+    if COHERENT {
+        interference.find(prepared, detection, here.leaves, here.ray.origin);
+        pixel.pruned -= interference.added;
+    }
     pixel.absorbed += detection.detected(&here.outcome.absorbed);
     pixel.pruned += detection.detected(&here.outcome.pruned);
-    for leaf in here.leaves {
+    for (number, leaf) in here.leaves.iter().enumerate() {
         let power = detection.detected(&leaf.power);
         let screen = leaf.distance_to(&prepared.screen);
+        let arriving = if COHERENT { power * interference.gain(number) } else { power };
+        match (leaf.body(), screen) {
+            (Some(_), _) => pixel.absorbed += arriving,
+            (None, Some(distance)) => {
+                pixel.delivered += arriving;
+                if detection.times {
+                    pulses.push((time_of_flight(leaf, distance), arriving));
+                }
+                if detection.group_delays {
+                    group_pulses.push((group_delay(leaf, distance), arriving));
+                }
+            }
+            (None, None) => pixel.escaped += arriving,
+        }
         let beside =
             |alone| [across, down].map(|neighbour| Neighbour { here, leaf, neighbour, alone });
         let among_all = beside(None);
         let light = light(prepared, leaf, screen, &among_all, spacing);
-        if coherent {
-            interference.seen.push((screen, light));
-        } else {
-            book(pixel, leaf, screen, power);
+        if COHERENT {
+            interference.remember(light);
         }
         add(&mut pixel.image, power, light);
         if detection.separate {
@@ -88,14 +93,8 @@ pub(super) fn expose<const N: usize>(
             }
         }
     }
-    if coherent {
-        let detected = |leaf: &Leaf<N>| detection.detected(&leaf.power);
-        interference.find(prepared, here.leaves, here.ray.origin, detected);
+    if COHERENT {
         interfere(detection, here.leaves, interference, pixel);
-        for (number, leaf) in here.leaves.iter().enumerate() {
-            let power = detected(leaf) * interference.gain(number);
-            book(pixel, leaf, interference.seen[number].0, power);
-        }
     }
     if let Some(face) = &here.first_face {
         pixel.surfaces_met += 1.0;
@@ -104,22 +103,23 @@ pub(super) fn expose<const N: usize>(
         pixel.extraordinary += detection.detected(&face.extraordinary);
     }
     if detection.times {
-        pixel.add_pulses(pulses, empty_time_of_flight(prepared, &here.ray));
+        let empty = empty_time_of_flight(prepared, &here.ray);
+        pixel.times.add(pulses, empty);
+        pixel.group_delays.add(group_pulses, empty);
     }
 }
 
-/// Adds to a pixel what leaves that interfere see more or less than each alone, and works out their gains.
+/// Adds to a pixel what leaves that interfere see more or less than each alone.
 fn interfere<const N: usize>(
     detection: &Detection<N>,
     leaves: &[Leaf<N>],
-    interference: &mut Interference,
+    interference: &Interference,
     pixel: &mut Pixel,
 ) {
-    let power = |pair: &Pair| std::array::from_fn(|i| pair.power(leaves, i));
     for pair in &interference.pairs {
-        let [one, other] = pair.leaves.map(|leaf| interference.seen[leaf].1);
+        let [one, other] = pair.leaves.map(|leaf| interference.lights[leaf]);
         let light = std::array::from_fn(|color| (one[color] * other[color]).sqrt());
-        let power = power(pair);
+        let power = std::array::from_fn(|i| pair.power(leaves, i));
         add(&mut pixel.image, detection.detected(&power), light);
         if detection.separate {
             for (i, sum) in [&mut pixel.horizontal, &mut pixel.vertical].into_iter().enumerate() {
@@ -130,19 +130,12 @@ fn interfere<const N: usize>(
             }
         }
         if detection.stokes {
-            let coherency = pair.coherency(leaves);
-            let [h, v] = [power[0], power[1]];
-            let stokes = [(h + v) / 2.0, (h - v) / 2.0, coherency.re, coherency.im];
+            let stokes = stokes_of_coherency([power[0], power[1]], pair.coherency(leaves));
             for (sum, stokes) in pixel.stokes.iter_mut().zip(stokes) {
                 add(sum, stokes, light);
             }
         }
     }
-    pixel.pruned -= interference.share_out(
-        leaves,
-        |leaf| detection.detected(&leaf.power),
-        |pair| detection.detected(&power(pair)),
-    );
 }
 
 /// Adds to the pixels of a 2 x 2 block what they see past every device, where all its rays end on the
@@ -180,7 +173,12 @@ pub(super) fn expose_unhindered<const N: usize>(
 
 /// Time of flight of a leaf that ends on the photograph, `distance` (cm) on, in ns.
 pub(super) fn time_of_flight<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f64 {
-    (leaf.group_path + distance) / SPEED_OF_LIGHT
+    (leaf.delay_path + distance) / SPEED_OF_LIGHT
+}
+
+/// What a pulse takes on a leaf that ends on the photograph, `distance` (cm) on, in ns; NaN where it is not known.
+pub(super) fn group_delay<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f64 {
+    (leaf.group_path.unwrap_or(f64::NAN) + distance) / SPEED_OF_LIGHT
 }
 
 /// Time of flight (ns) of a camera ray in the empty scene, if it meets the photograph.

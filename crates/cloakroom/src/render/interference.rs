@@ -1,5 +1,6 @@
 //! Which leaves of a camera ray interfere: those that see the same thing, by ways of about the same length.
 
+use super::detection::Detection;
 use super::prepared_scene::PreparedScene;
 use crate::trace::{Leaf, LeafEnd, Pair, Way};
 use glam::DVec3;
@@ -20,10 +21,14 @@ enum Sight {
 pub(super) struct Interference {
     /// The pairs.
     pub pairs: Vec<Pair>,
+    /// The power that the pairs add to that of all leaves: it is missing in branches that were pruned.
+    pub added: f64,
     /// What each leaf's power is multiplied by, as one of those that it interferes with; none without pairs.
     gain: Vec<f64>,
-    /// The distance of each leaf to the photograph, cm, and its light.
-    pub seen: Vec<(Option<f64>, [f64; 3])>,
+    /// The distance of each leaf to the photograph, cm.
+    screens: Vec<Option<f64>>,
+    /// The light of each leaf, as far as it is known.
+    pub lights: Vec<[f64; 3]>,
     ways: Vec<Way>,
     /// For each leaf the power of the cluster of which it is the first.
     alone: Vec<f64>,
@@ -32,27 +37,40 @@ pub(super) struct Interference {
 }
 
 impl Interference {
-    /// Finds the pairs of a ray that starts at `camera`, what each leaf sees being known; `detected` is the power of a
-    /// leaf.
+    /// Finds the pairs among the leaves of a ray that starts at `camera`, and the gains of the leaves.
     pub fn find<const N: usize>(
         &mut self,
         prepared: &PreparedScene<'_>,
+        detection: &Detection<N>,
         leaves: &[Leaf<N>],
         camera: DVec3,
-        detected: impl Fn(&Leaf<N>) -> f64,
+    ) {
+        self.lights.clear();
+        self.pair_up(prepared, detection, leaves, camera);
+        self.share_out(detection, leaves);
+    }
+
+    fn pair_up<const N: usize>(
+        &mut self,
+        prepared: &PreparedScene<'_>,
+        detection: &Detection<N>,
+        leaves: &[Leaf<N>],
+        camera: DVec3,
     ) {
         self.pairs.clear();
         let Some(coherence) = prepared.coherence.filter(|_| leaves.len() > 1) else { return };
+        self.screens.clear();
+        self.screens.extend(leaves.iter().map(|leaf| leaf.distance_to(&prepared.screen)));
         self.clusters.clear();
         self.clusters.extend((0..leaves.len()).filter(|number| leaves[*number].is_in_air()));
         // Each of the strongest with those that see the same place as it.
         while self.clusters.len() > 1 {
-            let power = |number: usize| detected(&leaves[number]);
+            let power = |number: usize| detection.detected(&leaves[number].power);
             let strongest = (self.clusters.iter().copied())
                 .reduce(|best, number| if power(number) > power(best) { number } else { best });
             let Some(strongest) = strongest else { return };
             let far = &leaves[strongest];
-            let distance = |number: usize| self.seen[number].0;
+            let distance = |number: usize| self.screens[number];
             let sight = sight(far, distance(strongest));
             let point = seen(far, distance(strongest));
             let width = match sight {
@@ -78,23 +96,23 @@ impl Interference {
         }
     }
 
+    /// Remembers the light of the next leaf.
+    pub fn remember(&mut self, light: [f64; 3]) {
+        self.lights.push(light);
+    }
+
     /// What the power of a leaf is multiplied by.
     pub fn gain(&self, leaf: usize) -> f64 {
         self.gain.get(leaf).copied().unwrap_or(1.0)
     }
 
-    /// Works out the gains, `detected` being the power of a leaf and `together` what a pair adds to that of its leaves,
-    /// and returns the sum of what is added: it is missing in branches that were pruned. Parallel pairs alone count:
-    /// of the fringes of others it is the mean.
-    pub fn share_out<const N: usize>(
-        &mut self,
-        leaves: &[Leaf<N>],
-        detected: impl Fn(&Leaf<N>) -> f64,
-        together: impl Fn(&Pair) -> f64,
-    ) -> f64 {
+    /// Works out the gains, and the sum of what is added. Parallel pairs alone count: of the fringes of others it is
+    /// the mean.
+    fn share_out<const N: usize>(&mut self, detection: &Detection<N>, leaves: &[Leaf<N>]) {
         self.gain.clear();
+        self.added = 0.0;
         if !self.pairs.iter().any(|pair| pair.is_parallel(leaves)) {
-            return 0.0;
+            return;
         }
         self.clusters.clear();
         self.clusters.extend(0..leaves.len());
@@ -105,21 +123,19 @@ impl Interference {
         self.gain.resize(leaves.len(), 0.0);
         // The sum over each cluster stands with its first leaf.
         for (number, leaf) in leaves.iter().enumerate() {
-            self.gain[first(&self.clusters, number)] += detected(leaf);
+            self.gain[first(&self.clusters, number)] += detection.detected(&leaf.power);
         }
         self.alone.clone_from(&self.gain);
-        let mut added = 0.0;
         for pair in self.pairs.iter().filter(|pair| pair.is_parallel(leaves)) {
-            let more = together(pair);
+            let more = detection.detected(&std::array::from_fn(|i| pair.power(leaves, i)));
             self.gain[first(&self.clusters, pair.leaves[0])] += more;
-            added += more;
+            self.added += more;
         }
         for number in (0..leaves.len()).rev() {
             let first = first(&self.clusters, number);
             // Rounding may leave less than nothing of light that goes out.
             self.gain[number] = (self.gain[first] / self.alone[first]).max(0.0);
         }
-        added
     }
 }
 

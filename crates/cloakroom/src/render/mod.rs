@@ -239,12 +239,12 @@ struct Exposer<'a, const N: usize> {
 
 impl<'a, const N: usize> Exposer<'a, N> {
     fn new(prepared: &'a PreparedScene<'a>, detection: &'a Detection<N>) -> Self {
+        let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
+        let tracer = if detection.group_delays { tracer.with_group_delays() } else { tracer };
         Self {
             prepared,
             detection,
-            tracers: FourTracers::new(
-                &Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen),
-            ),
+            tracers: FourTracers::new(&tracer),
             working: Working::default(),
         }
     }
@@ -326,6 +326,8 @@ impl<'a, const N: usize> Exposer<'a, N> {
                 if self.detection.first_face { tracer.first_face(&launches[i]) } else { None };
             Traced { ray: rays[i], leaves, outcome, first_face }
         });
+        let coherent = self.prepared.coherence.is_some();
+        let expose = if coherent { expose::<N, true> } else { expose::<N, false> };
         for (i, pixel) in pixels.iter_mut().enumerate() {
             let rays = [&block[i], &block[i ^ 1], &block[i ^ 2]];
             expose(self.prepared, self.detection, rays, spacing, pixel, &mut self.working);

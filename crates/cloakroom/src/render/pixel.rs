@@ -18,7 +18,14 @@ pub(super) struct Pixel {
     pub reflected: f64,
     pub ordinary: f64,
     pub extraordinary: f64,
-    /// Time of flight, its square spread and its difference, each weighted by power.
+    /// Times of flight, and what pulses take.
+    pub times: Times,
+    pub group_delays: Times,
+}
+
+/// Running sums over times (ns), each weighted by power.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Times {
     time: f64,
     variance: f64,
     difference: f64,
@@ -29,9 +36,9 @@ pub(super) struct Pixel {
 /// The pulses of one camera ray: time of flight (ns) and power of each leaf on the photograph.
 pub(super) type Pulses = Vec<(f64, f64)>;
 
-impl Pixel {
+impl Times {
     /// Adds the pulses of one camera ray; `empty` is its time of flight in the empty scene, ns.
-    pub fn add_pulses(&mut self, pulses: &[(f64, f64)], empty: Option<f64>) {
+    pub fn add(&mut self, pulses: &[(f64, f64)], empty: Option<f64>) {
         let power: f64 = pulses.iter().map(|(_, power)| power).sum();
         if power <= 0.0 {
             return;
@@ -50,6 +57,21 @@ impl Pixel {
         }
     }
 
+    // 0/0 is the NaN that says: no leaf has reached the photograph.
+    fn mean(&self) -> f64 {
+        self.time / self.time_weight
+    }
+
+    fn spread(&self) -> f64 {
+        (self.variance / self.time_weight).sqrt()
+    }
+
+    fn difference(&self) -> f64 {
+        self.difference / self.difference_weight
+    }
+}
+
+impl Pixel {
     /// The value of a channel, the pixel having had `samples` samples; `color` says which of red 0,
     /// green 1 and blue 2 where the channel holds all three.
     pub fn value(&self, channel: ChannelKind, color: usize, samples: f64) -> f64 {
@@ -57,14 +79,17 @@ impl Pixel {
             ChannelKind::Image(i) => self.image[i] / samples,
             ChannelKind::Horizontal(i) => self.horizontal[i] / samples,
             ChannelKind::Vertical(i) => self.vertical[i] / samples,
-            // 0/0 is the NaN that says: no leaf has reached the photograph, no surface was met.
-            ChannelKind::TimeOfFlight => self.time / self.time_weight,
-            ChannelKind::TimeOfFlightSpread => (self.variance / self.time_weight).sqrt(),
-            ChannelKind::TimeOfFlightDifference => self.difference / self.difference_weight,
+            ChannelKind::TimeOfFlight => self.times.mean(),
+            ChannelKind::TimeOfFlightSpread => self.times.spread(),
+            ChannelKind::TimeOfFlightDifference => self.times.difference(),
+            ChannelKind::GroupDelay => self.group_delays.mean(),
+            ChannelKind::GroupDelaySpread => self.group_delays.spread(),
+            ChannelKind::GroupDelayDifference => self.group_delays.difference(),
             ChannelKind::Delivered => self.delivered / samples,
             ChannelKind::Escaped => self.escaped / samples,
             ChannelKind::Absorbed => self.absorbed / samples,
             ChannelKind::Pruned => self.pruned / samples,
+            // 0/0 where no surface was met.
             ChannelKind::FirstFaceReflectance => self.reflected / self.surfaces_met,
             ChannelKind::ExtraordinaryShare => {
                 self.extraordinary / (self.ordinary + self.extraordinary)

@@ -126,7 +126,8 @@ pub fn assembly(scene: &Scene) -> Result<Assembly, PreparedSceneError> {
         let wrong = |error| PreparedSceneError::Device { device: index, error };
         let pose = device.pose().map_err(wrong)?;
         let structure = device.structure(index).map_err(wrong)?;
-        placed.push(Placed { pose, structure });
+        let dispersion = device.placement.dispersion;
+        placed.push(Placed { pose, structure, dispersion });
     }
     let assembly = Assembly::new(placed).with_wavelength(scene.light.wavelength_nm);
     let is_body = |index: usize| assembly.devices()[index].structure.hull.body.is_some();
@@ -205,15 +206,20 @@ pub fn coherence(scene: &Scene) -> Coherence {
 }
 
 /// How given rays are traced: the threshold is the given one, else that which the scene writes, else 1e-9, or 1e-20 if
-/// leaves are to be added as fields (`coherent`).
+/// leaves are to be added as fields (`coherent`); with what pulses take if `group_delays`.
 #[must_use]
-pub fn ray_settings(scene: &Scene, min_power: Option<f64>, coherent: bool) -> RaySettings {
+pub fn ray_settings(
+    scene: &Scene,
+    min_power: Option<f64>,
+    coherent: bool,
+    group_delays: bool,
+) -> RaySettings {
     let settings = &scene.trace;
     let written = Some(settings.min_power.value).filter(|_| settings.min_power.given);
     let least = if coherent { COHERENT_MIN_POWER } else { RAY_MIN_POWER };
     let min_power = min_power.or(written).unwrap_or(least);
     let limits = Limits { min_power, tolerance: settings.tolerance };
-    RaySettings { limits, coherence: coherent.then(|| coherence(scene)) }
+    RaySettings { limits, coherence: coherent.then(|| coherence(scene)), group_delays }
 }
 
 /// What rays see that hit nothing.

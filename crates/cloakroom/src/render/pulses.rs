@@ -1,11 +1,11 @@
 //! The pulses of one pixel: what a short flash of the photograph looks like there.
 
 use super::detection::Detection;
-use super::exposure::{empty_time_of_flight, time_of_flight};
+use super::exposure::{empty_time_of_flight, group_delay, time_of_flight};
 use super::interference::Interference;
 use super::pixel::Pixel;
 use super::{ChannelKind, PreparedScene};
-use crate::trace::{Leaf, Pair, Tracer};
+use crate::trace::Tracer;
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
 use serde::Serialize;
@@ -48,6 +48,8 @@ pub struct Pulse {
     pub time_of_flight_ns: f64,
     /// The same less that of the empty view, ns; `None` where the empty view misses the photograph.
     pub delay_ns: Option<f64>,
+    /// What it takes as a pulse, ns, where the time of flight is that of the phase; `None` behind media that absorb.
+    pub group_delay_ns: Option<f64>,
     /// Its share of the power.
     pub power: f64,
     /// Where on the photograph it comes from, the strongest first.
@@ -105,23 +107,20 @@ fn list<const N: usize>(
     let camera = &prepared.scene.camera;
     let [x, y] = pixel.map(|i| f64::from(i) + 0.5);
     let ray = camera.ray(x, y);
-    let mut tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
+    let mut tracer = Tracer::new(&prepared.assembly, prepared.limits)
+        .with_screen(prepared.screen)
+        .with_group_delays();
     let (leaves, outcome) = tracer.trace(&detection.launch(camera, &ray));
     let mut interference = Interference::default();
-    let sights = leaves.iter().map(|leaf| (leaf.distance_to(&prepared.screen), [0.0; 3]));
-    interference.seen.extend(sights);
-    let detected = |leaf: &Leaf<N>| detection.detected(&leaf.power);
-    interference.find(prepared, leaves, ray.origin, detected);
-    let together =
-        |pair: &Pair| detection.detected(&std::array::from_fn(|i| pair.power(leaves, i)));
-    let moved = interference.share_out(leaves, detected, together);
+    interference.find(prepared, detection, leaves, ray.origin);
     let (mut arrivals, mut escaped, mut ended) = (Vec::new(), 0.0, 0.0);
     for (number, leaf) in leaves.iter().enumerate() {
-        let power = detected(leaf) * interference.gain(number);
+        let power = detection.detected(&leaf.power) * interference.gain(number);
         match (leaf.body(), leaf.distance_to(&prepared.screen)) {
             (Some(_), _) => ended += power,
             (None, Some(distance)) if power > 0.0 => arrivals.push(Arrival {
                 time: time_of_flight(leaf, distance),
+                group_delay: group_delay(leaf, distance),
                 power,
                 // On the plane to the last digit.
                 position: prepared.screen.foot(leaf.position + leaf.direction * distance),
@@ -132,7 +131,7 @@ fn list<const N: usize>(
     }
     let empty = empty_time_of_flight(prepared, &ray);
     let mut sums = Pixel::default();
-    sums.add_pulses(&arrivals.iter().map(|a| (a.time, a.power)).collect::<Vec<_>>(), empty);
+    sums.times.add(&arrivals.iter().map(|a| (a.time, a.power)).collect::<Vec<_>>(), empty);
     let number = |channel| Some(sums.value(channel, 0, 1.0)).filter(|value| value.is_finite());
     let tolerance = prepared.limits.tolerance;
     let resolution_ns = tolerance / SPEED_OF_LIGHT;
@@ -155,7 +154,7 @@ fn list<const N: usize>(
         time_of_flight_spread_ns: number(ChannelKind::TimeOfFlightSpread),
         escaped,
         absorbed: detection.detected(&outcome.absorbed) + ended,
-        pruned: detection.detected(&outcome.pruned) - moved,
+        pruned: detection.detected(&outcome.pruned) - interference.added,
     }
 }
 
@@ -163,6 +162,7 @@ fn list<const N: usize>(
 #[derive(Clone, Copy, Debug)]
 struct Arrival {
     time: f64,
+    group_delay: f64,
     power: f64,
     position: DVec3,
 }
@@ -174,6 +174,7 @@ impl Pulse {
         // Relative to the first arrival: differences of yoctoseconds survive.
         let first = arrivals.first().map_or(0.0, |arrival| arrival.time);
         let later: f64 = arrivals.iter().map(|a| (a.time - first) * a.power).sum::<f64>() / power;
+        let group = arrivals.iter().map(|a| a.group_delay * a.power).sum::<f64>() / power;
         let mut landings: Vec<Landing> = Vec::new();
         for arrival in arrivals {
             let near = |landing: &&mut Landing| {
@@ -191,6 +192,7 @@ impl Pulse {
         Self {
             time_of_flight_ns: first + later,
             delay_ns: empty.map(|empty| first - empty + later),
+            group_delay_ns: Some(group).filter(|group| group.is_finite()),
             power,
             landings,
         }

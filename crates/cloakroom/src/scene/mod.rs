@@ -21,7 +21,7 @@ pub use tables::{
 };
 
 pub use crate::device::Show;
-use crate::device::{AnyDevice, Entry, Fact, Request, Structure};
+use crate::device::{self, AnyDevice, Entry, Fact, Metal, Request, Structure};
 use crate::keys::{Field, KeyError, KeyKind, Table, Value, VisitFile, vector_text};
 use crate::photograph::ImageSource;
 use cloakroom_trace::key;
@@ -158,6 +158,14 @@ impl PictureSettings {
     pub fn asks_for(&self, channel: &str) -> bool {
         self.channels.iter().any(|held| held.word() == channel) || self.map.name() == Some(channel)
     }
+
+    /// Whether it asks for any channel of what pulses take.
+    #[must_use]
+    pub fn asks_for_group_delay(&self) -> bool {
+        ["group_delay", "group_delay_spread", "group_delay_difference"]
+            .iter()
+            .any(|channel| self.asks_for(channel))
+    }
 }
 
 impl DeviceSettings {
@@ -184,23 +192,27 @@ impl DeviceSettings {
         self.placement.core == Core::Open
     }
 
-    /// The structure that is shown, imperfections included; `number` is the device's in its scene.
+    /// The structure that is shown, imperfections and coatings included; `number` is the device's
+    /// in its scene.
     ///
     /// # Errors
     ///
     /// If keys do not go together, or a file of an index cannot be read.
     pub fn structure(&self, number: usize) -> Result<Structure, KeyError> {
-        let Placement { show, imperfection, .. } = &self.placement;
+        let Placement { show, imperfection, coating, .. } = &self.placement;
         let structure = self.built(*show)?;
         let message = format!("{} with these keys has no core that could be open", self.kind());
         let closed = self.has_open_core() && structure.hull.filled.is_none();
         KeyError::refuse_if(closed, key!(Placement.core), message)?;
-        match imperfection {
-            Some(imperfection) if *show == Show::Cloak => {
-                imperfection.apply(structure, (number, self.draw))
-            }
-            _ => Ok(structure),
+        let layers = device::layers(key!(Placement.coating), coating)?;
+        if *show != Show::Cloak {
+            return Ok(structure);
         }
+        let structure = match imperfection {
+            Some(imperfection) => imperfection.apply(structure, (number, self.draw))?,
+            None => structure,
+        };
+        structure.coated(key!(Placement.coating), layers)
     }
 
     /// The structure of one view of the device as it is designed.
@@ -210,7 +222,18 @@ impl DeviceSettings {
     /// As [`Self::structure`].
     pub fn built(&self, show: Show) -> Result<Structure, KeyError> {
         let (open_core, length) = (self.has_open_core(), self.placement.length);
-        crate::index_file::with_files_read(&self.device)?.build(Request { show, open_core, length })
+        let request = Request { show, open_core, length };
+        let structure = crate::index_file::with_files_read(&self.device)?.build(request)?;
+        let (key, metal) = (key!(Placement.metal), self.placement.metal.as_ref());
+        let message = "metal is false; a cloak without metal has core = \"open\"";
+        KeyError::refuse_if(metal == Some(&Metal::None), key, message)?;
+        let Some(metal) = metal.map(Metal::medium).transpose()?.flatten() else {
+            return Ok(structure);
+        };
+        let (structure, found) = structure.of_metal(metal);
+        let message = format!("{} with these keys has no metal of its own", self.kind());
+        KeyError::refuse_if(!found && show == Show::Cloak, key, message)?;
+        Ok(structure)
     }
 
     /// What can be said of the device in numbers: see [`Device::facts`](crate::device::Device::facts).

@@ -1,7 +1,7 @@
 //! The tables of a scene file but a device's own.
 
 use super::Polarizer;
-use crate::device::{Imperfection, Show};
+use crate::device::{CoatingLayer, Dispersion, Imperfection, Metal, Show};
 use crate::keys::{Given, Key, ValueRange};
 use crate::photograph::ImageSource;
 use cloakroom_trace::{choice, table};
@@ -116,6 +116,8 @@ choice! {
         ExtraordinaryShare = "extraordinary_share",
         /// The share of power that the first face reflects.
         FirstFaceReflectance = "first_face_reflectance",
+        /// What a pulse takes, its spread and its difference to the empty scene.
+        GroupDelay = "group_delay",
     }
 }
 
@@ -130,6 +132,12 @@ choice! {
         TimeOfFlightSpread = "time_of_flight_spread",
         /// How much longer light is on its way than without devices.
         TimeOfFlightDifference = "time_of_flight_difference",
+        /// How long a pulse is on its way.
+        GroupDelay = "group_delay",
+        /// How far the pulses of a pixel spread.
+        GroupDelaySpread = "group_delay_spread",
+        /// How much longer a pulse is on its way than without devices.
+        GroupDelayDifference = "group_delay_difference",
         /// The share of power that comes from the photograph.
         Delivered = "delivered",
         /// The share of power that comes from the surroundings.
@@ -157,7 +165,7 @@ table! {
     /// What a picture shows and holds.
     pub struct PictureSettings {
         /// Channels that EXR and NPZ files hold beside those they always do; `stokes` stands for `stokes.S0` to
-        /// `stokes.S3`.
+        /// `stokes.S3`, `group_delay` for that, its spread and its difference.
         channels: Vec<OptionalChannel>,
         /// A channel that a PNG shows in false colors instead of what the camera sees.
         map: MapChannel,
@@ -193,6 +201,14 @@ table! {
         position: DVec3, "cm", in ValueRange::COORDINATE,
         /// Whole length along the device's z axis; endless where it is absent.
         length: Option<f64>, "cm", in ValueRange::LENGTH,
+        /// How its media depend on the frequency: what a pulse takes, in `group_delay` and where the phase runs backwards.
+        /// `causal`: as little as causality allows, a bound for every real device; `none`: as the phase.
+        dispersion: Dispersion,
+        /// Thin layers on all of its surfaces that face the outside, from the outside inwards; each
+        /// a table with its thickness and its index or permittivity.
+        coating: Vec<CoatingLayer>,
+        /// What its metal is of: { index = [n, k] }; a perfect conductor by default.
+        metal: Option<Metal>,
         /// How what is made of it differs from its design: random errors, levels, a limited range, loss.
         imperfection: Option<Imperfection>,
     }

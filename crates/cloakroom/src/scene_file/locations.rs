@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::error::SceneFileError;
+use super::overrides::Override;
 use crate::keys::{KeyError, Value};
 use std::ops::Range;
 
@@ -36,13 +37,13 @@ pub(super) fn join(path: &str, key: &str) -> String {
 pub struct Locations {
     name: String,
     pub(super) text: Arc<str>,
-    pub(super) overrides: Arc<[String]>,
+    pub(super) overrides: Arc<[Override]>,
     /// By path, such as `device.1.side`.
     places: HashMap<String, Place>,
 }
 
 impl Locations {
-    pub(super) fn new(name: &str, text: &str, overrides: &[String]) -> Self {
+    pub(super) fn new(name: &str, text: &str, overrides: &[Override]) -> Self {
         let places = HashMap::new();
         Locations { name: name.to_owned(), text: text.into(), overrides: overrides.into(), places }
     }
@@ -107,7 +108,7 @@ impl Locations {
         match origin {
             Origin::File(span) => error.in_text(&self.text, span.clone()),
             Origin::Override(number) => {
-                SceneFileError { override_text: Some(self.overrides[*number].clone()), ..error }
+                SceneFileError { override_text: Some(self.overrides[*number].to_string()), ..error }
             }
         }
     }

@@ -19,6 +19,7 @@ use std::path::Path;
 
 pub use error::SceneFileError;
 pub use locations::Locations;
+pub use overrides::Override;
 pub use schema::schema;
 
 use crate::input::read_up_to;
@@ -42,7 +43,7 @@ pub struct Loaded {
 /// # Errors
 ///
 /// If the file cannot be read, is not valid TOML, or says something a scene cannot say.
-pub fn load(path: &Path, overrides: &[String]) -> Result<Loaded, SceneFileError> {
+pub fn load(path: &Path, overrides: &[Override]) -> Result<Loaded, SceneFileError> {
     let name = path.display().to_string();
     let text = read_text(path, &name)?;
     parse(&text, &name, path.parent().unwrap_or(Path::new("")), overrides)
@@ -58,7 +59,7 @@ pub fn parse(
     text: &str,
     name: &str,
     base_folder: &Path,
-    overrides: &[String],
+    overrides: &[Override],
 ) -> Result<Loaded, SceneFileError> {
     let mut locations = Locations::new(name, text, overrides);
     let root = tree::parse(&mut locations)?;
@@ -87,7 +88,7 @@ pub fn assemble(
     tables: Value,
     name: &str,
     base_folder: &Path,
-    overrides: &[String],
+    overrides: &[Override],
 ) -> Result<Loaded, SceneFileError> {
     read_values(tables, base_folder, Locations::new(name, "", overrides))
 }

@@ -3,17 +3,53 @@
 use super::error::SceneFileError;
 use super::locations::{Locations, Origin, join};
 use super::read::DEVICES;
-use super::tree::parse_value;
+use super::tree::{parse_value, to_toml};
 use crate::keys::{Value, quoted};
+use std::fmt;
 use std::sync::Arc;
 
 /// The deepest key there is; anything deeper is refused before a tree of it is built.
 const DEEPEST: usize = 16;
 
+/// What is set in a scene: one key.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Override {
+    /// As text, `camera.samples=16`.
+    Text(String),
+    /// As a key and its value.
+    Value {
+        /// The key, as in `device.0.rotation`.
+        key: String,
+        /// What it is to be.
+        value: Value,
+    },
+}
+
+impl From<&str> for Override {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
+impl From<String> for Override {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+impl fmt::Display for Override {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Text(text) => f.write_str(text),
+            Self::Value { key, value } => write!(f, "{key}={}", to_toml(value)),
+        }
+    }
+}
+
 /// Applies overrides to a scene, in order.
 pub(super) fn apply(root: &mut Value, locations: &mut Locations) -> Result<(), SceneFileError> {
-    for (number, text) in Arc::clone(&locations.overrides).iter().enumerate() {
-        apply_one(root, text, number, locations)
+    for (number, each) in Arc::clone(&locations.overrides).iter().enumerate() {
+        apply_one(root, each, number, locations)
             .map_err(|message| locations.error(&Origin::Override(number), message))?;
     }
     Ok(())
@@ -21,12 +57,16 @@ pub(super) fn apply(root: &mut Value, locations: &mut Locations) -> Result<(), S
 
 fn apply_one(
     root: &mut Value,
-    text: &str,
+    each: &Override,
     number: usize,
     locations: &mut Locations,
 ) -> Result<(), String> {
-    let Some((path, value)) = text.split_once('=') else {
-        return Err("an override is written KEY=VALUE, such as camera.samples=16".to_owned());
+    let (path, written) = match each {
+        Override::Value { key, value } => (key.as_str(), Ok(value)),
+        Override::Text(text) => text
+            .split_once('=')
+            .map(|(path, value)| (path, Err(value.trim())))
+            .ok_or("an override is written KEY=VALUE, such as camera.samples=16")?,
     };
     let path: Vec<&str> = path.split('.').map(str::trim).collect();
     if path.iter().any(|key| key.is_empty()) {
@@ -35,7 +75,7 @@ fn apply_one(
     if path.len() > DEEPEST {
         return Err("no key lies that deep".to_owned());
     }
-    let value = parse_value(value.trim())?;
+    let value = written.map_or_else(parse_value, |value| Ok(value.clone()))?;
     let mut walked = String::new();
     let mut place = root;
     // The first part of the path that was not there.

@@ -154,7 +154,9 @@ impl Reader<'_> {
             _ => Err(self.locations.error_at(path, key.wrong_type(value))),
         };
         match (key.kind, value) {
-            (KeyKind::Table { keys }, _) => inner(keys, value, path),
+            (KeyKind::Table { keys }, _) | (KeyKind::FlagOrTable { keys }, Value::Table(_)) => {
+                inner(keys, value, path)
+            }
             (KeyKind::Tables { keys }, Value::List(items)) => {
                 let items = items.iter().enumerate();
                 let held = items.map(|(i, item)| inner(keys, item, &join(path, &i.to_string())));

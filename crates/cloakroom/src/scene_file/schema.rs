@@ -94,6 +94,7 @@ fn property(key: &Key) -> Value {
         KeyKind::Image => json!({ "type": "string", "minLength": 1 }),
         KeyKind::ChoiceOrNumber { options } => json!({ "anyOf": [{ "enum": options }, number] }),
         KeyKind::Tensor => tensor(number),
+        KeyKind::Complex => json!({ "anyOf": [number, list(number.clone(), 2)] }),
         KeyKind::Polygon => json!({ "type": "array", "items": list(number, 2), "minItems": 3 }),
         KeyKind::Samples => {
             let row = json!({ "type": "array", "items": number, "minItems": 1 });
@@ -101,6 +102,9 @@ fn property(key: &Key) -> Value {
             json!({ "anyOf": [{ "type": "string", "minLength": 1 }, rows] })
         }
         KeyKind::Table { keys } => inner_table(keys),
+        KeyKind::FlagOrTable { keys } => {
+            json!({ "anyOf": [{ "type": "boolean" }, inner_table(keys)] })
+        }
         KeyKind::Tables { keys } => json!({ "type": "array", "items": inner_table(keys) }),
     };
     property["description"] = key.doc.into();

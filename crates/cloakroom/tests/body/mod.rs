@@ -78,7 +78,7 @@ fn a_group_index_sets_the_time_alone() {
     let mut tracer = Tracer::new(&assembly, LIMITS);
     let (leaves, _) = tracer.trace(&launch(DVec3::new(-5.0, 0.0, 0.0), DVec3::X));
     assert!((leaves[0].optical_path - (3.0 - 4.0)).abs() < 1e-12);
-    assert!((leaves[0].group_path - (3.0 + 12.0)).abs() < 1e-12);
+    assert!((leaves[0].delay_path - (3.0 + 12.0)).abs() < 1e-12);
 }
 
 #[test]

@@ -12,7 +12,7 @@ struct Ray {
     position: DVec3,
     direction: DVec3,
     optical_path: f64,
-    group_path: f64,
+    delay_path: f64,
     power: [f64; 2],
 }
 
@@ -36,7 +36,7 @@ impl Ray {
             position: launch.origin,
             direction: launch.direction,
             optical_path: 0.0,
-            group_path: 0.0,
+            delay_path: 0.0,
             power: [1.0; 2],
         }
     }
@@ -44,7 +44,10 @@ impl Ray {
     fn run(&mut self, distance: f64, medium: Glass) {
         self.position += self.direction * distance;
         self.optical_path += medium.index * distance;
-        self.group_path += medium.index.abs().max(1.0) * distance;
+        // Backwards, at the least dispersion: ε = n/z and µ = nz have the derivatives 2 - ε and 2 - µ.
+        let Glass { index: n, impedance: z } = medium;
+        let group = 0.5 * (z * (2.0 - n / z) + (2.0 - n * z) / z);
+        self.delay_path += distance * if n < 0.0 { group } else { n };
     }
 
     /// Refracts at a surface with a unit normal against the ray; `None` at total reflection.
@@ -78,7 +81,7 @@ fn find<'a>(leaves: &'a [Leaf<2>], ray: &Ray) -> Option<&'a Leaf<2>> {
 
 fn check(leaf: &Leaf<2>, ray: &Ray) {
     assert!((leaf.optical_path - ray.optical_path).abs() < 1e-8, "{leaf:?} {ray:?}");
-    assert!((leaf.group_path - ray.group_path).abs() < 1e-8, "{leaf:?} {ray:?}");
+    assert!((leaf.delay_path - ray.delay_path).abs() < 1e-8, "{leaf:?} {ray:?}");
     // Both launched polarizations together are s and p together, while the plane of incidence stays.
     let sum = leaf.power[0] + leaf.power[1];
     assert!((sum - ray.power[0] - ray.power[1]).abs() < 1e-9, "{leaf:?} {ray:?}");
@@ -152,7 +155,7 @@ fn slabs_shift_rays_to_the_side() {
 }
 
 /// A slab with ε = µ = -1 images a point at a distance u before it to the distance d - u behind it, without
-/// any phase on the way and without reflection; light takes as long as it would without it.
+/// any phase on the way and without reflection; a pulse takes three times as long in it as light in air, at least.
 #[test]
 fn a_matched_negative_slab_is_a_perfect_lens() {
     let assembly = assembly(&body("thickness = 6\npermittivity = -1\npermeability = -1"));
@@ -171,7 +174,7 @@ fn a_matched_negative_slab_is_a_perfect_lens() {
         let to_image = image - leaf.position;
         assert!(to_image.reject_from_normalized(leaf.direction).length() < 1e-9);
         assert!((leaf.optical_path + to_image.dot(leaf.direction)).abs() < 1e-9);
-        assert!((leaf.group_path - 8.5 / polar.cos()).abs() < 1e-9);
+        assert!((leaf.delay_path - (2.5 + 3.0 * 6.0) / polar.cos()).abs() < 1e-9);
     }
 }
 

@@ -1,4 +1,4 @@
-#[path = "../../../cloakroom/tests/long.rs"]
+#[path = "../../../optics/tests/long.rs"]
 mod long;
 
 use super::*;

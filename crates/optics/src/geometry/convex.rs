@@ -133,6 +133,47 @@ impl<'s> Convex<'s> {
         (self.pose.to_world(middle.extend(0.5 * (low + high))), matrix)
     }
 
+    /// The plane of a sheet: its unit normal, and n·p of its points.
+    fn sheet_plane(&self) -> Option<(DVec3, f64)> {
+        let Section::Outline(Outline { corners }) = self.section else { return None };
+        let [a, b] = corners[..] else { return None };
+        let across = (b - a).normalize_or_zero().perp();
+        let normal = self.pose.vector_to_world(across.extend(0.0));
+        Some((normal, across.dot(a) + normal.dot(self.pose.origin)))
+    }
+
+    /// Whether two sheets cross: on the line where their planes meet is a point deeper than half of `slack` within the edges
+    /// of both. Off that line they are apart, however small the angle between them.
+    fn crosses(&self, other: &Self, slack: f64) -> Option<bool> {
+        let [(normal, offset), (second, beyond)] = [self.sheet_plane()?, other.sheet_plane()?];
+        let along = normal.cross(second);
+        let squared = along.length_squared();
+        if squared < SAME_AXIS * SAME_AXIS {
+            return Some(false);
+        }
+        let point = (second.cross(along) * offset + along.cross(normal) * beyond) / squared;
+        let along = along / squared.sqrt();
+        let edges = |sheet: &Self, normal: DVec3| {
+            let planes = sheet.bounds(0.0).into_iter().filter_map(|bound| match bound {
+                Bound::Plane { normal, offset } => Some((normal, offset)),
+                Bound::Tube { .. } | Bound::Ball { .. } => None,
+            });
+            planes.filter(|(edge, _)| edge.dot(normal).abs() < 0.5).collect::<Vec<_>>()
+        };
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (edge, end) in [edges(self, normal), edges(other, second)].concat() {
+            let (depth, rate) = (end - 0.5 * slack - edge.dot(point), edge.dot(along));
+            if rate.abs() < SAME_AXIS {
+                high = if depth > 0.0 { high } else { f64::NEG_INFINITY };
+            } else if rate > 0.0 {
+                high = high.min(depth / rate);
+            } else {
+                low = low.max(depth / rate);
+            }
+        }
+        Some(low < high)
+    }
+
     /// Whether two of them press into each other by more than `slack`: see [`meet_deep`].
     pub fn overlaps(&self, other: &Self, slack: f64) -> bool {
         let (from, to) = if self.ellipsoid().1.determinant() < other.ellipsoid().1.determinant() {
@@ -143,6 +184,9 @@ impl<'s> Convex<'s> {
         // In the frame of the smaller one, where its coordinates are small.
         let frame = from.pose;
         let (from, to) = (from.seen_from(&frame), to.seen_from(&frame));
+        if let Some(crosses) = from.crosses(&to, slack) {
+            return crosses;
+        }
         let mut bounds = from.bounds(slack);
         bounds.extend(to.bounds(slack));
         meet_deep(&bounds, from.ellipsoid(), slack)

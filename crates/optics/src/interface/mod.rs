@@ -22,6 +22,7 @@ mod splitting;
 
 pub use coating::transmit_antireflection;
 pub use conductor::reflect_at_conductor;
+pub use matching::{Backing, Film, FilmLayer, split_coated};
 pub use reflectionless::Reflectionless;
 pub use scattering::{JonesMatrices, Scattering};
 

@@ -9,6 +9,7 @@
 
 mod class;
 mod error;
+mod group_index;
 mod modes;
 mod principal_axes;
 mod quadratic;

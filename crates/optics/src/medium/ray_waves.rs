@@ -1,10 +1,10 @@
 //! The waves of a medium whose rays run along a given direction.
 
-use super::class::{Class, Uniaxial};
+use super::class::Class;
 use super::{Heading, Medium, Mode, ModeKind};
-use crate::wave::ComplexVector;
+use crate::wave::{ComplexVector, poynting};
 use arrayvec::ArrayVec;
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use num_complex::Complex64;
 
 /// A wave with a given ray.
@@ -53,12 +53,10 @@ impl Medium {
             let index = root(e) * root(m);
             return std::iter::once(shared(direction * index.re, direction * index.im)).collect();
         }
-        let extraordinary = match &self.class {
-            Class::Uniaxial(medium) => medium.extraordinary_normal(direction),
-            _ => direction,
-        };
-        let normals = [direction, extraordinary];
-        let wave = |number: usize| self.wave_with_ray(number, normals[number], direction);
+        if !self.absorbs() {
+            return self.lossless_waves_along_ray(direction);
+        }
+        let wave = |number: usize| self.wave_with_ray(number, direction);
         let mut waves: ArrayVec<RayWave, 2> = (0..2).filter_map(wave).collect();
         if let [a, b] = waves.as_slice()
             && let (Some(one), Some(other)) = (a.electric, b.electric)
@@ -70,9 +68,48 @@ impl Medium {
         waves
     }
 
-    /// Of the two modes along a wave normal the one of that number, its normal turned until its ray runs along
+    /// The same of lossless anisotropic media. With the vector t along the ray, t·p = 1, Maxwell's equations are
+    /// t × D = µ⁻¹B and t × B = -ε⁻¹D: those of the modes of a medium with these tensors (Born & Wolf, Principles of
+    /// Optics, 15.2), of which p = D × B/(t·D × B). On an axis of equal ray velocities any two of these serve.
+    fn lossless_waves_along_ray(&self, direction: DVec3) -> ArrayVec<RayWave, 2> {
+        let inverse = |tensor: &DMat3| {
+            let inverse = tensor.inverse();
+            (inverse + inverse.transpose()) * 0.5
+        };
+        let tensors = [inverse(&self.real.permittivity), inverse(&self.real.permeability)];
+        let Ok(dual) = Self::new(tensors[0], tensors[1]) else { return ArrayVec::new() };
+        let headings = [Heading::Forward, Heading::Backward];
+        let modes = headings.into_iter().flat_map(|to| dual.modes(DVec3::ZERO, direction, to));
+        let mut waves: ArrayVec<RayWave, 2> = modes
+            .filter(Mode::is_propagating)
+            .filter_map(|Mode { kind, wave_vector: ray, electric: d, magnetic: b, .. }| {
+                let (electric, magnetic) = (d.transformed(&tensors[0]), b.transformed(&tensors[1]));
+                let power = poynting(electric, magnetic).dot(direction);
+                let wave_vector = poynting(d, b);
+                (power > 0.0).then(|| RayWave {
+                    kind,
+                    wave_vector: wave_vector / wave_vector.dot(ray.re),
+                    attenuation: DVec3::ZERO,
+                    electric: Some(electric * power.sqrt().recip()),
+                })
+            })
+            .take(2)
+            .collect();
+        if let [a, b] = waves.as_mut_slice()
+            && a.kind == ModeKind::First
+        {
+            let swap = b.wave_vector.length() < a.wave_vector.length();
+            [a.kind, b.kind] = [ModeKind::First, ModeKind::Second];
+            if swap {
+                std::mem::swap(&mut a.kind, &mut b.kind);
+            }
+        }
+        waves
+    }
+
+    /// Of the two modes along `direction` the one of that number, its wave normal turned until its ray runs along
     /// `direction`.
-    fn wave_with_ray(&self, number: usize, normal: DVec3, direction: DVec3) -> Option<RayWave> {
+    fn wave_with_ray(&self, number: usize, direction: DVec3) -> Option<RayWave> {
         let (first, second) = direction.any_orthonormal_pair();
         let mode = |normal: DVec3| -> Option<(Mode, DVec2)> {
             // Where the phase runs against the power, the normal does, too.
@@ -82,7 +119,7 @@ impl Medium {
                 Some((mode, DVec2::new(ray.dot(first), ray.dot(second))))
             })
         };
-        let mut normal = normal.normalize();
+        let mut normal = direction;
         let (mut found, mut off) = mode(normal)?;
         for _ in 0..MOST_STEPS {
             if off.length() <= ALONG {
@@ -118,17 +155,6 @@ impl Medium {
     }
 }
 
-impl Uniaxial<f64> {
-    /// The wave normal of the extraordinary wave whose ray is given. Its wave vectors obey p·Qp = 1 with rays along Qp, Q
-    /// being a multiple of µ_o (1 - aaᵀ) + µ_e aaᵀ for the axis a.
-    fn extraordinary_normal(&self, direction: DVec3) -> DVec3 {
-        let along = self.axis * direction.dot(self.axis);
-        ((direction - along) / self.ordinary + along / self.extraordinary)
-            .try_normalize()
-            .unwrap_or(direction)
-    }
-}
-
 impl super::WaveSurface {
     /// The wave vector p of the wave whose ray runs along a unit vector: Ap along it, p·Ap = c.
     fn wave_of_ray(&self, direction: DVec3) -> Option<DVec3> {
@@ -141,7 +167,6 @@ impl super::WaveSurface {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DMat3;
 
     fn check(medium: &Medium, direction: DVec3, count: usize) {
         let waves = medium.waves_along_ray(direction);
@@ -152,6 +177,20 @@ mod tests {
             let ray = medium.poynting(wave.wave_vector, electric);
             assert!(ray.normalize().distance(direction) < 1e-9, "{wave:?} {ray}");
             assert!(wave.electric.is_none() || (ray.length() - 1.0).abs() < 1e-9, "{wave:?}");
+        }
+    }
+
+    #[test]
+    fn rays_on_the_axes_of_a_biaxial_medium_have_two_waves() {
+        let [a, b, c] = [1.0 / 2.25, 1.0 / 2.56, 1.0 / 3.24];
+        let crystal = Medium::new(DMat3::from_diagonal(DVec3::new(a, b, c)).inverse(), 1.0);
+        let crystal = crystal.expect("a medium");
+        // Of equal wave vectors, and of equal ray velocities.
+        let optic = ((a - b) / (b - c)).sqrt();
+        let ray = (c / a).sqrt() * optic;
+        for tan in [optic, ray] {
+            check(&crystal, DVec3::new(tan, 0.0, 1.0).normalize(), 2);
+            check(&crystal, DVec3::new(-tan, 0.0, 1.0).normalize(), 2);
         }
     }
 

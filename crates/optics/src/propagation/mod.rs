@@ -2,6 +2,7 @@
 
 mod closed_form;
 mod conformal_flow;
+mod group_path;
 mod nystrom;
 mod radial;
 pub mod reference;
@@ -11,6 +12,7 @@ pub use closed_form::{ClosedForm, CurvedRay, SquaredIndex, first_way_out, follow
 pub use conformal_flow::{
     Boundary, ConformalEnd, ConformalFlow, FlowError, Half, IndexPerturbation, VirtualPoint,
 };
+pub use group_path::group_path_along;
 pub use radial::{
     Border, CentralLens, OpticAxis, RadialFlow, TransformedShell, TransmutedSphere,
     UniaxialCylinder,

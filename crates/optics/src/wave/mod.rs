@@ -49,7 +49,7 @@ pub(crate) use linear_system::solve;
 pub(crate) use number::{Number, cross, dot};
 pub use polarization::transverse_basis;
 pub(crate) use polarization::turn_transverse;
-pub use stokes::arriving_stokes;
+pub use stokes::{arriving_stokes, stokes_of_coherency};
 
 use glam::DVec3;
 

@@ -1,6 +1,7 @@
 //! The Stokes parameters of light that arrives where rays are launched.
 
 use super::ComplexVector;
+use num_complex::Complex64;
 
 /// The Stokes parameters S0 to S3 of the light that arrives along one path from an unpolarized
 /// source of unit radiance at its far end. `horizontal` and `vertical` are the fields that leave the
@@ -30,8 +31,14 @@ use super::ComplexVector;
 /// ```
 #[must_use]
 pub fn arriving_stokes(horizontal: ComplexVector, vertical: ComplexVector) -> [f64; 4] {
-    let (h, v) = (horizontal.norm_squared(), vertical.norm_squared());
-    let coherency = horizontal.dot(vertical.conj());
+    let powers = [horizontal.norm_squared(), vertical.norm_squared()];
+    stokes_of_coherency(powers, horizontal.dot(vertical.conj()))
+}
+
+/// The same of a coherency matrix: its diagonal, the powers of what was launched horizontally and vertically, and the
+/// element ⟨`E_H` · `E_V`*⟩ between them.
+#[must_use]
+pub fn stokes_of_coherency([h, v]: [f64; 2], coherency: Complex64) -> [f64; 4] {
     [(h + v) / 2.0, (h - v) / 2.0, coherency.re, coherency.im]
 }
 
@@ -39,7 +46,6 @@ pub fn arriving_stokes(horizontal: ComplexVector, vertical: ComplexVector) -> [f
 mod tests {
     use super::*;
     use glam::DVec3;
-    use num_complex::Complex64;
 
     /// What leaves when cos ψ e_H + exp(iδ) sin ψ e_V is launched.
     fn power(h: ComplexVector, v: ComplexVector, psi: f64, delta: f64) -> f64 {

@@ -39,13 +39,14 @@ const STUCK: Duration = Duration::from_secs(60);
 const LEAST_POWER: f64 = 1e-4;
 
 /// What is counted of each parcel, by its name in the record.
-const COUNTS: [&str; 9] = [
+const COUNTS: [&str; 10] = [
     "devices",
     "rays",
     "leaves",
     "unbalanced",
     "not_finite",
     "unsound",
+    "early",
     "panics",
     "lost",
     "endless",
@@ -146,10 +147,12 @@ fn parcel(number: u64) -> Value {
 
 fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>) -> Value {
     let start = Instant::now();
-    let mut tracer = Tracer::new(assembly, limits);
+    let tracer = Tracer::new(assembly, limits);
+    let timed = draws.below(8) == 0;
+    let mut tracer = if timed { robustness::timed(tracer, assembly) } else { tracer };
     let reach = 10f64.powf(draws.between(0.7, 1.7));
     let [mut rays, mut leaves, mut lost, mut endless] = [0u64; 4];
-    let [mut unbalanced, mut not_finite, mut unsound, mut with_losses] = [0u64; 4];
+    let [mut unbalanced, mut not_finite, mut unsound, mut early, mut with_losses] = [0u64; 5];
     let (mut worst, mut slowest) = (0.0f64, Duration::ZERO);
     let mut last = start;
     // A device may be so large that rays begin in it: others are taken, but not for ever.
@@ -164,16 +167,17 @@ fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>) -> Value {
         leaves += found.len() as u64;
         lost += outcome.stats.lost;
         endless += u64::from(outcome.stats.endless > 0);
-        match robustness::examine(found, outcome) {
+        match robustness::examine(launch.origin, found, outcome) {
             Ok(off) => worst = worst.max(off),
             Err(fault) => {
                 match fault {
                     Fault::Unbalanced(_) => unbalanced += 1,
                     Fault::NotFinite => not_finite += 1,
                     Fault::Unsound => unsound += 1,
+                    Fault::Early(_) => early += 1,
                     Fault::Lost(_) => with_losses += 1,
                 }
-                if unbalanced + not_finite + unsound + with_losses == 1 {
+                if unbalanced + not_finite + unsound + early + with_losses == 1 {
                     eprintln!("{fault:?}: {launch:?}");
                 }
             }
@@ -184,7 +188,7 @@ fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>) -> Value {
     }
     json!({
         "devices": 1, "rays": rays, "leaves": leaves, "unbalanced": unbalanced, "not_finite": not_finite,
-        "unsound": unsound, "lost": lost, "endless": endless, "worst_balance": worst,
+        "unsound": unsound, "early": early, "lost": lost, "endless": endless, "worst_balance": worst,
         "slowest_ms": slowest.as_secs_f64() * 1e3, "seconds": start.elapsed().as_secs_f64(),
     })
 }
@@ -247,6 +251,6 @@ fn print_table(lines: &[Value]) -> bool {
     }
     let all: Vec<&Value> = lines.iter().collect();
     row("all", &all);
-    let wrong = ["unbalanced", "not_finite", "unsound", "panics", "stuck", "lost"];
+    let wrong = ["unbalanced", "not_finite", "unsound", "early", "panics", "stuck", "lost"];
     wrong.iter().all(|name| count(&all, name) == 0)
 }

@@ -23,7 +23,11 @@ impl Interfaces {
                 Some(Region::Homogeneous(region)) => Some(&region.medium),
                 _ => None,
             },
-            FarSide::Seam(_) | FarSide::Conductor | FarSide::Opaque | FarSide::Polarizer => None,
+            FarSide::Seam(_)
+            | FarSide::Conductor
+            | FarSide::Metal(_)
+            | FarSide::Opaque
+            | FarSide::Polarizer => None,
         };
         let between = |from: &Medium, far: FarSide, normal: DVec3| {
             Reflectionless::between(from, medium(far)?, normal)
@@ -41,7 +45,10 @@ impl Interfaces {
         };
         let faces = |region: &Region| match region {
             Region::Homogeneous(region) => {
-                let exit = |face: &Face| between(&region.medium, face.far, face.plane.normal);
+                let exit = |face: &Face| {
+                    let bare = face.coating == Coating::None;
+                    bare.then(|| between(&region.medium, face.far, face.plane.normal))?
+                };
                 region.faces().iter().map(exit).collect()
             }
             Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) => Vec::new(),

@@ -12,6 +12,7 @@ use crate::device::{Region, Structure, SurfaceHit};
 use glam::DVec3;
 use interfaces::Interfaces;
 use optics::geometry::{Solid, TOUCHING, first_along};
+use optics::interface::FilmLayer;
 use optics::medium::Medium;
 
 /// The most devices a scene may have: they are numbered in 16 bits.
@@ -28,6 +29,8 @@ pub struct Assembly {
     interfaces: Vec<Interfaces>,
     /// The bodies, by falling priority.
     bodies: Vec<u16>,
+    /// The films of each device, in the world's frame.
+    films: Vec<Vec<Vec<FilmLayer>>>,
     /// For each body the devices that rays in it may meet: those that come before it and reach into its bounds.
     guests: Vec<Vec<u16>>,
     /// Whether there is one device at most, and no body: around it is air, and nothing touches it.
@@ -78,7 +81,8 @@ impl Assembly {
             })
             .collect();
         let simple = devices.len() <= 1 && bodies.is_empty();
-        Self { interfaces, bodies, guests, devices, simple, vacuum_wave_number: 0.0 }
+        let films = devices.iter().map(Placed::films_in_world).collect();
+        Self { interfaces, bodies, films, guests, devices, simple, vacuum_wave_number: 0.0 }
             .with_wavelength(550.0)
     }
 
@@ -115,7 +119,7 @@ impl Assembly {
         self.devices.iter().map(of).fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether a medium of a device takes power from light.
+    /// Whether a medium, a metal or a film of a device takes power from light.
     #[must_use]
     pub fn absorbs(&self) -> bool {
         let absorbs = |region: &Region| match region {
@@ -123,7 +127,11 @@ impl Assembly {
             Region::Conformal(region) => region.loss_tangent > 0.0,
             Region::Radial(_) | Region::ClosedForm(_) => false,
         };
-        self.devices.iter().any(|device| device.structure.regions.iter().any(absorbs))
+        self.devices.iter().any(|Placed { structure, .. }| {
+            structure.regions.iter().any(absorbs)
+                || !structure.metals.is_empty()
+                || structure.films.iter().flatten().any(|layer| layer.medium.absorbs())
+        })
     }
 
     /// The devices, in the order of the scene.
@@ -135,6 +143,11 @@ impl Assembly {
     /// A device, by its number.
     pub(crate) fn device(&self, number: u16) -> &Placed {
         &self.devices[usize::from(number)]
+    }
+
+    /// The layers of a film of a device, in the world's frame.
+    pub(crate) fn film_in_world(&self, device: u16, film: u16) -> &[FilmLayer] {
+        &self.films[usize::from(device)][usize::from(film)]
     }
 
     /// The interfaces of a device, by its number.
@@ -247,7 +260,7 @@ impl Assembly {
             Some(DepartedSurface { surface: None, .. }) => return None,
             departed => departed.and_then(|departed| departed.surface),
         };
-        let Placed { pose, structure } = self.devices.get(usize::from(number))?;
+        let Placed { pose, structure, .. } = self.devices.get(usize::from(number))?;
         structure.first_hit(pose.to_local(origin), pose.vector_to_local(direction), last)
     }
 

@@ -1,8 +1,9 @@
 //! A device at its place.
 
-use crate::device::{Body, Region, Structure, SurfaceHit};
+use crate::device::{Body, Dispersion, Region, Structure, SurfaceHit};
 use glam::DVec3;
 use optics::geometry::{Pose, Solid};
+use optics::interface::FilmLayer;
 use optics::medium::Medium;
 
 /// A device at its place.
@@ -12,6 +13,8 @@ pub struct Placed {
     pub pose: Pose,
     /// What it is made of.
     pub structure: Structure,
+    /// How its media depend on the frequency.
+    pub dispersion: Dispersion,
 }
 
 /// What a ray has just left, and does not meet next.
@@ -35,6 +38,12 @@ impl DepartedSurface {
 }
 
 impl Placed {
+    /// A device in a place.
+    #[must_use]
+    pub fn new(pose: Pose, structure: Structure) -> Self {
+        Self { pose, structure, dispersion: Dispersion::default() }
+    }
+
     /// What a ray has left that runs away from this device, the `number`th: the surface that is given, or all of the
     /// device if it is convex.
     #[inline]
@@ -79,6 +88,25 @@ impl Placed {
     /// Its region of that number.
     pub(crate) fn region(&self, number: u16) -> &Region {
         &self.structure.regions[usize::from(number)]
+    }
+
+    /// How thick the thinnest part of it is that is of a medium, cm: the least distance between two
+    /// parallel planes that it fits between. `None` without a medium.
+    #[must_use]
+    pub fn thickness(&self) -> Option<f64> {
+        let Structure { regions, hull, .. } = &self.structure;
+        let thickness = hull.solids.iter().map(Solid::thickness).reduce(f64::min)?;
+        (!regions.is_empty()).then_some(thickness)
+    }
+
+    /// Its films in the world's frame.
+    pub(super) fn films_in_world(&self) -> Vec<Vec<FilmLayer>> {
+        let turned = |layer: &FilmLayer| {
+            let isotropic = layer.medium.is_isotropic();
+            let turned = || self.medium_in_world(&layer.medium);
+            FilmLayer { medium: if isotropic { layer.medium } else { turned() }, ..*layer }
+        };
+        self.structure.films.iter().map(|film| film.iter().map(turned).collect()).collect()
     }
 
     /// A medium of the device's frame in the world's.

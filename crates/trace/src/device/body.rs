@@ -4,8 +4,8 @@
 //! glass of water is three bodies, and light goes from one into the other without any air between.
 
 use super::{
-    Body, Convex, Device, Fact, FarSide, HomogeneousRegion, Hull, Region, RegionBorder, Request,
-    Shape, Structure, Surface,
+    Body, Coating, Convex, Device, Fact, FarSide, HomogeneousRegion, Hull, Region, RegionBorder,
+    Request, Shape, Structure, Surface,
 };
 use crate::key;
 use crate::keys::{Given, KeyError, ValueRange};
@@ -47,8 +47,8 @@ crate::table! {
         permittivity: Given<Tensor> = Given::by_default(1.0.into()),
         /// Relative permeability, in the device's frame; symmetric.
         permeability: Given<Tensor> = Given::by_default(1.0.into()),
-        /// Speed of light over the speed of a pulse in it, for times of flight; where it is absent, the size of the
-        /// index, 1 at least.
+        /// Speed of light over the speed of a pulse in it, for `group_delay`, and for times of flight where the phase runs
+        /// backwards; where it is absent, as the `dispersion` says.
         group_index: Option<f64>, in ValueRange::Within(1.0, 1e9),
         /// Where bodies overlap, the one of the larger priority is there.
         priority: i64, in ValueRange::Whole(-1_000_000, 1_000_000),
@@ -86,13 +86,14 @@ impl Device for SolidBody {
         let body = Body { shape, priority: self.priority };
         let far = if medium.is_some() { FarSide::Region(0) } else { FarSide::Opaque };
         let group_index = self.group_index;
-        let region =
-            |medium| HomogeneousRegion { medium, group_index, border: RegionBorder::Convex(shape) };
-        Ok(Structure {
-            regions: medium.into_iter().map(region).map(Region::Homogeneous).collect(),
-            surfaces: vec![Surface::new(Shape::Convex(shape), far)],
-            hull: Hull { body: Some(body), ..Hull::new(shape.solid()) },
-        })
+        let region = |medium| {
+            let border = RegionBorder::Convex(shape);
+            HomogeneousRegion { medium, group_index, border, coating: Coating::None }
+        };
+        let regions = medium.into_iter().map(region).map(Region::Homogeneous).collect();
+        let surfaces = vec![Surface::new(Shape::Convex(shape), far)];
+        let hull = Hull { body: Some(body), ..Hull::new(shape.solid()) };
+        Ok(Structure::new(regions, surfaces, hull))
     }
 
     fn facts(&self) -> Vec<Fact> {

@@ -76,7 +76,7 @@ pub(super) fn metal(curve: FloorCurve, around: Outline, extent: Extent) -> Struc
         surfaces.push(Surface { part: Part::Metal(curve.clone()), ..metal(Shape::Cap(cap)) });
     }
     let hull = Hull { metal: Some(curve), ..Hull::new(Solid::Prism { outline: around, extent }) };
-    Structure { regions: Vec::new(), surfaces, hull }
+    Structure::new(Vec::new(), surfaces, hull)
 }
 
 /// Where a carpet stands.
@@ -148,7 +148,7 @@ impl Site {
     fn on_floor(&self, regions: Vec<Region>, mut surfaces: Vec<Surface>, hull: Hull) -> Structure {
         let (inner, outer) = (self.cut.x_max, self.half_floor);
         if outer <= inner {
-            return Structure { regions, surfaces, hull };
+            return Structure::new(regions, surfaces, hull);
         }
         for side in [-1.0, 1.0] {
             let ends = [inner, outer].map(|x| DVec2::new(side * x, 0.0));
@@ -156,6 +156,6 @@ impl Site {
         }
         let line = [-outer, outer].map(|x| DVec2::new(x, 0.0));
         let hull = hull.with_thin_mirror(Outline { corners: line.to_vec() }, self.extent);
-        Structure { regions, surfaces, hull }
+        Structure::new(regions, surfaces, hull)
     }
 }

@@ -1,10 +1,10 @@
 //! Convex regions of a medium whose rays are known in closed form.
 
-use super::{Convex, FarSide, Hull, InnerRay, Passage, Region, Shape, Structure, Surface};
+use super::{Coating, Convex, FarSide, Hull, InnerRay, Passage, Region, Shape, Structure, Surface};
 use glam::DVec3;
 use optics::geometry::{CutBall, FlatOrRound, Plane, TOUCHING};
 use optics::medium::Medium;
-use optics::propagation::{ClosedForm, CurvedRay, PathPoint, follow};
+use optics::propagation::{ClosedForm, CurvedRay, PathPoint, follow, group_path_along};
 use std::sync::Arc;
 
 /// A convex region of a medium whose rays are known in closed form; around it is what is around the device.
@@ -14,6 +14,8 @@ pub struct ClosedFormRegion {
     pub medium: Arc<dyn ClosedForm>,
     /// Where it ends.
     pub border: ClosedFormBorder,
+    /// How the medium meets what is outside.
+    pub coating: Coating,
 }
 
 /// The convex shapes between planes and spheres: what a medium whose rays are known in closed form can be cut to.
@@ -27,13 +29,10 @@ pub enum ClosedFormBorder {
 
 /// A device that is one convex region of a medium whose rays are known in closed form.
 pub(super) fn filled(border: ClosedFormBorder, medium: impl ClosedForm + 'static) -> Structure {
-    let region = ClosedFormRegion { medium: Arc::new(medium), border };
+    let region = ClosedFormRegion { medium: Arc::new(medium), border, coating: Coating::None };
     let shape = border.convex();
-    Structure {
-        regions: vec![Region::ClosedForm(region)],
-        surfaces: vec![Surface::new(Shape::Convex(shape), FarSide::Region(0))],
-        hull: Hull::new(shape.solid()),
-    }
+    let surfaces = vec![Surface::new(Shape::Convex(shape), FarSide::Region(0))];
+    Structure::new(vec![Region::ClosedForm(region)], surfaces, Hull::new(shape.solid()))
 }
 
 impl ClosedFormBorder {
@@ -74,21 +73,33 @@ impl ClosedFormRegion {
 
     pub(super) fn advance(&self, ray: &InnerRay) -> Option<Passage> {
         let (end, _) = follow(self.medium.as_ref(), &curved(ray), self.border.bounds())?;
-        Some(Passage::graded(ray, &end, end.surface, FarSide::Outside))
+        let passage = Passage::graded(ray, &end, end.surface, FarSide::Outside);
+        Some(Passage { coating: self.coating, ..passage })
     }
 
     /// Points along the way of a ray to the border, in that many pieces.
     pub(super) fn path(&self, ray: &InnerRay, pieces: u32) -> Vec<PathPoint> {
+        let way = self.way(ray);
+        (0..=pieces).map(|piece| way(f64::from(piece) / f64::from(pieces))).collect()
+    }
+
+    /// Points of that way, by shares of it.
+    fn way(&self, ray: &InnerRay) -> impl Fn(f64) -> PathPoint {
         let start = curved(ray);
         let end = follow(self.medium.as_ref(), &start, self.border.bounds());
         let last = end.map_or(0.0, |(_, parameter)| parameter);
-        let at = |piece: u32| {
-            let parameter = last * f64::from(piece) / f64::from(pieces);
+        move |share| {
             let (CurvedRay { position, .. }, optical_path) =
-                self.medium.way_point(&start, parameter);
+                self.medium.way_point(&start, last * share);
             PathPoint { position, optical_path }
-        };
-        (0..=pieces).map(at).collect()
+        }
+    }
+
+    /// The speed of light times the time that a pulse takes on that way, cm, at the least dispersion that causality allows:
+    /// the group index is n or 1/n, whichever is larger.
+    pub(super) fn causal_group_path(&self, ray: &InnerRay, tolerance: f64) -> f64 {
+        let ratio = |position: DVec3, _| self.medium.squared_index(position).value.recip().max(1.0);
+        group_path_along(self.way(ray), ratio, tolerance)
     }
 }
 

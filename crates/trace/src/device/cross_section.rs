@@ -68,7 +68,7 @@ impl Structure {
         let outside: Vec<Edge> = self.surfaces.iter().filter_map(Surface::edge).collect();
         let regions: Vec<Vec<Edge>> = self.regions.iter().map(Region::edges).collect();
         let metal = regions.iter().flatten().chain(&outside);
-        let metal = metal.filter(|edge| edge.far == FarSide::Conductor);
+        let metal = metal.filter(|edge| edge.far.is_metal());
         let sections = self.regions.iter().zip(&regions).filter(|_| self.hull.body.is_none());
         CrossSection {
             body_medium: self.body_medium(),

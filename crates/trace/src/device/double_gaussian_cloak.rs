@@ -134,7 +134,7 @@ fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool
         .to_vec();
     let whole = Solid::Prism { outline, extent };
     if !open_core {
-        return Structure { regions, surfaces, hull: Hull::new(whole) };
+        return Structure::new(regions, surfaces, Hull::new(whole));
     }
     let curve = FloorCurve::new(flow.map().clone(), MetalBack::MirrorImage, cut.x_min, x);
     for (side, far) in [(CurvedSide::Floor, upper), (CurvedSide::Image, lower)] {
@@ -142,5 +142,5 @@ fn cloak(flow: &ConformalFlow, coating: Coating, extent: Extent, open_core: bool
         surfaces.push(Surface { coating, ..Surface::new(shape, far) });
     }
     let hole = Hole::Lens { curve, pose: Pose::new(DVec3::ZERO, 0.0), extent };
-    Structure { regions, surfaces, hull: Hull::around(hole, whole) }
+    Structure::new(regions, surfaces, Hull::around(hole, whole))
 }

@@ -132,7 +132,7 @@ impl Plan {
             None => (upright_box(core, &outline, extent, far), Solid::Prism { outline, extent }),
         };
         let hull = round::hull(core, whole, extent, &mut surfaces);
-        Ok(Structure { regions, surfaces, hull })
+        Ok(Structure::new(regions, surfaces, hull))
     }
 }
 

@@ -13,7 +13,7 @@ pub enum MaterialAt {
     Air,
     /// A medium, in the device's frame.
     Medium(Medium),
-    /// Metal, a perfect conductor.
+    /// Metal.
     Metal,
     /// Air in the hidden region of a device with an open core.
     HiddenAir,

@@ -43,7 +43,7 @@ impl Device for MirrorDetour {
             })
             .unzip();
         // The space between the mirrors is free: things may stand there.
-        Ok(Structure { regions: Vec::new(), surfaces, hull: Hull::of_parts(solids) })
+        Ok(Structure::new(Vec::new(), surfaces, Hull::of_parts(solids)))
     }
 
     fn facts(&self) -> Vec<Fact> {

@@ -17,6 +17,7 @@ mod bending_sphere;
 mod body;
 mod carpet;
 mod closed_form;
+mod coating;
 mod convex;
 mod cross_section;
 mod cylinder_cloak;
@@ -44,6 +45,7 @@ mod surface;
 
 pub use body::{BodyShape, BodySurface};
 pub use closed_form::{ClosedFormBorder, ClosedFormRegion};
+pub use coating::{CoatingLayer, Metal, MetalOfIndex, layers};
 pub use convex::Convex;
 pub use cross_section::{Contour, CrossSection, Section};
 pub use cylinder_cloak::ShellMaterial;
@@ -75,6 +77,16 @@ crate::choice! {
         Bare = "bare",
         /// What it should look like: the flat mirror it imitates, or nothing.
         Mirror = "mirror",
+    }
+}
+
+crate::choice! {
+    /// How the medium of a device depends on the frequency: what a pulse takes.
+    pub enum Dispersion {
+        /// As little as causality allows: no device can be faster.
+        Causal = "causal",
+        /// Not at all: a pulse takes what its phase takes.
+        None = "none",
     }
 }
 
@@ -275,7 +287,7 @@ fn flat_strip(half_width: f64, extent: Extent) -> Structure {
     let surfaces = vec![Surface::mirror(Wall::new(ends[0], ends[1], extent))];
     let hull =
         Hull::new(Solid::Nothing).with_thin_mirror(Outline { corners: ends.to_vec() }, extent);
-    Structure { regions: Vec::new(), surfaces, hull }
+    Structure::new(Vec::new(), surfaces, hull)
 }
 
 /// A device of a kind with some of its keys, for tests.

@@ -36,11 +36,8 @@ impl Device for Polarizer {
         let wall = Wall::new(corners[0], corners[1], extent);
         let shape = Shape::Polarizer { wall, axis: self.axis() };
         let outline = Outline { corners: corners.to_vec() };
-        Ok(Structure {
-            regions: Vec::new(),
-            surfaces: vec![Surface::new(shape, FarSide::Polarizer)],
-            hull: Hull::of_parts(vec![Solid::Prism { outline, extent }]),
-        })
+        let hull = Hull::of_parts(vec![Solid::Prism { outline, extent }]);
+        Ok(Structure::new(Vec::new(), vec![Surface::new(shape, FarSide::Polarizer)], hull))
     }
 
     fn facts(&self) -> Vec<Fact> {

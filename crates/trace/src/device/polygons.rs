@@ -2,16 +2,30 @@
 //!
 //! Concave cross-sections are cut into convex regions; the cuts are no interfaces.
 
-use super::{Face, FarSide, HomogeneousRegion, Hull, Region, Shape, Structure, Surface};
+use super::coating::reversed;
+use super::{Coating, Face, FarSide, HomogeneousRegion, Hull, Region, Shape, Structure, Surface};
 use glam::DVec2;
 use optics::geometry::{Cap, ConvexPart, Extent, Outline, Plane, Polygon, SAME_POINT, Solid, Wall};
+use optics::interface::FilmLayer;
 use optics::medium::Medium;
+use std::collections::HashMap;
 
 /// A part of a device, of one medium or of metal.
 pub(super) struct PolygonPart {
     pub polygon: Polygon,
     /// What fills it; `None` for metal.
     pub medium: Option<Medium>,
+    /// What its metal is of; `None` for a perfect conductor.
+    pub metal: Option<Medium>,
+    /// The layers on all of its surfaces, from the outside inwards.
+    pub film: Vec<FilmLayer>,
+}
+
+impl PolygonPart {
+    /// A bare part of a medium, or of a perfect conductor.
+    pub fn new(polygon: Polygon, medium: Option<Medium>) -> Self {
+        Self { polygon, medium, metal: None, film: Vec::new() }
+    }
 }
 
 /// A convex piece of a part.
@@ -29,6 +43,31 @@ struct Stretch {
     from: DVec2,
     to: DVec2,
     far: FarSide,
+    /// The part beyond it, if it is another one.
+    beyond: Option<usize>,
+}
+
+/// The films of a device by the parts from and to which they lead, outside where there is none.
+struct Films<'a> {
+    parts: &'a [PolygonPart],
+    known: HashMap<[Option<usize>; 2], Coating>,
+    films: Vec<Vec<FilmLayer>>,
+}
+
+impl Films<'_> {
+    fn between(&mut self, from: Option<usize>, to: Option<usize>) -> Coating {
+        let film = |part: Option<usize>| part.map_or(&[][..], |part| &self.parts[part].film);
+        let (leaving, entering) = (film(from), film(to));
+        if leaving.is_empty() && entering.is_empty() {
+            return Coating::None;
+        }
+        *self.known.entry([from, to]).or_insert_with(|| {
+            // Fewer than sides, of which there are a few thousand.
+            let number = self.films.len() as u16;
+            self.films.push([&reversed(leaving), entering].concat());
+            Coating::Film(number)
+        })
+    }
 }
 
 /// The device of the parts.
@@ -39,26 +78,37 @@ struct Stretch {
 pub(super) fn polygonal(parts: &[PolygonPart], extent: Extent) -> Result<Structure, [usize; 2]> {
     let pieces = pieces(parts)?;
     let (mut regions, mut surfaces) = (Vec::new(), Vec::new());
+    let mut films = Films { parts, known: HashMap::new(), films: Vec::new() };
     for (index, piece) in pieces.iter().enumerate() {
         let mut faces = Vec::new();
+        let (leaving, entering) =
+            (films.between(Some(piece.part), None), films.between(None, Some(piece.part)));
         for (edge, (from, to)) in piece.outline.sides().enumerate() {
             let normal = Wall::new(from, to, extent).normal;
             let plane = Plane { normal, offset: normal.truncate().dot(from) };
             let along = (to - from).normalize();
             let stretches = stretches(parts, &pieces, index, edge);
             let last = stretches.len() - 1;
-            for (number, Stretch { from, to, far }) in stretches.into_iter().enumerate() {
+            for (number, Stretch { from, to, far, beyond }) in stretches.into_iter().enumerate() {
                 let until = if number == last { f64::INFINITY } else { along.dot(to) };
-                faces.push(Face { until, side: Some([from, to]), ..Face::new(plane, far) });
+                let coating = match far {
+                    FarSide::Outside => leaving,
+                    FarSide::Seam(_) => Coating::None,
+                    _ => films.between(Some(piece.part), beyond),
+                };
+                let side = Some([from, to]);
+                faces.push(Face { until, coating, side, ..Face::new(plane, far) });
                 if far == FarSide::Outside {
-                    surfaces.push(Surface::wall(Wall::new(from, to, extent), piece.itself));
+                    let wall = Surface::wall(Wall::new(from, to, extent), piece.itself);
+                    surfaces.push(Surface { coating: entering, ..wall });
                 }
             }
         }
         for cap in extent.ends().into_iter().flat_map(|ends| Cap::both(&piece.outline, ends)) {
             let plane = Plane { normal: cap.normal, offset: cap.z * cap.normal.z };
-            faces.push(Face::new(plane, FarSide::Outside));
-            surfaces.push(Surface::new(Shape::Cap(cap), piece.itself));
+            faces.push(Face { coating: leaving, ..Face::new(plane, FarSide::Outside) });
+            let cap = Surface::new(Shape::Cap(cap), piece.itself);
+            surfaces.push(Surface { coating: entering, ..cap });
         }
         if let Some(medium) = parts[piece.part].medium {
             regions.push(Region::Homogeneous(HomogeneousRegion::between(medium, faces)));
@@ -66,14 +116,21 @@ pub(super) fn polygonal(parts: &[PolygonPart], extent: Extent) -> Result<Structu
     }
     let solids =
         pieces.into_iter().map(|piece| Solid::Prism { outline: piece.outline, extent }).collect();
-    Ok(Structure { regions, surfaces, hull: Hull::of_parts(solids) })
+    let metals = parts.iter().filter_map(|part| part.metal).collect();
+    let hull = Hull::of_parts(solids);
+    Ok(Structure { films: films.films, metals, ..Structure::new(regions, surfaces, hull) })
 }
 
 /// The convex pieces of all parts, which must not overlap.
 fn pieces(parts: &[PolygonPart]) -> Result<Vec<Piece>, [usize; 2]> {
     let mut pieces: Vec<Piece> = Vec::new();
-    let mut regions = 0;
+    let (mut regions, mut metals) = (0, 0);
     for (index, part) in parts.iter().enumerate() {
+        let metal = match part.metal {
+            Some(_) => FarSide::Metal(metals),
+            None => FarSide::Conductor,
+        };
+        metals += u16::from(part.metal.is_some());
         for corners in part.polygon.convex_parts() {
             let outline = part.polygon.outline(&corners);
             let overlapped = pieces
@@ -84,7 +141,7 @@ fn pieces(parts: &[PolygonPart]) -> Result<Vec<Piece>, [usize; 2]> {
             }
             let itself = match part.medium {
                 Some(_) => FarSide::Region(regions),
-                None => FarSide::Conductor,
+                None => metal,
             };
             regions += u16::from(part.medium.is_some());
             pieces.push(Piece { part: index, corners, outline, itself });
@@ -102,7 +159,7 @@ fn stretches(parts: &[PolygonPart], pieces: &[Piece], index: usize, edge: usize)
     let [i, j] = ends(piece, edge);
     let polygon = &parts[piece.part].polygon;
     let (from, to) = (polygon.corners()[i], polygon.corners()[j]);
-    let whole = |far| vec![Stretch { from, to, far }];
+    let whole = |far| vec![Stretch { from, to, far, beyond: None }];
     if (i + 1) % polygon.corners().len() != j {
         // A cut: the piece on its other side is of the same prism.
         let twin = pieces.iter().find(|other| {
@@ -129,16 +186,18 @@ fn stretches(parts: &[PolygonPart], pieces: &[Piece], index: usize, edge: usize)
                     at if at >= length - SAME_POINT => to,
                     _ => p,
                 };
-                let same = other.itself != FarSide::Conductor
-                    && parts[other.part].medium == parts[piece.part].medium;
+                let same = !other.itself.is_metal()
+                    && parts[other.part].medium == parts[piece.part].medium
+                    && [other, piece].iter().all(|piece| parts[piece.part].film.is_empty());
                 let far = if same { seam(other.itself) } else { other.itself };
                 let (from, to) = (clamped(back, start), clamped(there, end));
-                touching.push((low, high, Stretch { from, to, far }));
+                let beyond = Some(other.part);
+                touching.push((low, high, Stretch { from, to, far, beyond }));
             }
         }
     }
     touching.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let outside = |from, to| Stretch { from, to, far: FarSide::Outside };
+    let outside = |from, to| Stretch { from, to, far: FarSide::Outside, beyond: None };
     let mut stretches = Vec::new();
     let (mut at, mut reached) = (from, 0.0);
     for (low, high, stretch) in touching {

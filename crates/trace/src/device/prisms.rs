@@ -3,7 +3,7 @@
 //! Prisms that share a side, whole or in part, meet there without a gap.
 
 use super::polygons::{PolygonPart, polygonal};
-use super::{Device, Fact, Request, Show, Structure};
+use super::{CoatingLayer, Device, Fact, Metal, Request, Show, Structure, coating};
 use crate::key;
 use crate::keys::{Given, KeyError, ValueRange};
 use glam::DVec2;
@@ -29,8 +29,11 @@ crate::table! {
         permittivity: Given<Tensor> = Given::by_default(1.0.into()),
         /// Relative permeability, in the device's frame; symmetric.
         permeability: Given<Tensor> = Given::by_default(1.0.into()),
-        /// Whether it is metal, a perfect conductor.
-        metal: bool,
+        /// Whether it is metal: true for a perfect conductor, { index = [n, k] } for another.
+        metal: Metal,
+        /// Thin layers on all of its surfaces, from the outside inwards; instead of the device's,
+        /// where it has any.
+        coating: Vec<CoatingLayer>,
     }
 }
 
@@ -115,11 +118,14 @@ fn part(prism: &PrismOfMedium, known: &mut Vec<DVec2>) -> Result<PolygonPart, Ke
         (prism.permeability.given, key!(PrismOfMedium.permeability)),
     ];
     let medium = match given.into_iter().find(|(given, _)| *given) {
-        Some((_, key)) if prism.metal => {
-            let message = format!("metal is a perfect conductor; it has no {key}");
+        Some((_, key)) if prism.metal != Metal::None => {
+            let message = match prism.metal {
+                Metal::OfIndex(_) => format!("metal has its `index`, and takes no {key}"),
+                _ => format!("metal is a perfect conductor; it has no {key}"),
+            };
             return Err(KeyError::at(key, message));
         }
-        _ if prism.metal => None,
+        _ if prism.metal != Metal::None => None,
         None => {
             let message = "this prism has neither `permittivity` nor `permeability` nor `metal = true`; \
                            a prism of air is left out";
@@ -127,5 +133,7 @@ fn part(prism: &PrismOfMedium, known: &mut Vec<DVec2>) -> Result<PolygonPart, Ke
         }
         Some(_) => Some(super::medium(prism.permittivity.value, prism.permeability.value)?),
     };
-    Ok(PolygonPart { polygon, medium })
+    let metal = prism.metal.medium()?;
+    let film = coating::layers(key!(PrismOfMedium.coating), &prism.coating)?;
+    Ok(PolygonPart { polygon, medium, metal, film })
 }

@@ -1,6 +1,6 @@
 //! Regions of a device, each filled with one medium.
 
-use super::{ClosedFormRegion, Coating, Convex, FarSide};
+use super::{ClosedFormRegion, Coating, Convex, Dispersion, FarSide};
 use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::Plane;
 use optics::medium::{Medium, ModeKind};
@@ -8,6 +8,7 @@ use optics::propagation::{
     Border, Boundary, ConformalEnd, ConformalFlow, Half, PathEnd, PathPoint, RadialFlow,
     VirtualPoint,
 };
+use optics::wave::ComplexVector;
 
 /// Straight pieces that a closed form's path is drawn with.
 const PIECES: u32 = 96;
@@ -33,6 +34,8 @@ pub struct RadialRegion {
     pub flow: RadialFlow,
     /// What lies beyond its inner border, if it has one.
     pub inner: FarSide,
+    /// How the medium meets what is outside.
+    pub coating: Coating,
 }
 
 /// One half of a cut conformal map above its mirror.
@@ -57,10 +60,12 @@ pub struct ConformalRegion {
 pub struct HomogeneousRegion {
     /// What fills it.
     pub medium: Medium,
-    /// The speed of light over that of a pulse; absent: the size of the index, in a body 1 at least.
+    /// The speed of light over that of a pulse; absent: as the dispersion says.
     pub group_index: Option<f64>,
     /// Where it ends.
     pub border: RegionBorder,
+    /// How the medium meets what is outside of a convex shape; faces say it each for itself.
+    pub coating: Coating,
 }
 
 /// Where a homogeneous region ends.
@@ -82,6 +87,8 @@ pub struct Face {
     /// Where the face ends, if the next one goes on in its plane: the coordinate (cm) along z × normal.
     /// Infinite for the last face in its plane.
     pub until: f64,
+    /// How the media meet there.
+    pub coating: Coating,
     /// From where to where it runs in the plane z = 0, counterclockwise around the region, for drawings.
     pub side: Option<[DVec2; 2]>,
 }
@@ -90,7 +97,7 @@ impl Face {
     /// A whole plane face.
     #[must_use]
     pub fn new(plane: Plane, far: FarSide) -> Self {
-        Self { plane, far, until: f64::INFINITY, side: None }
+        Self { plane, far, until: f64::INFINITY, coating: Coating::None, side: None }
     }
 }
 
@@ -177,19 +184,45 @@ impl Region {
         local.as_ref()
     }
 
-    /// The speed of light times the time of flight along a passage of that optical path and straight length, cm.
+    /// The speed of light times the time that a pulse takes on the way of a ray to `end`, cm, to within about `tolerance`
+    /// (cm); `electric` is a field of the ray, of any size. NaN in media that absorb, unless they are without dispersion.
     #[must_use]
-    #[inline]
-    pub fn group_path(&self, optical_path: f64, way: DVec3) -> f64 {
+    pub fn group_path(
+        &self,
+        ray: &InnerRay,
+        electric: ComplexVector,
+        end: &Passage,
+        dispersion: Dispersion,
+        tolerance: f64,
+    ) -> f64 {
+        let straight = (end.position - ray.position).length();
+        if let Self::Homogeneous(HomogeneousRegion { group_index: Some(index), .. }) = self {
+            return index * straight;
+        }
+        if dispersion == Dispersion::None {
+            // Where the phase runs backwards a pulse does not.
+            let backwards = straight.max(-end.optical_path);
+            return if end.optical_path < 0.0 { backwards } else { end.optical_path };
+        }
         match self {
-            Self::Homogeneous(HomogeneousRegion { group_index: Some(index), .. }) => {
-                index * way.length()
+            Self::Homogeneous(region) => {
+                straight * region.medium.causal_group_index(ray.wave_vector, electric)
             }
-            Self::Homogeneous(HomogeneousRegion { border: RegionBorder::Convex(_), .. }) => {
-                optical_path.abs().max(way.length())
+            Self::Conformal(region) if region.loss_tangent == 0.0 => {
+                let path = region.start(ray).and_then(|start| {
+                    region.flow.causal_group_path(&start, ray.wave_vector, tolerance).ok()
+                });
+                path.unwrap_or(f64::NAN)
             }
-            _ if optical_path < 0.0 => way.length().max(-optical_path),
-            _ => optical_path,
+            Self::Conformal(_) => f64::NAN,
+            Self::Radial(region) if region.inner == FarSide::Outside && region.turns_back(ray) => {
+                0.0
+            }
+            Self::Radial(region) => {
+                let InnerRay { position, wave_vector, mode, .. } = *ray;
+                region.flow.causal_group_path(position, wave_vector, mode, tolerance)
+            }
+            Self::ClosedForm(region) => region.causal_group_path(ray, tolerance),
         }
     }
 
@@ -269,10 +302,11 @@ impl Region {
 }
 
 impl HomogeneousRegion {
-    /// A region between planes.
+    /// A region between bare planes.
     #[must_use]
     pub fn between(medium: Medium, faces: Vec<Face>) -> Self {
-        Self { medium, group_index: None, border: RegionBorder::Faces(faces) }
+        let border = RegionBorder::Faces(faces);
+        Self { medium, group_index: None, border, coating: Coating::None }
     }
 
     /// The planes that bound it; none where it is bounded otherwise.
@@ -291,7 +325,8 @@ impl HomogeneousRegion {
             RegionBorder::Convex(shape) => {
                 let (distance, outward) = shape.exit(position, direction)?;
                 let end = position + direction * distance;
-                return Some(Passage::straight(ray, end, 0, outward, FarSide::Outside));
+                let passage = Passage::straight(ray, end, 0, outward, FarSide::Outside);
+                return Some(Passage { coating: self.coating, ..passage });
             }
         };
         // A loop: here it takes fewer instructions than `first_along`.
@@ -310,7 +345,8 @@ impl HomogeneousRegion {
             index += 1;
             face = faces.get(usize::from(index))?;
         }
-        Some(Passage::straight(ray, end, index, face.plane.normal, face.far))
+        let passage = Passage::straight(ray, end, index, face.plane.normal, face.far);
+        Some(Passage { coating: face.coating, ..passage })
     }
 }
 
@@ -378,7 +414,7 @@ impl ConformalRegion {
             Boundary::XMin | Boundary::XMax
                 if self.half.mirrored(end.position).y < self.flow.map().level() =>
             {
-                FarSide::Conductor
+                if self.floor.is_metal() { self.floor } else { FarSide::Conductor }
             }
             _ => FarSide::Outside,
         };
@@ -386,7 +422,7 @@ impl ConformalRegion {
             // Im n = n tan δ/2 to first order.
             extinction: 0.5 * self.loss_tangent * end.optical_path,
             virtual_point: Some(end.virtual_point),
-            coating: if far == FarSide::Conductor { Coating::None } else { self.coating },
+            coating: if far.is_metal() { Coating::None } else { self.coating },
             ..Passage::graded(ray, end, end.surface as u16, far)
         }
     }
@@ -403,7 +439,8 @@ impl RadialRegion {
         let end = self.flow.advance(ray.position, ray.wave_vector, ray.mode);
         let sound = end.position.is_finite() && end.wave_vector.is_finite();
         let far = if end.surface == Border::Inner { self.inner } else { FarSide::Outside };
-        sound.then(|| Passage::graded(ray, &end, end.surface as u16, far))
+        let coating = if far == FarSide::Outside { self.coating } else { Coating::None };
+        sound.then(|| Passage { coating, ..Passage::graded(ray, &end, end.surface as u16, far) })
     }
 
     /// Whether a ray has come out of an open core into a wave that no ray of the core can be in but those in

@@ -1,7 +1,7 @@
 //! What balls and round cylinders have in common.
 
 use super::{
-    Convex, FarSide, Hull, Part, RadialRegion, Region, Request, Shape, Structure, Surface,
+    Coating, Convex, FarSide, Hull, Part, RadialRegion, Region, Request, Shape, Structure, Surface,
 };
 use crate::key;
 use crate::keys::KeyError;
@@ -46,7 +46,13 @@ pub(super) fn ball(radius: f64, flow: RadialFlow, open_core: Option<f64>) -> Str
             (FarSide::Outside, Hull::around(Hole::Round(Solid::ball(core)), solid))
         }
     };
-    Structure { regions: vec![Region::Radial(RadialRegion { flow, inner })], surfaces, hull }
+    radial(flow, inner, surfaces, hull)
+}
+
+/// A device that is one region of a radial medium.
+fn radial(flow: RadialFlow, inner: FarSide, surfaces: Vec<Surface>, hull: Hull) -> Structure {
+    let region = RadialRegion { flow, inner, coating: Coating::None };
+    Structure::new(vec![Region::Radial(region)], surfaces, hull)
 }
 
 /// The border of a ball.
@@ -57,7 +63,7 @@ fn sphere(radius: f64) -> Shape {
 /// A metal ball.
 pub(super) fn metal_ball(radius: f64) -> Structure {
     let surfaces = vec![Surface::new(sphere(radius), FarSide::Conductor)];
-    Structure { regions: Vec::new(), surfaces, hull: Hull::new(Solid::ball(radius)) }
+    Structure::new(Vec::new(), surfaces, Hull::new(Solid::ball(radius)))
 }
 
 /// A round cylinder filled with a medium around a core of metal, or around an open one.
@@ -71,7 +77,7 @@ pub(super) fn tube(
     let inner = if open_core { FarSide::Outside } else { FarSide::Conductor };
     let mut surfaces = upright((core, inner), radius, extent, FarSide::Region(0));
     let hull = hull((core, inner), Solid::cylinder(radius, extent), extent, &mut surfaces);
-    Structure { regions: vec![Region::Radial(RadialRegion { flow, inner })], surfaces, hull }
+    radial(flow, inner, surfaces, hull)
 }
 
 /// The hull of a device around a round core that has a radius and is something of its own; an open one gets its border,
@@ -93,7 +99,7 @@ pub(super) fn hull(
 /// A round metal cylinder.
 pub(super) fn metal_cylinder(radius: f64, extent: Extent) -> Structure {
     let surfaces = upright((0.0, FarSide::Conductor), radius, extent, FarSide::Conductor);
-    Structure { regions: Vec::new(), surfaces, hull: Hull::new(Solid::cylinder(radius, extent)) }
+    Structure::new(Vec::new(), surfaces, Hull::new(Solid::cylinder(radius, extent)))
 }
 
 /// The side and the ends of a round cylinder, whose core has a radius and is something of its own.

@@ -101,7 +101,7 @@ fn square(
     let of_kappa = |error: String| KeyError::at(key!(SquareCloak.kappa), error);
     let part = |corners: &[DVec2], medium| {
         let polygon = Polygon::new(corners).map_err(|error| of_kappa(error.to_string()))?;
-        Ok(PolygonPart { polygon, medium })
+        Ok(PolygonPart::new(polygon, medium))
     };
     let mut parts = Vec::new();
     for (i, quadrant) in QUADRANTS.into_iter().enumerate() {

@@ -3,6 +3,8 @@
 use super::{Convex, Region, Shape, Surface};
 use glam::DVec3;
 use optics::geometry::{Extent, FloorCurve, Hole, Outline, Pose, Solid};
+use optics::interface::FilmLayer;
+use optics::medium::Medium;
 
 /// What lies on the other side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,10 +17,20 @@ pub enum FarSide {
     Seam(u16),
     /// A perfect conductor.
     Conductor,
+    /// The device's metal of that number, which keeps what it does not reflect.
+    Metal(u16),
     /// An opaque body: rays end on it.
     Opaque,
     /// A polarizer: what its surface passes goes on through what is around the device.
     Polarizer,
+}
+
+impl FarSide {
+    /// Whether it is metal.
+    #[must_use]
+    pub fn is_metal(self) -> bool {
+        matches!(self, Self::Conductor | Self::Metal(_))
+    }
 }
 
 /// How two media meet at a surface.
@@ -28,6 +40,8 @@ pub enum Coating {
     None,
     /// Refraction alone: a perfect antireflection coating.
     Antireflection,
+    /// Layers between them: the device's film of that number.
+    Film(u16),
 }
 
 /// A device in its own frame.
@@ -39,6 +53,11 @@ pub struct Structure {
     pub surfaces: Vec<Surface>,
     /// The space the device takes up.
     pub hull: Hull,
+    /// The layers on its surfaces, in the order in which light meets them that comes to the
+    /// surface.
+    pub films: Vec<Vec<FilmLayer>>,
+    /// Its metals that are no perfect conductors.
+    pub metals: Vec<Medium>,
 }
 
 /// What makes a device a body: other bodies may stand in it, and other devices if it is filled with a medium.
@@ -196,10 +215,16 @@ impl Hull {
 }
 
 impl Structure {
+    /// A structure without coatings, its metal being a perfect conductor.
+    #[must_use]
+    pub fn new(regions: Vec<Region>, surfaces: Vec<Surface>, hull: Hull) -> Self {
+        Self { regions, surfaces, hull, films: Vec::new(), metals: Vec::new() }
+    }
+
     /// A structure without anything: a cloak whose "mirror" view is empty space.
     #[must_use]
     pub fn empty() -> Self {
-        Self { regions: Vec::new(), surfaces: Vec::new(), hull: Hull::of_parts(Vec::new()) }
+        Self::new(Vec::new(), Vec::new(), Hull::of_parts(Vec::new()))
     }
 
     /// Whether it is an opaque body.
@@ -212,6 +237,12 @@ impl Structure {
     #[must_use]
     pub fn polarizes(&self) -> bool {
         self.surfaces.iter().any(|surface| surface.far == FarSide::Polarizer)
+    }
+
+    /// The medium of a metal; `None` for a perfect conductor.
+    #[must_use]
+    pub fn metal(&self, far: FarSide) -> Option<&Medium> {
+        if let FarSide::Metal(metal) = far { self.metals.get(usize::from(metal)) } else { None }
     }
 
     /// Where the surface of that number lies, if there is one.

@@ -9,7 +9,8 @@ fn sound(entry: &Entry) -> AnyDevice {
     }
     if let AnyDevice::Prisms(prisms) = &mut device {
         let corners = Some(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
-        prisms.prism = vec![PrismOfMedium { corners, metal: true, ..PrismOfMedium::default() }];
+        prisms.prism =
+            vec![PrismOfMedium { corners, metal: Metal::Perfect, ..PrismOfMedium::default() }];
     }
     device
 }

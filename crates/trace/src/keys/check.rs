@@ -52,9 +52,13 @@ impl Key {
                 format!("{} or a number{unit}", options.collect::<Vec<_>>().join(", "))
             }
             KeyKind::Tensor => "a number, [re, im], or 3 x 3 of either".to_owned(),
+            KeyKind::Complex => "a number or [re, im]".to_owned(),
             KeyKind::Polygon => format!("three or more corners [x, y]{unit}"),
             KeyKind::Samples => "rows of numbers, or the name of a file".to_owned(),
             KeyKind::Table { keys } => format!("a table with {}", key_names(keys)),
+            KeyKind::FlagOrTable { keys } => {
+                format!("true, false or a table with {}", key_names(keys))
+            }
             KeyKind::Tables { keys } => format!("a list of tables with {}", key_names(keys)),
         }
     }
@@ -127,8 +131,19 @@ impl Key {
                 }
                 tensor::to_value(&tensor)
             }
+            KeyKind::Complex => {
+                let number = self.of_type(value, tensor::entry(value))?;
+                for (part, name) in [(number.re, "real"), (number.im, "imaginary")] {
+                    self.limit(&format!("the {name} part of {}", self.name), part)?;
+                }
+                value.clone()
+            }
             KeyKind::Polygon => self.polygon(value)?,
             KeyKind::Table { keys } => self.table(value, keys)?,
+            KeyKind::FlagOrTable { keys } => match value {
+                Value::Table(_) => self.table(value, keys)?,
+                _ => self.of_type(value, value.as_flag())?.into(),
+            },
             KeyKind::Tables { keys } => {
                 let items = self.of_type(value, value.as_list())?;
                 let tables = items.iter().map(|item| self.table(item, keys));

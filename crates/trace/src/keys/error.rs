@@ -9,9 +9,9 @@
 pub struct KeyError {
     /// The key at fault; `None` if no single one is.
     pub key: Option<&'static str>,
-    /// The list of tables and the number of the table in it (counted from 0) that has the key; `None` if
-    /// it is a key of the device itself.
-    pub entry: Option<(&'static str, usize)>,
+    /// The lists of tables, the outermost first, and the numbers of the tables in them (counted
+    /// from 0) that hold the key; none if it is a key of the device itself.
+    pub entries: Vec<(&'static str, usize)>,
     /// What is wrong: quantity, value, unit, and what is allowed.
     pub message: String,
 }
@@ -19,7 +19,7 @@ pub struct KeyError {
 impl KeyError {
     /// An error of one key.
     pub fn at(key: &'static str, message: impl Into<String>) -> Self {
-        KeyError { key: Some(key), entry: None, message: message.into() }
+        KeyError { key: Some(key), entries: Vec::new(), message: message.into() }
     }
 
     /// Refuses a table for one of its keys where `refused` is true.
@@ -37,21 +37,22 @@ impl KeyError {
 
     /// An error of no single key.
     pub fn general(message: impl Into<String>) -> Self {
-        KeyError { key: None, entry: None, message: message.into() }
+        KeyError { key: None, entries: Vec::new(), message: message.into() }
     }
 
     /// The same error in a table of a list: of the list `list` the table of that number, counted from 0.
     #[must_use]
-    pub fn within(self, list: &'static str, number: usize) -> Self {
-        KeyError { entry: Some((list, number)), ..self }
+    pub fn within(mut self, list: &'static str, number: usize) -> Self {
+        self.entries.insert(0, (list, number));
+        self
     }
 
     /// Where the error is, of a table such as `device.0`: `device.0.side`, `device.0.prism.2.corners`; the table
     /// itself if it is nowhere in particular.
     #[must_use]
     pub fn path_in(&self, table: &str) -> String {
-        let entry = self.entry.map(|(list, number)| format!("{list}.{number}"));
-        let parts = [Some(table), entry.as_deref(), self.key];
-        parts.into_iter().flatten().collect::<Vec<_>>().join(".")
+        let entries = self.entries.iter().map(|(list, number)| format!("{list}.{number}"));
+        let key = self.key.map(str::to_owned);
+        [table.to_owned()].into_iter().chain(entries).chain(key).collect::<Vec<_>>().join(".")
     }
 }

@@ -3,6 +3,7 @@
 use super::value::items_of;
 use super::{BUILT_IN_PREFIX, Key, KeyKind, Samples, Value, tensor};
 use glam::DVec3;
+use num_complex::Complex64;
 use optics::medium::Tensor;
 use std::path::PathBuf;
 
@@ -111,6 +112,10 @@ field!([f64; 3], Vector, numbers, |vector| Value::from(*vector));
 field!(DVec3, Vector, |value| numbers(value).map(DVec3::from_array), |v| v.to_array().into());
 field!([u32; 2], IntegerPair, |v| items_of(v, whole), |pair| pair.map(i64::from).into());
 field!(Tensor, Tensor, tensor::from_value, tensor::to_value);
+field!(Complex64, Complex, tensor::entry, |number| match number.im {
+    0.0 => number.re.into(),
+    im => [number.re, im].into(),
+});
 field!(Vec<[f64; 2]>, Polygon, |value| value.as_list()?.iter().map(numbers).collect(), |corners| {
     Value::List(corners.iter().map(|corner| Value::from(*corner)).collect())
 });

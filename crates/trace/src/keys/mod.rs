@@ -78,6 +78,8 @@ pub enum KeyKind {
     },
     /// A relative permittivity or permeability: a number, [re, im], or 3 x 3 of either.
     Tensor,
+    /// A complex number: a number, or [re, im].
+    Complex,
     /// The corners of a polygon, [x, y] each, three at least.
     Polygon,
     /// Numbers on a grid: rows of numbers, or the name of a file that holds them. A scene file's reader makes names
@@ -88,11 +90,27 @@ pub enum KeyKind {
         /// Its keys.
         keys: &'static [Key],
     },
+    /// True or false, or a table with keys of its own, which says more.
+    FlagOrTable {
+        /// Its keys.
+        keys: &'static [Key],
+    },
     /// A list of tables, each with keys of its own; none by default.
     Tables {
         /// The keys of each table.
         keys: &'static [Key],
     },
+}
+
+impl KeyKind {
+    /// The keys of a table, or of each table of a list.
+    #[must_use]
+    pub fn inner_keys(self) -> Option<&'static [Key]> {
+        match self {
+            Self::Table { keys } | Self::FlagOrTable { keys } | Self::Tables { keys } => Some(keys),
+            _ => None,
+        }
+    }
 }
 
 /// The allowed values of a number.

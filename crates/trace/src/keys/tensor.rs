@@ -3,20 +3,21 @@
 use super::Value;
 use super::value::items_of;
 use glam::{DMat3, DVec3};
+use num_complex::Complex64;
 use optics::medium::Tensor;
 
 /// The tensor that a value is, if it is one.
 pub(super) fn from_value(value: &Value) -> Option<Tensor> {
     if let Some(scalar) = entry(value) {
-        return Some(Tensor { re: diagonal(scalar[0]), im: diagonal(scalar[1]) });
+        return Some(Tensor { re: diagonal(scalar.re), im: diagonal(scalar.im) });
     }
     let rows = three(value)?;
     let mut tensor = Tensor { re: DMat3::ZERO, im: DMat3::ZERO };
     for (i, row) in rows.iter().enumerate() {
         for (j, value) in three(row)?.iter().enumerate() {
-            let [re, im] = entry(value)?;
-            tensor.re.col_mut(j)[i] = re;
-            tensor.im.col_mut(j)[i] = im;
+            let entry = entry(value)?;
+            tensor.re.col_mut(j)[i] = entry.re;
+            tensor.im.col_mut(j)[i] = entry.im;
         }
     }
     Some(tensor)
@@ -41,9 +42,12 @@ pub(super) fn parts(tensor: &Tensor) -> impl Iterator<Item = f64> {
     tensor.re.to_cols_array().into_iter().chain(tensor.im.to_cols_array())
 }
 
-/// Real and imaginary part of a number or a pair.
-fn entry(value: &Value) -> Option<[f64; 2]> {
-    items_of(value, Value::as_number).or_else(|| Some([value.as_number()?, 0.0]))
+/// The complex number that a number or a pair of its real and imaginary part is.
+pub(super) fn entry(value: &Value) -> Option<Complex64> {
+    match items_of(value, Value::as_number) {
+        Some([re, im]) => Some(Complex64::new(re, im)),
+        None => value.as_number().map(Complex64::from),
+    }
 }
 
 fn three(value: &Value) -> Option<&[Value; 3]> {

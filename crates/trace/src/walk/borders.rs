@@ -1,7 +1,8 @@
 //! Borders between devices, and between a device and what is around it: crossed in the world's frame.
 
 use super::branch::{Branch, Place};
-use super::surfaces::Interface;
+use super::event::Event;
+use super::surfaces::{Between, Interface};
 use super::{LeafEnd, PathRecorder, Tracer};
 use crate::assembly::{Ahead, DepartedSurface, slack_at};
 use crate::device::{Coating, FarSide, Passage};
@@ -21,9 +22,10 @@ pub(super) enum Met {
 
 /// What lies beyond a border between devices.
 #[expect(clippy::large_enum_variant, reason = "it is looked at and dropped")]
-enum Destination {
+enum Destination<'a> {
     Air,
-    Conductor,
+    /// A metal; a perfect conductor without a medium.
+    Metal(Option<&'a Medium>),
     End(LeafEnd),
     /// A region of a device, with its medium in the world's frame.
     Region {
@@ -33,7 +35,7 @@ enum Destination {
     },
 }
 
-impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
+impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// What a ray meets at a point, in the world, at which it leaves `departed`.
     pub(super) fn met_at(
         &self,
@@ -92,9 +94,9 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
         branch: &mut Branch<N>,
         medium: &Medium,
         met: Met,
-        interface: Interface,
+        (number, region): (u16, u16),
+        passage: &Passage,
     ) -> bool {
-        let Place::Region { device: number, .. } = branch.place else { return false };
         let device = self.assembly.device(number);
         let ahead = match met {
             Met::Grazed(departed) => {
@@ -109,14 +111,51 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
         };
         let turned = (!medium.is_isotropic()).then(|| device.medium_in_world(medium));
         branch.leave_frame(&device.pose);
-        let onward = device.pose.vector_to_world(interface.onward);
-        let coating = match ahead {
-            Ahead::Surface(_, hit) if interface.coating == Coating::None => hit.coating,
-            _ => interface.coating,
-        };
-        let event = interface.event.shared();
+        let onward = device.pose.vector_to_world(passage.outward);
+        let event = Event::Face { device: number, region, face: passage.face }.shared();
         let medium = turned.as_ref().unwrap_or(medium);
-        self.cross(branch, medium, ahead, Interface { onward, coating, event })
+        self.cross(branch, medium, passage.coating, ahead, (onward, event))
+    }
+
+    /// What is between two media in the world, given the coating of what a branch leaves there and
+    /// what is ahead of it.
+    fn between(&self, branch: &Branch<N>, left: Coating, ahead: Ahead) -> Between<'a> {
+        let entered = match ahead {
+            Ahead::Air => None,
+            Ahead::Surface(number, hit) => Some((number, hit.coating)),
+            Ahead::Body(number) => {
+                let device = self.assembly.device(number);
+                let coating = device.structure.surfaces.first().map(|surface| surface.coating);
+                // Within a body its surface is not there.
+                coating.filter(|coating| *coating != Coating::None).zip(device.body()).and_then(
+                    |(coating, body)| {
+                        let position = device.pose.to_local(branch.position);
+                        let slack = 2.0 * slack_at(branch.position);
+                        body.shape.borders(position, slack).then_some((number, coating))
+                    },
+                )
+            }
+        };
+        let left = match branch.place {
+            Place::Region { device, .. } => Some((device, left)),
+            Place::Air => None,
+        };
+        let sides = [left, entered];
+        let assembly = self.assembly;
+        let films = sides.map(|side| match side {
+            Some((device, Coating::Film(film))) => assembly.film_in_world(device, film),
+            _ => &[],
+        });
+        let perfect = |side: &Option<(u16, Coating)>| {
+            side.is_some_and(|(_, coating)| coating == Coating::Antireflection)
+        };
+        if films.iter().any(|film| !film.is_empty()) {
+            Between::Films(films)
+        } else if sides.iter().any(perfect) {
+            Between::PerfectCoating
+        } else {
+            Between::Nothing
+        }
     }
 
     /// What light has departed from that is sent back by what is ahead of it.
@@ -130,7 +169,7 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
     }
 
     /// What lies beyond a border, at which the branch is, in the world's frame; `None` if rounding hides it.
-    fn destination(&self, branch: &Branch<N>, ahead: Ahead) -> Option<Destination> {
+    fn destination(&self, branch: &Branch<N>, ahead: Ahead) -> Option<Destination<'a>> {
         let (number, far) = match ahead {
             Ahead::Air => return Some(Destination::Air),
             Ahead::Surface(number, hit) => (number, hit.far),
@@ -142,7 +181,9 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
         Some(match far {
             // Between a medium and a polarizer there is a gap of air, however thin.
             FarSide::Outside | FarSide::Polarizer => Destination::Air,
-            FarSide::Conductor => Destination::Conductor,
+            FarSide::Conductor | FarSide::Metal(_) => {
+                Destination::Metal(self.assembly.device(number).structure.metal(far))
+            }
             FarSide::Opaque => Destination::End(LeafEnd::Body(number)),
             FarSide::Region(region) | FarSide::Seam(region) => {
                 let device = self.assembly.device(number);
@@ -155,15 +196,17 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
         })
     }
 
-    /// Splits a branch, in the world's frame but still of the place that it leaves, at the border of that place to what is
-    /// ahead.
+    /// Splits a branch, in the world's frame but still of the place that it leaves, at the border
+    /// of that place, with its coating, to what is ahead.
     pub(super) fn cross(
         &mut self,
         branch: &mut Branch<N>,
         here: &Medium,
+        left: Coating,
         ahead: Ahead,
-        interface: Interface,
+        (onward, event): (DVec3, Event),
     ) -> bool {
+        let interface = Interface { onward, between: self.between(branch, left, ahead), event };
         let Some(destination) = self.destination(branch, ahead) else {
             return self.lose(branch.power);
         };
@@ -190,9 +233,11 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
             Destination::Region { medium, .. } => medium,
             Destination::Air => &Medium::AIR,
             Destination::End(end) => return self.end(branch, *end),
-            Destination::Conductor => return self.reflect(branch, here, &interface, back),
+            Destination::Metal(metal) => {
+                return self.reflect(branch, here, *metal, &interface, back);
+            }
         };
-        if here == there {
+        if here == there && !matches!(interface.between, Between::Films(_)) {
             // A border between equal media: nothing is there.
             on(branch);
             return true;

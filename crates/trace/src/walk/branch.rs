@@ -3,7 +3,7 @@
 use super::event::fingerprint;
 use super::{Launch, Leaf, LeafEnd};
 use crate::assembly::DepartedSurface;
-use crate::device::InnerRay;
+use crate::device::{InnerRay, Passage};
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::geometry::Pose;
@@ -35,8 +35,10 @@ pub(super) struct Branch<const N: usize> {
     /// Whether the tree of each launched polarization alone has this branch.
     pub survives_alone: [bool; N],
     pub optical_path: f64,
-    /// Speed of light times the time of flight, cm.
-    pub group_path: f64,
+    /// What ways on which the phase runs backwards add to the optical path in the time of flight, cm.
+    pub backwards: f64,
+    /// What dispersion adds to the optical path for a pulse, cm; NaN where it is not known, or nobody asks.
+    pub dispersion: f64,
     /// What it has just left, if it runs outside of it now: in air or in the body around it.
     pub departed: Option<DepartedSurface>,
     /// How many borders in a row it has crossed without getting anywhere.
@@ -62,7 +64,8 @@ impl<const N: usize> Branch<N> {
             power: launch.electric.map(ComplexVector::norm_squared),
             survives_alone: [true; N],
             optical_path: 0.0,
-            group_path: 0.0,
+            backwards: 0.0,
+            dispersion: f64::NAN,
             departed: None,
             standstills: 0,
             met_device: false,
@@ -136,6 +139,29 @@ impl<const N: usize> Branch<N> {
         self.path = fingerprint(self.path, event);
     }
 
+    /// Its field for the launched polarization of which it has most.
+    pub fn strongest_field(&self) -> ComplexVector {
+        let fields = self.electric.iter().zip(self.power);
+        let strongest = fields.max_by(|(_, a), (_, b)| a.total_cmp(b));
+        strongest.map_or(ComplexVector::ZERO, |(field, _)| *field)
+    }
+
+    /// Notes what a pulse takes on a way before the branch takes it.
+    #[cold]
+    pub fn delay(&mut self, passage: &Passage, group: f64) {
+        let more = group - passage.optical_path;
+        self.dispersion += more;
+        if passage.optical_path < 0.0 {
+            // Where a pulse has no velocity, in media that absorb, no slower than light.
+            let straight = (passage.position - self.position).length();
+            self.backwards += if more.is_nan() {
+                (straight - passage.optical_path).max(-2.0 * passage.optical_path)
+            } else {
+                more
+            };
+        }
+    }
+
     /// Comes out into air, `departed` being what it leaves: there all that decays across a beam is its profile: behind an absorbing wedge the
     /// wave of the match decays along the surface, by some 1e-5 of its wave vector; a ray is a plane
     /// wave along its direction, transverse, and of its power.
@@ -165,7 +191,8 @@ impl<const N: usize> Branch<N> {
             electric: self.electric,
             survives_alone: self.survives_alone,
             optical_path: self.optical_path,
-            group_path: self.group_path,
+            delay_path: self.optical_path + self.backwards,
+            group_path: Some(self.optical_path + self.dispersion).filter(|path| !path.is_nan()),
             end,
             path: self.path,
         }

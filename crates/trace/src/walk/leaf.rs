@@ -24,9 +24,12 @@ pub struct Leaf<const N: usize> {
     pub survives_alone: [bool; N],
     /// Optical path length from the ray's origin to `position`, cm.
     pub optical_path: f64,
-    /// The speed of light times the time of flight from the ray's origin to `position`, cm: the optical
-    /// path length, but in media of negative index and those with a group index of their own.
-    pub group_path: f64,
+    /// The speed of light times the time of flight from the ray's origin to `position`, cm: the delay of the phase, which
+    /// is the optical path, but where the phase runs backwards that of a pulse.
+    pub delay_path: f64,
+    /// The speed of light times what a pulse takes, cm; `None` where that is not known, behind media that absorb, and where
+    /// the tracer has not been [asked](super::Tracer::with_group_delays).
+    pub group_path: Option<f64>,
     /// Where it ends.
     pub end: LeafEnd,
     /// A fingerprint of the surfaces it met and the branches it took: leaves of neighbouring rays with

@@ -33,11 +33,13 @@ pub struct RaySettings {
     pub limits: Limits,
     /// The light whose leaves of one direction are added as fields; absent: each leaf stays as it is.
     pub coherence: Option<Coherence>,
+    /// Whether leaves are to know what a pulse takes.
+    pub group_delays: bool,
 }
 
 impl From<Limits> for RaySettings {
     fn from(limits: Limits) -> Self {
-        Self { limits, coherence: None }
+        Self { limits, coherence: None, group_delays: false }
     }
 }
 
@@ -54,6 +56,9 @@ pub struct LeafTable {
     pub power: Vec<f64>,
     /// Optical path length from the ray's origin to `position`, cm; 0 if it met no device.
     pub optical_path: Vec<f64>,
+    /// The speed of light times what a pulse takes from the ray's origin to `position`, cm; 0 if it met no device, NaN
+    /// where it is not known or not asked for.
+    pub group_path: Vec<f64>,
     /// Its electric field; |E|² = power.
     pub electric_field: Vec<[Complex64; 3]>,
     /// For each ray: the share of its power absorbed, by media or on opaque bodies.
@@ -64,7 +69,7 @@ pub struct LeafTable {
 
 impl LeafTable {
     /// Bytes that a ray with one leaf takes while the table is put together: twice its row.
-    pub const BYTES_PER_RAY: u64 = 2 * (4 + 24 + 24 + 8 + 8 + 48 + 16);
+    pub const BYTES_PER_RAY: u64 = 2 * (4 + 24 + 24 + 8 + 8 + 8 + 48 + 16);
 
     /// Traces the rays `launch(0)` to `launch(count - 1)`, which may be 2^32 at most; `done` is told now and then, from
     /// any thread, how many more have been traced. With the feature `rayon`, on all threads; the table is the same.
@@ -87,6 +92,7 @@ impl LeafTable {
                 return Err(E::from(Stopped));
             }
             let tracer = Tracer::<1>::new(assembly, settings.limits);
+            let tracer = if settings.group_delays { tracer.with_group_delays() } else { tracer };
             let mut tracers = FourTracers::new(&match settings.coherence {
                 Some(coherence) => tracer.joining(coherence),
                 None => tracer,
@@ -160,6 +166,8 @@ impl LeafTable {
             self.direction.push(leaf.direction.to_array());
             self.power.push(leaf.power[0]);
             self.optical_path.push(if leaf.met_device { leaf.optical_path } else { 0.0 });
+            let group_path = leaf.group_path.map(|path| if leaf.met_device { path } else { 0.0 });
+            self.group_path.push(group_path.unwrap_or(f64::NAN));
             self.electric_field.push(leaf.electric[0].components());
         }
         // What ends on opaque bodies is absorbed there.
@@ -174,6 +182,7 @@ impl LeafTable {
         self.direction.append(&mut other.direction);
         self.power.append(&mut other.power);
         self.optical_path.append(&mut other.optical_path);
+        self.group_path.append(&mut other.group_path);
         self.electric_field.append(&mut other.electric_field);
         self.absorbed.append(&mut other.absorbed);
         self.pruned.append(&mut other.pruned);

@@ -4,12 +4,12 @@ use super::borders::Met;
 use super::branch::{Branch, Place};
 use super::event::Event;
 use super::{LeafEnd, PathRecorder, PathSegment, Tracer};
-use crate::assembly::{Ahead, DepartedSurface, slack_at};
+use crate::assembly::{Ahead, DepartedSurface, Placed, slack_at};
 use crate::device::{Coating, FarSide, Passage, Region, Shape, SurfaceHit};
 use glam::DVec3;
 use optics::interface::{
-    OutgoingWave, OutgoingWaves, Reflectionless, Side, reflect_at_conductor, split_down_to,
-    transmit_antireflection,
+    Backing, Film, FilmLayer, OutgoingWave, OutgoingWaves, Reflectionless, Side,
+    reflect_at_conductor, split_coated, split_down_to, transmit_antireflection,
 };
 use optics::medium::{Medium, ModeKind};
 use optics::propagation::PathPoint;
@@ -23,20 +23,44 @@ const SHORTEST_WAVE: f64 = 1e30;
 /// edge of a negative-index body, and never comes out.
 const MOST_STANDSTILLS: u8 = 16;
 
+/// What is between two media, in the frame of the branch that comes there.
+#[derive(Clone, Copy)]
+pub(super) enum Between<'a> {
+    Nothing,
+    PerfectCoating,
+    /// The layers of a film in the order in which light meets them: of what it leaves, then of what
+    /// it enters.
+    Films([&'a [FilmLayer]; 2]),
+}
+
+impl Between<'_> {
+    fn absorbs(&self) -> bool {
+        match self {
+            Self::Films(films) => {
+                films.iter().copied().flatten().any(|layer| layer.medium.absorbs())
+            }
+            Self::Nothing | Self::PerfectCoating => false,
+        }
+    }
+}
+
 /// Where media meet, in the frame of the branch that comes there.
 #[derive(Clone, Copy)]
-pub(super) struct Interface {
+pub(super) struct Interface<'a> {
     /// The unit normal, along the ray.
     pub onward: DVec3,
-    pub coating: Coating,
+    pub between: Between<'a>,
     pub event: Event,
 }
 
-impl Interface {
-    /// At the end of a passage through a region of a device.
-    fn at_end((device, region): (u16, u16), passage: &Passage) -> Self {
-        let event = Event::Face { device, region, face: passage.face };
-        Self { onward: passage.outward, coating: passage.coating, event }
+impl Placed {
+    /// What a coating of the device puts between two media, in its frame.
+    fn between(&self, coating: Coating) -> Between<'_> {
+        match coating {
+            Coating::None => Between::Nothing,
+            Coating::Antireflection => Between::PerfectCoating,
+            Coating::Film(film) => Between::Films([&self.structure.films[usize::from(film)], &[]]),
+        }
     }
 }
 
@@ -66,7 +90,6 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             ],
         });
         branch.optical_path += hit.distance;
-        branch.group_path += hit.distance;
         branch.met_device = true;
         if self.assembly.simple {
             return self.enter(branch, number, &hit);
@@ -81,8 +104,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             ahead @ Ahead::Body(_) => {
                 let outward = self.assembly.device(number).pose.vector_to_world(hit.outward);
                 let event = Event::Surface { device: number, surface: hit.surface }.shared();
-                let interface = Interface { onward: -outward, coating: Coating::None, event };
-                self.cross(branch, &Medium::AIR, ahead, interface)
+                self.cross(branch, &Medium::AIR, Coating::None, ahead, (-outward, event))
             }
             // Only grazed.
             Ahead::Air => {
@@ -96,7 +118,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     fn enter(&mut self, branch: &mut Branch<N>, number: u16, hit: &SurfaceHit) -> bool {
         let device = self.assembly.device(number);
         let event = Event::Surface { device: number, surface: hit.surface };
-        let interface = || Interface { onward: -hit.outward, coating: hit.coating, event };
+        let interface =
+            || Interface { onward: -hit.outward, between: device.between(hit.coating), event };
         let back = |branch: &mut Branch<N>| {
             branch.leave_frame(&device.pose);
             branch.departed = device.departed(number, Some(hit.surface));
@@ -111,9 +134,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 }
                 self.refract(branch, &Medium::AIR, (number, region), &interface(), back)
             }
-            FarSide::Conductor => {
+            FarSide::Conductor | FarSide::Metal(_) => {
                 branch.enter_frame(&device.pose);
-                self.reflect(branch, &Medium::AIR, &interface(), back)
+                let metal = device.structure.metal(hit.far);
+                self.reflect(branch, &Medium::AIR, metal, &interface(), back)
             }
             FarSide::Opaque => self.end(branch, LeafEnd::Body(number)),
             FarSide::Outside => {
@@ -192,7 +216,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             return false;
         };
         match guest {
-            Some((met, _)) => self.leave(branch, medium, met, Interface::at_end(place, passage)),
+            Some((met, _)) => self.leave(branch, medium, met, place, passage),
             None => self.arrive(branch, place, medium, passage),
         }
     }
@@ -217,6 +241,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             inside: Some((number, region_number)),
             path: region.path(&branch.inner_ray(), passage, self.limits.tolerance),
         });
+        if self.wants_group_path(passage.optical_path) {
+            let dispersion = self.assembly.device(number).dispersion;
+            let (ray, field) = (branch.inner_ray(), branch.strongest_field());
+            let group = region.group_path(&ray, field, passage, dispersion, self.limits.tolerance);
+            branch.delay(passage, group);
+        }
         branch.position = passage.position;
         branch.met_device = true;
         let medium = region.medium(passage.position, passage.virtual_point.as_ref(), graded);
@@ -233,7 +263,6 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         branch.wave_vector = passage.wave_vector;
         branch.direction = passage.direction;
         branch.optical_path += passage.optical_path;
-        branch.group_path += region.group_path(passage.optical_path, way);
         branch.virtual_point = passage.virtual_point;
         if let Some(transport) = passage.transport {
             branch.electric = branch.electric.map(|field| field.transformed(&transport));
@@ -251,11 +280,18 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         passage: &Passage,
     ) -> bool {
         let device = self.assembly.device(number);
-        let interface = || Interface::at_end((number, region), passage);
         let event = Event::Face { device: number, region, face: passage.face };
+        let interface = || Interface {
+            onward: passage.outward,
+            between: device.between(passage.coating),
+            event,
+        };
         let known = self.assembly.interfaces(number).exit(region, passage.face);
         match passage.far {
-            FarSide::Conductor => self.reflect(branch, medium, &interface(), |_| ()),
+            FarSide::Conductor | FarSide::Metal(_) => {
+                let metal = device.structure.metal(passage.far);
+                self.reflect(branch, medium, metal, &interface(), |_| ())
+            }
             FarSide::Seam(next) => {
                 branch.place = Place::Region { device: number, region: next };
                 true
@@ -277,7 +313,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                     let direction = device.pose.vector_to_world(branch.direction);
                     let met = self.met_at(position, direction, departed);
                     if met != Met::Device(Ahead::Air) {
-                        return self.leave(branch, medium, met, interface());
+                        return self.leave(branch, medium, met, (number, region), passage);
                     }
                 }
                 let leave = |branch: &mut Branch<N>| {
@@ -305,7 +341,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         branch: &mut Branch<N>,
         from: &Medium,
         (number, region): (u16, u16),
-        interface: &Interface,
+        interface: &Interface<'_>,
         back: impl Fn(&mut Branch<N>),
     ) -> bool {
         let mut graded = None;
@@ -321,20 +357,36 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         })
     }
 
-    /// Sends a branch back from metal, into the place where `back` puts it. Where metal sends nothing back, for a surface has
-    /// no normal that numbers can hold, light is lost.
+    /// Sends a branch back from metal, a perfect conductor if it is of no medium, into the place
+    /// where `back` puts it. Where a conductor sends nothing back, for a surface has no normal that
+    /// numbers can hold, light is lost.
     pub(super) fn reflect(
         &mut self,
         branch: &mut Branch<N>,
         medium: &Medium,
-        interface: &Interface,
+        metal: Option<&Medium>,
+        interface: &Interface<'_>,
         back: impl Fn(&mut Branch<N>),
     ) -> bool {
-        let mut waves = reflect_at_conductor(medium, &branch.incident(), interface.onward);
-        if waves.is_empty() {
+        let (wave, normal) = (branch.incident(), interface.onward);
+        let mut absorbing = metal.is_some();
+        let mut waves = match (metal, interface.between) {
+            (None, Between::Nothing | Between::PerfectCoating) => {
+                reflect_at_conductor(medium, &wave, normal)
+            }
+            (metal, between) => {
+                absorbing |= between.absorbs();
+                let backing = metal.map_or(Backing::Conductor, Backing::Absorber);
+                let mut waves = OutgoingWaves::new();
+                let beyond = (self.film(between), backing);
+                split_coated(medium, beyond, &wave, normal, 0.0, &mut waves);
+                waves
+            }
+        };
+        if waves.is_empty() && !absorbing {
             return self.lose(branch.power);
         }
-        if medium.absorbs() {
+        if absorbing || medium.absorbs() {
             self.check_account(branch, &mut waves, [0.0; N], true);
         }
         self.go_on(branch, &waves, interface.event, |branch, _| back(branch))
@@ -431,12 +483,20 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         screen.is_none_or(|distance| hit.1.distance + slack < distance).then_some(hit)
     }
 
+    fn film<'f>(&self, between: Between<'f>) -> Film<'f> {
+        let layers = match between {
+            Between::Films(layers) => layers,
+            Between::Nothing | Between::PerfectCoating => [&[][..]; 2],
+        };
+        Film { layers, wave_number: self.assembly.vacuum_wave_number }
+    }
+
     pub(super) fn split(
         &mut self,
         from: &Medium,
         to: &Medium,
         branch: &Branch<N>,
-        interface: &Interface,
+        interface: &Interface<'_>,
         waves: &mut OutgoingWaves<N>,
     ) {
         if branch.wave_vector.length_squared() > SHORTEST_WAVE {
@@ -447,14 +507,20 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let wave = branch.incident();
         let mut weak = [0.0; N];
         let normal = interface.onward;
-        match interface.coating {
-            Coating::None => {
+        let mut absorbing = from.absorbs() || to.absorbs();
+        match interface.between {
+            Between::Nothing => {
                 weak = split_down_to(from, to, &wave, normal, self.limits.min_power, waves);
             }
-            Coating::Antireflection => {
+            Between::PerfectCoating => {
                 waves.extend(transmit_antireflection(from, to, &wave, normal));
             }
+            Between::Films(_) => {
+                absorbing |= interface.between.absorbs();
+                let beyond = (self.film(interface.between), Backing::Medium(to));
+                weak = split_coated(from, beyond, &wave, normal, self.limits.min_power, waves);
+            }
         }
-        self.check_account(branch, waves, weak, from.absorbs() || to.absorbs());
+        self.check_account(branch, waves, weak, absorbing);
     }
 }

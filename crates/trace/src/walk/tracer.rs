@@ -60,6 +60,8 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     pub(super) recorder: W,
     /// The light whose branches become one where they run together.
     joining: Option<Coherence>,
+    /// Whether leaves are to know what a pulse takes.
+    group_delays: bool,
     /// Whether the screen touches a device.
     pub(super) screen_touches: bool,
     /// Whether nothing touches what rays leave: there is one device at most, no body, and the screen is apart.
@@ -93,6 +95,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             limits: Limits { min_power: limits.min_power.max(NO_POWER), ..limits },
             screen: None,
             joining: None,
+            group_delays: false,
             screen_touches: false,
             stands_alone: assembly.simple,
             waiting: Vec::new(),
@@ -125,6 +128,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         Self { joining: Some(coherence), ..self }
     }
 
+    /// Works out what a pulse takes, too, [`Leaf::group_path`].
+    #[must_use]
+    pub fn with_group_delays(self) -> Self {
+        Self { group_delays: true, ..self }
+    }
+
     /// Follows one ray to the end of every branch: the leaves, in the order the tree was walked,
     /// and the account of the rest of the power. A ray that starts in a medium is launched in those waves of it whose rays
     /// run along its direction; one that starts in metal is lost.
@@ -152,8 +161,11 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.outcome = Outcome::default();
         self.waiting.clear();
         (self.events, self.threshold) = (0, self.limits.min_power);
+        if self.group_delays {
+            branch.dispersion = 0.0;
+        }
         if !self.start(branch) {
-            *branch = self.next()?;
+            self.take_next(branch)?;
         }
         self.walk(branch)
     }
@@ -166,7 +178,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         passage: Option<&Passage>,
     ) -> Option<(u16, u16)> {
         if !self.pass(branch, region, passage) {
-            *branch = self.next()?;
+            self.take_next(branch)?;
         }
         self.walk(branch)
     }
@@ -207,32 +219,45 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                     }
                 }
             };
-            if self.joining.is_some() {
-                if goes_on {
-                    self.waiting.push(*branch);
-                }
-                *branch = self.next()?;
-            } else if !goes_on {
-                *branch = *self.waiting.last()?;
-                self.waiting.truncate(self.waiting.len() - 1);
+            if !goes_on {
+                self.take_next(branch)?;
+            } else if self.joining.is_some() {
+                self.waiting.push(*branch);
+                self.take_next(branch)?;
             }
         }
     }
 
-    /// The branch to be followed next: the last that waits, or where branches are joined the one of the shortest path
-    /// with all that run together with it.
-    fn next(&mut self) -> Option<Branch<N>> {
-        let Some(coherence) = self.joining else { return self.waiting.pop() };
+    /// Puts in place of a branch the one to be followed next: the last that waits, or where branches are joined the one
+    /// of the shortest path with all that run together with it. None if none waits.
+    #[inline(always)]
+    fn take_next(&mut self, branch: &mut Branch<N>) -> Option<()> {
+        if let Some(coherence) = self.joining {
+            return self.take_joined(branch, coherence);
+        }
+        *branch = *self.waiting.last()?;
+        self.waiting.truncate(self.waiting.len() - 1);
+        Some(())
+    }
+
+    #[cold]
+    fn take_joined(&mut self, branch: &mut Branch<N>, coherence: Coherence) -> Option<()> {
         loop {
             let paths = self.waiting.iter().map(|branch| branch.optical_path).enumerate();
             let (shortest, _) = paths.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
-            let mut branch = self.waiting.swap_remove(shortest);
-            self.waiting.retain(|other| !coherence.join(&mut branch, other));
+            *branch = self.waiting.swap_remove(shortest);
+            self.waiting.retain(|other| !coherence.join(branch, other));
             // Their fields may have cancelled.
             if self.follows(branch.power) {
-                return Some(branch);
+                return Some(());
             }
         }
+    }
+
+    /// Whether what a pulse takes on a way of that optical path is asked for, by itself or as the time of flight.
+    #[inline]
+    pub(super) fn wants_group_path(&self, optical_path: f64) -> bool {
+        self.group_delays || optical_path < 0.0
     }
 
     /// Takes from a branch what an absorbing medium keeps of it, given ∫ Im n ds along the way, cm; whether what is left
@@ -270,20 +295,24 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             return;
         }
         let mut lost = false;
-        // Fields that have cancelled where branches were joined have few digits.
-        let least = if self.joining.is_some() { CANCELLED } else { 0.0 };
         for (i, power) in branch.power.iter().enumerate() {
             self.outcome.pruned[i] += weak[i];
             if absorbing {
                 self.outcome.absorbed[i] += rest[i];
                 continue;
             }
-            if rest[i].abs() > LEAK * power.max(least) {
+            if rest[i].abs() > LEAK * power && !self.has_cancelled(rest[i]) {
                 self.outcome.pruned[i] += rest[i];
                 lost = true;
             }
         }
         self.outcome.stats.lost += u64::from(lost);
+    }
+
+    /// Whether a rest of power is that of fields that have cancelled where branches were joined: they have few digits.
+    #[cold]
+    fn has_cancelled(&self, rest: f64) -> bool {
+        self.joining.is_some() && rest.abs() <= LEAK * CANCELLED
     }
 
     /// Whether a branch of that power is followed; else it is pruned, and need not be made.

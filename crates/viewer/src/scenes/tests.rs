@@ -64,7 +64,7 @@ fn files_named_in_overrides_are_those_of_the_user() {
         "device.1.index=d.npy",
     ];
     for number in 0..=changes.len() {
-        let overrides: Vec<String> = changes[..number].iter().map(|&text| text.into()).collect();
+        let overrides: Vec<_> = changes[..number].iter().map(|&text| text.into()).collect();
         let loaded = scene_file::parse(text, "a", folder, &overrides).expect("a scene");
         let opened = Opened::new(&loaded, "a", folder).expect("tables");
         let read = opened.read(&object(opened.tables.clone()), None).expect("its own scene");

@@ -1,7 +1,7 @@
 //! The server without a browser: who may ask for what, and what comes of it.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-#[path = "../../../cloakroom/tests/long.rs"]
+#[path = "../../../optics/tests/long.rs"]
 mod long;
 mod malformed;
 mod page;

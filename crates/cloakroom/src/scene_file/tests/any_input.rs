@@ -8,7 +8,8 @@ use super::{EVERYTHING, parse, said};
 
 /// Reads, and checks what can be checked of any answer.
 fn answer(text: &str, overrides: &[String]) {
-    match parse(text, "scene.toml", Path::new(""), overrides) {
+    let overrides: Vec<_> = overrides.iter().map(|text| text.as_str().into()).collect();
+    match parse(text, "scene.toml", Path::new(""), &overrides) {
         Err(error) => {
             assert!(!error.to_string().is_empty());
             let lines = text.matches('\n').count() + 1;

@@ -15,8 +15,24 @@ fn read(text: &str) -> Result<Loaded, SceneFileError> {
 }
 
 fn read_with(text: &str, overrides: &[&str]) -> Result<Loaded, SceneFileError> {
-    let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+    let overrides: Vec<_> = overrides.iter().map(|&text| text.into()).collect();
     parse(text, "scene.toml", Path::new("scenes"), &overrides)
+}
+
+#[test]
+fn keys_are_set_to_values_as_to_text() {
+    let text = "[[device]]\nkind = \"square-cloak\"\n";
+    let set = |key: &str, value: Value| Override::Value { key: key.to_owned(), value };
+    let with = |each: Override| parse(text, "scene.toml", Path::new(""), &[each]);
+    let by_value = with(set("device.0.rotation", 5.5.into())).unwrap_or_else(|e| panic!("{e}"));
+    let by_text = with("device.0.rotation=5.5".into()).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(by_value.scene.source, by_text.scene.source);
+    // A text that looks like a number is a text.
+    let message = |each: Override| with(each).map(drop).expect_err("wrong").to_string();
+    let wrong = message(set("device.0.rotation", Value::Text("5".to_owned())));
+    assert!(wrong.contains("device.0.rotation=\"5\""), "{wrong}");
+    let wrong = message(set("device.0.rotatoin", 5.0.into()));
+    assert!(wrong.contains("did you mean"), "{wrong}");
 }
 
 fn scene_with(text: &str, overrides: &[&str]) -> Scene {

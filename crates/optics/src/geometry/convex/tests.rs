@@ -169,6 +169,41 @@ proptest! {
     }
 
     #[test]
+    fn sheets_touch_until_one_goes_through_the_other(
+        pose in poses(),
+        other in poses(),
+        at in (-0.9..0.9, -0.9..0.9),
+        along in 0.0..1.0_f64,
+    ) {
+        let sheet = |size: f64| {
+            let ends = [-size, size].map(|x| DVec2::new(x, 0.0));
+            let outline = Outline { corners: ends.to_vec() };
+            Solid::Prism { outline, extent: Extent::centred(Some(2.0 * size)) }
+        };
+        let (wide, small) = (sheet(2.0).placed(&pose), sheet(0.3));
+        let normal = pose.vector_to_world(DVec3::Y);
+        let turned = |v: DVec3| other.vector_to_world(v);
+        // The corners of the small one as it is turned, by how far they lie from the plane of the wide one.
+        let mut corners = [[0.3, 0.3], [0.3, -0.3], [-0.3, 0.3], [-0.3, -0.3]]
+            .map(|[x, z]| turned(DVec3::new(x, 0.0, z)));
+        corners.sort_by(|a, b| a.dot(normal).total_cmp(&b.dot(normal)));
+        let [lowest, .., highest] = corners;
+        let depth = (highest - lowest).dot(normal);
+        prop_assume!(depth > 1e-6);
+        let foot = pose.to_world(DVec3::new(at.0, 0.0, at.1));
+        let rotation = DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z));
+        let overlap = |deep: f64| {
+            let origin = foot - lowest - normal * deep;
+            let small = small.placed(&Pose::from_rotation(origin, rotation));
+            let both = [wide.overlaps(&small, TOUCHING), small.overlaps(&wide, TOUCHING)];
+            assert_eq!(both[0], both[1]);
+            both[0]
+        };
+        prop_assert!(!overlap(0.0) && !overlap(depth) && !overlap(-along));
+        prop_assert!(overlap((0.01 + 0.98 * along) * depth));
+    }
+
+    #[test]
     fn bodies_that_touch_at_odd_angles_do_not_overlap(pose in poses(), turn in -180.0..180.0) {
         let up = Pose::new(DVec3::ZERO, f64::to_radians(turn));
         let slab = cuboid(DVec3::new(4.0, 3.0, 0.5)).placed(&up);

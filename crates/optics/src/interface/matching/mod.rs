@@ -1,6 +1,9 @@
 //! The interface of any two media: two modes out on either side, four tangential fields to match.
 
+mod coated;
 mod isotropic_beyond;
+
+pub use coated::{Backing, Film, FilmLayer, split_coated};
 
 use super::isotropic::Layer;
 use super::splitting::Splitting;
@@ -14,6 +17,9 @@ use num_complex::Complex64;
 /// Normal components closer than this are those of one wave, that both modes are.
 const ONE_WAVE: f64 = 1e-12;
 
+/// On the axis of a biaxial medium one wave vector has a cone of rays; rays closer than this are one.
+const ONE_RAY: f64 = 1e-9;
+
 /// Splits a wave at the interface of any two media, or at a conductor: adds the outgoing waves that are strong enough;
 /// the power of the others.
 pub(super) fn split_into_modes<const N: usize>(
@@ -21,14 +27,9 @@ pub(super) fn split_into_modes<const N: usize>(
     transmitted_medium: Option<&Medium>,
     splitting: Splitting<'_, N>,
 ) -> [f64; N] {
-    let Splitting { wave, frame, along, .. } = splitting;
+    let Splitting { wave, frame, .. } = splitting;
     let normal_component = wave.wave_vector.dot(frame.normal);
-    let tangential = if wave.attenuation == DVec3::ZERO {
-        Tangential::Real(along)
-    } else {
-        let decay = [wave.attenuation.dot(frame.first), wave.attenuation.dot(frame.second)];
-        Tangential::Complex([Complex64::new(along, decay[0]), Complex64::new(0.0, decay[1])])
-    };
+    let tangential = tangential(&splitting);
     // Modes are large, and stay where they are made.
     let (arriving, backward) =
         &incident_medium.arriving_and_back(&frame, tangential, normal_component);
@@ -59,6 +60,16 @@ pub(super) fn split_into_modes<const N: usize>(
         }
     }
     scattered.weak
+}
+
+/// The tangential part of the wave vector, which all waves of the interface share.
+fn tangential<const N: usize>(splitting: &Splitting<'_, N>) -> Tangential {
+    let Splitting { wave, frame, along, .. } = splitting;
+    if wave.attenuation == DVec3::ZERO {
+        return Tangential::Real(*along);
+    }
+    let decay = [wave.attenuation.dot(frame.first), wave.attenuation.dot(frame.second)];
+    Tangential::Complex([Complex64::new(*along, decay[0]), Complex64::new(0.0, decay[1])])
 }
 
 /// The outgoing amplitudes, reflected 1, 2, transmitted 1, 2, of `R` incident modes. At a conductor,
@@ -165,19 +176,21 @@ impl<const N: usize> Scattered<'_, N> {
         absorbing: bool,
     ) {
         let incident = self.incident(arriving, normal_component);
-        let outgoing = match incident.as_slice() {
-            [(a, in_a), (b, in_b)] => {
-                let with = amplitudes([*a, *b], backward, onward);
-                with.map(|[with_a, with_b]| {
-                    std::array::from_fn(|i| with_a * in_a[i] + with_b * in_b[i])
-                })
-            }
-            [(mode, parts)] => {
-                amplitudes([*mode], backward, onward).map(|[with]| parts.map(|part| with * part))
-            }
-            _ => return,
-        };
-        let [r1, r2, t1, t2] = &outgoing;
+        if let Some(outgoing) = matched(&incident, backward, onward) {
+            self.share_out(&incident, backward, onward, &outgoing, absorbing);
+        }
+    }
+
+    /// Adds the waves of the given amplitudes, reflected 1, 2, transmitted 1, 2.
+    #[inline]
+    fn share_out<T: Number>(
+        &mut self,
+        incident: &[Incident<'_, T, N>],
+        backward: &[LocalMode<T>; 2],
+        onward: Option<&[LocalMode<T>; 2]>,
+        [r1, r2, t1, t2]: &[[Complex64; N]; 4],
+        absorbing: bool,
+    ) {
         let back = fluxes(backward, [r1, r2]);
         let on = onward.map_or([[0.0; N]; 2], |onward| fluxes(onward, [t1, t2]));
         let total = if absorbing {
@@ -186,7 +199,7 @@ impl<const N: usize> Scattered<'_, N> {
                 let alone =
                     |(mode, parts): &Incident<'_, T, N>| mode.flux().abs() * parts[i].norm_sqr();
                 let alone: f64 = incident.iter().map(alone).sum();
-                match incident.as_slice() {
+                match incident {
                     [(a, in_a), (b, in_b)] => {
                         let mutual: Complex64 = mutual_flux(*a, *b).into();
                         alone + 2.0 * (in_a[i] * in_b[i].conj() * mutual).re
@@ -230,7 +243,7 @@ impl<const N: usize> Scattered<'_, N> {
         let one_wave = a.propagating
             && b.propagating
             && apart.norm_sqr() <= (ONE_WAVE * ONE_WAVE) * (1.0 + a.q.magnitude_squared());
-        if one_wave {
+        if one_wave && share_ray(modes) {
             let power: [f64; N] = std::array::from_fn(|i| {
                 // In the sum of all outgoing fluxes there is nothing of it.
                 let together = if shares.absorbing {
@@ -304,6 +317,34 @@ impl<const N: usize> Scattered<'_, N> {
             power,
         });
     }
+}
+
+/// Whether two modes of one wave vector have one ray. s and p do; in absorbing media theirs part a little. Where the
+/// modes have no such names they are two of the plane of fields, each with its own ray on the cone.
+fn share_ray<T: Number>([a, b]: &[LocalMode<T>; 2]) -> bool {
+    let ray = |mode: &LocalMode<T>| DVec3::from(mode.poynting()).normalize_or_zero();
+    matches!(a.kind, ModeKind::S | ModeKind::P) || ray(a).distance(ray(b)) <= ONE_RAY
+}
+
+/// The outgoing amplitudes of an incident wave, for each launched polarization; none without a wave.
+#[inline]
+fn matched<T: Number, const N: usize>(
+    incident: &[Incident<'_, T, N>],
+    backward: &[LocalMode<T>; 2],
+    onward: Option<&[LocalMode<T>; 2]>,
+) -> Option<[[Complex64; N]; 4]> {
+    Some(match incident {
+        [(a, in_a), (b, in_b)] => {
+            let with = amplitudes([*a, *b], backward, onward);
+            with.map(|[with_a, with_b]| {
+                std::array::from_fn(|i| with_a * in_a[i] + with_b * in_b[i])
+            })
+        }
+        [(mode, parts)] => {
+            amplitudes([*mode], backward, onward).map(|[with]| parts.map(|part| with * part))
+        }
+        _ => return None,
+    })
 }
 
 /// The outgoing normal fluxes of modes of the given amplitudes; those that do not propagate have none.

@@ -33,13 +33,6 @@ impl Medium {
     }
 }
 
-/// How decidedly a mode heads forward. In a passive medium flux and decay agree, so that their sum
-/// decides where one of them is weak.
-pub(super) fn forwardness(mode: &ComplexMode) -> f64 {
-    let flux = mode.flux() / mode.norm_squared();
-    flux + mode.q.im / (1.0 + mode.q.norm())
-}
-
 fn normalized(mode: ComplexMode) -> ComplexMode {
     let (flux, norm) = (mode.flux().abs(), mode.norm_squared());
     let propagating = flux > NO_FLUX * norm;
@@ -74,7 +67,7 @@ fn isotropic(
         [s, LocalMode { kind: ModeKind::P, electric, magnetic: across, ..s }]
     };
     let (one, other) = (pair(q), pair(-q));
-    let sum = |pair: &[ComplexMode; 2]| pair.iter().map(forwardness).sum::<f64>();
+    let sum = |pair: &[ComplexMode; 2]| pair.iter().map(LocalMode::forwardness).sum::<f64>();
     if sum(&one) >= sum(&other) { [one, other] } else { [other, one] }
 }
 
@@ -90,7 +83,7 @@ fn uniaxial(
     let direction = |q: Complex64| field_direction([k[0], k[1], q], axis);
     let sorted = |modes: [(ComplexMode, bool); 2]| {
         let [a, b] = modes;
-        if forwardness(&a.0) >= forwardness(&b.0) { [a, b] } else { [b, a] }
+        if a.0.forwardness() >= b.0.forwardness() { [a, b] } else { [b, a] }
     };
     let o = sorted(ordinary.map(|q| {
         let (u, on_axis) = direction(q);

@@ -1,6 +1,5 @@
 //! Modes of any medium: Berreman's eigenproblem for the tangential fields.
 
-use super::absorbing::forwardness;
 use super::eigenvector::eigenvector;
 use super::local::mutual_flux;
 use super::refinement::{Maxwell, best};
@@ -205,7 +204,7 @@ impl Berreman<Complex64> {
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         separate_double_roots(&self.matrix, &mut pairs, size);
         let mut modes = pairs.map(|(q, field)| self.mode(q, field));
-        modes.sort_by(|a, b| forwardness(b).total_cmp(&forwardness(a)));
+        modes.sort_by(|a, b| b.forwardness().total_cmp(&a.forwardness()));
         let [a, b, c, d] = modes;
         [ordered([a, b]), ordered([d, c])]
     }
@@ -213,7 +212,7 @@ impl Berreman<Complex64> {
 
 impl Berreman<f64> {
     fn lossless_modes(&self, known: Option<f64>) -> Lossless {
-        let mut pairs = self.eigenpairs(|schur| Some(schur.complex_eigenvalues().into()));
+        let mut pairs = self.eigenpairs(|schur| Some(eigenvalues(&schur.unpack().1)));
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         // Evanescent ones come as conjugates; the real ones in order show which are double.
         pairs.sort_by(|(a, _), (b, _)| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
@@ -255,6 +254,21 @@ impl Berreman<f64> {
         let decaying = decaying.into_iter().map(|(q, field)| self.mode(q, field)).collect();
         Lossless { modes: by_heading(running, decaying, size), propagating, along_the_surface }
     }
+}
+
+/// The eigenvalues of a real Schur form. `Schur::complex_eigenvalues` takes those of every block for a conjugate pair, and
+/// is not a number where rounding has left a block of a real double one.
+fn eigenvalues(form: &Matrix4<f64>) -> [Complex64; 4] {
+    let mut values = std::array::from_fn(|i| Complex64::from(form[(i, i)]));
+    for i in 1..4 {
+        let (a, b, c, d) = (form[(i - 1, i - 1)], form[(i - 1, i)], form[(i, i - 1)], form[(i, i)]);
+        if c != 0.0 {
+            let (middle, half) = (0.5 * (a + d), 0.5 * (a - d));
+            let root = Complex64::from(half * half + b * c).sqrt();
+            [values[i - 1], values[i]] = [middle + root, middle - root];
+        }
+    }
+    values
 }
 
 /// Roots closer than this, relative to the largest, are one.

@@ -65,6 +65,15 @@ pub(crate) fn mutual_flux<T: Number>(a: &LocalMode<T>, b: &LocalMode<T>) -> T {
     (ea[0] * hb[1] - ea[1] * hb[0] + eb[0] * ha[1] - eb[1] * ha[0]) * 0.5
 }
 
+impl LocalMode<Complex64> {
+    /// How decidedly it heads forward. In a passive medium flux and decay agree, so that their sum decides where one of
+    /// them is weak.
+    pub fn forwardness(&self) -> f64 {
+        let flux = self.flux() / self.norm_squared();
+        flux + self.q.im / (1.0 + self.q.norm())
+    }
+}
+
 impl<T: Number> LocalMode<T> {
     /// The normal component of Re(E × H*).
     pub fn flux(&self) -> f64 {

@@ -83,10 +83,10 @@ pub enum Boundary {
 pub struct VirtualPoint {
     /// The half it belongs to.
     pub half: Half,
-    /// Where it is, cm.
-    pub position: DVec3,
     /// The virtual point ζ, in the upper half for either half, cm.
     pub virtual_position: Complex64,
+    /// Its z, the same in both spaces, cm.
+    pub z: f64,
     /// The index there.
     pub index: f64,
 }
@@ -237,7 +237,7 @@ impl ConformalFlow {
             && (self.core.is_infinite() || radius >= self.core - slack)
             && radius <= self.rim + slack;
         if inside && index.is_finite() {
-            Ok(VirtualPoint { half, position, virtual_position: zeta, index })
+            Ok(VirtualPoint { half, virtual_position: zeta, z: local.z, index })
         } else {
             Err(FlowError::Outside)
         }
@@ -318,14 +318,14 @@ impl ConformalFlow {
         };
         let virtual_point = VirtualPoint {
             half,
-            position: half.mirrored(position),
             virtual_position: end.zeta,
+            z: position.z,
             index: index_scale / end.jet.stretch(),
         };
         let wave_vector = half.mirrored(DVec3::new(p.re, p.im, control.p_z));
         PathEnd {
             surface: boundary,
-            position: virtual_point.position,
+            position: half.mirrored(position),
             virtual_point,
             wave_vector,
             direction: wave_vector.normalize(),

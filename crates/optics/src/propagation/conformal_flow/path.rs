@@ -1,8 +1,10 @@
-//! Points along a ray, for drawings.
+//! Points along a ray, for drawings and for what a pulse takes.
 
+use super::points::Point;
 use super::ray_packet::RayPacket;
 use super::{ConformalFlow, FlowError, VirtualPoint};
 use crate::propagation::PathPoint;
+use crate::propagation::group_path::{NODES, integral_along};
 use glam::DVec3;
 use num_complex::Complex64;
 
@@ -22,10 +24,9 @@ impl ConformalFlow {
         wave_vector: DVec3,
         tolerance: f64,
     ) -> Result<Vec<PathPoint>, FlowError> {
-        let half = start.half;
         let speed = self.index_scale * self.index_scale;
         let point = |at: Complex64, z: f64, tau: f64| PathPoint {
-            position: half.mirrored(DVec3::new(at.re, at.im, z)),
+            position: start.half.mirrored(DVec3::new(at.re, at.im, z)),
             optical_path: speed * tau,
         };
         let spacing = self.map.scale() / DENSITY;
@@ -39,29 +40,83 @@ impl ConformalFlow {
                 .map(|k| {
                     let share = f64::from(k) / f64::from(pieces);
                     let zeta = from + (to - from) * share;
-                    point(self.map.jet(zeta).f, start.position.z, tau * share)
+                    point(self.map.jet(zeta).f, start.z, tau * share)
                 })
                 .collect());
         }
+        let way = self.waypoints(start, wave_vector, tolerance)?;
+        Ok(way.into_iter().map(|at| point(at.jet.f, at.z, at.tau)).collect())
+    }
+
+    /// Points of a ray from its start to its end, close enough for a smooth drawing.
+    fn waypoints(
+        &self,
+        start: &VirtualPoint,
+        wave_vector: DVec3,
+        tolerance: f64,
+    ) -> Result<Vec<Point>, FlowError> {
         let mut packet =
             RayPacket::new(self, &[Some((*start, wave_vector)), None, None, None], tolerance);
-        packet.even_out(self, 0, spacing);
-        let mut way = Vec::new();
-        let mut last = -1.0;
+        packet.even_out(self, 0, self.map.scale() / DENSITY);
+        let mut way: Vec<Point> = Vec::new();
         loop {
-            if let Some((at, z, tau)) = packet.waypoint(0)
-                && tau > last
+            if let Some(point) = packet.waypoint(0)
+                && way.last().is_none_or(|last| point.tau > last.tau)
             {
-                way.push((at, z, tau));
-                last = tau;
+                way.push(point);
             }
             if !packet.moves(self) {
                 break;
             }
         }
         let end = packet.arrival(0)?.end;
-        way.retain(|(_, _, tau)| *tau < end.tau);
-        way.push((end.jet.f, end.z, end.tau));
-        Ok(way.into_iter().map(|(at, z, tau)| point(at, z, tau)).collect())
+        way.retain(|point| point.tau < end.tau);
+        way.push(end);
+        Ok(way)
+    }
+
+    /// The speed of light times the time that a pulse takes on the way of [`Self::advance_from`], cm, to within about
+    /// `tolerance` (cm), at the least dispersion that causality allows: the group index is n or 1/n, whichever is
+    /// larger.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::advance_from`].
+    pub fn causal_group_path(
+        &self,
+        start: &VirtualPoint,
+        wave_vector: DVec3,
+        tolerance: f64,
+    ) -> Result<f64, FlowError> {
+        let speed = self.index_scale * self.index_scale;
+        let over = |ways: &dyn Fn(f64) -> (Complex64, f64), tolerance: f64| {
+            let panel = |shares: [f64; NODES]| {
+                let points = shares.map(ways);
+                let ratio = |(zeta, _): (Complex64, f64)| {
+                    self.index_at(&self.map.jet(zeta)).powi(-2).max(1.0)
+                };
+                (points.map(ratio), points.map(|(_, tau)| speed * tau))
+            };
+            integral_along(&panel, tolerance)
+        };
+        if wave_vector.z == 0.0 && !self.is_uneven() {
+            let end = self.advance_from(start, wave_vector, tolerance)?;
+            let (from, to) = (start.virtual_position, end.virtual_point.virtual_position);
+            let tau = end.optical_path / speed;
+            return Ok(over(&|share| (from + (to - from) * share, tau * share), tolerance));
+        }
+        let way = self.waypoints(start, wave_vector, tolerance)?;
+        let pieces = way.len() as f64;
+        let piece = |ends: &[Point]| {
+            // Hermite's cubic; the way is nearly straight.
+            let ([a, b], time) = ([&ends[0], &ends[1]], ends[1].tau - ends[0].tau);
+            let at = |s: f64| {
+                let (over, left) = (s * s * (3.0 - 2.0 * s), 1.0 - s);
+                let bend = (a.momentum * left - b.momentum * s) * (s * left * time);
+                (a.zeta + (b.zeta - a.zeta) * over + bend, a.tau + time * s)
+            };
+            over(&at, tolerance / pieces)
+        };
+        Ok(way.windows(2).map(piece).sum())
     }
 }

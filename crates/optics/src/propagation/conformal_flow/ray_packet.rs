@@ -4,7 +4,7 @@ use glam::DVec3;
 use num_complex::Complex64;
 
 use super::crossing::{Crossing, RootRefinement, RootStatus};
-use super::points::Points;
+use super::points::{Point, Points};
 use super::step_control::StepControl;
 use super::strides::{Move, Rays, StepKind, StepResult};
 use super::{Arrival, Boundary, ConformalFlow, FlowError, MAX_STEPS, VirtualPoint};
@@ -95,7 +95,7 @@ impl RayPacket {
             packet.rays.p_z[i] = p.z;
             packet.here.zeta.put(i, start.virtual_position);
             packet.here.momentum.put(i, Complex64::new(p.x, p.y));
-            packet.here.z[i] = start.half.mirrored(start.position).z;
+            packet.here.z[i] = start.z;
         }
         packet.set_out(flow, &control, tolerance);
         packet
@@ -190,11 +190,11 @@ impl RayPacket {
         }
     }
 
-    /// Where a ray is, if that is on its way and not beyond the border, which it looks for: x + iy, z and τ.
-    pub fn waypoint(&self, i: usize) -> Option<(Complex64, f64, f64)> {
+    /// Where a ray is, if that is on its way and not beyond the border, which it looks for.
+    pub fn waypoint(&self, i: usize) -> Option<Point> {
         let on_its_way =
             matches!(self.states[i].status, RayStatus::Stepping(_) | RayStatus::Arrived(_));
-        on_its_way.then(|| (self.here.jet.f.at(i), self.here.z[i], self.here.tau[i]))
+        on_its_way.then(|| self.here.at(i))
     }
 
     /// The end of a ray's way.

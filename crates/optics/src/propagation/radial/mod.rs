@@ -17,7 +17,7 @@ pub use transformed_shell::TransformedShell;
 pub use transmuted_sphere::TransmutedSphere;
 pub use uniaxial_cylinder::{OpticAxis, UniaxialCylinder};
 
-use super::{PathEnd, PathPoint, first_way_out, turn_in_plane};
+use super::{PathEnd, PathPoint, first_way_out, group_path_along, turn_in_plane};
 pub use crate::geometry::Border;
 use crate::medium::{Medium, ModeKind};
 use crate::transformation::RadialMap;
@@ -95,12 +95,23 @@ impl RadialFlow {
         mode: ModeKind,
         pieces: u32,
     ) -> Vec<PathPoint> {
+        let point = self.way(position, wave_vector, mode);
+        (0..=pieces).map(|k| point(f64::from(k) / f64::from(pieces.max(1)))).collect()
+    }
+
+    /// Points of that way, by shares of it.
+    fn way(
+        &self,
+        position: DVec3,
+        wave_vector: DVec3,
+        mode: ModeKind,
+    ) -> impl Fn(f64) -> PathPoint {
         let end = self.advance(position, wave_vector, mode);
         let turning = match self {
             Self::Uniaxial(cylinder) => cylinder.turning_path(position, wave_vector, mode),
             _ => None,
         };
-        let point = |share: f64| match (self, &turning) {
+        move |share: f64| match (self, &turning) {
             (_, Some(path)) => path.way_point(position, share),
             (Self::Lens(lens), _) => lens.way_point(position, wave_vector, share),
             (Self::Transmuted(sphere), _) if mode == ModeKind::Extraordinary => {
@@ -111,8 +122,26 @@ impl RadialFlow {
                 straight_in(&cylinder.map, position, &end, share)
             }
             _ => straight(position, &end, share),
+        }
+    }
+
+    /// The speed of light times the time that a pulse takes on the way of [`Self::advance`], cm, to within about
+    /// `tolerance` (cm), at the least dispersion that causality allows: see [`Medium::causal_group_index`].
+    #[must_use]
+    pub fn causal_group_path(
+        &self,
+        position: DVec3,
+        wave_vector: DVec3,
+        mode: ModeKind,
+        tolerance: f64,
+    ) -> f64 {
+        let ratio = |at: DVec3, ray: DVec3| {
+            let Some(medium) = self.medium(at) else { return f64::NAN };
+            let waves = medium.waves_along_ray(ray);
+            let own = waves.iter().find(|wave| wave.kind == mode).or(waves.first());
+            own.map_or(f64::NAN, |wave| medium.causal_group_over_phase(wave, ray))
         };
-        (0..=pieces).map(|k| point(f64::from(k) / f64::from(pieces.max(1)))).collect()
+        group_path_along(self.way(position, wave_vector, mode), ratio, tolerance)
     }
 
     /// Where both waves of the medium start as one, along the optic axis, and then part: their

@@ -1,0 +1,129 @@
+//! What a pulse takes along a bent way, from what its phase takes.
+
+use super::PathPoint;
+use glam::DVec3;
+use std::array;
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
+/// Points of a panel; every other one makes a coarser panel, by which the error is judged.
+pub(super) const NODES: usize = 9;
+
+/// How often a panel is halved at most, as where the least dispersion of a medium sets in.
+const MOST_HALVINGS: u32 = 20;
+
+/// Chebyshev's points on [-1, 1], the derivative there of the polynomial through values at them, and the weights of its
+/// integral (Trefethen, Spectral Methods in MATLAB, chapters 6 and 12).
+struct Panel<const N: usize> {
+    derivative: [[f64; N]; N],
+    weights: [f64; N],
+}
+
+static FINE: LazyLock<Panel<NODES>> = LazyLock::new(Panel::new);
+static COARSE: LazyLock<Panel<5>> = LazyLock::new(Panel::new);
+
+impl<const N: usize> Panel<N> {
+    fn node(i: usize) -> f64 {
+        -(PI * i as f64 / (N - 1) as f64).cos()
+    }
+
+    fn new() -> Self {
+        let weight = |i: usize| {
+            let end = if i == 0 || i == N - 1 { 0.5 } else { 1.0 };
+            if i.is_multiple_of(2) { end } else { -end }
+        };
+        let mut derivative: [[f64; N]; N] = array::from_fn(|i| {
+            array::from_fn(|j| {
+                let apart = Self::node(i) - Self::node(j);
+                if i == j { 0.0 } else { weight(j) / weight(i) / apart }
+            })
+        });
+        for (i, row) in derivative.iter_mut().enumerate() {
+            // Of a constant there is none.
+            row[i] = -row.iter().sum::<f64>();
+        }
+        // Clenshaw and Curtis.
+        let last = (N - 1) as f64;
+        let weights = array::from_fn(|i| {
+            let angle = PI * i as f64 / last;
+            let half = N / 2;
+            let term = |k: usize| {
+                let (double, order) = (if k == half { 1.0 } else { 2.0 }, (4 * k * k - 1) as f64);
+                double / order * (2.0 * k as f64 * angle).cos()
+            };
+            let end = if i == 0 || i == N - 1 { 1.0 } else { 2.0 };
+            end / last * (1.0 - (1..=half).map(term).sum::<f64>())
+        });
+        Self { derivative, weights }
+    }
+
+    /// ∫ f dg.
+    fn integral(&self, f: &[f64; N], g: &[f64; N]) -> f64 {
+        let rate = |row: &[f64; N]| row.iter().zip(g).map(|(d, g)| d * g).sum::<f64>();
+        (0..N).map(|i| self.weights[i] * f[i] * rate(&self.derivative[i])).sum()
+    }
+}
+
+/// ∫ ratio d(optical path) along a way, cm, to within about `tolerance` (cm): `panel` gives the ratio and the optical path
+/// at shares of the way between 0 and 1.
+pub(super) fn integral_along(
+    panel: &dyn Fn([f64; NODES]) -> ([f64; NODES], [f64; NODES]),
+    tolerance: f64,
+) -> f64 {
+    integral_between([0.0, 1.0], panel, 0.1 * tolerance, MOST_HALVINGS)
+}
+
+fn integral_between(
+    [from, to]: [f64; 2],
+    panel: &dyn Fn([f64; NODES]) -> ([f64; NODES], [f64; NODES]),
+    tolerance: f64,
+    halvings: u32,
+) -> f64 {
+    let middle = 0.5 * (from + to);
+    let share = |i: usize| middle + 0.5 * (to - from) * Panel::<NODES>::node(i);
+    let (ratio, path) = panel(array::from_fn(share));
+    let every_other = |values: &[f64; NODES]| array::from_fn(|i| values[2 * i]);
+    let fine = FINE.integral(&ratio, &path);
+    let coarse = COARSE.integral(&every_other(&ratio), &every_other(&path));
+    if (fine - coarse).abs() <= tolerance || halvings == 0 {
+        return fine;
+    }
+    let half = |ends: [f64; 2]| integral_between(ends, panel, 0.5 * tolerance, halvings - 1);
+    half([from, middle]) + half([middle, to])
+}
+
+/// The same, the ratio being a function of the point and of the unit vector of the ray there.
+pub fn group_path_along(
+    way: impl Fn(f64) -> PathPoint,
+    ratio: impl Fn(DVec3, DVec3) -> f64,
+    tolerance: f64,
+) -> f64 {
+    integral_along(
+        &|shares| {
+            let points = shares.map(&way);
+            let ratio = array::from_fn(|i| {
+                let rates = FINE.derivative[i].iter().zip(&points);
+                let rate: DVec3 = rates.map(|(d, point)| point.position * *d).sum();
+                ratio(points[i].position, rate.normalize_or_zero())
+            });
+            (ratio, points.map(|point| point.optical_path))
+        },
+        tolerance,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integrals_of_known_functions_come_out() {
+        // ∫ cos d(sin) from 0 to 1, and a kink.
+        let smooth = |x: [f64; NODES]| (x.map(f64::cos), x.map(f64::sin));
+        let exact = 0.5 + 0.25 * 2f64.sin();
+        assert!((integral_along(&smooth, 1e-12) - exact).abs() < 1e-12);
+        let kink = |x: [f64; NODES]| (x.map(|x| x.max(0.3)), x.map(|x| x * x));
+        let exact = 0.3 * 0.09 + 2.0 / 3.0 * (1.0 - 0.027);
+        assert!((integral_along(&kink, 1e-9) - exact).abs() < 1e-9);
+    }
+}
