@@ -1,14 +1,14 @@
 """Devices whose rays are known in closed form: cloaks that are transformations, balls of graded index, a ball of glass.
 
-All functions take a ray in the device's frame (numbers of mpmath) and give its leaves; the maps' fields outside are those
-of empty space.
+All functions take a ray in the device's frame, in numbers of mpmath, and give its leaves; outside of maps fields are
+those of empty space.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from mpmath import mp, mpc, mpf
+from mpmath import mp, mpf
 
 from plane_waves import Vector, added, cross, dot, scaled, unit
 from ray_tree import Leaf, norm
@@ -17,7 +17,7 @@ from ray_tree import Leaf, norm
 Oracle = Callable[[Vector, Vector, Vector], list[Leaf]]
 
 
-def _onto_sphere(origin: Vector, direction: Vector, radius: mpf, endless: bool = False) -> tuple[mpf, mpf] | None:
+def onto_round(origin: Vector, direction: Vector, radius: mpf, endless: bool = False) -> tuple[mpf, mpf] | None:
     """Where a ray enters and leaves a ball, or a cylinder along z."""
     o, d = (origin[:2], direction[:2]) if endless else (origin, direction)
     a, b = sum(c * c for c in d), sum(x * y for x, y in zip(o, d))
@@ -33,7 +33,7 @@ def round_cloak(outer: float, endless: bool) -> Oracle:
     """The cylinder and the sphere that open the axis or the centre: outside nothing has changed."""
 
     def trace(origin: Vector, direction: Vector, electric: Vector) -> list[Leaf]:
-        _, t = _onto_sphere(origin, direction, mpf(outer), endless)
+        _, t = onto_round(origin, direction, mpf(outer), endless)
         return [Leaf(at(origin, direction, t), direction, mpf(1), t, electric)]
 
     return trace
@@ -77,7 +77,7 @@ def _turned_along(electric: Vector, before: Vector, after: Vector, axis: Vector)
 
 def _central(radius: float, leave: Callable[[Vector, Vector, Vector], tuple[Vector, Vector, mpf]]) -> Oracle:
     def trace(origin: Vector, direction: Vector, electric: Vector) -> list[Leaf]:
-        t, _ = _onto_sphere(origin, direction, mpf(radius))
+        t, _ = onto_round(origin, direction, mpf(radius))
         x = scaled(at(origin, direction, t), 1 / mpf(radius))
         axis = unit(cross(x, direction))
         position, after, path = leave(x, direction, axis)
@@ -88,7 +88,7 @@ def _central(radius: float, leave: Callable[[Vector, Vector, Vector], tuple[Vect
 
 
 def eaton(radius: float, turn: mpf) -> Oracle:
-    """The family that turns every ray by one angle towards the centre: pi/m; the path is longer than the chord by it."""
+    """The balls that turn every ray by one angle towards the centre; the path is longer than the chord by as much."""
 
     def leave(x: Vector, d: Vector, axis: Vector) -> tuple[Vector, Vector, mpf]:
         chord = -2 * dot(x, d)
@@ -117,7 +117,7 @@ def glass_ball(radius: float, index: float, least: float) -> Oracle:
     r, n = mpf(radius), mpf(index)
 
     def trace(origin: Vector, direction: Vector, electric: Vector) -> list[Leaf]:
-        t, _ = _onto_sphere(origin, direction, r)
+        t, _ = onto_round(origin, direction, r)
         x = scaled(at(origin, direction, t), 1 / r)
         cos = -dot(x, direction)
         y = unit(added(direction, scaled(x, cos)))
@@ -144,5 +144,42 @@ def glass_ball(radius: float, index: float, least: float) -> Oracle:
             path = t + chords * 2 * n * r * inside
             leaves.append(Leaf(scaled(up, r), after, power, path, scaled(field, mp.sqrt(power) / norm(field))))
         return sorted(leaves, key=lambda leaf: -leaf.power)
+
+    return trace
+
+
+def absorbing_slab(thickness: float, permittivity: list[float], wavelength_nm: float, least: float) -> Oracle:
+    """The partial waves of Airy's sum, for a slab across x and light along x."""
+    n, d = mp.sqrt(mp.mpc(*permittivity)), mpf(thickness)
+    r, through = (1 - n) / (1 + n), 4 * n / (1 + n) ** 2
+    decay = mp.exp(-2 * mp.pi / (wavelength_nm * mpf(10) ** -7) * n.imag * d)
+
+    def trace(origin: Vector, direction: Vector, electric: Vector) -> list[Leaf]:
+        assert direction == [1, 0, 0]
+        path = -d / 2 - origin[0]
+        leaves = []
+        for passes in range(100):
+            amplitude = r if passes == 0 else through * (-r) ** (passes - 1) * decay**passes
+            power = abs(amplitude) ** 2
+            if power < least:
+                break
+            on = 1 if passes % 2 == 1 else -1
+            place = [on * d / 2, origin[1], origin[2]]
+            leaves.append(Leaf(place, [on, 0, 0], power, path + passes * n.real * d, scaled(electric, amplitude)))
+        return sorted(leaves, key=lambda leaf: -leaf.power)
+
+    return trace
+
+
+def polarizer(angle: float) -> Oracle:
+    """A sheet across x that passes the field along its axis, at an angle from z towards y, projected across the ray."""
+    sin, cos = mp.sin(mp.radians(angle)), mp.cos(mp.radians(angle))
+
+    def trace(origin: Vector, direction: Vector, electric: Vector) -> list[Leaf]:
+        t = -origin[0] / direction[0]
+        axis = [mpf(0), sin, cos]
+        axis = unit(added(axis, scaled(direction, -dot(axis, direction))))
+        passed = dot(axis, electric)
+        return [Leaf(at(origin, direction, t), direction, abs(passed) ** 2, t, scaled(axis, passed))]
 
     return trace

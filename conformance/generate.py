@@ -1,4 +1,4 @@
-"""Writes the files of this folder: `python3 conformance/generate.py [FOLDER]`, in two minutes.
+"""Writes the files of this folder: `python3 conformance/generate.py [FOLDER]`, in a minute.
 
 Needs Python 3.10 or newer and what stands in `requirements.txt`. Nothing here shares code with the tracer.
 """

@@ -1,7 +1,8 @@
 """Rays through graded media: Hamilton's equations by DOP853, and Fresnel's at the borders.
 
 With the parameter sigma, ds = n dsigma: r' = p, p' = grad(n^2)/2, the optical path grows by n^2, and the electric field
-turns by e' = -(e.grad ln n) p. Media of conformal maps, z = f(zeta) and n = c/|f'|, carry zeta along: zeta' = (p_x + i p_y)/f'.
+turns by e' = -(e.grad ln n) p. Media of conformal maps, z = f(zeta) and n = 1/|f'|, carry zeta along:
+zeta' = (p_x + i p_y)/f'.
 """
 
 from __future__ import annotations
@@ -124,7 +125,9 @@ def fresnel(n1: float, n2: float, normal: Array, p: Array, e: Array) -> list[tup
 Slope = Callable[[float, Array], Array]
 
 
-def to_border(slope: Slope, values: list[Callable[[Array], float]], y: Array, left: int | None = None) -> tuple[Array, int, float]:
+def to_border(
+    slope: Slope, values: list[Callable[[Array], float]], y: Array, left: int | None = None
+) -> tuple[Array, int, float]:
     """From a state to the first at which one of the values, positive before, vanishes; `left` vanishes at the start.
 
     Gives that state, which value it is, and the parameter.
@@ -141,7 +144,7 @@ def to_border(slope: Slope, values: list[Callable[[Array], float]], y: Array, le
     found = solve_ivp(slope, (0, 1e4), y, events=[event(i) for i in range(len(values))], max_step=2.0, **settings)
     met = next(i for i, times in enumerate(found.t_events) if len(times))
     t = found.t_events[met][0]
-    # The event stands on the interpolant; the state at its time, and what is left to the border, on steps of the method.
+    # The event stands on the interpolant; the state there, and what is left to the border, on steps of the method.
     y = solve_ivp(slope, (0, t), y, **settings).y[:, -1]
     for _ in range(4):
         here, h = values[met](y), 1e-6
@@ -158,7 +161,9 @@ def _unpack(y: Array) -> tuple[Array, Array, Array, complex, float]:
     return y[:3], y[3:6], y[6:9] + 1j * y[9:12], complex(y[12], y[13]), y[14]
 
 
-def _advance(medium: Medium, borders: list[Border], branch: Branch, left: Border) -> tuple[Branch, Border, float, complex]:
+def _advance(
+    medium: Medium, borders: list[Border], branch: Branch, left: Border
+) -> tuple[Branch, Border, float, complex]:
     """To the next border; and the index there."""
 
     def slope(_: float, y: Array) -> Array:

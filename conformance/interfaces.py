@@ -47,8 +47,10 @@ def solve(request: dict, axes: list) -> dict:
     beyond = None if metal else Medium.of(**request["transmitted"])
     normal, tangential = real(request["normal"]), real(request["tangential"])
     found = scatter(here, beyond, normal, tangential)
-    orders = [_order(pair, medium, axis) for pair, medium, axis in
-              [(found.incident, here, axes[0]), (found.reflected, here, axes[0])]]
+    orders = [
+        _order(pair, medium, axis)
+        for pair, medium, axis in [(found.incident, here, axes[0]), (found.reflected, here, axes[0])]
+    ]
     incident, reflected = _ordered(found.incident, orders[0]), _ordered(found.reflected, orders[1])
     rows = [found.amplitudes[i] for i in orders[1]]
     outgoing = [reflected]
@@ -58,7 +60,7 @@ def solve(request: dict, axes: list) -> dict:
         rows += [found.amplitudes[2 + i] for i in order]
         outgoing.append(transmitted)
     amplitudes = [[row[i] for i in orders[0]] for row in rows]
-    (x, y, z) = frame(normal, tangential)
+    x, y, z = frame(normal, tangential)
 
     def total(pair: Pair, first: int, column: int) -> list[mpc]:
         """The fields of the waves to one side, added."""
@@ -75,10 +77,16 @@ def solve(request: dict, axes: list) -> dict:
         totals[1] = [0.0 if carried is not None else None for carried in totals[0]]
     for row in range(len(amplitudes)):
         mode = outgoing[row // 2].modes[row % 2]
-        shares.append([
-            (abs(amplitudes[row][column]) ** 2 if mode.propagates else 0.0) if incident.modes[column].propagates else None
-            for column in range(2)
-        ])
+        shares.append(
+            [
+                (
+                    (abs(amplitudes[row][column]) ** 2 if mode.propagates else 0.0)
+                    if incident.modes[column].propagates
+                    else None
+                )
+                for column in range(2)
+            ]
+        )
     # Of two waves that share a wave vector, or of s and p where there is no plane of incidence, each says nothing.
     at_normal = dot(tangential, tangential) == 0
 
@@ -219,8 +227,12 @@ def cases() -> list[dict]:
         case(f"grazing beyond: 1 - |p_t| = {off:g}", glass, air, draw.border_of(1 - off))
         case(f"total reflection, nearly grazing beyond: |p_t| - 1 = {off:g}", glass, air, draw.border_of(1 + off))
     for _ in range(4):
-        case("magneto-dielectrics", isotropic(between(1, 5), between(0.5, 3)), isotropic(between(1, 5), between(0.5, 3)),
-             border(0.7))
+        case(
+            "magneto-dielectrics",
+            isotropic(between(1, 5), between(0.5, 3)),
+            isotropic(between(1, 5), between(0.5, 3)),
+            border(0.7),
+        )
     case("the same impedance", air, isotropic(2.0, 2.0), up)
     case("to a negative index", air, isotropic(-1.69, -1.0), border(0.9))
     case("from a negative index", isotropic(-1.69, -1.0), glass, border(0.9))
@@ -248,15 +260,31 @@ def cases() -> list[dict]:
         case("between electric crystals", uniaxial(), uniaxial(), border(1.1))
         case("between electric and magnetic crystals", uniaxial(), magnetic(), border(1.1))
     calcite = [[2.2085, 0.0, 0.0], [0.0, 2.75, 0.0], [0.0, 0.0, 2.75]]
-    case("calcite, its axis across the border", air, (isotropic(calcite)[0], [1.0, 0.0, 0.0]),
-         ([1.0, 0.0, 0.0], [0.0, 0.3, 0.4]))
-    case("calcite, its axis in the border", air, (isotropic(calcite)[0], [1.0, 0.0, 0.0]),
-         ([0.0, 0.0, 1.0], [0.3, 0.4, 0.0]))
+    case(
+        "calcite, its axis across the border",
+        air,
+        (isotropic(calcite)[0], [1.0, 0.0, 0.0]),
+        ([1.0, 0.0, 0.0], [0.0, 0.3, 0.4]),
+    )
+    case(
+        "calcite, its axis in the border",
+        air,
+        (isotropic(calcite)[0], [1.0, 0.0, 0.0]),
+        ([0.0, 0.0, 1.0], [0.3, 0.4, 0.0]),
+    )
     case("calcite along its axis", (isotropic(calcite)[0], [1.0, 0.0, 0.0]), air, ([1.0, 0.0, 0.0], [0.0, 0.0, 0.0]))
-    case("out of calcite, one wave totally reflected", (isotropic(calcite)[0], [1.0, 0.0, 0.0]), glass,
-         ([0.0, 0.0, 1.0], [0.0, 1.49, 0.0]))
-    case("calcite, where one wave is evanescent", (isotropic(calcite)[0], [1.0, 0.0, 0.0]), isotropic(4.0),
-         ([0.0, 0.0, 1.0], [0.0, 1.55, 0.0]))
+    case(
+        "out of calcite, one wave totally reflected",
+        (isotropic(calcite)[0], [1.0, 0.0, 0.0]),
+        glass,
+        ([0.0, 0.0, 1.0], [0.0, 1.49, 0.0]),
+    )
+    case(
+        "calcite, where one wave is evanescent",
+        (isotropic(calcite)[0], [1.0, 0.0, 0.0]),
+        isotropic(4.0),
+        ([0.0, 0.0, 1.0], [0.0, 1.55, 0.0]),
+    )
     # The square cloak's tensor (kappa = 1/sqrt 3), and its reduced designs.
     kappa = 1 / math.sqrt(3)
     m = 1 / (1 - kappa)
@@ -264,10 +292,17 @@ def cases() -> list[dict]:
     side = [math.sqrt(0.5), math.sqrt(0.5), 0.0]
     across = [-math.sqrt(0.5), math.sqrt(0.5), 0.0]
     onto = ([-v for v in side], [0.5 * across[0], 0.5 * across[1], 0.2])
-    for name, here, beyond in [("into", air, isotropic(matched, matched)), ("out of", isotropic(matched, matched), air)]:
+    for name, here, beyond in [
+        ("into", air, isotropic(matched, matched)),
+        ("out of", isotropic(matched, matched), air),
+    ]:
         case(f"{name} the impedance-matched square cloak, which reflects nothing", here, beyond, onto)
-    case("metal in the impedance-matched square cloak", isotropic(matched, matched), None,
-         ([math.sin(0.5), math.cos(0.5), 0.0], [0.4 * math.cos(0.5), -0.4 * math.sin(0.5), 0.3]))
+    case(
+        "metal in the impedance-matched square cloak",
+        isotropic(matched, matched),
+        None,
+        ([math.sin(0.5), math.cos(0.5), 0.0], [0.4 * math.cos(0.5), -0.4 * math.sin(0.5), 0.3]),
+    )
     trace, det = matched[0][0] + matched[1][1], 1.0
     large = trace / 2 + math.sqrt(trace**2 / 4 - det)
     angle = math.atan2(large - matched[0][0], matched[0][1])
@@ -288,6 +323,10 @@ def cases() -> list[dict]:
     for _ in range(2):
         case("to a hyperbolic medium", air, isotropic(draw.principal([2.0, 2.5, -3.0])), border(0.95))
         case("out of a hyperbolic medium", isotropic(draw.principal([-2.0, 2.5, 3.0])), glass, border(0.9))
-    case("to a dichroic sheet: absorbs along one axis", air, isotropic([[[2.3, 0.0], 0.0, 0.0], [0.0, [2.4, 0.8], 0.0],
-         [0.0, 0.0, 2.3]]), ([1.0, 0.0, 0.0], [0.0, 0.3, 0.4]))
+    case(
+        "to a dichroic sheet: absorbs along one axis",
+        air,
+        isotropic([[[2.3, 0.0], 0.0, 0.0], [0.0, [2.4, 0.8], 0.0], [0.0, 0.0, 2.3]]),
+        ([1.0, 0.0, 0.0], [0.0, 0.3, 0.4]),
+    )
     return found

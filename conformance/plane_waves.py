@@ -163,7 +163,7 @@ def normal_flux(a: list[mpc], b: list[mpc]) -> mpc:
 
 
 def eigenspaces(m: list[list[mpc]]) -> list[tuple[mpc, list, list[list[mpc]]]]:
-    """The distinct eigenvalues of a diagonalizable 4 x 4 matrix, each with the projector onto its eigenspace and a basis."""
+    """The distinct eigenvalues of a diagonalizable 4 x 4 matrix, each with its projector and a basis of its eigenspace."""
     # Eigenvalues of opposite signs stall the QR steps, so all are shifted.
     shifted = mp.matrix(m) + SHIFT * mp.eye(4)
     values = [value - SHIFT for value in mp.eig(shifted, left=False, right=False)]

@@ -8,8 +8,23 @@ import math
 from mpmath import mp, mpc, mpf
 
 from interfaces import Draws
-from plane_waves import (AIR, Medium, Pair, added, cross, delta_matrix, dot, eigenspaces, frame, normal_flux, real, scaled,
-                         turned, unit, waves)
+from plane_waves import (
+    AIR,
+    Medium,
+    Pair,
+    added,
+    cross,
+    delta_matrix,
+    dot,
+    eigenspaces,
+    frame,
+    normal_flux,
+    real,
+    scaled,
+    turned,
+    unit,
+    waves,
+)
 from write import plain
 
 WAVELENGTH_NM = 550
@@ -23,10 +38,18 @@ ABOUT = {
 
 NORMAL = real([1, 0, 0])
 
+#: Of two waves each with each.
+PAIRS = [(i, j) for i in range(2) for j in range(2)]
+
 
 def _scene(layers: list[dict], coherent: bool) -> str:
     lines = ["[light]", f"wavelength_nm = {WAVELENGTH_NM}"]
-    lines += (["bandwidth_nm = 0"] if coherent else []) + ["", "[trace]", f"min_power = {1e-26 if coherent else 1e-14}", ""]
+    lines += (["bandwidth_nm = 0"] if coherent else []) + [
+        "",
+        "[trace]",
+        f"min_power = {1e-26 if coherent else 1e-14}",
+        "",
+    ]
     x = 0.0
     for layer in layers:
         lines += ["[[device]]", 'kind = "body"', 'shape = "slab"', f"thickness = {layer['thickness']!r}"]
@@ -81,20 +104,18 @@ def _as_fields(layers: list[dict], direction: list, electric: list) -> dict:
         field = _fields(pair, amplitudes)
         way = [-direction[0] if name == "reflected" else direction[0], direction[1], direction[2]]
         answer[name] = {
-            "direction": way, "power": _norm(field) / _norm(electric), "point": places[name], "electric_field": field,
+            "direction": way,
+            "power": _norm(field) / _norm(electric),
+            "point": places[name],
+            "electric_field": field,
         }
     if direction[1] == 0 and direction[2] == 0:
-        h, v = found_field(answer["transmitted"])
+        _, v, h = answer["transmitted"]["electric_field"]
         s0 = abs(h) ** 2 + abs(v) ** 2
         across = h * mp.conj(v)
         stokes = [abs(h) ** 2 - abs(v) ** 2, 2 * across.real, 2 * across.imag]
         answer["transmitted"]["stokes"] = [s / s0 for s in stokes]
     return answer
-
-
-def found_field(beam: dict) -> tuple[mpc, mpc]:
-    """Horizontal (z) and vertical (y) fields of light along x."""
-    return beam["electric_field"][2], beam["electric_field"][1]
 
 
 def _as_powers(layers: list[dict], direction: list, electric: list) -> dict:
@@ -123,20 +144,18 @@ def _as_powers(layers: list[dict], direction: list, electric: list) -> dict:
         for psi, sign in [(p, -1) for p in left_on.tangential] + [(p, 1) for p in right_back.tangential]:
             s.append(mp.lu_solve(out, mp.matrix([sign * entry for entry in psi])))
         for side, (layer, onward) in enumerate([(border, False), (border + 1, True)]):
-            for i in range(2):
-                for j in range(2):
-                    row = place(layer, onward, i, j)
-                    for source, (origin, origin_onward) in enumerate([(border, True), (border + 1, False)]):
-                        for a in range(2):
-                            for b in range(2):
-                                weight = s[2 * source + a][2 * side + i] * mp.conj(s[2 * source + b][2 * side + j])
-                                pair = sides[origin][0 if origin_onward else 1]
-                                if a != b and not pair.degenerate:
-                                    continue
-                                if origin == 0:
-                                    constant[row] += weight * first[a][b]
-                                elif origin != last:
-                                    system[row, place(origin, origin_onward, a, b)] -= weight
+            for i, j in PAIRS:
+                row = place(layer, onward, i, j)
+                for source, (origin, origin_onward) in enumerate([(border, True), (border + 1, False)]):
+                    together = sides[origin][0 if origin_onward else 1].degenerate
+                    for a, b in PAIRS:
+                        weight = s[2 * source + a][2 * side + i] * mp.conj(s[2 * source + b][2 * side + j])
+                        if a != b and not together:
+                            continue
+                        if origin == 0:
+                            constant[row] += weight * first[a][b]
+                        elif origin != last:
+                            system[row, place(origin, origin_onward, a, b)] -= weight
     found = mp.lu_solve(system, constant)
     carried = (first[0][0] + first[1][1]).real
     answer = {}
@@ -163,12 +182,21 @@ def cases() -> list[dict]:
             direction_written = [float(c) for c in direction]
             solve = _as_fields if coherent else _as_powers
             expected.append(plain(solve(layers, direction, e)))
-            requests.append({"origin": origin, "direction": direction_written, "polarization": {"electric_field": written}})
+            requests.append(
+                {"origin": origin, "direction": direction_written, "polarization": {"electric_field": written}}
+            )
         tolerance = {"power": 1e-10, "electric_field": 1e-10} if coherent else {"power": 1e-10}
-        found.append({
-            "name": name, "coherent": coherent, "scene": _scene(layers, coherent), "layers": layers, "rays": requests,
-            "expected": expected, "tolerance": tolerance,
-        })
+        found.append(
+            {
+                "name": name,
+                "coherent": coherent,
+                "scene": _scene(layers, coherent),
+                "layers": layers,
+                "rays": requests,
+                "expected": expected,
+                "tolerance": tolerance,
+            }
+        )
         return expected
 
     def layer(permittivity: float | list, thickness: float, permeability: float | list = 1.0) -> dict:
@@ -204,18 +232,26 @@ def cases() -> list[dict]:
     for name, waves_of, stokes in [("quarter", 0.25, (0, 0, -1)), ("half", 0.5, (-1, 0, 0)), ("full", 1.0, (1, 0, 0))]:
         plate = layer(crystal, waves_of * 550e-7 / (ne - no))
         coat = layer(n * n, 550e-7 / 4 / n)
-        coated = case(f"a {name}-wave plate of quartz at 45 degrees between antireflection films", [coat, plate, coat], True,
-                      horizontal)
+        coated = case(
+            f"a {name}-wave plate of quartz at 45 degrees between antireflection films",
+            [coat, plate, coat],
+            True,
+            horizontal,
+        )
         bare = case(f"a {name}-wave plate of quartz at 45 degrees", [plate], True, horizontal + fields(0.35, 0.9))
         for beam, off in [(coated, 6e-3), (bare, 0.15)]:
-            assert all(abs(a - b) < off for a, b in zip(beam[0]["transmitted"]["stokes"], stokes)), beam[0]["transmitted"]
+            assert all(abs(a - b) < off for a, b in zip(beam[0]["transmitted"]["stokes"], stokes)), beam[0][
+                "transmitted"
+            ]
 
     # 1 mm of glass with a trace of birefringence, at Brewster's angle: p passes whole.
     brewster = [fields(math.atan(1.5), 0.3)[1]]
     for exponent in (-11, -9, -7, -6):
         weak = draw.biaxial(-1.0, 1.0)
         eps = [[2.25 * (i == j) + 3 * weak[i][j] * 10.0**exponent for j in range(3)] for i in range(3)]
-        passed = case(f"1 mm of glass at Brewster's angle, birefringence about 1e{exponent}", [layer(eps, 0.1)], True, brewster)
+        passed = case(
+            f"1 mm of glass at Brewster's angle, birefringence about 1e{exponent}", [layer(eps, 0.1)], True, brewster
+        )
         assert passed[0]["transmitted"]["power"] > 0.9999
 
     def medium(kind: int) -> tuple[float | list, float | list]:
@@ -234,7 +270,9 @@ def cases() -> list[dict]:
             layers.append(layer(eps, draw.between(0.02, 3) * 1e-4, mu))
         theta, turn = draw.between(0, 0.9), draw.between(0, 6.28)
         case(f"a stack of {count} layers, crystals and magnetic media too", layers, True, fields(theta, turn))
-    case("a film of n = -1.3 on one of glass", [layer(-1.69, 1.1e-5, -1.0), layer(2.25, 2.3e-5)], True, fields(0.4, 5.0))
+    case(
+        "a film of n = -1.3 on one of glass", [layer(-1.69, 1.1e-5, -1.0), layer(2.25, 2.3e-5)], True, fields(0.4, 5.0)
+    )
     case("glass that absorbs", [layer([2.25, 0.02], 2e-4)], True, horizontal + fields(0.7, 1.2))
     eps = draw.lossy(draw.biaxial(1.5, 4), 0.01, 0.2)
     case("a crystal that absorbs", [layer(eps, 1.3e-4)], True, fields(0.5, 2.2))
@@ -246,12 +284,21 @@ def cases() -> list[dict]:
     assert abs(glass[0]["reflected"]["power"] - 0.08 / 1.04) < 1e-15
     case("a window of 1 mm at Brewster's angle", [layer(2.25, 0.1)], False, fields(math.atan(1.5), 0.3))
     case("two windows that touch", [layer(2.25, 0.1), layer(3.24, 0.2)], False, fields(0.6, 0.4))
-    case("three plates, magnetic and of negative index", [layer(2.25, 0.1), layer(2.0, 0.15, 1.5), layer(-1.69, 0.1, -1.0)],
-         False, fields(0.5, 3.4))
+    case(
+        "three plates, magnetic and of negative index",
+        [layer(2.25, 0.1), layer(2.0, 0.15, 1.5), layer(-1.69, 0.1, -1.0)],
+        False,
+        fields(0.5, 3.4),
+    )
     calcite = [[2.2085, 0.0, 0.0], [0.0, 2.75, 0.0], [0.0, 0.0, 2.75]]
     case("calcite of 1 cm, its axis across the faces", [layer(calcite, 1.0)], False, fields(0.8, 0.7))
     for _ in range(2):
         case("a biaxial crystal of 3 mm", [layer(draw.biaxial(1.5, 4), 0.3)], False, fields(draw.between(0.1, 1), 2.7))
-    case("a magnetic crystal of 3 mm", [layer(draw.biaxial(1.5, 4), 0.3, draw.biaxial(0.8, 1.6))], False, fields(0.7, 1.7))
+    case(
+        "a magnetic crystal of 3 mm",
+        [layer(draw.biaxial(1.5, 4), 0.3, draw.biaxial(0.8, 1.6))],
+        False,
+        fields(0.7, 1.7),
+    )
     case("a crystal on glass", [layer(draw.biaxial(1.5, 3), 0.3), layer(2.25, 0.2)], False, fields(0.4, 1.1))
     return found

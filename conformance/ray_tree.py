@@ -177,7 +177,9 @@ def trace(cells: list[Cell], origin: Vector, direction: Vector, electric: Vector
                 if power < least:
                     continue
                 if cell == -1:
-                    leaves.append(Leaf(r, [c.real for c in wave_vector], power, path, scaled(e, mp.sqrt(power) / norm(e))))
+                    leaves.append(
+                        Leaf(r, [c.real for c in wave_vector], power, path, scaled(e, mp.sqrt(power) / norm(e)))
+                    )
                 else:
                     open_branches.append(Branch(cell, r, wave_vector, e, h, power, path))
 
@@ -200,8 +202,11 @@ def merged(leaves: list[Leaf], above: float) -> list[Leaf]:
     for leaf in sorted(leaves, key=lambda leaf: -leaf.power):
         for group in groups:
             other = group[0]
-            apart = [norm(added(leaf.position, scaled(other.position, -1))), norm(added(leaf.direction, scaled(other.direction, -1))),
-                     abs(leaf.optical_path - other.optical_path)]
+            apart = [
+                norm(added(leaf.position, scaled(other.position, -1))),
+                norm(added(leaf.direction, scaled(other.direction, -1))),
+                abs(leaf.optical_path - other.optical_path),
+            ]
             if max(apart) < 1e-9:
                 group.append(leaf)
                 break

@@ -48,8 +48,13 @@ def _posed(oracle: Oracle, pose: Pose) -> Oracle:
     def traced(origin: Vector, direction: Vector, electric: Vector) -> list[Leaf]:
         leaves = oracle(pose.point_in(origin), pose.vector_in(direction), pose.vector_in(electric))
         return [
-            Leaf(pose.point_out(leaf.position), pose.vector_out(leaf.direction), leaf.power, leaf.optical_path,
-                 None if leaf.electric is None else pose.vector_out(leaf.electric))
+            Leaf(
+                pose.point_out(leaf.position),
+                pose.vector_out(leaf.direction),
+                leaf.power,
+                leaf.optical_path,
+                None if leaf.electric is None else pose.vector_out(leaf.electric),
+            )
             for leaf in leaves
         ]
 
@@ -65,10 +70,10 @@ def through(cells: list[Cell], least: float = LEAST) -> Oracle:
     return traced
 
 
-def by_hamilton(medium: graded.Medium, borders: list[graded.Border], mirrored: bool = False, floor: bool = False) -> Oracle:
-    """The ray tree of a graded medium; `mirrored`: it is above y = 0, and below it stands its mirror image; `floor`: there is
-    a mirror instead.
-    """
+def by_hamilton(
+    medium: graded.Medium, borders: list[graded.Border], mirrored: bool = False, floor: bool = False
+) -> Oracle:
+    """The ray tree of a graded medium above y = 0; `mirrored`: below stands its mirror image; `floor`: there is a mirror."""
 
     def traced(origin: Vector, direction: Vector, electric: Vector) -> list[Leaf]:
         o, d = (np.array([float(c) for c in v]) for v in (origin, direction))
@@ -97,7 +102,9 @@ def by_hamilton(medium: graded.Medium, borders: list[graded.Border], mirrored: b
                 leaf.position, leaf.path = leaf.position + on * leaf.wave_vector, leaf.path + on
                 leaf.wave_vector, leaf.electric = leaf.wave_vector * [1, -1, 1], leaf.electric * [-1, 1, -1]
             values = (leaf.position * turn, leaf.wave_vector * turn, np.sqrt(leaf.power) * leaf.electric * turn)
-            position, after, field = ([mpc(c) if isinstance(c, complex) else mpf(float(c)) for c in v.tolist()] for v in values)
+            position, after, field = (
+                [mpc(c) if isinstance(c, complex) else mpf(float(c)) for c in v.tolist()] for v in values
+            )
             leaves.append(Leaf(position, unit(after), mpf(leaf.power), mpf(leaf.path), field))
         return merged(leaves, 30 * LEAST)
 
@@ -136,8 +143,10 @@ def _checked(oracle: Oracle, other: Oracle, tolerance: float) -> Oracle:
         others = [leaf for leaf in others if leaf.power > 1e-12]
         assert len(leaves) == len(others), (len(leaves), len(others))
         for a, b in zip(leaves, others):
-            for x, y in zip([*a.position, *a.direction, a.power, a.optical_path, *a.electric],
-                            [*b.position, *b.direction, b.power, b.optical_path, *b.electric]):
+            for x, y in zip(
+                [*a.position, *a.direction, a.power, a.optical_path, *a.electric],
+                [*b.position, *b.direction, b.power, b.optical_path, *b.electric],
+            ):
                 assert abs(x - y) < tolerance, (a, b)
         return leaves
 
@@ -165,9 +174,16 @@ def _square_cloak(positive: bool) -> list[Cell]:
         tip, top, low = [sx * d, 0], [0, sy * d], [0, sy * b]
         middle = [sum(c[i] for c in (tip, top, low)) / 3 for i in range(2)]
         neighbour = quadrants.index((-sx, sy))
-        cells.append(Cell(Medium(eps, mu), [
-            side(-1, tip, top, middle), side(None, tip, low, middle), side(neighbour, top, low, middle),
-        ]))
+        cells.append(
+            Cell(
+                Medium(eps, mu),
+                [
+                    side(-1, tip, top, middle),
+                    side(None, tip, low, middle),
+                    side(neighbour, top, low, middle),
+                ],
+            )
+        )
     return cells
 
 
@@ -191,13 +207,27 @@ class Book:
         self.draw = Draws(seed)
         self.cases: list[dict] = []
 
-    def case(self, name: str, oracle: str, device: str, pose: Pose, trace: Oracle, rays: list[dict], tolerance: dict = EXACT,
-             keys: str = "", least: float = LEAST, every: bool = True) -> None:
+    def case(
+        self,
+        name: str,
+        oracle: str,
+        device: str,
+        pose: Pose,
+        trace: Oracle,
+        rays: list[dict],
+        tolerance: dict = EXACT,
+        keys: str = "",
+        least: float = LEAST,
+        every: bool = True,
+    ) -> None:
         """A device, as its part of a scene file, and rays; `every`: the oracle has all leaves."""
+        name += "" if pose is PLAINLY else ", turned" if pose is TURNED else ", tilted"
         traced = _posed(trace, pose)
         # The pose stands before the tables of prisms.
         head, *prisms = device.split("[[device.prism]]")
-        scene = "[[device.prism]]".join([f"[trace]\nmin_power = {least}\n{keys}\n[[device]]\n{head}{pose.keys}", *prisms])
+        scene = "[[device.prism]]".join(
+            [f"[trace]\nmin_power = {least}\n{keys}\n[[device]]\n{head}{pose.keys}", *prisms]
+        )
         requests, expected = [], []
         for ray in rays:
             direction = unit(real(ray["direction"]))
@@ -209,12 +239,21 @@ class Book:
             requests.append(ray)
             expected.append(plain({"leaves": [leaf.written() for leaf in leaves]}))
         assert requests, name
-        self.cases.append({
-            "name": name, "oracle": oracle, "scene": scene, "rays": requests, "all_leaves_above": 30 * least if every else None,
-            "expected": expected, "tolerance": tolerance,
-        })
+        self.cases.append(
+            {
+                "name": name,
+                "oracle": oracle,
+                "scene": scene,
+                "rays": requests,
+                "all_leaves_above": 30 * least if every else None,
+                "expected": expected,
+                "tolerance": tolerance,
+            }
+        )
 
-    def rays(self, count: int, pose: Pose, target: Point, towards: Point | None = None, distance: float = 30.0) -> list[dict]:
+    def rays(
+        self, count: int, pose: Pose, target: Point, towards: Point | None = None, distance: float = 30.0
+    ) -> list[dict]:
         """Rays from around a device towards points in it, both in its frame; in turn of each polarization."""
         drawn = []
         for i in range(count):
@@ -253,8 +292,17 @@ class Book:
         """A direction not too far from x."""
         return lambda: [float(c) for c in unit([1.0, self.draw.between(-y, y), self.draw.between(-z, z)])]
 
-    def body(self, name: str, shape: str, faces: list, permittivity: float | list, permeability: float | list, pose: Pose,
-             drawn: list[dict], least: float = LEAST) -> None:
+    def body(
+        self,
+        name: str,
+        shape: str,
+        faces: list,
+        permittivity: float | list,
+        permeability: float | list,
+        pose: Pose,
+        drawn: list[dict],
+        least: float = LEAST,
+    ) -> None:
         media = f"permittivity = {json.dumps(permittivity)}\npermeability = {json.dumps(permeability)}\n"
         cells = [Cell(Medium.of(permittivity, permeability), faces)]
         device = f'kind = "body"\n{shape}{media}'
@@ -280,18 +328,66 @@ def isotropic_bodies() -> list[dict]:
     glass = [Cell(Medium.of(2.25), [sphere(5.0)])]
     both = _checked(exact_maps.glass_ball(5.0, 1.5, 30 * LEAST), through(glass), 1e-20)
     for pose in (PLAINLY, TURNED):
-        book.case("a ball of glass", "Descartes's rays with Fresnel's amplitudes, and a ray tree",
-                  f'kind = "body"\n{BALL}permittivity = 2.25\n', pose, both, rays(4, pose, ball(5.0)))
+        book.case(
+            "a ball of glass",
+            "Descartes's rays with Fresnel's amplitudes, and a ray tree",
+            f'kind = "body"\n{BALL}permittivity = 2.25\n',
+            pose,
+            both,
+            rays(4, pose, ball(5.0)),
+        )
     centre = [{"origin": [-30.0, 0.0, 0.0], "direction": [1.0, 0.0, 0.0], "polarization": "horizontal"}]
     body("a ball of glass, through its centre", BALL, [sphere(5.0)], 2.25, 1.0, PLAINLY, centre)
     body("a ball of n = -1.3", BALL, [sphere(5.0)], -1.69, -1.0, TURNED, rays(3, TURNED, ball(5.0)))
-    body("a ball of n = -1 that reflects nothing", BALL, [sphere(5.0)], -1.0, -1.0, PLAINLY, rays(2, PLAINLY, ball(5.0)))
-    body("a slab of glass, in any pose", SLAB, SLAB_FACES, 2.25, 1.0, ANYHOW,
-         rays(3, ANYHOW, within(1.4, 5, 5), book.along_x(1, 1)))
-    body("a box of glass, with total reflection", BOX, BOX_FACES, 2.25, 1.0, ANYHOW, rays(3, ANYHOW, within(1.8, 2.8, 3.8)))
+    body(
+        "a ball of n = -1 that reflects nothing", BALL, [sphere(5.0)], -1.0, -1.0, PLAINLY, rays(2, PLAINLY, ball(5.0))
+    )
+    body(
+        "a slab of glass",
+        SLAB,
+        SLAB_FACES,
+        2.25,
+        1.0,
+        ANYHOW,
+        rays(3, ANYHOW, within(1.4, 5, 5), book.along_x(1, 1)),
+    )
+    body(
+        "a box of glass, with total reflection",
+        BOX,
+        BOX_FACES,
+        2.25,
+        1.0,
+        ANYHOW,
+        rays(3, ANYHOW, within(1.8, 2.8, 3.8)),
+    )
     body("a rod of glass with ends", ROD, ROD_FACES, 2.25, 1.0, ANYHOW, rays(3, ANYHOW, within(2, 2, 4.5)))
     body("a magneto-dielectric rod", ROD, ROD_FACES, 1.8, 1.4, TURNED, rays(3, TURNED, within(2, 2, 4.5)))
     body("a prism of glass", PRISM, PRISM_FACES, 2.25, 1.0, TURNED, rays(3, TURNED, within(1, 1, 1), book.aside))
+    return book.cases
+
+
+def simple_devices() -> list[dict]:
+    book = Book(16)
+    loss = [2.25, 1e-6]
+    ray = {"origin": [-20.0, 1.0, 2.0], "direction": [1.0, 0.0, 0.0], "polarization": "vertical"}
+    book.case(
+        "a slab of glass that absorbs",
+        "Airy's partial waves",
+        f'kind = "body"\n{SLAB}permittivity = {loss}\n',
+        PLAINLY,
+        exact_maps.absorbing_slab(3.0, loss, 550, 30 * LEAST),
+        [ray],
+        keys="\n[light]\nwavelength_nm = 550\n",
+    )
+    for pose in (PLAINLY, ANYHOW):
+        book.case(
+            "an ideal polarizer",
+            "Malus's law",
+            'kind = "polarizer"\nwidth = 20.0\nlength = 20.0\nangle = 30.0\n',
+            pose,
+            exact_maps.polarizer(30.0),
+            book.rays(3, pose, book.within(0, 5, 5), book.along_x(1, 1)),
+        )
     return book.cases
 
 
@@ -299,12 +395,30 @@ def transformations() -> list[dict]:
     book = Book(12)
     mapped = "empty space, transformed"
     for pose in (PLAINLY, TURNED, ANYHOW):
-        book.case("the square cloak (iii)", mapped, 'kind = "square-cloak"\n', pose, exact_maps.square_cloak(14.1),
-                  book.rays(3, pose, book.within(0.5, 5, 3), book.aside))
-        book.case("the cylinder cloak", mapped, 'kind = "cylinder-cloak"\n', pose, exact_maps.round_cloak(10.0, True),
-                  book.rays(2, pose, book.within(7, 7, 5), book.aside))
-        book.case("the sphere cloak", mapped, 'kind = "sphere-cloak"\n', pose, exact_maps.round_cloak(10.0, False),
-                  book.rays(2, pose, book.ball(9.5)))
+        book.case(
+            "the square cloak (iii)",
+            mapped,
+            'kind = "square-cloak"\n',
+            pose,
+            exact_maps.square_cloak(14.1),
+            book.rays(3, pose, book.within(0.5, 5, 3), book.aside),
+        )
+        book.case(
+            "the cylinder cloak",
+            mapped,
+            'kind = "cylinder-cloak"\n',
+            pose,
+            exact_maps.round_cloak(10.0, True),
+            book.rays(2, pose, book.within(7, 7, 5), book.aside),
+        )
+        book.case(
+            "the sphere cloak",
+            mapped,
+            'kind = "sphere-cloak"\n',
+            pose,
+            exact_maps.round_cloak(10.0, False),
+            book.rays(2, pose, book.ball(9.5)),
+        )
     return book.cases
 
 
@@ -353,8 +467,14 @@ def graded_balls() -> list[dict]:
     for kind, oracle, n2 in balls:
         both = _checked(oracle, by_hamilton(_radial(n2), [shell(10.0)]), 1e-9)
         for pose in (PLAINLY, ANYHOW):
-            book.case(f"the {kind}", "closed form, and Hamilton's equations", f'kind = "{kind}"\n', pose, both,
-                      book.rays(2, pose, book.ball(9.0, 0.3)))
+            book.case(
+                f"the {kind}",
+                "closed form, and Hamilton's equations",
+                f'kind = "{kind}"\n',
+                pose,
+                both,
+                book.rays(2, pose, book.ball(9.0, 0.3)),
+            )
     return book.cases
 
 
@@ -363,15 +483,29 @@ def graded_media() -> list[dict]:
     between, rays = book.draw.between, book.rays
     gradient = [0.02, 0.05, -0.03]
     box = graded.Formula(lambda r: (1.5**2 + float(np.dot(gradient, r)), np.array(gradient)))
-    walls = [wall([float(s * (i == a)) for i in range(3)], h / 2) for a, h in enumerate((8.0, 6.0, 10.0)) for s in (1, -1)]
+    walls = [
+        wall([float(s * (i == a)) for i in range(3)], h / 2) for a, h in enumerate((8.0, 6.0, 10.0)) for s in (1, -1)
+    ]
     for pose in (PLAINLY, ANYHOW):
-        book.case("a box of graded index", HAMILTON,
-                  f'kind = "graded-box"\nsides = [8.0, 6.0, 10.0]\nindex = 1.5\ngradient = {gradient}\n', pose,
-                  by_hamilton(box, walls), rays(2, pose, book.within(3, 2, 4)), INTEGRATED)
+        book.case(
+            "a box of graded index",
+            HAMILTON,
+            f'kind = "graded-box"\nsides = [8.0, 6.0, 10.0]\nindex = 1.5\ngradient = {gradient}\n',
+            pose,
+            by_hamilton(box, walls),
+            rays(2, pose, book.within(3, 2, 4)),
+            INTEGRATED,
+        )
     for pose in (PLAINLY, ANYHOW):
-        book.case("half of Maxwell's fish-eye", HAMILTON, 'kind = "fisheye-hemisphere"\n', pose,
-                  by_hamilton(_radial(_fisheye), [shell(10.0), wall([-1.0, 0.0, 0.0], 0.0)]),
-                  rays(2, pose, lambda: [between(1, 5), between(-5, 5), between(-5, 5)], book.along_x(1, 1)), INTEGRATED)
+        book.case(
+            "half of Maxwell's fish-eye",
+            HAMILTON,
+            'kind = "fisheye-hemisphere"\n',
+            pose,
+            by_hamilton(_radial(_fisheye), [shell(10.0), wall([-1.0, 0.0, 0.0], 0.0)]),
+            rays(2, pose, lambda: [between(1, 5), between(-5, 5), between(-5, 5)], book.along_x(1, 1)),
+            INTEGRATED,
+        )
     gaussian = graded.Gaussian(10.02, 4.25)
 
     def into_metal(r: np.ndarray, zeta: complex) -> np.ndarray:
@@ -388,21 +522,43 @@ def graded_media() -> list[dict]:
         def beside() -> list[float]:
             return [0.0, between(0.5, 18) * (1 if book.draw.random.random() < 0.5 else -1), between(-5, 5)]
 
-        book.case("the double-Gaussian cloak (iv)", HAMILTON, 'kind = "double-gaussian-cloak"\n', pose,
-                  by_hamilton(gaussian, cloak, mirrored=True), rays(3, pose, beside, book.along_x(0.3, 0.3), 50.0), INTEGRATED, finely)
+        book.case(
+            "the double-Gaussian cloak (iv)",
+            HAMILTON,
+            'kind = "double-gaussian-cloak"\n',
+            pose,
+            by_hamilton(gaussian, cloak, mirrored=True),
+            rays(3, pose, beside, book.along_x(0.3, 0.3), 50.0),
+            INTEGRATED,
+            finely,
+        )
 
     def down() -> list[float]:
         return [float(c) for c in unit([between(-0.6, 0.6), -1.0, between(-0.4, 0.4)])]
 
     for pose in (PLAINLY, ANYHOW):
-        book.case("the Gaussian carpet", HAMILTON, 'kind = "gaussian-carpet"\n', pose, by_hamilton(gaussian, carpet, floor=True),
-                  rays(2, pose, lambda: [between(-10, 10), 6.0, between(-5, 5)], down, 50.0), INTEGRATED, finely)
+        book.case(
+            "the Gaussian carpet",
+            HAMILTON,
+            'kind = "gaussian-carpet"\n',
+            pose,
+            by_hamilton(gaussian, carpet, floor=True),
+            rays(2, pose, lambda: [between(-10, 10), 6.0, between(-5, 5)], down, 50.0),
+            INTEGRATED,
+            finely,
+        )
     for material, radial in [("azimuthal-uniaxial", False), ("radial-uniaxial", True)]:
         for pose in (PLAINLY, ANYHOW):
-            book.case(f"the cylinder cloak of uniaxial dielectric, {material}: its extraordinary rays", HAMILTON,
-                      f'kind = "cylinder-cloak"\nmaterial = "{material}"\n', pose,
-                      uniaxial_cylinders.cloak(4.0, 10.0, radial, 1e-6),
-                      rays(2, pose, book.within(6, 6, 2), book.aside), INTEGRATED, every=False)
+            book.case(
+                f"the cylinder cloak of uniaxial dielectric, {material}: its extraordinary rays",
+                HAMILTON,
+                f'kind = "cylinder-cloak"\nmaterial = "{material}"\n',
+                pose,
+                uniaxial_cylinders.cloak(4.0, 10.0, radial, 1e-6),
+                rays(2, pose, book.within(6, 6, 2), book.aside),
+                INTEGRATED,
+                every=False,
+            )
     return book.cases
 
 
@@ -412,19 +568,50 @@ def crystals() -> list[dict]:
     for design, positive in [("(i)", True), ("(ii)", False)]:
         material = "positive-uniaxial" if positive else "negative-uniaxial"
         for pose in (PLAINLY, TURNED):
-            book.case(f"the square cloak {design}", TREE, f'kind = "square-cloak"\nmaterial = "{material}"\n', pose,
-                      through(_square_cloak(positive), few), rays(2, pose, book.within(0.1, 5, 2), book.along_x(0.25, 0.3)),
-                      least=few)
+            book.case(
+                f"the square cloak {design}",
+                TREE,
+                f'kind = "square-cloak"\nmaterial = "{material}"\n',
+                pose,
+                through(_square_cloak(positive), few),
+                rays(2, pose, book.within(0.1, 5, 2), book.along_x(0.25, 0.3)),
+                least=few,
+            )
     eps, _ = draw.uniaxial(2.0, 3.0)
-    body("a slab of a uniaxial crystal", SLAB, SLAB_FACES, eps, 1.0, TURNED,
-         rays(3, TURNED, book.within(1.4, 5, 5), book.along_x(1, 1)), few)
-    body("a ball of a biaxial crystal", BALL, [sphere(5.0)], draw.biaxial(1.8, 3.5), 1.0, ANYHOW, rays(3, ANYHOW, book.ball(2.5)), few)
-    body("a prism of a crystal, electric and magnetic", PRISM, PRISM_FACES, draw.biaxial(1.8, 3.0), draw.biaxial(0.8, 1.5), ANYHOW,
-         rays(3, ANYHOW, book.within(1, 1, 1), book.aside), few)
+    body(
+        "a slab of a uniaxial crystal",
+        SLAB,
+        SLAB_FACES,
+        eps,
+        1.0,
+        TURNED,
+        rays(3, TURNED, book.within(1.4, 5, 5), book.along_x(1, 1)),
+        few,
+    )
+    body(
+        "a ball of a biaxial crystal",
+        BALL,
+        [sphere(5.0)],
+        draw.biaxial(1.8, 3.5),
+        1.0,
+        ANYHOW,
+        rays(3, ANYHOW, book.ball(2.5)),
+        few,
+    )
+    body(
+        "a prism of a crystal, electric and magnetic",
+        PRISM,
+        PRISM_FACES,
+        draw.biaxial(1.8, 3.0),
+        draw.biaxial(0.8, 1.5),
+        ANYHOW,
+        rays(3, ANYHOW, book.within(1, 1, 1), book.aside),
+        few,
+    )
     return book.cases
 
 
 def cases() -> Iterator[dict]:
     """The cases, of crystals last, for they take longest."""
-    for part in (isotropic_bodies, transformations, graded_balls, graded_media, crystals):
+    for part in (isotropic_bodies, simple_devices, transformations, graded_balls, graded_media, crystals):
         yield from part()

@@ -1,6 +1,6 @@
-"""The extraordinary ray of the cylinder cloaks of uniaxial dielectric, by Hamilton's equations in cylindrical coordinates.
+"""The extraordinary ray of the cylinder cloaks of uniaxial dielectric, by Hamilton's equations about the axis.
 
-eps_phi = K, eps_r = K s^2, eps_z = K (radial axis) or K s^2 (azimuthal axis), mu = 1, with s = (r - a)/r, K = (b/(b - a))^2.
+eps_phi = K, eps_r = K s^2, eps_z = K (radial axis) or K s^2 (azimuthal axis), mu = 1; s = (r - a)/r, K = (b/(b - a))^2.
 A wave whose E lies in the plane of p and the axis has p_across^2/eps_along + p_along^2/eps_across = 1: twice the
 Hamiltonian, whose parameter is then the optical path. L = r p_phi and p_z are kept.
 """
@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from mpmath import mp, mpf
 
-from exact_maps import Oracle, _onto_sphere, at
+from exact_maps import Oracle, at, onto_round
 from graded import to_border
 from plane_waves import AIR, Medium, Mode, Vector, added, cross, dot, flux, normal_flux, frame, scaled, scatter, unit
 from ray_tree import Leaf, norm
@@ -54,7 +54,7 @@ def cloak(inner: float, outer: float, radial: bool, least: float) -> Oracle:
         return min((0, 1), key=lambda i: abs(dot(modes[i].magnetic, axis)) / norm(modes[i].magnetic))
 
     def trace(origin: Vector, direction: Vector, electric: Vector) -> list[Leaf]:
-        path, _ = _onto_sphere(origin, direction, b, endless=True)
+        path, _ = onto_round(origin, direction, b, endless=True)
         r = at(origin, direction, path)
         medium, out, axis = local(r)
         normal = scaled(out, -1)

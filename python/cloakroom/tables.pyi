@@ -34,12 +34,14 @@ class SquareCloak(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         kappa: float | None = ...,
         length: float | None = ...,
         material: Literal["impedance-matched", "positive-uniaxial", "negative-uniaxial"] | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         rounded: bool | None = ...,
@@ -48,6 +50,8 @@ class SquareCloak(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -60,6 +64,8 @@ class SquareCloak(Device):
     def length(self) -> float | None: ...
     @property
     def material(self) -> Literal["impedance-matched", "positive-uniaxial", "negative-uniaxial"]: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -76,6 +82,7 @@ class DoubleGaussianCloak(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         fresnel: bool | None = ...,
@@ -83,6 +90,7 @@ class DoubleGaussianCloak(Device):
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         referenced: bool | None = ...,
         rotation: float | None = ...,
@@ -92,6 +100,8 @@ class DoubleGaussianCloak(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -106,6 +116,8 @@ class DoubleGaussianCloak(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -124,12 +136,14 @@ class CylinderCloak(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
         material: Literal["impedance-matched", "radial-uniaxial", "azimuthal-uniaxial"] | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         outer: float | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
@@ -137,6 +151,8 @@ class CylinderCloak(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -149,6 +165,8 @@ class CylinderCloak(Device):
     def length(self) -> float | None: ...
     @property
     def material(self) -> Literal["impedance-matched", "radial-uniaxial", "azimuthal-uniaxial"]: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def outer(self) -> float: ...
     @property
@@ -163,11 +181,13 @@ class SphereCloak(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         outer: float | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
@@ -175,6 +195,8 @@ class SphereCloak(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -185,6 +207,8 @@ class SphereCloak(Device):
     def inner(self) -> float: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def outer(self) -> float: ...
     @property
@@ -199,11 +223,13 @@ class InvisibleSphere(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         material: Literal["graded", "regularized"] | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -211,6 +237,8 @@ class InvisibleSphere(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -221,6 +249,8 @@ class InvisibleSphere(Device):
     def length(self) -> float | None: ...
     @property
     def material(self) -> Literal["graded", "regularized"]: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -236,10 +266,12 @@ class BendingSphere(Device):
         *,
         angle: float | None = ...,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -250,6 +282,8 @@ class BendingSphere(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def dispersion(self) -> Literal["causal", "none"]: ...
@@ -257,6 +291,8 @@ class BendingSphere(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -271,10 +307,12 @@ class EatonLens(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -283,6 +321,8 @@ class EatonLens(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def dispersion(self) -> Literal["causal", "none"]: ...
@@ -290,6 +330,8 @@ class EatonLens(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -304,10 +346,12 @@ class LuneburgLens(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -316,6 +360,8 @@ class LuneburgLens(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def dispersion(self) -> Literal["causal", "none"]: ...
@@ -323,6 +369,8 @@ class LuneburgLens(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -337,10 +385,12 @@ class FisheyeLens(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -349,6 +399,8 @@ class FisheyeLens(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def dispersion(self) -> Literal["causal", "none"]: ...
@@ -356,6 +408,8 @@ class FisheyeLens(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -370,6 +424,7 @@ class FisheyeHemisphere(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         cut_distance: float | None = ...,
         cut_normal: ArrayLike | None = ...,
@@ -377,6 +432,7 @@ class FisheyeHemisphere(Device):
         imperfection: Mapping[str, Any] | None = ...,
         index: float | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
         rotation: float | None = ...,
@@ -384,6 +440,8 @@ class FisheyeHemisphere(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -399,6 +457,8 @@ class FisheyeHemisphere(Device):
     @property
     def length(self) -> float | None: ...
     @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
+    @property
     def position(self) -> list[Any]: ...
     @property
     def radius(self) -> float: ...
@@ -412,11 +472,13 @@ class MirrorDetour(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         half_length: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         offset: float | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
@@ -424,6 +486,8 @@ class MirrorDetour(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -434,6 +498,8 @@ class MirrorDetour(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def offset(self) -> float: ...
     @property
@@ -448,10 +514,12 @@ class Prisms(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         prism: Sequence[Mapping[str, Any]] | None = ...,
         rotation: float | None = ...,
@@ -460,6 +528,8 @@ class Prisms(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def dispersion(self) -> Literal["causal", "none"]: ...
@@ -467,6 +537,8 @@ class Prisms(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -481,6 +553,7 @@ class Graded(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         height: float | None = ...,
@@ -488,6 +561,7 @@ class Graded(Device):
         index: _Index | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         shape: Literal["rectangle", "circle"] | None = ...,
@@ -497,6 +571,8 @@ class Graded(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -511,6 +587,8 @@ class Graded(Device):
     def inner(self) -> float: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -527,12 +605,14 @@ class GradedBox(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         gradient: ArrayLike | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         index: float | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
@@ -540,6 +620,8 @@ class GradedBox(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -552,6 +634,8 @@ class GradedBox(Device):
     def index(self) -> float: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -566,11 +650,13 @@ class Body(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         group_index: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         permeability: ArrayLike | None = ...,
         permittivity: ArrayLike | None = ...,
         position: ArrayLike | None = ...,
@@ -586,6 +672,8 @@ class Body(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def dispersion(self) -> Literal["causal", "none"]: ...
@@ -595,6 +683,8 @@ class Body(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def permeability(self) -> Any: ...
     @property
@@ -624,10 +714,12 @@ class Polarizer(Device):
         *,
         angle: float | None = ...,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
@@ -638,6 +730,8 @@ class Polarizer(Device):
     @property
     def axis(self) -> list[Any]: ...
     @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
     def dispersion(self) -> Literal["causal", "none"]: ...
@@ -645,6 +739,8 @@ class Polarizer(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -659,6 +755,7 @@ class GaussianCarpet(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         floor: float | None = ...,
@@ -666,6 +763,7 @@ class GaussianCarpet(Device):
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
@@ -674,6 +772,8 @@ class GaussianCarpet(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -688,6 +788,8 @@ class GaussianCarpet(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
@@ -704,6 +806,7 @@ class GratingCarpet(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         floor: float | None = ...,
@@ -711,6 +814,7 @@ class GratingCarpet(Device):
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         period: float | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
@@ -719,6 +823,8 @@ class GratingCarpet(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -733,6 +839,8 @@ class GratingCarpet(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def period(self) -> float: ...
     @property
@@ -749,6 +857,7 @@ class QuasiConformalCarpet(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         dispersion: Literal["causal", "none"] | None = ...,
         floor: float | None = ...,
@@ -756,6 +865,7 @@ class QuasiConformalCarpet(Device):
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
@@ -764,6 +874,8 @@ class QuasiConformalCarpet(Device):
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -778,6 +890,8 @@ class QuasiConformalCarpet(Device):
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
     def length(self) -> float | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
     @property
