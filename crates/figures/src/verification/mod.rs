@@ -11,6 +11,7 @@ mod geometry;
 mod graded;
 mod matched;
 mod motion;
+mod time;
 
 pub use finding::{Finding, Verdict, markdown};
 
@@ -68,6 +69,7 @@ const CHECKS: &[Check] = &[
     graded::times,
     graded::reflections,
     graded::turned,
+    time::pulses,
 ];
 
 /// How many steps [`verify`] takes.
