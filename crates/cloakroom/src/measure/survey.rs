@@ -10,9 +10,9 @@ use std::sync::atomic::Ordering;
 /// How near to where it should a ray must land to count as cloaked, cm on the photograph.
 pub const CLOAKED_WITHIN_CM: f64 = 1.0;
 
-/// How near to its direction a ray must be to be in place, degrees. The camera of the paper sees 1 cm of the photograph
-/// as 0.4 degrees.
-pub const IN_PLACE_WITHIN_DEG: f64 = 1.0;
+/// How near to where it should a ray must land to be in place, cm on the photograph, and how near to the direction that
+/// it should have it must go, degrees: strictly, and widely.
+pub const IN_PLACE_WITHIN: [[f64; 2]; 2] = [[CLOAKED_WITHIN_CM, 1.0], [5.0, 5.0]];
 
 /// What the ray through the middle of each pixel has met, and how well.
 ///
@@ -34,19 +34,19 @@ pub struct Survey {
     pub uncloaked_share: Option<f64>,
     /// What these pixels cover of the plane of the photograph in the empty view, cm².
     pub uncloaked_area_cm2: f64,
-    /// The share of each pixel's power that is in place, row by row from the top left: it goes within
-    /// [`IN_PLACE_WITHIN_DEG`] of the direction that it should have, and lands within [`CLOAKED_WITHIN_CM`] of where it
-    /// should or, where it should miss the photograph, misses it.
-    pub in_place: Vec<f64>,
+    /// The shares of each pixel's power that are in place, row by row from the top left: strictly, and widely, as
+    /// [`IN_PLACE_WITHIN`] says. Light that should miss the photograph must miss it, wherever.
+    pub in_place: Vec<[f64; 2]>,
 }
 
 impl Survey {
-    /// The mean over the silhouette of the share that is [in place](Self::in_place); `None` without a silhouette.
+    /// The mean over the silhouette of the share that is strictly [in place](Self::in_place); `None` without a
+    /// silhouette.
     #[must_use]
     pub fn in_place_share(&self) -> Option<f64> {
         let met = || self.silhouette.iter().zip(&self.in_place).filter(|(met, _)| **met);
         let pixels = met().count();
-        (pixels > 0).then(|| met().map(|(_, share)| share).sum::<f64>() / pixels as f64)
+        (pixels > 0).then(|| met().map(|(_, share)| share[0]).sum::<f64>() / pixels as f64)
     }
 }
 
@@ -61,7 +61,7 @@ struct Sight {
     /// Power that goes where it should.
     faithful: f64,
     /// Power that does so in the direction that it should have, too.
-    in_place: f64,
+    in_place: [f64; 2],
 }
 
 /// Sends a ray through the middle of each pixel of a scene, and the same ray through the ideal scene, which must
@@ -149,21 +149,23 @@ fn sight<const N: usize>(
     for leaf in leaves {
         // By the chord: exact to rounding for small angles.
         let angle = 2.0 * (0.5 * leaf.direction.distance(direction)).min(1.0).asin();
-        let is_faithful = match (landing(screen, leaf), wanted) {
+        let away = match (landing(screen, leaf), wanted) {
             (Some(place), Some(wanted)) => {
                 let away = place.distance(wanted);
                 sight.compared += power(leaf);
                 sight.square_cm += power(leaf) * away * away;
                 sight.square_rad += power(leaf) * angle * angle;
-                away <= CLOAKED_WITHIN_CM
+                away
             }
-            (None, None) => true,
-            _ => false,
+            (None, None) => 0.0,
+            _ => f64::INFINITY,
         };
-        if is_faithful {
+        if away <= CLOAKED_WITHIN_CM {
             sight.faithful += power(leaf);
-            if angle <= IN_PLACE_WITHIN_DEG.to_radians() {
-                sight.in_place += power(leaf);
+        }
+        for (share, [cm, degrees]) in sight.in_place.iter_mut().zip(IN_PLACE_WITHIN) {
+            if away <= cm && angle <= degrees.to_radians() {
+                *share += power(leaf);
             }
         }
     }

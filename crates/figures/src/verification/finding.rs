@@ -1,7 +1,7 @@
 //! What has been found out about a statement, and how it is written down.
 
 use super::fixture::{HALF_VIEW, WIDE_HALF_VIEW};
-use cloakroom::measure::{CLOAKED_WITHIN_CM, IN_PLACE_WITHIN_DEG};
+use cloakroom::measure::IN_PLACE_WITHIN;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -153,9 +153,24 @@ impl Finding {
         }
     }
 
-    /// The finding with a word why.
-    pub(super) fn because(&mut self, remark: impl Into<String>) {
-        self.remark = remark.into();
+    /// The verdict on what is judged by light in place, strictly; if it would be another one widely, a word says so.
+    pub(super) fn verdict_in_place(&mut self, [strictly, widely]: [bool; 2]) -> &mut Self {
+        if strictly != widely {
+            let [_, [place, angle]] = IN_PLACE_WITHIN;
+            let otherwise = if widely { "agree" } else { "differ" };
+            self.because(format!(
+                "Widely, within {place} cm and {angle} degrees, it would {otherwise}."
+            ));
+        }
+        self.verdict(strictly)
+    }
+
+    /// The finding with a word why, or one more.
+    pub(super) fn because(&mut self, remark: impl AsRef<str>) {
+        if !self.remark.is_empty() {
+            self.remark.push(' ');
+        }
+        self.remark.push_str(remark.as_ref());
     }
 }
 
@@ -175,6 +190,7 @@ const WAVES: &str = "\n## Waves\n\n\
 #[must_use]
 pub fn markdown(findings: &[Finding]) -> String {
     let count = |verdict| findings.iter().filter(|finding| finding.verdict == verdict).count();
+    let [[place, angle], [wide_place, wide_angle]] = IN_PLACE_WITHIN;
     let mut text = format!(
         "# Validation\n\n\
          What of Halimeh & Wegener, Opt. Express 21, 9457 (2013) comes out here. `cloakroom verify` computes this page\n\
@@ -183,8 +199,9 @@ pub fn markdown(findings: &[Finding]) -> String {
          number found is held against it and no mean; it agrees *to x %* if it is off by no more than {}, and *in\n\
          order of magnitude* within a factor of 3.\n\n\
          A judgement without a number is judged by rays, for pictures flatter or blame with the photograph, by one rule for all\n\
-         designs. Light is *in place* if it goes within {IN_PLACE_WITHIN_DEG} degree of the direction that it should have and lands within\n\
-         {CLOAKED_WITHIN_CM} cm of where it should: where the same ray lands in the empty view or, where the paper speaks of a flat mirror, in\n\
+         designs. Light is *in place* if it goes within {angle} degree of the direction that it should have and lands within\n\
+         {place} cm of where it should, which is what `cloakroom quality` calls cloaked; *widely*, within {wide_angle} degrees and\n\
+         {wide_place} cm. It should be where the same ray lands in the empty view or, where the paper speaks of a flat mirror, in\n\
          the view of this mirror. Perfect means all of the power to rounding; very good, formidable, great, amazing or remarkable {}\n\
          of it, good {}, both more than with the bare metal; no cloaking, no more than with the\n\
          bare metal. A comparison agrees if it comes out so. The mean is over one region for all designs and rotations, the part of\n\

@@ -1,6 +1,6 @@
 //! Scenes of the paper, made and measured.
 
-use super::finding::percent;
+use super::finding::{list, percent};
 use super::{Result, VerificationError};
 use cloakroom::assembly::{Assembly, Placed};
 use cloakroom::device::FactValue;
@@ -108,22 +108,35 @@ pub(super) struct Shown {
 /// How well a device does, over the region.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fidelity {
-    /// The share of the power that is in place.
-    pub in_place: f64,
+    /// The shares of the power that are in place, strictly and widely.
+    pub in_place: [f64; 2],
     /// Mean FLIP against what should be seen.
     pub flip: f64,
 }
 
 impl Fidelity {
-    /// Whether at least a share is in place, and more than with the bare metal.
-    pub fn is(self, least: f64, bare: Self) -> bool {
-        self.in_place >= least && self.in_place > bare.in_place
-    }
-
     /// In words.
     pub fn words(self) -> String {
-        format!("{} in place, FLIP {:.2}", percent(self.in_place, 1), self.flip)
+        in_words(&[self])
     }
+}
+
+/// Fidelities in words.
+pub(super) fn in_words(seen: &[Fidelity]) -> String {
+    let [strictly, widely] =
+        [0, 1].map(|within| list(seen, |seen| percent(seen.in_place[within], 1)));
+    let flips = list(seen, |seen| format!("{:.2}", seen.flip));
+    format!("{strictly} in place ({widely} widely), FLIP {flips}")
+}
+
+/// Whether at least a share is in place each time, and more than with the bare metal: strictly, and widely.
+pub(super) fn are(seen: &[Fidelity], least: f64, bare: &[Fidelity]) -> [bool; 2] {
+    [0, 1].map(|within| {
+        let is = |seen: &Fidelity, bare: &Fidelity| {
+            seen.in_place[within] >= least && seen.in_place[within] > bare.in_place[within]
+        };
+        seen.iter().zip(bare).all(|(seen, bare)| is(seen, bare))
+    })
 }
 
 /// The strongest way of a camera ray's unpolarized light.
@@ -133,8 +146,9 @@ pub(super) struct MainPath {
     pub off: f64,
     /// The share of the power with which horizontal and vertical light part, over all paths.
     pub between_polarizations: f64,
-    /// Whether it is reflected at an outer face of the device, from inside.
-    pub reflected_at_a_face: bool,
+    /// The share of the power that an outer face of the device has reflected, from inside, on its way; of horizontal or
+    /// vertical light, whichever is more.
+    pub reflected_at_a_face: f64,
 }
 
 impl Shown {
@@ -219,8 +233,8 @@ impl<'s> Fixture<'s> {
         Ok(self.region()?.indices().filter(|index| angles.contains(&aside(*index))).collect())
     }
 
-    /// The share of each pixel's power that is in place, against what should be seen.
-    pub fn in_place(&self, device: &str, ideal: &str, polarizer: &str) -> Result<Vec<f64>> {
+    /// The shares of each pixel's power that are in place, against what should be seen.
+    pub fn in_place(&self, device: &str, ideal: &str, polarizer: &str) -> Result<Vec<[f64; 2]>> {
         Ok(self.survey(device, ideal, polarizer)?.in_place)
     }
 
@@ -231,7 +245,7 @@ impl<'s> Fixture<'s> {
         let [shown, ideal] = [device, ideal].map(|device| self.show(device, polarizer));
         let differences = flip(&ideal?.view, &shown?.view, DEFAULT_PIXELS_PER_DEGREE);
         Ok(Fidelity {
-            in_place: region.mean(|i| in_place[i]),
+            in_place: [0, 1].map(|within| region.mean(|i| in_place[i][within])),
             flip: region.mean(|i| differences[i]),
         })
     }
@@ -262,17 +276,23 @@ impl<'s> Fixture<'s> {
             let paths = (0..width).map(|column| {
                 let ray = scene.camera.ray(column as f64 + 0.5, row as f64 + 0.5);
                 tracer.recorder().clear();
-                let (leaves, _) = tracer.trace(&launch(ray.origin, ray.direction));
+                let leaves = tracer.trace(&launch(ray.origin, ray.direction)).0.to_vec();
                 let unpolarized = |leaf: &Leaf<2>| leaf.power[0] + leaf.power[1];
                 let main = leaves.iter().max_by(|a, b| unpolarized(a).total_cmp(&unpolarized(b)));
-                let main = *main.ok_or("a leaf")?;
-                let parted: f64 =
-                    leaves.iter().map(|leaf| (leaf.power[0] - leaf.power[1]).abs()).sum();
-                let reflections = inner_reflections(assembly, tracer.recorder(), &main);
+                let main = main.ok_or("a leaf")?;
+                let parted = leaves.iter().map(|leaf| (leaf.power[0] - leaf.power[1]).abs());
+                let segments = tracer.recorder();
+                let mut reflected = [0.0; 2];
+                for leaf in &leaves {
+                    let at = inner_reflections(assembly, segments, leaf);
+                    if at.into_iter().any(is_on_the_box) {
+                        reflected.iter_mut().zip(leaf.power).for_each(|(sum, power)| *sum += power);
+                    }
+                }
                 Ok(MainPath {
-                    between_polarizations: 0.5 * parted,
+                    between_polarizations: 0.5 * parted.sum::<f64>(),
                     off: main.power.iter().fold(0.0, |off, power| off.max(1.0 - power)),
-                    reflected_at_a_face: reflections.into_iter().any(is_on_the_box),
+                    reflected_at_a_face: reflected[0].max(reflected[1]),
                 })
             });
             paths.collect::<Result<Vec<MainPath>>>()
