@@ -211,7 +211,8 @@ pub fn markdown(findings: &[Finding]) -> String {
          The paper gives neither the camera's distance nor its field of view. Ours, 100 cm and a half view of {HALF_VIEW} degrees, are an\n\
          assumption. Where a row hangs on it, the number for a half view of {WIDE_HALF_VIEW} degrees stands in brackets beside it; the\n\
          verdict is that of {HALF_VIEW} degrees.\n\n\
-         Pictures are of 160 x 120 pixels with one ray each, `min_power` 1e-4. H and V are horizontal and vertical polarization.\n\n",
+         Pictures are of 160 x 120 pixels with one ray each, `min_power` 1e-4; main paths are of every second row and\n\
+         column. H and V are horizontal and vertical polarization.\n\n",
         percent(CLOSE, 0),
         percent(VERY_GOOD, 0),
         percent(GOOD, 0),

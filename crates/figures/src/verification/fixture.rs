@@ -17,8 +17,10 @@ use optics::geometry::Pose;
 use optics::wave::transverse_basis;
 use rayon::prelude::*;
 use std::cell::{OnceCell, RefCell};
+use std::collections::HashMap;
 use std::ops::Range;
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Where the camera stands, cm: our assumption, for the paper does not say.
@@ -97,6 +99,8 @@ pub(super) struct Fixture<'s> {
     images: RefCell<Images>,
     /// The part of the view that all designs cover.
     region: OnceCell<PixelMask>,
+    /// What has been shown, by its setting.
+    shown: RefCell<HashMap<String, Rc<Shown>>>,
 }
 
 /// A device as the camera sees it.
@@ -175,7 +179,8 @@ impl Shown {
 
 impl<'s> Fixture<'s> {
     pub fn new(stop: &'s AtomicBool) -> Self {
-        Self { stop, images: RefCell::default(), region: OnceCell::new() }
+        let (images, shown) = (RefCell::default(), RefCell::default());
+        Self { stop, images, region: OnceCell::new(), shown }
     }
 
     fn prepared<'a>(&self, scene: &'a Scene) -> Result<PreparedScene<'a>> {
@@ -187,16 +192,22 @@ impl<'s> Fixture<'s> {
     }
 
     /// The picture of a device.
-    pub fn show(&self, device: &str, polarizer: &str) -> Result<Shown> {
+    pub fn show(&self, device: &str, polarizer: &str) -> Result<Rc<Shown>> {
         self.show_at(HALF_VIEW, device, polarizer)
     }
 
     /// The same, seen at half an angle.
-    pub fn show_at(&self, half_view: f64, device: &str, polarizer: &str) -> Result<Shown> {
+    pub fn show_at(&self, half_view: f64, device: &str, polarizer: &str) -> Result<Rc<Shown>> {
+        let key = format!("{half_view} {polarizer} {device}");
+        if let Some(shown) = self.shown.borrow().get(&key) {
+            return Ok(Rc::clone(shown));
+        }
         let scene = Setting { device, polarizer, half_view }.scene()?;
         let prepared = self.prepared(&scene)?;
         let picture = render(&prepared, ChannelSet::Everything, &self.supervision())?.picture;
-        Ok(Shown { view: View::of(&picture)?, picture })
+        let shown = Rc::new(Shown { view: View::of(&picture)?, picture });
+        self.shown.borrow_mut().insert(key, Rc::clone(&shown));
+        Ok(shown)
     }
 
     /// The mean and the largest share of the light that the first face of a device reflects, seen at half an angle.
@@ -256,7 +267,7 @@ impl<'s> Fixture<'s> {
         Ok(rms.ok_or("light from the photograph")?)
     }
 
-    /// The main paths of all camera rays through a device, a box, that is alone in its scene, row by row.
+    /// The main paths of camera rays, one for 2 x 2 pixels, through a device, a box, that is alone in its scene.
     pub fn main_paths(&self, half_view: f64, device: &str) -> Result<Vec<MainPath>> {
         let scene = Setting { device, polarizer: "none", half_view }.scene()?;
         let prepared = self.prepared(&scene)?;
@@ -273,8 +284,8 @@ impl<'s> Fixture<'s> {
                 return Err(RenderError::from(Stopped).into());
             }
             let mut tracer = Tracer::new(assembly, prepared.limits).watched(Vec::new());
-            let paths = (0..width).map(|column| {
-                let ray = scene.camera.ray(column as f64 + 0.5, row as f64 + 0.5);
+            let paths = (0..width).step_by(2).map(|column| {
+                let ray = scene.camera.ray(column as f64 + 1.0, row as f64 + 1.0);
                 tracer.recorder().clear();
                 let leaves = tracer.trace(&launch(ray.origin, ray.direction)).0.to_vec();
                 let unpolarized = |leaf: &Leaf<2>| leaf.power[0] + leaf.power[1];
@@ -297,7 +308,7 @@ impl<'s> Fixture<'s> {
             });
             paths.collect::<Result<Vec<MainPath>>>()
         };
-        let rows: Result<Vec<_>> = (0..height).into_par_iter().map(row).collect();
+        let rows: Result<Vec<_>> = (0..height).into_par_iter().step_by(2).map(row).collect();
         Ok(rows?.concat())
     }
 

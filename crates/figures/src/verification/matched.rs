@@ -14,11 +14,11 @@ const YOCTOSECONDS: f64 = 1e15;
 
 pub(super) fn along_the_axis(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let device = square(DESIGNS[2]);
-    let empty = fixture.show("", "none")?.view;
+    let empty = &fixture.show("", "none")?.view;
     let shown = fixture.show(&device, "none")?;
-    let bare = fixture.show(&format!("{device}show = \"bare\"\n"), "none")?.view;
-    let difference = largest_difference(&empty, &shown.view);
-    let bare = largest_difference(&empty, &bare);
+    let bare = &fixture.show(&format!("{device}show = \"bare\"\n"), "none")?.view;
+    let difference = largest_difference(empty, &shown.view);
+    let bare = largest_difference(empty, bare);
     let [_, late] = shown.statistics("time_of_flight_difference")?;
     let assembly = fixture.assembly(&device)?;
     let mut rays = tracer(&assembly, 1e-12);
@@ -99,9 +99,9 @@ pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let mut largest: f64 = 0.0;
     for rotation in [5, 10, 20] {
         let device = format!("{}rotation = {rotation}\n", square(DESIGNS[2]));
-        let cloaked = fixture.show(&device, "none")?.view;
-        let mirror = fixture.show(&format!("{device}show = \"mirror\"\n"), "none")?.view;
-        largest = largest.max(largest_difference(&cloaked, &mirror));
+        let cloaked = &fixture.show(&device, "none")?.view;
+        let mirror = &fixture.show(&format!("{device}show = \"mirror\"\n"), "none")?.view;
+        largest = largest.max(largest_difference(cloaked, mirror));
     }
     page.says(
         "3, Fig. 7",
