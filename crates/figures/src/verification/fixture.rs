@@ -300,6 +300,7 @@ impl<'s> Fixture<'s> {
                         reflected.iter_mut().zip(leaf.power).for_each(|(sum, power)| *sum += power);
                     }
                 }
+                if column == 80 { eprintln!("ROW {row} {reflected:?}"); }
                 Ok(MainPath {
                     between_polarizations: 0.5 * parted.sum::<f64>(),
                     off: main.power.iter().fold(0.0, |off, power| off.max(1.0 - power)),
