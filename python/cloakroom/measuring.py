@@ -243,9 +243,18 @@ class Finding:
     #: What was computed, in words and numbers.
     computed: str
     #: Whether it holds.
-    verdict: Literal["agrees", "agrees_in_order_of_magnitude", "differs"]
+    verdict: Literal[
+        "agrees",
+        "agrees_closely",
+        "agrees_in_order_of_magnitude",
+        "depends_on_tolerance",
+        "differs",
+    ]
     #: A word why, where it does not quite; else empty.
     remark: str
+    #: By how much a number is off the one that is printed, or beyond the limit that is stated, as a share of that;
+    #: 0 where it agrees, None where the statement has no number.
+    relative_deviation: float | None
 
 
 def verify(*, progress: Progress = False) -> list[Finding]:

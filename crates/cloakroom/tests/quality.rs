@@ -96,6 +96,28 @@ fn a_glass_plate_moves_the_view_as_snell_says() {
 }
 
 #[test]
+fn what_is_turned_is_not_in_place_even_where_it_lands_right() {
+    // A wedge of glass before the photograph turns light by asin(n sin a) - a, so little before it that it lands within
+    // 1 cm of where it should: 0.50 degrees for 1 degree of wedge, 1.50 for 3.
+    let scene = "[camera]\nposition = [-100, 0, 0]\nprojection = \"orthographic\"\nwidth = 4\n\
+                 resolution = [8, 6]\nsamples = 1\n[trace]\nmin_power = 0.01\n\
+                 [[device]]\nkind = \"prisms\"\nposition = [44, 0, 0]\n\
+                 [[device.prism]]\npermittivity = 2.25\n";
+    for (degrees, in_place) in [(1.0f64, true), (3.0, false)] {
+        let angle = degrees.to_radians();
+        let [low, high] = [-4.0, 4.0].map(|y: f64| 2.0 + y * angle.tan());
+        let corners = format!("corners = [[0, -4], [{low}, -4], [{high}, 4], [0, 4]]\n");
+        let table = measured(&format!("{scene}{corners}"), &["camera.samples=1"]);
+        let turned = ((1.5 * angle.sin()).asin() - angle).to_degrees();
+        assert!((table.figure(0, "direction_error_rms_deg") - turned).abs() < 1e-9, "{turned}");
+        assert_eq!(table.figure(0, "uncloaked_share"), 0.0);
+        // Two faces reflect 4 % each.
+        let share = if in_place { 0.96 * 0.96 } else { 0.0 };
+        assert!((table.figure(0, "in_place_share") - share).abs() < 1e-3);
+    }
+}
+
+#[test]
 fn polarizations_add_up() {
     let scene = "[camera]\nresolution = [48, 36]\nsamples = 1\n\
                  [[device]]\nkind = \"square-cloak\"\nmaterial = \"negative-uniaxial\"\n";

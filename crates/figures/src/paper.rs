@@ -51,7 +51,7 @@ macro_rules! panel {
 
 /// The titles of the figures, in the order of the paper.
 pub static TITLES: [&str; 9] = [
-    "The setting, to scale",
+    "The setting, to scale; distance and field of view of the camera are our assumption",
     "Positive uniaxial square cloak (i), along the transformation axis",
     "Positive uniaxial square cloak (i), turned about its axis",
     "Negative uniaxial square cloak (ii), along the transformation axis",

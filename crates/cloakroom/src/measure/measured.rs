@@ -77,6 +77,7 @@ impl Measured {
         list.add("displacement_rms_cm", "RMS displacement", "cm", rays(|r| r.displacement_rms_cm));
         list.add("direction_error_rms_deg", "RMS direction error", "°", turned);
         list.add("uncloaked_share", "Uncloaked share", "", rays(|rays| rays.uncloaked_share));
+        list.add("in_place_share", "Share in place", "", rays(Survey::in_place_share));
         let area = rays(|rays| Some(rays.uncloaked_area_cm2));
         list.add("uncloaked_area_cm2", "Uncloaked area", "cm²", area);
         for ((name, title), power) in POWERS.into_iter().zip(self.powers) {

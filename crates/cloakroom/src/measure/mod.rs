@@ -38,7 +38,7 @@ pub use plan::SweepPlan;
 pub use quality::{QualityRow, QualityTable, quality};
 pub use quality_error::QualityError;
 pub use structural_similarity::structural_similarity;
-pub use survey::{CLOAKED_WITHIN_CM, Survey, survey};
+pub use survey::{CLOAKED_WITHIN_CM, IN_PLACE_WITHIN, Survey, survey};
 pub use sweep::{Sweep, SweepError, combinations};
 pub use view::View;
 

@@ -10,6 +10,10 @@ use std::sync::atomic::Ordering;
 /// How near to where it should a ray must land to count as cloaked, cm on the photograph.
 pub const CLOAKED_WITHIN_CM: f64 = 1.0;
 
+/// How near to where it should a ray must land to be in place, cm on the photograph, and how near to the direction that
+/// it should have it must go, degrees: strictly, and widely.
+pub const IN_PLACE_WITHIN: [[f64; 2]; 2] = [[CLOAKED_WITHIN_CM, 1.0], [5.0, 5.0]];
+
 /// What the ray through the middle of each pixel has met, and how well.
 ///
 /// A ray's leaves count by their power. Errors are those of the leaves on the photograph against the strongest leaf
@@ -30,6 +34,20 @@ pub struct Survey {
     pub uncloaked_share: Option<f64>,
     /// What these pixels cover of the plane of the photograph in the empty view, cm².
     pub uncloaked_area_cm2: f64,
+    /// The shares of each pixel's power that are in place, row by row from the top left: strictly, and widely, as
+    /// [`IN_PLACE_WITHIN`] says. Light that should miss the photograph must miss it, wherever.
+    pub in_place: Vec<[f64; 2]>,
+}
+
+impl Survey {
+    /// The mean over the silhouette of the share that is strictly [in place](Self::in_place); `None` without a
+    /// silhouette.
+    #[must_use]
+    pub fn in_place_share(&self) -> Option<f64> {
+        let met = || self.silhouette.iter().zip(&self.in_place).filter(|(met, _)| **met);
+        let pixels = met().count();
+        (pixels > 0).then(|| met().map(|(_, share)| share[0]).sum::<f64>() / pixels as f64)
+    }
 }
 
 /// One pixel's share in a survey.
@@ -42,6 +60,8 @@ struct Sight {
     square_rad: f64,
     /// Power that goes where it should.
     faithful: f64,
+    /// Power that does so in the direction that it should have, too.
+    in_place: [f64; 2],
 }
 
 /// Sends a ray through the middle of each pixel of a scene, and the same ray through the ideal scene, which must
@@ -125,21 +145,28 @@ fn sight<const N: usize>(
         ..Sight::default()
     };
     let wanted = wanted.map(|leaf| (leaf.direction, landing(screen, leaf)));
+    let Some((direction, wanted)) = wanted else { return sight };
     for leaf in leaves {
-        match (landing(screen, leaf), wanted) {
-            (Some(place), Some((direction, Some(wanted)))) => {
+        // By the chord: exact to rounding for small angles.
+        let angle = 2.0 * (0.5 * leaf.direction.distance(direction)).min(1.0).asin();
+        let away = match (landing(screen, leaf), wanted) {
+            (Some(place), Some(wanted)) => {
                 let away = place.distance(wanted);
                 sight.compared += power(leaf);
                 sight.square_cm += power(leaf) * away * away;
-                // By the chord: exact to rounding for small angles.
-                let angle = 2.0 * (0.5 * leaf.direction.distance(direction)).min(1.0).asin();
                 sight.square_rad += power(leaf) * angle * angle;
-                if away <= CLOAKED_WITHIN_CM {
-                    sight.faithful += power(leaf);
-                }
+                away
             }
-            (None, Some((_, None))) => sight.faithful += power(leaf),
-            _ => {}
+            (None, None) => 0.0,
+            _ => f64::INFINITY,
+        };
+        if away <= CLOAKED_WITHIN_CM {
+            sight.faithful += power(leaf);
+        }
+        for (share, [cm, degrees]) in sight.in_place.iter_mut().zip(IN_PLACE_WITHIN) {
+            if away <= cm && angle <= degrees.to_radians() {
+                *share += power(leaf);
+            }
         }
     }
     sight
@@ -169,5 +196,6 @@ fn summary(sights: &[Sight], camera: &Camera, screen: &Screen) -> Survey {
         direction_error_rms_deg: rms(sum(&|sight| sight.square_rad)).map(f64::to_degrees),
         uncloaked_share: (silhouette > 0).then(|| uncloaked().count() as f64 / silhouette as f64),
         uncloaked_area_cm2: uncloaked().fold(0.0, |sum, (index, _)| sum + area(index)),
+        in_place: sights.iter().map(|sight| sight.in_place).collect(),
     }
 }

@@ -1,12 +1,17 @@
 //! Section 1 and 2: the trivial cloak, the setting and the materials.
 
-use super::finding::{DOUBLE, Page, Verdict, below, percent};
-use super::fixture::{DESIGNS, Fixture, GAUSSIAN, fact, facts, launch, square, tracer};
+use super::finding::{DOUBLE, GOOD, Page, Verdict, below, percent};
+use super::fixture::{
+    DESIGNS, Fixture, GAUSSIAN, camera_direction, fact, facts, launch, square, tracer, undisturbed,
+};
 use super::{Result, VerificationError};
 use glam::DVec3;
 use optics::interface::{IncidentWave, Side, split};
 use optics::medium::Medium;
 use optics::wave::SPEED_OF_LIGHT;
+
+/// By how much rays slant that do not come along the axis, degrees.
+const SLANT: f64 = 5.0;
 
 pub(super) fn introduction(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let assembly = fixture.assembly("[[device]]\nkind = \"mirror-detour\"\n")?;
@@ -31,6 +36,24 @@ pub(super) fn introduction(fixture: &Fixture<'_>, page: &mut Page) -> Result<()>
     page.says("1", "The detour makes the optical path longer: a ray cloak, no wave cloak")
         .computed(format!("{:.2} cm longer, {delay:.3} ns late", delay * SPEED_OF_LIGHT))
         .verdict(delay > 1e-6);
+    // Rays that would hit what is hidden, along x and slanted, up and to the side.
+    let mut on = [0.0; 3];
+    for (on, direction) in on.iter_mut().zip([[0.0, 0.0], [0.0, SLANT], [SLANT, 0.0]]) {
+        let direction = camera_direction(direction[0], direction[1]);
+        for i in 0..40 {
+            let y = 7.5 * ((f64::from(i) + 0.5) / 20.0 - 1.0);
+            let origin = DVec3::new(0.0, y, 0.0) - direction * 60.0;
+            let [h, v] = undisturbed(&mut rays, origin, direction);
+            *on += 0.5 * (h + v) / 40.0;
+        }
+    }
+    let [along, up, side] = on.map(|share| percent(share, 0));
+    page.says("1", "It works for one viewing direction only")
+        .computed(format!(
+            "on its own line along x {along}, {SLANT} degrees up {up}, {SLANT} degrees to the side {side} \
+             of the power"
+        ))
+        .verdict(on[0] > 1.0 - 1e-9 && on[1].max(on[2]) < GOOD);
     Ok(())
 }
 

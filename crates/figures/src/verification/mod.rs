@@ -11,6 +11,7 @@ mod geometry;
 mod graded;
 mod matched;
 mod motion;
+mod time;
 
 pub use finding::{Finding, Verdict, markdown};
 
@@ -20,7 +21,6 @@ use cloakroom::scene_file::SceneFileError;
 use cloakroom::trace::Stopped;
 use finding::Page;
 use fixture::Fixture;
-use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Why the paper could not be gone through.
@@ -53,19 +53,23 @@ const CHECKS: &[Check] = &[
     motion::equation,
     geometry::materials,
     geometry::setting,
+    birefringent::centre_plane,
     birefringent::along_the_axis,
     birefringent::views,
+    birefringent::waves_and_pulses,
     birefringent::turned,
     birefringent::reflections,
     birefringent::trapped_light,
     matched::along_the_axis,
     matched::turned,
     graded::index,
+    graded::thinner_bump,
     graded::polarization,
     graded::views,
     graded::times,
     graded::reflections,
     graded::turned,
+    time::pulses,
 ];
 
 /// How many steps [`verify`] takes.
@@ -80,7 +84,7 @@ pub fn steps() -> u64 {
 ///
 /// If the work was stopped, or a picture could not be made.
 pub fn verify(step_done: &dyn Fn(), stop: &AtomicBool) -> Result<Vec<Finding>> {
-    let fixture = Fixture { stop, images: RefCell::default() };
+    let fixture = Fixture::new(stop);
     let mut page = Page::default();
     for check in CHECKS {
         if stop.load(Ordering::Relaxed) {
