@@ -93,7 +93,7 @@ def trace(
         themselves, across the rays and of any norm.
     min_power : float, optional
         Branches below this share of a ray's power are pruned; by default what the scene's ``trace.min_power`` says,
-        else 1e-9, or 1e-20 if `coherent`.
+        else 1e-9, or 1e-24 if `coherent`.
     coherent : bool, default False
         Leaves of one direction are added as fields, as light of the scene's wavelength and bandwidth does in the far
         field: one leaf each, at the place of the strongest. Thin films and plates need it.

@@ -186,7 +186,7 @@ pub struct TraceArguments {
     /// Give `group_path` for each leaf, too: the speed of light times what a pulse takes, cm.
     #[arg(long)]
     pub group_delay: bool,
-    /// Prune branches below this share of the launched power [default: the scene's, else 1e-9, with --coherent 1e-20].
+    /// Prune branches below this share of the launched power [default: the scene's, else 1e-9, with --coherent 1e-24].
     #[arg(long, value_name = "P")]
     pub min_power: Option<f64>,
     /// How many threads work.

@@ -11,7 +11,6 @@ use num_complex::Complex64;
 use optics::geometry::Pose;
 use optics::wave::ComplexVector;
 use std::f64::consts::TAU;
-use std::fmt::Write;
 use std::path::Path;
 
 const WAVELENGTH_NM: f64 = 550.0;
@@ -24,27 +23,44 @@ pub fn to_scene(v: DVec3) -> DVec3 {
 
 /// Slabs that touch, the first at x = 0.
 pub fn slabs(layers: &[Layer]) -> String {
-    let mut scene = String::new();
     let mut x = 0.0;
+    let slabs = layers.iter().map(|layer| {
+        x += layer.thickness;
+        slab(layer, x - 0.5 * layer.thickness)
+    });
+    slabs.collect()
+}
+
+/// The same where every other layer, with the first, is of one medium: a slab of it, and those between in it.
+fn nested(layers: &[Layer]) -> String {
+    let thickness = layers.iter().map(|layer| layer.thickness).sum::<f64>();
+    let mut scene = slab(&Layer { thickness, ..layers[0] }, 0.5 * thickness);
+    let mut x = 0.0;
+    for (number, layer) in layers.iter().enumerate() {
+        x += layer.thickness;
+        if number % 2 == 1 {
+            scene += &slab(layer, x - 0.5 * layer.thickness);
+            scene += "priority = 1\n";
+        }
+    }
+    scene
+}
+
+/// A slab with its middle at x.
+fn slab(layer: &Layer, x: f64) -> String {
+    let Layer { permittivity, permeability, loss, thickness } = layer;
     // The axes of the scene in the frame of the transfer matrix.
     let axes = [DVec3::Z, DVec3::X, DVec3::Y];
     let rows = |re: &DMat3, im: &DMat3| {
         let entry = |i: DVec3, j: DVec3| [i.dot(*re * j), i.dot(*im * j)];
         format!("{:?}", axes.map(|i| axes.map(|j| entry(i, j))))
     };
-    for Layer { permittivity, permeability, loss, thickness } in layers {
-        writeln!(
-            scene,
-            "[[device]]\nkind = \"body\"\nshape = \"slab\"\nthickness = {thickness:?}\n\
-             position = [{:?}, 0, 0]\npermittivity = {}\npermeability = {}",
-            x + 0.5 * thickness,
-            rows(permittivity, loss),
-            rows(permeability, &DMat3::ZERO),
-        )
-        .unwrap();
-        x += thickness;
-    }
-    scene
+    format!(
+        "[[device]]\nkind = \"body\"\nshape = \"slab\"\nthickness = {thickness:?}\n\
+         position = [{x:?}, 0, 0]\npermittivity = {}\npermeability = {}\n",
+        rows(permittivity, loss),
+        rows(permeability, &DMat3::ZERO),
+    )
 }
 
 /// A symmetric tensor with principal values near some.
@@ -96,22 +112,42 @@ fn random_stacks_are_those_of_the_transfer_matrix_and_keep_the_power() {
         let layers: Vec<Layer> = (0..1 + (numbers.next() * 5.0) as usize)
             .map(|_| layer(&mut numbers, [2e-6, 3e-4]))
             .collect();
-        let k = numbers.between(0.0, 0.8);
-        let angle = TAU * numbers.next();
-        let [s, p] = [angle.cos(), angle.sin()];
-        let fields = polarizations(k, (1.0 - k * k).sqrt());
-        let exact = jones(&layers, WAVE_NUMBER, k);
-        let leaves = gathered(&slabs(&layers), k, fields[0] * s + fields[1] * p, 0.0);
-        let sum: f64 = leaves.iter().map(|leaf| leaf.power[0]).sum();
-        assert!((sum - 1.0).abs() < 1e-9, "{sum} {layers:?}");
-        for leaf in &leaves {
-            let expected = expected(&exact, k, [s, p], leaf.direction.x > 0.0);
-            // The phase at the place of the leaf is another one.
-            let overlap = leaf.electric[0].dot(expected.conj()).norm();
-            let power = expected.norm_squared();
-            assert!((leaf.power[0] - power).abs() < 1e-9, "{leaf:?} {power} {layers:?}");
-            assert!((overlap - power).abs() < 1e-9, "{leaf:?} {expected:?} {layers:?}");
-        }
+        is_that_of_the_transfer_matrix(&mut numbers, &slabs(&layers), &layers);
+    }
+}
+
+#[test]
+fn slabs_in_a_slab_are_a_stack() {
+    let mut numbers = Numbers(33);
+    for _ in 0..count(40, 2000) {
+        let host = layer(&mut numbers, [1.0; 2]);
+        let layers: Vec<Layer> = (0..3 + 2 * (numbers.next() * 2.0) as usize)
+            .map(|number| match number % 2 {
+                0 => Layer { thickness: numbers.between(2e-6, 3e-4), ..host },
+                _ => layer(&mut numbers, [2e-6, 3e-4]),
+            })
+            .collect();
+        is_that_of_the_transfer_matrix(&mut numbers, &nested(&layers), &layers);
+    }
+}
+
+/// Light from a random direction goes through a scene as through layers, and keeps its power.
+fn is_that_of_the_transfer_matrix(numbers: &mut Numbers, scene: &str, layers: &[Layer]) {
+    let k = numbers.between(0.0, 0.8);
+    let angle = TAU * numbers.next();
+    let [s, p] = [angle.cos(), angle.sin()];
+    let fields = polarizations(k, (1.0 - k * k).sqrt());
+    let exact = jones(layers, WAVE_NUMBER, k);
+    let leaves = gathered(scene, k, fields[0] * s + fields[1] * p, 0.0);
+    let sum: f64 = leaves.iter().map(|leaf| leaf.power[0]).sum();
+    assert!((sum - 1.0).abs() < 1e-9, "{sum} {layers:?}");
+    for leaf in &leaves {
+        let expected = expected(&exact, k, [s, p], leaf.direction.x > 0.0);
+        // The phase at the place of the leaf is another one.
+        let overlap = leaf.electric[0].dot(expected.conj()).norm();
+        let power = expected.norm_squared();
+        assert!((leaf.power[0] - power).abs() < 1e-9, "{leaf:?} {power} {layers:?}");
+        assert!((overlap - power).abs() < 1e-9, "{leaf:?} {expected:?} {layers:?}");
     }
 }
 

@@ -197,7 +197,7 @@ fn interference_limits(scene: &Scene) -> Limits {
 const RAY_MIN_POWER: f64 = 1e-9;
 
 /// The same where fields are added: 1e-10 in the field.
-const COHERENT_MIN_POWER: f64 = 1e-20;
+const COHERENT_MIN_POWER: f64 = 1e-24;
 
 /// The light of a scene.
 #[must_use]
@@ -205,7 +205,7 @@ pub fn coherence(scene: &Scene) -> Coherence {
     Coherence::new(scene.light.wavelength_nm, scene.light.bandwidth_nm.value)
 }
 
-/// How given rays are traced: the threshold is the given one, else that which the scene writes, else 1e-9, or 1e-20 if
+/// How given rays are traced: the threshold is the given one, else that which the scene writes, else 1e-9, or 1e-24 if
 /// leaves are to be added as fields (`coherent`); with what pulses take if `group_delays`.
 #[must_use]
 pub fn ray_settings(

@@ -5,8 +5,9 @@
 //! g = exp(-(π (l_i - l_j)/L)²/(4 ln 2)) with the coherence length L = λ²/Δλ; w is a Gaussian of the distance between
 //! the places that they see. Both kernels are positive definite: there is no negative light.
 
-use super::branch::Branch;
+use super::branch::{Branch, Place};
 use super::{Leaf, LeafEnd};
+use crate::assembly::{Assembly, slack_at};
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::wave::ComplexVector;
@@ -189,8 +190,14 @@ const SAME_WAVE: f64 = 1e-11;
 const BESIDE: f64 = 5e-3;
 
 impl Coherence {
-    /// Adds the field of another branch to one that is the same plane wave, of the same phase length; whether it is.
-    pub(super) fn join<const N: usize>(&self, branch: &mut Branch<N>, other: &Branch<N>) -> bool {
+    /// Adds the field of another branch to one that is the same plane wave, of the same phase length and with nothing
+    /// between them; whether it is.
+    pub(super) fn join<const N: usize>(
+        &self,
+        assembly: &Assembly,
+        branch: &mut Branch<N>,
+        other: &Branch<N>,
+    ) -> bool {
         let apart = branch.position - other.position;
         let length = other.optical_path - branch.optical_path + branch.wave_vector.dot(apart);
         let same = |a: DVec3, b: DVec3| (a - b).abs().max_element() <= SAME_WAVE;
@@ -200,7 +207,8 @@ impl Coherence {
             && apart.length() <= BESIDE
             && length.abs() <= SAME_LENGTH * self.length
             && same(branch.wave_vector, other.wave_vector)
-            && same(branch.attenuation, other.attenuation);
+            && same(branch.attenuation, other.attenuation)
+            && !part(assembly, branch, other);
         if together {
             let phase = Complex64::cis(self.wave_number * length);
             for i in 0..N {
@@ -218,6 +226,28 @@ impl Coherence {
         }
         together
     }
+}
+
+/// Whether something stands between two branches in one place that run in one direction.
+fn part<const N: usize>(assembly: &Assembly, one: &Branch<N>, other: &Branch<N>) -> bool {
+    // A hair ahead, off the surfaces that they leave.
+    let slack = slack_at(one.position);
+    let hair = one.direction * (4.0 * slack);
+    let apart = other.position - one.position;
+    let distance = apart.length();
+    if distance <= slack {
+        return false;
+    }
+    let (origin, direction) = (one.position + hair, apart / distance);
+    let met = match one.place {
+        Place::Air => assembly.first_hit(origin, direction, None),
+        Place::Region { device, .. } => {
+            let pose = &assembly.device(device).pose;
+            let (origin, direction) = (pose.to_world(origin), pose.vector_to_world(direction));
+            assembly.first_guest(device, origin, direction, None)
+        }
+    };
+    met.is_some_and(|(_, hit)| hit.distance < distance)
 }
 
 impl Pair {

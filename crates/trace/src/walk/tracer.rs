@@ -246,7 +246,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             let paths = self.waiting.iter().map(|branch| branch.optical_path).enumerate();
             let (shortest, _) = paths.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
             *branch = self.waiting.swap_remove(shortest);
-            self.waiting.retain(|other| !coherence.join(branch, other));
+            let assembly = self.assembly;
+            self.waiting.retain(|other| !coherence.join(assembly, branch, other));
             // Their fields may have cancelled.
             if self.follows(branch.power) {
                 return Some(());
