@@ -2,7 +2,7 @@
 
 use crate::protocol::LARGEST_PHOTOGRAPH;
 use crate::scenes::{Opened, tables};
-use cloakroom::device::{CATALOGUE, Entry, Request, Show};
+use cloakroom::device::{CATALOGUE, Core, Entry, Request, Show};
 use cloakroom::scene_file;
 use cloakroom_figures::gallery::EXHIBITS;
 use serde_json::{Map, Value, json};
@@ -37,13 +37,13 @@ pub(crate) fn greeting(opened: &Opened) -> Value {
 
 /// A kind of device: its keys as the schema of scene files describes them, and how it can be shown.
 fn kind(entry: &Entry, schema: &Value) -> Value {
-    let built = |show, open_core| {
-        let request = Request { show, open_core, length: None };
+    let built = |show, core| {
+        let request = Request { show, core, length: None };
         (entry.device)().build(request).ok()
     };
     let shows: Vec<&str> = [("cloak", Show::Cloak), ("bare", Show::Bare), ("mirror", Show::Mirror)]
         .into_iter()
-        .filter(|(word, show)| *word == "cloak" || built(*show, false).is_some())
+        .filter(|(word, show)| *word == "cloak" || built(*show, Core::Metal).is_some())
         .map(|(word, _)| word)
         .collect();
     let keys: Vec<&str> = entry.keys.iter().map(|key| key.name).collect();
@@ -53,7 +53,7 @@ fn kind(entry: &Entry, schema: &Value) -> Value {
         "own_keys": keys,
         "keys": schema["$defs"][entry.kind]["properties"],
         "shows": shows,
-        "core_can_be_open": built(Show::Cloak, true).is_some_and(|built| built.hull.filled.is_some()),
+        "core_can_be_open": built(Show::Cloak, Core::Open).is_some_and(|built| built.hull.filled.is_some()),
     })
 }
 

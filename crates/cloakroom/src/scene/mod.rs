@@ -15,13 +15,13 @@ use optics::wave::unit;
 pub use camera::{Camera, CameraRay};
 pub use polarizer::Polarizer;
 pub use tables::{
-    CameraSettings, Core, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel,
-    PhotographSettings, PictureSettings, Placement, Projection, Receiver, SCALAR_CHANNELS,
-    SurroundingsSettings, TABLES, TraceSettings,
+    CameraSettings, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel, PhotographSettings,
+    PictureSettings, Placement, Projection, Receiver, SCALAR_CHANNELS, SurroundingsSettings,
+    TABLES, TraceSettings,
 };
 
-pub use crate::device::Show;
 use crate::device::{self, AnyDevice, Entry, Fact, Metal, Request, Structure};
+pub use crate::device::{Core, Show};
 use crate::keys::{Field, KeyError, KeyKind, Table, Value, VisitFile, vector_text};
 use crate::photograph::ImageSource;
 use cloakroom_trace::key;
@@ -221,8 +221,8 @@ impl DeviceSettings {
     ///
     /// As [`Self::structure`].
     pub fn built(&self, show: Show) -> Result<Structure, KeyError> {
-        let (open_core, length) = (self.has_open_core(), self.placement.length);
-        let request = Request { show, open_core, length };
+        let Placement { core, length, .. } = self.placement;
+        let request = Request { show, core, length };
         let structure = crate::index_file::with_files_read(&self.device)?.build(request)?;
         let (key, metal) = (key!(Placement.metal), self.placement.metal.as_ref());
         let message = "metal is false; a cloak without metal has core = \"open\"";

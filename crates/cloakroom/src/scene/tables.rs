@@ -1,7 +1,7 @@
 //! The tables of a scene file but a device's own.
 
 use super::Polarizer;
-use crate::device::{CoatingLayer, Dispersion, Imperfection, Metal, Show};
+use crate::device::{CoatingLayer, Core, Dispersion, Imperfection, Metal, Show};
 use crate::keys::{Given, Key, ValueRange};
 use crate::photograph::ImageSource;
 use cloakroom_trace::{choice, table};
@@ -174,16 +174,6 @@ table! {
     }
 }
 
-choice! {
-    /// What fills the hidden region of a cloak.
-    pub enum Core {
-        /// Metal, which reflects.
-        Metal = "metal",
-        /// Air, in which bodies may stand.
-        Open = "open",
-    }
-}
-
 table! {
     /// What every device takes beside its `kind` and its kind's own keys.
     pub struct Placement {
@@ -261,7 +251,7 @@ mod tests {
 
     #[test]
     fn what_devices_are_asked_for_is_named_as_their_placement_names_it() {
-        let named = [key!(Request.show), key!(Request.length), "core"];
+        let named = [key!(Request.show), key!(Request.length), key!(Request.core)];
         assert_eq!(named, [key!(Placement.show), key!(Placement.length), key!(Placement.core)]);
     }
 }

@@ -73,7 +73,7 @@ impl Device for CylinderCloak {
                         RadialFlow::Uniaxial(UniaxialCylinder::new(inner, outer, axis, extent))
                     }
                 };
-                tube(inner, outer, extent, flow, request.open_core)
+                tube(inner, outer, extent, flow, request.has_open_core())
             }
             Show::Bare => metal_cylinder(inner, extent),
             Show::Mirror => Structure::empty(),

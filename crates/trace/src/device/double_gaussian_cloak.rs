@@ -69,7 +69,7 @@ impl Device for DoubleGaussianCloak {
                 let coating = if self.fresnel { Coating::None } else { Coating::Antireflection };
                 let index_scale = self.index_scale(&map, &cut);
                 let flow = ConformalFlow::new(map, cut, extent, index_scale);
-                cloak(&flow, coating, extent, request.open_core)
+                cloak(&flow, coating, extent, request.has_open_core())
             }
             Show::Bare => {
                 let around = Outline::rectangle(cut.x_max, map.peak());

@@ -183,10 +183,14 @@ impl Device for Graded {
         let plan = Plan::new(self)?;
         let extent = Extent::centred(request.length);
         let message = "there is no core to open; `inner` is its radius";
-        KeyError::refuse_if(request.open_core && plan.core.is_none(), "core", message)?;
+        KeyError::refuse_if(
+            request.has_open_core() && plan.core.is_none(),
+            key!(Request.core),
+            message,
+        )?;
         match (request.show, plan.core) {
             (Show::Cloak, _) => {
-                plan.structure(square(&plan, self.samples()?)?, extent, request.open_core)
+                plan.structure(square(&plan, self.samples()?)?, extent, request.has_open_core())
             }
             (Show::Bare, Some(core)) => Ok(metal_cylinder(core, extent)),
             (Show::Mirror, Some(_)) => Ok(Structure::empty()),

@@ -81,6 +81,16 @@ crate::choice! {
 }
 
 crate::choice! {
+    /// What fills the hidden region of a cloak.
+    pub enum Core {
+        /// Metal, which reflects.
+        Metal = "metal",
+        /// Air, in which bodies may stand.
+        Open = "open",
+    }
+}
+
+crate::choice! {
     /// How the medium of a device depends on the frequency: what a pulse takes.
     pub enum Dispersion {
         /// As little as causality allows: no device can be faster.
@@ -95,10 +105,18 @@ crate::choice! {
 pub struct Request {
     /// What of it is looked at.
     pub show: Show,
-    /// Whether the hidden region is to be air instead of metal.
-    pub open_core: bool,
+    /// What fills its hidden region.
+    pub core: Core,
     /// Its whole length along z, cm; endless if absent.
     pub length: Option<f64>,
+}
+
+impl Request {
+    /// Whether the hidden region is to be air.
+    #[must_use]
+    pub fn has_open_core(&self) -> bool {
+        self.core == Core::Open
+    }
 }
 
 /// A device: a table of a scene that becomes a structure.

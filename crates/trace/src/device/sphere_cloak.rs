@@ -39,7 +39,7 @@ impl Device for SphereCloak {
             Show::Cloak => {
                 let flow =
                     RadialFlow::Transformed(TransformedShell { map, extent: Extent::ENDLESS });
-                ball(self.outer, flow, request.open_core.then_some(self.inner))
+                ball(self.outer, flow, request.has_open_core().then_some(self.inner))
             }
             Show::Bare => metal_ball(self.inner),
             Show::Mirror => Structure::empty(),

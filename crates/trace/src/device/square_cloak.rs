@@ -51,7 +51,9 @@ impl Device for SquareCloak {
         let map = self.map();
         let extent = Extent::centred(request.length);
         match request.show {
-            Show::Cloak => square(&map, Some(&Recipe::new(self, &map)), extent, request.open_core),
+            Show::Cloak => {
+                square(&map, Some(&Recipe::new(self, &map)), extent, request.has_open_core())
+            }
             Show::Bare => square(&map, None, extent, false),
             Show::Mirror => Ok(super::flat_strip(map.half_diagonal, extent)),
         }
