@@ -1,7 +1,7 @@
 //! Tells the program the commit that it is built from.
 //!
-//! A published crate carries it in `.cargo_vcs_info.json`, a clone has git. Without either, the program only knows its
-//! version.
+//! A published crate carries it in `.cargo_vcs_info.json`, a clone has git. Without either, the
+//! program only knows its version.
 
 use std::env;
 use std::fs;

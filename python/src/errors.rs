@@ -25,8 +25,8 @@ impl From<Failure> for PyErr {
 }
 
 impl<E: Error + 'static> From<E> for Failure {
-    /// The exception for an error of the library, or an exception as it is. Work that was stopped from outside ends
-    /// with `KeyboardInterrupt`, should nobody say more.
+    /// The exception for an error of the library, or an exception as it is. Work that was stopped
+    /// from outside ends with `KeyboardInterrupt`, should nobody say more.
     fn from(error: E) -> Self {
         let error: Box<dyn Error> = Box::new(error);
         let error = match error.downcast::<PyErr>() {
@@ -67,8 +67,8 @@ pub fn unreadable(path: &Path, error: impl Error + 'static) -> Failure {
     }
 }
 
-/// An error of a scene. That of a file says where in the file; a scene made in Python has no lines, and an override is
-/// no argument of a command line.
+/// An error of a scene. That of a file says where in the file; a scene made in Python has no lines,
+/// and an override is no argument of a command line.
 pub fn scene_error(error: &SceneFileError, is_file: bool) -> Failure {
     match &error.override_text {
         Some(text) => value_error(format!("{text}: {}", error.message)),

@@ -6,8 +6,8 @@ use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-/// An image that is in memory: red, green and blue of shape (height, width, 3), `uint8` in sRGB or `float32` in
-/// linear light.
+/// An image that is in memory: red, green and blue of shape (height, width, 3), `uint8` in sRGB or
+/// `float32` in linear light.
 #[pyclass(frozen, module = "cloakroom._cloakroom")]
 #[derive(Debug)]
 pub struct Image {

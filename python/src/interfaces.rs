@@ -55,8 +55,8 @@ impl<'a> Media<'a> {
     }
 }
 
-/// Solves interfaces with normals and tangential wave vectors of shape (N, 3). Gives the arrays of an `Interface`
-/// by their names.
+/// Solves interfaces with normals and tangential wave vectors of shape (N, 3). Gives the arrays of
+/// an `Interface` by their names.
 #[pyfunction]
 pub fn interface<'py>(
     py: Python<'py>,

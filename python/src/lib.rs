@@ -1,6 +1,6 @@
-//! The compiled half of the Python package `cloakroom`: what Python hands over is checked and turned into scenes, rays
-//! and pictures, and what comes out goes back as numpy arrays. The other half, in `cloakroom/`, is what people
-//! see: classes, names and docstrings. No physics is here.
+//! The compiled half of the Python package `cloakroom`: what Python hands over is checked and
+//! turned into scenes, rays and pictures, and what comes out goes back as numpy arrays. The other
+//! half, in `cloakroom/`, is what people see: classes, names and docstrings. No physics is here.
 
 mod errors;
 mod images;

@@ -8,7 +8,8 @@ use cloakroom::output::{self, GridFormat};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Writes the index and the tensors of a device on a grid: `cells` along x, y and z, or cubes of the side `spacing`.
+/// Writes the index and the tensors of a device on a grid: `cells` along x, y and z, or cubes of
+/// the side `spacing`.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
 pub fn export_grid(

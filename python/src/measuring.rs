@@ -1,4 +1,5 @@
-//! What is measured: pictures against each other, devices over settings, light on a receiver, the paper's statements.
+//! What is measured: pictures against each other, devices over settings, light on a receiver, the
+//! paper's statements.
 
 use crate::errors::{Failure, unreadable};
 use crate::images::Image;
@@ -35,8 +36,8 @@ fn view(object: &Bound<'_, PyAny>) -> Result<View, Failure> {
     View::read(&path).map_err(|error| unreadable(&path, error))
 }
 
-/// Compares two pictures, over the whole and over a region: a mask (height, width), or left, top, width and height in
-/// pixels. Gives JSON.
+/// Compares two pictures, over the whole and over a region: a mask (height, width), or left, top,
+/// width and height in pixels. Gives JSON.
 #[pyfunction]
 pub fn quality(
     py: Python<'_>,
@@ -59,8 +60,8 @@ pub fn quality(
     Ok(serde_json::to_string(&supervised(py, None, |_, _| Ok(compare()?))?)?)
 }
 
-/// Measures a scene for every combination of the values of keys, by their keys; `path` may name a table or a
-/// plot to write. Gives JSON.
+/// Measures a scene for every combination of the values of keys, by their keys; `path` may name a
+/// table or a plot to write. Gives JSON.
 #[pyfunction]
 pub fn sweep(
     py: Python<'_>,
@@ -97,8 +98,9 @@ pub fn verify(py: Python<'_>, progress: Option<Py<PyAny>>) -> Result<String, Fai
     Ok(serde_json::to_string(&findings)?)
 }
 
-/// Measures the light on the receiver, for angles of incidence tilted along the receiver, or for the sun over a day at a
-/// latitude with a declination; `sampling` is rays, samples and cells. Gives arrays by their names.
+/// Measures the light on the receiver, for angles of incidence tilted along the receiver, or for
+/// the sun over a day at a latitude with a declination; `sampling` is rays, samples and cells.
+/// Gives arrays by their names.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
 pub fn flux<'py>(

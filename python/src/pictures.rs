@@ -21,8 +21,8 @@ type Arrays<'py> = (Bound<'py, PyDict>, Vec<(String, String)>);
 /// Channels by their names, metadata, and how many branches of ray trees were cut and lost.
 type Rendered<'py> = (Bound<'py, PyDict>, Vec<(String, String)>, (u64, u64));
 
-/// Renders a scene: the image alone, or every channel; all of the picture, or the tile left, top, width, height.
-/// `progress` is called with the rows done and all rows.
+/// Renders a scene: the image alone, or every channel; all of the picture, or the tile left, top,
+/// width, height. `progress` is called with the rows done and all rows.
 #[pyfunction]
 pub fn render<'py>(
     py: Python<'py>,
@@ -49,7 +49,8 @@ pub fn render<'py>(
     Ok((channels, metadata, stats))
 }
 
-/// The channels of a picture as arrays, and its metadata. The memory of each channel goes to numpy as it is.
+/// The channels of a picture as arrays, and its metadata. The memory of each channel goes to numpy
+/// as it is.
 fn arrays(py: Python<'_>, picture: Picture) -> Result<Arrays<'_>, Failure> {
     let shape = (picture.height, picture.width);
     let channels = PyDict::new(py);
@@ -94,7 +95,8 @@ fn plane<'py, T: numpy::Element>(
     Ok(Array2::from_shape_vec(shape, values)?.into_pyarray(py))
 }
 
-/// Writes channels as the ending of the file's name asks for; a PNG shows the image, or the map of one channel.
+/// Writes channels as the ending of the file's name asks for; a PNG shows the image, or the map of
+/// one channel.
 #[pyfunction]
 pub fn save(
     py: Python<'_>,

@@ -11,8 +11,8 @@ use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Traces rays of shape (N, 3); `polarization` is a word, `fields` of shape (N, 3) stand instead of it. Gives the
-/// arrays of a `Traced` by their names.
+/// Traces rays of shape (N, 3); `polarization` is a word, `fields` of shape (N, 3) stand instead of
+/// it. Gives the arrays of a `Traced` by their names.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
 pub fn trace<'py>(

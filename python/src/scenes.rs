@@ -61,7 +61,8 @@ impl Written {
     }
 }
 
-/// The images of the photograph and of the surroundings that are arrays, in the places of their names.
+/// The images of the photograph and of the surroundings that are arrays, in the places of their
+/// names.
 type Arrays = [Option<ImageSource>; 2];
 
 /// The same as Python hands them over.
@@ -141,8 +142,8 @@ impl Scene {
         Self::read(Arc::clone(&self.written), settings(overrides)?, images)
     }
 
-    /// What it is made from again: the text of its file without overrides, what messages call it, the folder that its
-    /// files are relative to, and whether it comes from a file.
+    /// What it is made from again: the text of its file without overrides, what messages call it,
+    /// the folder that its files are relative to, and whether it comes from a file.
     #[getter]
     fn written(&self) -> (String, &str, &Path, bool) {
         let Written { content, name, folder, is_file } = &*self.written;

@@ -1,4 +1,5 @@
-//! Long work: without the interpreter's lock, with progress, stopped by Ctrl-C, its panics as exceptions.
+//! Long work: without the interpreter's lock, with progress, stopped by Ctrl-C, its panics as
+//! exceptions.
 
 use crate::errors::Failure;
 use cloakroom::render::Supervision;
@@ -41,13 +42,13 @@ impl Watch {
     }
 }
 
-/// Runs work on all threads while other Python threads go on; `progress` is called with the steps done and the steps
-/// in all, of which the work tells what it is watched and supervised by.
+/// Runs work on all threads while other Python threads go on; `progress` is called with the steps
+/// done and the steps in all, of which the work tells what it is watched and supervised by.
 ///
 /// # Errors
 ///
-/// That of the work; what a signal handler or `progress` raises, after the work has been stopped; `RuntimeError` for a
-/// panic.
+/// That of the work; what a signal handler or `progress` raises, after the work has been stopped;
+/// `RuntimeError` for a panic.
 pub fn supervised<T: Send>(
     py: Python<'_>,
     progress: Option<&Py<PyAny>>,
@@ -97,7 +98,8 @@ fn panicked(panic: &(dyn Any + Send)) -> PyErr {
     PyRuntimeError::new_err(format!("a mistake in cloakroom, not in your input: {text}"))
 }
 
-/// The threads of this process. A process that was forked off another has none of the other's threads.
+/// The threads of this process. A process that was forked off another has none of the other's
+/// threads.
 struct Pool {
     process: u32,
     threads: usize,

@@ -10,15 +10,15 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The JSON Schema of scene files as text: every table and every device with its keys, their types, defaults, units and
-/// what they are.
+/// The JSON Schema of scene files as text: every table and every device with its keys, their types,
+/// defaults, units and what they are.
 #[pyfunction]
 pub fn schema() -> String {
     scene_file::schema().to_string()
 }
 
-/// Holds the entries of a table against its keys: those of a device of the kind `table`, or of the table of a scene of
-/// that name. Gives back what a scene file would say.
+/// Holds the entries of a table against its keys: those of a device of the kind `table`, or of the
+/// table of a scene of that name. Gives back what a scene file would say.
 ///
 /// Raises `TypeError` for a key that does not exist, `ValueError` for a value that does not fit.
 #[pyfunction]

@@ -13,7 +13,8 @@ const MOST_ENTRIES: usize = 1_000_000;
 
 /// The value that a Python object is; `name` is the key that it is meant for.
 ///
-/// Complex numbers become `[re, im]`, paths texts, and numpy's arrays and numbers what their `tolist` gives.
+/// Complex numbers become `[re, im]`, paths texts, and numpy's arrays and numbers what their
+/// `tolist` gives.
 ///
 /// # Errors
 ///

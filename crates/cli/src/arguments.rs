@@ -26,9 +26,11 @@ pub struct Arguments {
 pub enum Command {
     /// Render a scene to pictures and data.
     Render(RenderArguments),
-    /// Put tiles that `render --tile` has written together: the picture as if it had been rendered whole.
+    /// Put tiles that `render --tile` has written together: the picture as if it had been rendered
+    /// whole.
     Merge(MergeArguments),
-    /// Make a film of a scene while keys of it change: GIF, animated PNG or WebP, MP4, WebM, or a folder of frames.
+    /// Make a film of a scene while keys of it change: GIF, animated PNG or WebP, MP4, WebM, or a
+    /// folder of frames.
     Animate(AnimateArguments),
     /// Validate a scene and print facts and an estimate of the time, without rendering.
     Check(SceneArguments),
@@ -46,20 +48,23 @@ pub enum Command {
     Figures(FiguresArguments),
     /// Make a picture and a map of times of flight of every device, and the table of them all.
     Gallery(GalleryArguments),
-    /// Measure how much light comes through to a plane behind the devices, for nothing, bare metal and the cloak.
+    /// Measure how much light comes through to a plane behind the devices, for nothing, bare metal
+    /// and the cloak.
     Flux(FluxArguments),
     /// Draw a ray diagram of a scene, or its setting, as SVG, PDF or PNG.
     Diagram(DiagramArguments),
-    /// Write what a device is made of, for fabrication and full-wave solvers: its index and tensors on a grid,
-    /// or its segments as a table.
+    /// Write what a device is made of, for fabrication and full-wave solvers: its index and tensors
+    /// on a grid, or its segments as a table.
     Export(ExportArguments),
     /// Compare two pictures: correlation, structural similarity, FLIP, times of flight, power.
     Compare(CompareArguments),
     /// Measure how well a scene's devices work over a range of settings: a table, data and a plot.
     Quality(QualityArguments),
-    /// Go through the statements of the paper, one by one: what comes out here, and a verdict (Markdown).
+    /// Go through the statements of the paper, one by one: what comes out here, and a verdict
+    /// (Markdown).
     Verify(VerifyArguments),
-    /// Open a page in the browser, served on this machine alone, on which devices can be turned and changed.
+    /// Open a page in the browser, served on this machine alone, on which devices can be turned and
+    /// changed.
     View(ViewArguments),
     /// List the devices with their keys and computed facts.
     Devices {
@@ -108,15 +113,17 @@ pub struct RenderArguments {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// A file to write; its ending decides: .png, .exr or .npz, for a map (picture.map) also .svg or .pdf. May be given
-    /// several times.
+    /// A file to write; its ending decides: .png, .exr or .npz, for a map (picture.map) also .svg
+    /// or .pdf. May be given several times.
     #[arg(short, long = "output", value_name = "FILE", required = true)]
     pub outputs: Vec<PathBuf>,
-    /// More channels for .exr and .npz files, as in stokes,first_face_reflectance (`picture.channels`).
+    /// More channels for .exr and .npz files, as in stokes,first_face_reflectance
+    /// (`picture.channels`).
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = PossibleValuesParser::new(OPTIONAL_CHANNELS))]
     pub channels: Vec<String>,
-    /// Render this part of the picture alone, in pixels from the top left: other machines may render the others, and
-    /// `merge` puts them together. Tiles are .npz or .png; even edges save work.
+    /// Render this part of the picture alone, in pixels from the top left: other machines may
+    /// render the others, and `merge` puts them together. Tiles are .npz or .png; even edges save
+    /// work.
     #[arg(long, value_name = "LEFT,TOP,WIDTH,HEIGHT")]
     pub tile: Option<Tile>,
     /// How many threads work.
@@ -130,8 +137,8 @@ pub struct MergeArguments {
     /// The tiles, all .npz or all .png; they must cover the picture and not overlap.
     #[arg(required = true)]
     pub tiles: Vec<PathBuf>,
-    /// A file to write; its ending decides: .png, .exr or .npz, for a map also .svg or .pdf; .png alone where the tiles
-    /// are .png. May be given several times.
+    /// A file to write; its ending decides: .png, .exr or .npz, for a map also .svg or .pdf; .png
+    /// alone where the tiles are .png. May be given several times.
     #[arg(short, long = "output", value_name = "FILE", required = true)]
     pub outputs: Vec<PathBuf>,
 }
@@ -142,22 +149,23 @@ pub struct AnimateArguments {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// A key and its way, spread evenly over the frames, as in device.0.rotation=0..360 or, there and back, 0..25..0;
-    /// or a value a frame, as in 0..90:5 or 1,2,4. May be given several times: the keys change together.
+    /// A key and its way, spread evenly over the frames, as in device.0.rotation=0..360 or, there
+    /// and back, 0..25..0; or a value a frame, as in 0..90:5 or 1,2,4. May be given several times:
+    /// the keys change together.
     #[arg(long = "sweep", value_name = "KEY=START..END", required = true)]
     pub sweeps: Vec<String>,
     /// How many frames.
     #[arg(long, value_name = "N")]
     pub frames: Option<usize>,
-    /// The file to write; its ending decides: .gif, .apng, .png, .webp, .mp4 or .webm (with ffmpeg), or none for a
-    /// folder of frames.
+    /// The file to write; its ending decides: .gif, .apng, .png, .webp, .mp4 or .webm (with
+    /// ffmpeg), or none for a folder of frames.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Frames a second.
     #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=100))]
     pub fps: u32,
-    /// Render only these frames, the first being 0, into the folder of frames, and make no film: a part of a job
-    /// that is shared.
+    /// Render only these frames, the first being 0, into the folder of frames, and make no film: a
+    /// part of a job that is shared.
     #[arg(long, value_name = "FIRST..LAST", value_parser = frames_only)]
     pub frames_only: Option<[usize; 2]>,
     /// Keep the folder of frames beside the film.
@@ -180,13 +188,15 @@ pub struct TraceArguments {
     /// The rays: a JSON file, or - for standard input.
     #[arg(long, value_name = "FILE")]
     pub rays: PathBuf,
-    /// Add leaves of one direction as fields, as light of the scene's wavelength and bandwidth does in the far field.
+    /// Add leaves of one direction as fields, as light of the scene's wavelength and bandwidth does
+    /// in the far field.
     #[arg(long)]
     pub coherent: bool,
     /// Give `group_path` for each leaf, too: the speed of light times what a pulse takes, cm.
     #[arg(long)]
     pub group_delay: bool,
-    /// Prune branches below this share of the launched power [default: the scene's, else 1e-9, with --coherent 1e-24].
+    /// Prune branches below this share of the launched power [default: the scene's, else 1e-9, with
+    /// --coherent 1e-24].
     #[arg(long, value_name = "P")]
     pub min_power: Option<f64>,
     /// How many threads work.

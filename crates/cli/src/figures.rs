@@ -56,7 +56,8 @@ fn make(
     Ok(())
 }
 
-/// A panel that has been written, for its sheet: what it shows, the colors of a map, and the metadata.
+/// A panel that has been written, for its sheet: what it shows, the colors of a map, and the
+/// metadata.
 type Shown = (RgbImage, Option<ColorBar>, Vec<(String, String)>);
 
 /// Renders a panel and writes it; a map is drawn.

@@ -10,12 +10,13 @@ pub static STOP: AtomicBool = AtomicBool::new(false);
 static BUSY: AtomicBool = AtomicBool::new(false);
 static FIRST: OnceLock<Instant> = OnceLock::new();
 
-/// Another one within this time is the same: programs like `timeout` ask a process, and then the group that it is in.
+/// Another one within this time is the same: programs like `timeout` ask a process, and then the
+/// group that it is in.
 const AT_ONCE: Duration = Duration::from_millis(500);
 
 /// Watches for Ctrl-C and for being asked to end. During work that looks at the flag, the first one
-/// stops it cleanly, and another one, for the impatient, ends the process at once; at any other time,
-/// as while input is awaited, the first one does.
+/// stops it cleanly, and another one, for the impatient, ends the process at once; at any other
+/// time, as while input is awaited, the first one does.
 pub fn watch() -> Result<()> {
     ctrlc::set_handler(|| {
         STOP.store(true, Ordering::SeqCst);

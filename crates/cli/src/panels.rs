@@ -30,8 +30,8 @@ pub fn write_png(image: &RgbImage, metadata: &[(String, String)], path: &Path) -
     Ok(())
 }
 
-/// Writes a drawing in all formats under one name without an ending, and says so; the PNG, which is given back, has so
-/// many pixels.
+/// Writes a drawing in all formats under one name without an ending, and says so; the PNG, which is
+/// given back, has so many pixels.
 pub fn write_drawing(
     drawing: &Drawing,
     title: &str,
@@ -49,7 +49,8 @@ pub fn write_drawing(
     Ok(image)
 }
 
-/// Adds a panel's metadata to that of its sheet: what differs from panel to panel, one after the other.
+/// Adds a panel's metadata to that of its sheet: what differs from panel to panel, one after the
+/// other.
 pub fn merge(sheet: &mut Vec<(String, String)>, panel: &[(String, String)]) {
     for (key, text) in panel {
         match sheet.iter_mut().find(|(known, _)| known == key) {

@@ -1,4 +1,5 @@
-//! Panics: a mistake in the program is one message like any other failure, and the same exit status.
+//! Panics: a mistake in the program is one message like any other failure, and the same exit
+//! status.
 
 use crate::report::{Failure, Result};
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind, set_hook};
@@ -7,8 +8,9 @@ use std::sync::{Mutex, PoisonError};
 /// What the last panic said, and where it was.
 static SAID: Mutex<Option<String>> = Mutex::new(None);
 
-/// Runs the work of the command. A panic in it, or in a thread whose end it waits for, becomes a failure; one that
-/// the work itself deals with, such as that of an image's decoder, is not heard of.
+/// Runs the work of the command. A panic in it, or in a thread whose end it waits for, becomes a
+/// failure; one that the work itself deals with, such as that of an image's decoder, is not heard
+/// of.
 ///
 /// With `RUST_BACKTRACE` every panic is told as it happens, too.
 pub fn caught(work: impl FnOnce() -> Result<()>) -> Result<()> {

@@ -1,11 +1,13 @@
-//! Long work: a bar with the remaining time on a terminal, silence when piped, and an end at Ctrl-C.
+//! Long work: a bar with the remaining time on a terminal, silence when piped, and an end at
+//! Ctrl-C.
 
 use crate::interruption::STOP;
 use cloakroom::render::Supervision;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 
-/// Does work that comes in `steps` steps; it gets their bar, on standard error, and what it is supervised by.
+/// Does work that comes in `steps` steps; it gets their bar, on standard error, and what it is
+/// supervised by.
 pub fn supervised<T>(
     steps: u64,
     what: &str,

@@ -93,7 +93,8 @@ fn text(table: &QualityTable) -> Result<String, std::fmt::Error> {
     Ok(text)
 }
 
-/// A number to four decimals, or to where two digits of its error end; in brackets the error in units of the last one.
+/// A number to four decimals, or to where two digits of its error end; in brackets the error in
+/// units of the last one.
 fn number(mean: f64, error: f64) -> String {
     if !mean.is_finite() {
         return "-".to_owned();

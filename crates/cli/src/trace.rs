@@ -1,4 +1,5 @@
-//! `cloakroom trace`: rays in, leaves out; `cloakroom interface`: two media in, modes and powers out.
+//! `cloakroom trace`: rays in, leaves out; `cloakroom interface`: two media in, modes and powers
+//! out.
 
 use crate::arguments::TraceArguments;
 use crate::interruption::{self, STOP};

@@ -1,5 +1,5 @@
-//! What the panels of a figure look at: panels that differ in nothing but the polarizer, or in that one of them shows a
-//! map, share their rays, which are traced once.
+//! What the panels of a figure look at: panels that differ in nothing but the polarizer, or in that
+//! one of them shows a map, share their rays, which are traced once.
 
 use crate::arguments::FiguresArguments;
 use crate::panels;
@@ -17,12 +17,13 @@ use std::collections::HashMap;
 pub struct Subject {
     pub panel: &'static Panel,
     pub loaded: Loaded,
-    /// Its scene without polarizer and with the figure's map: the same text for panels that share their rays. `None` if
-    /// it shares them with no other.
+    /// Its scene without polarizer and with the figure's map: the same text for panels that share
+    /// their rays. `None` if it shares them with no other.
     view: Option<Loaded>,
 }
 
-/// The panels of a figure, and the pictures of the views that they share, as far as they have been needed.
+/// The panels of a figure, and the pictures of the views that they share, as far as they have been
+/// needed.
 pub struct Views {
     pub subjects: Vec<Subject>,
     /// By the text of their scenes.

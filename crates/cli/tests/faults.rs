@@ -1,5 +1,6 @@
-//! What happens to others' machines: processes killed at any moment, folders that cannot be written, little memory,
-//! clocks that jump. No damaged file under a final name, and work begun again ends with the same bytes.
+//! What happens to others' machines: processes killed at any moment, folders that cannot be
+//! written, little memory, clocks that jump. No damaged file under a final name, and work begun
+//! again ends with the same bytes.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -62,8 +63,8 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// Kills a command after ever longer times, until it ends by itself; no file may ever be there in part. `clear` is
-/// what to remove before each try.
+/// Kills a command after ever longer times, until it ends by itself; no file may ever be there in
+/// part. `clear` is what to remove before each try.
 fn killed(arguments: &[&str], clear: bool) {
     let whole = desk();
     let start = Instant::now();
@@ -118,7 +119,8 @@ fn animate_killed_at_any_moment() {
 
 #[test]
 fn folders_that_cannot_be_written() {
-    // A folder of the system, where root can make no files either; nobody is kept from a folder of its own otherwise.
+    // A folder of the system, where root can make no files either; nobody is kept from a folder of
+    // its own otherwise.
     let folder = Path::new("/proc/self");
     let desk = desk();
     let scene = desk.path().join("scene.toml");
@@ -187,7 +189,8 @@ fn clocks_that_jump() {
     ];
     assert!(cloakroom(at, &arguments).status().unwrap().success());
     let made = files(&at.join("frames"));
-    // Frames from the future, a photograph from the past, and the other way round: the same film comes out.
+    // Frames from the future, a photograph from the past, and the other way round: the same film
+    // comes out.
     let day = Duration::from_secs(86_400);
     for (frames, photo) in [(day, Duration::ZERO), (Duration::ZERO, day)] {
         let set = |path: &Path, ahead: Duration| {

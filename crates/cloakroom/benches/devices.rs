@@ -1,9 +1,9 @@
-//! Rays through every device of the catalogue, one at a time, as `cloakroom trace` follows them; a new
-//! device, and each word that one of its keys takes, is here by itself.
+//! Rays through every device of the catalogue, one at a time, as `cloakroom trace` follows them; a
+//! new device, and each word that one of its keys takes, is here by itself.
 //!
-//! `cargo bench -p cloakroom --bench devices`; items are rays. What a device's error is for, `trace.tolerance`,
-//! is the default, 1e-6 cm; branches are followed down to the default share of the power, too. In `surfaces` items are
-//! what they meet.
+//! `cargo bench -p cloakroom --bench devices`; items are rays. What a device's error is for,
+//! `trace.tolerance`, is the default, 1e-6 cm; branches are followed down to the default share of
+//! the power, too. In `surfaces` items are what they meet.
 
 use cloakroom::assembly::Assembly;
 use cloakroom::device::{CATALOGUE, InnerRay, Region};
@@ -25,7 +25,8 @@ fn main() {
 /// Rays in one go.
 const RAYS: u32 = 256;
 
-/// The keys of kinds that are nothing without: a prism of glass, a ball of glass, hills of the index.
+/// The keys of kinds that are nothing without: a prism of glass, a ball of glass, hills of the
+/// index.
 const NEEDED: [(&str, &str); 3] = [
     (
         "graded",
@@ -73,8 +74,8 @@ fn limits(scene: &Scene) -> Limits {
     Limits { min_power: scene.trace.min_power.value, tolerance: scene.trace.tolerance }
 }
 
-/// Rays of a camera 100 cm before the device, or above the floor of a carpet, in blocks of 2 x 2 neighbours
-/// over a square 16 cm wide, with two polarizations.
+/// Rays of a camera 100 cm before the device, or above the floor of a carpet, in blocks of 2 x 2
+/// neighbours over a square 16 cm wide, with two polarizations.
 fn launches(name: &str) -> Vec<Launch<2>> {
     let (origin, middle) = if name.contains("carpet") {
         (DVec3::new(-70.0, 70.0, 0.0), 9.0)
@@ -117,7 +118,8 @@ impl PathRecorder<2> for Surfaces {
     }
 }
 
-/// The same by surfaces: an item is a segment of a branch with the interface at its end, two events.
+/// The same by surfaces: an item is a segment of a branch with the interface at its end, two
+/// events.
 #[divan::bench(args = devices())]
 fn surfaces(bencher: Bencher, name: &str) {
     let scene = scene(name);

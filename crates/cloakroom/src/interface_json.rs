@@ -30,17 +30,19 @@ pub struct InterfaceReport {
     pub reflected: [ModeReport; 2],
     /// The two modes beyond; none in metal.
     pub transmitted: Vec<ModeReport>,
-    /// Rows are the outgoing modes (reflected 1, 2, transmitted 1, 2; the first two at metal), columns
-    /// the incident ones: each the share of the incident normal flux. `null` for evanescent
+    /// Rows are the outgoing modes (reflected 1, 2, transmitted 1, 2; the first two at metal),
+    /// columns the incident ones: each the share of the incident normal flux. `null` for evanescent
     /// incident modes, 0 for evanescent outgoing ones.
     pub power: Vec<[Option<f64>; 2]>,
-    /// The amplitudes of the outgoing modes for an incident mode of amplitude 1, by the same rows and columns, each as
-    /// [re, im]: with the modes' own fields, those at the interface. Evanescent modes have theirs.
+    /// The amplitudes of the outgoing modes for an incident mode of amplitude 1, by the same rows
+    /// and columns, each as [re, im]: with the modes' own fields, those at the interface.
+    /// Evanescent modes have theirs.
     pub amplitudes: Vec<[[f64; 2]; 2]>,
     /// The same for fields of unit size, in s and p; `null` where a medium is not isotropic.
     pub jones: Option<JonesReport>,
-    /// The share of the normal flux that is reflected, for each incident mode: the sum of its rows and, in a medium that
-    /// absorbs, what the two modes carry together beyond what each carries alone.
+    /// The share of the normal flux that is reflected, for each incident mode: the sum of its rows
+    /// and, in a medium that absorbs, what the two modes carry together beyond what each carries
+    /// alone.
     pub total_reflected: [Option<f64>; 2],
     /// The same of what is transmitted.
     pub total_transmitted: [Option<f64>; 2],
@@ -49,8 +51,9 @@ pub struct InterfaceReport {
 /// Two rows of complex numbers, each as [re, im].
 pub type ComplexMatrix = [[[f64; 2]; 2]; 2];
 
-/// What an interface of isotropic media makes of electric fields of unit size, see [`JonesMatrices`]: rows s and p of the
-/// wave that leaves, columns s and p of the wave that comes, each number as [re, im].
+/// What an interface of isotropic media makes of electric fields of unit size, see
+/// [`JonesMatrices`]: rows s and p of the wave that leaves, columns s and p of the wave that comes,
+/// each number as [re, im].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct JonesReport {
     /// Of the wave that is reflected.
@@ -104,8 +107,8 @@ impl InterfaceRequest {
     ///
     /// # Errors
     ///
-    /// If double precision does not reach: principal values that differ by many powers of ten, and a long tangential
-    /// wave vector.
+    /// If double precision does not reach: principal values that differ by many powers of ten, and
+    /// a long tangential wave vector.
     pub fn solve(&self) -> Result<InterfaceReport, InterfaceError> {
         let Self { incident, transmitted, normal, tangential } = self;
         let scattering = Scattering::new(incident, transmitted.as_ref(), *tangential, *normal);

@@ -1,7 +1,8 @@
 //! How much memory is free.
 
-/// Memory that this process can take without swapping, in bytes: what the system has, what is left of its control group
-/// (a container, a job of a cluster), and of its own limit (`ulimit -v`); `None` where the system does not say.
+/// Memory that this process can take without swapping, in bytes: what the system has, what is left
+/// of its control group (a container, a job of a cluster), and of its own limit (`ulimit -v`);
+/// `None` where the system does not say.
 #[must_use]
 pub fn available() -> Option<u64> {
     of_what_is_read(&|path| std::fs::read_to_string(path).ok())
@@ -33,7 +34,8 @@ fn of_what_is_read(read: &dyn Fn(&str) -> Option<String>) -> Option<u64> {
     [system, of_group(read), of_process(read)].into_iter().flatten().min()
 }
 
-/// What is left of the control group's limit; the files of the second version, or else of the first.
+/// What is left of the control group's limit; the files of the second version, or else of the
+/// first.
 fn of_group(read: &dyn Fn(&str) -> Option<String>) -> Option<u64> {
     let groups = read("/proc/self/cgroup")?;
     let path = |controller: &str| {
@@ -41,7 +43,8 @@ fn of_group(read: &dyn Fn(&str) -> Option<String>) -> Option<u64> {
         Some(line.splitn(3, ':').nth(2)?.trim_end_matches('/').to_owned())
     };
     let version = |root: &str, controller: &str, [limit, used, cache]: [&str; 3]| {
-        // In a container its own group is the root, though it may be called by the name it has outside.
+        // In a container its own group is the root, though it may be called by the name it has
+        // outside.
         let folders = [path(controller)?, String::new()];
         folders.iter().find_map(|folder| {
             let file = |name: &str| read(&format!("{root}{folder}/{name}"));
@@ -66,7 +69,8 @@ fn of_process(read: &dyn Fn(&str) -> Option<String>) -> Option<u64> {
     Some(limit.saturating_sub(taken))
 }
 
-/// The number after a name at the beginning of a line; `None` where there is none, as in `unlimited`.
+/// The number after a name at the beginning of a line; `None` where there is none, as in
+/// `unlimited`.
 fn field(text: &str, name: &str) -> Option<u64> {
     let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
     rest.split_whitespace().next()?.parse().ok()

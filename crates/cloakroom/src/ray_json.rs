@@ -59,8 +59,8 @@ pub struct LeafReport {
     pub power: f64,
     /// Optical path length from the origin to `position`, cm; 0 if it met no device.
     pub optical_path: f64,
-    /// The speed of light times what a pulse takes from the origin to `position`, cm, if it was asked for; NaN, written as
-    /// null, where it is not known.
+    /// The speed of light times what a pulse takes from the origin to `position`, cm, if it was
+    /// asked for; NaN, written as null, where it is not known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub group_path: Option<f64>,
     /// Its electric field, each component as [re, im]; |E|² = power.
@@ -96,8 +96,8 @@ impl RayRequest {
     ///
     /// # Errors
     ///
-    /// A sentence if a number is not finite, the direction or the field vanishes, or the field is not
-    /// transverse.
+    /// A sentence if a number is not finite, the direction or the field vanishes, or the field is
+    /// not transverse.
     pub fn launch(&self) -> Result<Launch<1>, String> {
         let origin = DVec3::from_array(self.origin);
         let direction = DVec3::from_array(self.direction);
@@ -144,8 +144,8 @@ fn transverse(components: [[f64; 2]; 3], direction: DVec3) -> Result<ComplexVect
 ///
 /// # Errors
 ///
-/// If a ray makes no sense or starts in metal or an opaque body (the first such one is named), there is not enough memory for the
-/// leaves, or the work was stopped.
+/// If a ray makes no sense or starts in metal or an opaque body (the first such one is named),
+/// there is not enough memory for the leaves, or the work was stopped.
 pub fn leaf_table(
     assembly: &Assembly,
     settings: impl Into<RaySettings>,

@@ -51,11 +51,11 @@ pub enum TimelineError {
 }
 
 impl Timeline {
-    /// Reads sweeps: `KEY=START..END`, with points on the way if there are more, spread evenly over `frames`
-    /// frames; or `KEY=START..END:STEP` or `KEY=VALUE,VALUE,...`, a frame for each value.
+    /// Reads sweeps: `KEY=START..END`, with points on the way if there are more, spread evenly over
+    /// `frames` frames; or `KEY=START..END:STEP` or `KEY=VALUE,VALUE,...`, a frame for each value.
     ///
-    /// Both ends are among the frames, but a `rotation` over whole turns leaves out its end: it is its beginning,
-    /// and the film goes round without a stop.
+    /// Both ends are among the frames, but a `rotation` over whole turns leaves out its end: it is
+    /// its beginning, and the film goes round without a stop.
     ///
     /// # Errors
     ///
@@ -101,7 +101,8 @@ impl Timeline {
     }
 }
 
-/// The key and the points of a sweep written as a way, `KEY=POINT..POINT`; `None` if it is written otherwise.
+/// The key and the points of a sweep written as a way, `KEY=POINT..POINT`; `None` if it is written
+/// otherwise.
 fn way(text: &str) -> Result<Option<(String, Vec<f64>)>, TimelineError> {
     let Some((key, values)) = text.split_once('=') else { return Ok(None) };
     if !values.contains("..") || values.contains([':', ',', '"', '\'', '[']) {

@@ -1,4 +1,5 @@
-//! Scenes in any pose: turned as a whole they look the same, and what stands across others works as it does alone.
+//! Scenes in any pose: turned as a whole they look the same, and what stands across others works as
+//! it does alone.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::pictures::picture;
@@ -94,7 +95,8 @@ fn a_scene_that_is_turned_as_a_whole_looks_the_same() {
                 (a - b).abs() < 1e-4 * (1.0 + a.abs()) || a.is_nan() == b.is_nan() && a.is_nan()
             };
             let off = a.iter().zip(b).filter(|(a, b)| !same(**a, **b)).count();
-            // Rays that meet an edge, or a seam of the filter's blocks, may fall on either side of it.
+            // Rays that meet an edge, or a seam of the filter's blocks, may fall on either side of
+            // it.
             assert!(off * 200 < pixels, "{number} {}: {off} of {pixels} pixels", one.name);
         }
     }
@@ -202,7 +204,8 @@ fn light_leaves_a_tilted_box_parallel_to_itself_and_beside_itself() {
 fn tilted_devices_that_are_in_each_others_way_are_found() {
     let cloak = |more: &str| format!("[[device]]\nkind = \"square-cloak\"\n{more}\n");
     let first = cloak("position = [-12, 0, 0]");
-    // The diagonal of a square cloak is 19.94 cm: 24 cm apart they are free of each other, 18 cm apart not.
+    // The diagonal of a square cloak is 19.94 cm: 24 cm apart they are free of each other, 18 cm
+    // apart not.
     let second = |x: f64| cloak(&format!("position = [{x:?}, 0, 0]\naxis = [0, 1, 0]"));
     assembly(&(first.clone() + &second(12.0)));
     let message = refusal(&(first + &second(6.0)));

@@ -70,7 +70,8 @@ fn powers_add_up_at_any_threshold() {
 
 #[test]
 fn trapped_vertical_light_leaves_design_ii_after_a_few_bounces() {
-    // Derived by hand from the interfaces: in the centre plane 88.6 % leaves in one path, at -2.14 or 92.14 degrees.
+    // Derived by hand from the interfaces: in the centre plane 88.6 % leaves in one path, at -2.14
+    // or 92.14 degrees.
     let assembly = assembly("negative");
     let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-6, tolerance: 1e-6 });
     for y in [2.0, 4.0, 6.0, 8.0] {
@@ -83,8 +84,8 @@ fn trapped_vertical_light_leaves_design_ii_after_a_few_bounces() {
     }
 }
 
-/// Two leaves of one tree that run on one line and are on time with each other. Mirrored paths ("transmit,
-/// reflect" and "reflect, transmit" at the seam) do so.
+/// Two leaves of one tree that run on one line and are on time with each other. Mirrored paths
+/// ("transmit, reflect" and "reflect, transmit" at the seam) do so.
 fn coincide<const N: usize>(a: &Leaf<N>, b: &Leaf<N>) -> bool {
     let apart = b.position - a.position;
     let along = apart.dot(a.direction);
@@ -105,9 +106,10 @@ fn largest_difference(mut a: Vec<f64>, mut b: Vec<f64>) -> f64 {
 
 #[test]
 fn paths_reversed_carry_the_same_power() {
-    // For symmetric tensors the transpose of a path's Jones matrix is that of the reversed path. So a field e
-    // sent back along a line returns in the launched polarization h, on each of the paths T_k on that
-    // line, with the power |h·T_kᵀ e|² = |e·T_k h|²: a list that the leaves T_k h tell beforehand.
+    // For symmetric tensors the transpose of a path's Jones matrix is that of the reversed path. So
+    // a field e sent back along a line returns in the launched polarization h, on each of the paths
+    // T_k on that line, with the power |h·T_kᵀ e|² = |e·T_k h|²: a list that the leaves T_k h tell
+    // beforehand.
     for material in ["positive", "negative"] {
         let assembly = assembly(material);
         let limits = Limits { min_power: 1e-10, tolerance: 1e-8 };
@@ -169,8 +171,8 @@ fn paths_reversed_carry_the_same_power() {
     }
 }
 
-/// Where a ray leaves the ideal prism that the extraordinary wave of designs (i) and (ii) sees in virtual
-/// space: the square, with |P|² = 1 - g p_z² in its plane, and the strip mirror in it.
+/// Where a ray leaves the ideal prism that the extraordinary wave of designs (i) and (ii) sees in
+/// virtual space: the square, with |P|² = 1 - g p_z² in its plane, and the strip mirror in it.
 struct Exit {
     position: DVec3,
     direction: DVec3,
@@ -189,7 +191,8 @@ fn through_prism(origin: DVec3, direction: DVec3, g: f64) -> Option<Exit> {
         (t > 1e-9 && (0.0..=1.0).contains(&u)).then_some(t)
     };
     let pz = direction.z;
-    // Wave vector in the plane after refraction into or out of the prism: the part along the face stays.
+    // Wave vector in the plane after refraction into or out of the prism: the part along the face
+    // stays.
     let refracted = |p: DVec2, n: DVec2, square: f64| {
         let along = p - n * p.dot(n);
         let rest = square - along.length_squared();
@@ -271,8 +274,8 @@ fn extraordinary_light_sees_an_ideal_prism_in_virtual_space() {
 
 #[test]
 fn design_ii_sends_little_horizontal_light_back() {
-    // At an azimuth of 20 degrees, over all heights: 2.2 % on average, 3.2 % at most, counting what the
-    // first face sends straight up or down.
+    // At an azimuth of 20 degrees, over all heights: 2.2 % on average, 3.2 % at most, counting what
+    // the first face sends straight up or down.
     let assembly = assembly("negative");
     let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-7, tolerance: 1e-6 });
     let (mut sum, mut most, mut count) = (0.0, 0.0f64, 0.0);

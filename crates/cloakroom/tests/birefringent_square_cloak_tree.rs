@@ -1,5 +1,5 @@
-//! The ray trees of designs (i)-(iii), leaf by leaf, against a plain tracer that shares no code with the
-//! program's: see `plain_tree`.
+//! The ray trees of designs (i)-(iii), leaf by leaf, against a plain tracer that shares no code
+//! with the program's: see `plain_tree`.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

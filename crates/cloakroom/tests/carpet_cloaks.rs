@@ -1,5 +1,6 @@
-//! The carpet cloaks against a slow integration of the equation of motion in physical space, with Snell's law
-//! at the border and the law of reflection at the metal; and against the flat mirror that they imitate.
+//! The carpet cloaks against a slow integration of the equation of motion in physical space, with
+//! Snell's law at the border and the law of reflection at the metal; and against the flat mirror
+//! that they imitate.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::equation_of_motion::{Expected, GradedHalf, gaussian, refract};
@@ -40,8 +41,8 @@ fn carpets() -> [(&'static str, GradedHalf); 3] {
     ]
 }
 
-/// What becomes of the strongest branch of a ray in the device's frame; None for rays that miss the top
-/// and the sides or come too near to grazing incidence, to a critical angle, or to an edge.
+/// What becomes of the strongest branch of a ray in the device's frame; None for rays that miss the
+/// top and the sides or come too near to grazing incidence, to a critical angle, or to an edge.
 fn reference(carpet: &GradedHalf, origin: DVec3, direction: DVec3) -> Option<Expected> {
     let a = carpet.half_width;
     let through_top = (HEIGHT - origin.y) / direction.y;
@@ -116,7 +117,8 @@ fn rays_agree_with_the_equation_of_motion() {
     }
 }
 
-/// How far a ray in the plane z = 0 comes off a flat mirror on y = 0: beside it (cm), and by which angle.
+/// How far a ray in the plane z = 0 comes off a flat mirror on y = 0: beside it (cm), and by which
+/// angle.
 fn off_flat_mirror(assembly: &Assembly, origin: DVec3, direction: DVec3) -> [f64; 2] {
     let mut tracer = Tracer::new(assembly, Limits { min_power: 1e-2, tolerance: 1e-6 });
     let leaf = strongest(tracer.trace(&launch(origin, direction)).0);

@@ -1,4 +1,5 @@
-//! Leaves that add as fields: films, plates, wave plates and polarizers against the 4 x 4 transfer matrix.
+//! Leaves that add as fields: films, plates, wave plates and polarizers against the 4 x 4 transfer
+//! matrix.
 
 use crate::long::count;
 use crate::rays::{Numbers, assembly, launch};
@@ -31,7 +32,8 @@ pub fn slabs(layers: &[Layer]) -> String {
     slabs.collect()
 }
 
-/// The same where every other layer, with the first, is of one medium: a slab of it, and those between in it.
+/// The same where every other layer, with the first, is of one medium: a slab of it, and those
+/// between in it.
 fn nested(layers: &[Layer]) -> String {
     let thickness = layers.iter().map(|layer| layer.thickness).sum::<f64>();
     let mut scene = slab(&Layer { thickness, ..layers[0] }, 0.5 * thickness);

@@ -1,5 +1,6 @@
-//! The files of `conformance/`: what Maxwell's and Hamilton's equations, solved by a program that shares no code with the
-//! tracer, say must come out does, within the tolerances that stand in the files.
+//! The files of `conformance/`: what Maxwell's and Hamilton's equations, solved by a program that
+//! shares no code with the tracer, say must come out does, within the tolerances that stand in the
+//! files.
 
 use cloakroom::interface_json::InterfaceRequest;
 use cloakroom::ray_json::{LeafReport, RayReport, RayRequest, trace_rays};

@@ -1,5 +1,5 @@
-//! One suite that every device of the catalogue must pass, whatever it is: the account of the power,
-//! the way back, no numbers that are none, and its bare and mirror views.
+//! One suite that every device of the catalogue must pass, whatever it is: the account of the
+//! power, the way back, no numbers that are none, and its bare and mirror views.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::long::count;
@@ -12,7 +12,8 @@ use cloakroom::scene::{DeviceSettings, Scene};
 use cloakroom::trace::{Launch, Limits, Tracer};
 use glam::DVec3;
 
-/// What a kind needs to be something: its tables or media, of indices so low that boxes cannot trap light.
+/// What a kind needs to be something: its tables or media, of indices so low that boxes cannot trap
+/// light.
 const MORE: &[(&str, &str)] = &[
     (
         "prisms",
@@ -54,8 +55,8 @@ const OPEN_CORES: &[(&str, &str)] = &[
     ("graded", ""),
 ];
 
-/// Every device in every view, endless and short, at a few rotations and places, in each of the words
-/// that its keys take, with a description.
+/// Every device in every view, endless and short, at a few rotations and places, in each of the
+/// words that its keys take, with a description.
 fn benches() -> Vec<(String, Assembly)> {
     let mut benches = Vec::new();
     for entry in CATALOGUE {
@@ -119,7 +120,8 @@ fn launches(count: u32) -> impl Iterator<Item = Launch<2>> {
     launches_around(count, [80.0, 60.0], DVec3::new(30.0, 24.0, 30.0))
 }
 
-/// Whether a ray starts in air: one that starts in a slab that absorbs and runs along it never comes out.
+/// Whether a ray starts in air: one that starts in a slab that absorbs and runs along it never
+/// comes out.
 fn starts_in_air(assembly: &Assembly, launch: &Launch<2>) -> bool {
     assembly.region_around(launch.origin, launch.direction) == Ok(None)
 }
@@ -128,8 +130,8 @@ fn is_birefringent(device: &str) -> bool {
     device.contains("uniaxial")
 }
 
-/// Whether light may be trapped for good: between the ends of a birefringent prism, and in an open core of which
-/// one of two polarizations finds no way out.
+/// Whether light may be trapped for good: between the ends of a birefringent prism, and in an open
+/// core of which one of two polarizations finds no way out.
 fn may_trap_light(device: &str) -> bool {
     is_birefringent(device)
         && if device.contains("square-cloak") {

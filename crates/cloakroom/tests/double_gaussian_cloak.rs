@@ -1,5 +1,5 @@
-//! Design (iv) against a slow integration of the paper's own equation of motion in physical space, with
-//! Snell's law at the cut and the law of reflection at the metal.
+//! Design (iv) against a slow integration of the paper's own equation of motion in physical space,
+//! with Snell's law at the cut and the law of reflection at the metal.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::equation_of_motion::{Expected, GradedHalf, gaussian, refract};
@@ -15,8 +15,8 @@ const CUT: [f64; 2] = [25.0, 28.57];
 /// Speed of light, cm/ns.
 const C: f64 = 29.979_245_8;
 
-/// Follows the strongest branch of a ray in the device's frame; None for rays that miss the device or
-/// come too near to grazing incidence, to a critical angle, or to an edge.
+/// Follows the strongest branch of a ray in the device's frame; None for rays that miss the device
+/// or come too near to grazing incidence, to a critical angle, or to an edge.
 fn reference(upper: &GradedHalf, origin: DVec3, direction: DVec3) -> Option<Expected> {
     // Into the rectangle: the last of the planes it must cross.
     let mut entry: Option<(f64, DVec3)> = None;
@@ -158,15 +158,16 @@ fn first_reflection(assembly: &Assembly, direction: DVec3) -> [f64; 2] {
 
 #[test]
 fn the_front_face_reflects_little() {
-    // Fresnel's formulas with the index at the cut: up to 0.06 % near the middle, 0.12 % a polarization
-    // up to a rotation of 20 degrees.
+    // Fresnel's formulas with the index at the cut: up to 0.06 % near the middle, 0.12 % a
+    // polarization up to a rotation of 20 degrees.
     for rotation in [0, 5, 10, 20] {
         let assembly = assembly(&format!("rotation = {rotation}"));
         let (mut largest, mut middle): (f64, f64) = (0.0, 0.0);
         for n in 1..=count(600, 3000) {
             let direction =
                 DVec3::new(1.0, 0.54 * (spread(n, 0) - 0.5), 0.72 * (spread(n, 1) - 0.5));
-            // The front face alone, not the sides that the turned box shows, nor the metal's blunt ends.
+            // The front face alone, not the sides that the turned box shows, nor the metal's blunt
+            // ends.
             let [h, v] = first_reflection(&assembly, direction);
             let turn = DMat3::from_rotation_z(-f64::from(rotation).to_radians());
             let (eye, d) = (turn * DVec3::new(-100.0, 0.0, 0.0), turn * direction);

@@ -1,12 +1,12 @@
-//! The optional channels about the first surface that a camera ray meets, against the checked numbers of
-//! the square cloak's designs (i) and (ii).
+//! The optional channels about the first surface that a camera ray meets, against the checked
+//! numbers of the square cloak's designs (i) and (ii).
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::pictures::picture;
 use cloakroom::output::Picture;
 
-/// One pixel, seen at a horizontal angle (degrees) to the line of sight: its share in the extraordinary
-/// wave and its first-face reflectance.
+/// One pixel, seen at a horizontal angle (degrees) to the line of sight: its share in the
+/// extraordinary wave and its first-face reflectance.
 fn first_face(device: &str, azimuth: f64, polarizer: &str) -> [f64; 2] {
     let picture = seen(device, azimuth, polarizer);
     ["extraordinary_share", "first_face_reflectance"].map(|name| {
@@ -35,7 +35,8 @@ fn cloak(material: &str) -> String {
 
 #[test]
 fn designs_i_and_ii_reflect_and_split_as_checked() {
-    // In percent, to the digits given, at 0, 5, 10, 15, 20 degrees: reflectance H and V, ordinary share of H.
+    // In percent, to the digits given, at 0, 5, 10, 15, 20 degrees: reflectance H and V, ordinary
+    // share of H.
     let expected = [
         (
             "positive-uniaxial",

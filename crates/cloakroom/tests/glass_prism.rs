@@ -1,5 +1,6 @@
-//! Stokes parameters against the Fresnel formulas of textbooks, worked forwards by hand: a glass prism
-//! that polarizes by refraction and retards by total reflection, a face at Brewster's angle, and metal.
+//! Stokes parameters against the Fresnel formulas of textbooks, worked forwards by hand: a glass
+//! prism that polarizes by refraction and retards by total reflection, a face at Brewster's angle,
+//! and metal.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use cloakroom::assembly::{Assembly, Placed};
@@ -55,8 +56,8 @@ fn stokes(leaf: &Leaf<2>) -> [f64; 4] {
     arriving_stokes(leaf.electric[0], leaf.electric[1])
 }
 
-/// Light on its way by the textbook: its direction and its field, whose square times index and cosine
-/// is the flux.
+/// Light on its way by the textbook: its direction and its field, whose square times index and
+/// cosine is the flux.
 struct Light {
     direction: DVec3,
     field: [Complex64; 3],
@@ -70,8 +71,8 @@ impl Light {
         self.field[0] * axis.x + self.field[1] * axis.y + self.field[2] * axis.z
     }
 
-    /// Refraction, or reflection, at a face with its normal along the light, between indices `from` and
-    /// `to`. Fields go as exp(-iωt); p is along k × s before and after (Born & Wolf, 1.5.2).
+    /// Refraction, or reflection, at a face with its normal along the light, between indices `from`
+    /// and `to`. Fields go as exp(-iωt); p is along k × s before and after (Born & Wolf, 1.5.2).
     fn meet(&mut self, normal: DVec3, from: f64, to: f64, reflected: bool) {
         let k = self.direction;
         let cos_i = k.dot(normal);
@@ -105,7 +106,8 @@ fn a_prism_polarizes_and_retards_as_textbooks_say() {
     for (y, z) in [(0.1, 0.5), (-0.2, 0.7), (0.15, -0.9), (-0.1, -0.4), (0.0, 1.1)] {
         let direction = DVec3::new(1.0, y, z).normalize();
         let (launch, leaf) = strongest(&assembly, DVec3::new(0.0, 5.0, 0.0), direction);
-        // Forwards: in by the leg along x, totally reflected by the hypotenuse, out by the other leg.
+        // Forwards: in by the leg along x, totally reflected by the hypotenuse, out by the other
+        // leg.
         let mut sums = [0.0; 4];
         let entering = -leaf.direction;
         let first = entering.any_orthonormal_vector();
@@ -148,7 +150,8 @@ fn glass_at_brewsters_angle_polarizes_along_its_face() {
     let normal = DVec3::new(1.0, 1.0, 0.0).normalize();
     let brewster = INDEX.atan();
     for turn in [0.0f64, 20.0, 50.0, -35.0, -70.0] {
-        // Onto the hypotenuse from outside; `across` is where the plane of incidence meets the face.
+        // Onto the hypotenuse from outside; `across` is where the plane of incidence meets the
+        // face.
         let in_plane = DVec3::new(1.0, -1.0, 0.0).normalize();
         let (sin, cos) = turn.to_radians().sin_cos();
         let across = in_plane * cos + DVec3::Z * sin;

@@ -37,8 +37,8 @@ fn leaf(text: &str, origin: DVec3, direction: DVec3) -> Leaf<2> {
     strongest(leaves)
 }
 
-/// Maxwell's fish-eye as a rod: n = 2/(1 + r²/R²) is 1 at the border, and in the plane across a ray leaves at the point
-/// opposite to where it has come in, with the optical path πR.
+/// Maxwell's fish-eye as a rod: n = 2/(1 + r²/R²) is 1 at the border, and in the plane across a ray
+/// leaves at the point opposite to where it has come in, with the optical path πR.
 fn fisheye_off(steps: usize) -> f64 {
     const R: f64 = 10.0;
     let index = |p: DVec2| 2.0 / (1.0 + p.length_squared() / (R * R));

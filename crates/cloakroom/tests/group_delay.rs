@@ -1,4 +1,5 @@
-//! What a pulse takes: never less than light in air, by numbers known, and as the phase where nothing disperses.
+//! What a pulse takes: never less than light in air, by numbers known, and as the phase where
+//! nothing disperses.
 
 use crate::long::count;
 use crate::rays::{assembly, launch, launches_around};

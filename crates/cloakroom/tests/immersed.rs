@@ -64,7 +64,8 @@ fn a_block_of_nothing_around_a_device_changes_nothing() {
 
 #[test]
 fn a_pane_with_air_in_it_is_two_panes() {
-    // Light that goes to and fro in one of them comes to the air again and again, which it has left.
+    // Light that goes to and fro in one of them comes to the air again and again, which it has
+    // left.
     let slab = |rotation: f64, middle: f64, keys: &str| {
         let DVec2 { x, y } = DVec2::from_angle(rotation.to_radians()) * middle;
         format!(
@@ -106,8 +107,9 @@ fn a_pane_with_air_in_it_is_two_panes() {
 
 #[test]
 fn in_a_matched_block_a_perfect_cloak_changes_nothing_but_the_path() {
-    // The block is matched, so that it reflects nothing; the sphere cloak in it is that of air, and bends. A cloak of the
-    // block's own medium would not: a prism device of the block's tensor times the cloak's is the square cloak in it.
+    // The block is matched, so that it reflects nothing; the sphere cloak in it is that of air, and
+    // bends. A cloak of the block's own medium would not: a prism device of the block's tensor
+    // times the cloak's is the square cloak in it.
     let block = "[[device]]\nkind = \"body\"\nshape = \"box\"\nsize = [60, 60, 60]\npermittivity = 2\npermeability = 2\n";
     let (empty, full) =
         (assembly(block), assembly(&(block.to_owned() + &scaled_square_cloak(2.0))));
@@ -123,7 +125,8 @@ fn in_a_matched_block_a_perfect_cloak_changes_nothing_but_the_path() {
     }
 }
 
-/// The segments of the square cloak with both tensors times a number, as prisms: the cloak of a medium of that ε = µ.
+/// The segments of the square cloak with both tensors times a number, as prisms: the cloak of a
+/// medium of that ε = µ.
 fn scaled_square_cloak(factor: f64) -> String {
     use cloakroom::device::Region;
     let cloak = assembly("[[device]]\nkind = \"square-cloak\"\n");
@@ -295,7 +298,8 @@ fn light_goes_into_a_carpet_in_glass_and_out_by_the_equation_of_motion() {
         let Some(in_carpet) = refract(in_glass, DVec3::NEG_Y, index) else { continue };
         let path = 40.0 + INDEX * entry.distance(top);
         let Some(out) = carpet.out(top, in_carpet, path) else { continue };
-        // Out of the glass by its nearest face; not again onto the floor, or out of the ends of the carpet.
+        // Out of the glass by its nearest face; not again onto the floor, or out of the ends of the
+        // carpet.
         let faces = DVec3::select(out.direction.cmpgt(DVec3::ZERO), high, low);
         let ways = (faces - out.position) / out.direction;
         let way = ways.min_element();
@@ -317,7 +321,8 @@ fn light_goes_into_a_carpet_in_glass_and_out_by_the_equation_of_motion() {
         };
         let nearest = leaves.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
         assert!(off(nearest) < 1e-7, "{:e} {ray:?} {nearest:?} {out:?}", off(nearest));
-        // Through each of four borders goes what Fresnel's equations say of s or of p, or what is between.
+        // Through each of four borders goes what Fresnel's equations say of s or of p, or what is
+        // between.
         let through = |before: DVec3, beyond: DVec3, normal: DVec3| {
             fresnel(before.dot(normal), beyond.dot(normal), before.length(), beyond.length())
         };

@@ -106,7 +106,8 @@ fn no_imperfection_is_the_ideal_device() {
 
 #[test]
 fn loss_takes_what_beer_and_lambert_say() {
-    // Through a slab of an impedance-matched medium straight: exp(-k0 n tan d L) for eps, and again for mu.
+    // Through a slab of an impedance-matched medium straight: exp(-k0 n tan d L) for eps, and again
+    // for mu.
     let scene = "[light]\nwavelength_nm = 1000\n[[device]]\nkind = \"body\"\nshape = \"slab\"\nthickness = 4\n\
                  permittivity = 1.5\npermeability = 1.5\nimperfection = { loss_tangent = 2e-6 }\n";
     let assembly = assembly(scene);
@@ -137,7 +138,8 @@ fn bad_imperfections_are_refused_at_their_place() {
     );
 }
 
-/// How far beside where the ideal cloak sends them the strongest leaves run, the median of those that differ, cm.
+/// How far beside where the ideal cloak sends them the strongest leaves run, the median of those
+/// that differ, cm.
 fn displaced(kind: &str, imperfection: &str) -> f64 {
     let scene = format!("[[device]]\nkind = \"{kind}\"\n");
     let made = assembly(&format!("{scene}imperfection = {{ {imperfection} }}\n"));
@@ -158,7 +160,8 @@ fn displaced(kind: &str, imperfection: &str) -> f64 {
 
 #[test]
 fn what_the_process_can_make_anyway_stays() {
-    // The index lies between 0.873 and 1.918: the range does nothing, and all that is left is the integrator's error.
+    // The index lies between 0.873 and 1.918: the range does nothing, and all that is left is the
+    // integrator's error.
     let off = displaced("double-gaussian-cloak", "minimum = 0.8, maximum = 2.0");
     assert!(off > 0.0 && off < 1e-6, "{off:e}");
 }

@@ -1,5 +1,5 @@
-//! The detour of plane mirrors against what plane mirrors do: what meets all four of its mirrors is moved
-//! by twice the offset against its way along x, and late by as much.
+//! The detour of plane mirrors against what plane mirrors do: what meets all four of its mirrors is
+//! moved by twice the offset against its way along x, and late by as much.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use cloakroom::assembly::Assembly;
@@ -31,8 +31,8 @@ fn leaf(assembly: &Assembly, origin: DVec3, direction: DVec3) -> Leaf<2> {
     leaves[0]
 }
 
-/// The mirror images of a ray in the mirrors it is said to meet, in that order: the point on its way where
-/// it meets each must lie on the mirror.
+/// The mirror images of a ray in the mirrors it is said to meet, in that order: the point on its
+/// way where it meets each must lie on the mirror.
 fn by_mirror_images(
     origin: DVec3,
     direction: DVec3,

@@ -116,8 +116,8 @@ fn light_in_a_perfect_cloak_stays_there() {
     }
 }
 
-/// The ordinary wave of the cylinder with a radial optic axis comes to the core, and through it: straight
-/// rays of index k, for E along z in the plane.
+/// The ordinary wave of the cylinder with a radial optic axis comes to the core, and through it:
+/// straight rays of index k, for E along z in the plane.
 #[test]
 fn the_ordinary_wave_of_a_radial_axis_passes_the_core() {
     let (a, b): (f64, f64) = (4.0, 10.0);
@@ -155,8 +155,8 @@ fn upper_half() -> GradedHalf {
     GradedHalf::new(gaussian(LENS[0], LENS[1]), 1.0, [25.0, 28.57], 0.02)
 }
 
-/// Where a ray in the core meets the border, by plain bisection; the point of the upper half, and the sign of
-/// the half.
+/// Where a ray in the core meets the border, by plain bisection; the point of the upper half, and
+/// the sign of the half.
 fn to_border(half: &GradedHalf, ray: &Launch<2>) -> Option<(f64, DVec3, f64)> {
     let at = |t: f64| ray.origin + ray.direction * t;
     let outside = |t: f64| {

@@ -1,5 +1,5 @@
-//! Images on opaque bodies, seen by an orthographic camera: each face gives the image back, and the round ones
-//! show it where the map says.
+//! Images on opaque bodies, seen by an orthographic camera: each face gives the image back, and the
+//! round ones show it where the map says.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::pictures::picture_in;
@@ -22,7 +22,8 @@ fn light_of(code: u8) -> f64 {
     decode(f64::from(code) / 255.0)
 }
 
-/// A folder with the image of blocks and one whose red is the column and whose green is the row, of 256.
+/// A folder with the image of blocks and one whose red is the column and whose green is the row, of
+/// 256.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let blocks = RgbImage::from_fn(BLOCK * BLOCKS[0], BLOCK * BLOCKS[1], |x, y| {
@@ -152,7 +153,8 @@ fn round_bodies_show_it_where_the_map_says() {
     assert!(compared > 700, "{compared}");
 }
 
-/// Stripes of one pixel each, far finer than what a pixel of the picture sees, are gray: half of the light.
+/// Stripes of one pixel each, far finer than what a pixel of the picture sees, are gray: half of
+/// the light.
 #[test]
 fn what_is_too_fine_is_averaged_in_linear_light() {
     let folder = folder();

@@ -1,5 +1,6 @@
-//! Prisms of one's own: the square cloak written as prisms is the square cloak, however its cross-sections are
-//! cut; absorbing ones keep what Beer and Lambert say; what cannot be is refused at its place.
+//! Prisms of one's own: the square cloak written as prisms is the square cloak, however its
+//! cross-sections are cut; absorbing ones keep what Beer and Lambert say; what cannot be is refused
+//! at its place.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::long::count;
@@ -130,8 +131,9 @@ fn both_give_the_same_pictures() {
             let (pixels, steps) = difference(&shown(&cloak), &shown(&whole));
             // A step of rounding, in 0.01 % of the pixels.
             assert!(steps <= 1 && 10_000 * pixels <= 96 * 72, "{material} {pixels} {steps}");
-            // Cut in parts it is the same to the light; but rays beside each other that enter through two parts
-            // of a face are not known for neighbours, and the photograph is filtered otherwise.
+            // Cut in parts it is the same to the light; but rays beside each other that enter
+            // through two parts of a face are not known for neighbours, and the photograph is
+            // filtered otherwise.
             for name in ["delivered", "pruned", "time_of_flight", "time_of_flight_spread"] {
                 let [one, other] =
                     [&cloak, &cut].map(|picture| &picture.channel(name).unwrap().samples);
@@ -183,8 +185,8 @@ fn cuts_are_no_interfaces() {
     }
 }
 
-/// Slab of an absorbing medium between x = -d/2 and d/2: powers of the leaves from Fresnel's amplitudes and
-/// Beer and Lambert's law, computed for each polarization on its own.
+/// Slab of an absorbing medium between x = -d/2 and d/2: powers of the leaves from Fresnel's
+/// amplitudes and Beer and Lambert's law, computed for each polarization on its own.
 #[test]
 fn absorbing_slabs_keep_what_beer_and_lambert_say() {
     let (thickness, wavelength) = (3.0, 633.0);

@@ -1,5 +1,5 @@
-//! The table of what pruning costs in `docs/polarization.md` is true, and what is followed for one polarization makes
-//! no difference to the image of another.
+//! The table of what pruning costs in `docs/polarization.md` is true, and what is followed for one
+//! polarization makes no difference to the image of another.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::pictures::{picture, rendered};

@@ -104,7 +104,8 @@ fn the_empty_view_has_one_pulse_on_time() {
     assert_eq!(error, "there is no pixel 12,0; the picture has columns 0 to 11 and rows 0 to 8");
 }
 
-/// In a thick block parts of a beam come to other places, or to an edge: what one ray has of them does not close.
+/// In a thick block parts of a beam come to other places, or to an edge: what one ray has of them
+/// does not close.
 #[test]
 fn powers_of_a_ray_add_up_in_light_of_one_wavelength() {
     for device in [

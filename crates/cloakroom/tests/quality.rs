@@ -64,15 +64,17 @@ fn design_iii_is_perfect_and_bare_metal_is_not() {
     assert!((share - 12.0 / 60.0).abs() < 1e-12, "{share}");
     let area = table.figure(2, "uncloaked_area_cm2") / table.figure(2, "uncloaked_share");
     assert!((area / (12.0 * 80.0 * pixel * pixel) - 1.0).abs() < 1e-9, "{area}");
-    // It is black from edge to edge, which correlates with nothing; turned, it shows something else.
+    // It is black from edge to edge, which correlates with nothing; turned, it shows something
+    // else.
     assert!(table.figure(2, "ideal_silhouette_correlation").is_nan());
     assert!(table.figure(3, "ideal_silhouette_correlation") < 0.5);
 }
 
 #[test]
 fn a_glass_plate_moves_the_view_as_snell_says() {
-    // All rays slant by atan(0.3); the plate moves each by t (tan a - tan b), sin a = n sin b, turns none, and
-    // sends what is reflected twice, 0.2 % at this angle, into branches too weak to follow.
+    // All rays slant by atan(0.3); the plate moves each by t (tan a - tan b), sin a = n sin b,
+    // turns none, and sends what is reflected twice, 0.2 % at this angle, into branches too weak to
+    // follow.
     let scene = "[camera]\nposition = [-100, -30, 0]\ntarget = [0, 0, 0]\nprojection = \"orthographic\"\n\
                  width = 8\nresolution = [40, 30]\nsamples = 1\n[trace]\nmin_power = 0.01\n\
                  [[device]]\nkind = \"body\"\nshape = \"slab\"\nthickness = 1\npermittivity = 2.25\n";
@@ -97,8 +99,8 @@ fn a_glass_plate_moves_the_view_as_snell_says() {
 
 #[test]
 fn what_is_turned_is_not_in_place_even_where_it_lands_right() {
-    // A wedge of glass before the photograph turns light by asin(n sin a) - a, so little before it that it lands within
-    // 1 cm of where it should: 0.50 degrees for 1 degree of wedge, 1.50 for 3.
+    // A wedge of glass before the photograph turns light by asin(n sin a) - a, so little before it
+    // that it lands within 1 cm of where it should: 0.50 degrees for 1 degree of wedge, 1.50 for 3.
     let scene = "[camera]\nposition = [-100, 0, 0]\nprojection = \"orthographic\"\nwidth = 4\n\
                  resolution = [8, 6]\nsamples = 1\n[trace]\nmin_power = 0.01\n\
                  [[device]]\nkind = \"prisms\"\nposition = [44, 0, 0]\n\

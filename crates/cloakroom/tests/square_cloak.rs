@@ -106,7 +106,8 @@ fn light_is_on_time_to_yoctoseconds() {
 
 #[test]
 fn rounded_values_bend_by_less_than_a_degree() {
-    // Known from an independent calculation: up to 0.8 degrees at rotation 0, with up to 0.14 cm of optical path.
+    // Known from an independent calculation: up to 0.8 degrees at rotation 0, with up to 0.14 cm of
+    // optical path.
     let assembly = cloak("rounded = true");
     let mut tracer = Tracer::new(&assembly, LIMITS);
     let mut largest: f64 = 0.0;
@@ -119,7 +120,8 @@ fn rounded_values_bend_by_less_than_a_degree() {
     assert!(largest > 0.05 && largest < 0.85, "{largest} degrees");
 }
 
-/// With an open core: along x light never gets into it, so what stands there is hidden; turned, light gets in.
+/// With an open core: along x light never gets into it, so what stands there is hidden; turned,
+/// light gets in.
 #[test]
 fn an_open_core_hides_what_stands_in_it() {
     for (rotation, hidden) in [(0.0, true), (15.0, false)] {

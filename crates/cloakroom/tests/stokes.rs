@@ -1,5 +1,5 @@
-//! The polarization of the light that arrives, from rays traced backwards: against polarizers one at a
-//! time, against light traced forwards, and against textbook optics.
+//! The polarization of the light that arrives, from rays traced backwards: against polarizers one
+//! at a time, against light traced forwards, and against textbook optics.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::pictures::picture;
@@ -100,7 +100,8 @@ fn the_third_parameter_is_right_less_left_circular() {
         let quarter = |sign: f64| v.scaled(Complex64::new(0.0, sign));
         let electric =
             [1.0, -1.0].map(|sign| (h + quarter(sign)) * std::f64::consts::FRAC_1_SQRT_2);
-        // Sums over all leaves are 1 for either: the share on one side of the device tells them apart.
+        // Sums over all leaves are 1 for either: the share on one side of the device tells them
+        // apart.
         let side = |leaf: &&Leaf<2>| leaf.direction.y > 0.0;
         let (leaves, _) = circular.trace(&Launch { electric, ..launch });
         let [right, left] =
@@ -138,8 +139,8 @@ fn coincide(a: &Leaf<2>, b: &Leaf<2>) -> bool {
         && (a.optical_path + along - b.optical_path).abs() < 1e-6
 }
 
-/// The picture is made of rays traced from the camera. Here unpolarized light is sent from the far end of
-/// each path, forwards, and its Stokes parameters are measured where it arrives.
+/// The picture is made of rays traced from the camera. Here unpolarized light is sent from the far
+/// end of each path, forwards, and its Stokes parameters are measured where it arrives.
 #[test]
 fn light_traced_forwards_arrives_as_rays_traced_backwards_say() {
     for material in ["positive", "negative"] {

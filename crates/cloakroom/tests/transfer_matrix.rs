@@ -1,7 +1,8 @@
 //! Plane-parallel stacks by Berreman's 4 x 4 transfer matrix, which shares no code with the tracer.
 //!
-//! The layers lie across z, light comes in from air along (k, 0, √(1 - k²)); fields go as exp(i k0 k x). With magnetic
-//! fields scaled by the impedance of vacuum, Maxwell's equations for Ψ = (Ex, Ey, Hx, Hy) are dΨ/dz = i k0 M Ψ.
+//! The layers lie across z, light comes in from air along (k, 0, √(1 - k²)); fields go as exp(i k0
+//! k x). With magnetic fields scaled by the impedance of vacuum, Maxwell's equations for Ψ = (Ex,
+//! Ey, Hx, Hy) are dΨ/dz = i k0 M Ψ.
 
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
@@ -21,7 +22,8 @@ pub struct Layer {
     pub thickness: f64,
 }
 
-/// What a stack reflects and transmits: rows are s and p of the outgoing light, columns those of the incident.
+/// What a stack reflects and transmits: rows are s and p of the outgoing light, columns those of
+/// the incident.
 #[derive(Clone, Copy, Debug)]
 pub struct Jones {
     pub reflected: [[Complex64; 2]; 2],
@@ -111,7 +113,8 @@ fn solve(mut a: Matrix, mut b: [Complex64; 4]) -> [Complex64; 4] {
     x
 }
 
-/// What a stack in air does to light of a vacuum wave number (1/cm) that comes in with the tangential wave vector k.
+/// What a stack in air does to light of a vacuum wave number (1/cm) that comes in with the
+/// tangential wave vector k.
 pub fn jones(layers: &[Layer], wave_number: f64, k: f64) -> Jones {
     let kz = (1.0 - k * k).sqrt();
     let through = layers.iter().fold(None, |before: Option<Matrix>, layer| {

@@ -69,7 +69,8 @@ impl Frame {
         drawing.add_words("axis-title", Words::new(title.as_str(), at, self.text));
     }
 
-    /// Draws ticks at its left side, and the title, in as many lines as it needs, upwards beside them.
+    /// Draws ticks at its left side, and the title, in as many lines as it needs, upwards beside
+    /// them.
     pub fn draw_up(&self, drawing: &mut Drawing, Axis { ticks, title }: &Axis) {
         let mut widest = 0.0_f64;
         for tick in ticks {

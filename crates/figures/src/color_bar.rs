@@ -8,8 +8,9 @@ use super::ticks::{Axis, axis};
 use cloakroom::output::RgbImage;
 use glam::{DAffine2, DVec2};
 
-/// The key to a map of colours: a vertical bar with ticks, and what they count written upwards beside
-/// it. An end beyond which there are numbers ([`ColorScale::is_clipped`]) is drawn as a point.
+/// The key to a map of colours: a vertical bar with ticks, and what they count written upwards
+/// beside it. An end beyond which there are numbers ([`ColorScale::is_clipped`]) is drawn as a
+/// point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorBar {
     /// The colours.
@@ -40,8 +41,8 @@ impl ColorBar {
         widest + (LABELS + 0.2 + LINE * title.len() as f64) * text
     }
 
-    /// Draws it with the corner of the colours at a point. They are as high as told; labels, and the points, reach
-    /// beyond them by up to half the height of the type.
+    /// Draws it with the corner of the colours at a point. They are as high as told; labels, and
+    /// the points, reach beyond them by up to half the height of the type.
     pub(super) fn draw(&self, drawing: &mut Drawing, at: DVec2, height: f64, text: f64) {
         let (axis, widest, title) = self.layout(height, text);
         let width = COLORS * text;

@@ -51,8 +51,8 @@ pub fn all() -> Vec<Example> {
     panels.chain(exhibits).chain(others).collect()
 }
 
-/// The scenes that a list names by file (`gallery/prisms.toml`, `.toml` or not) or by folder (`gallery`), in the order
-/// of [`all`]; all of them for an empty list.
+/// The scenes that a list names by file (`gallery/prisms.toml`, `.toml` or not) or by folder
+/// (`gallery`), in the order of [`all`]; all of them for an empty list.
 ///
 /// # Errors
 ///

@@ -21,8 +21,8 @@ const CURVES: [(&str, Stand, usize); 5] = [
     ("nothing", Stand::Nothing, 2),
 ];
 
-/// The irradiance over the directions for nothing, bare metal and the cloak in each polarization, and the shadow that is
-/// given back; `axis` says what the directions are named by.
+/// The irradiance over the directions for nothing, bare metal and the cloak in each polarization,
+/// and the shadow that is given back; `axis` says what the directions are named by.
 #[must_use]
 pub fn flux_plot(report: &FluxReport, axis: &str) -> Plot {
     // Every panel has the curves of the key.
@@ -56,9 +56,9 @@ const RIGHT: f64 = 6.4 * TEXT;
 const PANEL: f64 = 300.0;
 const TITLE: f64 = 1.9 * TEXT;
 
-/// Where the light goes: for bare metal and the cloak, one below the other in one scale of colours, the irradiance
-/// across the receiver over all directions, or of a receiver with cells along it, too, over the receiver for the first
-/// direction; none without directions.
+/// Where the light goes: for bare metal and the cloak, one below the other in one scale of colours,
+/// the irradiance across the receiver over all directions, or of a receiver with cells along it,
+/// too, over the receiver for the first direction; none without directions.
 #[must_use]
 pub fn flux_map(report: &FluxReport, axis_title: &str) -> Option<Drawing> {
     let [wide, long] = report.cells;

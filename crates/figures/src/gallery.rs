@@ -1,9 +1,9 @@
 //! The gallery: a picture of every transformation-optics device that the program knows.
 //!
-//! Its first rows are those of the table that closes Halimeh & Wegener, Opt. Express 21, 9457 (2013), in its
-//! order and with its references to who rendered them first; then come the devices that the paper names in
-//! passing, the classics, and devices of one's own. Each is a scene file in `scenes/gallery/` or
-//! `scenes/paper/`, carried along in the program.
+//! Its first rows are those of the table that closes Halimeh & Wegener, Opt. Express 21, 9457
+//! (2013), in its order and with its references to who rendered them first; then come the devices
+//! that the paper names in passing, the classics, and devices of one's own. Each is a scene file in
+//! `scenes/gallery/` or `scenes/paper/`, carried along in the program.
 
 use cloakroom::keys::hint;
 
@@ -44,7 +44,8 @@ impl Exhibit {
 /// The title of the whole.
 pub const TITLE: &str = "Transformation optics: what it looks like, and how long light takes";
 
-/// An exhibit with its scene file, which is in `gallery/` and named for it unless it says otherwise.
+/// An exhibit with its scene file, which is in `gallery/` and named for it unless it says
+/// otherwise.
 macro_rules! exhibit {
     ($name:literal => $($words:literal),*) => {
         exhibit!($name in concat!("gallery/", $name) => $($words),*)

@@ -1,6 +1,7 @@
-//! What is drawn about pictures of invisibility cloaks, and made of many of them: maps of channels in colour, plots,
-//! ray diagrams, settings to scale, sheets like the figures of a paper, tables, films; the figures of the paper, the
-//! gallery and the example scenes; and the paper's statements, verified.
+//! What is drawn about pictures of invisibility cloaks, and made of many of them: maps of channels
+//! in colour, plots, ray diagrams, settings to scale, sheets like the figures of a paper, tables,
+//! films; the figures of the paper, the gallery and the example scenes; and the paper's statements,
+//! verified.
 //!
 //! Pictures and numbers come from [`cloakroom`], which knows nothing of letters and lines.
 
@@ -94,7 +95,8 @@ pub enum IllustrationError {
     Output(#[from] OutputError),
 }
 
-/// The size of type that suits a picture of so many pixels: 24 for 1024 x 768, in proportion, and 13 at least.
+/// The size of type that suits a picture of so many pixels: 24 for 1024 x 768, in proportion, and
+/// 13 at least.
 fn type_size(width: u32, height: u32) -> f64 {
     let side = (f64::from(width) * f64::from(height)).sqrt();
     // A strip much longer than wide is lettered for its short side.

@@ -110,7 +110,8 @@ pub static PANELS: &[Panel] = &[
     panel!(9 "f", "cloaked, 20°"),
 ];
 
-/// The panels that a list such as `6`, `8c` names, in the order of the paper; all of them for an empty list.
+/// The panels that a list such as `6`, `8c` names, in the order of the paper; all of them for an
+/// empty list.
 ///
 /// # Errors
 ///

@@ -37,8 +37,8 @@ impl PictureFormat {
     }
 }
 
-/// What an image of a picture shows: what the camera sees, or the map of a channel, if one is named, on a scale that may
-/// be given, and whether with its colour bar.
+/// What an image of a picture shows: what the camera sees, or the map of a channel, if one is
+/// named, on a scale that may be given, and whether with its colour bar.
 ///
 /// # Errors
 ///
@@ -54,11 +54,13 @@ pub fn shown(
     }
 }
 
-/// Writes a picture; `map` is the channel that what is to be seen is a map of, if any, and whether it has a colour bar.
+/// Writes a picture; `map` is the channel that what is to be seen is a map of, if any, and whether
+/// it has a colour bar.
 ///
 /// # Errors
 ///
-/// If a map is impossible, or not asked for and the format holds nothing else, or the file cannot be written.
+/// If a map is impossible, or not asked for and the format holds nothing else, or the file cannot
+/// be written.
 pub fn write_picture(
     picture: &Picture,
     map: (Option<&str>, bool),

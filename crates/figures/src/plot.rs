@@ -179,8 +179,8 @@ fn color(curve: usize) -> Ink {
     Ink::new(COLORS[curve % COLORS.len()])
 }
 
-/// How large marks and how thick lines of a curve are: later ones are smaller, so that of curves that lie on each other all
-/// are seen.
+/// How large marks and how thick lines of a curve are: later ones are smaller, so that of curves
+/// that lie on each other all are seen.
 fn size_of(curve: usize) -> f64 {
     0.82_f64.powi(curve.min(5) as i32) * 1.15
 }

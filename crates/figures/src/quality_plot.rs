@@ -13,7 +13,8 @@ pub const STANDARD_PLOT: [&str; 3] =
 /// A format of files of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableFormat {
-    /// Comma-separated values: a line of names, then one line a row; empty where there is no number.
+    /// Comma-separated values: a line of names, then one line a row; empty where there is no
+    /// number.
     Csv,
     /// An array for each column and for each sweep of numbers; NaN where there is no number.
     Npz,
@@ -60,8 +61,9 @@ pub fn write_table(
     Ok(())
 }
 
-/// A plot of the columns of these names over the first sweep of several numbers, else over the first of
-/// several values; a curve for each combination of the others, with standard errors as error bars.
+/// A plot of the columns of these names over the first sweep of several numbers, else over the
+/// first of several values; a curve for each combination of the others, with standard errors as
+/// error bars.
 ///
 /// # Errors
 ///

@@ -29,7 +29,8 @@ pub struct Unit {
     pub symbol: String,
 }
 
-/// Units of time from 1e9 ns down, each a thousandth of the one before (SI prefixes down to quecto).
+/// Units of time from 1e9 ns down, each a thousandth of the one before (SI prefixes down to
+/// quecto).
 const TIMES: [&str; 11] = ["s", "ms", "µs", "ns", "ps", "fs", "as", "zs", "ys", "rs", "qs"];
 
 impl Quantity {
@@ -60,8 +61,8 @@ impl Quantity {
         Self { title: title.to_owned(), dimension: Dimension::Number }
     }
 
-    /// The unit for numbers of that size: that in which it lies between 1 and 1000 for times, percent
-    /// down to 0.1 % for shares, and powers of a thousand beyond.
+    /// The unit for numbers of that size: that in which it lies between 1 and 1000 for times,
+    /// percent down to 0.1 % for shares, and powers of a thousand beyond.
     #[must_use]
     pub fn unit(&self, size: f64) -> Unit {
         let size = size.abs();

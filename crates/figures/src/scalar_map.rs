@@ -19,8 +19,8 @@ pub struct ScalarMap {
 }
 
 impl ScalarMap {
-    /// The map of a channel on a scale that is given, so that pictures can be compared; `None`: over the range of its
-    /// numbers ([`ColorScale`] says which).
+    /// The map of a channel on a scale that is given, so that pictures can be compared; `None`:
+    /// over the range of its numbers ([`ColorScale`] says which).
     ///
     /// # Errors
     ///
@@ -60,7 +60,8 @@ impl ScalarMap {
         Ok(Self { image, bar: ColorBar { scale, quantity: Quantity::of_channel(channel) } })
     }
 
-    /// The map in pixels: alone, exactly as large as the picture, or with its colour bar ([`draw`](Self::draw)).
+    /// The map in pixels: alone, exactly as large as the picture, or with its colour bar
+    /// ([`draw`](Self::draw)).
     ///
     /// # Errors
     ///
@@ -73,8 +74,8 @@ impl ScalarMap {
         drawing.to_image(drawing.pixels())
     }
 
-    /// The map as a drawing, a unit a pixel: alone, or framed, with the colour bar to its right and a margin around
-    /// both.
+    /// The map as a drawing, a unit a pixel: alone, or framed, with the colour bar to its right and
+    /// a margin around both.
     #[must_use]
     pub fn draw(&self, color_bar: bool) -> Drawing {
         let [width, height] = [self.image.width(), self.image.height()].map(f64::from);

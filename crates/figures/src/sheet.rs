@@ -24,16 +24,17 @@ pub struct SheetPanel {
 /// Panels wider or higher than this many pixels are shrunk.
 const MAX_PANEL: (u32, u32) = (800, 1200);
 
-/// In type of size 1: the narrowest column, so that captions have room; the space around everything; that between a
-/// panel and its caption; that between a caption and the next row of panels; the size of the title.
+/// In type of size 1: the narrowest column, so that captions have room; the space around
+/// everything; that between a panel and its caption; that between a caption and the next row of
+/// panels; the size of the title.
 const MIN_COLUMN: f64 = 16.0;
 const MARGIN: f64 = 1.6;
 const CAPTION_GAP: f64 = 0.5;
 const ROW_GAP: f64 = 1.4;
 const TITLE: f64 = 1.25;
 
-/// A labelled sheet, a unit a pixel: the title, and below it the panels in two columns (one if there is one panel),
-/// each with its colour bar beside it and its label and caption under it.
+/// A labelled sheet, a unit a pixel: the title, and below it the panels in two columns (one if
+/// there is one panel), each with its colour bar beside it and its label and caption under it.
 ///
 /// Panels should be of one size; smaller ones stand in the middle of their place. Panels wider than
 /// 800 or higher than 1200 pixels are shrunk. Lettering and margins grow with the panels.

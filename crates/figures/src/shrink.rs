@@ -5,8 +5,8 @@ use cloakroom::photograph::decode_table;
 use image::imageops::{self, FilterType};
 use image::{Rgb, Rgb32FImage};
 
-/// A copy of an image that fits into a width and a height, keeping its proportions; the image itself
-/// if it fits.
+/// A copy of an image that fits into a width and a height, keeping its proportions; the image
+/// itself if it fits.
 ///
 /// Light is averaged, not its sRGB code, so that fine patterns keep their brightness.
 pub(super) fn shrink(image: &RgbImage, max_width: u32, max_height: u32) -> RgbImage {

@@ -35,8 +35,8 @@ impl TablePicture {
         Self::Picture(shrink(image, PICTURE.0, PICTURE.1), None)
     }
 
-    /// A map with its colour bar, shrunk to 320 x 240 pixels; those words instead if no number of it
-    /// is finite.
+    /// A map with its colour bar, shrunk to 320 x 240 pixels; those words instead if no number of
+    /// it is finite.
     #[must_use]
     pub fn of_map(map: &ScalarMap, instead: &str) -> Self {
         if map.bar.scale.range.is_none() {
@@ -105,8 +105,8 @@ const MARGIN: f64 = 40.0;
 /// Tables of more rows than this stand in two halves beside each other.
 const MOST_ROWS: usize = 8;
 
-/// A table under its title, in two halves if it is long: in each row its title and what is said about it, one
-/// under the other, and beside them the pictures.
+/// A table under its title, in two halves if it is long: in each row its title and what is said
+/// about it, one under the other, and beside them the pictures.
 #[must_use]
 pub fn table(title: &str, rows: &[TableRow]) -> Drawing {
     let blocks: Vec<_> = rows.iter().map(lines).collect();
@@ -158,7 +158,8 @@ fn add_rule(drawing: &mut Drawing, at: DVec2, width: f64) {
     drawing.add_line("rule", [from, from + DVec2::X * width], (INK, RULE));
 }
 
-/// The words of a row, broken into lines: each in pieces of one face, and how far it is below the first.
+/// The words of a row, broken into lines: each in pieces of one face, and how far it is below the
+/// first.
 fn lines(row: &TableRow) -> Vec<(Vec<(Face, String)>, f64)> {
     let mut lines = Vec::new();
     let mut below = 0.0;

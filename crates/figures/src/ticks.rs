@@ -30,9 +30,10 @@ struct Step {
 /// Ranges narrower than this share of their numbers are labelled by the distance from one of them.
 const NARROW: f64 = 1e-4;
 
-/// The ticks for a range, no more than `most` (taken as 3 at least): 4 to 7 of them, 1, 2 or 5 times a
-/// power of ten apart (2.5 times where those do not give 4 to 7), or fewer where there is room for fewer.
-/// A range without width gets one tick in its middle, and none at all a label `no data` there.
+/// The ticks for a range, no more than `most` (taken as 3 at least): 4 to 7 of them, 1, 2 or 5
+/// times a power of ten apart (2.5 times where those do not give 4 to 7), or fewer where there is
+/// room for fewer. A range without width gets one tick in its middle, and none at all a label `no
+/// data` there.
 pub(super) fn axis(quantity: &Quantity, range: Option<(f64, f64)>, most: usize) -> Axis {
     let Some((low, high)) = range else {
         let ticks = vec![Tick { place: 0.5, label: "no data".to_owned() }];
@@ -108,8 +109,8 @@ impl Step {
         self.digits * power_of_ten(self.exponent)
     }
 
-    /// The first and the last multiple of the step between two numbers; those that rounding has moved
-    /// just outside count.
+    /// The first and the last multiple of the step between two numbers; those that rounding has
+    /// moved just outside count.
     fn ends(self, low: f64, high: f64) -> (f64, f64) {
         let slack = 1e-6;
         ((low / self.size() - slack).ceil(), (high / self.size() + slack).floor())

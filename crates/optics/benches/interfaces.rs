@@ -1,7 +1,7 @@
 //! Single interfaces between pairs of media.
 //!
-//! `cargo bench -p cloakroom-optics --bench interfaces`; items are interfaces, each with all the modes of both
-//! media for two polarizations at once.
+//! `cargo bench -p cloakroom-optics --bench interfaces`; items are interfaces, each with all the
+//! modes of both media for two polarizations at once.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};

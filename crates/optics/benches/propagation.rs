@@ -1,4 +1,5 @@
-//! The way through graded media, from one point of the border to the next, at the default tolerance.
+//! The way through graded media, from one point of the border to the next, at the default
+//! tolerance.
 //!
 //! `cargo bench -p cloakroom-optics --bench propagation`; items are legs of rays.
 
@@ -27,8 +28,8 @@ const TOLERANCE: f64 = 1e-6;
 /// Legs in one go.
 const LEGS: u32 = 256;
 
-/// An evenly spread number in [0, 1) for every n and k: an additive recurrence with the powers of the
-/// root of x^4 = x + 1.
+/// An evenly spread number in [0, 1) for every n and k: an additive recurrence with the powers of
+/// the root of x^4 = x + 1.
 fn spread(n: u32, k: i32) -> f64 {
     (f64::from(n) * 1.220_744_084_605_759_5_f64.powi(-k - 1)).fract()
 }
@@ -52,8 +53,8 @@ fn flow(name: &str) -> ConformalFlow {
     ConformalFlow::new(map, cut, Extent::ENDLESS, index_scale)
 }
 
-/// Rays just inside the face at the least x, up to 20 degrees off the axis, neighbours being alike as
-/// those of a camera are.
+/// Rays just inside the face at the least x, up to 20 degrees off the axis, neighbours being alike
+/// as those of a camera are.
 fn conformal_starts(flow: &ConformalFlow) -> Vec<(VirtualPoint, DVec3)> {
     let start = |n: u32| {
         // Four neighbours, and then elsewhere.

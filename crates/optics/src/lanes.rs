@@ -1,8 +1,9 @@
-//! Four rays at once: numbers that hold one value for each, and the widest instructions that the processor
-//! has for them, chosen at run time.
+//! Four rays at once: numbers that hold one value for each, and the widest instructions that the
+//! processor has for them, chosen at run time.
 //!
-//! Results are the same to the last bit whichever rays go side by side. Where the processor multiplies and adds
-//! at once, the sum alone is rounded; the portable fallback rounds the product, too.
+//! Results are the same to the last bit whichever rays go side by side. Where the processor
+//! multiplies and adds at once, the sum alone is rounded; the portable fallback rounds the product,
+//! too.
 
 use std::array;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -13,8 +14,8 @@ use pulp::{Simd, WithSimd, bytemuck};
 /// How many rays go side by side.
 pub(crate) const LANES: usize = 4;
 
-/// Does `work` with instructions for four numbers, or gives it back where the processor has none. All that it calls must be
-/// inlined into it.
+/// Does `work` with instructions for four numbers, or gives it back where the processor has none.
+/// All that it calls must be inlined into it.
 #[inline]
 pub(crate) fn side_by_side<W: WithSimd>(work: W) -> Result<W::Output, W> {
     #[cfg(target_arch = "x86_64")]

@@ -152,8 +152,8 @@ fn check_waves(from: &Medium, to: Option<&Medium>, waves: &OutgoingWaves<2>, nor
             let magnetic = medium.decaying_magnetic_field(p, electric);
             let flux = optics::wave::poynting(electric, magnetic);
             let cosine = direction.dot(normal).abs();
-            // In an absorbing medium a share may hold cross terms, and the rays of two waves with one
-            // wave vector part.
+            // In an absorbing medium a share may hold cross terms, and the rays of two waves with
+            // one wave vector part.
             let parting = medium.absorbs() && mode == ModeKind::Shared;
             let error = (flux.normalize_or_zero() - direction).length();
             assert!(

@@ -29,10 +29,12 @@ impl Crystal {
         let values = DMat3::from_diagonal(DVec3::from_array(indices.map(|index| index * index)));
         let permittivity = axes * values * axes.transpose();
         let permittivity = (permittivity + permittivity.transpose()) * 0.5;
-        // tan² of its angle with the axis of the largest index: Born & Wolf, Principles of Optics, 15.3.
+        // tan² of its angle with the axis of the largest index: Born & Wolf, Principles of Optics,
+        // 15.3.
         let (sin, cos) = ((a - b) / (b - c)).sqrt().atan().sin_cos();
         let axis = axes * DVec3::new(sin, 0.0, cos);
-        // E of the wave with D in the plane of the axes; the ray is across it. That of the other wave runs along the axis.
+        // E of the wave with D in the plane of the axes; the ray is across it. That of the other
+        // wave runs along the axis.
         let ray = axes * DVec3::new(sin * c, 0.0, cos * a);
         Self {
             medium: Medium::new(permittivity, 1.0).expect("a crystal"),

@@ -13,8 +13,8 @@ use std::f64::consts::TAU;
 /// Half the sides of the rectangle, cm.
 const HALF: DVec2 = DVec2::new(8.0, 6.0);
 
-/// The square of an index, on a grid from border to border with so many steps along x, in the rectangle; it must be
-/// positive beyond the radius `core`.
+/// The square of an index, on a grid from border to border with so many steps along x, in the
+/// rectangle; it must be positive beyond the radius `core`.
 fn flow(square: impl Fn(DVec2) -> f64, steps: usize, extent: Extent, core: f64) -> ConformalFlow {
     let count = [steps + 1, (steps as f64 * HALF.y / HALF.x).round() as usize + 1];
     let spacing = 2.0 * HALF / DVec2::new(count[0] as f64 - 1.0, count[1] as f64 - 1.0);
@@ -33,7 +33,8 @@ fn spread(k: u32) -> [f64; 3] {
     [0.618_033_988_7, 0.754_877_666_2, 0.569_840_290_9].map(|step| (step * f64::from(k)).fract())
 }
 
-/// A ray of a medium whose squared index is known: a point of the border, and a wave vector into the medium.
+/// A ray of a medium whose squared index is known: a point of the border, and a wave vector into
+/// the medium.
 fn enter(k: u32, square: impl Fn(DVec2) -> f64, steepest: f64) -> (DVec3, DVec3) {
     let [a, b, c] = spread(k);
     let y = HALF.y * (1.8 * a - 0.9);
@@ -189,8 +190,8 @@ fn unfolded(z: Complex64) -> [Complex64; 2] {
     [z + HIDDEN * ratio, 1.0 - ratio * ratio]
 }
 
-/// What is off at the end of a ray through the medium |ζ'|, whose rays across z are straight lines in ζ: the line missed,
-/// the direction and the optical path.
+/// What is off at the end of a ray through the medium |ζ'|, whose rays across z are straight lines
+/// in ζ: the line missed, the direction and the optical path.
 fn off_the_line(flow: &ConformalFlow, k: u32) -> f64 {
     let complex = |v: DVec3| Complex64::new(v.x, v.y);
     let square = |p: DVec2| unfolded(Complex64::new(p.x, p.y))[1].norm_sqr();
@@ -219,7 +220,8 @@ fn the_error_of_a_grid_falls_with_the_fourth_power_of_its_spacing() {
         let core = 1.15 * HIDDEN;
         let flow = flow(square, steps, Extent::ENDLESS, core).between(Some(core), None);
         let clear = |k: &u32| {
-            // Rays whose straight lines in ζ keep clear of the strip and of the ellipse that the core becomes.
+            // Rays whose straight lines in ζ keep clear of the strip and of the ellipse that the
+            // core becomes.
             let (start, p) = enter(*k, square, 0.0);
             let z = Complex64::new(start.x, start.y);
             let [from, bent] = unfolded(z);

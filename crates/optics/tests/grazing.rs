@@ -10,7 +10,8 @@ fn biaxial(a: f64, b: f64, c: f64) -> Medium {
     Medium::new(DMat3::from_diagonal(DVec3::new(a, b, c)), 1.0).unwrap()
 }
 
-/// Media whose wave with E along y runs along the surface where the tangential wave vector is along x and as long as given.
+/// Media whose wave with E along y runs along the surface where the tangential wave vector is along
+/// x and as long as given.
 fn media() -> [(Medium, f64); 4] {
     [
         (biaxial(1.5, 1.0, 2.0), 1.0),

@@ -1,5 +1,5 @@
-//! What pulses take through graded media, against sums along the way that use Fermat's principle: the group path is the
-//! derivative of ω times the path by ω, on the way as it is.
+//! What pulses take through graded media, against sums along the way that use Fermat's principle:
+//! the group path is the derivative of ω times the path by ω, on the way as it is.
 
 use crate::conformal_flow::rays::{Dice, flow};
 use glam::DVec3;
@@ -18,8 +18,8 @@ fn shifted(value: f64, share: f64) -> f64 {
     value + share * (value.max(2.0 - value) - value)
 }
 
-/// ∫ d(ωN)/dω ds over short chords, N being the index of rays of the given principal values at a radius, by their
-/// squared parts along these.
+/// ∫ d(ωN)/dω ds over short chords, N being the index of rays of the given principal values at a
+/// radius, by their squared parts along these.
 fn along(
     path: &[PathPoint],
     axes: impl Fn(DVec3) -> [DVec3; 3],
@@ -56,8 +56,8 @@ fn matched([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> f64 {
     (a * b * c * (x / a + y / b + z / c)).sqrt()
 }
 
-/// Of the extraordinary wave of a dielectric with the optic axis along the first, or the second: the ordinary index along the
-/// axis, the extraordinary one across it.
+/// Of the extraordinary wave of a dielectric with the optic axis along the first, or the second:
+/// the ordinary index along the axis, the extraordinary one across it.
 fn extraordinary(axis: usize) -> impl Fn([f64; 3], [f64; 3]) -> f64 {
     move |values, parts| {
         let (ordinary, extraordinary) = (values[1 - axis], values[axis]);

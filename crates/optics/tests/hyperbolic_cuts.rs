@@ -1,5 +1,5 @@
-//! Indefinite media that are cut such that a tensor has no normal-normal entry: one wave vector has no bounds, and the other
-//! waves are as exact as elsewhere.
+//! Indefinite media that are cut such that a tensor has no normal-normal entry: one wave vector has
+//! no bounds, and the other waves are as exact as elsewhere.
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
 use glam::{DMat3, DVec3};

@@ -278,7 +278,8 @@ fn dielectrics_follow_fresnel() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(count(100, 2000)))]
 
-    /// Fresnel's equations with complex permittivities and permeabilities, total reflection and evanescent waves included.
+    /// Fresnel's equations with complex permittivities and permeabilities, total reflection and
+    /// evanescent waves included.
     #[test]
     fn jones_matrices_are_fresnels(
         here in (0.3..4.0f64, prop_oneof![Just(0.0), 0.0..2.0f64], 0.3..4.0f64),

@@ -38,8 +38,9 @@ fn raise(worst: &mut f64, value: f64) {
     *worst = if value.is_nan() { f64::INFINITY } else { worst.max(value) };
 }
 
-/// The flux through the interface of an incident mode and of what it makes, Re(E × H*) along the normal, from the
-/// fields themselves: the powers of a [`Scattering`] are shares of the outgoing sum, and add up whatever the fields are.
+/// The flux through the interface of an incident mode and of what it makes, Re(E × H*) along the
+/// normal, from the fields themselves: the powers of a [`Scattering`] are shares of the outgoing
+/// sum, and add up whatever the fields are.
 fn fluxes(s: &Scattering, column: usize, normal: DVec3) -> [f64; 2] {
     let incident = &s.incident[column];
     let incident = poynting(incident.electric, incident.magnetic).dot(normal);
@@ -116,9 +117,10 @@ fn energy_maxwell_and_continuity() {
     assert!(worst.jump < 1e-14, "jump {:e}", worst.jump);
     // The account of the power is exact.
     assert!(worst.share < 4e-15, "share {:e}", worst.share);
-    // The fields' own flux, before it is shared out, is a check on the modes. Near grazing, near the
-    // asymptotic cone of a hyperbolic medium and at resonances of evanescent waves it is a small
-    // difference of products of large fields, each of which is known to rounding: so relative to them.
+    // The fields' own flux, before it is shared out, is a check on the modes. Near grazing, near
+    // the asymptotic cone of a hyperbolic medium and at resonances of evanescent waves it is a
+    // small difference of products of large fields, each of which is known to rounding: so relative
+    // to them.
     let [immoderate, moderate] = worst.counts;
     println!(
         "Maxwell {:.1e}, jump {:.1e}, share {:.1e}, energy {:.1e}, relative to the largest wave {:.1e}; \

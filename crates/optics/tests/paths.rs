@@ -1,5 +1,5 @@
-//! Paths for drawings are those of the rays: their ends are the traced ones, the optical path grows by the index
-//! along them, and the angular momentum about an axis or centre of symmetry is kept.
+//! Paths for drawings are those of the rays: their ends are the traced ones, the optical path grows
+//! by the index along them, and the angular momentum about an axis or centre of symmetry is kept.
 
 use glam::DVec3;
 use optics::geometry::Extent;
@@ -11,7 +11,8 @@ use optics::propagation::{
 use optics::transformation::{ConformalMap, GaussianMap, RadialMap, Symmetry, Truncation};
 use std::f64::consts::PI;
 
-/// How far the optical path of short pieces is from that of the index in their middle, along `n dr`.
+/// How far the optical path of short pieces is from that of the index in their middle, along `n
+/// dr`.
 fn worst_piece(path: &[PathPoint], index: impl Fn(DVec3) -> f64) -> f64 {
     path.windows(2)
         .map(|pair| {

@@ -1,5 +1,5 @@
-//! The checked numbers of the square cloak's designs (i) and (ii) (Halimeh & Wegener, Opt. Express 21,
-//! 9457 (2013)) at one interface.
+//! The checked numbers of the square cloak's designs (i) and (ii) (Halimeh & Wegener, Opt. Express
+//! 21, 9457 (2013)) at one interface.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::{DMat3, DVec2, DVec3};
@@ -104,8 +104,8 @@ fn critical_angles_of_designs_i_and_ii() {
 
 #[test]
 fn the_rotation_at_which_design_i_begins_to_reflect_totally() {
-    // The ordinary wave, in air, on the face that turns away from the line of sight: from 13.26 degrees on in
-    // the centre plane, sooner at an azimuth, never at rotation 0.
+    // The ordinary wave, in air, on the face that turns away from the line of sight: from 13.26
+    // degrees on in the centre plane, sooner at an azimuth, never at rotation 0.
     let medium = design(true, DVec2::new(-1.0, -1.0));
     let onset = |azimuth: f64| {
         let alpha = azimuth.to_radians();

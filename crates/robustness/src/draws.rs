@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 /// Where choices come from. The same source gives the same choices.
 #[derive(Clone, Debug)]
 pub enum Draws<'a> {
-    /// Choices that bytes make, so that a fuzzer can change one and keep the others. Zeros follow the last byte, which mean
-    /// the first choice or the default everywhere.
+    /// Choices that bytes make, so that a fuzzer can change one and keep the others. Zeros follow
+    /// the last byte, which mean the first choice or the default everywhere.
     Bytes(&'a [u8]),
     /// Choices without end, by the state of [`mix`].
     Seed(u64),

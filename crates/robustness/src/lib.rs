@@ -1,9 +1,10 @@
 //! What cloakroom must stand: any input, any scene, any ray.
 //!
-//! A [`Trial`] takes bytes, makes something of them (a text, an image, a scene with rays), hands it to the program,
-//! and panics where something comes out that must not: a panic, a number that is none, power out of nowhere. The folder
-//! `fuzz/` has libFuzzer choose the bytes; the tests of this crate do so briefly, and repeat every input that once
-//! found a fault (`regressions/`). The program `soak` traces random rays through random devices and counts.
+//! A [`Trial`] takes bytes, makes something of them (a text, an image, a scene with rays), hands it
+//! to the program, and panics where something comes out that must not: a panic, a number that is
+//! none, power out of nowhere. The folder `fuzz/` has libFuzzer choose the bytes; the tests of this
+//! crate do so briefly, and repeat every input that once found a fault (`regressions/`). The
+//! program `soak` traces random rays through random devices and counts.
 
 mod draws;
 mod page;

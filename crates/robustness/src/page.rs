@@ -1,4 +1,5 @@
-//! A page that says anything: messages of `cloakroom view` over a real connection to a server of this process.
+//! A page that says anything: messages of `cloakroom view` over a real connection to a server of
+//! this process.
 
 use cloakroom::scene_file;
 use cloakroom_viewer::{Settings, serve};
@@ -39,7 +40,8 @@ static HOST: LazyLock<String> = LazyLock::new(|| {
     address.trim_start_matches("http://").trim_end_matches('/').to_owned()
 });
 
-/// Says the lines of `bytes`, each a message (a photograph where it is no text), and hears what the server says.
+/// Says the lines of `bytes`, each a message (a photograph where it is no text), and hears what the
+/// server says.
 pub(crate) fn say(bytes: &[u8]) {
     let mut socket = connect();
     let mut last_look = None;

@@ -31,8 +31,8 @@ pub enum Fault {
     Lost(u64),
 }
 
-/// A ray towards a place within `reach` (cm) of the origin, as a rule; some run along an axis, through the very
-/// middle, or from anywhere to anywhere.
+/// A ray towards a place within `reach` (cm) of the origin, as a rule; some run along an axis,
+/// through the very middle, or from anywhere to anywhere.
 pub fn launch(draws: &mut Draws<'_>, reach: f64) -> Launch<2> {
     const AXES: [DVec3; 6] =
         [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
@@ -56,8 +56,8 @@ pub fn launch(draws: &mut Draws<'_>, reach: f64) -> Launch<2> {
     Launch { origin, direction, electric: [h.into(), v.into()] }
 }
 
-/// The same tracer, working out what pulses take unless a device says that its medium has no dispersion: then they may be
-/// faster than light.
+/// The same tracer, working out what pulses take unless a device says that its medium has no
+/// dispersion: then they may be faster than light.
 #[must_use]
 pub fn timed<'a>(tracer: Tracer<'a, 2>, assembly: &Assembly) -> Tracer<'a, 2> {
     let causal = |device: &Placed| device.dispersion == Dispersion::Causal;
@@ -90,7 +90,8 @@ pub fn examine<const N: usize>(
         if !finite {
             return Err(Fault::NotFinite);
         }
-        // What ends on an opaque body counts as a leaf in air, too: there the field is that which arrives.
+        // What ends on an opaque body counts as a leaf in air, too: there the field is that which
+        // arrives.
         let sizes = leaf.electric.iter().zip(leaf.power);
         let unsound = (leaf.direction.length() - 1.0).abs() > SOUND
             || leaf.power.iter().any(|power| *power < 0.0)

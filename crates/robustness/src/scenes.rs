@@ -29,8 +29,8 @@ pub(crate) fn scene(draws: &mut Draws<'_>) -> Table {
     scene
 }
 
-/// A scene of one device of a kind, at the origin; some stand in a block of glass, which may be too small for them: such a
-/// scene is refused.
+/// A scene of one device of a kind, at the origin; some stand in a block of glass, which may be too
+/// small for them: such a scene is refused.
 #[must_use]
 pub fn scene_of(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
     let mut device = device(draws, entry);
@@ -61,7 +61,8 @@ fn device(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
     device
 }
 
-/// Some of the keys of a table: each in `share` of 256 cases. Lists without which there is nothing are there.
+/// Some of the keys of a table: each in `share` of 256 cases. Lists without which there is nothing
+/// are there.
 fn table(draws: &mut Draws<'_>, keys: &'static [Key], share: u8) -> Table {
     let mut table = Table::new();
     for key in keys {

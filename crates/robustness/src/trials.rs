@@ -93,7 +93,8 @@ fn look_at(loaded: &Loaded) {
     trace(&assembly, render::limits(&loaded.scene), &launches);
 }
 
-/// Traces rays singly and four at a time: what must hold holds, and both ways agree to the last bit.
+/// Traces rays singly and four at a time: what must hold holds, and both ways agree to the last
+/// bit.
 fn trace(assembly: &Assembly, limits: Limits, launches: &[Launch<2>]) {
     let limits = Limits { min_power: limits.min_power.max(LEAST_POWER), ..limits };
     let mut tracer = rays::timed(Tracer::new(assembly, limits), assembly);
@@ -125,7 +126,8 @@ static ASSEMBLIES: LazyLock<Vec<Assembly>> = LazyLock::new(|| {
     assemblies.collect()
 });
 
-/// The rays of `cloakroom trace`, through one of the scenes of the gallery: the first byte says which.
+/// The rays of `cloakroom trace`, through one of the scenes of the gallery: the first byte says
+/// which.
 fn trace_json(bytes: &[u8]) {
     let Some((first, text)) = bytes.split_first() else { return };
     let assembly = &ASSEMBLIES[usize::from(*first) % ASSEMBLIES.len()];
@@ -214,7 +216,8 @@ fn check_interface(request: &InterfaceRequest) {
     for (power, together) in solved.power.iter().zip(&solved.interference) {
         let Some((power, together)) = power.as_ref().zip(together.as_ref()) else { continue };
         let sum = power.iter().chain(together).sum::<f64>();
-        // Light in an absorbing medium interferes with what is reflected, and that carries power, too.
+        // Light in an absorbing medium interferes with what is reflected, and that carries power,
+        // too.
         let adds_up = incident.absorbs() || (sum - 1.0).abs() <= rays::BALANCE;
         let sound = power.iter().all(|share| share.is_finite() && *share >= 0.0) && adds_up;
         assert!(sound, "{power:?}: {request:?}");

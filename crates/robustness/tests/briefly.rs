@@ -1,4 +1,5 @@
-//! Every trial for a moment: its seeds, changed at random but the same each time, and what once found a fault.
+//! Every trial for a moment: its seeds, changed at random but the same each time, and what once
+//! found a fault.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "a test may")]
 
 use crate::long;

@@ -43,7 +43,8 @@ fn senseless_sizes_are_refused() {
     }
 }
 
-/// In a corner of a hyperbolic medium a wave gets shorter at every face, until its fields were no numbers.
+/// In a corner of a hyperbolic medium a wave gets shorter at every face, until its fields were no
+/// numbers.
 #[test]
 fn light_that_runs_into_a_corner_of_a_hyperbolic_medium_ends() {
     let prisms = "kind = \"prisms\"\nrotation = 0.30833858620102117\n\
@@ -72,7 +73,8 @@ fn media_whose_fields_are_no_numbers_are_refused() {
     assert!(message.contains("permeability") && message.contains("1e-12 to 1e12"), "{message}");
 }
 
-/// A process whose smallest permittivity is 1e9 made rays in air that were off by 1e-5 of their direction.
+/// A process whose smallest permittivity is 1e9 made rays in air that were off by 1e-5 of their
+/// direction.
 #[test]
 fn media_too_dense_for_directions_in_air_are_refused() {
     let cloak = |minimum: f64| {

@@ -1,13 +1,16 @@
-//! The engine of cloakroom: light in invisibility cloaks and other devices of transformation optics.
+//! The engine of cloakroom: light in invisibility cloaks and other devices of transformation
+//! optics.
 //!
-//! A typed [`Device`](device::Device) builds a [`Structure`](device::Structure): regions filled with media, and the surfaces
-//! that bound them. An [`Assembly`](assembly::Assembly) has structures at their places, in any pose, next to and
-//! within one another. A [`Tracer`](walk::Tracer) walks the tree of a ray through it: to the next surface; there it splits
-//! by the interface solver of [`optics`]; and so on until each branch is a [`Leaf`](walk::Leaf), is absorbed or is too weak
-//! to follow. What the leaves carry, what is absorbed and what is pruned add up to what was launched.
+//! A typed [`Device`](device::Device) builds a [`Structure`](device::Structure): regions filled
+//! with media, and the surfaces that bound them. An [`Assembly`](assembly::Assembly) has structures
+//! at their places, in any pose, next to and within one another. A [`Tracer`](walk::Tracer) walks
+//! the tree of a ray through it: to the next surface; there it splits by the interface solver of
+//! [`optics`]; and so on until each branch is a [`Leaf`](walk::Leaf), is absorbed or is too weak to
+//! follow. What the leaves carry, what is absorbed and what is pruned add up to what was launched.
 //!
-//! Lengths are in cm, angles of keys in degrees, others in radians; axes and signs are those of [`optics::wave`]. The crate reads no files, draws no
-//! pictures and starts no threads, unless its feature `rayon` is asked for.
+//! Lengths are in cm, angles of keys in degrees, others in radians; axes and signs are those of
+//! [`optics::wave`]. The crate reads no files, draws no pictures and starts no threads, unless its
+//! feature `rayon` is asked for.
 //!
 //! # Example
 //!

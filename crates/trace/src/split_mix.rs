@@ -1,4 +1,5 @@
-//! `SplitMix64` (Steele, Lea & Flood, OOPSLA 2014): numbers without a pattern that depend on their seed alone.
+//! `SplitMix64` (Steele, Lea & Flood, OOPSLA 2014): numbers without a pattern that depend on their
+//! seed alone.
 
 /// By how much the state grows from one number to the next.
 pub const STEP: u64 = 0x9E37_79B9_7F4A_7C15;

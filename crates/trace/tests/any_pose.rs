@@ -137,8 +137,9 @@ fn rays_through_a_tilted_device_are_turned_rays_through_an_upright_one() {
             met += u32::from(expected.iter().any(|leaf| leaf.met_device));
             for leaf in expected.iter().filter(|leaf| leaf.power[0].max(leaf.power[1]) > STRONG) {
                 compared += 1;
-                // Weak leaves have been through the device three times or more, and what rounding has changed has grown. In
-                // an index of one's own rays are followed by steps that it changes, too.
+                // Weak leaves have been through the device three times or more, and what rounding
+                // has changed has grown. In an index of one's own rays are followed by steps that
+                // it changes, too.
                 let weak = leaf.power[0].max(leaf.power[1]) < 1e-2;
                 let off = if name.starts_with("graded") {
                     1e-6

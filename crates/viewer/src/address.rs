@@ -34,8 +34,8 @@ impl Names {
         Self(["127.0.0.1", "localhost"].map(|name| format!("{name}:{port}")))
     }
 
-    /// Whether a request was meant for this server. A page from elsewhere whose name has been made to lead here
-    /// (DNS rebinding) says another name.
+    /// Whether a request was meant for this server. A page from elsewhere whose name has been made
+    /// to lead here (DNS rebinding) says another name.
     pub fn host_is_ours(&self, headers: &HeaderMap) -> bool {
         only(headers, &header::HOST).is_some_and(|host| self.has(host))
     }

@@ -205,8 +205,8 @@ struct Session<'a> {
     outbox: &'a Outbox,
     /// The name of the photograph that comes next.
     name: Option<String>,
-    /// What cancels the last look, and whether it was of something that moves: such pictures are coarse and quick,
-    /// and are finished, or nothing would be seen to move.
+    /// What cancels the last look, and whether it was of something that moves: such pictures are
+    /// coarse and quick, and are finished, or nothing would be seen to move.
     stop: Option<(Arc<AtomicBool>, bool)>,
 }
 

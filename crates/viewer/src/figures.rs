@@ -13,8 +13,8 @@ use std::sync::atomic::AtomicBool;
 /// Width of the pictures that numbers are taken from, pixels.
 const WIDTH: u32 = 160;
 
-/// The numbers of a scene, from small pictures of one sample a pixel: of the scene, of the empty view, of what
-/// should be seen, and of the bare metal.
+/// The numbers of a scene, from small pictures of one sample a pixel: of the scene, of the empty
+/// view, of what should be seen, and of the bare metal.
 ///
 /// Means of power and time are over the silhouette, the pixels that meet a device.
 pub(crate) fn figures(
@@ -65,7 +65,8 @@ pub(crate) fn figures(
     }))
 }
 
-/// A scene of those that are compared, built; its errors are about no key of the scene that is shown.
+/// A scene of those that are compared, built; its errors are about no key of the scene that is
+/// shown.
 fn prepared<'s>(scene: &'s Scene, images: &mut Images) -> Result<PreparedScene<'s>, String> {
     PreparedScene::with_images(scene, images).map_err(|error| error.to_string())
 }

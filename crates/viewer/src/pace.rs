@@ -1,9 +1,11 @@
-//! Which pictures are made on the way to a finished one, and how coarse they are: as fine as time allows.
+//! Which pictures are made on the way to a finished one, and how coarse they are: as fine as time
+//! allows.
 
 use crate::protocol::Look;
 use std::time::Duration;
 
-/// How long a coarse picture should take: with what the browser does on the same processors, twenty a second.
+/// How long a coarse picture should take: with what the browser does on the same processors, twenty
+/// a second.
 const BRISK: Duration = Duration::from_millis(25);
 
 /// How long it may take where it would be very coarse otherwise.
@@ -21,7 +23,8 @@ const DIVISORS: [f64; 9] = [1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4];
 /// That of the first one, when nothing is known.
 const FIRST: f64 = 4.0;
 
-/// A size is kept while its pictures take these shares of their time: it should not change from picture to picture.
+/// A size is kept while its pictures take these shares of their time: it should not change from
+/// picture to picture.
 const KEPT: std::ops::RangeInclusive<f64> = 0.6..=1.15;
 
 /// One picture on the way to the finished one.
@@ -151,7 +154,8 @@ mod tests {
             pace.add(pass, Duration::from_millis(milliseconds));
             pass.size[0]
         };
-        // 160 x 120 pixels in 10 ms: 256 x 192 would take 26, and stay while their time does not change much.
+        // 160 x 120 pixels in 10 ms: 256 x 192 would take 26, and stay while their time does not
+        // change much.
         let sizes = [10, 30, 33, 40, 37, 30, 400].map(&mut step);
         assert_eq!(sizes, [160, 256, 256, 256, 256, 256, 256]);
         assert!(step(60) < 256);

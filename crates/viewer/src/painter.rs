@@ -1,5 +1,6 @@
-//! The thread that renders for one page: coarsely at once, then in full, then with more samples. What it sends at each
-//! number of samples is the picture that `cloakroom render` makes with that number.
+//! The thread that renders for one page: coarsely at once, then in full, then with more samples.
+//! What it sends at each number of samples is the picture that `cloakroom render` makes with that
+//! number.
 
 use crate::client::{Client, Gone, Outbox};
 use crate::cross_section::cross_section;
@@ -22,7 +23,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// What coarse pictures may leave out: branches weaker than this, and places less exact than this, cm.
+/// What coarse pictures may leave out: branches weaker than this, and places less exact than this,
+/// cm.
 const COARSE_POWER: f64 = 1e-2;
 const COARSE_TOLERANCE: f64 = 1e-4;
 
@@ -174,7 +176,8 @@ impl Painter<'_> {
         Ok(())
     }
 
-    /// Renders and sends one picture: of a view, which may be the last of its pass. How long rendering has taken.
+    /// Renders and sends one picture: of a view, which may be the last of its pass. How long
+    /// rendering has taken.
     fn picture(
         &self,
         wish: &Wish,
@@ -214,7 +217,8 @@ impl Painter<'_> {
             }
         };
         let time = start.elapsed();
-        // Whether it is the best that was asked for, and the last of those that are shown beside each other.
+        // Whether it is the best that was asked for, and the last of those that are shown beside
+        // each other.
         let caption = json!({
             "id": wish.look.id,
             "view": view,
@@ -241,7 +245,8 @@ fn are_alike(some: &[DeviceSettings], others: &[DeviceSettings]) -> bool {
     some.len() == others.len() && some.iter().zip(others).all(alike)
 }
 
-/// The scale of a map, which colors stand for which numbers, in a unit for people; no ends if no number is finite.
+/// The scale of a map, which colors stand for which numbers, in a unit for people; no ends if no
+/// number is finite.
 fn scale(channel: &str, range: Option<(f64, f64)>) -> Value {
     let quantity = Quantity::of_channel(channel);
     let size = range.map_or(0.0, |(low, high)| low.abs().max(high.abs()));

@@ -1,4 +1,5 @@
-//! Scenes from pages: JSON tables in, a scene out, and no way to a file that the user has not opened.
+//! Scenes from pages: JSON tables in, a scene out, and no way to a file that the user has not
+//! opened.
 
 use crate::protocol::SceneTables;
 use cloakroom::json;
@@ -53,8 +54,8 @@ impl Opened {
         Ok(Self { tables, name: name.to_owned(), folder: folder.to_owned(), files: known })
     }
 
-    /// Where a photograph of that name would lie, were it a file of the scene's folder. Uploaded ones are hung up
-    /// under this name and never looked for.
+    /// Where a photograph of that name would lie, were it a file of the scene's folder. Uploaded
+    /// ones are hung up under this name and never looked for.
     pub fn source_of(&self, name: &str) -> ImageSource {
         ImageSource::File(self.folder.join(name))
     }
@@ -72,8 +73,8 @@ impl Opened {
         let tables = json::value(&Value::Object(scene.clone()))?;
         let mut loaded = scene_file::assemble(tables, NAME, &self.folder, &[])
             .map_err(|error| error.message.clone())?;
-        // What the page has brought is the photograph and nothing else: on a body or around the scene a file of that
-        // name would be looked for.
+        // What the page has brought is the photograph and nothing else: on a body or around the
+        // scene a file of that name would be looked for.
         let brought = uploaded == Some(&loaded.scene.photograph.image);
         let known = |(place, path): (String, PathBuf)| {
             self.files.contains(&path) || (brought && place == PHOTOGRAPH)

@@ -1,5 +1,5 @@
-//! What a page has put on its screen. Finer pictures wait for that: they take all processors, and a browser on the same
-//! machine would show the coarse one a second late.
+//! What a page has put on its screen. Finer pictures wait for that: they take all processors, and a
+//! browser on the same machine would show the coarse one a second late.
 
 use crate::slot::lock;
 use std::sync::atomic::{AtomicBool, Ordering};

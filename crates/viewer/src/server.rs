@@ -87,7 +87,8 @@ pub(crate) struct Server {
     names: Names,
 }
 
-/// Serves the page on this machine until `stop` is set. `ready` is told the address once it can be opened.
+/// Serves the page on this machine until `stop` is set. `ready` is told the address once it can be
+/// opened.
 ///
 /// # Errors
 ///
@@ -121,7 +122,8 @@ pub fn serve(
         .map_err(ViewerError::Run)?;
     read_images(&settings.scene.scene, &server);
     let served = runtime.block_on(async {
-        // A picture that waits for the page to confirm the last bytes of the one before would wait 40 ms.
+        // A picture that waits for the page to confirm the last bytes of the one before would wait
+        // 40 ms.
         let listener = tokio::net::TcpListener::from_std(listener)?.tap_io(|stream| {
             // If it cannot be had, pages are slower.
             let _ = stream.set_nodelay(true);

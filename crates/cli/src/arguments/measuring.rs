@@ -14,8 +14,8 @@ pub struct FluxArguments {
     /// The scene; its [receiver] is the plane.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// A file to write: data as .csv or .npz, a plot over the directions as .svg, .pdf or .png. May be given several
-    /// times; the totals are printed.
+    /// A file to write: data as .csv or .npz, a plot over the directions as .svg, .pdf or .png. May
+    /// be given several times; the totals are printed.
     #[arg(short, long = "output", value_name = "FILE")]
     pub outputs: Vec<PathBuf>,
     /// A file for a map of the receiver, .svg, .pdf or .png.
@@ -33,8 +33,8 @@ pub struct FluxArguments {
         conflicts_with = "sun"
     )]
     pub tilt: f64,
-    /// The sun over a day instead, from that latitude and with that declination (degrees; 23.44 at midsummer): the
-    /// receiver lies flat, z points north.
+    /// The sun over a day instead, from that latitude and with that declination (degrees; 23.44 at
+    /// midsummer): the receiver lies flat, z points north.
     #[arg(long, value_name = "LATITUDE,DECLINATION", allow_hyphen_values = true, value_parser = sun)]
     pub sun: Option<[f64; 2]>,
     /// Rays in each of the independent samples.
@@ -78,22 +78,26 @@ pub struct QualityArguments {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// A key and its values, as in device.0.rotation=0..90:5 or camera.polarizer=horizontal,vertical. May be
-    /// given several times: every combination is measured.
+    /// A key and its values, as in device.0.rotation=0..90:5 or
+    /// camera.polarizer=horizontal,vertical. May be given several times: every combination is
+    /// measured.
     #[arg(long = "sweep", value_name = "KEY=VALUES", required = true)]
     pub sweeps: Vec<String>,
-    /// A key of a device that follows, so that a computed fact of the device stays what it is without sweeps, as in
-    /// device.0.w=cloaked_area_cm2 (`cloakroom devices` lists facts). May be given several times.
+    /// A key of a device that follows, so that a computed fact of the device stays what it is
+    /// without sweeps, as in device.0.w=cloaked_area_cm2 (`cloakroom devices` lists facts). May be
+    /// given several times.
     #[arg(long = "hold", value_name = "KEY=FACT")]
     pub holds: Vec<String>,
-    /// How often the random errors of devices (`device.N.imperfection.error`) are drawn for each combination: the
-    /// figures are means, with their standard errors.
+    /// How often the random errors of devices (`device.N.imperfection.error`) are drawn for each
+    /// combination: the figures are means, with their standard errors.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub draws: u32,
-    /// A file to write; its ending decides: .csv, .npz, or .svg, .pdf and .png for a plot. May be given several times.
+    /// A file to write; its ending decides: .csv, .npz, or .svg, .pdf and .png for a plot. May be
+    /// given several times.
     #[arg(short, long = "output", value_name = "FILE")]
     pub outputs: Vec<PathBuf>,
-    /// What a plot shows, as in ideal_picture_flip,delivered: names of the table's columns, a panel each.
+    /// What a plot shows, as in ideal_picture_flip,delivered: names of the table's columns, a panel
+    /// each.
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_values = STANDARD_PLOT)]
     pub plot: Vec<String>,
     /// Print JSON.
@@ -140,8 +144,8 @@ pub struct DiagramArguments {
     /// Leave out branches below this share of a ray's power.
     #[arg(long, value_name = "P", default_value_t = 0.01)]
     pub min_power: f64,
-    /// Show space in parallel projection instead of the cross-section, seen from that azimuth and elevation, in
-    /// degrees, as in 30,20.
+    /// Show space in parallel projection instead of the cross-section, seen from that azimuth and
+    /// elevation, in degrees, as in 30,20.
     #[arg(long, value_name = "AZIMUTH,ELEVATION", allow_hyphen_values = true, value_parser = view)]
     pub space: Option<[f64; 2]>,
     /// With --space: layers of rays one behind the other along z.
@@ -161,21 +165,22 @@ pub struct ExportArguments {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// The file to write; its ending decides: .npz, .vti (ParaView) or .csv; with --table .csv or .json.
+    /// The file to write; its ending decides: .npz, .vti (ParaView) or .csv; with --table .csv or
+    /// .json.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Which device, counted from 0; the only one if absent.
     #[arg(long, value_name = "N")]
     pub device: Option<usize>,
-    /// The cells of the grid: how many along x, y and z, as in 200x200x1, or the side of a cubic cell in cm, as
-    /// in 0.1 [default: cubes, 64 along the longest side].
+    /// The cells of the grid: how many along x, y and z, as in 200x200x1, or the side of a cubic
+    /// cell in cm, as in 0.1 [default: cubes, 64 along the longest side].
     #[arg(long, value_name = "NxNxN|CM", value_parser = grid)]
     pub grid: Option<Resolution>,
     /// Along whose axes grid and tensors lie: the device's own, or the world's.
     #[arg(long, value_name = "FRAME", default_value = "device", value_parser = PossibleValuesParser::new(["device", "world"]))]
     pub frame: String,
-    /// Write the homogeneous segments as a table instead: corners, optic axes, principal values and axes of
-    /// the tensors, in the device's frame.
+    /// Write the homogeneous segments as a table instead: corners, optic axes, principal values and
+    /// axes of the tensors, in the device's frame.
     #[arg(long, conflicts_with_all = ["grid", "frame"])]
     pub table: bool,
     /// How many threads work.

@@ -1,4 +1,5 @@
-//! Every command of the book and the README is run, at reduced size, in a folder of its own; every scene is checked.
+//! Every command of the book and the README is run, at reduced size, in a folder of its own; every
+//! scene is checked.
 
 use super::page::{Page, pages};
 use crate::running::{cloakroom, paper};
@@ -130,7 +131,8 @@ fn every_scene_in_the_pages_is_sound() {
     assert!(scenes > 5, "only {scenes} scenes were found");
 }
 
-/// The commands of a page, without comments. One goes on in the next line after a backslash and within quotes.
+/// The commands of a page, without comments. One goes on in the next line after a backslash and
+/// within quotes.
 fn commands(page: &Page) -> Vec<String> {
     let mut commands = Vec::new();
     for (_, block) in page.code.iter().filter(|(language, _)| language == "sh") {

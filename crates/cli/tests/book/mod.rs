@@ -1,5 +1,5 @@
-//! The book and the README hold what they promise: every command runs, every scene is sound, every link leads somewhere,
-//! and the pages agree with the program.
+//! The book and the README hold what they promise: every command runs, every scene is sound, every
+//! link leads somewhere, and the pages agree with the program.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 

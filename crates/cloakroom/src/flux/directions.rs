@@ -20,8 +20,9 @@ impl Direction {
     }
 }
 
-/// Light at angles of incidence (degrees, of either sign) in the plane of the receiver's normal and its width,
-/// tilted by `tilt` degrees towards its length. A positive angle comes from the side of less width.
+/// Light at angles of incidence (degrees, of either sign) in the plane of the receiver's normal and
+/// its width, tilted by `tilt` degrees towards its length. A positive angle comes from the side of
+/// less width.
 #[must_use]
 pub fn across_range(receiver: &Receiver, angles: &[f64], tilt: f64) -> Vec<Direction> {
     let [across, along] = receiver.axes();
@@ -36,9 +37,9 @@ pub fn across_range(receiver: &Receiver, angles: &[f64], tilt: f64) -> Vec<Direc
         .collect()
 }
 
-/// The sun over a day, seen from a latitude when it has a declination (degrees; 23.44 at midsummer in the north), every
-/// `step` hours of solar time while it is above the receiver, which lies flat: its normal is up, its width runs from
-/// west to east and its length towards the north.
+/// The sun over a day, seen from a latitude when it has a declination (degrees; 23.44 at midsummer
+/// in the north), every `step` hours of solar time while it is above the receiver, which lies flat:
+/// its normal is up, its width runs from west to east and its length towards the north.
 #[must_use]
 pub fn sun_day(receiver: &Receiver, latitude: f64, declination: f64, step: f64) -> Vec<Direction> {
     /// The sun on the horizon gives no light that could be measured, degrees.

@@ -11,9 +11,10 @@ pub type Arrays = Vec<(&'static str, Vec<usize>, Vec<f64>)>;
 /// What light is meant.
 const LIGHTS: [&str; 3] = ["horizontal", "vertical", "unpolarized"];
 
-/// A line for each direction: `label` (the angle or hour asked for), `incidence_deg`, and then for each polarization the
-/// mean irradiance of the receiver for nothing, bare and cloaked with its standard error, and the shadow given back in
-/// percent with its standard error (empty where there is no shadow).
+/// A line for each direction: `label` (the angle or hour asked for), `incidence_deg`, and then for
+/// each polarization the mean irradiance of the receiver for nothing, bare and cloaked with its
+/// standard error, and the shadow given back in percent with its standard error (empty where there
+/// is no shadow).
 #[must_use]
 pub fn flux_csv(report: &FluxReport) -> String {
     let mut text = "label,incidence_deg".to_owned();
@@ -42,12 +43,14 @@ pub fn flux_csv(report: &FluxReport) -> String {
     text
 }
 
-/// Arrays for numpy: `label`, `incidence_deg` and `direction` (3) of each direction; `total` and `total_error` with
-/// the indices direction, stand (nothing, bare, cloaked), polarization (horizontal, vertical, unpolarized);
-/// `given_back_percent` and `given_back_error` with the indices direction, polarization (NaN without a shadow); `map`, the
-/// irradiance of unpolarized light, with the indices direction, stand, and cell along and across the receiver, whose
-/// middles (cm) are `along` and `across`; and for convergence `rays`, `cloaked_by_rays`, `cloaked_error_by_rays`,
-/// `given_back_by_rays` and `given_back_error_by_rays`, indices direction and step.
+/// Arrays for numpy: `label`, `incidence_deg` and `direction` (3) of each direction; `total` and
+/// `total_error` with the indices direction, stand (nothing, bare, cloaked), polarization
+/// (horizontal, vertical, unpolarized); `given_back_percent` and `given_back_error` with the
+/// indices direction, polarization (NaN without a shadow); `map`, the irradiance of unpolarized
+/// light, with the indices direction, stand, and cell along and across the receiver, whose middles
+/// (cm) are `along` and `across`; and for convergence `rays`, `cloaked_by_rays`,
+/// `cloaked_error_by_rays`, `given_back_by_rays` and `given_back_error_by_rays`, indices direction
+/// and step.
 #[must_use]
 pub fn flux_arrays(report: &FluxReport) -> Arrays {
     let all = &report.incidences;

@@ -1,7 +1,8 @@
-//! How much light comes through to a plane behind the devices: for nothing, for bare metal and for the cloak.
+//! How much light comes through to a plane behind the devices: for nothing, for bare metal and for
+//! the cloak.
 //!
-//! Parallel light of unit irradiance across its direction is traced forward, from a stratified grid of rays. Where
-//! all devices are endless along z, so is the problem: one row of rays is enough.
+//! Parallel light of unit irradiance across its direction is traced forward, from a stratified grid
+//! of rays. Where all devices are endless along z, so is the problem: one row of rays is enough.
 
 mod directions;
 mod files;

@@ -60,8 +60,8 @@ pub struct Total {
     pub error: f64,
 }
 
-/// The share of the shadow of bare metal that the cloak gives back, in percent; 100 is perfect, less than 0 is worse
-/// than the metal.
+/// The share of the shadow of bare metal that the cloak gives back, in percent; 100 is perfect,
+/// less than 0 is worse than the metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gain {
     /// (cloaked - bare)/(nothing - bare).
@@ -90,8 +90,8 @@ pub struct Incidence {
     pub degrees: f64,
     /// For each of [`STANDS`]: in horizontal, in vertical and in unpolarized light.
     pub totals: [[Total; 3]; 3],
-    /// In horizontal, in vertical and in unpolarized light; `None` where bare metal makes no shadow, or in one sample
-    /// alone.
+    /// In horizontal, in vertical and in unpolarized light; `None` where bare metal makes no
+    /// shadow, or in one sample alone.
     pub gains: [Option<Gain>; 3],
     /// For each of [`STANDS`]: the irradiance of each cell, across first, in unpolarized light.
     pub maps: [Vec<f64>; 3],
@@ -115,8 +115,8 @@ pub struct FluxReport {
 }
 
 impl Incidence {
-    /// From the samples of each of [`STANDS`], in that order, of so many rays each, of which one stands for the
-    /// irradiance `share`.
+    /// From the samples of each of [`STANDS`], in that order, of so many rays each, of which one
+    /// stands for the irradiance `share`.
     pub(super) fn new(
         direction: Direction,
         degrees: f64,
@@ -161,8 +161,8 @@ impl Total {
         let count = samples.len() as f64;
         let mean = samples.iter().sum::<f64>() / count;
         let square: f64 = samples.iter().map(|sample| (sample - mean).powi(2)).sum();
-        // The edges of the receiver cut two strata of a row: whether their rays come down on it is chance, p(1 - p) of
-        // a ray, which is 1/6 on average. A few samples may all fall alike.
+        // The edges of the receiver cut two strata of a row: whether their rays come down on it is
+        // chance, p(1 - p) of a ray, which is 1/6 on average. A few samples may all fall alike.
         let edges = 2.0 / 6.0 * share * share;
         let variance = (square / (count - 1.0)).max(edges);
         Self { mean, error: (variance / count).sqrt() }
@@ -172,8 +172,8 @@ impl Total {
 /// A shadow less than this share of the light is none.
 const NO_SHADOW: f64 = 1e-9;
 
-/// The share of the shadow that is given back, with its jackknife error; none if there is no shadow, or but for one
-/// sample none.
+/// The share of the shadow that is given back, with its jackknife error; none if there is no
+/// shadow, or but for one sample none.
 pub(super) fn given_back(nothing: &[f64], bare: &[f64], cloaked: &[f64]) -> Option<Gain> {
     let count = nothing.len() as f64;
     let [n, b, c] = [nothing, bare, cloaked].map(|samples| samples.iter().sum::<f64>());

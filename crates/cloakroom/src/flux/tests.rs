@@ -54,11 +54,13 @@ fn free_light_falls_off_with_the_cosine() {
 
 #[test]
 fn bare_metal_takes_its_shadow_and_the_cloak_gives_it_back() {
-    // At 0 degrees the rhombus is 2b = 11.51 cm high and reflects nothing forward within the receiver.
+    // At 0 degrees the rhombus is 2b = 11.51 cm high and reflects nothing forward within the
+    // receiver.
     let report = measured(&format!("{RECEIVER}{SQUARE}"), &[0.0], 0.0, FEW).expect("a report");
     let incidence = &report.incidences[0];
     let height = 2.0 * 14.1 / 2f64.sqrt() / 3f64.sqrt();
-    // Rays reflected at 30 degrees from the axis are turned by 60: they leave beside the receiver, 30 tan 60° > 25.
+    // Rays reflected at 30 degrees from the axis are turned by 60: they leave beside the receiver,
+    // 30 tan 60° > 25.
     agrees(incidence.totals[Stand::Bare as usize][2], 1.0 - height / 50.0, "bare");
     agrees(incidence.totals[Stand::Cloaked as usize][2], 1.0, "cloaked");
     for gain in incidence.gains {
@@ -110,8 +112,8 @@ fn a_ball_in_the_way_takes_its_disc() {
     assert_eq!(report.cells, [40, 32]);
     let incidence = &report.incidences[0];
     agrees(incidence.totals[Stand::Nothing as usize][2], 1.0, "nothing");
-    // Of the light on the ball of radius 4 all that is scattered forward onto the receiver comes back to it: what is
-    // turned by less than about 40 degrees, cos²(θ/2) of the disc's edge.
+    // Of the light on the ball of radius 4 all that is scattered forward onto the receiver comes
+    // back to it: what is turned by less than about 40 degrees, cos²(θ/2) of the disc's edge.
     let disc = std::f64::consts::PI * 16.0 / (50.0 * 40.0);
     let bare = incidence.totals[Stand::Bare as usize][2];
     assert!(bare.mean > 1.0 - disc && bare.mean < 1.0 - 0.8 * disc, "{bare:?} {disc}");

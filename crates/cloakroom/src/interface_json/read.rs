@@ -10,7 +10,8 @@ use serde_json::Value;
 /// How large the normal part of a tangential wave vector may be.
 const TANGENTIAL: f64 = 1e-9;
 
-/// How long a tangential wave vector may be: as long as in a medium of the largest index of refraction.
+/// How long a tangential wave vector may be: as long as in a medium of the largest index of
+/// refraction.
 const LONGEST: f64 = 1e6;
 
 /// An interface to be solved.
@@ -67,12 +68,13 @@ impl InterfaceRequest {
             .map_err(|fault| InterfaceError::at(&within(&fault.place), fault.problem))
     }
 
-    /// The interface between two media, or at metal if `transmitted` is `None`; the normal may be of any length.
+    /// The interface between two media, or at metal if `transmitted` is `None`; the normal may be
+    /// of any length.
     ///
     /// # Errors
     ///
-    /// If the normal is zero, or the tangential vector is not finite, not tangential or too long; the error's place is
-    /// `normal` or `tangential`.
+    /// If the normal is zero, or the tangential vector is not finite, not tangential or too long;
+    /// the error's place is `normal` or `tangential`.
     pub fn new(
         incident: Medium,
         transmitted: Option<Medium>,

@@ -35,8 +35,8 @@ const DEFAULT_CELLS: f64 = 64.0;
 const MOST_CELLS: f64 = 1e9;
 
 impl Grid {
-    /// The grid around a device with its hidden region. Along an axis on which the device has no end its cells
-    /// are centred on the device's origin: a single layer, unless more are asked for.
+    /// The grid around a device with its hidden region. Along an axis on which the device has no
+    /// end its cells are centred on the device's origin: a single layer, unless more are asked for.
     ///
     /// # Errors
     ///
@@ -86,7 +86,8 @@ impl Grid {
 
 /// Refuses a grid that would not fit into the memory that is free now.
 fn check_memory(cells: [f64; 3]) -> Result<(), MaterialError> {
-    /// A code, an index and two tensors with their imaginary parts: as they are sampled, and in arrays.
+    /// A code, an index and two tensors with their imaginary parts: as they are sampled, and in
+    /// arrays.
     const BYTES: f64 = 2.0 * 8.0 * (2.0 + 4.0 * 6.0);
     let needed = cells.iter().product::<f64>() * BYTES;
     let is_countable = cells.iter().all(|count| *count <= MOST_CELLS);

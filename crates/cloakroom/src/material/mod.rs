@@ -1,5 +1,6 @@
-//! What a device is made of, for fabrication and for full-wave solvers: the index and the tensors on a regular
-//! grid, and the homogeneous segments as a table. The media are those that the tracer meets.
+//! What a device is made of, for fabrication and for full-wave solvers: the index and the tensors
+//! on a regular grid, and the homogeneous segments as a table. The media are those that the tracer
+//! meets.
 
 mod grid;
 mod sampling;
@@ -60,7 +61,8 @@ pub enum MaterialError {
     Stopped(#[from] Stopped),
 }
 
-/// The device that is meant, if there is a medium in it: that of the number, or the only one there is.
+/// The device that is meant, if there is a medium in it: that of the number, or the only one there
+/// is.
 fn chosen<'a>(
     scene: &Scene,
     assembly: &'a Assembly,

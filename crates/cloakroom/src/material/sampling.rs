@@ -44,16 +44,17 @@ struct Point {
     imaginary: [SymmetricTensor; 2],
 }
 
-/// The material of a device on a grid: arrays `region` (see [`CellContent`]), `index` (of an anisotropic medium the
-/// geometric mean, [`optics::medium::Medium::mean_index`]), `permittivity` and `permeability`, and where the
-/// device absorbs `permittivity_imaginary` and `permeability_imaginary`. Metal has no numbers: NaN.
+/// The material of a device on a grid: arrays `region` (see [`CellContent`]), `index` (of an
+/// anisotropic medium the geometric mean, [`optics::medium::Medium::mean_index`]), `permittivity`
+/// and `permeability`, and where the device absorbs `permittivity_imaginary` and
+/// `permeability_imaginary`. Metal has no numbers: NaN.
 ///
 /// `device` may be left out if there is only one. `begun` is told how many rows there are to do.
 ///
 /// # Errors
 ///
-/// If there is no such device, it has no material, or the grid is empty or too large; and if the work was
-/// stopped.
+/// If there is no such device, it has no material, or the grid is empty or too large; and if the
+/// work was stopped.
 pub fn sample(
     scene: &Scene,
     assembly: &Assembly,

@@ -30,8 +30,8 @@ pub struct Segment {
     pub optic_axis: Option<[f64; 3]>,
 }
 
-/// A symmetric tensor by its principal values. Those in the xy-plane come first, the greater of them before the
-/// smaller.
+/// A symmetric tensor by its principal values. Those in the xy-plane come first, the greater of
+/// them before the smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Principal {
     /// The principal values.
@@ -58,7 +58,8 @@ fn towards_x(axis: DVec3) -> [f64; 3] {
     axis.to_array().map(|component| component + 0.0)
 }
 
-/// The segments of a device of homogeneous media, then its metal. `device` may be left out if there is only one.
+/// The segments of a device of homogeneous media, then its metal. `device` may be left out if there
+/// is only one.
 ///
 /// # Errors
 ///
@@ -102,9 +103,10 @@ pub fn segments(
     Ok(segments)
 }
 
-/// Writes segments as the ending of the file's name asks for. `.json`: an array of [`Segment`]s. `.csv`: a line each with
-/// `segment`, `filling`, `z_min_cm`, `z_max_cm`, the optic axis, principal values 1 to 3 of both tensors with their axes,
-/// and the corners; what a segment does not have is left empty.
+/// Writes segments as the ending of the file's name asks for. `.json`: an array of [`Segment`]s.
+/// `.csv`: a line each with `segment`, `filling`, `z_min_cm`, `z_max_cm`, the optic axis, principal
+/// values 1 to 3 of both tensors with their axes, and the corners; what a segment does not have is
+/// left empty.
 ///
 /// # Errors
 ///

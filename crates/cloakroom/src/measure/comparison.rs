@@ -67,8 +67,8 @@ impl FlightFigures {
         Self::of(region.indices().map(|i| (differences[i], times[i] - differences[i])))
     }
 
-    /// The figures of differences and the times of flight that they are to be held against, ns; what is not
-    /// finite is left out, and `None` is what remains of nothing.
+    /// The figures of differences and the times of flight that they are to be held against, ns;
+    /// what is not finite is left out, and `None` is what remains of nothing.
     fn of(pairs: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
         let pairs: Vec<(f64, f64)> =
             pairs.filter(|(difference, flight)| difference.is_finite() && *flight > 0.0).collect();
@@ -89,8 +89,8 @@ impl FlightFigures {
     }
 }
 
-/// Compares two views, over the whole picture and, if given, over a region. The region is what is looked at in the
-/// second view; with shifts, it is looked for in all of the first.
+/// Compares two views, over the whole picture and, if given, over a region. The region is what is
+/// looked at in the second view; with shifts, it is looked for in all of the first.
 ///
 /// # Errors
 ///

@@ -1,11 +1,12 @@
-//! A key that is chosen so that a computed fact of its device stays what it is: designs at equal hidden area.
+//! A key that is chosen so that a computed fact of its device stays what it is: designs at equal
+//! hidden area.
 
 use crate::device::{FactValue, Show};
 use crate::keys::{hint, number_text, quoted};
 use crate::scene::{DeviceSettings, Scene};
 
-/// A key of a device that follows the swept ones, so that a computed fact of the device stays what it is in the
-/// scene as given.
+/// A key of a device that follows the swept ones, so that a computed fact of the device stays what
+/// it is in the scene as given.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Constraint {
     /// The key, as in `device.0.w`.
@@ -27,7 +28,8 @@ pub struct ConstraintError {
     pub problem: String,
 }
 
-/// Factors between neighbouring trial values: the eighth root of 2, over six octaves to either side.
+/// Factors between neighbouring trial values: the eighth root of 2, over six octaves to either
+/// side.
 const TRIALS_AN_OCTAVE: i32 = 8;
 const OCTAVES: i32 = 6;
 
@@ -99,7 +101,8 @@ impl Constraint {
             .ok_or_else(|| self.refused("the key must be a number above 0 in the scene"))
     }
 
-    /// The value of the key with which the fact is `target` in a scene in which all other keys are set.
+    /// The value of the key with which the fact is `target` in a scene in which all other keys are
+    /// set.
     pub(super) fn solve(
         &self,
         scene: &Scene,

@@ -1,5 +1,5 @@
-//! Normalized cross-correlation, as cloaks were judged by before: Halimeh, Schmied & Wegener, Opt. Express 19,
-//! 6078 (2011).
+//! Normalized cross-correlation, as cloaks were judged by before: Halimeh, Schmied & Wegener, Opt.
+//! Express 19, 6078 (2011).
 
 use super::{MeasureError, PixelMask, View};
 use num_complex::Complex64;
@@ -25,8 +25,8 @@ pub struct BestShift {
     pub shift_pixels: [i64; 2],
 }
 
-/// The zero-mean normalized cross-correlation of two planes over a region, -1 to 1; `None` where either has
-/// no contrast there.
+/// The zero-mean normalized cross-correlation of two planes over a region, -1 to 1; `None` where
+/// either has no contrast there.
 ///
 /// Planes and region must be of one size.
 #[must_use]
@@ -56,9 +56,10 @@ fn pearson(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
         .then(|| (ab / (aa.sqrt() * bb.sqrt())).clamp(-1.0, 1.0))
 }
 
-/// The largest correlation of what the region of the second view shows with the first view, over all shifts
-/// of whole pixels that leave at least half of the region in the picture; for red, green and blue. Means and
-/// contrasts are those of the overlap (Padfield, IEEE Trans. Image Process. 21, 2706 (2012)).
+/// The largest correlation of what the region of the second view shows with the first view, over
+/// all shifts of whole pixels that leave at least half of the region in the picture; for red, green
+/// and blue. Means and contrasts are those of the overlap (Padfield, IEEE Trans. Image Process. 21,
+/// 2706 (2012)).
 ///
 /// # Errors
 ///
@@ -78,8 +79,8 @@ pub fn best_shift(
     Ok([0, 1, 2].map(best))
 }
 
-/// Fourier transforms of planes laid into a field of zeros so large that no shift wraps around. Spectra are
-/// kept column by column.
+/// Fourier transforms of planes laid into a field of zeros so large that no shift wraps around.
+/// Spectra are kept column by column.
 struct Transform {
     /// Size of the planes.
     width: usize,
@@ -147,8 +148,8 @@ impl Transform {
         let b_once = self.forward(|i| in_region(i).into());
         let cross = self.correlate(&a_once, &b_once);
         drop((a_once, b_once));
-        // Sums and sums of squares in one: of real planes, they are the two parts. The conjugate of the first
-        // factor turns the sign of its squares.
+        // Sums and sums of squares in one: of real planes, they are the two parts. The conjugate of
+        // the first factor turns the sign of its squares.
         let both = |value: f64| Complex64::new(value, value * value);
         let sums_a = self.correlate(&self.forward(|i| both(a[i] - mean_a)), inside);
         let sums_b = self.correlate(everywhere, &self.forward(|i| both(in_region(i))));
@@ -236,13 +237,14 @@ fn transposed(field: &[Complex64], width: usize) -> Vec<Complex64> {
     turned
 }
 
-/// The least number from `n` on that is a power of two, or three times one: [`fft`] transforms such sizes.
+/// The least number from `n` on that is a power of two, or three times one: [`fft`] transforms such
+/// sizes.
 fn smooth(n: usize) -> usize {
     n.next_power_of_two().min(3 * n.div_ceil(3).next_power_of_two())
 }
 
-/// The transform of a size that [`smooth`] gives. (The library's planner knows all sizes; it would be a quarter of what is
-/// compiled in this crate.)
+/// The transform of a size that [`smooth`] gives. (The library's planner knows all sizes; it would
+/// be a quarter of what is compiled in this crate.)
 fn fft(size: usize, way: FftDirection) -> Arc<dyn Fft<f64>> {
     if !size.is_multiple_of(3) {
         return Arc::new(Radix4::new(size, way));

@@ -7,8 +7,8 @@ use crate::scene::{Core, DeviceSettings, Scene};
 use glam::DVec3;
 use optics::geometry::Pose;
 
-/// What a scene should look like: its cloaks as the flat mirrors that they imitate, and nothing in the place of
-/// other devices.
+/// What a scene should look like: its cloaks as the flat mirrors that they imitate, and nothing in
+/// the place of other devices.
 #[must_use]
 pub fn ideal(scene: &Scene) -> Scene {
     let mut ideal = scene.clone();
@@ -22,8 +22,8 @@ pub fn empty(scene: &Scene) -> Scene {
     Scene { devices: Vec::new(), ..scene.clone() }
 }
 
-/// A scene with the bare metal of its cloaks: `None` if none has any, as bodies and lenses, which stay, have not. What
-/// stands in an open core, which is metal then, is gone.
+/// A scene with the bare metal of its cloaks: `None` if none has any, as bodies and lenses, which
+/// stay, have not. What stands in an open core, which is metal then, is gone.
 #[must_use]
 pub fn bare(scene: &Scene) -> Option<Scene> {
     let mut bare = scene.clone();
@@ -56,8 +56,8 @@ fn hidden(scene: &Scene) -> Vec<bool> {
         let [low, high] = placed.structure.hull.bounds(&frame.inverse().after(&placed.pose))?;
         Some([low.max(-reach), high.min(reach)])
     };
-    // Of two cores one in the other, the smaller box is in the larger; across the axis, for both may be endless
-    // along it.
+    // Of two cores one in the other, the smaller box is in the larger; across the axis, for both
+    // may be endless along it.
     let holds = |around: &Placed, placed: &Placed| {
         let [from, to] = ends(around, &around.pose)?.map(DVec3::truncate);
         let [low, high] = ends(placed, &around.pose)?;

@@ -1,6 +1,7 @@
 //! FLIP: how different two pictures look when one alternates between them. Andersson, Nilsson,
-//! Akenine-Möller, Oskarsson, Åström & Fairchild, Proc. ACM Comput. Graph. Interact. Tech. 3, 15 (2020);
-//! the form for displays of standard range. Its constants and the names of its stages are the paper's.
+//! Akenine-Möller, Oskarsson, Åström & Fairchild, Proc. ACM Comput. Graph. Interact. Tech. 3, 15
+//! (2020); the form for displays of standard range. Its constants and the names of its stages are
+//! the paper's.
 
 use super::View;
 use super::plane::{Plane, gaussian};
@@ -17,8 +18,8 @@ const TO_XYZ: [[f64; 3]; 3] = [
     [1_425_312.0 / 73_733_382.0, 8_788_810.0 / 73_733_382.0, 70_074_185.0 / 73_733_382.0],
 ];
 
-/// Exponents and limits of the paper's final stages: q_c, p_c, p_t, q_f, and the width w of features in
-/// degrees.
+/// Exponents and limits of the paper's final stages: q_c, p_c, p_t, q_f, and the width w of
+/// features in degrees.
 const COLOR_EXPONENT: f64 = 0.7;
 const COLOR_SHARE: f64 = 0.4;
 const COLOR_TARGET: f64 = 0.95;
@@ -91,7 +92,8 @@ fn seen(planes: &[Plane; 3], pixels_per_degree: f64) -> Vec<[f64; 3]> {
     };
     let luminance = filtered(&planes[0], 0.0047);
     let red_green = filtered(&planes[1], 0.0053);
-    // Each Gaussian's kernel has sum 1; what it counts for is its amplitude times its sum over the pixels.
+    // Each Gaussian's kernel has sum 1; what it counts for is its amplitude times its sum over the
+    // pixels.
     let counts = BLUE_YELLOW.map(|[a, b]| {
         let value = |k: usize| {
             let x = (k as f64 - reach as f64) / pixels_per_degree;
@@ -209,7 +211,8 @@ mod tests {
     fn even_pictures_are_as_different_as_their_colors() {
         let (white, black) = (even(1.0), even(0.0));
         let map = flip(&white, &black, DEFAULT_PIXELS_PER_DEGREE);
-        // One pixel of the authors' program, whose matrices between colors are rounded at about 3e-5.
+        // One pixel of the authors' program, whose matrices between colors are rounded at about
+        // 3e-5.
         assert!((mean(&map) - 0.967_388).abs() < 2e-5, "{}", mean(&map));
         let only = |color: usize| {
             let mut view = even(0.0);

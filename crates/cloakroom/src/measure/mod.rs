@@ -1,9 +1,9 @@
-//! Numbers for what pictures show: how alike two views are, how well a device does over a range of its
-//! settings.
+//! Numbers for what pictures show: how alike two views are, how well a device does over a range of
+//! its settings.
 //!
 //! - [`View`] is a picture to be measured, from memory or a file; [`PixelMask`] a part of it.
-//! - [`compare`] holds two views against each other: correlation, structural similarity, FLIP, times of
-//!   flight, power.
+//! - [`compare`] holds two views against each other: correlation, structural similarity, FLIP,
+//!   times of flight, power.
 //! - [`survey`](survey()) asks the rays themselves: where they land, against where they should.
 //! - [`quality`](quality()) does both for every combination of swept keys ([`Sweep`]).
 
@@ -51,7 +51,8 @@ pub enum MeasureError {
     /// An image cannot be loaded.
     #[error("{0}")]
     Image(#[from] crate::photograph::LoadError),
-    /// A picture lacks a channel that is needed, or has a pixel in it that is infinite or not a number.
+    /// A picture lacks a channel that is needed, or has a pixel in it that is infinite or not a
+    /// number.
     #[error("{name} {problem}")]
     Channel {
         /// What the picture is called.

@@ -31,8 +31,9 @@ pub(super) struct Combination {
 
 impl SweepPlan {
     /// Reads the scene of every combination; `load` reads the scene with further overrides, such as
-    /// `device.0.rotation=5`. Every scene is built once, so that what cannot be is told before the work. Held keys follow
-    /// the swept ones so that a computed fact of their device stays what it is in the scene without sweeps.
+    /// `device.0.rotation=5`. Every scene is built once, so that what cannot be is told before the
+    /// work. Held keys follow the swept ones so that a computed fact of their device stays what it
+    /// is in the scene without sweeps.
     ///
     /// # Errors
     ///
@@ -82,7 +83,8 @@ impl SweepPlan {
         Ok(Self { sweeps, holds, scenes, draws: 1 })
     }
 
-    /// The same plan with that many draws of the devices' random errors for each combination, one at least.
+    /// The same plan with that many draws of the devices' random errors for each combination, one
+    /// at least.
     ///
     /// # Errors
     ///

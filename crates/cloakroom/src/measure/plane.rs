@@ -1,4 +1,5 @@
-//! Planes of numbers, filtered by kernels that are products of one along rows and one along columns.
+//! Planes of numbers, filtered by kernels that are products of one along rows and one along
+//! columns.
 
 use rayon::prelude::*;
 
@@ -10,7 +11,8 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// Convolves with a kernel across and one down, both of odd length; the edge goes on beyond itself.
+    /// Convolves with a kernel across and one down, both of odd length; the edge goes on beyond
+    /// itself.
     pub fn filtered(&self, across: &[f64], down: &[f64]) -> Self {
         let (width, height) = (self.width, self.values.len() / self.width);
         let reach = across.len() / 2;

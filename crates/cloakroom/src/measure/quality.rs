@@ -16,7 +16,8 @@ use crate::trace::TraceStats;
 pub struct QualityRow {
     /// The value of each swept key, as it is written.
     pub settings: Vec<String>,
-    /// A number for each column, the mean over the draws that have one; NaN where none has, as without a silhouette.
+    /// A number for each column, the mean over the draws that have one; NaN where none has, as
+    /// without a silhouette.
     pub numbers: Vec<f64>,
     /// The standard error of each mean; 0 for one draw, NaN where only one of several has a number.
     pub standard_errors: Vec<f64>,
@@ -57,8 +58,8 @@ fn same_view(one: &Scene, other: &Scene) -> bool {
         && one.surroundings == other.surroundings
 }
 
-/// Renders the scene of every combination, its ideal and its empty view, and measures them; where the scene is random,
-/// every draw of it.
+/// Renders the scene of every combination, its ideal and its empty view, and measures them; where
+/// the scene is random, every draw of it.
 ///
 /// # Errors
 ///

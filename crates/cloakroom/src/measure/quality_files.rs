@@ -6,7 +6,8 @@ use serde_json::{Map, Value, json};
 use std::path::Path;
 
 impl QualityTable {
-    /// Writes the table as CSV: a line of names, then one line a row; empty where there is no number.
+    /// Writes the table as CSV: a line of names, then one line a row; empty where there is no
+    /// number.
     ///
     /// # Errors
     ///
@@ -26,7 +27,8 @@ impl QualityTable {
         })
     }
 
-    /// Writes the table as NPZ: an array for each column and for each sweep of numbers; NaN where there is no number.
+    /// Writes the table as NPZ: an array for each column and for each sweep of numbers; NaN where
+    /// there is no number.
     ///
     /// # Errors
     ///
@@ -70,8 +72,9 @@ impl QualityTable {
         self.draws > 1
     }
 
-    /// The table as a JSON object: `sweeps`, `columns`, `draws`, and `rows` of `settings` and `figures` by name, and of
-    /// their `standard_errors` where there are several draws; null where there is no number.
+    /// The table as a JSON object: `sweeps`, `columns`, `draws`, and `rows` of `settings` and
+    /// `figures` by name, and of their `standard_errors` where there are several draws; null where
+    /// there is no number.
     #[must_use]
     pub fn to_json(&self) -> Value {
         let keys = || self.sweeps.iter().map(|sweep| sweep.key.clone());

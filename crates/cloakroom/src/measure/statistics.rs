@@ -34,8 +34,8 @@ impl Statistics {
         self.sums.iter().map(|sum| if sum.count > 0.0 { sum.mean } else { f64::NAN })
     }
 
-    /// The standard errors of the means: the sample's standard deviation over the root of the number; 0 for one
-    /// draw, NaN where only one of several, or none, counts.
+    /// The standard errors of the means: the sample's standard deviation over the root of the
+    /// number; 0 for one draw, NaN where only one of several, or none, counts.
     pub fn standard_errors(&self) -> impl Iterator<Item = f64> {
         self.sums.iter().map(|sum| match sum.count {
             1.0 if self.draws == 1 => 0.0,

@@ -8,9 +8,9 @@ use crate::photograph::encode;
 /// The constants K1 and K2 of the paper, and the range L of the signal.
 const K: [f64; 2] = [0.01, 0.03];
 
-/// The mean structural similarity of the luminance of two views over a region, 1 for equal ones. Luminance is
-/// that of sRGB, encoded as for a display and held to what that can show; windows end at the picture's edge, which
-/// goes on beyond itself.
+/// The mean structural similarity of the luminance of two views over a region, 1 for equal ones.
+/// Luminance is that of sRGB, encoded as for a display and held to what that can show; windows end
+/// at the picture's edge, which goes on beyond itself.
 ///
 /// Views and region must be of one size.
 #[must_use]
@@ -45,8 +45,8 @@ mod tests {
     #[test]
     fn it_is_that_of_scikit_image() {
         // skimage.metrics.structural_similarity 0.26, gaussian_weights=True, sigma=1.5,
-        // use_sample_covariance=False, data_range=1, of the encoded luminances; it leaves out the windows that
-        // reach beyond the picture.
+        // use_sample_covariance=False, data_range=1, of the encoded luminances; it leaves out the
+        // windows that reach beyond the picture.
         let [a, b] = patterns();
         let inner = PixelMask::rectangle(&a, [5, 5, a.width - 10, a.height - 10]).expect("inside");
         let similarity = structural_similarity(&a, &b, &inner);

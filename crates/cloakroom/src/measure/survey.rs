@@ -1,4 +1,5 @@
-//! What the rays themselves tell of a cloak: where they land on the photograph, against where they should.
+//! What the rays themselves tell of a cloak: where they land on the photograph, against where they
+//! should.
 
 use crate::assembly::Screen;
 use crate::render::{PreparedScene, RenderError, Supervision};
@@ -10,38 +11,39 @@ use std::sync::atomic::Ordering;
 /// How near to where it should a ray must land to count as cloaked, cm on the photograph.
 pub const CLOAKED_WITHIN_CM: f64 = 1.0;
 
-/// How near to where it should a ray must land to be in place, cm on the photograph, and how near to the direction that
-/// it should have it must go, degrees: strictly, and widely.
+/// How near to where it should a ray must land to be in place, cm on the photograph, and how near
+/// to the direction that it should have it must go, degrees: strictly, and widely.
 pub const IN_PLACE_WITHIN: [[f64; 2]; 2] = [[CLOAKED_WITHIN_CM, 1.0], [5.0, 5.0]];
 
 /// What the ray through the middle of each pixel has met, and how well.
 ///
-/// A ray's leaves count by their power. Errors are those of the leaves on the photograph against the strongest leaf
-/// of the same camera ray in the ideal scene, if that is on the photograph, too.
+/// A ray's leaves count by their power. Errors are those of the leaves on the photograph against
+/// the strongest leaf of the same camera ray in the ideal scene, if that is on the photograph, too.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     /// Whether the ray meets a device, row by row from the top left.
     pub silhouette: Vec<bool>,
-    /// Root mean square of the distance at the photograph from where light should land, over the silhouette, cm;
-    /// `None` if none of it can be compared.
+    /// Root mean square of the distance at the photograph from where light should land, over the
+    /// silhouette, cm; `None` if none of it can be compared.
     pub displacement_rms_cm: Option<f64>,
-    /// Root mean square of the angle to the direction that light should have there, over the silhouette,
-    /// degrees.
+    /// Root mean square of the angle to the direction that light should have there, over the
+    /// silhouette, degrees.
     pub direction_error_rms_deg: Option<f64>,
-    /// Share of the silhouette's pixels that are not cloaked: less than half of their power goes within
-    /// [`CLOAKED_WITHIN_CM`] of where it should, or, where it should miss the photograph, misses it. `None` without
-    /// a silhouette.
+    /// Share of the silhouette's pixels that are not cloaked: less than half of their power goes
+    /// within [`CLOAKED_WITHIN_CM`] of where it should, or, where it should miss the photograph,
+    /// misses it. `None` without a silhouette.
     pub uncloaked_share: Option<f64>,
     /// What these pixels cover of the plane of the photograph in the empty view, cm².
     pub uncloaked_area_cm2: f64,
-    /// The shares of each pixel's power that are in place, row by row from the top left: strictly, and widely, as
-    /// [`IN_PLACE_WITHIN`] says. Light that should miss the photograph must miss it, wherever.
+    /// The shares of each pixel's power that are in place, row by row from the top left: strictly,
+    /// and widely, as [`IN_PLACE_WITHIN`] says. Light that should miss the photograph must miss it,
+    /// wherever.
     pub in_place: Vec<[f64; 2]>,
 }
 
 impl Survey {
-    /// The mean over the silhouette of the share that is strictly [in place](Self::in_place); `None` without a
-    /// silhouette.
+    /// The mean over the silhouette of the share that is strictly [in place](Self::in_place);
+    /// `None` without a silhouette.
     #[must_use]
     pub fn in_place_share(&self) -> Option<f64> {
         let met = || self.silhouette.iter().zip(&self.in_place).filter(|(met, _)| **met);
@@ -64,8 +66,8 @@ struct Sight {
     in_place: [f64; 2],
 }
 
-/// Sends a ray through the middle of each pixel of a scene, and the same ray through the ideal scene, which must
-/// have the same camera and photograph.
+/// Sends a ray through the middle of each pixel of a scene, and the same ray through the ideal
+/// scene, which must have the same camera and photograph.
 ///
 /// # Errors
 ///

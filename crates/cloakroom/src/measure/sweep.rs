@@ -44,8 +44,8 @@ pub enum SweepError {
 }
 
 impl Sweep {
-    /// Reads `KEY=START..END:STEP`, the end included, or `KEY=VALUE,VALUE,...`; commas in brackets and quotes
-    /// belong to a value.
+    /// Reads `KEY=START..END:STEP`, the end included, or `KEY=VALUE,VALUE,...`; commas in brackets
+    /// and quotes belong to a value.
     ///
     /// # Errors
     ///
@@ -156,8 +156,8 @@ fn split(text: &str) -> Vec<String> {
     values.iter().map(|value| value.trim().to_owned()).collect()
 }
 
-/// Every combination of the values of sweeps, as the number of each value in its sweep; the last one runs
-/// fastest. Without sweeps, there is one.
+/// Every combination of the values of sweeps, as the number of each value in its sweep; the last
+/// one runs fastest. Without sweeps, there is one.
 ///
 /// # Errors
 ///

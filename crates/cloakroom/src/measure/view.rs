@@ -14,8 +14,8 @@ const DELIVERED: &str = "delivered";
 /// All channels that make a view.
 const CHANNELS: [&str; 6] = ["R", "G", "B", FLIGHT, FLIGHT_DIFFERENCE, DELIVERED];
 
-/// A picture in linear light, with the times and powers that came with it. All planes run row by row from
-/// the top left.
+/// A picture in linear light, with the times and powers that came with it. All planes run row by
+/// row from the top left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Width in pixels, at least 1.
@@ -51,8 +51,8 @@ impl View {
         Self::of_named(picture, "the picture")
     }
 
-    /// Reads a view from a file, as its ending says: NPZ and EXR hold linear light in `R`, `G` and `B`, times
-    /// of flight and powers; PNG is decoded from sRGB.
+    /// Reads a view from a file, as its ending says: NPZ and EXR hold linear light in `R`, `G` and
+    /// `B`, times of flight and powers; PNG is decoded from sRGB.
     ///
     /// # Errors
     ///

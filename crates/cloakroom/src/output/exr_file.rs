@@ -8,8 +8,8 @@ use exr::prelude::{
 use std::io;
 use std::path::Path;
 
-/// Writes every channel as 32-bit floats under its name, colors as `.R`, `.G` and `.B` of it, and the
-/// metadata as text attributes.
+/// Writes every channel as 32-bit floats under its name, colors as `.R`, `.G` and `.B` of it, and
+/// the metadata as text attributes.
 ///
 /// # Errors
 ///

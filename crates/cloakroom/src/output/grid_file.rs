@@ -113,8 +113,9 @@ pub fn write_grid(grid: &GridFile, path: &Path) -> Result<(), OutputError> {
 }
 
 impl GridFile {
-    /// Arrays `x`, `y`, `z` of the middles of the cells, and each array with the indices of x, y and z, and of
-    /// row and column for a tensor; the metadata as the array of bytes `metadata`, a JSON object.
+    /// Arrays `x`, `y`, `z` of the middles of the cells, and each array with the indices of x, y
+    /// and z, and of row and column for a tensor; the metadata as the array of bytes `metadata`, a
+    /// JSON object.
     fn write_npz(&self, path: &Path) -> Result<(), OutputError> {
         write_npz(path, &self.metadata, |npz| {
             for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
@@ -198,8 +199,8 @@ impl GridFile {
         out.flush()
     }
 
-    /// A line of names, then a line for each cell: `x_cm`, `y_cm`, `z_cm`, words for codes, numbers, and the six
-    /// entries of tensors.
+    /// A line of names, then a line for each cell: `x_cm`, `y_cm`, `z_cm`, words for codes,
+    /// numbers, and the six entries of tensors.
     fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
         let mut names = ["x_cm", "y_cm", "z_cm"].map(str::to_owned).to_vec();
         for GridArray { name, values } in &self.arrays {

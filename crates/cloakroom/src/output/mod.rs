@@ -1,5 +1,5 @@
-//! Pictures (PNG, EXR, NPZ) and data on grids (NPZ, VTI, CSV) into files, each whole or not at all; and pictures back
-//! from PNG and NPZ.
+//! Pictures (PNG, EXR, NPZ) and data on grids (NPZ, VTI, CSV) into files, each whole or not at all;
+//! and pictures back from PNG and NPZ.
 
 mod exr_file;
 mod grid_file;

@@ -1,4 +1,5 @@
-//! NPZ: arrays for numpy, as those of a picture: every channel as one array, (height, width) or (height, width, 3).
+//! NPZ: arrays for numpy, as those of a picture: every channel as one array, (height, width) or
+//! (height, width, 3).
 
 use super::{OutputError, Picture, Samples, WriteSeek, write_whole};
 use ndarray::{ArrayView, ArrayView1, Dimension, StrideShape};

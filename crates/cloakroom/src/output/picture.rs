@@ -40,9 +40,9 @@ impl Picture {
         self.channels.iter().find(|channel| channel.name == name)
     }
 
-    /// The image of a polarizer by itself: the channels `horizontal.R` to `horizontal.B`, say, as `R` to `B`, and
-    /// without metadata. With "" for the name, the image through the camera's own. `None` if the picture has not all
-    /// three.
+    /// The image of a polarizer by itself: the channels `horizontal.R` to `horizontal.B`, say, as
+    /// `R` to `B`, and without metadata. With "" for the name, the image through the camera's own.
+    /// `None` if the picture has not all three.
     #[must_use]
     pub fn image_through(&self, polarizer: &str) -> Option<Self> {
         let dot = if polarizer.is_empty() { "" } else { "." };
@@ -81,7 +81,8 @@ impl Samples {
         self.len() == 0
     }
 
-    /// The number at an index below [`len`](Self::len); red, green and blue of a color follow each other.
+    /// The number at an index below [`len`](Self::len); red, green and blue of a color follow each
+    /// other.
     #[must_use]
     pub fn get(&self, index: usize) -> f64 {
         match self {

@@ -5,7 +5,8 @@ use crate::photograph::decode;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// The image `R`, `G`, `B` of a picture as 8-bit sRGB (IEC 61966-2-1), clamped to what that can show.
+/// The image `R`, `G`, `B` of a picture as 8-bit sRGB (IEC 61966-2-1), clamped to what that can
+/// show.
 ///
 /// # Errors
 ///
@@ -36,9 +37,11 @@ pub fn to_srgb(picture: &Picture) -> Result<RgbImage, OutputError> {
 
 /// The sRGB codes of linear light.
 struct Codes {
-    /// The linear light from which on the next code is nearer: entry n lies between the codes n and n + 1.
+    /// The linear light from which on the next code is nearer: entry n lies between the codes n and
+    /// n + 1.
     thresholds: [f64; 255],
-    /// The codes at the lower ends of equal parts of the light from 0 to 1, which hold two codes at most.
+    /// The codes at the lower ends of equal parts of the light from 0 to 1, which hold two codes at
+    /// most.
     lowest: [u8; PARTS],
 }
 
@@ -96,8 +99,8 @@ pub fn encode_png(
     Ok(writer.finish()?)
 }
 
-/// Writes an image that comes in strips, as wide as the whole and from top to bottom, as a PNG with text
-/// metadata: no more than a strip need be in memory.
+/// Writes an image that comes in strips, as wide as the whole and from top to bottom, as a PNG with
+/// text metadata: no more than a strip need be in memory.
 ///
 /// # Errors
 ///

@@ -6,9 +6,9 @@ use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Writes a file such that it appears under its name only when it is complete: into a temporary file
-/// beside it, which is renamed at the end and removed if anything goes wrong. A target that exists
-/// and is not a regular file (a pipe, a device) is written to directly.
+/// Writes a file such that it appears under its name only when it is complete: into a temporary
+/// file beside it, which is renamed at the end and removed if anything goes wrong. A target that
+/// exists and is not a regular file (a pipe, a device) is written to directly.
 ///
 /// # Errors
 ///
@@ -62,7 +62,8 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// The folder within which a file comes into being by a rename; `None` where it is to be written to what is there.
+/// The folder within which a file comes into being by a rename; `None` where it is to be written to
+/// what is there.
 fn folder(path: &Path) -> Result<Option<PathBuf>, OutputError> {
     let refuse =
         |reason: &str| Err(OutputError::Write { path: path.to_owned(), reason: reason.to_owned() });

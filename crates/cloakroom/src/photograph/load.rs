@@ -60,8 +60,8 @@ pub fn load(source: &ImageSource) -> Result<LinearImage, LoadError> {
         .map_err(|problem| LoadError { image: source.clone(), problem })
 }
 
-/// Reads the bytes of an image file, as [`load()`] does; `source` is its name in messages. It may have
-/// `most_pixels` pixels.
+/// Reads the bytes of an image file, as [`load()`] does; `source` is its name in messages. It may
+/// have `most_pixels` pixels.
 ///
 /// # Errors
 ///

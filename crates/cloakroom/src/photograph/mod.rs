@@ -1,7 +1,8 @@
 //! Pictures that rays look at: reading image files into linear light, and averaging them over the
 //! patch that a ray bundle covers.
 //!
-//! - [`ImageSource`] names an image, built in or a file; [`load()`] reads it into a [`LinearImage`].
+//! - [`ImageSource`] names an image, built in or a file; [`load()`] reads it into a
+//!   [`LinearImage`].
 //! - [`Pyramid`] answers what a point of the image looks like through a patch of any shape.
 //! - [`Equirectangular`] wraps a pyramid around the scene.
 //!

@@ -86,7 +86,8 @@ impl Pyramid {
     fn level(&self, level: usize) -> &Level {
         match level.checked_sub(1) {
             None => &self.finest,
-            // One thread makes it, on its own: work shared out while others wait could wait for them.
+            // One thread makes it, on its own: work shared out while others wait could wait for
+            // them.
             Some(index) => self.coarser[index].get_or_init(|| self.halved(index)),
         }
     }
@@ -271,8 +272,8 @@ impl Level {
     }
 }
 
-/// Neighbouring texels along one axis and their weights in an average of the linear interpolant; in `LANES`
-/// numbers, as many as the processor takes at once.
+/// Neighbouring texels along one axis and their weights in an average of the linear interpolant; in
+/// `LANES` numbers, as many as the processor takes at once.
 struct Taps<const TAPS: usize, const LANES: usize> {
     first: i64,
     lanes: [f32; LANES],

@@ -8,7 +8,8 @@ use crate::keys::BUILT_IN_PREFIX;
 
 use super::linear_image::{LinearImage, MAX_MEMORY, MAX_PIXELS, Texels};
 
-/// The images that come with the program, by name: those of [`BUILT_IN_IMAGES`](crate::keys::BUILT_IN_IMAGES).
+/// The images that come with the program, by name: those of
+/// [`BUILT_IN_IMAGES`](crate::keys::BUILT_IN_IMAGES).
 const BUILT_IN: [(&str, &[u8]); 1] = [("bookshelf", include_bytes!("../../assets/bookshelf.jpg"))];
 
 /// Where an image comes from.
@@ -32,8 +33,8 @@ impl ImageSource {
     ///
     /// # Errors
     ///
-    /// [`LoadError`] where it has no pixels or too many, its texels are not as many, or one of them is not
-    /// finite.
+    /// [`LoadError`] where it has no pixels or too many, its texels are not as many, or one of them
+    /// is not finite.
     pub fn memory(image: LinearImage) -> Result<Self, LoadError> {
         let checked = check(&image);
         let image = Self::Memory(Arc::new(image));
@@ -134,8 +135,8 @@ pub enum LoadProblem {
     /// An image in memory has not as many texels as its size says, but so many.
     #[error("has {0} texels")]
     WrongCount(usize),
-    /// A pixel of an EXR image or of one in memory is infinite or not a number: the column and row of the first such
-    /// one, from 0.
+    /// A pixel of an EXR image or of one in memory is infinite or not a number: the column and row
+    /// of the first such one, from 0.
     #[error("has a pixel that is not a finite number, in column {} and row {}", .0[0], .0[1])]
     NotFinite([usize; 2]),
 }

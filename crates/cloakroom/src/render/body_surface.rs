@@ -1,9 +1,10 @@
 //! What opaque bodies show: a color, or an image laid on their shape.
 //!
-//! An image stands whole and upright, as seen from outside, on each face of a box and each end of a cylinder. Up
-//! is y there; on the upper and the lower face of a box it is as if they were folded up and down from the face
-//! that looks along -x, towards the usual camera. Around a ball and the side of a cylinder the image goes once:
-//! its middle column is on the side of -x, and its top row at the pole +y of a ball, at the end +z of a cylinder.
+//! An image stands whole and upright, as seen from outside, on each face of a box and each end of a
+//! cylinder. Up is y there; on the upper and the lower face of a box it is as if they were folded
+//! up and down from the face that looks along -x, towards the usual camera. Around a ball and the
+//! side of a cylinder the image goes once: its middle column is on the side of -x, and its top row
+//! at the pole +y of a ball, at the end +z of a cylinder.
 
 use super::Images;
 use crate::assembly::Placed;
@@ -34,7 +35,8 @@ enum Texture {
     Ball(Arc<Equirectangular>),
 }
 
-/// Where a point is on the image, and by how much (u, v) changes per cm along the surface; all in the body's frame.
+/// Where a point is on the image, and by how much (u, v) changes per cm along the surface; all in
+/// the body's frame.
 #[derive(Clone, Copy, Debug)]
 struct Spot {
     normal: DVec3,
@@ -44,7 +46,8 @@ struct Spot {
 }
 
 impl BodySurface {
-    /// The surface of a device, if it is an opaque body; its image is taken from those that are known, or read.
+    /// The surface of a device, if it is an opaque body; its image is taken from those that are
+    /// known, or read.
     ///
     /// # Errors
     ///
@@ -73,8 +76,9 @@ impl BodySurface {
         Ok(Some(Self { pose: placed.pose, texture }))
     }
 
-    /// Linear light from a point of the surface. `steps` says, for the normal of the tangent plane there, how far
-    /// away (cm) rays one sample further along the axes of the camera's picture come to that plane.
+    /// Linear light from a point of the surface. `steps` says, for the normal of the tangent plane
+    /// there, how far away (cm) rays one sample further along the axes of the camera's picture come
+    /// to that plane.
     pub fn light(&self, point: DVec3, steps: impl Fn(DVec3) -> [DVec3; 2]) -> [f64; 3] {
         let Self { pose, texture } = self;
         let local = pose.to_local(point);

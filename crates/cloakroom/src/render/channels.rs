@@ -8,8 +8,9 @@ use crate::scene::PictureSettings;
 pub enum ChannelSet {
     /// The image through the camera's polarizer alone: `R`, `G`, `B`.
     Image,
-    /// That and the images through a horizontal and a vertical polarizer, `horizontal.R` to `vertical.B`, as pictures
-    /// through them alone would be. Where every channel is wanted, these too show all branches that are followed.
+    /// That and the images through a horizontal and a vertical polarizer, `horizontal.R` to
+    /// `vertical.B`, as pictures through them alone would be. Where every channel is wanted, these
+    /// too show all branches that are followed.
     Polarizers,
     /// Every channel that every file of data holds, and the others that the scene asks for.
     Everything,
@@ -41,8 +42,8 @@ pub enum ChannelKind {
     /// Time of flight less that of the same camera ray in the empty scene, ns; NaN also where
     /// that ray misses the photograph.
     TimeOfFlightDifference,
-    /// What a pulse takes from the photograph to the camera, ns: as [`Self::TimeOfFlight`]; NaN also behind media that
-    /// absorb.
+    /// What a pulse takes from the photograph to the camera, ns: as [`Self::TimeOfFlight`]; NaN
+    /// also behind media that absorb.
     GroupDelay,
     /// Its standard deviation over the leaves of one camera ray, ns.
     GroupDelaySpread,
@@ -67,8 +68,8 @@ pub enum ChannelKind {
 }
 
 impl ChannelKind {
-    /// All channels in the order of files, with their names there: those that every file of data holds, then those that
-    /// a scene must ask for.
+    /// All channels in the order of files, with their names there: those that every file of data
+    /// holds, then those that a scene must ask for.
     const NAMES: [(Self, &str); 25] = [
         (Self::Image(0), "R"),
         (Self::Image(1), "G"),

@@ -6,7 +6,8 @@ use crate::photograph::encode;
 /// At least so many samples are looked at, and a quarter of those asked for.
 const LEAST: u32 = 4;
 
-/// The lowest and the highest of the samples of a 2 x 2 block so far, per colour, as sRGB codes from 0 to 255.
+/// The lowest and the highest of the samples of a 2 x 2 block so far, per colour, as sRGB codes
+/// from 0 to 255.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contrast {
     lowest: [f64; 3],

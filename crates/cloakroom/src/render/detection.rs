@@ -14,8 +14,8 @@ pub(super) struct Detection<const N: usize> {
     /// Whether the first two launched polarizations are horizontal and vertical, with an image of
     /// their own each.
     pub separate: bool,
-    /// Whether the images of these two are to be as if each had been launched alone: without the branches that are too
-    /// weak in the one and followed because of the other.
+    /// Whether the images of these two are to be as if each had been launched alone: without the
+    /// branches that are too weak in the one and followed because of the other.
     pub alone: bool,
     /// Whether times of flight are wanted.
     pub times: bool,
@@ -64,8 +64,8 @@ impl<const N: usize> Detection<N> {
         }
     }
 
-    /// Adds what the optional channels of a picture ask for; where the image alone is wanted, leaves out all
-    /// but that.
+    /// Adds what the optional channels of a picture ask for; where the image alone is wanted,
+    /// leaves out all but that.
     pub fn with_options(self, wanted: ChannelSet, picture: &PictureSettings) -> Self {
         let everything = wanted == ChannelSet::Everything;
         let asked = |channel| everything && picture.asks_for(channel);

@@ -29,8 +29,8 @@ pub(super) struct Working {
 }
 
 /// Adds to a pixel what one camera ray sees. `across` and `down` are its neighbours one pixel away
-/// along the picture's axes; `spacing` is the spacing of samples in pixels. `COHERENT` is whether leaves
-/// may interfere in the scene: what that takes costs nothing elsewhere.
+/// along the picture's axes; `spacing` is the spacing of samples in pixels. `COHERENT` is whether
+/// leaves may interfere in the scene: what that takes costs nothing elsewhere.
 pub(super) fn expose<const N: usize, const COHERENT: bool>(
     prepared: &PreparedScene<'_>,
     detection: &Detection<N>,
@@ -140,9 +140,9 @@ fn interfere<const N: usize>(
     }
 }
 
-/// Adds to the pixels of a 2 x 2 block what they see past every device, where all its rays end on the
-/// photograph; whether they do. The same as [`expose`] with those rays as leaves, but for what is worked
-/// out once for the block.
+/// Adds to the pixels of a 2 x 2 block what they see past every device, where all its rays end on
+/// the photograph; whether they do. The same as [`expose`] with those rays as leaves, but for what
+/// is worked out once for the block.
 pub(super) fn expose_unhindered<const N: usize>(
     prepared: &PreparedScene<'_>,
     detection: &Detection<N>,
@@ -178,7 +178,8 @@ pub(super) fn time_of_flight<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f
     (leaf.delay_path + distance) / SPEED_OF_LIGHT
 }
 
-/// What a pulse takes on a leaf that ends on the photograph, `distance` (cm) on, in ns; NaN where it is not known.
+/// What a pulse takes on a leaf that ends on the photograph, `distance` (cm) on, in ns; NaN where
+/// it is not known.
 pub(super) fn group_delay<const N: usize>(leaf: &Leaf<N>, distance: f64) -> f64 {
     (leaf.group_path.unwrap_or(f64::NAN) + distance) / SPEED_OF_LIGHT
 }
@@ -212,8 +213,8 @@ struct Neighbour<'a, const N: usize> {
 }
 
 impl<const N: usize> Neighbour<'_, N> {
-    /// The leaf moved as its camera ray is: as if it came straight from a camera that stands and looks where
-    /// the leaf seems to come from.
+    /// The leaf moved as its camera ray is: as if it came straight from a camera that stands and
+    /// looks where the leaf seems to come from.
     fn moved(&self) -> Line {
         let (here, leaf, there) = (&self.here.ray, self.leaf, &self.neighbour.ray);
         let turn = DQuat::from_rotation_arc(here.direction, leaf.direction);
@@ -290,7 +291,8 @@ fn light<const N: usize>(
                 lines().map(|Line { origin, direction }| {
                     let distance = normal.dot(leaf.position - origin) / normal.dot(direction);
                     let step = (origin + direction * distance - leaf.position) * spacing;
-                    // A neighbour that does not come to the plane leaves a patch without size, which does no harm.
+                    // A neighbour that does not come to the plane leaves a patch without size,
+                    // which does no harm.
                     if step.is_finite() { step } else { DVec3::ZERO }
                 })
             })

@@ -8,8 +8,8 @@ use std::sync::Arc;
 /// Images by their names.
 type Named<T> = Vec<(ImageSource, Arc<T>)>;
 
-/// The photograph, the surroundings and the images on bodies that were read last. Scenes that are looked at one after
-/// the other mostly show the same.
+/// The photograph, the surroundings and the images on bodies that were read last. Scenes that are
+/// looked at one after the other mostly show the same.
 #[derive(Clone, Debug, Default)]
 pub struct Images {
     photograph: Named<Pyramid>,
@@ -21,7 +21,8 @@ pub struct Images {
 }
 
 impl Images {
-    /// Hangs an image up as the photograph of that name: scenes that name it show this, and no file is read.
+    /// Hangs an image up as the photograph of that name: scenes that name it show this, and no file
+    /// is read.
     pub fn hang(&mut self, name: ImageSource, image: LinearImage) {
         self.photograph = vec![(name, Arc::new(flat(image)))];
     }
@@ -58,7 +59,8 @@ impl Images {
         known(&mut self.balls, source, Equirectangular::new)
     }
 
-    /// Forgets all images on bodies but these, unless there are none: the next scene may show them again.
+    /// Forgets all images on bodies but these, unless there are none: the next scene may show them
+    /// again.
     pub(super) fn keep(&mut self, shown: &[ImageSource]) {
         if !shown.is_empty() {
             self.faces.retain(|(name, _)| shown.contains(name));

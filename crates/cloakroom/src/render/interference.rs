@@ -1,14 +1,17 @@
-//! Which leaves of a camera ray interfere: those that see the same thing, by ways of about the same length.
+//! Which leaves of a camera ray interfere: those that see the same thing, by ways of about the same
+//! length.
 
 use super::detection::Detection;
 use super::prepared_scene::PreparedScene;
 use crate::trace::{Leaf, LeafEnd, Pair, Way};
 use glam::DVec3;
 
-/// Leaves that see places further apart than this, in widths of a pixel, do not interfere: w is below 1e-12.
+/// Leaves that see places further apart than this, in widths of a pixel, do not interfere: w is
+/// below 1e-12.
 const FARTHEST: f64 = 7.5;
 
-/// To this the leaves of a ray of which nothing was absorbed add up to it, as fields; else they are booked as powers.
+/// To this the leaves of a ray of which nothing was absorbed add up to it, as fields; else they are
+/// booked as powers.
 const OPEN: f64 = 1e-6;
 
 /// What a leaf sees.
@@ -24,10 +27,11 @@ enum Sight {
 pub(super) struct Interference {
     /// The pairs.
     pub pairs: Vec<Pair>,
-    /// The power that the pairs add to that of all leaves: it is missing in what was absorbed, or where nothing was in
-    /// branches that were pruned.
+    /// The power that the pairs add to that of all leaves: it is missing in what was absorbed, or
+    /// where nothing was in branches that were pruned.
     pub added: f64,
-    /// What each leaf's power is multiplied by, as one of those that it interferes with; none without pairs.
+    /// What each leaf's power is multiplied by, as one of those that it interferes with; none
+    /// without pairs.
     gain: Vec<f64>,
     /// The distance of each leaf to the photograph, cm.
     screens: Vec<Option<f64>>,
@@ -41,8 +45,8 @@ pub(super) struct Interference {
 }
 
 impl Interference {
-    /// Finds the pairs among the leaves of a ray that starts at `camera` and of which a share has been `absorbed`, and the
-    /// gains of the leaves.
+    /// Finds the pairs among the leaves of a ray that starts at `camera` and of which a share has
+    /// been `absorbed`, and the gains of the leaves.
     pub fn find<const N: usize>(
         &mut self,
         prepared: &PreparedScene<'_>,
@@ -54,7 +58,8 @@ impl Interference {
         self.lights.clear();
         self.pair_up(prepared, detection, leaves, camera);
         self.share_out(detection, leaves);
-        // Else the ray alone does not tell: it is one of a beam, of which parts come to an edge or to another place.
+        // Else the ray alone does not tell: it is one of a beam, of which parts come to an edge or
+        // to another place.
         let closes = self.added.abs() <= OPEN || (absorbed > 0.0 && self.added <= absorbed);
         if !closes {
             self.gain.clear();
@@ -118,8 +123,8 @@ impl Interference {
         self.gain.get(leaf).copied().unwrap_or(1.0)
     }
 
-    /// Works out the gains, and the sum of what is added. Parallel pairs alone count: of the fringes of others it is
-    /// the mean.
+    /// Works out the gains, and the sum of what is added. Parallel pairs alone count: of the
+    /// fringes of others it is the mean.
     fn share_out<const N: usize>(&mut self, detection: &Detection<N>, leaves: &[Leaf<N>]) {
         self.gain.clear();
         self.added = 0.0;

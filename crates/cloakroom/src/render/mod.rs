@@ -43,7 +43,8 @@ const BAND_ROWS: u32 = 4;
 /// How a long work is watched and stopped.
 #[derive(Clone, Copy)]
 pub struct Supervision<'a> {
-    /// Called now and then, from any thread, with how many rows have been finished since the last call.
+    /// Called now and then, from any thread, with how many rows have been finished since the last
+    /// call.
     pub rows_done: &'a (dyn Fn(u64) + Sync),
     /// Set from outside to stop the work.
     pub stop: &'a AtomicBool,
@@ -106,8 +107,9 @@ pub fn strips(prepared: &PreparedScene<'_>) -> impl Iterator<Item = Tile> + use<
     })
 }
 
-/// Renders a tile of a picture: the picture has these pixels alone, and its metadata say which they are. They are
-/// the same as in the whole picture; even edges save work, for pixels are exposed in aligned blocks of 2 x 2.
+/// Renders a tile of a picture: the picture has these pixels alone, and its metadata say which they
+/// are. They are the same as in the whole picture; even edges save work, for pixels are exposed in
+/// aligned blocks of 2 x 2.
 ///
 /// # Errors
 ///
@@ -129,8 +131,8 @@ pub fn render_tile(
     Ok(rendered)
 }
 
-/// Renders a part of a picture, one of its [`strips`] or all of it: the picture has these pixels alone, and the
-/// metadata of the whole.
+/// Renders a part of a picture, one of its [`strips`] or all of it: the picture has these pixels
+/// alone, and the metadata of the whole.
 ///
 /// # Errors
 ///
@@ -189,13 +191,15 @@ fn expose_film<const N: usize>(
     Ok(Rendered { picture: Picture { width, height, channels, metadata }, stats })
 }
 
-/// How long rendering the image will take on the threads there are, in seconds: a few thousand rays, spread
-/// over the picture, are traced and timed, or as many as two seconds or a block of four pixels take.
+/// How long rendering the image will take on the threads there are, in seconds: a few thousand
+/// rays, spread over the picture, are traced and timed, or as many as two seconds or a block of
+/// four pixels take.
 #[must_use]
 pub fn estimated_seconds(prepared: &PreparedScene<'_>) -> f64 {
     const GRID: [u32; 2] = [64, 48];
     const LONGEST: Duration = Duration::from_secs(2);
-    // A prime above the number of blocks: its multiples visit them all, here and there in the picture.
+    // A prime above the number of blocks: its multiples visit them all, here and there in the
+    // picture.
     const STRIDE: u32 = 7919;
     let camera = &prepared.scene.camera;
     let [width, height] = camera.resolution;

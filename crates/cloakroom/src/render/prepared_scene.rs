@@ -175,9 +175,9 @@ impl PixelWidth {
     }
 }
 
-/// Whether the leaves of a picture are added as fields: where the scene writes a bandwidth, has a polarizer, or a device
-/// so thin that light within it interferes. Elsewhere paths coincide here and there by chance, and branches are
-/// pruned that would have to be followed for their fields.
+/// Whether the leaves of a picture are added as fields: where the scene writes a bandwidth, has a
+/// polarizer, or a device so thin that light within it interferes. Elsewhere paths coincide here
+/// and there by chance, and branches are pruned that would have to be followed for their fields.
 #[must_use]
 fn interferes(scene: &Scene, assembly: &Assembly) -> bool {
     scene.light.bandwidth_nm.given || assembly.least_path_difference() <= coherence(scene).reach()
@@ -205,8 +205,9 @@ pub fn coherence(scene: &Scene) -> Coherence {
     Coherence::new(scene.light.wavelength_nm, scene.light.bandwidth_nm.value)
 }
 
-/// How given rays are traced: the threshold is the given one, else that which the scene writes, else 1e-9, or 1e-24 if
-/// leaves are to be added as fields (`coherent`); with what pulses take if `group_delays`.
+/// How given rays are traced: the threshold is the given one, else that which the scene writes,
+/// else 1e-9, or 1e-24 if leaves are to be added as fields (`coherent`); with what pulses take if
+/// `group_delays`.
 #[must_use]
 pub fn ray_settings(
     scene: &Scene,
@@ -238,7 +239,8 @@ pub struct PreparedScene<'s> {
     pub assembly: Assembly,
     /// The limits within which rays are followed.
     pub limits: Limits,
-    /// How light interferes, where it is looked at: a scene that says so, with a polarizer or thin devices.
+    /// How light interferes, where it is looked at: a scene that says so, with a polarizer or thin
+    /// devices.
     pub coherence: Option<Coherence>,
     /// How wide a pixel is in the middle of the picture.
     pub(super) pixel: PixelWidth,
@@ -261,7 +263,8 @@ impl<'s> PreparedScene<'s> {
         Self::with_images(scene, &mut Images::default())
     }
 
-    /// The same with images that have been read before, where the scene shows them; what is read goes among them.
+    /// The same with images that have been read before, where the scene shows them; what is read
+    /// goes among them.
     ///
     /// # Errors
     ///
@@ -327,8 +330,8 @@ impl<'s> PreparedScene<'s> {
     }
 }
 
-/// The device in whose metal, or opaque inside, a camera ray would start. The rays of an orthographic camera start side by
-/// side: every pixel is looked at.
+/// The device in whose metal, or opaque inside, a camera ray would start. The rays of an
+/// orthographic camera start side by side: every pixel is looked at.
 fn camera_inside(scene: &Scene, assembly: &Assembly) -> Option<usize> {
     let camera = &scene.camera;
     let forward = camera.forward();

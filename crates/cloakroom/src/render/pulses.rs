@@ -48,7 +48,8 @@ pub struct Pulse {
     pub time_of_flight_ns: f64,
     /// The same less that of the empty view, ns; `None` where the empty view misses the photograph.
     pub delay_ns: Option<f64>,
-    /// What it takes as a pulse, ns, where the time of flight is that of the phase; `None` behind media that absorb.
+    /// What it takes as a pulse, ns, where the time of flight is that of the phase; `None` behind
+    /// media that absorb.
     pub group_delay_ns: Option<f64>,
     /// Its share of the power.
     pub power: f64,

@@ -1,4 +1,5 @@
-//! Tiles: rectangles of a picture that are rendered apart, by other processes or machines, and put together again.
+//! Tiles: rectangles of a picture that are rendered apart, by other processes or machines, and put
+//! together again.
 
 use crate::output::{Channel, Picture, RgbImage, Samples};
 use std::fmt;
@@ -193,7 +194,8 @@ fn layout<T>(pieces: &[Piece<T>], size: impl Fn(&T) -> [usize; 2]) -> Result<Lay
     Ok((tiles, [width, height], metadata))
 }
 
-/// Puts tiles of data together: the picture that they are parts of, as if it had been rendered whole.
+/// Puts tiles of data together: the picture that they are parts of, as if it had been rendered
+/// whole.
 ///
 /// # Errors
 ///

@@ -43,7 +43,8 @@ impl std::ops::Deref for Camera {
 }
 
 impl CameraSettings {
-    /// Width of the view: cm for an orthographic camera, else at distance 1 along the line of sight.
+    /// Width of the view: cm for an orthographic camera, else at distance 1 along the line of
+    /// sight.
     ///
     /// # Errors
     ///
@@ -78,8 +79,9 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// If a setting is outside its limits, the size of the view is given in the terms of the other projection, the
-    /// camera looks at its own position, or `up` lies along the line of sight; the error names the key of `[camera]`.
+    /// If a setting is outside its limits, the size of the view is given in the terms of the other
+    /// projection, the camera looks at its own position, or `up` lies along the line of sight; the
+    /// error names the key of `[camera]`.
     pub fn new(settings: CameraSettings) -> Result<Self, KeyError> {
         settings.check()?;
         let view_width = settings.view_width()?;
@@ -135,14 +137,14 @@ impl Camera {
     }
 
     /// The horizontal and the vertical electric field of a ray, unit vectors across it: those of
-    /// [`transverse_basis`] with the camera's right-hand axis. For a ray along that axis the horizontal one is
-    /// the line of sight, as it is x for a ray along z in the paper's scene.
+    /// [`transverse_basis`] with the camera's right-hand axis. For a ray along that axis the
+    /// horizontal one is the line of sight, as it is x for a ray along z in the paper's scene.
     pub fn polarization_basis(&self, direction: DVec3) -> (DVec3, DVec3) {
         transverse_basis(direction.normalize(), self.right, self.forward)
     }
 
-    /// The smallest width, in cm, of a photograph that covers the whole view; `None` if a corner ray misses its
-    /// plane.
+    /// The smallest width, in cm, of a photograph that covers the whole view; `None` if a corner
+    /// ray misses its plane.
     ///
     /// The photograph is centred on the origin of `place`, whose y is up and whose z is across;
     /// `image_aspect` is its width over its height.

@@ -96,8 +96,8 @@ pub enum Appearance {
 }
 
 impl PhotographSettings {
-    /// Where it hangs: its middle is the origin, x the way one looks straight at its front, y up, and z to the
-    /// right.
+    /// Where it hangs: its middle is the origin, x the way one looks straight at its front, y up,
+    /// and z to the right.
     ///
     /// # Errors
     ///
@@ -116,8 +116,8 @@ impl PhotographSettings {
         if self.position.given { self.position.value } else { DVec3::X * self.x.value }
     }
 
-    /// Its middle, and the direction that it faces, in words; the plane alone where that is one of constant x with
-    /// its middle on the x axis, which is all that most scenes say.
+    /// Its middle, and the direction that it faces, in words; the plane alone where that is one of
+    /// constant x with its middle on the x axis, which is all that most scenes say.
     fn words(&self) -> Result<String, [String; 2]> {
         let (middle, normal) = (self.middle(), unit(self.normal).unwrap_or_default());
         if middle.yz() == DVec2::ZERO && normal.yz() == DVec2::ZERO {
@@ -236,7 +236,8 @@ impl DeviceSettings {
         Ok(structure)
     }
 
-    /// What can be said of the device in numbers: see [`Device::facts`](crate::device::Device::facts).
+    /// What can be said of the device in numbers: see
+    /// [`Device::facts`](crate::device::Device::facts).
     #[must_use]
     pub fn facts(&self) -> Vec<Fact> {
         let device = crate::index_file::with_files_read(&self.device);

@@ -16,14 +16,16 @@ impl Receiver {
         Ok(())
     }
 
-    /// The unit vectors along its width and its length; the second one is z if the rectangle is along z.
+    /// The unit vectors along its width and its length; the second one is z if the rectangle is
+    /// along z.
     #[must_use]
     pub fn axes(&self) -> [DVec3; 2] {
         let along = (DVec3::Z - self.normal * self.normal.z).try_normalize().unwrap_or(DVec3::Y);
         [along.cross(self.normal), along]
     }
 
-    /// Where a ray from its front meets its plane: how far along width and length from the middle, cm.
+    /// Where a ray from its front meets its plane: how far along width and length from the middle,
+    /// cm.
     #[must_use]
     pub fn meet(&self, origin: DVec3, direction: DVec3) -> Option<DVec2> {
         let toward = -direction.dot(self.normal);

@@ -27,8 +27,8 @@ choice! {
 }
 
 table! {
-    /// What a camera is made from, not validated yet. By default it is that of the paper: at x = -100 cm, looking along
-    /// +x, 40 degrees wide.
+    /// What a camera is made from, not validated yet. By default it is that of the paper: at x =
+    /// -100 cm, looking along +x, 40 degrees wide.
     pub struct CameraSettings {
         /// Where the camera stands.
         position: DVec3 = DVec3::new(-100.0, 0.0, 0.0), "cm", in ValueRange::COORDINATE,
@@ -46,12 +46,14 @@ table! {
         resolution: [u32; 2] = [1024, 768], in ValueRange::Whole(1, MOST),
         /// Camera rays per pixel.
         samples: u32 = 4, in ValueRange::Whole(1, MOST),
-        /// Spends samples where the picture has edges: blocks of 2 x 2 pixels whose first samples (a quarter of them, at
-        /// least 4) differ by no more than so many 8-bit steps get no others. 0: all pixels get all samples.
+        /// Spends samples where the picture has edges: blocks of 2 x 2 pixels whose first samples
+        /// (a quarter of them, at least 4) differ by no more than so many 8-bit steps get no
+        /// others. 0: all pixels get all samples.
         adaptive: f64, "8-bit steps", in ValueRange::Within(0.0, 255.0),
         /// Chooses where in its pixel each sample lies.
         seed: u64, in ValueRange::SEED,
-        /// The polarizer before the lens; an angle is counted from horizontal, counterclockwise as the camera sees it.
+        /// The polarizer before the lens; an angle is counted from horizontal, counterclockwise as
+        /// the camera sees it.
         polarizer: Polarizer, "degrees",
     }
 }
@@ -61,8 +63,9 @@ table! {
     pub struct Light {
         /// Wavelength in vacuum: the mean of the line; used by absorption and interference.
         wavelength_nm: f64 = 550.0, "nm", in ValueRange::Within(1e-3, 1e12),
-        /// Full width at half maximum of the line, a Gaussian: light whose paths differ by less than about the square
-        /// of the wavelength over it interferes; 0 is light of one wavelength.
+        /// Full width at half maximum of the line, a Gaussian: light whose paths differ by less
+        /// than about the square of the wavelength over it interferes; 0 is light of one
+        /// wavelength.
         bandwidth_nm: Given<f64> = Given::by_default(100.0), "nm", in ValueRange::Within(0.0, 1e12),
     }
 }
@@ -70,19 +73,20 @@ table! {
 table! {
     /// The photograph: a rectangle with two sides.
     pub struct PhotographSettings {
-        /// What hangs there: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to the scene file.
+        /// What hangs there: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to the scene
+        /// file.
         image: ImageSource = ImageSource::BuiltIn("bookshelf"),
         /// Short for `position = [x, 0, 0]`.
         x: Given<f64> = Given::by_default(50.0), "cm", in ValueRange::COORDINATE,
         /// Its middle; not together with `x`.
         position: Given<DVec3> = Given::by_default(DVec3::new(50.0, 0.0, 0.0)), "cm", in ValueRange::COORDINATE,
-        /// The direction that it faces, of any length. It has two sides: who looks straight at either sees it upright
-        /// and unmirrored.
+        /// The direction that it faces, of any length. It has two sides: who looks straight at
+        /// either sees it upright and unmirrored.
         normal: DVec3 = DVec3::NEG_X,
         /// The direction that is up in it; it need not be perpendicular to the normal.
         up: DVec3 = DVec3::Y,
-        /// Its width; the height follows from the image. By default 110 cm for the builtin photograph, for others the
-        /// smallest that covers the camera's view.
+        /// Its width; the height follows from the image. By default 110 cm for the builtin
+        /// photograph, for others the smallest that covers the camera's view.
         width: Option<f64>, "cm", in ValueRange::LENGTH,
     }
 }
@@ -92,7 +96,8 @@ table! {
     pub struct SurroundingsSettings {
         /// Linear red, green and blue seen by rays that hit nothing.
         color: Given<[f64; 3]> = Given::by_default([0.0; 3]), in ValueRange::Within(0.0, 1e30),
-        /// An equirectangular image of the surroundings instead of a color, relative to the scene file.
+        /// An equirectangular image of the surroundings instead of a color, relative to the scene
+        /// file.
         image: Option<ImageSource>,
     }
 }
@@ -164,8 +169,8 @@ impl MapChannel {
 table! {
     /// What a picture shows and holds.
     pub struct PictureSettings {
-        /// Channels that EXR and NPZ files hold beside those they always do; `stokes` stands for `stokes.S0` to
-        /// `stokes.S3`, `group_delay` for that, its spread and its difference.
+        /// Channels that EXR and NPZ files hold beside those they always do; `stokes` stands for
+        /// `stokes.S0` to `stokes.S3`, `group_delay` for that, its spread and its difference.
         channels: Vec<OptionalChannel>,
         /// A channel that a PNG shows in false colors instead of what the camera sees.
         map: MapChannel,
@@ -179,27 +184,30 @@ table! {
     pub struct Placement {
         /// The cloak, the bare metal alone, or the mirror it should look like.
         show: Show,
-        /// What fills the hidden region of a free-space cloak: metal, or air in which bodies may stand. A carpet needs
-        /// its mirror.
+        /// What fills the hidden region of a free-space cloak: metal, or air in which bodies may
+        /// stand. A carpet needs its mirror.
         core: Core,
-        /// Turns the device about its own z axis, counterclockwise seen from the end that the axis points to.
+        /// Turns the device about its own z axis, counterclockwise seen from the end that the axis
+        /// points to.
         rotation: f64, "degrees", in ValueRange::ANGLE,
-        /// Where the device's own z axis points, of any length: the shortest turn of z to it, after `rotation`; to -z by
-        /// 180 degrees about x.
+        /// Where the device's own z axis points, of any length: the shortest turn of z to it, after
+        /// `rotation`; to -z by 180 degrees about x.
         axis: DVec3 = DVec3::Z,
         /// Where the device's own origin lies.
         position: DVec3, "cm", in ValueRange::COORDINATE,
         /// Whole length along the device's z axis; endless where it is absent.
         length: Option<f64>, "cm", in ValueRange::LENGTH,
-        /// How its media depend on the frequency: what a pulse takes, in `group_delay` and where the phase runs backwards.
-        /// `causal`: as little as causality allows, a bound for every real device; `none`: as the phase.
+        /// How its media depend on the frequency: what a pulse takes, in `group_delay` and where
+        /// the phase runs backwards. `causal`: as little as causality allows, a bound for every
+        /// real device; `none`: as the phase.
         dispersion: Dispersion,
         /// Thin layers on all of its surfaces that face the outside, from the outside inwards; each
         /// a table with its thickness and its index or permittivity.
         coating: Vec<CoatingLayer>,
         /// What its metal is of: { index = [n, k] }; a perfect conductor by default.
         metal: Option<Metal>,
-        /// How what is made of it differs from its design: random errors, levels, a limited range, loss.
+        /// How what is made of it differs from its design: random errors, levels, a limited range,
+        /// loss.
         imperfection: Option<Imperfection>,
     }
 }

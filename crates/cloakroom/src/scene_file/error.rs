@@ -58,7 +58,8 @@ impl fmt::Display for SceneFileError {
     }
 }
 
-/// Line and column (in characters) of a stretch of a text, counted from 1, and its line with a mark under it.
+/// Line and column (in characters) of a stretch of a text, counted from 1, and its line with a mark
+/// under it.
 fn place(text: &str, span: Range<usize>) -> (u32, u32, String) {
     let start = char_boundary(text, span.start);
     let end = char_boundary(text, span.end).max(start);
@@ -74,7 +75,8 @@ fn place(text: &str, span: Range<usize>) -> (u32, u32, String) {
     (small(line), small(before + 1), excerpt)
 }
 
-/// A line with its number, and a mark under so many of its characters, one at least, behind those before.
+/// A line with its number, and a mark under so many of its characters, one at least, behind those
+/// before.
 fn excerpt(number: usize, content: &str, before: usize, marked: usize) -> String {
     /// Of a longer line only the part around the place is shown.
     const LONGEST: usize = 100;

@@ -1,7 +1,7 @@
 //! Scene files: TOML in, a [`Scene`] out, or one message that says what is wrong and where.
 //!
-//! The text becomes values, and the places where they were written; overrides are applied to the values,
-//! and each table is held against its list of keys ([`crate::keys`]). The same lists make
+//! The text becomes values, and the places where they were written; overrides are applied to the
+//! values, and each table is held against its list of keys ([`crate::keys`]). The same lists make
 //! the JSON Schema of scene files ([`schema`]).
 
 mod error;
@@ -79,7 +79,8 @@ pub fn tables(text: &str, name: &str) -> Result<Value, SceneFileError> {
     tree::parse(&mut Locations::new(name, text, &[]))
 }
 
-/// Reads a scene that is a table of values rather than a text; what it would be as a text becomes its source.
+/// Reads a scene that is a table of values rather than a text; what it would be as a text becomes
+/// its source.
 ///
 /// # Errors
 ///

@@ -134,7 +134,8 @@ fn descend<'a>(
     Ok((&mut entries[index].1, known.is_none()))
 }
 
-/// An entry of a list by its number, and whether it was made: the number after the last adds a table to a list of tables.
+/// An entry of a list by its number, and whether it was made: the number after the last adds a
+/// table to a list of tables.
 fn entry<'a>(
     items: &'a mut Vec<Value>,
     key: &str,

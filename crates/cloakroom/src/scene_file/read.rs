@@ -166,8 +166,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Gives each value to the table that has its key, and makes names of files relative to the scene file; those in
-    /// overrides are relative to the current folder.
+    /// Gives each value to the table that has its key, and makes names of files relative to the
+    /// scene file; those in overrides are relative to the current folder.
     fn fill(&self, tables: &mut [&mut dyn Table], held: &Entries, path: &str) {
         for (name, value) in held {
             // One of them has the key, for the value has been held against it.

@@ -18,8 +18,8 @@ fn launches(count: u32, reach: f64) -> impl Iterator<Item = Launch<2>> {
     launches_around(count, [60.0, 40.0], DVec3::splat(reach))
 }
 
-/// Surfaces in one place are one surface: two boxes face to face, and boxes in a box up to its face, leave
-/// what one box leaves.
+/// Surfaces in one place are one surface: two boxes face to face, and boxes in a box up to its
+/// face, leave what one box leaves.
 #[test]
 fn bodies_face_to_face_have_no_air_between() {
     let part = |size: f64, x: f64, priority: i32| {

@@ -5,8 +5,9 @@ use crate::rays::{assembly, launch};
 use cloakroom::trace::{Launch, Leaf, Tracer};
 use glam::DVec3;
 
-/// A ray on its way through surfaces, by Snell's law and Fresnel's equations: the power is that of s twice
-/// and of p twice, averaged at the end, so that it holds where the plane of incidence stays.
+/// A ray on its way through surfaces, by Snell's law and Fresnel's equations: the power is that of
+/// s twice and of p twice, averaged at the end, so that it holds where the plane of incidence
+/// stays.
 #[derive(Clone, Copy, Debug)]
 struct Ray {
     position: DVec3,
@@ -44,7 +45,8 @@ impl Ray {
     fn run(&mut self, distance: f64, medium: Glass) {
         self.position += self.direction * distance;
         self.optical_path += medium.index * distance;
-        // Backwards, at the least dispersion: ε = n/z and µ = nz have the derivatives 2 - ε and 2 - µ.
+        // Backwards, at the least dispersion: ε = n/z and µ = nz have the derivatives 2 - ε and 2 -
+        // µ.
         let Glass { index: n, impedance: z } = medium;
         let group = 0.5 * (z * (2.0 - n / z) + (2.0 - n * z) / z);
         self.delay_path += distance * if n < 0.0 { group } else { n };
@@ -82,7 +84,8 @@ fn find<'a>(leaves: &'a [Leaf<2>], ray: &Ray) -> Option<&'a Leaf<2>> {
 fn check(leaf: &Leaf<2>, ray: &Ray) {
     assert!((leaf.optical_path - ray.optical_path).abs() < 1e-8, "{leaf:?} {ray:?}");
     assert!((leaf.delay_path - ray.delay_path).abs() < 1e-8, "{leaf:?} {ray:?}");
-    // Both launched polarizations together are s and p together, while the plane of incidence stays.
+    // Both launched polarizations together are s and p together, while the plane of incidence
+    // stays.
     let sum = leaf.power[0] + leaf.power[1];
     assert!((sum - ray.power[0] - ray.power[1]).abs() < 1e-9, "{leaf:?} {ray:?}");
 }
@@ -154,8 +157,9 @@ fn slabs_shift_rays_to_the_side() {
     }
 }
 
-/// A slab with ε = µ = -1 images a point at a distance u before it to the distance d - u behind it, without
-/// any phase on the way and without reflection; a pulse takes three times as long in it as light in air, at least.
+/// A slab with ε = µ = -1 images a point at a distance u before it to the distance d - u behind it,
+/// without any phase on the way and without reflection; a pulse takes three times as long in it as
+/// light in air, at least.
 #[test]
 fn a_matched_negative_slab_is_a_perfect_lens() {
     let assembly = assembly(&body("thickness = 6\npermittivity = -1\npermeability = -1"));
@@ -248,7 +252,8 @@ fn boxes_and_cylinders_refract_by_snells_law() {
     }
 }
 
-/// Ball in ball in ball, of overlapping whole balls: light goes from each medium straight into the next.
+/// Ball in ball in ball, of overlapping whole balls: light goes from each medium straight into the
+/// next.
 #[test]
 fn the_larger_priority_is_there_where_bodies_overlap() {
     let shells = [(8.0, 2.25, 1.0), (7.0, 1.69, 1.0), (3.0, 1.2, -1.0)];

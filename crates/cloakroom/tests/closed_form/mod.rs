@@ -1,5 +1,5 @@
-//! Media whose rays are known in closed form, cut to convex shapes, against plain integration and what is known of them
-//! from elsewhere.
+//! Media whose rays are known in closed form, cut to convex shapes, against plain integration and
+//! what is known of them from elsewhere.
 
 mod fisheye_hemisphere;
 mod graded_box;
@@ -14,7 +14,8 @@ use optics::propagation::reference::{ReferenceRay, SquaredIndex, follow};
 
 const LIMITS: Limits = Limits { min_power: 1e-6, tolerance: 1e-9 };
 
-/// The leaves of a ray whose power is accounted for, none of it lost; what starts inside may be caught by total reflection.
+/// The leaves of a ray whose power is accounted for, none of it lost; what starts inside may be
+/// caught by total reflection.
 fn leaves(assembly: &Assembly, launch: &Launch<2>) -> Vec<Leaf<2>> {
     let mut tracer = Tracer::new(assembly, LIMITS);
     let (leaves, outcome) = tracer.trace(launch);
@@ -34,8 +35,8 @@ fn point_inside(numbers: &mut Numbers, reach: f64, height: &dyn Fn(DVec3) -> f64
     }
 }
 
-/// Follows rays through the one region of a device, from its inside and on from its border, and each piece of their way by
-/// plain integration, too. `height` is how far outside a point is.
+/// Follows rays through the one region of a device, from its inside and on from its border, and
+/// each piece of their way by plain integration, too. `height` is how far outside a point is.
 fn check_by_integration(
     structure: &Structure,
     square: &dyn Fn(DVec3) -> SquaredIndex,
@@ -90,7 +91,8 @@ fn check_piece(
     (end.position, (end.direction - outward * (2.0 * outward.dot(end.direction))).normalize())
 }
 
-/// Rays that start within a device come out where the way through its region ends, and are accounted for.
+/// Rays that start within a device come out where the way through its region ends, and are
+/// accounted for.
 fn check_starts_inside(scene: &str, height: &dyn Fn(DVec3) -> f64) {
     let assembly = assembly(scene);
     let placed = &assembly.devices()[0];

@@ -1,6 +1,6 @@
-//! A slow integration of the paper's own equation of motion in physical space through the index of a
-//! conformal map, with Snell's law at the border and the law of reflection at the metal: nothing of it knows
-//! virtual space, the program's interfaces or its surfaces.
+//! A slow integration of the paper's own equation of motion in physical space through the index of
+//! a conformal map, with Snell's law at the border and the law of reflection at the metal: nothing
+//! of it knows virtual space, the program's interfaces or its surfaces.
 
 use errorfunctions::ComplexErrorFunctions;
 use glam::DVec3;
@@ -12,7 +12,8 @@ use std::f64::consts::PI;
 /// f, f' and f'' of a map.
 pub type Jet = Box<dyn Fn(Complex64) -> [Complex64; 3]>;
 
-/// The space above the floor of a map, filled with the index c/|f'|, |x| <= half_width and y <= height.
+/// The space above the floor of a map, filled with the index c/|f'|, |x| <= half_width and y <=
+/// height.
 pub struct GradedHalf {
     /// The map.
     pub jet: Jet,
@@ -84,7 +85,8 @@ impl GradedHalf {
     pub fn squared_index(&self, r: DVec3) -> SquaredIndex {
         let [_, f1, f2] = (self.jet)(self.invert(r));
         let value = self.index_scale.powi(2) / f1.norm_sqr();
-        // The gradient of ln n in virtual space is -conj(f''/f'); one more conj(f') takes it to physical space.
+        // The gradient of ln n in virtual space is -conj(f''/f'); one more conj(f') takes it to
+        // physical space.
         let slope = -2.0 * value * (f2 / (f1 * f1)).conj();
         SquaredIndex { value, gradient: DVec3::new(slope.re, slope.im, 0.0) }
     }
@@ -100,8 +102,8 @@ impl GradedHalf {
         DVec3::new(-f1.im, f1.re, 0.0).normalize()
     }
 
-    /// Follows a ray of the medium with wave vector p until it leaves; None for rays that come too near to
-    /// grazing incidence, to a critical angle, or to an edge.
+    /// Follows a ray of the medium with wave vector p until it leaves; None for rays that come too
+    /// near to grazing incidence, to a critical angle, or to an edge.
     pub fn out(&self, mut at: DVec3, mut p: DVec3, mut optical_path: f64) -> Option<Expected> {
         let mut mirrored = false;
         for _ in 0..12 {
@@ -166,8 +168,8 @@ pub fn refract(p: DVec3, inward: DVec3, square: f64) -> Option<DVec3> {
     (normal > 0.02 && p.dot(inward) > 0.02).then(|| across + inward * normal.sqrt())
 }
 
-/// The power that passes between two indices by Fresnel's equations, from the normal parts of the wave
-/// vectors: for s and p.
+/// The power that passes between two indices by Fresnel's equations, from the normal parts of the
+/// wave vectors: for s and p.
 pub fn fresnel(before: f64, beyond: f64, n_before: f64, n_beyond: f64) -> [f64; 2] {
     let s = (before - beyond) / (before + beyond);
     let (a, b) = (before / n_before.powi(2), beyond / n_beyond.powi(2));

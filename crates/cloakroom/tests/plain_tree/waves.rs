@@ -1,9 +1,9 @@
 //! Plane waves in any medium and at any interface, by linear algebra alone.
 //!
-//! Maxwell's equations p × E - µH = 0 and p × H + εE = 0 are six linear equations for the six numbers
-//! (E, H). With p = t + q n, t given, they are a pencil in q: its four finite eigenvalues are the
-//! waves of the medium, whatever the medium is. The null space at each is its fields; at a double
-//! eigenvalue it has two dimensions, and any basis does.
+//! Maxwell's equations p × E - µH = 0 and p × H + εE = 0 are six linear equations for the six
+//! numbers (E, H). With p = t + q n, t given, they are a pencil in q: its four finite eigenvalues
+//! are the waves of the medium, whatever the medium is. The null space at each is its fields; at a
+//! double eigenvalue it has two dimensions, and any basis does.
 
 use glam::{DMat3, DVec3};
 use nalgebra::DMatrix;
@@ -63,8 +63,8 @@ fn wave_vector(t: DVec3, q: Complex64, n: DVec3) -> [Complex64; 3] {
     std::array::from_fn(|i| t[i] + q * n[i])
 }
 
-/// The four waves with tangential wave vector `t` at a surface of normal `n`, joined where they share
-/// one wave vector.
+/// The four waves with tangential wave vector `t` at a surface of normal `n`, joined where they
+/// share one wave vector.
 fn waves(material: &Material, t: DVec3, n: DVec3) -> Vec<Wave> {
     // Shifted by a number that is no eigenvalue, and inverted: 0 stands for infinity then.
     let shift = Complex64::new(0.37, 0.61);
@@ -90,7 +90,8 @@ fn waves(material: &Material, t: DVec3, n: DVec3) -> Vec<Wave> {
         .into_iter()
         .map(|(q, count)| {
             let q = if q.im.abs() < ONE_ROOT { q.re.into() } else { q };
-            // Turned out of all symmetry, in which the singular value decomposition may not converge.
+            // Turned out of all symmetry, in which the singular value decomposition may not
+            // converge.
             let turned = &turn * maxwell(material, wave_vector(t, q, n)) * &turn;
             // Singular values are sorted, the largest first.
             let vectors = &turn * turned.svd(false, true).v_t.expect("singular vectors").adjoint();
@@ -133,8 +134,8 @@ pub struct Outgoing<const N: usize> {
     pub fields: [Fields; N],
 }
 
-/// What leaves the interface between `from` and `to`, a perfect conductor if `None`, when a wave with
-/// wave vector `p` and the fields of `N` polarizations arrives along the normal `n`.
+/// What leaves the interface between `from` and `to`, a perfect conductor if `None`, when a wave
+/// with wave vector `p` and the fields of `N` polarizations arrives along the normal `n`.
 pub fn scatter<const N: usize>(
     from: &Material,
     to: Option<&Material>,

@@ -1,4 +1,5 @@
-//! Impedance-matched cloaks give every ray back as it came, whatever its direction and polarization.
+//! Impedance-matched cloaks give every ray back as it came, whatever its direction and
+//! polarization.
 
 use super::{Numbers, assembly, launch, leaf, random_launch};
 use glam::DVec3;

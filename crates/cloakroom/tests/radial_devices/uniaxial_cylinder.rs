@@ -1,5 +1,5 @@
-//! Cylindrical cloaks of uniaxial dielectric: exact in the plane for one polarization, and how they fail
-//! off the plane.
+//! Cylindrical cloaks of uniaxial dielectric: exact in the plane for one polarization, and how they
+//! fail off the plane.
 
 use super::{assembly, launch, leaves};
 use cloakroom::trace::Leaf;
@@ -9,7 +9,8 @@ fn cloak(material: &str) -> String {
     format!("'cylinder-cloak'\ninner = 1\nouter = 2\nmaterial = '{material}-uniaxial'")
 }
 
-/// The strongest of the leaves of vertical light that have not been reflected to the side of the source.
+/// The strongest of the leaves of vertical light that have not been reflected to the side of the
+/// source.
 fn strongest(leaves: &[Leaf<2>]) -> &Leaf<2> {
     let ahead = leaves.iter().filter(|leaf| leaf.direction.x > 0.5);
     ahead.max_by(|a, b| a.power[1].total_cmp(&b.power[1])).unwrap()
@@ -43,8 +44,8 @@ fn vertical_light_in_the_plane_is_cloaked_but_for_reflections() {
     }
 }
 
-/// At an elevation of 10 degrees and impact 0.3 the extraordinary ray leaves off its line by: angle in the
-/// plane, degrees; shift of the exit in the plane; shift along z.
+/// At an elevation of 10 degrees and impact 0.3 the extraordinary ray leaves off its line by: angle
+/// in the plane, degrees; shift of the exit in the plane; shift along z.
 fn failure(material: &str) -> (f64, f64, f64) {
     let (sin, cos) = 10f64.to_radians().sin_cos();
     let ray = launch(DVec3::new(-10.0, 0.3, 0.0), DVec3::new(cos, 0.0, sin));

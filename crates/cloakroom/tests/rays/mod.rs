@@ -54,8 +54,8 @@ pub fn spread(n: u32, k: i32) -> f64 {
     (f64::from(n) * 1.134_724_138_401_519_4_f64.powi(-k - 1)).fract()
 }
 
-/// Rays that start all around the z axis, `radius` (cm) away and within `height` along z, towards a box of a
-/// given size about the origin.
+/// Rays that start all around the z axis, `radius` (cm) away and within `height` along z, towards a
+/// box of a given size about the origin.
 pub fn launches_around(
     count: u32,
     [radius, height]: [f64; 2],

@@ -1,4 +1,5 @@
-//! Ray diagrams as in books: the devices, a fan or bundle of rays through them, and marks of equal optical path.
+//! Ray diagrams as in books: the devices, a fan or bundle of rays through them, and marks of equal
+//! optical path.
 
 mod rays;
 mod solids;
@@ -36,8 +37,9 @@ pub struct DiagramSettings {
     pub wavefronts: Option<f64>,
     /// Branches weaker than this are not drawn.
     pub min_power: f64,
-    /// From where space is seen in parallel projection: degrees about y, from the view along -z (0: x to the right)
-    /// towards that along -x, and degrees above the xz-plane; `None`: the cross-section in the xy-plane.
+    /// From where space is seen in parallel projection: degrees about y, from the view along -z (0:
+    /// x to the right) towards that along -x, and degrees above the xz-plane; `None`: the
+    /// cross-section in the xy-plane.
     pub space: Option<[f64; 2]>,
     /// Width and height in pixels: their ratio is that of the sheet.
     pub size: [u32; 2],

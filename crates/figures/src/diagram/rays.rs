@@ -68,9 +68,9 @@ fn draw_head(drawing: &mut Drawing, frame: &[DVec2; 4], points: &[DVec2], power:
     }
 }
 
-/// Lines in space through the points of equal optical path of neighbouring rays: of each the strongest branch there.
-/// They are `distance` apart in optical path, cm; points of neighbouring rays further than `apart` from each other, cm,
-/// are not of one front.
+/// Lines in space through the points of equal optical path of neighbouring rays: of each the
+/// strongest branch there. They are `distance` apart in optical path, cm; points of neighbouring
+/// rays further than `apart` from each other, cm, are not of one front.
 pub(super) fn wavefronts(
     trees: &[Vec<Line>],
     assembly: &Assembly,

@@ -23,7 +23,8 @@ enum Paint {
     Line(&'static str, (Ink, f64)),
 }
 
-/// Draws the devices, and the rays and wavefronts among them; what is nearer hides what is behind metal.
+/// Draws the devices, and the rays and wavefronts among them; what is nearer hides what is behind
+/// metal.
 pub(super) fn draw(
     drawing: &mut Drawing,
     view: &SpaceView,
@@ -152,8 +153,8 @@ impl Solids<'_> {
         }
     }
 
-    /// A circle of a cross-section as a ball: its outline as seen, and its equator; of a cut one what is left, and the
-    /// rim.
+    /// A circle of a cross-section as a ball: its outline as seen, and its equator; of a cut one
+    /// what is left, and the rim.
     fn add_ball(&mut self, placed: &Placed, contour: &Contour, metal: bool) {
         let Some(radius) = contour.points.first().map(|point| point.length()) else { return };
         let centre = placed.pose.origin;

@@ -10,8 +10,8 @@ use glam::{DVec2, DVec3};
 /// The row with the key.
 const KEY: f64 = 1.8 * TEXT;
 
-/// Least and greatest x and y of what devices take up, cm, without thin mirrors such as the floors of carpets; of what
-/// is endless, as far as it is wide.
+/// Least and greatest x and y of what devices take up, cm, without thin mirrors such as the floors
+/// of carpets; of what is endless, as far as it is wide.
 pub(super) fn bounds(assembly: &Assembly) -> Option<[DVec2; 2]> {
     /// What is shown of something without any end, cm to either side.
     const ENDLESS: f64 = 10.0;

@@ -28,8 +28,8 @@ impl DrawingFormat {
 }
 
 impl Drawing {
-    /// Writes the drawing as a file that is there whole or not at all, with a title and metadata; a PNG has so many
-    /// pixels, the others are as large as on paper.
+    /// Writes the drawing as a file that is there whole or not at all, with a title and metadata; a
+    /// PNG has so many pixels, the others are as large as on paper.
     ///
     /// # Errors
     ///

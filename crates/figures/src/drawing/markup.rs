@@ -10,14 +10,16 @@ use svg::node::element::{ClipPath, Description, Group, Image, Path, Rectangle, T
 use svg::{Document, Node};
 
 impl Drawing {
-    /// The drawing as SVG, as large as on paper. `description` becomes its title, and `metadata` is set down in it.
+    /// The drawing as SVG, as large as on paper. `description` becomes its title, and `metadata` is
+    /// set down in it.
     #[must_use]
     pub fn to_svg(&self, description: &str, metadata: &[(String, String)]) -> String {
         let size = (self.size * self.mm).to_array().map(|side| format!("{}mm", number(side)));
         self.markup(size, description, metadata, &embedded)
     }
 
-    /// The SVG of a size, with images where `source` says that they are, given their place among the elements.
+    /// The SVG of a size, with images where `source` says that they are, given their place among
+    /// the elements.
     pub(super) fn markup(
         &self,
         [width, height]: [String; 2],
@@ -61,7 +63,8 @@ fn node(
 ) -> Group {
     let mut group = Group::new().set("class", element.class);
     if element.clip.is_some() {
-        // The clip is in the coordinates of the sheet: it belongs to the group, not to an image in it.
+        // The clip is in the coordinates of the sheet: it belongs to the group, not to an image in
+        // it.
         group = group.set("clip-path", format!("url(#clip{clip})"));
     }
     match &element.shape {

@@ -1,4 +1,5 @@
-//! Drawings: shapes, words and images on a sheet, written as SVG, PDF and, rasterized from the SVG, PNG.
+//! Drawings: shapes, words and images on a sheet, written as SVG, PDF and, rasterized from the SVG,
+//! PNG.
 //!
 //! Lengths are in units of the sheet, x to the right and y down. Lettering is drawn as outlines of
 //! Noto Sans, so that a drawing looks the same wherever it is shown.
@@ -126,8 +127,8 @@ impl Drawing {
         self.size.ceil().to_array().map(|side| side as u32)
     }
 
-    /// Adds an image whose top left corner is at a point, a unit for each of its pixels, in a frame of that width
-    /// that lies around it.
+    /// Adds an image whose top left corner is at a point, a unit for each of its pixels, in a frame
+    /// of that width that lies around it.
     pub fn add_framed(&mut self, image: RgbImage, cells: bool, at: DVec2, line: f64) {
         let size = DVec2::new(f64::from(image.width()), f64::from(image.height()));
         let place = DAffine2::from_cols(DVec2::X * size.x, DVec2::Y * size.y, at);
@@ -137,7 +138,8 @@ impl Drawing {
         self.add_area("frame", frame).stroked(INK, line);
     }
 
-    /// Writes lines of text in ink, one under the other, that part of them at a point on the middle of the first one.
+    /// Writes lines of text in ink, one under the other, that part of them at a point on the middle
+    /// of the first one.
     pub fn add_lines(
         &mut self,
         class: &'static str,

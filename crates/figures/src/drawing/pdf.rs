@@ -20,7 +20,8 @@ const INFO: i32 = 5;
 /// The first number of images and opacities.
 const RESOURCES: i32 = 6;
 
-/// How far the ends of a quarter of a circle of radius 1 are from the control points of the curve for it.
+/// How far the ends of a quarter of a circle of radius 1 are from the control points of the curve
+/// for it.
 const QUARTER: f64 = 0.552_284_749_830_793_6;
 
 impl Drawing {

@@ -16,7 +16,8 @@ impl Drawing {
     /// If that many pixels do not fit into the memory.
     pub fn to_image(&self, [width, height]: [u32; 2]) -> Result<RgbImage, IllustrationError> {
         let too_large = || IllustrationError::TooLarge { width, height };
-        // Four bytes a pixel, and three for the copy without opacity; of images a PNG, and four bytes a pixel.
+        // Four bytes a pixel, and three for the copy without opacity; of images a PNG, and four
+        // bytes a pixel.
         let images = self.elements.iter().map(|element| match &element.shape {
             Shape::Image { image, .. } => 7 * u64::from(image.width()) * u64::from(image.height()),
             _ => 0,

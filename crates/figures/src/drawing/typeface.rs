@@ -45,8 +45,8 @@ impl Face {
         text.chars().map(|c| self.advance(c)).sum::<f64>() * size
     }
 
-    /// Breaks a text in type of a size into lines of at most that width, between words where it can; there is always
-    /// room for one letter.
+    /// Breaks a text in type of a size into lines of at most that width, between words where it
+    /// can; there is always room for one letter.
     pub(crate) fn wrap(self, text: &str, size: f64, width: f64) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         let mut line = String::new();
@@ -88,8 +88,8 @@ impl Face {
         self.font().glyph_index(c).unwrap_or(ttf_parser::GlyphId(0))
     }
 
-    /// The outline of a text. `place` takes points of a line of type of size 1 to where they are: it runs from the origin
-    /// on its base line to the right, y up.
+    /// The outline of a text. `place` takes points of a line of type of size 1 to where they are:
+    /// it runs from the origin on its base line to the right, y up.
     pub(super) fn outline(self, text: &str, place: &dyn Fn(DVec2) -> DVec2) -> Vec<Piece> {
         let mut pen = Pen { pieces: Vec::new(), x: 0.0, scale: self.scale(), place };
         for c in text.chars() {

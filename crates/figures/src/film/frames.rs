@@ -1,4 +1,5 @@
-//! A folder of frames: PNG files, each of which says what it shows, so that work can be taken up again.
+//! A folder of frames: PNG files, each of which says what it shows, so that work can be taken up
+//! again.
 
 use super::FilmError;
 use cloakroom::output::{RgbImage, png_texts};
@@ -33,8 +34,8 @@ impl FrameFolder {
         self.folder.join(format!("frame-{frame:06}.png"))
     }
 
-    /// Whether a frame is there that shows just this: it carries the same metadata, and none of `files` has
-    /// changed since.
+    /// Whether a frame is there that shows just this: it carries the same metadata, and none of
+    /// `files` has changed since.
     #[must_use]
     pub fn is_finished(
         &self,

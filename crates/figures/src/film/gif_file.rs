@@ -1,4 +1,5 @@
-//! Animated GIF: one palette of 255 colors for the whole film, so that what stands still does not flicker.
+//! Animated GIF: one palette of 255 colors for the whole film, so that what stands still does not
+//! flicker.
 
 use super::{Film, FilmError, stay, write_whole};
 use cloakroom::output::RgbImage;
@@ -16,7 +17,8 @@ const UNCHANGED: u8 = 255;
 /// Pixels that the palette is made from.
 const SAMPLES: usize = 1 << 19;
 
-/// How much of the difference between two neighbouring colors of the palette the dither covers, in codes.
+/// How much of the difference between two neighbouring colors of the palette the dither covers, in
+/// codes.
 const DITHER: f64 = 16.0;
 
 /// Writes frames as an animated GIF that goes round for ever.

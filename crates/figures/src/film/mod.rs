@@ -1,8 +1,8 @@
 //! Films: a scene frame by frame, while keys of it change.
 //!
-//! Frames are rendered one after the other into a folder ([`FrameFolder`]), each a PNG that carries its scene, so
-//! that stopped work goes on where it was and many machines can share it; then they become one file
-//! ([`FilmFormat`]).
+//! Frames are rendered one after the other into a folder ([`FrameFolder`]), each a PNG that carries
+//! its scene, so that stopped work goes on where it was and many machines can share it; then they
+//! become one file ([`FilmFormat`]).
 
 mod apng_file;
 mod frames;
@@ -89,7 +89,8 @@ pub enum FilmFormat {
 }
 
 impl FilmFormat {
-    /// The format that a name asks for: by its ending, and a folder if it has none or there is one of that name.
+    /// The format that a name asks for: by its ending, and a folder if it has none or there is one
+    /// of that name.
     ///
     /// # Errors
     ///
@@ -201,7 +202,8 @@ fn stay(number: usize, rate: u32, parts: f64) -> u32 {
     (begins(number + 1) - begins(number)) as u32
 }
 
-/// Writes a file whole or not at all, by work that may end with an error of the film, or of the file.
+/// Writes a file whole or not at all, by work that may end with an error of the film, or of the
+/// file.
 fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut dyn output::WriteSeek) -> Result<(), Box<dyn Error + Send + Sync>>,

@@ -94,7 +94,8 @@ fn wait(child: &mut Child, stop: &AtomicBool) -> io::Result<Option<bool>> {
     }
 }
 
-/// The metadata of a film in a form that `ffmpeg` reads, of any length; the scene is the film's comment.
+/// The metadata of a film in a form that `ffmpeg` reads, of any length; the scene is the film's
+/// comment.
 fn ffmetadata(metadata: &[(String, String)]) -> String {
     let mut text = ";FFMETADATA1\n".to_owned();
     for (key, value) in metadata {

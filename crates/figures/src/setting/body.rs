@@ -8,7 +8,8 @@ use super::{INK, OPAQUE, PAPER, TEXT, THIN};
 use glam::DVec2;
 use optics::medium::Medium;
 
-/// The colour of a body of a medium, or an opaque one: white for an index of 1, the bluer the larger it is, the redder the more negative.
+/// The colour of a body of a medium, or an opaque one: white for an index of 1, the bluer the
+/// larger it is, the redder the more negative.
 pub(super) fn tint(medium: Option<&Medium>) -> Ink {
     /// For an index far from 1.
     const POSITIVE: [f64; 3] = [107.0, 174.0, 214.0];

@@ -64,8 +64,8 @@ impl Sketch<'_> {
         self.drawing.add(class, shape).within(vec![self.view.frame().to_vec()])
     }
 
-    /// Draws what it is filled with: the axes of its media, or their indices. `before` are those that stand
-    /// before it.
+    /// Draws what it is filled with: the axes of its media, or their indices. `before` are those
+    /// that stand before it.
     pub fn draw_media(&mut self, before: &[(&Subject<'_>, bool)]) {
         for region in &self.subject.section.regions {
             if region.region.is_graded() {
@@ -86,8 +86,8 @@ impl Sketch<'_> {
         self.draw_filling(&medium, at, &border, MEDIUM);
     }
 
-    /// Draws the axes of a medium, or its index, about a point of the sheet within some contours, on a ground of
-    /// that colour.
+    /// Draws the axes of a medium, or its index, about a point of the sheet within some contours,
+    /// on a ground of that colour.
     pub fn draw_filling(&mut self, medium: &Medium, at: DVec2, border: &[Vec<DVec2>], ground: Ink) {
         if let Some(axes) = MediumAxes::of(medium) {
             let reach = |direction| room(border, at, direction).min(AXIS);
@@ -134,8 +134,8 @@ impl Sketch<'_> {
         }
     }
 
-    /// Measures a contour, from outside (`way` 1) or from within (-1). Lengths that have been told are
-    /// not told again.
+    /// Measures a contour, from outside (`way` 1) or from within (-1). Lengths that have been told
+    /// are not told again.
     fn measure(&mut self, contour: &Contour, told: &mut Vec<f64>, way: f64) {
         let corners = contour.corners();
         let points = self.subject.on_sheet(self.view, &corners);
@@ -229,7 +229,8 @@ pub(super) fn room(border: &[Vec<DVec2>], at: DVec2, direction: DVec2) -> f64 {
     0.8 * free[0].min(free[1])
 }
 
-/// The axes of the medium of a graded cell on a lattice, if it is anisotropic, and how far apart they are, cm.
+/// The axes of the medium of a graded cell on a lattice, if it is anisotropic, and how far apart
+/// they are, cm.
 pub(super) fn axes_of_graded(region: &Section<'_>) -> (Vec<(DVec2, MediumAxes)>, f64) {
     const STEPS: u32 = 9;
     let Some([low, high]) = bounds(border(region)) else { return (Vec::new(), 0.0) };

@@ -7,8 +7,8 @@ use glam::DVec2;
 /// The length of an arrow head.
 pub(crate) const HEAD: f64 = 11.0;
 
-/// Draws a dimension line beside the line from `a` to `b` (both on the sheet), shifted by `shift`, with
-/// its label beyond it on a ground of that colour.
+/// Draws a dimension line beside the line from `a` to `b` (both on the sheet), shifted by `shift`,
+/// with its label beyond it on a ground of that colour.
 pub(super) fn draw(
     drawing: &mut Drawing,
     [a, b]: [DVec2; 2],

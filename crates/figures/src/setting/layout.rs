@@ -8,7 +8,8 @@ use super::{BAR, GRAY, MARGIN, TEXT, THIN};
 use glam::DVec2;
 use optics::geometry::Outline;
 
-/// Devices drawn smaller than this share of the sheet's shorter side are drawn once more, magnified.
+/// Devices drawn smaller than this share of the sheet's shorter side are drawn once more,
+/// magnified.
 const SMALL: f64 = 0.28;
 /// The least width of the key to a magnified device.
 const LEGEND: f64 = 14.5 * TEXT;
@@ -136,8 +137,8 @@ fn free_below(sheet: DVec2, [from, size]: [DVec2; 2], taken: &[Vec<DVec2>]) -> [
         .unwrap_or([DVec2::new(left, lower), DVec2::ZERO])
 }
 
-/// Several small devices: magnified in a row below the scene, each with its key beside it, or below it
-/// where there is no room.
+/// Several small devices: magnified in a row below the scene, each with its key beside it, or below
+/// it where there is no room.
 fn row_of_insets(sheet: DVec2, small: &[Group], view: View) -> (View, Vec<Inset>) {
     let mut insets = Vec::new();
     let top = view.window[0].y + view.window[1].y + 2.2 * TEXT;
@@ -198,7 +199,8 @@ impl Inset {
     }
 }
 
-/// The devices that have ends, those together whose boxes overlap, with the opaque bodies that lie within.
+/// The devices that have ends, those together whose boxes overlap, with the opaque bodies that lie
+/// within.
 fn groups(subjects: &[Subject<'_>]) -> Vec<Group> {
     let boxed = |opaque: bool| {
         let of_kind = subjects.iter().enumerate().filter(move |(_, s)| s.is_opaque() == opaque);
@@ -259,7 +261,8 @@ fn obstacles(view: &View, stage: &Stage, subjects: &[Subject<'_>]) -> Vec<Vec<DV
     shapes
 }
 
-/// Whether none of some convex shapes reaches into a part of the sheet, its top left corner and size.
+/// Whether none of some convex shapes reaches into a part of the sheet, its top left corner and
+/// size.
 fn is_free(part: [DVec2; 2], taken: &[Vec<DVec2>]) -> bool {
     let part = outline(&corners(part));
     taken.iter().all(|shape| !outline(shape).overlaps(&part, 0.0))

@@ -1,4 +1,5 @@
-//! The key to what is drawn magnified: the axes and tensors of media, and what colours and lines stand for.
+//! The key to what is drawn magnified: the axes and tensors of media, and what colours and lines
+//! stand for.
 
 use super::super::drawing::{Drawing, Face, Ink, Words};
 use super::body;
@@ -28,8 +29,8 @@ enum Sample {
 /// A colour or a line with what it stands for.
 type Entry = (Sample, Vec<(Face, String)>);
 
-/// Draws the key to devices that are magnified together into a box of the sheet (top left corner and size),
-/// as far as there is room.
+/// Draws the key to devices that are magnified together into a box of the sheet (top left corner
+/// and size), as far as there is room.
 pub(super) fn draw(
     drawing: &mut Drawing,
     [from, size]: [DVec2; 2],

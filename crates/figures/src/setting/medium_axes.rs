@@ -10,8 +10,8 @@ use optics::medium::{Medium, principal_axes};
 /// The length of an arrow head.
 const HEAD: f64 = 14.0;
 
-/// The principal axes of an anisotropic medium in its cell: in the plane, u of the larger and v of the
-/// smaller principal value; and the third.
+/// The principal axes of an anisotropic medium in its cell: in the plane, u of the larger and v of
+/// the smaller principal value; and the third.
 pub(super) struct MediumAxes {
     pub u: DVec3,
     pub v: DVec3,

@@ -63,8 +63,8 @@ pub(super) const VERMILION: Ink = Ink::new([213, 94, 0]);
 const SKY: Ink = Ink::new([86, 180, 233]);
 
 /// Draws the setting of a scene: a projection on the xy-plane (x to the right, y up, z out of the
-/// page), to scale. Every device is cut in the plane z = 0 of its own frame; one that would be small is
-/// drawn once more, magnified.
+/// page), to scale. Every device is cut in the plane z = 0 of its own frame; one that would be
+/// small is drawn once more, magnified.
 ///
 /// # Errors
 ///
@@ -149,8 +149,8 @@ impl<'s> Devices<'s> {
         }
     }
 
-    /// Draws devices from back to front, and where it says so in detail: with the axes of their media and, before
-    /// everything else so that they can be read, their dimensions.
+    /// Draws devices from back to front, and where it says so in detail: with the axes of their
+    /// media and, before everything else so that they can be read, their dimensions.
     fn draw_measured(&self, drawing: &mut Drawing, view: &View, shown: &[(&Subject<'_>, bool)]) {
         self.draw_shapes(drawing, view, shown);
         for (place, (subject, _)) in shown.iter().enumerate().filter(|(_, (_, detail))| *detail) {

@@ -27,7 +27,8 @@ pub(super) struct Stage {
     pub eye: DVec2,
     /// Where it looks, if that is not out of the page.
     forward: Option<DVec2>,
-    /// What it sees up to the plane of the photograph, counterclockwise; empty if it looks out of the page.
+    /// What it sees up to the plane of the photograph, counterclockwise; empty if it looks out of
+    /// the page.
     pub sight: Vec<DVec2>,
     screen: Screen,
     thumbnail: RgbImage,
@@ -49,7 +50,8 @@ impl Stage {
         }
     }
 
-    /// The corners of the photograph as it is drawn: top left, top right, bottom right, bottom left.
+    /// The corners of the photograph as it is drawn: top left, top right, bottom right, bottom
+    /// left.
     pub fn photograph(&self) -> [DVec2; 4] {
         let middle = self.screen.middle;
         [(1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)].map(|(up, across)| {
@@ -155,7 +157,8 @@ fn within(view: &View, words: Words) -> Words {
     Words { at: DVec2::new(x, words.at.y), ..words }
 }
 
-/// The field of view in the xy-plane: what its projection covers, up to the plane of the photograph.
+/// The field of view in the xy-plane: what its projection covers, up to the plane of the
+/// photograph.
 fn sight(camera: &Camera, forward: DVec2, screen: &Screen) -> Vec<DVec2> {
     let [width, height] = camera.resolution.map(f64::from);
     let eye = camera.position.truncate();

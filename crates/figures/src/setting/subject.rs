@@ -45,15 +45,16 @@ impl<'s> Subject<'s> {
         section.outlines.iter().chain(&section.metal).chain(borders)
     }
 
-    /// Least and greatest x and y in the scene, cm, of all that has an end; none if there is nothing.
+    /// Least and greatest x and y in the scene, cm, of all that has an end; none if there is
+    /// nothing.
     pub fn bounds(&self) -> Option<[DVec2; 2]> {
         let points = self.contours().flat_map(|contour| &contour.points);
         let ends = points.filter(|p| p.abs().max_element() < REACH / 2.0);
         bounds(ends.map(|p| self.pose.point_to_world(*p)))
     }
 
-    /// The indices of the devices from back to front: of two bodies the one of the larger priority lies before
-    /// the other, as it is the one that is there, else what has the larger z.
+    /// The indices of the devices from back to front: of two bodies the one of the larger priority
+    /// lies before the other, as it is the one that is there, else what has the larger z.
     pub fn from_back(subjects: &[Self]) -> Vec<usize> {
         let priority = |i: usize| subjects[i].section.body.map_or(0, |body| body.priority);
         let z = |i: usize| subjects[i].pose.origin.z;
@@ -67,8 +68,8 @@ impl<'s> Subject<'s> {
         self.section.body.is_some() && self.section.body_medium.is_none()
     }
 
-    /// Whether it is a body that lies within another device as they are drawn; of two of one size, whether
-    /// `or_alike`.
+    /// Whether it is a body that lies within another device as they are drawn; of two of one size,
+    /// whether `or_alike`.
     pub fn is_within(&self, other: &Self, or_alike: bool) -> bool {
         let (Some([low, high]), Some([from, to])) = (self.bounds(), other.bounds()) else {
             return false;

@@ -213,7 +213,8 @@ fn variants() -> Vec<(String, Setting)> {
             ] {
                 let text =
                     format!("[[device]]\nkind = \"{}\"\nshow = \"{show}\"\n{more}\n", entry.kind);
-                // Some devices have no other views, and an endless slab across the photograph is in its way.
+                // Some devices have no other views, and an endless slab across the photograph is in
+                // its way.
                 if let Ok(setting) = setting(&scene(&text)) {
                     settings.push((text, setting));
                 }

@@ -11,7 +11,8 @@ use super::fixture::{
 };
 use glam::{DVec2, DVec3};
 
-/// The share of the unpolarized power that makes a pulse a main one, and how far apart distinct ones are, ns.
+/// The share of the unpolarized power that makes a pulse a main one, and how far apart distinct
+/// ones are, ns.
 const MAIN_PULSE: f64 = 0.1;
 const DISTINCT_NS: f64 = 1e-3;
 
@@ -70,8 +71,8 @@ pub(super) fn along_the_axis(fixture: &Fixture<'_>, page: &mut Page) -> Result<(
     Ok(())
 }
 
-/// What light of the centre plane with its field along the axis meets of the segments: the permeability in the plane
-/// and the permittivity across it.
+/// What light of the centre plane with its field along the axis meets of the segments: the
+/// permeability in the plane and the permittivity across it.
 pub(super) fn centre_plane(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let met = |material: &str| -> Result<[f64; 3]> {
         let device = square(material);
@@ -246,8 +247,8 @@ pub(super) fn waves_and_pulses(fixture: &Fixture<'_>, page: &mut Page) -> Result
 
 /// What the cloaks look like when they are turned, and the first reflection then.
 pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
-    // For 0, 5, 10, 20 degrees: against what a flat mirror shows, against the empty view, against (iii); the largest first
-    // reflection, and the share of the cloak where one is seen.
+    // For 0, 5, 10, 20 degrees: against what a flat mirror shows, against the empty view, against
+    // (iii); the largest first reflection, and the share of the cloak where one is seen.
     let mut mirror = [[Fidelity::default(); 4]; 2];
     let mut empty = [[Fidelity::default(); 4]; 2];
     let mut ideal = [Fidelity::default(); 4];
@@ -338,9 +339,11 @@ pub(super) fn turned(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     Ok(())
 }
 
-/// All the power of horizontal light that comes back from rays at an angle to the side: the largest share.
+/// All the power of horizontal light that comes back from rays at an angle to the side: the largest
+/// share.
 fn backward(fixture: &Fixture<'_>, material: &str, right: f64) -> Result<f64> {
-    // Some paths lead straight up or down, to the last digits; that light does not go on, and counts.
+    // Some paths lead straight up or down, to the last digits; that light does not go on, and
+    // counts.
     const STRAIGHT_UP: f64 = 1e-9;
     let assembly = fixture.assembly(&square(material))?;
     let mut rays = tracer(&assembly, 1e-5);

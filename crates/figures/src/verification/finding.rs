@@ -9,13 +9,16 @@ use std::fmt::Write;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// It does: a number to the digits that are printed, a limit kept, a comparison that comes out so.
+    /// It does: a number to the digits that are printed, a limit kept, a comparison that comes out
+    /// so.
     Agrees,
-    /// A number is off by no more than a tenth of the one that is printed; by how much is said beside it.
+    /// A number is off by no more than a tenth of the one that is printed; by how much is said
+    /// beside it.
     AgreesClosely,
     /// A number is not off by more than a factor of 3.
     AgreesInOrderOfMagnitude,
-    /// A judgement without a number holds by one of the two tolerances of light in place, and not by the other.
+    /// A judgement without a number holds by one of the two tolerances of light in place, and not
+    /// by the other.
     DependsOnTolerance,
     /// It does not.
     Differs,
@@ -34,8 +37,8 @@ pub struct Finding {
     pub verdict: Verdict,
     /// A word why, where it does not quite; else empty.
     pub remark: String,
-    /// By how much a number is off the one that is printed, or beyond the limit that is stated, as a share of that;
-    /// 0 where it agrees, `None` where the statement has no number.
+    /// By how much a number is off the one that is printed, or beyond the limit that is stated, as
+    /// a share of that; 0 where it agrees, `None` where the statement has no number.
     pub relative_deviation: Option<f64>,
 }
 
@@ -156,7 +159,8 @@ impl Finding {
         }
     }
 
-    /// The verdict on what is judged by light in place, strictly and widely; if they are two, a word says which holds.
+    /// The verdict on what is judged by light in place, strictly and widely; if they are two, a
+    /// word says which holds.
     pub(super) fn verdict_in_place(&mut self, [strictly, widely]: [bool; 2]) -> &mut Self {
         if strictly == widely {
             return self.verdict(strictly);
@@ -256,7 +260,8 @@ pub(super) const NO_CLOAKING: f64 = 0.1;
 /// The share of the light that a reflection must have to be seen, or to be significant.
 pub(super) const SEEN: f64 = 0.01;
 
-/// What double precision leaves of equal numbers near 1, and what single precision leaves of equal light.
+/// What double precision leaves of equal numbers near 1, and what single precision leaves of equal
+/// light.
 pub(super) const DOUBLE: f64 = 2e-13;
 pub(super) const SINGLE: f64 = 2e-6;
 
@@ -270,8 +275,8 @@ pub(super) fn list<T>(values: &[T], word: impl Fn(&T) -> String) -> String {
     values.iter().map(word).collect::<Vec<_>>().join(", ")
 }
 
-/// The power of ten that a number, of which what is below `least` is rounding, stays below: that is worth no more
-/// digits, and would change from machine to machine.
+/// The power of ten that a number, of which what is below `least` is rounding, stays below: that is
+/// worth no more digits, and would change from machine to machine.
 pub(super) fn below(number: f64, least: f64, unit: &str) -> String {
     let exponent = number.abs().max(least).log10().floor() as i32 + 1;
     let power = match exponent {

@@ -38,8 +38,8 @@ const WIDE_PHOTOGRAPH: f64 = 200.0;
 /// Width and height of the pictures in pixels.
 const RESOLUTION: [usize; 2] = [160, 120];
 
-/// How near to each other segments of one path end and start, in place and in optical path, cm: a graded way is known
-/// to the tolerance with which it is solved.
+/// How near to each other segments of one path end and start, in place and in optical path, cm: a
+/// graded way is known to the tolerance with which it is solved.
 const JOINED: f64 = 1e-5;
 
 /// Every how manieth pixel is asked for its pulses.
@@ -137,7 +137,8 @@ pub(super) fn in_words(seen: &[Fidelity]) -> String {
     format!("{strictly} in place ({widely} widely), FLIP {flips}")
 }
 
-/// Whether at least a share is in place each time, and more than with the bare metal: strictly, and widely.
+/// Whether at least a share is in place each time, and more than with the bare metal: strictly, and
+/// widely.
 pub(super) fn are(seen: &[Fidelity], least: f64, bare: &[Fidelity]) -> [bool; 2] {
     [0, 1].map(|within| {
         let is = |seen: &Fidelity, bare: &Fidelity| {
@@ -150,12 +151,13 @@ pub(super) fn are(seen: &[Fidelity], least: f64, bare: &[Fidelity]) -> [bool; 2]
 /// The strongest way of a camera ray's unpolarized light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MainPath {
-    /// The share of the power that does not take it, of horizontal or vertical light, whichever is more.
+    /// The share of the power that does not take it, of horizontal or vertical light, whichever is
+    /// more.
     pub off: f64,
     /// The share of the power with which horizontal and vertical light part, over all paths.
     pub between_polarizations: f64,
-    /// The share of the power that an outer face of the device has reflected, from inside, on its way; of horizontal or
-    /// vertical light, whichever is more.
+    /// The share of the power that an outer face of the device has reflected, from inside, on its
+    /// way; of horizontal or vertical light, whichever is more.
     pub reflected_at_a_face: f64,
 }
 
@@ -214,7 +216,8 @@ impl<'s> Fixture<'s> {
         Ok(shown)
     }
 
-    /// The mean and the largest share of the light that the first face of a device reflects, seen at half an angle.
+    /// The mean and the largest share of the light that the first face of a device reflects, seen
+    /// at half an angle.
     pub fn reflection(&self, half_view: f64, device: &str, polarizer: &str) -> Result<[f64; 2]> {
         self.show_at(half_view, device, polarizer)?.statistics("first_face_reflectance")
     }
@@ -227,8 +230,8 @@ impl<'s> Fixture<'s> {
         Ok(survey(&prepared, &ideal, &self.supervision())?)
     }
 
-    /// The one region over which devices are judged: the part of the view where the metal of every design, bare and
-    /// along the axis, leaves no light in place.
+    /// The one region over which devices are judged: the part of the view where the metal of every
+    /// design, bare and along the axis, leaves no light in place.
     pub fn region(&self) -> Result<&PixelMask> {
         if self.region.get().is_none() {
             let metals = [square(DESIGNS[2]), GAUSSIAN.to_owned()];
@@ -276,7 +279,8 @@ impl<'s> Fixture<'s> {
         Ok(rms.ok_or("light from the photograph")?)
     }
 
-    /// The main paths of camera rays, one for 2 x 2 pixels, through a device, a box, that is alone in its scene.
+    /// The main paths of camera rays, one for 2 x 2 pixels, through a device, a box, that is alone
+    /// in its scene.
     pub fn main_paths(&self, half_view: f64, device: &str) -> Result<Vec<MainPath>> {
         let scene = Setting { device, polarizer: "none", half_view }.scene()?;
         let prepared = self.prepared(&scene)?;
@@ -321,8 +325,9 @@ impl<'s> Fixture<'s> {
         Ok(rows?.concat())
     }
 
-    /// How many distinct main pulses of a device come back along rays through the region: each has at least a share of
-    /// the unpolarized power, and they are more than `apart` ns from one another.
+    /// How many distinct main pulses of a device come back along rays through the region: each has
+    /// at least a share of the unpolarized power, and they are more than `apart` ns from one
+    /// another.
     pub fn pulses(&self, device: &str, share: f64, apart: f64) -> Result<Vec<usize>> {
         let setting = Setting { device, polarizer: "none", half_view: HALF_VIEW };
         let scene = setting.scene()?;
@@ -393,8 +398,8 @@ pub(super) fn tracer(assembly: &Assembly, min_power: f64) -> Tracer<'_, 2> {
     Tracer::new(assembly, Limits { min_power, tolerance: 1e-8 })
 }
 
-/// The shares of horizontal and vertical light that go on along the ray's own line, as if nothing were there, within
-/// 1e-6 degrees and 1e-6 cm.
+/// The shares of horizontal and vertical light that go on along the ray's own line, as if nothing
+/// were there, within 1e-6 degrees and 1e-6 cm.
 pub(super) fn undisturbed(tracer: &mut Tracer<'_, 2>, origin: DVec3, direction: DVec3) -> [f64; 2] {
     let direction = direction.normalize();
     let (leaves, _) = tracer.trace(&launch(origin, direction));
@@ -413,8 +418,8 @@ pub(super) fn launch(origin: DVec3, direction: DVec3) -> Launch<2> {
     Launch { origin, direction, electric: [h.into(), v.into()] }
 }
 
-/// Where on the way of a leaf two segments on end lie in one region, which is where it is reflected inside: in the frame
-/// of the device.
+/// Where on the way of a leaf two segments on end lie in one region, which is where it is reflected
+/// inside: in the frame of the device.
 fn inner_reflections(
     assembly: &Assembly,
     segments: &[PathSegment<2>],
@@ -446,7 +451,8 @@ fn inner_reflections(
     reflections
 }
 
-/// The strongest leaf of a ray's vertical light, and how often its way is reflected within a region.
+/// The strongest leaf of a ray's vertical light, and how often its way is reflected within a
+/// region.
 pub(super) fn reflected_inside(assembly: &Assembly, ray: &Launch<2>) -> Result<(Leaf<2>, usize)> {
     let mut tracer = tracer(assembly, 1e-6).watched(Vec::new());
     let (leaves, _) = tracer.trace(ray);

@@ -51,7 +51,8 @@ pub(super) fn thinner_bump(fixture: &Fixture<'_>, page: &mut Page) -> Result<()>
     const PAPERS: f64 = 10.02;
     let area = fact(GAUSSIAN, "cloaked_area_cm2")?;
     let narrow = fact(&square(DESIGNS[2]), "mirror_width_cm")?;
-    // 2 (sqrt(pi) h w - h²) is the area; it is largest for h = sqrt(pi) w/2, where the index is infinite.
+    // 2 (sqrt(pi) h w - h²) is the area; it is largest for h = sqrt(pi) w/2, where the index is
+    // infinite.
     let half = 0.5 * PI.sqrt() * THINNER;
     let height = half - (half * half - 0.5 * area).sqrt();
     let thinnest = (2.0 * area / PI).sqrt();
@@ -202,8 +203,9 @@ pub(super) fn reflections(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> 
     let first =
         |half_view, device: &str, polarizer: &str| fixture.reflection(half_view, device, polarizer);
     let mut still = [0.0; 2];
-    // The largest first reflection, and the share of the view where more than the paper says leaves the main path and
-    // where a reflection at a face of the cloak is seen, for each turn; its largest share.
+    // The largest first reflection, and the share of the view where more than the paper says leaves
+    // the main path and where a reflection at a face of the cloak is seen, for each turn; its
+    // largest share.
     let mut most: [f64; 2] = [0.0; 2];
     let mut more = [[0.0; 2]; 4];
     let mut mirrored = [[0.0; 2]; 4];

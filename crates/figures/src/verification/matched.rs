@@ -50,7 +50,8 @@ pub(super) fn along_the_axis(fixture: &Fixture<'_>, page: &mut Page) -> Result<(
     Ok(())
 }
 
-/// Whether (iii) cloaks rays, and waves: their phase, and their field on the mirror that is seen edge-on.
+/// Whether (iii) cloaks rays, and waves: their phase, and their field on the mirror that is seen
+/// edge-on.
 fn wave_cloak(assembly: &Assembly, page: &mut Page, lost: f64) -> Result<()> {
     let mut rays = tracer(assembly, 1e-12);
     let mut late: f64 = 0.0;
@@ -66,7 +67,8 @@ fn wave_cloak(assembly: &Assembly, page: &mut Page, lost: f64) -> Result<()> {
             }
         }
     }
-    // In virtual space the metal is a flat strip along x and z; what a wave along x has of its field along it.
+    // In virtual space the metal is a flat strip along x and z; what a wave along x has of its
+    // field along it.
     let [h, v] = launch(CAMERA, DVec3::X).electric.map(|field| {
         let along = field.re.x.hypot(field.re.z);
         (along / field.re.length()).powi(2)

@@ -1,8 +1,9 @@
-//! The statements of the paper, one by one: Halimeh & Wegener, "Photorealistic rendering of unidirectional
-//! free-space invisibility cloaks", Opt. Express 21, 9457 (2013).
+//! The statements of the paper, one by one: Halimeh & Wegener, "Photorealistic rendering of
+//! unidirectional free-space invisibility cloaks", Opt. Express 21, 9457 (2013).
 //!
-//! Each statement that can be checked is computed afresh from the program's own scenes and rays, and the verdict
-//! follows from the numbers by a rule that is written down here, once. No number is adjusted to agree.
+//! Each statement that can be checked is computed afresh from the program's own scenes and rays,
+//! and the verdict follows from the numbers by a rule that is written down here, once. No number is
+//! adjusted to agree.
 
 mod birefringent;
 mod finding;

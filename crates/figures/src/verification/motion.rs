@@ -11,7 +11,8 @@ use optics::transformation::{ConformalMap, GaussianMap};
 /// Half the cut along x and y, cm.
 const CUT: [f64; 2] = [25.0, 28.57];
 
-/// Rays of design (iv) by the program, and by plain steps along the equation of motion in physical space.
+/// Rays of design (iv) by the program, and by plain steps along the equation of motion in physical
+/// space.
 pub(super) fn equation(fixture: &Fixture<'_>, page: &mut Page) -> Result<()> {
     let gaussian =
         GaussianMap::new(10.02, 4.25).map_err(|e| VerificationError::Missing(e.to_string()))?;
@@ -61,7 +62,8 @@ fn medium(map: &ConformalMap, r: DVec3) -> SquaredIndex {
     };
     let jet = map.jet(zeta);
     let value = jet.f1.norm_sqr().recip();
-    // The gradient of ln n in virtual space is -conj(f''/f'); one more conj(f') takes it to physical space.
+    // The gradient of ln n in virtual space is -conj(f''/f'); one more conj(f') takes it to
+    // physical space.
     let slope = -2.0 * value * (jet.f2 / (jet.f1 * jet.f1)).conj();
     SquaredIndex { value, gradient: DVec3::new(slope.re, slope.im, 0.0) }
 }

@@ -22,7 +22,8 @@ enum Section<'s> {
     Disc { centre: DVec2, radius: f64 },
 }
 
-/// A bound on how deep a point lies in a convex body: positive inside, at most its distance to the border.
+/// A bound on how deep a point lies in a convex body: positive inside, at most its distance to the
+/// border.
 enum Bound {
     /// `offset` - `normal`·p.
     Plane { normal: DVec3, offset: f64 },
@@ -77,8 +78,9 @@ impl<'s> Convex<'s> {
         [self.extent.min.max(-REACH), self.extent.max.min(REACH)]
     }
 
-    /// Bounds that hold together just inside. A sheet counts as thin as `thickness`, and steep: where more
-    /// than half of that is left in it, no point is farther from its plane than an eighth.
+    /// Bounds that hold together just inside. A sheet counts as thin as `thickness`, and steep:
+    /// where more than half of that is left in it, no point is farther from its plane than an
+    /// eighth.
     fn bounds(&self, thickness: f64) -> Vec<Bound> {
         let plane = |normal: DVec3, offset: f64| {
             let normal = self.pose.vector_to_world(normal);
@@ -142,8 +144,9 @@ impl<'s> Convex<'s> {
         Some((normal, across.dot(a) + normal.dot(self.pose.origin)))
     }
 
-    /// Whether two sheets cross: on the line where their planes meet is a point deeper than half of `slack` within the edges
-    /// of both. Off that line they are apart, however small the angle between them.
+    /// Whether two sheets cross: on the line where their planes meet is a point deeper than half of
+    /// `slack` within the edges of both. Off that line they are apart, however small the angle
+    /// between them.
     fn crosses(&self, other: &Self, slack: f64) -> Option<bool> {
         let [(normal, offset), (second, beyond)] = [self.sheet_plane()?, other.sheet_plane()?];
         let along = normal.cross(second);
@@ -192,8 +195,9 @@ impl<'s> Convex<'s> {
         meet_deep(&bounds, from.ellipsoid(), slack)
     }
 
-    /// The greatest value of a convex function over the part of the body that lies between two z of its common
-    /// frame: it is at a corner or on a rim. Rims are sampled and the greatest sample refined.
+    /// The greatest value of a convex function over the part of the body that lies between two z of
+    /// its common frame: it is at a corner or on a rim. Rims are sampled and the greatest sample
+    /// refined.
     pub fn greatest(&self, slab: Extent, value: impl Fn(DVec3) -> f64) -> f64 {
         let Extremes { corners, curves } = self.outermost(slab);
         let around = |curve: &Curve<'_>| {
@@ -203,7 +207,8 @@ impl<'s> Convex<'s> {
         corners.into_iter().map(&value).chain(on_curves).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Points between which all of the part of the body lies that is between two z, curves as many points.
+    /// Points between which all of the part of the body lies that is between two z, curves as many
+    /// points.
     pub fn extremes(&self, slab: Extent) -> Vec<DVec3> {
         let Extremes { corners: mut points, curves } = self.outermost(slab);
         for curve in curves {
@@ -252,8 +257,8 @@ impl<'s> Convex<'s> {
         extremes
     }
 
-    /// Whether a body of which the support function (the greatest n·p over its points p) and the greatest
-    /// value of convex functions are known lies within this one, but for `slack`.
+    /// Whether a body of which the support function (the greatest n·p over its points p) and the
+    /// greatest value of convex functions are known lies within this one, but for `slack`.
     pub fn holds(
         &self,
         slack: f64,
@@ -268,7 +273,8 @@ impl<'s> Convex<'s> {
         })
     }
 
-    /// How far it reaches along a unit vector from the origin; endless where it has no end that way.
+    /// How far it reaches along a unit vector from the origin; endless where it has no end that
+    /// way.
     pub fn support(&self, direction: DVec3) -> f64 {
         let own = self.pose.vector_to_local(direction);
         let beside = match self.section {
@@ -308,14 +314,16 @@ pub(super) fn press(one: &Solid, other: &Solid, slack: f64) -> bool {
     meet_deep(&bounds, smaller.1, slack)
 }
 
-/// Whether there is a point in an ellipsoid that lies deeper than half of `slack` in all of some bounds.
+/// Whether there is a point in an ellipsoid that lies deeper than half of `slack` in all of some
+/// bounds.
 ///
-/// How deep a point lies in both bodies is a concave function of it, and its maximum is looked for by the ellipsoid
-/// method with deep cuts (Grötschel, Lovász, Schrijver, Geometric Algorithms and Combinatorial Optimization,
-/// chapter 3): the ellipsoid holds all points that may be deep enough, and each step halves it at least by a
-/// linear bound on the depth. It needs no case for faces, edges, rims and what else may meet, and it ends with
-/// a proof: such a point, or none left. The ellipsoid is kept as a matrix that makes it of the unit ball, so
-/// that a thin one is as exact as a round one.
+/// How deep a point lies in both bodies is a concave function of it, and its maximum is looked for
+/// by the ellipsoid method with deep cuts (Grötschel, Lovász, Schrijver, Geometric Algorithms and
+/// Combinatorial Optimization, chapter 3): the ellipsoid holds all points that may be deep enough,
+/// and each step halves it at least by a linear bound on the depth. It needs no case for faces,
+/// edges, rims and what else may meet, and it ends with a proof: such a point, or none left. The
+/// ellipsoid is kept as a matrix that makes it of the unit ball, so that a thin one is as exact as
+/// a round one.
 fn meet_deep(bounds: &[Bound], ellipsoid: (DVec3, DMat3), slack: f64) -> bool {
     /// From the largest ellipsoid to the smallest it takes some 800 steps.
     const MOST_STEPS: u32 = 5000;

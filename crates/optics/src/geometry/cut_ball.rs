@@ -20,7 +20,8 @@ impl CutBall {
         ((radius - offset) * (radius + offset)).max(0.0).sqrt()
     }
 
-    /// How far a point lies outside of the plane or the sphere, whichever is more; negative inside, cm.
+    /// How far a point lies outside of the plane or the sphere, whichever is more; negative inside,
+    /// cm.
     #[must_use]
     pub fn height(&self, at: DVec3) -> f64 {
         let above = self.plane.normal.dot(at) - self.plane.offset;
@@ -44,8 +45,8 @@ impl CutBall {
         (plane.normal.dot(point) <= plane.offset).then(|| (distance, sphere.outward(point)))
     }
 
-    /// Where a ray that is inside or on the border leaves: the distance, from zero on, and the outward unit
-    /// normal.
+    /// Where a ray that is inside or on the border leaves: the distance, from zero on, and the
+    /// outward unit normal.
     #[must_use]
     pub fn exit(&self, origin: DVec3, direction: DVec3) -> (f64, DVec3) {
         let distance = self.sphere.time_to_leave(origin, direction);
@@ -73,7 +74,8 @@ impl CutBall {
         point.distance(self.farthest_along(away))
     }
 
-    /// Its cross-section in the plane z = 0 as corners, one after the other, `pieces` of them on a whole circle.
+    /// Its cross-section in the plane z = 0 as corners, one after the other, `pieces` of them on a
+    /// whole circle.
     #[must_use]
     pub fn section(&self, pieces: u32) -> Vec<DVec2> {
         let Self { sphere: Sphere { radius }, plane: Plane { normal, offset } } = *self;

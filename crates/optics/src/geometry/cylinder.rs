@@ -36,7 +36,8 @@ impl Cylinder {
         let along = o.dot(d) / speed;
         let beside = d.perp_dot(o) / speed;
         let half_chord = self.radius * self.radius - beside * beside;
-        // From within the radius a ray comes that passes an end: only by rounding may it start there.
+        // From within the radius a ray comes that passes an end: only by rounding may it start
+        // there.
         let outside = o.length_squared() >= self.radius * self.radius * (1.0 - 1e-12);
         if !(along < 0.0 && half_chord >= 0.0 && outside) {
             return None;

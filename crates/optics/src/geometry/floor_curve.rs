@@ -6,8 +6,8 @@ use num_complex::Complex64;
 use super::Outline;
 use crate::transformation::{ConformalMap, root_in_bracket};
 
-/// The outline of the metal below the floor f(X) of a conformal map, cut at two x: the floor, the back,
-/// and the blunt ends between the two. Lengths in cm.
+/// The outline of the metal below the floor f(X) of a conformal map, cut at two x: the floor, the
+/// back, and the blunt ends between the two. Lengths in cm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorCurve {
     map: ConformalMap,
@@ -36,7 +36,8 @@ pub enum CurvedSide {
     Image,
 }
 
-/// A ray, the least t that counts of its points origin + t direction, and which way it is to cross the outline.
+/// A ray, the least t that counts of its points origin + t direction, and which way it is to cross
+/// the outline.
 #[derive(Clone, Copy)]
 struct Ray {
     origin: DVec2,
@@ -120,8 +121,8 @@ impl FloorCurve {
         (0..=pieces).map(point).collect()
     }
 
-    /// The outline of the metal from the left end of its floor on, the floor and its mirror image in that
-    /// many straight pieces each.
+    /// The outline of the metal from the left end of its floor on, the floor and its mirror image
+    /// in that many straight pieces each.
     #[must_use]
     pub fn outline(&self, pieces: u32) -> Vec<DVec2> {
         let floor = self.side_line(CurvedSide::Floor, pieces);
@@ -137,9 +138,10 @@ impl FloorCurve {
         floor.into_iter().chain(back).collect()
     }
 
-    /// The first point with t >= `t_min` where the ray `origin + t direction` enters the metal; points where
-    /// it leaves do not count, so a ray may start on the metal (where the metal is thinner than rounding,
-    /// far out, only a positive `t_min` keeps such a ray off the other side). None if there is none.
+    /// The first point with t >= `t_min` where the ray `origin + t direction` enters the metal;
+    /// points where it leaves do not count, so a ray may start on the metal (where the metal is
+    /// thinner than rounding, far out, only a positive `t_min` keeps such a ray off the other
+    /// side). None if there is none.
     #[must_use]
     pub fn first_hit(&self, origin: DVec2, direction: DVec2, t_min: f64) -> Option<FloorHit> {
         let ray = Ray { origin, direction, t_min, leaving: false };
@@ -154,8 +156,9 @@ impl FloorCurve {
         hits.into_iter().flatten().min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
-    /// The first point with t >= `t_min` where a ray leaves the outline through its floor, or through the mirror
-    /// image of it: the outline taken for that of a hollow, open at its ends. The normal points out of it.
+    /// The first point with t >= `t_min` where a ray leaves the outline through its floor, or
+    /// through the mirror image of it: the outline taken for that of a hollow, open at its ends.
+    /// The normal points out of it.
     #[must_use]
     pub fn first_way_out(
         &self,
@@ -181,7 +184,8 @@ impl FloorCurve {
     pub(super) fn depth(&self, point: DVec2) -> f64 {
         const SAMPLES: u32 = 512;
         let [first, last] = self.ends();
-        // No point of the image is nearer than its own image to a point above the line between the two.
+        // No point of the image is nearer than its own image to a point above the line between the
+        // two.
         let here = Complex64::new(point.x, point.y.abs());
         let slope = |parameter: f64| {
             let jet = self.map.profile(parameter);
@@ -230,9 +234,9 @@ impl FloorCurve {
 
     /// The first crossing of the floor.
     ///
-    /// On the ray, F(X) = cross(f(X) - origin, direction) vanishes. Its slope vanishes where the curve is
-    /// parallel to the ray: at most once between two knots. So F is monotone on known intervals, and
-    /// no root can be missed.
+    /// On the ray, F(X) = cross(f(X) - origin, direction) vanishes. Its slope vanishes where the
+    /// curve is parallel to the ray: at most once between two knots. So F is monotone on known
+    /// intervals, and no root can be missed.
     fn first_on_curve(&self, ray: Ray) -> Option<FloorHit> {
         let Ray { origin, direction, t_min, leaving } = ray;
         let along = Complex64::new(direction.x, direction.y);

@@ -41,8 +41,8 @@ impl Hole {
         }
     }
 
-    /// Whether all of a body that lies between the ends of the hole is inside of it; `slack` (cm) is how deep it
-    /// may press into the border by rounding.
+    /// Whether all of a body that lies between the ends of the hole is inside of it; `slack` (cm)
+    /// is how deep it may press into the border by rounding.
     pub(super) fn encloses(&self, body: &Solid, slack: f64) -> bool {
         match (self, body) {
             (_, Solid::Nothing) => true,

@@ -1,9 +1,9 @@
 //! Surfaces, and where a ray meets them.
 //!
 //! Devices that extend along z are made of upright [`Wall`]s over a line in the xy-plane and of
-//! flat [`Cap`]s at their ends, round ones of a [`Cylinder`] and of [`Disc`]s; a [`Sphere`] is whole.
-//! Inside a convex cell a ray leaves through the first [`Plane`] ahead. A [`Solid`] is the space that
-//! something takes up.
+//! flat [`Cap`]s at their ends, round ones of a [`Cylinder`] and of [`Disc`]s; a [`Sphere`] is
+//! whole. Inside a convex cell a ray leaves through the first [`Plane`] ahead. A [`Solid`] is the
+//! space that something takes up.
 
 mod convex;
 mod cut_ball;
@@ -33,7 +33,8 @@ pub use solid::{Solid, TOUCHING};
 pub use sphere::Sphere;
 pub use wall::Wall;
 
-/// Of what a ray meets, each with its distance, the nearest; of several that are as near, the first.
+/// Of what a ray meets, each with its distance, the nearest; of several that are as near, the
+/// first.
 #[inline]
 pub fn first_along<T>(met: impl Iterator<Item = (f64, T)>) -> Option<(f64, T)> {
     met.reduce(|nearest, next| if next.0 < nearest.0 { next } else { nearest })

@@ -3,11 +3,12 @@
 use super::Outline;
 use glam::DVec2;
 
-/// Points closer than this are one point, cm. Coordinates are written with a few digits: rounded to six decimals, a
-/// corner may be off by 0.71e-6, and as much again the side on which it lies.
+/// Points closer than this are one point, cm. Coordinates are written with a few digits: rounded to
+/// six decimals, a corner may be off by 0.71e-6, and as much again the side on which it lies.
 pub const SAME_POINT: f64 = 2e-6;
 
-/// A polygon that does not cross itself, its corners in counterclockwise order, none of them straight.
+/// A polygon that does not cross itself, its corners in counterclockwise order, none of them
+/// straight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     corners: Vec<DVec2>,
@@ -32,13 +33,14 @@ pub enum PolygonError {
     },
 }
 
-/// A convex part of a polygon: the numbers of its corners, counterclockwise. Its edge from corner i to
-/// corner i + 1 is a side of the polygon; any other edge is a cut, on whose other side is another part.
+/// A convex part of a polygon: the numbers of its corners, counterclockwise. Its edge from corner i
+/// to corner i + 1 is a side of the polygon; any other edge is a cut, on whose other side is
+/// another part.
 pub type ConvexPart = Vec<usize>;
 
 impl Polygon {
-    /// The polygon with the given corners (cm), in either order. Corners that repeat the one before or lie
-    /// straight between their neighbours are left out.
+    /// The polygon with the given corners (cm), in either order. Corners that repeat the one before
+    /// or lie straight between their neighbours are left out.
     ///
     /// # Errors
     ///
@@ -74,9 +76,9 @@ impl Polygon {
         0.5 * doubled_area(&self.corners)
     }
 
-    /// Convex parts that make up the polygon, at most four times as many as need be: the ears of the
-    /// polygon cut off one by one, and joined again where that makes no bend inwards (Hertel & Mehlhorn,
-    /// FCT 1983).
+    /// Convex parts that make up the polygon, at most four times as many as need be: the ears of
+    /// the polygon cut off one by one, and joined again where that makes no bend inwards (Hertel &
+    /// Mehlhorn, FCT 1983).
     #[must_use]
     pub fn convex_parts(&self) -> Vec<ConvexPart> {
         let n = self.corners.len();
@@ -116,8 +118,8 @@ impl Polygon {
         while rest.len() > 3 {
             let n = rest.len();
             let around = |at: usize| around(n, at).map(|k| rest[k]);
-            // A simple polygon has two ears at least; where rounding hides them, the corner that bends
-            // most is as good.
+            // A simple polygon has two ears at least; where rounding hides them, the corner that
+            // bends most is as good.
             let at = (0..n).find(|&at| self.is_ear(around(at), &rest)).unwrap_or_else(|| {
                 let bend = |at: &usize| self.bend(around(*at));
                 (0..n).max_by(|a, b| bend(a).total_cmp(&bend(b))).unwrap_or(0)

@@ -14,7 +14,8 @@ pub struct Pose {
 /// A rotation that takes vectors of a device's frame to the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Turn {
-    /// About z, which stays upright: most devices are, and two products less a coordinate are their fast path.
+    /// About z, which stays upright: most devices are, and two products less a coordinate are their
+    /// fast path.
     Upright { cos: f64, sin: f64 },
     /// Any other.
     Tilted(DMat3),
@@ -35,9 +36,9 @@ impl Pose {
         Self { origin, turn: Turn::Upright { cos: exact(cos), sin: exact(sin) } }
     }
 
-    /// A device that is first turned by `rotation` about its own z axis, as by [`Pose::new`], and then by the
-    /// shortest turn of z to `axis`, a vector of any length; for -z, to which there are many, by 180 degrees about
-    /// x. For the zero vector, which is no direction, its axis stays z.
+    /// A device that is first turned by `rotation` about its own z axis, as by [`Pose::new`], and
+    /// then by the shortest turn of z to `axis`, a vector of any length; for -z, to which there are
+    /// many, by 180 degrees about x. For the zero vector, which is no direction, its axis stays z.
     ///
     /// Along z it is [`Pose::new`]; axes along x, y and -z are exact, too.
     #[must_use]

@@ -230,7 +230,8 @@ impl Solid {
         }
     }
 
-    /// Whether every point of this body is one of the other, a convex one, or no more than [`TOUCHING`] outside.
+    /// Whether every point of this body is one of the other, a convex one, or no more than
+    /// [`TOUCHING`] outside.
     #[must_use]
     pub fn is_within(&self, other: &Self) -> bool {
         match (self, other) {
@@ -262,7 +263,8 @@ impl Solid {
         }
     }
 
-    /// The least distance between two parallel planes that it fits between, cm; a hole does not count.
+    /// The least distance between two parallel planes that it fits between, cm; a hole does not
+    /// count.
     #[must_use]
     pub fn thickness(&self) -> f64 {
         match self {
@@ -316,8 +318,8 @@ impl Solid {
         }
     }
 
-    /// The outline of what it hides of the xy-plane, seen along z; round ones with corners. What has no end is cut
-    /// at [`REACH`].
+    /// The outline of what it hides of the xy-plane, seen along z; round ones with corners. What
+    /// has no end is cut at [`REACH`].
     pub fn shadow(&self) -> Outline {
         match self {
             Self::Nothing => Outline { corners: Vec::new() },

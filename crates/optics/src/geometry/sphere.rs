@@ -27,7 +27,8 @@ impl Sphere {
         Some((-along - half_chord.sqrt()).max(0.0))
     }
 
-    /// The distance at which a ray (of unit direction) meets the sphere from within, wherever it starts.
+    /// The distance at which a ray (of unit direction) meets the sphere from within, wherever it
+    /// starts.
     #[must_use]
     pub fn hit_within(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
         let along = origin.dot(direction);

@@ -25,12 +25,13 @@ pub fn reflect_at_conductor<const N: usize>(
     waves
 }
 
-/// The mirror image at a plane in a medium with the wave surface p·Ap = c, ε and µ being multiples of A. `None` if the
-/// medium is not of that kind, or nearly has no wave along the normal: the asymptotic cone of a hyperbolic one.
+/// The mirror image at a plane in a medium with the wave surface p·Ap = c, ε and µ being multiples
+/// of A. `None` if the medium is not of that kind, or nearly has no wave along the normal: the
+/// asymptotic cone of a hyperbolic one.
 ///
-/// The map J = 1 - 2 (An) nᵀ/(n·An) leaves the plane where it is and A as it is, but its determinant is
-/// -1: it takes ε and µ to -ε and -µ, where J⁻ᵀE and J⁻ᵀH solve Maxwell's equations. So do -J⁻ᵀE and
-/// J⁻ᵀH in the medium itself, with the wave vector J⁻ᵀp: the reflected wave.
+/// The map J = 1 - 2 (An) nᵀ/(n·An) leaves the plane where it is and A as it is, but its
+/// determinant is -1: it takes ε and µ to -ε and -µ, where J⁻ᵀE and J⁻ᵀH solve Maxwell's equations.
+/// So do -J⁻ᵀE and J⁻ᵀH in the medium itself, with the wave vector J⁻ᵀp: the reflected wave.
 fn mirror_image<const N: usize>(
     medium: &Medium,
     wave: &IncidentWave<N>,

@@ -31,13 +31,14 @@ impl Layer {
         self.square.max(LEAST_SQUARE).sqrt().copysign(self.permeability)
     }
 
-    /// The normal fluxes of waves with the normal component `q` and unit tangential fields: along the plane of
-    /// incidence (p), across it (s).
+    /// The normal fluxes of waves with the normal component `q` and unit tangential fields: along
+    /// the plane of incidence (p), across it (s).
     pub fn fluxes(&self, q: f64) -> [f64; 2] {
         [(self.permittivity / q).abs(), (q / self.permeability).abs()]
     }
 
-    /// A wave with the normal component `q` from its tangential fields, its normal flux and that of all outgoing waves.
+    /// A wave with the normal component `q` from its tangential fields, its normal flux and that of
+    /// all outgoing waves.
     pub fn wave<const N: usize>(
         &self,
         splitting: &Splitting<'_, N>,
@@ -89,8 +90,8 @@ pub(super) fn split_isotropic<const N: usize>(
     })
 }
 
-/// Ratios of the reflected to the incident tangential electric fields, p and s, for the normal components of
-/// the incident and the transmitted wave.
+/// Ratios of the reflected to the incident tangential electric fields, p and s, for the normal
+/// components of the incident and the transmitted wave.
 fn reflected<T: Number>(here: Layer, there: Layer, q: f64, onward: T) -> [T; 2] {
     let (p_here, p_there) = (T::from(there.permittivity * q), onward * here.permittivity);
     let (s_here, s_there) = (T::from(there.permeability * q), onward * here.permeability);

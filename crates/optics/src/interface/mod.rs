@@ -35,7 +35,8 @@ use matching::split_into_modes;
 use single_wave::split_single_wave;
 use splitting::Splitting;
 
-/// The share of the power that rounding leaves in a wave that is not there: matched media reflect nothing.
+/// The share of the power that rounding leaves in a wave that is not there: matched media reflect
+/// nothing.
 const ROUNDING: f64 = 1e-28;
 
 /// On which side of an interface an outgoing wave runs.
@@ -91,10 +92,10 @@ pub type OutgoingWaves<const N: usize> = ArrayVec<OutgoingWave<N>, 4>;
 /// Splits a wave at the interface between two media.
 ///
 /// `normal` is the unit normal that points from the medium of incidence, `incident_medium`, into
-/// `transmitted_medium`. Reflected waves come first; waves that carry no power (evanescent ones, and the
-/// reflections of matched media) are left out. The powers add up to that of the incident wave. (Exactly so for lossless incident
-/// media. In absorbing ones the interference of incident and reflected light carries power, too; it
-/// is shared out in proportion.)
+/// `transmitted_medium`. Reflected waves come first; waves that carry no power (evanescent ones,
+/// and the reflections of matched media) are left out. The powers add up to that of the incident
+/// wave. (Exactly so for lossless incident media. In absorbing ones the interference of incident
+/// and reflected light carries power, too; it is shared out in proportion.)
 ///
 /// # Example
 ///
@@ -128,8 +129,9 @@ pub fn split<const N: usize>(
     waves
 }
 
-/// Splits a wave as [`split`] does, and adds to `waves` all that have `least_power` or more in one of the
-/// polarizations: others need not be worked out, and may be left out. The power of those that are.
+/// Splits a wave as [`split`] does, and adds to `waves` all that have `least_power` or more in one
+/// of the polarizations: others need not be worked out, and may be left out. The power of those
+/// that are.
 pub fn split_down_to<const N: usize>(
     incident_medium: &Medium,
     transmitted_medium: &Medium,

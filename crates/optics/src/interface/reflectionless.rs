@@ -5,14 +5,15 @@ use super::{IncidentWave, OutgoingWave, Side};
 use crate::medium::{Medium, largest};
 use glam::{DMat3, DVec3};
 
-/// An interface beyond which the medium is that of incidence behind a coordinate map that leaves the
-/// interface itself where it is: it reflects nothing (Yan, Yan, Ruan & Qiu, New J. Phys. 10, 043040
-/// (2008)).
+/// An interface beyond which the medium is that of incidence behind a coordinate map that leaves
+/// the interface itself where it is: it reflects nothing (Yan, Yan, Ruan & Qiu, New J. Phys. 10,
+/// 043040 (2008)).
 ///
-/// Such a map has the Jacobian J = 1 + v nᵀ, n being the normal, and takes tensors to J ε Jᵀ/det J and
-/// J µ Jᵀ/det J. Maxwell's equations keep their form: wave vectors and fields go over by J⁻ᵀ = 1 - n
-/// vᵀ/det J, which keeps their tangential parts, and Poynting vectors by J/det J, which keeps their
-/// normal part. The field is narrowed or widened with the beam. Whether two given media meet in this way follows from their tensors alone.
+/// Such a map has the Jacobian J = 1 + v nᵀ, n being the normal, and takes tensors to J ε Jᵀ/det J
+/// and J µ Jᵀ/det J. Maxwell's equations keep their form: wave vectors and fields go over by J⁻ᵀ =
+/// 1 - n vᵀ/det J, which keeps their tangential parts, and Poynting vectors by J/det J, which keeps
+/// their normal part. The field is narrowed or widened with the beam. Whether two given media meet
+/// in this way follows from their tensors alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflectionless {
     normal: DVec3,
@@ -22,12 +23,14 @@ pub struct Reflectionless {
     determinant: f64,
 }
 
-/// How far apart, relative to the terms they are made of, tensors are that differ by rounding alone.
+/// How far apart, relative to the terms they are made of, tensors are that differ by rounding
+/// alone.
 const ROUNDING: f64 = 1e-14;
 
 impl Reflectionless {
-    /// The interface from one medium into another, the unit vector `normal` pointing into the latter, if
-    /// both are lossless, in each both polarizations share their wave vectors, and it reflects nothing.
+    /// The interface from one medium into another, the unit vector `normal` pointing into the
+    /// latter, if both are lossless, in each both polarizations share their wave vectors, and it
+    /// reflects nothing.
     #[must_use]
     pub fn between(incident: &Medium, transmitted: &Medium, normal: DVec3) -> Option<Self> {
         incident.wave_surface().and(transmitted.wave_surface())?;

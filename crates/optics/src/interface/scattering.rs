@@ -21,24 +21,26 @@ pub struct Scattering {
     /// incident ones. Zero for transmission into a conductor.
     pub amplitudes: [[Complex64; 2]; 4],
     /// Shares of the incident normal flux, by the same rows and columns; 0 for evanescent outgoing
-    /// modes, `None` for evanescent incident ones. The shares of a column add up to 1 if the medium of
-    /// incidence is lossless, with [`Self::interference`].
+    /// modes, `None` for evanescent incident ones. The shares of a column add up to 1 if the medium
+    /// of incidence is lossless, with [`Self::interference`].
     pub power: [Option<[f64; 4]>; 2],
-    /// What the two reflected modes, and the two transmitted ones, carry away from the interface together beyond what each
-    /// carries alone, by the same columns: 0 in lossless media, of either sign in absorbing ones.
+    /// What the two reflected modes, and the two transmitted ones, carry away from the interface
+    /// together beyond what each carries alone, by the same columns: 0 in lossless media, of either
+    /// sign in absorbing ones.
     pub interference: [Option<[f64; 2]>; 2],
-    /// The same amplitudes as of fields of unit size; `None` unless the media on both sides are isotropic, or one is and
-    /// the other is a conductor.
+    /// The same amplitudes as of fields of unit size; `None` unless the media on both sides are
+    /// isotropic, or one is and the other is a conductor.
     pub jones: Option<JonesMatrices>,
 }
 
-/// What an interface of isotropic media makes of electric fields, by Fresnel's equations: rows are s and p of the wave
-/// that leaves, columns those of the wave that comes.
+/// What an interface of isotropic media makes of electric fields, by Fresnel's equations: rows are
+/// s and p of the wave that leaves, columns those of the wave that comes.
 ///
-/// The field of s lies along a unit vector s across the plane of incidence, the same for all waves; that of p along
-/// s × k/√(k·k), k being each wave's own wave vector and the root that whose parts have a positive sum: |k| of a wave that
-/// propagates, i|k·k|^½ in a metal without loss. So, between dielectrics,
-/// r_s = (n₁ cos θ₁ - n₂ cos θ₂)/(n₁ cos θ₁ + n₂ cos θ₂) and r_p = (n₂ cos θ₁ - n₁ cos θ₂)/(n₂ cos θ₁ + n₁ cos θ₂).
+/// The field of s lies along a unit vector s across the plane of incidence, the same for all waves;
+/// that of p along s × k/√(k·k), k being each wave's own wave vector and the root that whose parts
+/// have a positive sum: |k| of a wave that propagates, i|k·k|^½ in a metal without loss. So,
+/// between dielectrics, r_s = (n₁ cos θ₁ - n₂ cos θ₂)/(n₁ cos θ₁ + n₂ cos θ₂) and
+/// r_p = (n₂ cos θ₁ - n₁ cos θ₂)/(n₂ cos θ₁ + n₁ cos θ₂).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JonesMatrices {
     /// Of the wave that is reflected.

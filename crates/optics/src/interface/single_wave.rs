@@ -53,7 +53,8 @@ struct Branch<'s> {
 }
 
 impl Branch<'_> {
-    /// The outgoing wave from its tangential fields, its normal flux and that of all outgoing waves.
+    /// The outgoing wave from its tangential fields, its normal flux and that of all outgoing
+    /// waves.
     fn outgoing<const N: usize>(
         &self,
         splitting: &Splitting<'_, N>,
@@ -72,8 +73,8 @@ impl Branch<'_> {
 /// Tangential electric fields (E·first, E·second) for each launched polarization.
 type TangentialFields<const N: usize> = [[Complex64; 2]; N];
 
-/// The tangential electric fields of the reflected and the transmitted wave, given those of the incident one. With the
-/// admittances Y, E_t = E_i + E_r and Y_t E_t = Y_i E_i + Y_r E_r give
+/// The tangential electric fields of the reflected and the transmitted wave, given those of the
+/// incident one. With the admittances Y, E_t = E_i + E_r and Y_t E_t = Y_i E_i + Y_r E_r give
 /// (Y_t - Y_r) E_r = (Y_i - Y_t) E_i.
 fn tangential_fields<T: Number, const N: usize>(
     arriving: &TangentialFields<N>,

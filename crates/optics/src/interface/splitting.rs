@@ -6,8 +6,8 @@ use crate::wave::{ComplexVector, Frame};
 use glam::DVec3;
 use num_complex::Complex64;
 
-/// What becomes of a wave under a linear map, given what it does to wave vectors and fields, the latter times `sign`,
-/// and where it takes the ray.
+/// What becomes of a wave under a linear map, given what it does to wave vectors and fields, the
+/// latter times `sign`, and where it takes the ray.
 #[inline]
 pub(super) fn mapped<const N: usize>(
     wave: &IncidentWave<N>,
@@ -64,15 +64,16 @@ impl<'a, const N: usize> Splitting<'a, N> {
         self.wave.electric.map(|field| [field.dot_real(first), field.dot_real(second)])
     }
 
-    /// Adds the wave that is reflected, unless it is too weak, and the one that is transmitted, given their normal
-    /// fluxes and how to make a wave from those of all; the power of a reflected wave that is too weak.
+    /// Adds the wave that is reflected, unless it is too weak, and the one that is transmitted,
+    /// given their normal fluxes and how to make a wave from those of all; the power of a reflected
+    /// wave that is too weak.
     pub fn part(
         &mut self,
         [back, on]: [[f64; N]; 2],
         outgoing: impl Fn(&Self, Side, [f64; N]) -> OutgoingWave<N>,
     ) -> [f64; N] {
-        // Shares of the sum, not of the incident flux: the same, but for rounding near grazing incidence, which
-        // would show in the account of the power.
+        // Shares of the sum, not of the incident flux: the same, but for rounding near grazing
+        // incidence, which would show in the account of the power.
         let total: [f64; N] = std::array::from_fn(|i| back[i] + on[i]);
         let power: [f64; N] = std::array::from_fn(|i| {
             let share = if back[i] > 0.0 { back[i] / total[i] } else { 0.0 };
@@ -86,8 +87,8 @@ impl<'a, const N: usize> Splitting<'a, N> {
         if strong { [0.0; N] } else { power }
     }
 
-    /// A wave of both polarizations from its normal flux and that of all outgoing waves; `field` is its electric field
-    /// for a launched polarization, scaled by a number.
+    /// A wave of both polarizations from its normal flux and that of all outgoing waves; `field` is
+    /// its electric field for a launched polarization, scaled by a number.
     pub fn outgoing(
         &self,
         side: Side,

@@ -17,8 +17,8 @@ pub enum MediumError {
         /// Which tensor.
         quantity: &'static str,
     },
-    /// A principal value of the tensor is NaN, or too large or too small, or too small beside another one, for fields
-    /// to be computed.
+    /// A principal value of the tensor is NaN, or too large or too small, or too small beside
+    /// another one, for fields to be computed.
     #[error(
         "the {quantity} tensor is singular, or too large or small: the magnitudes of its principal \
          values must be 1e-12 to 1e12, and the largest at most 1e12 times the smallest"

@@ -6,12 +6,14 @@ use crate::wave::{ComplexVector, poynting};
 use glam::{DMat3, DVec3};
 
 impl Medium {
-    /// The speed of light over that of a pulse along its ray, of a wave with the wave vector `p` and the electric field
-    /// `electric` of any size, at the least dispersion that causality allows; NaN where the medium absorbs.
+    /// The speed of light over that of a pulse along its ray, of a wave with the wave vector `p`
+    /// and the electric field `electric` of any size, at the least dispersion that causality
+    /// allows; NaN where the medium absorbs.
     ///
-    /// A pulse runs at the velocity S/U of the energy, with S = Re(E × H*)/2 and U = (E·ε'E* + H·µ'H*)/4, ε' = d(ωε)/dω. In a
-    /// passive transparent medium each principal value e has d(ωe)/dω ≥ max(e, 2 - e) (Landau & Lifshitz, Electrodynamics of
-    /// Continuous Media, section 84): that is taken for the derivative.
+    /// A pulse runs at the velocity S/U of the energy, with S = Re(E × H*)/2 and U = (E·ε'E* +
+    /// H·µ'H*)/4, ε' = d(ωε)/dω. In a passive transparent medium each principal value e has
+    /// d(ωe)/dω ≥ max(e, 2 - e) (Landau & Lifshitz, Electrodynamics of Continuous Media, section
+    /// 84): that is taken for the derivative.
     ///
     /// # Example
     ///

@@ -61,8 +61,8 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a tensor is not symmetric, has principal values beyond 1e-12 to 1e12 or one a 1e12th of another, or would
-    /// amplify light; or if the index of refraction could be above a million.
+    /// If a tensor is not symmetric, has principal values beyond 1e-12 to 1e12 or one a 1e12th of
+    /// another, or would amplify light; or if the index of refraction could be above a million.
     ///
     /// # Example
     ///
@@ -115,8 +115,8 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a number's magnitude is not 1e-12 to 1e12, the index of refraction would be above a million, or the axis
-    /// has no direction.
+    /// If a number's magnitude is not 1e-12 to 1e12, the index of refraction would be above a
+    /// million, or the axis has no direction.
     pub fn uniaxial_magnetic(
         permittivity: f64,
         ordinary: f64,
@@ -131,8 +131,8 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a number's magnitude is not 1e-12 to 1e12, the index of refraction would be above a million, or the axis
-    /// has no direction.
+    /// If a number's magnitude is not 1e-12 to 1e12, the index of refraction would be above a
+    /// million, or the axis has no direction.
     pub fn uniaxial_electric(
         permeability: f64,
         ordinary: f64,
@@ -180,7 +180,8 @@ impl Medium {
     ///
     /// # Errors
     ///
-    /// If a number's magnitude is not 1e-12 to 1e12, or the index of refraction would be above a million.
+    /// If a number's magnitude is not 1e-12 to 1e12, or the index of refraction would be above a
+    /// million.
     pub fn isotropic(permittivity: f64, permeability: f64) -> Result<Self, MediumError> {
         not_degenerate("permittivity", permittivity)?;
         not_degenerate("permeability", permeability)?;
@@ -211,9 +212,9 @@ impl Medium {
         Self::new(tensor, tensor)
     }
 
-    /// The impedance-matched medium ε = µ = `tensor` of a coordinate map, given with its inverse and
-    /// its determinant, for tensors known to be symmetric and positive definite: the local medium of
-    /// a transformation. Near a singular point only its maker knows the latter two.
+    /// The impedance-matched medium ε = µ = `tensor` of a coordinate map, given with its inverse
+    /// and its determinant, for tensors known to be symmetric and positive definite: the local
+    /// medium of a transformation. Near a singular point only its maker knows the latter two.
     pub fn transformed(tensor: DMat3, inverse: DMat3, determinant: f64) -> Self {
         debug_assert!(determinant.is_finite() && determinant > 0.0, "determinant {determinant}");
         let surface = WaveSurface { form: tensor, constant: determinant };
@@ -239,8 +240,8 @@ impl Medium {
         (Tensor { re: self.real.permittivity, im: e }, Tensor { re: self.real.permeability, im: m })
     }
 
-    /// The same medium, its waves found by the general eigenproblem instead of a closed form: slower,
-    /// and a check on the closed forms.
+    /// The same medium, its waves found by the general eigenproblem instead of a closed form:
+    /// slower, and a check on the closed forms.
     pub fn without_closed_form(self) -> Self {
         Self { class: Class::General, ..self }
     }
@@ -267,8 +268,8 @@ impl Medium {
     }
 
     /// The refractive index of an isotropic medium, the geometric mean over the principal axes and
-    /// polarizations of another: (det ε det µ)^(1/6), negative where both are. Of an absorbing medium, that of
-    /// the real parts.
+    /// polarizations of another: (det ε det µ)^(1/6), negative where both are. Of an absorbing
+    /// medium, that of the real parts.
     #[must_use]
     pub fn mean_index(&self) -> f64 {
         let (e, m) = (self.real.permittivity.determinant(), self.real.permeability.determinant());
@@ -276,8 +277,8 @@ impl Medium {
         if e < 0.0 && m < 0.0 { -size } else { size }
     }
 
-    /// The difference of its largest and its least index over the principal axes, of the real parts; 0 if it is
-    /// isotropic.
+    /// The difference of its largest and its least index over the principal axes, of the real
+    /// parts; 0 if it is isotropic.
     #[must_use]
     pub fn birefringence(&self) -> f64 {
         if self.is_isotropic() {
@@ -298,7 +299,8 @@ impl Medium {
         }
     }
 
-    /// The magnetic field H = µ⁻¹ (p × E) of a wave with wave vector `p` and electric field `electric`.
+    /// The magnetic field H = µ⁻¹ (p × E) of a wave with wave vector `p` and electric field
+    /// `electric`.
     pub fn magnetic_field(&self, wave_vector: DVec3, electric: ComplexVector) -> ComplexVector {
         self.magnetic_of_curl(electric.crossed_by(wave_vector))
     }
@@ -345,7 +347,8 @@ fn not_degenerate(quantity: &'static str, value: f64) -> Result<(), MediumError>
     Ok(())
 }
 
-/// The wave vector's part along a surface, that of light in air, is lost in rounding beside a wave vector too large.
+/// The wave vector's part along a surface, that of light in air, is lost in rounding beside a wave
+/// vector too large.
 fn not_too_dense(permittivity: f64, permeability: f64) -> Result<(), MediumError> {
     let [permittivity, permeability] = [permittivity.abs(), permeability.abs()];
     if permittivity * permeability > *MAGNITUDES.end() {

@@ -16,7 +16,8 @@ pub struct RayWave {
     pub wave_vector: DVec3,
     /// The imaginary part of the wave vector.
     pub attenuation: DVec3,
-    /// The electric field with |Re(E × H*)| = 1; `None` where any field across the ray is one, but for its size.
+    /// The electric field with |Re(E × H*)| = 1; `None` where any field across the ray is one, but
+    /// for its size.
     pub electric: Option<ComplexVector>,
 }
 
@@ -30,8 +31,9 @@ const FOUND: f64 = 1e-9;
 const MOST_STEPS: usize = 60;
 
 impl Medium {
-    /// The waves whose Poynting vector points along the unit vector `direction`: one where both polarizations share it, else
-    /// up to two; none where no ray runs so, as beside the cone of a hyperbolic medium.
+    /// The waves whose Poynting vector points along the unit vector `direction`: one where both
+    /// polarizations share it, else up to two; none where no ray runs so, as beside the cone of a
+    /// hyperbolic medium.
     #[must_use]
     pub fn waves_along_ray(&self, direction: DVec3) -> ArrayVec<RayWave, 2> {
         let shared = |wave_vector: DVec3, attenuation: DVec3| RayWave {
@@ -45,7 +47,8 @@ impl Medium {
             return wave.map(|wave| shared(wave, DVec3::ZERO)).into_iter().collect();
         }
         if let Class::AbsorbingIsotropic(e, m) = self.class {
-            // The product of the roots with positive imaginary parts is that of the wave that decays.
+            // The product of the roots with positive imaginary parts is that of the wave that
+            // decays.
             let root = |value: Complex64| {
                 let root = value.sqrt();
                 if root.im < 0.0 { -root } else { root }
@@ -68,9 +71,10 @@ impl Medium {
         waves
     }
 
-    /// The same of lossless anisotropic media. With the vector t along the ray, t·p = 1, Maxwell's equations are
-    /// t × D = µ⁻¹B and t × B = -ε⁻¹D: those of the modes of a medium with these tensors (Born & Wolf, Principles of
-    /// Optics, 15.2), of which p = D × B/(t·D × B). On an axis of equal ray velocities any two of these serve.
+    /// The same of lossless anisotropic media. With the vector t along the ray, t·p = 1, Maxwell's
+    /// equations are t × D = µ⁻¹B and t × B = -ε⁻¹D: those of the modes of a medium with these
+    /// tensors (Born & Wolf, Principles of Optics, 15.2), of which p = D × B/(t·D × B). On an axis
+    /// of equal ray velocities any two of these serve.
     fn lossless_waves_along_ray(&self, direction: DVec3) -> ArrayVec<RayWave, 2> {
         let inverse = |tensor: &DMat3| {
             let inverse = tensor.inverse();
@@ -107,8 +111,8 @@ impl Medium {
         waves
     }
 
-    /// Of the two modes along `direction` the one of that number, its wave normal turned until its ray runs along
-    /// `direction`.
+    /// Of the two modes along `direction` the one of that number, its wave normal turned until its
+    /// ray runs along `direction`.
     fn wave_with_ray(&self, number: usize, direction: DVec3) -> Option<RayWave> {
         let (first, second) = direction.any_orthonormal_pair();
         let mode = |normal: DVec3| -> Option<(Mode, DVec2)> {

@@ -6,8 +6,9 @@ use crate::wave::{cross, dot};
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
 
-/// How large and how small principal values may be, and how large beside one another: beyond, squares of fields that
-/// differ by as much are lost, and so is a small value in a tensor that is turned.
+/// How large and how small principal values may be, and how large beside one another: beyond,
+/// squares of fields that differ by as much are lost, and so is a small value in a tensor that is
+/// turned.
 pub(super) const MAGNITUDES: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
 
 /// A relative permittivity or permeability: a symmetric tensor, complex if the medium absorbs.
@@ -53,7 +54,8 @@ impl Tensor {
             return Err(MediumError::NotSymmetric { quantity });
         }
         let tensor = self.symmetric();
-        // The largest entry of the inverse is that of its largest principal value, but for rounding and a small factor.
+        // The largest entry of the inverse is that of its largest principal value, but for rounding
+        // and a small factor.
         let inverse = tensor.inverse();
         let largest_inverse = 2.0 * MAGNITUDES.end() / size.max(1.0);
         if !inverse.is_finite() || inverse.size() > largest_inverse {

@@ -33,9 +33,11 @@ impl WaveSurface {
     }
 
     /// The normal components of the waves with the tangential part `tangential` (perpendicular to
-    /// the unit vector `normal`). S·n is proportional to a q + b, hence positive for the root of the positive sign.
+    /// the unit vector `normal`). S·n is proportional to a q + b, hence positive for the root of
+    /// the positive sign.
     ///
-    /// At exact grazing, where the two coincide, they are set apart by about 1e-15, which gives the limit.
+    /// At exact grazing, where the two coincide, they are set apart by about 1e-15, which gives the
+    /// limit.
     pub fn roots(&self, tangential: DVec3, normal: DVec3) -> Roots {
         let form_normal = self.form * normal;
         Quadratic {

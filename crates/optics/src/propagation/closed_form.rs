@@ -1,8 +1,9 @@
 //! Graded media whose rays are known in closed form, between planes and spheres.
 //!
-//! A medium of this kind says where its rays run and where they come through a plane or a sphere; it may be cut to any
-//! convex shape, and rays may start in it. Rays are plane curves here, as wherever the gradient of the index stays in
-//! the plane of the ray: in it the electric field turns with the ray.
+//! A medium of this kind says where its rays run and where they come through a plane or a sphere;
+//! it may be cut to any convex shape, and rays may start in it. Rays are plane curves here, as
+//! wherever the gradient of the index stays in the plane of the ray: in it the electric field turns
+//! with the ray.
 
 pub use super::reference::SquaredIndex;
 use super::{PathEnd, turn_in_plane};
@@ -15,9 +16,9 @@ pub trait ClosedForm: Debug + Send + Sync {
     /// The square of the index and its gradient at a point.
     fn squared_index(&self, at: DVec3) -> SquaredIndex;
 
-    /// Where on its way, from its start on, a ray first comes out through a surface: the parameter of the way, which
-    /// grows along it from 0; `None` if it never does. It starts inside of the surface, or on it: there, the
-    /// way it runs decides, not rounding. See [`first_way_out`].
+    /// Where on its way, from its start on, a ray first comes out through a surface: the parameter
+    /// of the way, which grows along it from 0; `None` if it never does. It starts inside of the
+    /// surface, or on it: there, the way it runs decides, not rounding. See [`first_way_out`].
     fn way_out(&self, start: &CurvedRay, surface: &FlatOrRound) -> Option<f64>;
 
     /// Where a ray is at a parameter of its way, and the optical path to there, cm.
@@ -33,10 +34,10 @@ pub struct CurvedRay {
     pub wave_vector: DVec3,
 }
 
-/// The first way out of a surface along a ray: the first t from 0 on, infinity and then the negative numbers
-/// following the positive ones, at which c + b t + a t² grows through zero. As numerator and denominator, the
-/// former never negative: t = ∞ is sound, and the angle 2 atan2(numerator, denominator) with t = tan(angle/2) is,
-/// too. `None` if it never does.
+/// The first way out of a surface along a ray: the first t from 0 on, infinity and then the
+/// negative numbers following the positive ones, at which c + b t + a t² grows through zero. As
+/// numerator and denominator, the former never negative: t = ∞ is sound, and the angle 2
+/// atan2(numerator, denominator) with t = tan(angle/2) is, too. `None` if it never does.
 ///
 /// c, how far outside the start is, counts as 0 where rounding has made it positive.
 #[must_use]
@@ -52,8 +53,9 @@ pub fn first_way_out([c, b, a]: [f64; 3]) -> Option<[f64; 2]> {
     Some(if b > 0.0 { [-2.0 * c, b + root] } else { [root - b, 2.0 * a] })
 }
 
-/// Follows a ray from a point within some surfaces, or on them, to the first that it comes through, and the parameter of
-/// its way there; `None` if it comes through none. The surface's number is that in their order.
+/// Follows a ray from a point within some surfaces, or on them, to the first that it comes through,
+/// and the parameter of its way there; `None` if it comes through none. The surface's number is
+/// that in their order.
 #[must_use]
 pub fn follow(
     medium: &dyn ClosedForm,
@@ -85,7 +87,8 @@ pub fn follow(
     sound.then(|| (end(), parameter))
 }
 
-/// The unit normal of the plane in which a ray of that direction runs; any if it runs along the gradient.
+/// The unit normal of the plane in which a ray of that direction runs; any if it runs along the
+/// gradient.
 fn normal(direction: DVec3, gradient: DVec3) -> DVec3 {
     let across = |v: DVec3| (v - direction * v.dot(direction)).try_normalize();
     let normal = direction.cross(gradient).try_normalize().and_then(across);

@@ -12,8 +12,8 @@ pub(super) const NODES: usize = 9;
 /// How often a panel is halved at most, as where the least dispersion of a medium sets in.
 const MOST_HALVINGS: u32 = 20;
 
-/// Chebyshev's points on [-1, 1], the derivative there of the polynomial through values at them, and the weights of its
-/// integral (Trefethen, Spectral Methods in MATLAB, chapters 6 and 12).
+/// Chebyshev's points on [-1, 1], the derivative there of the polynomial through values at them,
+/// and the weights of its integral (Trefethen, Spectral Methods in MATLAB, chapters 6 and 12).
 struct Panel<const N: usize> {
     derivative: [[f64; N]; N],
     weights: [f64; N],
@@ -64,8 +64,8 @@ impl<const N: usize> Panel<N> {
     }
 }
 
-/// ∫ ratio d(optical path) along a way, cm, to within about `tolerance` (cm): `panel` gives the ratio and the optical path
-/// at shares of the way between 0 and 1.
+/// ∫ ratio d(optical path) along a way, cm, to within about `tolerance` (cm): `panel` gives the
+/// ratio and the optical path at shares of the way between 0 and 1.
 pub(super) fn integral_along(
     panel: &dyn Fn([f64; NODES]) -> ([f64; NODES], [f64; NODES]),
     tolerance: f64,

@@ -1,10 +1,10 @@
 //! A slow, plain integrator of rays in isotropic graded media, for tests.
 //!
-//! It knows an index and its gradient in physical space and nothing else: no map, no virtual space, no
-//! error control. It solves the ray equation d/ds(n dr/ds) = ∇n (Born & Wolf, section 3.2), which is the
-//! equation of motion of Halimeh & Wegener, Opt. Express 21, 9457 (2013), in another parameter: with
-//! dσ = ds/n it reads r'' = ∇(n²)/2, p = r', and the optical path grows by n² dσ. Along with it goes the
-//! polarization, de/ds = -(e·∇ln n) t (Rytov).
+//! It knows an index and its gradient in physical space and nothing else: no map, no virtual space,
+//! no error control. It solves the ray equation d/ds(n dr/ds) = ∇n (Born & Wolf, section 3.2),
+//! which is the equation of motion of Halimeh & Wegener, Opt. Express 21, 9457 (2013), in another
+//! parameter: with dσ = ds/n it reads r'' = ∇(n²)/2, p = r', and the optical path grows by n² dσ.
+//! Along with it goes the polarization, de/ds = -(e·∇ln n) t (Rytov).
 
 use std::array::from_fn;
 

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-/// A bicubic spline through samples on a rectangular grid: two derivatives are continuous, and the third is over
-/// the lines next to the border ("not a knot", de Boor, A Practical Guide to Splines, chapter IV), so that cubic
-/// polynomials are kept as they are.
+/// A bicubic spline through samples on a rectangular grid: two derivatives are continuous, and the
+/// third is over the lines next to the border ("not a knot", de Boor, A Practical Guide to Splines,
+/// chapter IV), so that cubic polynomials are kept as they are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GridSpline {
     corner: DVec2,
@@ -44,12 +44,13 @@ pub enum GridSplineError {
 const LEAST: usize = 4;
 
 impl GridSpline {
-    /// The spline through `samples`, those along x side by side, `count` along x and y: the first at `corner`, the
-    /// others at steps of `spacing` (cm).
+    /// The spline through `samples`, those along x side by side, `count` along x and y: the first
+    /// at `corner`, the others at steps of `spacing` (cm).
     ///
     /// # Errors
     ///
-    /// If there are fewer than four along a side, their number is another, or something is not finite.
+    /// If there are fewer than four along a side, their number is another, or something is not
+    /// finite.
     pub fn new(
         corner: DVec2,
         spacing: DVec2,
@@ -108,15 +109,16 @@ impl GridSpline {
         (value, gradient / self.spacing)
     }
 
-    /// Bounds of the values within the grid: those of the coefficients, which differ little from the values where
-    /// the grid is fine.
+    /// Bounds of the values within the grid: those of the coefficients, which differ little from
+    /// the values where the grid is fine.
     pub(super) fn bounds(&self) -> [f64; 2] {
         let start = [f64::INFINITY, f64::NEG_INFINITY];
         self.coefficients.iter().fold(start, |[low, high], c| [low.min(*c), high.max(*c)])
     }
 
-    /// Bounds of the values in those cells of the grid whose distances from the origin, the least and the largest (cm),
-    /// `counts` accepts: those of the coefficients in Bernstein's form, which are near the values on coarse grids, too.
+    /// Bounds of the values in those cells of the grid whose distances from the origin, the least
+    /// and the largest (cm), `counts` accepts: those of the coefficients in Bernstein's form, which
+    /// are near the values on coarse grids, too.
     pub(super) fn bounds_within(&self, counts: impl Fn([f64; 2]) -> bool) -> [f64; 2] {
         let [mx, my] = self.count;
         let mut bounds = [f64::INFINITY, f64::NEG_INFINITY];
@@ -162,9 +164,9 @@ fn basis(t: f64) -> ([f64; 4], [f64; 4]) {
     (values, slopes)
 }
 
-/// The coefficients of the spline in one dimension through samples, of which there are two fewer: with f the samples,
-/// (c[i] + 4 c[i+1] + c[i+2])/6 = f[i], and the fourth differences at both ends are zero, which gives the coefficients at the
-/// second samples from the ends at once.
+/// The coefficients of the spline in one dimension through samples, of which there are two fewer:
+/// with f the samples, (c[i] + 4 c[i+1] + c[i+2])/6 = f[i], and the fourth differences at both ends
+/// are zero, which gives the coefficients at the second samples from the ends at once.
 fn coefficients(samples: impl Iterator<Item = f64>, c: &mut [f64], factors: &mut [f64]) {
     let m = c.len();
     for (place, sample) in c[1..m - 1].iter_mut().zip(samples) {

@@ -26,8 +26,8 @@ pub struct MapJet<C = Complex64> {
 }
 
 impl MapJet {
-    /// |f'|, by how much lengths grow from virtual to physical space. (`Complex64::norm` guards against
-    /// overflow, which takes as long as evaluating the map.)
+    /// |f'|, by how much lengths grow from virtual to physical space. (`Complex64::norm` guards
+    /// against overflow, which takes as long as evaluating the map.)
     #[inline]
     #[must_use]
     pub fn stretch(&self) -> f64 {
@@ -38,7 +38,8 @@ impl MapJet {
 /// Value and derivatives at four virtual points.
 pub(crate) type JetLanes<S> = MapJet<ComplexLanes<S>>;
 
-/// A map that can be evaluated at four points at once. What is not used of the jets is not computed.
+/// A map that can be evaluated at four points at once. What is not used of the jets is not
+/// computed.
 pub(crate) trait LaneMap {
     /// Values and derivatives at virtual points, to be inlined.
     fn jets<S: Simd>(&self, zeta: ComplexLanes<S>) -> JetLanes<S>;
@@ -64,7 +65,8 @@ impl LaneMap for ConformalMap {
     }
 }
 
-/// A rectangle that a half-space device is cut to: x_min <= x <= x_max, y <= y_max, above the floor.
+/// A rectangle that a half-space device is cut to: x_min <= x <= x_max, y <= y_max, above the
+/// floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Truncation {
     /// Least x, cm.
@@ -83,7 +85,8 @@ impl Truncation {
     }
 }
 
-/// A conformal map x + iy = f(X + iY) of the virtual half plane Y >= 0 (capital = virtual; lengths in cm).
+/// A conformal map x + iy = f(X + iY) of the virtual half plane Y >= 0 (capital = virtual; lengths
+/// in cm).
 ///
 /// Filled with the isotropic index n = c/|f'|, the space above the bumped floor f(X) looks like the
 /// half plane of index c above a flat mirror (Leonhardt, Science 312, 1777 (2006)).
@@ -187,14 +190,15 @@ impl ConformalMap {
         }
     }
 
-    /// By how much the error of a low order exceeds that of a high one in steps of the length that a ray
-    /// takes. The quasi-conformal map is nearly singular at the feet of the bump, where the floor's curvature
-    /// jumps: measured, nothing can be counted on there.
+    /// By how much the error of a low order exceeds that of a high one in steps of the length that
+    /// a ray takes. The quasi-conformal map is nearly singular at the feet of the bump, where the
+    /// floor's curvature jumps: measured, nothing can be counted on there.
     pub(crate) fn smoothness(&self) -> f64 {
         if matches!(self, Self::QuasiConformal(_)) { 3.0 } else { 100.0 }
     }
 
-    /// The longest step about a virtual point, `usual` being what suits the map where it varies most, cm.
+    /// The longest step about a virtual point, `usual` being what suits the map where it varies
+    /// most, cm.
     pub(crate) fn longest_stride(&self, zeta: Complex64, usual: f64) -> f64 {
         match self {
             Self::Gaussian(_) | Self::QuasiConformal(_) => usual.max(zeta.norm_sqr().sqrt() / 3.0),
@@ -261,8 +265,8 @@ impl ConformalMap {
             .collect()
     }
 
-    /// The metal as a curve, with the derivatives by its real parameter. It is f(X), or what f(X) comes near
-    /// to where the map is a series.
+    /// The metal as a curve, with the derivatives by its real parameter. It is f(X), or what f(X)
+    /// comes near to where the map is a series.
     pub(crate) fn profile(&self, parameter: f64) -> MapJet {
         match self {
             Self::Gaussian(_) | Self::Grating(_) | Self::Flat(_) => self.jet(parameter.into()),
@@ -275,8 +279,8 @@ impl ConformalMap {
         if matches!(self, Self::QuasiConformal(_)) { x } else { self.floor_parameter(x) }
     }
 
-    /// The parameters between two others at which [`Self::profile`] changes the sense of its bend, in
-    /// rising order.
+    /// The parameters between two others at which [`Self::profile`] changes the sense of its bend,
+    /// in rising order.
     pub(crate) fn profile_inflections(&self, start: f64, end: f64) -> Vec<f64> {
         match self {
             Self::Gaussian(_) => self.sampled_inflections(start, end),

@@ -1,8 +1,8 @@
 //! The Faddeeva function w_F(t) = exp(-t²) erfc(-i t), fast and everywhere.
 //!
-//! Where cloaks live, a table of Taylor polynomials on a square grid answers in one look-up; outside it
-//! a convergent of Laplace's continued fraction is exact to rounding. The table is filled once, from
-//! the trapezoidal rule.
+//! Where cloaks live, a table of Taylor polynomials on a square grid answers in one look-up;
+//! outside it a convergent of Laplace's continued fraction is exact to rounding. The table is
+//! filled once, from the trapezoidal rule.
 
 use std::array;
 use std::f64::consts::{FRAC_2_SQRT_PI, PI};
@@ -17,8 +17,8 @@ use crate::lanes::{ComplexLanes, LANES};
 const DENSITY: f64 = 8.0;
 /// Grid columns: 0 <= Re t <= 6.6 (the other half follows by symmetry).
 const COLUMNS: usize = 54;
-/// Grid rows: `LOWEST_ROW` .. `LOWEST_ROW + ROWS`, that is -0.6 <= Im t <= 6.1. (Further down w_F grows like
-/// a Gaussian and the patches would need more terms.)
+/// Grid rows: `LOWEST_ROW` .. `LOWEST_ROW + ROWS`, that is -0.6 <= Im t <= 6.1. (Further down w_F
+/// grows like a Gaussian and the patches would need more terms.)
 const ROWS: usize = 55;
 const LOWEST_ROW: i64 = -5;
 /// Taylor terms of a patch: with a spacing of 1/8 the first one left out is below 1e-15 of w_F.
@@ -51,10 +51,11 @@ pub(super) fn faddeeva_jet(t: Complex64) -> [Complex64; 3] {
     [w, w1, -2.0 * (w + t * w1)]
 }
 
-/// The Faddeeva function w_F(t) = exp(-t²) erfc(-i t) (Abramowitz & Stegun, 7.1.3) for any complex t.
+/// The Faddeeva function w_F(t) = exp(-t²) erfc(-i t) (Abramowitz & Stegun, 7.1.3) for any complex
+/// t.
 ///
-/// Relative accuracy 1e-13, near the zeros of w_F (below Im t = -1.35) relative to its surroundings. Far
-/// below the real axis it grows like exp((Im t)²) and may overflow.
+/// Relative accuracy 1e-13, near the zeros of w_F (below Im t = -1.35) relative to its
+/// surroundings. Far below the real axis it grows like exp((Im t)²) and may overflow.
 #[inline]
 pub(super) fn faddeeva(t: Complex64) -> Complex64 {
     if is_tabulated(t) {
@@ -100,7 +101,8 @@ pub(super) fn faddeeva_lanes<S: Simd>(t: ComplexLanes<S>) -> ComplexLanes<S> {
     if inside { w } else { w.elsewhere(arguments, is_tabulated, faddeeva) }
 }
 
-/// Σ c_n d^n by Estrin's scheme, as in [`tabulated`]; the coefficients `c` in the order in which they are summed.
+/// Σ c_n d^n by Estrin's scheme, as in [`tabulated`]; the coefficients `c` in the order in which
+/// they are summed.
 #[inline(always)]
 fn taylor<S: Simd>(d: ComplexLanes<S>, c: impl Fn(usize) -> ComplexLanes<S>) -> ComplexLanes<S> {
     let (mut pairs, mut fours) = ([d; 6], [d; 3]);
@@ -159,8 +161,8 @@ fn folded<const N: usize, const M: usize>(
     )
 }
 
-/// The twelfth convergent of w_F(t) = (i/√π) / (t - (1/2)/(t - 1/(t - (3/2)/(t - ...)))), as a ratio
-/// of polynomials in 1/t².
+/// The twelfth convergent of w_F(t) = (i/√π) / (t - (1/2)/(t - 1/(t - (3/2)/(t - ...)))), as a
+/// ratio of polynomials in 1/t².
 fn continued_fraction(t: Complex64) -> Complex64 {
     const NUMERATOR: [f64; 6] = [1.0, -32.5, 355.5, -1_569.75, 2_605.312_5, -1_115.156_25];
     const DENOMINATOR: [f64; 7] =

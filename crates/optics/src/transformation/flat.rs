@@ -19,7 +19,8 @@ pub struct FlatMap {
 }
 
 impl FlatMap {
-    /// The floor at the height `level`, and the length (positive) over which a medium above it varies, both in cm.
+    /// The floor at the height `level`, and the length (positive) over which a medium above it
+    /// varies, both in cm.
     #[must_use]
     pub fn new(level: f64, scale: f64) -> Self {
         Self { level, scale }

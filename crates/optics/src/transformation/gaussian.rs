@@ -12,9 +12,9 @@ use crate::lanes::ComplexLanes;
 
 /// The map f(ζ) = ζ + i h w_F(ζ/w) of the upper half plane, capital = virtual: x + iy = f(X + iY).
 ///
-/// w_F is the Faddeeva function. The line Y = 0 becomes a bump of height h whose sides are steeper than
-/// a Gaussian's; far away the map is the identity. (Schmied, Halimeh & Wegener, Opt. Express 18, 24361
-/// (2010); design (iv) of Halimeh & Wegener, Opt. Express 21, 9457 (2013).)
+/// w_F is the Faddeeva function. The line Y = 0 becomes a bump of height h whose sides are steeper
+/// than a Gaussian's; far away the map is the identity. (Schmied, Halimeh & Wegener, Opt. Express
+/// 18, 24361 (2010); design (iv) of Halimeh & Wegener, Opt. Express 21, 9457 (2013).)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussianMap {
     /// w, cm.
@@ -85,8 +85,8 @@ impl GaussianMap {
 
     /// The area between Y = 0 and the floor from the middle to physical `x`, cm²; odd in x.
     ///
-    /// With t = X/w, ∫ h exp(-t²) dx = h w [S - (h/(√π w)) (S + exp(-t²) D(t))], where S = ∫ exp(-t²) dt and
-    /// D is Dawson's function.
+    /// With t = X/w, ∫ h exp(-t²) dx = h w [S - (h/(√π w)) (S + exp(-t²) D(t))], where S = ∫
+    /// exp(-t²) dt and D is Dawson's function.
     pub(super) fn area_from_middle_to(&self, x: f64) -> f64 {
         let t = self.floor_parameter(x.abs()) * self.inverse_width;
         let gaussian = (-t * t).exp();

@@ -9,11 +9,13 @@ use super::conformal::{ConformalMapError, JetLanes, LaneMap, MapJet};
 use super::monotone_root::root_between;
 use crate::lanes::ComplexLanes;
 
-/// The map f(ζ) = ζ + i h exp(ikζ), k = 2π/Λ, of the upper half plane, capital = virtual: x + iy = f(X + iY).
+/// The map f(ζ) = ζ + i h exp(ikζ), k = 2π/Λ, of the upper half plane, capital = virtual: x + iy =
+/// f(X + iY).
 ///
-/// The line Y = 0 becomes a grating of period Λ that swings between y = -h and y = h (a trochoid, its
-/// crests narrower than its troughs); far above it the map is the identity. The index 1/|f'| goes from 1/(1 + hk)
-/// in the troughs to 1/(1 - hk) on the crests. (Schmied, Halimeh & Wegener, Opt. Express 18, 24361 (2010).)
+/// The line Y = 0 becomes a grating of period Λ that swings between y = -h and y = h (a trochoid,
+/// its crests narrower than its troughs); far above it the map is the identity. The index 1/|f'|
+/// goes from 1/(1 + hk) in the troughs to 1/(1 - hk) on the crests. (Schmied, Halimeh & Wegener,
+/// Opt. Express 18, 24361 (2010).)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GratingMap {
     /// How far the floor swings up and down, h, cm.
@@ -22,8 +24,8 @@ pub struct GratingMap {
 }
 
 impl GratingMap {
-    /// The map of the given `period` Λ that swings by `h` up and down, both in cm. It is one to one for
-    /// hk < 1.
+    /// The map of the given `period` Λ that swings by `h` up and down, both in cm. It is one to one
+    /// for hk < 1.
     ///
     /// # Errors
     ///
@@ -64,8 +66,8 @@ impl GratingMap {
         (-self.wave_number * zeta.im).exp() * Complex64::new(cos, sin)
     }
 
-    /// A virtual point to start the inversion of `z` from: two rounds of ζ -> z - i h exp(ikζ), which
-    /// converges above Y = 0.
+    /// A virtual point to start the inversion of `z` from: two rounds of ζ -> z - i h exp(ikζ),
+    /// which converges above Y = 0.
     pub(super) fn first_guess(&self, z: Complex64) -> Complex64 {
         let above = |zeta: Complex64| Complex64::new(zeta.re, zeta.im.max(0.0));
         let round = |zeta: Complex64| above(z - Complex64::i() * self.height * self.wave(zeta));

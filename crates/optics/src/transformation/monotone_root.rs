@@ -1,8 +1,8 @@
 //! The root of a monotone function.
 
 /// The root of a monotone function between two abscissae, to rounding: Newton's method held in a
-/// shrinking bracket, so that it cannot run away. `function` gives value and slope. Without a change
-/// of sign, the end nearer to one.
+/// shrinking bracket, so that it cannot run away. `function` gives value and slope. Without a
+/// change of sign, the end nearer to one.
 pub(crate) fn root_between(a: f64, b: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (at_a, at_b) = (function(a).0, function(b).0);
     if at_a * at_b > 0.0 {

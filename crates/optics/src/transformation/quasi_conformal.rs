@@ -16,13 +16,13 @@ use super::monotone_root::root_between;
 use crate::lanes::ComplexLanes;
 
 /// The map of the box |x| <= A, y <= H above the floor y = h cos²(πx/w), |x| < w/2, else 0, from a
-/// rectangle |X| <= A, 0 <= Y <= H_c, whose borders may slide along those of the box (Li & Pendry, Phys.
-/// Rev. Lett. 101, 203901 (2008)).
+/// rectangle |X| <= A, 0 <= Y <= H_c, whose borders may slide along those of the box (Li & Pendry,
+/// Phys. Rev. Lett. 101, 203901 (2008)).
 ///
 /// Sliding borders make it conformal: by Schwarz's reflection it is the sine series
-/// f(ζ) = ζ + i y0 - Σ b_j sin(k_j (ζ - i H_c))/sinh(k_j H_c), k_j = πj/A, H_c = H - y0, and only the
-/// heights H and H_c differ. That anisotropy H/H_c neglected, the index is c/|f'| with c = √(H/H_c). The series
-/// is broken off where its floor is that of the device to 1e-4 h.
+/// f(ζ) = ζ + i y0 - Σ b_j sin(k_j (ζ - i H_c))/sinh(k_j H_c), k_j = πj/A, H_c = H - y0, and only
+/// the heights H and H_c differ. That anisotropy H/H_c neglected, the index is c/|f'| with
+/// c = √(H/H_c). The series is broken off where its floor is that of the device to 1e-4 h.
 ///
 /// It holds tables: copies share them.
 #[derive(Clone, Debug)]
@@ -82,12 +82,13 @@ impl Bump {
 }
 
 impl QuasiConformalMap {
-    /// Solves for the map of a bump of whole width `w` and height `h` in a device as large as `cut`, which must
-    /// be centred; in cm.
+    /// Solves for the map of a bump of whole width `w` and height `h` in a device as large as
+    /// `cut`, which must be centred; in cm.
     ///
     /// # Errors
     ///
-    /// If a length is not finite and positive, or the bump too wide, narrow, high or steep for the device.
+    /// If a length is not finite and positive, or the bump too wide, narrow, high or steep for the
+    /// device.
     pub fn new(w: f64, h: f64, cut: &Truncation) -> Result<Self, ConformalMapError> {
         let [half_width, box_height] = [cut.x_max, cut.y_max];
         let lengths =

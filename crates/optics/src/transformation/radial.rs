@@ -29,7 +29,8 @@ pub struct RadialMap {
 const NEAREST: f64 = 1e-9;
 
 impl RadialMap {
-    /// The map that opens a hole of radius `inner` (cm) within the radius `outer`, 0 < inner < outer.
+    /// The map that opens a hole of radius `inner` (cm) within the radius `outer`, 0 < inner <
+    /// outer.
     #[must_use]
     pub fn new(inner: f64, outer: f64, symmetry: Symmetry) -> Self {
         debug_assert!(0.0 < inner && inner < outer);
@@ -62,7 +63,8 @@ impl RadialMap {
         self.parts(point).0.length()
     }
 
-    /// The virtual point of a physical one of the shell; points in the hole go to its axis or centre.
+    /// The virtual point of a physical one of the shell; points in the hole go to its axis or
+    /// centre.
     #[must_use]
     pub fn to_virtual(&self, point: DVec3) -> DVec3 {
         let (across, along) = self.parts(point);
@@ -84,7 +86,8 @@ impl RadialMap {
         ((radius - self.inner) / radius).max(NEAREST)
     }
 
-    /// The tensor radial r̂r̂ + around (the rest across z, or all of the rest) + axial zz at a point.
+    /// The tensor radial r̂r̂ + around (the rest across z, or all of the rest) + axial zz at a
+    /// point.
     fn tensor_of(&self, point: DVec3, radial: f64, around: f64, axial: f64) -> DMat3 {
         let r = self.radial(point);
         let dyad = DMat3::from_cols(r * r.x, r * r.y, r * r.z);

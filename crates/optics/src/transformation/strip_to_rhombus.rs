@@ -17,8 +17,8 @@ pub struct StripToRhombus {
 }
 
 impl StripToRhombus {
-    /// The map of a square of half diagonal `half_diagonal` (cm) and a rhombus `kappa` times as high,
-    /// 0 < κ < 1.
+    /// The map of a square of half diagonal `half_diagonal` (cm) and a rhombus `kappa` times as
+    /// high, 0 < κ < 1.
     #[must_use]
     pub fn new(half_diagonal: f64, kappa: f64) -> Self {
         debug_assert!(half_diagonal > 0.0 && kappa > 0.0 && kappa < 1.0);

@@ -21,17 +21,18 @@
 //! # Why rays are traced backwards
 //!
 //! A camera ray is launched from the camera, against the light that it stands for. For symmetric
-//! tensors, as all media here have, the scattering matrix of an interface between modes normalized to
-//! their flux is symmetric: S_ij(k_t) = S_ji(-k_t). So the amplitude of a path is that of the
+//! tensors, as all media here have, the scattering matrix of an interface between modes normalized
+//! to their flux is symmetric: S_ij(k_t) = S_ji(-k_t). So the amplitude of a path is that of the
 //! reversed path, and its 2 x 2 matrix between the polarizations at both ends is transposed. The
-//! étendue of a bundle of rays is conserved along it, and both ends lie in air, so the radiance that
-//! arrives along a path is that of its far end, times the share of power the path carries.
+//! étendue of a bundle of rays is conserved along it, and both ends lie in air, so the radiance
+//! that arrives along a path is that of its far end, times the share of power the path carries.
 //!
 //! With a detector behind a polarizer that passes the field **e** and an unpolarized scene, the
 //! picture is therefore the sum over leaves of P_j L_j: P_j the power of leaf j of the ray launched
-//! with the field **e***, L_j the radiance that it meets. (A real polarizer passes half of that; the
-//! factor is left out, so that the empty view is the same through every polarizer.) Paths that leave
-//! a device at different places differ by many wavelengths: their powers add up, not their fields.
+//! with the field **e***, L_j the radiance that it meets. (A real polarizer passes half of that;
+//! the factor is left out, so that the empty view is the same through every polarizer.) Paths that
+//! leave a device at different places differ by many wavelengths: their powers add up, not their
+//! fields.
 
 /// Speed of light in vacuum, cm/ns.
 pub const SPEED_OF_LIGHT: f64 = 29.979_245_8;

@@ -4,8 +4,8 @@ use super::ComplexVector;
 use num_complex::Complex64;
 
 /// The Stokes parameters S0 to S3 of the light that arrives along one path from an unpolarized
-/// source of unit radiance at its far end. `horizontal` and `vertical` are the fields that leave the
-/// far end when horizontal and vertical light of unit power is launched at the near one.
+/// source of unit radiance at its far end. `horizontal` and `vertical` are the fields that leave
+/// the far end when horizontal and vertical light of unit power is launched at the near one.
 ///
 /// A polarizer at angle ψ sees S0 + S1 cos 2ψ + S2 sin 2ψ, a right- or left-handed circular one
 /// S0 ± S3; so S0 is the mean of horizontal and vertical. The signs are those of the
@@ -35,8 +35,8 @@ pub fn arriving_stokes(horizontal: ComplexVector, vertical: ComplexVector) -> [f
     stokes_of_coherency(powers, horizontal.dot(vertical.conj()))
 }
 
-/// The same of a coherency matrix: its diagonal, the powers of what was launched horizontally and vertically, and the
-/// element ⟨`E_H` · `E_V`*⟩ between them.
+/// The same of a coherency matrix: its diagonal, the powers of what was launched horizontally and
+/// vertically, and the element ⟨`E_H` · `E_V`*⟩ between them.
 #[must_use]
 pub fn stokes_of_coherency([h, v]: [f64; 2], coherency: Complex64) -> [f64; 4] {
     [(h + v) / 2.0, (h - v) / 2.0, coherency.re, coherency.im]

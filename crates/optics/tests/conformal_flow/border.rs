@@ -123,7 +123,8 @@ fn refuses_what_it_cannot_follow() {
     }
 }
 
-/// Near the top a ray turns back just before the border: the nearest point was looked for again and again.
+/// Near the top a ray turns back just before the border: the nearest point was looked for again and
+/// again.
 #[test]
 fn leaves_a_border_it_nearly_touches() {
     let flow = flow(Extent::ENDLESS, 1.0);

@@ -56,8 +56,8 @@ fn reference(
     uneven_reference(start, wave_vector, extent, c, |_| (1.0, DVec2::ZERO))
 }
 
-/// The same in an index that is uneven by a factor: its square and the gradient of that, in the upper half or in
-/// the mirror image of the lower one.
+/// The same in an index that is uneven by a factor: its square and the gradient of that, in the
+/// upper half or in the mirror image of the lower one.
 fn uneven_reference(
     start: &VirtualPoint,
     wave_vector: DVec3,

@@ -1,6 +1,7 @@
 //! A slow, plain integrator of rays in graded anisotropic media: Hamilton's equations of the local
-//! dispersion relation in physical space, by extrapolation. It knows the tensors as the literature prints them, and no map, no
-//! virtual space and no conserved quantity. Derivatives are exact, by dual numbers.
+//! dispersion relation in physical space, by extrapolation. It knows the tensors as the literature
+//! prints them, and no map, no virtual space and no conserved quantity. Derivatives are exact, by
+//! dual numbers.
 
 use glam::DVec3;
 use std::ops::{Add, Div, Mul, Sub};
@@ -123,8 +124,8 @@ fn midpoint(y: &State, h: f64, count: u32, slope: &impl Fn(&State) -> State) -> 
     std::array::from_fn(|i| 0.25 * (last[i] + 2.0 * here[i] + ahead[i]))
 }
 
-/// The method of Gragg, Bulirsch and Stoer: midpoint rules extrapolated in h². The end of the step, and
-/// how far it is from the extrapolation with one rule less.
+/// The method of Gragg, Bulirsch and Stoer: midpoint rules extrapolated in h². The end of the step,
+/// and how far it is from the extrapolation with one rule less.
 fn extrapolated(y: &State, h: f64, slope: &impl Fn(&State) -> State) -> (State, f64) {
     const RULES: usize = 8;
     let count = |k: usize| 2 * (k as u32 + 1);
@@ -146,7 +147,8 @@ fn extrapolated(y: &State, h: f64, slope: &impl Fn(&State) -> State) -> (State, 
     (table[RULES - 1], error)
 }
 
-/// Where a function that is positive at 0 and negative at `h` vanishes: regula falsi after Illinois.
+/// Where a function that is positive at 0 and negative at `h` vanishes: regula falsi after
+/// Illinois.
 fn border_between(h: f64, function: impl Fn(f64) -> f64) -> f64 {
     let mut b = (h, function(h));
     // A ray may start on the border, where rounding decides the sign.
@@ -170,7 +172,8 @@ fn border_between(h: f64, function: impl Fn(f64) -> f64) -> f64 {
     b.0
 }
 
-/// Follows a ray of the dispersion relation H = 0 until `inside`, positive within the medium, changes its sign.
+/// Follows a ray of the dispersion relation H = 0 until `inside`, positive within the medium,
+/// changes its sign.
 pub fn follow(
     position: DVec3,
     wave_vector: DVec3,

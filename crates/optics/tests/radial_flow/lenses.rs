@@ -14,7 +14,8 @@ pub const RADIUS: f64 = 3.0;
 /// n and dn/dr at a radius.
 type Profile = fn(f64) -> (f64, f64);
 
-/// A point of the surface and a direction into the ball, of an impact parameter of at least `least`.
+/// A point of the surface and a direction into the ball, of an impact parameter of at least
+/// `least`.
 fn entry(numbers: &mut Numbers, least: f64) -> (DVec3, DVec3) {
     loop {
         let x = numbers.direction();

@@ -52,7 +52,8 @@ fn rays_that_start_within_against_hamiltons_equations() {
             let least = core.max(0.1) + 0.1;
             let start = from * numbers.between(least, outer - 0.05) + along;
             let ray = numbers.direction();
-            // Those that hardly turn pass the core or the centre so close that the integrator takes forever.
+            // Those that hardly turn pass the core or the centre so close that the integrator takes
+            // forever.
             let turns = flow.outward(ray).cross(from).length();
             let medium = flow.medium(start).expect("a medium");
             let waves = medium.waves_along_ray(ray);

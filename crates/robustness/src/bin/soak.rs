@@ -1,8 +1,10 @@
-//! Traces random rays through random devices of every kind, for as long as one likes, and counts what must not be.
+//! Traces random rays through random devices of every kind, for as long as one likes, and counts
+//! what must not be.
 //!
-//! The work is done in parcels: one random device each, and up to 20 000 rays. Every finished parcel is a line of the
-//! record; begun again with the same record, the program goes on where it was. A ray that does not end within a minute of
-//! computing is recorded, too, and ends the program.
+//! The work is done in parcels: one random device each, and up to 20 000 rays. Every finished
+//! parcel is a line of the record; begun again with the same record, the program goes on where it
+//! was. A ray that does not end within a minute of computing is recorded, too, and ends the
+//! program.
 //!
 //! ```sh
 //! cargo run --release -p cloakroom-robustness --bin soak -- --rays 100000000 --record soak.jsonl
@@ -60,8 +62,8 @@ struct Arguments {
     /// The record: a line of JSON for each parcel.
     #[arg(long, default_value = "soak.jsonl")]
     record: PathBuf,
-    /// The parcel to begin with: two programs with records of their own can share the work, and the lines of both be put
-    /// into one record.
+    /// The parcel to begin with: two programs with records of their own can share the work, and the
+    /// lines of both be put into one record.
     #[arg(long, default_value_t = 0)]
     first: u64,
     /// Ends after so many seconds, whatever has been done.
@@ -197,8 +199,8 @@ fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>) -> Value {
 static PARCEL: AtomicU64 = AtomicU64::new(0);
 static BEGUN: AtomicU64 = AtomicU64::new(0);
 
-/// How long the main thread has computed: on a busy machine it may wait for long. Where the system does not say, how
-/// long the program has run.
+/// How long the main thread has computed: on a busy machine it may wait for long. Where the system
+/// does not say, how long the program has run.
 fn computed(start: Instant) -> Duration {
     let text = std::fs::read_to_string("/proc/self/schedstat").ok();
     let on_cpu = text.and_then(|text| text.split_whitespace().next()?.parse().ok());

@@ -5,7 +5,8 @@ use glam::DVec3;
 use optics::interface::Reflectionless;
 use optics::medium::Medium;
 
-/// Those interfaces of a device that reflect nothing. They are flat, and homogeneous media meet there.
+/// Those interfaces of a device that reflect nothing. They are flat, and homogeneous media meet
+/// there.
 #[derive(Clone, Debug)]
 pub(crate) struct Interfaces {
     /// From air, by the number of the device's surface.

@@ -20,8 +20,8 @@ pub const MOST_DEVICES: usize = u16::MAX as usize;
 
 /// All devices of a scene.
 ///
-/// Where several could be at one point, the order is: a device that is no body, then the bodies by falling priority, then
-/// air.
+/// Where several could be at one point, the order is: a device that is no body, then the bodies by
+/// falling priority, then air.
 #[derive(Clone, Debug)]
 pub struct Assembly {
     devices: Vec<Placed>,
@@ -31,7 +31,8 @@ pub struct Assembly {
     bodies: Vec<u16>,
     /// The films of each device, in the world's frame.
     films: Vec<Vec<Vec<FilmLayer>>>,
-    /// For each body the devices that rays in it may meet: those that come before it and reach into its bounds.
+    /// For each body the devices that rays in it may meet: those that come before it and reach into
+    /// its bounds.
     guests: Vec<Vec<u16>>,
     /// Whether there is one device at most, and no body: around it is air, and nothing touches it.
     pub(crate) simple: bool,
@@ -49,13 +50,15 @@ pub(crate) enum Ahead {
     Body(u16),
 }
 
-/// Borders that are no further than this from a point, cm, go through it: what rounding makes of coordinates.
+/// Borders that are no further than this from a point, cm, go through it: what rounding makes of
+/// coordinates.
 pub(crate) fn slack_at(point: DVec3) -> f64 {
     TOUCHING.max(1e-14 * point.abs().max_element())
 }
 
 impl Assembly {
-    /// The assembly with the given devices, [`MOST_DEVICES`] at most, which must not overlap: see [`Assembly::overlap`].
+    /// The assembly with the given devices, [`MOST_DEVICES`] at most, which must not overlap: see
+    /// [`Assembly::overlap`].
     #[must_use]
     pub fn new(devices: Vec<Placed>) -> Self {
         let interfaces = devices.iter().map(|device| Interfaces::of(&device.structure)).collect();
@@ -86,8 +89,8 @@ impl Assembly {
             .with_wavelength(550.0)
     }
 
-    /// The same assembly in light of another wavelength (in vacuum, nm) than 550 nm. Only absorption depends
-    /// on it: media are given for it.
+    /// The same assembly in light of another wavelength (in vacuum, nm) than 550 nm. Only
+    /// absorption depends on it: media are given for it.
     #[must_use]
     pub fn with_wavelength(self, wavelength_nm: f64) -> Self {
         const CM_PER_NM: f64 = 1e-7;
@@ -95,8 +98,9 @@ impl Assembly {
         Self { vacuum_wave_number, ..self }
     }
 
-    /// The least difference of the optical paths of two branches that one device makes, cm: there and back in a
-    /// homogeneous medium, or by its birefringence; 0 with a polarizer, which makes light of it; infinite without.
+    /// The least difference of the optical paths of two branches that one device makes, cm: there
+    /// and back in a homogeneous medium, or by its birefringence; 0 with a polarizer, which makes
+    /// light of it; infinite without.
     #[must_use]
     pub fn least_path_difference(&self) -> f64 {
         let of = |device: &Placed| {
@@ -155,8 +159,9 @@ impl Assembly {
         &self.interfaces[usize::from(device)]
     }
 
-    /// The first two devices that overlap, if any do. Bodies may, unless their priorities are equal; and a device may
-    /// stand within a body of a medium, whose border its thin mirror may cross.
+    /// The first two devices that overlap, if any do. Bodies may, unless their priorities are
+    /// equal; and a device may stand within a body of a medium, whose border its thin mirror may
+    /// cross.
     #[must_use]
     pub fn overlap(&self) -> Option<(usize, usize)> {
         let solids: Vec<Vec<Solid>> = self.devices.iter().map(Placed::solids).collect();
@@ -226,8 +231,8 @@ impl Assembly {
         self.first_hit_of(guests, origin, direction, departed)
     }
 
-    /// The nearest surface of some devices ahead of a ray. Surfaces of other devices than the departed one that rounding
-    /// has put a hair behind the ray are met, too, at the distance 0.
+    /// The nearest surface of some devices ahead of a ray. Surfaces of other devices than the
+    /// departed one that rounding has put a hair behind the ray are met, too, at the distance 0.
     fn first_hit_of(
         &self,
         numbers: impl Iterator<Item = u16>,
@@ -247,7 +252,8 @@ impl Assembly {
         Some((number, SurfaceHit { distance, ..hit }))
     }
 
-    /// The nearest surface of one device ahead of a ray, `departed` being what the ray has just left.
+    /// The nearest surface of one device ahead of a ray, `departed` being what the ray has just
+    /// left.
     #[inline(always)]
     fn hit_of(
         &self,
@@ -264,8 +270,8 @@ impl Assembly {
         structure.first_hit(pose.to_local(origin), pose.vector_to_local(direction), last)
     }
 
-    /// What is ahead of a ray at a point of the borders of any number of devices: of those that it enters there, or is in
-    /// already, the one that comes first.
+    /// What is ahead of a ray at a point of the borders of any number of devices: of those that it
+    /// enters there, or is in already, the one that comes first.
     pub(crate) fn ahead(
         &self,
         point: DVec3,

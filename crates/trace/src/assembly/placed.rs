@@ -31,7 +31,8 @@ impl DepartedSurface {
         Self { device, surface: Some(hit.surface) }
     }
 
-    /// What a ray has left that comes to a surface, which it may have left itself: a curved one is met again.
+    /// What a ray has left that comes to a surface, which it may have left itself: a curved one is
+    /// met again.
     pub fn unless_met(self, device: u16, hit: &SurfaceHit) -> Option<Self> {
         (self != Self::met(device, hit)).then_some(self)
     }
@@ -44,8 +45,8 @@ impl Placed {
         Self { pose, structure, dispersion: Dispersion::default() }
     }
 
-    /// What a ray has left that runs away from this device, the `number`th: the surface that is given, or all of the
-    /// device if it is convex.
+    /// What a ray has left that runs away from this device, the `number`th: the surface that is
+    /// given, or all of the device if it is convex.
     #[inline]
     pub(crate) fn departed(&self, number: u16, surface: Option<u16>) -> Option<DepartedSurface> {
         let convex = self.structure.hull.is_convex();
@@ -70,7 +71,8 @@ impl Placed {
         self.structure.hull.thin_mirror.as_ref().map(|mirror| mirror.placed(&self.pose))
     }
 
-    /// The least and the greatest coordinates of the device and its thin mirror; `None` if it is nowhere.
+    /// The least and the greatest coordinates of the device and its thin mirror; `None` if it is
+    /// nowhere.
     pub(super) fn bounds(&self) -> Option<[DVec3; 2]> {
         let mirror = self.thin_mirror().and_then(|mirror| mirror.bounds());
         [self.structure.hull.bounds(&self.pose), mirror]

@@ -18,8 +18,8 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// A rectangle of twice that width and height (cm) whose middle is the origin of `pose`, x being the way one looks
-    /// straight at its front, y up, and z to the right.
+    /// A rectangle of twice that width and height (cm) whose middle is the origin of `pose`, x
+    /// being the way one looks straight at its front, y up, and z to the right.
     #[must_use]
     pub fn new(pose: &Pose, half_width: f64, half_height: f64) -> Self {
         let axes = DVec3::AXES.map(|axis| pose.vector_to_world(axis));
@@ -54,7 +54,8 @@ impl Screen {
         (t >= least && t.is_finite()).then_some(t)
     }
 
-    /// The distance at which a line meets the plane, negative behind its origin; not finite if it does not.
+    /// The distance at which a line meets the plane, negative behind its origin; not finite if it
+    /// does not.
     #[must_use]
     #[inline]
     pub fn distance_along(&self, origin: DVec3, direction: DVec3) -> f64 {
@@ -76,8 +77,8 @@ impl Screen {
         point + self.axes[0] * self.ahead_of(point)
     }
 
-    /// Image coordinates (u, v) of points of the plane, from 0 to 1 to the right and down, for a ray that looks
-    /// along `direction`: upright and unmirrored from either side.
+    /// Image coordinates (u, v) of points of the plane, from 0 to 1 to the right and down, for a
+    /// ray that looks along `direction`: upright and unmirrored from either side.
     #[inline]
     pub fn image_position(&self, direction: DVec3) -> impl Fn(DVec3) -> [f64; 2] {
         let front = self.parts(direction).x.signum();
@@ -95,7 +96,8 @@ impl Screen {
             + self.axes[2] * (across * self.half_width)
     }
 
-    /// Its middle line that is the longer one as seen along z: from below to above, or from left to right.
+    /// Its middle line that is the longer one as seen along z: from below to above, or from left to
+    /// right.
     #[must_use]
     pub fn middle_line(&self) -> [DVec3; 2] {
         let upright = [-1.0, 1.0].map(|up| self.point(up, 0.0));
@@ -108,7 +110,8 @@ impl Screen {
     pub(crate) fn touches(&self, assembly: &Assembly) -> bool {
         let (origin, normal) = (self.middle, self.axes[0]);
         let near = |[low, high]: [DVec3; 2]| {
-            // The least and the greatest distance of the bounds from the plane; parts along which it runs do not matter.
+            // The least and the greatest distance of the bounds from the plane; parts along which
+            // it runs do not matter.
             let part = |i: usize| {
                 let ends = [low[i], high[i]].map(|end| (end - origin[i]) * normal[i]);
                 let [a, b] = if normal[i] == 0.0 { [0.0; 2] } else { ends };

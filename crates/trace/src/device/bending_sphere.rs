@@ -6,8 +6,8 @@ use crate::keys::{KeyError, ValueRange};
 use optics::propagation::{CentralLens, RadialFlow};
 
 crate::table! {
-    /// A ball of graded index that turns every ray that meets it by the same angle towards its centre: 90 degrees by
-    /// default. Hannay & Haeusser 1993.
+    /// A ball of graded index that turns every ray that meets it by the same angle towards its
+    /// centre: 90 degrees by default. Hannay & Haeusser 1993.
     pub struct BendingSphere {
         /// Radius of the ball.
         radius: f64 = 10.0, "cm", in ValueRange::LENGTH,

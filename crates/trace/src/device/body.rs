@@ -1,7 +1,8 @@
 //! Bodies: slabs, boxes, balls and round cylinders of any homogeneous medium, or opaque ones.
 //!
-//! Bodies may stand in one another: where some overlap, the one of the largest priority is there. So a rod in a
-//! glass of water is three bodies, and light goes from one into the other without any air between.
+//! Bodies may stand in one another: where some overlap, the one of the largest priority is there.
+//! So a rod in a glass of water is three bodies, and light goes from one into the other without any
+//! air between.
 
 use super::{
     Body, Coating, Convex, Device, Fact, FarSide, HomogeneousRegion, Hull, Region, RegionBorder,
@@ -30,12 +31,13 @@ crate::choice! {
 }
 
 crate::table! {
-    /// A slab, box, ball or round cylinder of any homogeneous medium, of negative index too, or an opaque one. Where
-    /// bodies overlap, the one of the larger priority is there: a rod in a glass of water is three bodies. After
-    /// Dolling, Wegener, Linden & Hormann, Opt. Express 14, 1842 (2006).
+    /// A slab, box, ball or round cylinder of any homogeneous medium, of negative index too, or an
+    /// opaque one. Where bodies overlap, the one of the larger priority is there: a rod in a glass
+    /// of water is three bodies. After Dolling, Wegener, Linden & Hormann, Opt. Express 14, 1842
+    /// (2006).
     pub struct SolidBody {
-        /// Its shape, centred on `position`; a slab stands across x and is endless along y and z, the axis of a cylinder
-        /// is z.
+        /// Its shape, centred on `position`; a slab stands across x and is endless along y and z,
+        /// the axis of a cylinder is z.
         shape: BodyShape,
         /// Thickness of a slab, along x.
         thickness: Given<f64> = Given::by_default(5.0), "cm", in ValueRange::LENGTH,
@@ -47,13 +49,14 @@ crate::table! {
         permittivity: Given<Tensor> = Given::by_default(1.0.into()),
         /// Relative permeability, in the device's frame; symmetric.
         permeability: Given<Tensor> = Given::by_default(1.0.into()),
-        /// Speed of light over the speed of a pulse in it, for `group_delay`, and for times of flight where the phase runs
-        /// backwards; where it is absent, as the `dispersion` says.
+        /// Speed of light over the speed of a pulse in it, for `group_delay`, and for times of
+        /// flight where the phase runs backwards; where it is absent, as the `dispersion` says.
         group_index: Option<f64>, in ValueRange::Within(1.0, 1e9),
         /// Where bodies overlap, the one of the larger priority is there.
         priority: i64, in ValueRange::Whole(-1_000_000, 1_000_000),
-        /// What an opaque body shows: { color = [red, green, blue] }, linear, or { image = "file" }: whole and upright
-        /// on each face of a box and each end of a cylinder, once around a sphere or the side of a cylinder.
+        /// What an opaque body shows: { color = [red, green, blue] }, linear, or { image = "file"
+        /// }: whole and upright on each face of a box and each end of a cylinder, once around a
+        /// sphere or the side of a cylinder.
         surface: Option<BodySurface>,
     }
 }
@@ -63,8 +66,8 @@ crate::table! {
     pub struct BodySurface {
         /// Linear red, green and blue that it sends out everywhere.
         color: Given<[f64; 3]> = Given::by_default([0.5; 3]), in ValueRange::Within(0.0, 1e30),
-        /// An image on it instead of a color: `builtin:bookshelf` or a file (PNG, JPEG, EXR), relative to the scene
-        /// file.
+        /// An image on it instead of a color: `builtin:bookshelf` or a file (PNG, JPEG, EXR),
+        /// relative to the scene file.
         image: Option<PathBuf>,
     }
 }
@@ -104,7 +107,8 @@ impl Device for SolidBody {
         let mut facts = vec![Fact::number("priority", self.priority as f64)];
         if let (Some(e), Some(m)) = (entry(self.permittivity.value), entry(self.permeability.value))
         {
-            // The product of the roots with positive imaginary parts is that of the wave that decays.
+            // The product of the roots with positive imaginary parts is that of the wave that
+            // decays.
             let root = |value: Complex64| {
                 let root = value.sqrt();
                 if root.im < 0.0 { -root } else { root }

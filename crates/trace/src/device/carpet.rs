@@ -1,9 +1,9 @@
-//! What the carpet cloaks have in common: a rectangle of graded index on a bump of a mirror floor, light
-//! from above (Li & Pendry, Phys. Rev. Lett. 101, 203901 (2008)).
+//! What the carpet cloaks have in common: a rectangle of graded index on a bump of a mirror floor,
+//! light from above (Li & Pendry, Phys. Rev. Lett. 101, 203901 (2008)).
 //!
-//! A carpet stands on the line y = 0 of its own frame, from which the thin floor goes on to its left and
-//! right. Everything is a mirror on both sides: the floor, the bump, and the flat back of the metal below
-//! it. The back lies on y = 0, for a grating at the depth of its troughs.
+//! A carpet stands on the line y = 0 of its own frame, from which the thin floor goes on to its
+//! left and right. Everything is a mirror on both sides: the floor, the bump, and the flat back of
+//! the metal below it. The back lies on y = 0, for a grating at the depth of its troughs.
 
 use super::{
     ConformalRegion, Fact, FarSide, GaussianCarpet, Hull, Part, Region, Request, Shape, Show,
@@ -21,8 +21,8 @@ pub(super) fn gaussian_map(w: f64, h: f64) -> Result<GaussianMap, KeyError> {
     GaussianMap::new(w, h).map_err(|error| KeyError::at(key!(GaussianCarpet.h), error.to_string()))
 }
 
-/// The rectangle a carpet is cut to, whose metal rises to `peak`, of a width along x and a height above the floor's
-/// level; the floor may be wider, or 0 for none. All in cm.
+/// The rectangle a carpet is cut to, whose metal rises to `peak`, of a width along x and a height
+/// above the floor's level; the floor may be wider, or 0 for none. All in cm.
 ///
 /// # Errors
 ///
@@ -60,8 +60,8 @@ pub(super) fn structure(
     }
 }
 
-/// The facts of a carpet, or of several that are alike: the range of its index c/|f'|, those of its own, and how wide
-/// the mirror is.
+/// The facts of a carpet, or of several that are alike: the range of its index c/|f'|, those of its
+/// own, and how wide the mirror is.
 pub(super) fn facts(map: &ConformalMap, cut: &Truncation, c: f64, own: &[Fact]) -> Vec<Fact> {
     let (least, largest) = map.index_range(cut);
     let index = [Fact::number("index_min", c * least), Fact::number("index_max", c * largest)];

@@ -7,7 +7,8 @@ use optics::medium::Medium;
 use optics::propagation::{ClosedForm, CurvedRay, PathPoint, follow, group_path_along};
 use std::sync::Arc;
 
-/// A convex region of a medium whose rays are known in closed form; around it is what is around the device.
+/// A convex region of a medium whose rays are known in closed form; around it is what is around the
+/// device.
 #[derive(Clone, Debug)]
 pub struct ClosedFormRegion {
     /// What fills it.
@@ -18,7 +19,8 @@ pub struct ClosedFormRegion {
     pub coating: Coating,
 }
 
-/// The convex shapes between planes and spheres: what a medium whose rays are known in closed form can be cut to.
+/// The convex shapes between planes and spheres: what a medium whose rays are known in closed form
+/// can be cut to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ClosedFormBorder {
     /// A box, by half its size along x, y and z, cm.
@@ -95,8 +97,8 @@ impl ClosedFormRegion {
         }
     }
 
-    /// The speed of light times the time that a pulse takes on that way, cm, at the least dispersion that causality allows:
-    /// the group index is n or 1/n, whichever is larger.
+    /// The speed of light times the time that a pulse takes on that way, cm, at the least
+    /// dispersion that causality allows: the group index is n or 1/n, whichever is larger.
     pub(super) fn causal_group_path(&self, ray: &InnerRay, tolerance: f64) -> f64 {
         let ratio = |position: DVec3, _| self.medium.squared_index(position).value.recip().max(1.0);
         group_path_along(self.way(ray), ratio, tolerance)

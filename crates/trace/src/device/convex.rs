@@ -76,8 +76,8 @@ impl Convex {
         }
     }
 
-    /// Where a ray that is inside or on the border leaves: the distance, from zero on, and the outward unit
-    /// normal; `None` if it never does.
+    /// Where a ray that is inside or on the border leaves: the distance, from zero on, and the
+    /// outward unit normal; `None` if it never does.
     #[must_use]
     pub fn exit(&self, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
         let (distance, outward) = match self {
@@ -103,10 +103,12 @@ impl Convex {
         distance.is_finite().then_some((distance, outward))
     }
 
-    /// Whether a ray that goes on from a point is inside: within `slack` (cm) of the border its direction decides.
+    /// Whether a ray that goes on from a point is inside: within `slack` (cm) of the border its
+    /// direction decides.
     #[must_use]
     pub fn holds_ahead(&self, point: DVec3, direction: DVec3, slack: f64) -> bool {
-        // How far outside of a part of the border the point is, and the outward component of the direction there.
+        // How far outside of a part of the border the point is, and the outward component of the
+        // direction there.
         let inside = |off: f64, outward: f64| off < -slack || (off <= slack && outward < 0.0);
         match self {
             Self::Ball(sphere) => inside(point.length() - sphere.radius, direction.dot(point)),

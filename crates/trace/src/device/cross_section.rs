@@ -1,8 +1,8 @@
-//! What a device looks like cut in the plane z = 0 of its own frame, or, where that is not along the plane of a
-//! drawing, the outline of what it hides of that plane.
+//! What a device looks like cut in the plane z = 0 of its own frame, or, where that is not along
+//! the plane of a drawing, the outline of what it hides of that plane.
 //!
-//! A new kind of [`Region`] or [`Shape`] says here, and nowhere else, what it looks like: its sides as lines, and for a
-//! region whether its medium is graded. The rest follows.
+//! A new kind of [`Region`] or [`Shape`] says here, and nowhere else, what it looks like: its sides
+//! as lines, and for a region whether its medium is graded. The rest follows.
 
 use super::{
     Body, ConformalRegion, Convex, Face, FarSide, HomogeneousRegion, Region, RegionBorder, Shape,
@@ -57,7 +57,8 @@ pub struct CrossSection<'s> {
     pub body_medium: Option<&'s Medium>,
     /// The body that fills the outlines, if the device is one.
     pub body: Option<Body>,
-    /// Whether it is only seen from afar: its outlines are projections, and nothing is known of within.
+    /// Whether it is only seen from afar: its outlines are projections, and nothing is known of
+    /// within.
     pub is_shadow: bool,
 }
 
@@ -92,8 +93,9 @@ impl Structure {
         }
     }
 
-    /// What the device looks like at a place, drawn on the xy-plane of the world, and the place of that drawing: cut in
-    /// its own plane z = 0 where its axis is along z, the outline of its projection where it is not.
+    /// What the device looks like at a place, drawn on the xy-plane of the world, and the place of
+    /// that drawing: cut in its own plane z = 0 where its axis is along z, the outline of its
+    /// projection where it is not.
     #[must_use]
     pub fn drawn_at(&self, pose: &Pose) -> (CrossSection<'_>, Pose) {
         if pose.axis().truncate() == DVec2::ZERO {

@@ -1,5 +1,6 @@
-//! The cylindrical cloak, impedance matched (Pendry, Schurig & Smith, Science 312, 1780 (2006); Schurig et
-//! al., Science 314, 977 (2006)) or of a uniaxial dielectric (after Cai et al., Nature Photon. 1, 224 (2007)).
+//! The cylindrical cloak, impedance matched (Pendry, Schurig & Smith, Science 312, 1780 (2006);
+//! Schurig et al., Science 314, 977 (2006)) or of a uniaxial dielectric (after Cai et al., Nature
+//! Photon. 1, 224 (2007)).
 
 use super::round::{check_radii, metal_cylinder, tube};
 use super::{Device, Fact, Request, Show, Structure};
@@ -24,16 +25,16 @@ crate::choice! {
 }
 
 crate::table! {
-    /// Shell around a metal cylinder along z. Impedance matched it is perfect in three dimensions; of a uniaxial
-    /// dielectric it guides vertically polarized light in the plane across it, and reflects at its border. Pendry,
-    /// Schurig & Smith 2006, Cai et al. 2007.
+    /// Shell around a metal cylinder along z. Impedance matched it is perfect in three dimensions;
+    /// of a uniaxial dielectric it guides vertically polarized light in the plane across it, and
+    /// reflects at its border. Pendry, Schurig & Smith 2006, Cai et al. 2007.
     pub struct CylinderCloak {
         /// Radius of the metal cylinder; below outer.
         inner: f64 = 4.0, "cm", in ValueRange::LENGTH,
         /// Radius of the cloak.
         outer: f64 = 10.0, "cm", in ValueRange::LENGTH,
-        /// What the shell is made of: eps = mu, or a uniaxial dielectric with its optic axis along the radius or around
-        /// the cylinder.
+        /// What the shell is made of: eps = mu, or a uniaxial dielectric with its optic axis along
+        /// the radius or around the cylinder.
         material: ShellMaterial,
     }
 }

@@ -1,9 +1,9 @@
-//! The double-Gaussian cloak: two Gaussian carpet cloaks back to back (design (iv) of Halimeh & Wegener,
-//! Opt. Express 21, 9457 (2013), after Leonhardt, Science 312, 1777 (2006) and Schmied, Halimeh & Wegener,
-//! Opt. Express 18, 24361 (2010)).
+//! The double-Gaussian cloak: two Gaussian carpet cloaks back to back (design (iv) of Halimeh &
+//! Wegener, Opt. Express 21, 9457 (2013), after Leonhardt, Science 312, 1777 (2006) and Schmied,
+//! Halimeh & Wegener, Opt. Express 18, 24361 (2010)).
 //!
-//! A rectangle of locally isotropic graded index around a metal lens; the index is n = c/|f'| of the map
-//! [`GaussianMap`], in the lower half that of its mirror image. At the cut the index steps.
+//! A rectangle of locally isotropic graded index around a metal lens; the index is n = c/|f'| of
+//! the map [`GaussianMap`], in the lower half that of its mirror image. At the cut the index steps.
 
 use super::{
     Coating, ConformalRegion, Device, Fact, FarSide, Hull, Part, Region, Request, Shape, Show,
@@ -19,8 +19,8 @@ use optics::propagation::{ConformalFlow, Half};
 use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
 crate::table! {
-    /// Unidirectional, polarization-independent cloak of locally isotropic graded index around a metal lens, from a
-    /// conformal map. Design (iv) of Halimeh & Wegener 2013.
+    /// Unidirectional, polarization-independent cloak of locally isotropic graded index around a
+    /// metal lens, from a conformal map. Design (iv) of Halimeh & Wegener 2013.
     pub struct DoubleGaussianCloak {
         /// Width parameter of the map.
         w: f64 = 10.02, "cm", in ValueRange::LENGTH,
@@ -30,8 +30,8 @@ crate::table! {
         width: f64 = 50.0, "cm", in ValueRange::LENGTH,
         /// Size of the cut along y; above twice h.
         height: f64 = 57.14, "cm", in ValueRange::LENGTH,
-        /// Reflect at the cut, and at the border of an open core, as the index step asks for; false is a perfect
-        /// antireflection coating.
+        /// Reflect at the cut, and at the border of an open core, as the index step asks for; false
+        /// is a perfect antireflection coating.
         fresnel: bool = true,
         /// Divide the index by its minimum, so that it is 1 at least.
         referenced: bool,

@@ -12,17 +12,19 @@ use optics::wave::unit;
 use std::f64::consts::FRAC_PI_2;
 
 crate::table! {
-    /// Maxwell's fish-eye cut by a plane: half of it makes the light of a point of its round surface parallel, and
-    /// parallel light, straight onto the cut, meets at such a point. Maxwell 1854.
+    /// Maxwell's fish-eye cut by a plane: half of it makes the light of a point of its round
+    /// surface parallel, and parallel light, straight onto the cut, meets at such a point. Maxwell
+    /// 1854.
     pub struct FisheyeHemisphere {
         /// Radius of the ball that is cut.
         radius: f64 = 10.0, "cm", in ValueRange::LENGTH,
         /// Index at the round surface; it is twice that at the centre of the ball.
         index: f64 = 1.0, in ValueRange::Within(0.1, 100.0),
-        /// The direction in which the cut looks, out of the device, in the device's frame; of any length.
+        /// The direction in which the cut looks, out of the device, in the device's frame; of any
+        /// length.
         cut_normal: DVec3 = DVec3::NEG_X,
-        /// How far from the centre of the ball it is cut, along `cut_normal`; less than half of the ball is left where
-        /// it is negative.
+        /// How far from the centre of the ball it is cut, along `cut_normal`; less than half of the
+        /// ball is left where it is negative.
         cut_distance: f64, "cm", in ValueRange::COORDINATE,
     }
 }
@@ -64,9 +66,10 @@ impl Device for FisheyeHemisphere {
     }
 }
 
-/// n = 2 m/(1 + (r/R)²), m at r = R. It is the stereographic projection, x = r/R = ξ/(1 - w), of the unit sphere
-/// (ξ, w) in four dimensions, m R times as large: rays are its great circles, and the optical path is m R times the
-/// angle. Planes and spheres are what linear equations leave of it.
+/// n = 2 m/(1 + (r/R)²), m at r = R. It is the stereographic projection, x = r/R = ξ/(1 - w), of
+/// the unit sphere (ξ, w) in four dimensions, m R times as large: rays are its great circles, and
+/// the optical path is m R times the angle. Planes and spheres are what linear equations leave of
+/// it.
 #[derive(Debug)]
 struct Fisheye {
     /// R, cm.

@@ -1,5 +1,5 @@
-//! The Gaussian carpet cloak: one half of the double-Gaussian cloak on a mirror floor (Schmied, Halimeh &
-//! Wegener, Opt. Express 18, 24361 (2010)).
+//! The Gaussian carpet cloak: one half of the double-Gaussian cloak on a mirror floor (Schmied,
+//! Halimeh & Wegener, Opt. Express 18, 24361 (2010)).
 //!
 //! A conformal map, [`GaussianMap`], so the index 1/|f'| is exact: the bump looks like flat floor.
 
@@ -8,8 +8,8 @@ use crate::keys::{KeyError, ValueRange};
 use optics::transformation::{ConformalMap, GaussianMap, Truncation};
 
 crate::table! {
-    /// Hides a bump of a mirror floor below a locally isotropic graded index, from a conformal map: one half of the
-    /// double-Gaussian cloak. Schmied, Halimeh & Wegener 2010.
+    /// Hides a bump of a mirror floor below a locally isotropic graded index, from a conformal map:
+    /// one half of the double-Gaussian cloak. Schmied, Halimeh & Wegener 2010.
     pub struct GaussianCarpet {
         /// Width parameter of the map.
         w: f64 = 10.02, "cm", in ValueRange::LENGTH,

@@ -1,9 +1,9 @@
-//! A graded index of one's own: an isotropic index given on a grid over a rectangle or a disc, endless along z or cut,
-//! with or without a round metal core.
+//! A graded index of one's own: an isotropic index given on a grid over a rectangle or a disc,
+//! endless along z or cut, with or without a round metal core.
 //!
-//! Between the samples the square of the index is a bicubic spline, whose second derivatives are continuous; rays are
-//! followed through that, to the tolerance. At the border the index steps to that of air, with refraction and Fresnel
-//! reflection.
+//! Between the samples the square of the index is a bicubic spline, whose second derivatives are
+//! continuous; rays are followed through that, to the tolerance. At the border the index steps to
+//! that of air, with refraction and Fresnel reflection.
 
 use super::round::{self, metal_cylinder, pierced, upright};
 use super::{
@@ -28,12 +28,13 @@ crate::choice! {
 }
 
 crate::table! {
-    /// A device of one's own: any isotropic graded index, given on a grid over a rectangle or a disc and the same along
-    /// z, around a metal cylinder or without one.
+    /// A device of one's own: any isotropic graded index, given on a grid over a rectangle or a
+    /// disc and the same along z, around a metal cylinder or without one.
     pub struct Graded {
-        /// The refractive index on a regular grid from border to border: rows of numbers, one row for each x from the
-        /// least to the largest, in it one number for each y; four at least either way. Or the name of a .npy file,
-        /// relative to the scene file. Between them the square of the index is a bicubic spline.
+        /// The refractive index on a regular grid from border to border: rows of numbers, one row
+        /// for each x from the least to the largest, in it one number for each y; four at least
+        /// either way. Or the name of a .npy file, relative to the scene file. Between them the
+        /// square of the index is a bicubic spline.
         index: Option<Sampled>, in ValueRange::Between(0.0, 1000.0),
         /// The border: the rectangle of the grid, or the largest circle about the middle of it.
         shape: GradedShape,
@@ -41,8 +42,9 @@ crate::table! {
         width: f64 = 40.0, "cm", in ValueRange::LENGTH,
         /// Size of the grid along y, from its first sample to its last.
         height: f64 = 40.0, "cm", in ValueRange::LENGTH,
-        /// Radius of a metal cylinder along z in the middle, which the medium surrounds; 0 for none. The samples within
-        /// go on smoothly for about ten steps of the grid; what they are beyond does not matter.
+        /// Radius of a metal cylinder along z in the middle, which the medium surrounds; 0 for
+        /// none. The samples within go on smoothly for about ten steps of the grid; what they are
+        /// beyond does not matter.
         inner: f64, "cm", in ValueRange::LENGTH_OR_ZERO,
     }
 }
@@ -136,7 +138,8 @@ impl Plan {
     }
 }
 
-/// The sides and the ends of a box with a round core, which has a radius and is something of its own.
+/// The sides and the ends of a box with a round core, which has a radius and is something of its
+/// own.
 fn upright_box(
     core: (f64, FarSide),
     outline: &Outline,

@@ -9,14 +9,15 @@ use optics::geometry::FlatOrRound;
 use optics::propagation::{ClosedForm, CurvedRay, SquaredIndex, first_way_out};
 
 crate::table! {
-    /// A box in which the square of the index grows evenly in one direction: rays are parabolas, as those of a ball
-    /// thrown upwards. Born & Wolf, Principles of Optics, section 3.2.
+    /// A box in which the square of the index grows evenly in one direction: rays are parabolas, as
+    /// those of a ball thrown upwards. Born & Wolf, Principles of Optics, section 3.2.
     pub struct GradedBox {
         /// Lengths of its sides along x, y and z.
         sides: DVec3 = DVec3::splat(20.0), "cm", in ValueRange::LENGTH,
         /// Index in the middle.
         index: f64 = 1.3, in ValueRange::Within(0.1, 100.0),
-        /// The gradient of the square of the index, in the device's frame: by how much it grows per cm along x, y and z.
+        /// The gradient of the square of the index, in the device's frame: by how much it grows per
+        /// cm along x, y and z.
         gradient: DVec3 = DVec3::new(0.0, -0.03, 0.0), "1/cm", in ValueRange::Within(-1e6, 1e6),
     }
 }

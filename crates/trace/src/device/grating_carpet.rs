@@ -1,8 +1,8 @@
-//! The grating carpet cloak: a periodically corrugated mirror floor that looks flat (Schmied, Halimeh &
-//! Wegener, Opt. Express 18, 24361 (2010)).
+//! The grating carpet cloak: a periodically corrugated mirror floor that looks flat (Schmied,
+//! Halimeh & Wegener, Opt. Express 18, 24361 (2010)).
 //!
-//! A conformal map, [`GratingMap`], so the index 1/|f'| is exact. The metal swings between y = -h and h about
-//! the floor's level y = 0, and below that level the device ends at metal.
+//! A conformal map, [`GratingMap`], so the index 1/|f'| is exact. The metal swings between y = -h
+//! and h about the floor's level y = 0, and below that level the device ends at metal.
 
 use super::{Device, Fact, Request, Structure, carpet};
 use crate::key;
@@ -10,8 +10,8 @@ use crate::keys::{KeyError, ValueRange};
 use optics::transformation::{ConformalMap, GratingMap, Truncation};
 
 crate::table! {
-    /// Makes a corrugated mirror look flat by a locally isotropic graded index, from a conformal map. Schmied, Halimeh
-    /// & Wegener 2010.
+    /// Makes a corrugated mirror look flat by a locally isotropic graded index, from a conformal
+    /// map. Schmied, Halimeh & Wegener 2010.
     pub struct GratingCarpet {
         /// How far the metal swings above and below the floor's level; below period/(2 pi).
         h: f64 = 1.5, "cm", in ValueRange::LENGTH,

@@ -1,5 +1,5 @@
-//! The invisible sphere: every ray leaves it on its own line, late (Miñano, Opt. Express 14, 9627 (2006);
-//! made regular by transmutation, Tyc & Leonhardt, New J. Phys. 10, 115038 (2008)).
+//! The invisible sphere: every ray leaves it on its own line, late (Miñano, Opt. Express 14, 9627
+//! (2006); made regular by transmutation, Tyc & Leonhardt, New J. Phys. 10, 115038 (2008)).
 
 use super::round::{ball, lens_alone};
 use super::{Device, Fact, Request, Structure};
@@ -19,14 +19,15 @@ crate::choice! {
 }
 
 crate::table! {
-    /// A ball of graded index that every ray loops through once, to leave it on its own line, late by the ball's
-    /// circumference; it hides nothing but itself. Minano 2006, regularized after Tyc & Leonhardt 2008.
+    /// A ball of graded index that every ray loops through once, to leave it on its own line, late
+    /// by the ball's circumference; it hides nothing but itself. Minano 2006, regularized after Tyc
+    /// & Leonhardt 2008.
     pub struct InvisibleSphere {
         /// Radius of the ball.
         radius: f64 = 10.0, "cm", in ValueRange::LENGTH,
-        /// A graded index that is infinite at the centre, or its regularized form, a uniaxial dielectric with its axis
-        /// along the radius: then the extraordinary wave sees the invisible sphere and the ordinary one a ball of
-        /// glass.
+        /// A graded index that is infinite at the centre, or its regularized form, a uniaxial
+        /// dielectric with its axis along the radius: then the extraordinary wave sees the
+        /// invisible sphere and the ordinary one a ball of glass.
         material: SphereMaterial,
     }
 }

@@ -40,8 +40,8 @@ macro_rules! lens {
 }
 
 lens! {
-    /// A ball of graded index that sends every ray back where it came from, shifted to the other side of the centre.
-    /// Eaton 1952.
+    /// A ball of graded index that sends every ray back where it came from, shifted to the other
+    /// side of the centre. Eaton 1952.
     EatonLens, "eaton-lens", "Eaton's lens",
     |radius| CentralLens::eaton(radius, PI),
     |lens| [
@@ -51,7 +51,8 @@ lens! {
 }
 
 lens! {
-    /// A ball of graded index that focuses parallel rays, of any direction, to a point of its far side. Luneburg 1944.
+    /// A ball of graded index that focuses parallel rays, of any direction, to a point of its far
+    /// side. Luneburg 1944.
     LuneburgLens, "luneburg-lens", "Luneburg's lens",
     CentralLens::luneburg,
     |lens| [
@@ -61,7 +62,8 @@ lens! {
 }
 
 lens! {
-    /// A ball of graded index that images every point of its surface to the opposite one. Maxwell 1854.
+    /// A ball of graded index that images every point of its surface to the opposite one. Maxwell
+    /// 1854.
     FisheyeLens, "fisheye-lens", "Maxwell's fish-eye",
     CentralLens::fisheye,
     |lens| [

@@ -22,8 +22,8 @@ pub enum MaterialAt {
 }
 
 impl Structure {
-    /// What is at a point of the device's frame. Sheets without thickness are not there; on a border the
-    /// medium is, and of two media the first.
+    /// What is at a point of the device's frame. Sheets without thickness are not there; on a
+    /// border the medium is, and of two media the first.
     #[must_use]
     pub fn material_at(&self, point: DVec3) -> MaterialAt {
         if !self.hull.spans(point) {
@@ -37,8 +37,8 @@ impl Structure {
         }
     }
 
-    /// The region that a point within the device's ends lies in or on the border of, the first of several: its number,
-    /// and the medium.
+    /// The region that a point within the device's ends lies in or on the border of, the first of
+    /// several: its number, and the medium.
     #[must_use]
     pub fn region_at(&self, point: DVec3) -> Option<(u16, Medium)> {
         let mut numbered = (0u16..).zip(&self.regions);
@@ -47,7 +47,8 @@ impl Structure {
 }
 
 impl Region {
-    /// As [`Region::enter`] at a point between the ends of the device, if it lies in the region or on its border.
+    /// As [`Region::enter`] at a point between the ends of the device, if it lies in the region or
+    /// on its border.
     pub(crate) fn enter_if_within(&self, point: DVec3) -> Option<(Option<VirtualPoint>, Medium)> {
         let within = match self {
             Self::Homogeneous(region) => region.faces().iter().all(|face| {

@@ -1,9 +1,9 @@
 //! The detour of plane mirrors: the trivial cloak that is none for waves.
 //!
-//! Eight flat two-sided mirrors at 45 degrees lead light that runs along x around the space in their midst, and
-//! back onto its line. Such a cloak works in every polarization and color, but for one direction only, and
-//! it delays light: it cloaks rays, never waves (Halimeh & Wegener, Opt. Express 21, 9457 (2013),
-//! section 1).
+//! Eight flat two-sided mirrors at 45 degrees lead light that runs along x around the space in
+//! their midst, and back onto its line. Such a cloak works in every polarization and color, but for
+//! one direction only, and it delays light: it cloaks rays, never waves (Halimeh & Wegener, Opt.
+//! Express 21, 9457 (2013), section 1).
 
 use super::{Device, Fact, Hull, Request, Structure, Surface};
 use crate::key;
@@ -13,8 +13,9 @@ use optics::geometry::{Extent, Outline, Solid, Wall};
 use optics::wave::SPEED_OF_LIGHT;
 
 crate::table! {
-    /// Eight plane mirrors that lead light along x around the space in their midst: invisible for exactly this
-    /// direction, and even there late. The trivial cloak of the introduction of Halimeh & Wegener 2013.
+    /// Eight plane mirrors that lead light along x around the space in their midst: invisible for
+    /// exactly this direction, and even there late. The trivial cloak of the introduction of
+    /// Halimeh & Wegener 2013.
     pub struct MirrorDetour {
         /// By how much light is led aside; rays within it of the axis are led around.
         offset: f64 = 8.0, "cm", in ValueRange::LENGTH,

@@ -1,8 +1,8 @@
 //! The catalogue of devices, and what devices are made of.
 //!
-//! A device is a set of regions filled with media and the surfaces around them
-//! ([`Structure`]). Each kind is one file here, a struct whose fields are the keys of its table in a scene and
-//! which becomes a structure, and one line in [`CATALOGUE`]; nothing else in the program knows it.
+//! A device is a set of regions filled with media and the surfaces around them ([`Structure`]).
+//! Each kind is one file here, a struct whose fields are the keys of its table in a scene and which
+//! becomes a structure, and one line in [`CATALOGUE`]; nothing else in the program knows it.
 //!
 //! ```
 //! use cloakroom_trace::device::{Device, Request, SquareCloak};
@@ -292,7 +292,8 @@ fn medium(permittivity: Tensor, permeability: Tensor) -> Result<Medium, KeyError
     })
 }
 
-/// Refuses to show a device otherwise than as it is; `reason` says what it is: "a body is no cloak".
+/// Refuses to show a device otherwise than as it is; `reason` says what it is: "a body is no
+/// cloak".
 fn refuse_other_views(request: Request, reason: &str) -> Result<(), KeyError> {
     let message = format!("{reason}; it can be shown as it is, with show = \"cloak\", only");
     KeyError::refuse_if(request.show != Show::Cloak, key!(Request.show), message)

@@ -6,13 +6,14 @@ use glam::{DVec2, DVec3};
 use optics::geometry::{Extent, Outline, Solid, Wall};
 
 crate::table! {
-    /// An ideal polarizer: a sheet across x that passes the part of the electric field along its axis, projected across
-    /// the ray, and absorbs the rest, without reflection and without thickness. It stands in air.
+    /// An ideal polarizer: a sheet across x that passes the part of the electric field along its
+    /// axis, projected across the ray, and absorbs the rest, without reflection and without
+    /// thickness. It stands in air.
     pub struct Polarizer {
         /// Width along y.
         width: f64 = 20.0, "cm", in ValueRange::LENGTH,
-        /// Where its axis points: at 0 along z, what a camera that looks along x calls horizontal, at 90 along y. The
-        /// same angle as that of the camera's polarizer.
+        /// Where its axis points: at 0 along z, what a camera that looks along x calls horizontal,
+        /// at 90 along y. The same angle as that of the camera's polarizer.
         angle: f64, "degrees", in ValueRange::ANGLE,
     }
 }

@@ -1,4 +1,5 @@
-//! Devices of polygonal cross-section: parts of homogeneous media or metal that extend along z and meet without gaps.
+//! Devices of polygonal cross-section: parts of homogeneous media or metal that extend along z and
+//! meet without gaps.
 //!
 //! Concave cross-sections are cut into convex regions; the cuts are no interfaces.
 
@@ -177,7 +178,8 @@ fn stretches(parts: &[PolygonPart], pieces: &[Piece], index: usize, edge: usize)
             let place = |p: DVec2| ((p - from).dot(along), (p - from).perp_dot(along));
             let ((start, off_start), (end, off_end)) = (place(back), place(there));
             let (low, high) = (start.max(0.0), end.min(length));
-            // How far off it is where the two are side by side: further on, rounded corners lead astray.
+            // How far off it is where the two are side by side: further on, rounded corners lead
+            // astray.
             let off = |at: f64| off_start + (off_end - off_start) * (at - start) / (end - start);
             let beside = [low, high].iter().all(|at| off(*at).abs() <= SAME_POINT);
             if beside && high - low > SAME_POINT {

@@ -11,11 +11,11 @@ use optics::geometry::{Extent, Polygon, PolygonError, SAME_POINT};
 use optics::medium::Tensor;
 
 crate::table! {
-    /// A device of one's own: prisms of any cross-section and of any homogeneous media, anisotropic, magnetic, negative
-    /// or absorbing, or of metal.
+    /// A device of one's own: prisms of any cross-section and of any homogeneous media,
+    /// anisotropic, magnetic, negative or absorbing, or of metal.
     pub struct Prisms {
-        /// The prisms, each a table [[device.prism]]; those that share a side, whole or in part, meet there without a
-        /// gap.
+        /// The prisms, each a table [[device.prism]]; those that share a side, whole or in part,
+        /// meet there without a gap.
         prism: Vec<PrismOfMedium>,
     }
 }
@@ -23,7 +23,8 @@ crate::table! {
 crate::table! {
     /// One of the prisms of [`Prisms`].
     pub struct PrismOfMedium {
-        /// The corners of its cross-section in the xy-plane, one after the other; it may be concave.
+        /// The corners of its cross-section in the xy-plane, one after the other; it may be
+        /// concave.
         corners: Option<Vec<[f64; 2]>>, "cm", in ValueRange::COORDINATE,
         /// Relative permittivity, in the device's frame; symmetric.
         permittivity: Given<Tensor> = Given::by_default(1.0.into()),
@@ -92,7 +93,8 @@ impl Prisms {
     }
 }
 
-/// One prism; its corners are moved onto those of earlier ones, `known`, that are the same but for rounding.
+/// One prism; its corners are moved onto those of earlier ones, `known`, that are the same but for
+/// rounding.
 fn part(prism: &PrismOfMedium, known: &mut Vec<DVec2>) -> Result<PolygonPart, KeyError> {
     let missing = || KeyError::general("this prism has no `corners`: three or more [x, y]");
     let corners = prism.corners.as_ref().ok_or_else(missing)?;

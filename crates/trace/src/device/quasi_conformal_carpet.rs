@@ -1,8 +1,8 @@
-//! The quasi-conformal carpet cloak (Li & Pendry, Phys. Rev. Lett. 101, 203901 (2008); Ergin et al.,
-//! Science 328, 337 (2010)).
+//! The quasi-conformal carpet cloak (Li & Pendry, Phys. Rev. Lett. 101, 203901 (2008); Ergin et
+//! al., Science 328, 337 (2010)).
 //!
-//! The map is solved for here, [`QuasiConformalMap`]. It does not quite keep the shape of the box, and that
-//! small anisotropy is neglected: an index of c/|f'| is left.
+//! The map is solved for here, [`QuasiConformalMap`]. It does not quite keep the shape of the box,
+//! and that small anisotropy is neglected: an index of c/|f'| is left.
 
 use super::{Device, Fact, Request, Structure, carpet};
 use crate::key;
@@ -10,8 +10,8 @@ use crate::keys::{KeyError, ValueRange};
 use optics::transformation::{ConformalMap, ConformalMapError, QuasiConformalMap, Truncation};
 
 crate::table! {
-    /// Hides a bump of a mirror floor, h cos^2(pi x/w), below a locally isotropic graded index, from the
-    /// quasi-conformal map of a box. Li & Pendry 2008, Ergin et al. 2010.
+    /// Hides a bump of a mirror floor, h cos^2(pi x/w), below a locally isotropic graded index,
+    /// from the quasi-conformal map of a box. Li & Pendry 2008, Ergin et al. 2010.
     pub struct QuasiConformalCarpet {
         /// Height of the metal bump.
         h: f64 = 4.25, "cm", in ValueRange::LENGTH,

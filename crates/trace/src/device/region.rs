@@ -84,12 +84,13 @@ pub struct Face {
     pub plane: Plane,
     /// What lies beyond it.
     pub far: FarSide,
-    /// Where the face ends, if the next one goes on in its plane: the coordinate (cm) along z × normal.
-    /// Infinite for the last face in its plane.
+    /// Where the face ends, if the next one goes on in its plane: the coordinate (cm) along z ×
+    /// normal. Infinite for the last face in its plane.
     pub until: f64,
     /// How the media meet there.
     pub coating: Coating,
-    /// From where to where it runs in the plane z = 0, counterclockwise around the region, for drawings.
+    /// From where to where it runs in the plane z = 0, counterclockwise around the region, for
+    /// drawings.
     pub side: Option<[DVec2; 2]>,
 }
 
@@ -145,9 +146,9 @@ pub struct Passage {
 }
 
 impl Region {
-    /// What a ray finds that enters the region at a point of its border: the point in the virtual space of a conformal
-    /// region, and the medium, see [`Region::medium`]. `None` if a conformal map has no such point: it has been lost in
-    /// rounding at an edge.
+    /// What a ray finds that enters the region at a point of its border: the point in the virtual
+    /// space of a conformal region, and the medium, see [`Region::medium`]. `None` if a conformal
+    /// map has no such point: it has been lost in rounding at an edge.
     #[must_use]
     #[inline]
     pub fn enter<'m>(
@@ -162,9 +163,10 @@ impl Region {
         Some((virtual_point, self.medium(position, virtual_point.as_ref(), local)?))
     }
 
-    /// The medium at a point of the region or its border, `virtual_point` being what [`Region::enter`] or the last
-    /// passage has said of it; `None` if there is none by rounding. That of a graded region is put into
-    /// `local`: media are large, and those of homogeneous regions are not copied.
+    /// The medium at a point of the region or its border, `virtual_point` being what
+    /// [`Region::enter`] or the last passage has said of it; `None` if there is none by rounding.
+    /// That of a graded region is put into `local`: media are large, and those of homogeneous
+    /// regions are not copied.
     #[must_use]
     #[inline]
     pub fn medium<'m>(
@@ -184,8 +186,9 @@ impl Region {
         local.as_ref()
     }
 
-    /// The speed of light times the time that a pulse takes on the way of a ray to `end`, cm, to within about `tolerance`
-    /// (cm); `electric` is a field of the ray, of any size. NaN in media that absorb, unless they are without dispersion.
+    /// The speed of light times the time that a pulse takes on the way of a ray to `end`, cm, to
+    /// within about `tolerance` (cm); `electric` is a field of the ray, of any size. NaN in media
+    /// that absorb, unless they are without dispersion.
     #[must_use]
     pub fn group_path(
         &self,
@@ -226,7 +229,8 @@ impl Region {
         }
     }
 
-    /// Where the waves of the medium start as one and then part: their electric fields, of unit power.
+    /// Where the waves of the medium start as one and then part: their electric fields, of unit
+    /// power.
     #[must_use]
     pub fn parted(&self, position: DVec3, wave_vector: DVec3) -> Option<[(ModeKind, DVec3); 2]> {
         match self {
@@ -254,8 +258,8 @@ impl Region {
         }
     }
 
-    /// As [`Region::advance`], up to four rays at once: see [`Region::takes_four`]. Each gets what it would get
-    /// alone.
+    /// As [`Region::advance`], up to four rays at once: see [`Region::takes_four`]. Each gets what
+    /// it would get alone.
     #[must_use]
     pub fn advance_four(
         &self,
@@ -276,8 +280,8 @@ impl Region {
         matches!(self, Self::Conformal(_))
     }
 
-    /// Points along the way that [`Region::advance`] takes to `end`, with the optical path from its start: for
-    /// drawings. Without those between where they cannot be had.
+    /// Points along the way that [`Region::advance`] takes to `end`, with the optical path from its
+    /// start: for drawings. Without those between where they cannot be had.
     #[must_use]
     pub fn path(&self, ray: &InnerRay, end: &Passage, tolerance: f64) -> Vec<PathPoint> {
         let ends = || {
@@ -339,7 +343,8 @@ impl HomogeneousRegion {
             }
         }
         let (mut index, mut face, distance) = nearest?;
-        // On the plane to the last bit: what is off along the normal would show in the optical path.
+        // On the plane to the last bit: what is off along the normal would show in the optical
+        // path.
         let end = face.plane.project(position + direction * distance);
         while face.until < DVec3::Z.cross(face.plane.normal).dot(end) {
             index += 1;
@@ -443,8 +448,9 @@ impl RadialRegion {
         sound.then(|| Passage { coating, ..Passage::graded(ray, &end, end.surface as u16, far) })
     }
 
-    /// Whether a ray has come out of an open core into a wave that no ray of the core can be in but those in
-    /// a plane through the axis, or aimed at the centre, to the last digits: the medium is singular there.
+    /// Whether a ray has come out of an open core into a wave that no ray of the core can be in but
+    /// those in a plane through the axis, or aimed at the centre, to the last digits: the medium is
+    /// singular there.
     fn turns_back(&self, ray: &InnerRay) -> bool {
         let [core, _] = self.flow.radii();
         let outward = self.flow.outward(ray.position);

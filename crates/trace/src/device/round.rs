@@ -8,8 +8,8 @@ use crate::keys::KeyError;
 use optics::geometry::{Cylinder, Extent, Hole, Solid, Sphere};
 use optics::propagation::RadialFlow;
 
-/// How near to 0 and to the outer radius the inner one may come, relative to the outer one: beyond, the
-/// tensors are too lopsided for double precision.
+/// How near to 0 and to the outer radius the inner one may come, relative to the outer one: beyond,
+/// the tensors are too lopsided for double precision.
 const THINNEST: f64 = 0.001;
 
 /// Refuses an inner radius that is not within the outer one; `key` is that of the inner one.
@@ -34,7 +34,8 @@ pub(super) fn lens_alone(request: Request) -> Result<(), KeyError> {
     no_length(request)
 }
 
-/// A ball filled with a medium: solid, around a metal core that no light comes to, or around an open core of a radius.
+/// A ball filled with a medium: solid, around a metal core that no light comes to, or around an
+/// open core of a radius.
 pub(super) fn ball(radius: f64, flow: RadialFlow, open_core: Option<f64>) -> Structure {
     let border = |shape| Surface::new(shape, FarSide::Region(0));
     let mut surfaces = vec![border(sphere(radius))];
@@ -80,8 +81,8 @@ pub(super) fn tube(
     radial(flow, inner, surfaces, hull)
 }
 
-/// The hull of a device around a round core that has a radius and is something of its own; an open one gets its border,
-/// that of the first region.
+/// The hull of a device around a round core that has a radius and is something of its own; an open
+/// one gets its border, that of the first region.
 pub(super) fn hull(
     (radius, far_of_core): (f64, FarSide),
     whole: Solid,
@@ -117,7 +118,8 @@ pub(super) fn upright(
     surfaces
 }
 
-/// A flat end around a core that has a radius and is something of its own; where that is outside, nothing is there.
+/// A flat end around a core that has a radius and is something of its own; where that is outside,
+/// nothing is there.
 pub(super) fn pierced(end: &Shape, core: (f64, FarSide), far: FarSide) -> Vec<Surface> {
     let (radius, far_of_core) = core;
     let part = |far, part| Surface { part, ..Surface::new(end.clone(), far) };

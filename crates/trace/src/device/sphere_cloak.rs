@@ -11,8 +11,8 @@ use optics::transformation::{RadialMap, Symmetry};
 use std::f64::consts::PI;
 
 crate::table! {
-    /// Impedance-matched shell around a metal ball, perfect for every direction, polarization and time of flight.
-    /// Pendry, Schurig & Smith 2006.
+    /// Impedance-matched shell around a metal ball, perfect for every direction, polarization and
+    /// time of flight. Pendry, Schurig & Smith 2006.
     pub struct SphereCloak {
         /// Radius of the metal ball; below outer.
         inner: f64 = 4.0, "cm", in ValueRange::LENGTH,

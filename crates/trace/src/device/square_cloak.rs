@@ -27,18 +27,20 @@ crate::choice! {
 }
 
 crate::table! {
-    /// Unidirectional cloak of four homogeneous anisotropic segments around a metal rhombus; seen along x it is
-    /// invisible, turned it is a flat mirror. Landy & Smith 2013, designs (i)-(iii) of Halimeh & Wegener 2013.
+    /// Unidirectional cloak of four homogeneous anisotropic segments around a metal rhombus; seen
+    /// along x it is invisible, turned it is a flat mirror. Landy & Smith 2013, designs (i)-(iii)
+    /// of Halimeh & Wegener 2013.
     pub struct SquareCloak {
-        /// What the segments are made of: eps = mu, design (iii), or a scalar eps and a uniaxial mu, positive (i) or
-        /// negative (ii), which cloak horizontal polarization only.
+        /// What the segments are made of: eps = mu, design (iii), or a scalar eps and a uniaxial
+        /// mu, positive (i) or negative (ii), which cloak horizontal polarization only.
         material: SegmentMaterial,
         /// Side of the square.
         side: f64 = 14.1, "cm", in ValueRange::LENGTH,
         /// Ratio of the rhombus's diagonals; 1/sqrt(3) gives corners of 60 and 120 degrees.
         // Beyond the limits, the tensors are too lopsided for double precision.
         kappa: f64 = 0.577_350_269_189_625_8, in ValueRange::Within(0.001, 0.999),
-        /// Use the paper's rounded material values 3.27, 0.31, 2.366 and 33.54 degrees instead of the exact ones.
+        /// Use the paper's rounded material values 3.27, 0.31, 2.366 and 33.54 degrees instead of
+        /// the exact ones.
         rounded: bool,
     }
 }

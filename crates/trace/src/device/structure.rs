@@ -1,4 +1,5 @@
-//! What every device is made of: regions filled with media, and the surfaces that light outside of it meets.
+//! What every device is made of: regions filled with media, and the surfaces that light outside of
+//! it meets.
 
 use super::{Convex, Region, Shape, Surface};
 use glam::DVec3;
@@ -13,7 +14,8 @@ pub enum FarSide {
     Outside,
     /// The device's region of that number.
     Region(u16),
-    /// The device's region of that number, of the same medium: the surface is a cut, and no interface.
+    /// The device's region of that number, of the same medium: the surface is a cut, and no
+    /// interface.
     Seam(u16),
     /// A perfect conductor.
     Conductor,
@@ -60,7 +62,8 @@ pub struct Structure {
     pub metals: Vec<Medium>,
 }
 
-/// What makes a device a body: other bodies may stand in it, and other devices if it is filled with a medium.
+/// What makes a device a body: other bodies may stand in it, and other devices if it is filled with
+/// a medium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Its shape, about the origin of its frame.
@@ -140,8 +143,8 @@ impl Hull {
         Self { solids, reach, thin_mirror: None, metal: None, body: None, filled: None }
     }
 
-    /// The hull with a thin mirror as well, such as a floor, on a line of two corners: it holds nothing, and
-    /// the photograph may stand across it.
+    /// The hull with a thin mirror as well, such as a floor, on a line of two corners: it holds
+    /// nothing, and the photograph may stand across it.
     #[must_use]
     pub fn with_thin_mirror(self, line: Outline, extent: Extent) -> Self {
         let sheet = Solid::Prism { outline: line, extent };
@@ -198,15 +201,16 @@ impl Hull {
         self.filled.iter().chain(self.solids.iter().filter(|_| self.filled.is_none()))
     }
 
-    /// Whether a point (in the device's frame) is of the device or of its hidden region, border included.
+    /// Whether a point (in the device's frame) is of the device or of its hidden region, border
+    /// included.
     #[must_use]
     pub fn spans(&self, point: DVec3) -> bool {
         self.filled_solids().any(|solid| solid.contains(point))
             && self.metal.as_ref().is_none_or(|metal| metal.contains(point.truncate()))
     }
 
-    /// The least and the greatest coordinates of what it spans when it is at a place, infinite (or very
-    /// large) where it has no end; `None` if it spans nothing.
+    /// The least and the greatest coordinates of what it spans when it is at a place, infinite (or
+    /// very large) where it has no end; `None` if it spans nothing.
     #[must_use]
     pub fn bounds(&self, pose: &Pose) -> Option<[DVec3; 2]> {
         let bounds = self.filled_solids().filter_map(|solid| solid.placed(pose).bounds());
@@ -251,7 +255,8 @@ impl Structure {
         self.surfaces.get(usize::from(surface)).map(|surface| &surface.shape)
     }
 
-    /// The nearest surface that a ray outside meets, from zero on, `departed` being the one it has just left.
+    /// The nearest surface that a ray outside meets, from zero on, `departed` being the one it has
+    /// just left.
     #[must_use]
     pub fn first_hit(
         &self,

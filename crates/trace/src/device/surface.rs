@@ -45,8 +45,8 @@ pub enum Shape {
     Round(Cylinder),
     /// The round side of a hole that is a cylinder, met from within.
     RoundHole(Cylinder),
-    /// The outline of the metal below the curved floor of a conformal map, met from outside, or one curved side of it, met
-    /// from within; extended along z.
+    /// The outline of the metal below the curved floor of a conformal map, met from outside, or one
+    /// curved side of it, met from within; extended along z.
     Curve {
         /// Its cross-section.
         curve: FloorCurve,
@@ -119,8 +119,9 @@ impl Surface {
         Self::new(Shape::Sheet(wall), FarSide::Conductor)
     }
 
-    /// The distance, from zero on, at which a ray meets the surface and the unit normal there, against the ray. A ray that
-    /// has just `departed` from this same surface does not meet it again at once.
+    /// The distance, from zero on, at which a ray meets the surface and the unit normal there,
+    /// against the ray. A ray that has just `departed` from this same surface does not meet it
+    /// again at once.
     #[must_use]
     #[inline]
     pub fn hit(&self, origin: DVec3, direction: DVec3, departed: bool) -> Option<(f64, DVec3)> {
@@ -162,8 +163,8 @@ impl Surface {
 /// A curved surface that a ray has just departed from is not met again closer than this, cm.
 const AGAIN: f64 = 1e-7;
 
-/// Where a ray meets the outline of metal below a floor from outside, or one of its sides from within, within an extent
-/// along z.
+/// Where a ray meets the outline of metal below a floor from outside, or one of its sides from
+/// within, within an extent along z.
 fn curve_hit(
     curve: &FloorCurve,
     side: Option<CurvedSide>,

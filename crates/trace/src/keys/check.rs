@@ -63,7 +63,8 @@ impl Key {
         }
     }
 
-    /// Holds a value against the key, and gives it back as the key has it: 3 is 3.0 where a number is asked for.
+    /// Holds a value against the key, and gives it back as the key has it: 3 is 3.0 where a number
+    /// is asked for.
     ///
     /// # Errors
     ///

@@ -40,15 +40,16 @@ impl KeyError {
         KeyError { key: None, entries: Vec::new(), message: message.into() }
     }
 
-    /// The same error in a table of a list: of the list `list` the table of that number, counted from 0.
+    /// The same error in a table of a list: of the list `list` the table of that number, counted
+    /// from 0.
     #[must_use]
     pub fn within(mut self, list: &'static str, number: usize) -> Self {
         self.entries.insert(0, (list, number));
         self
     }
 
-    /// Where the error is, of a table such as `device.0`: `device.0.side`, `device.0.prism.2.corners`; the table
-    /// itself if it is nowhere in particular.
+    /// Where the error is, of a table such as `device.0`: `device.0.side`,
+    /// `device.0.prism.2.corners`; the table itself if it is nowhere in particular.
     #[must_use]
     pub fn path_in(&self, table: &str) -> String {
         let entries = self.entries.iter().map(|(list, number)| format!("{list}.{number}"));

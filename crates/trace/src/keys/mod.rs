@@ -1,8 +1,8 @@
 //! Keys: the name, type, default and limits of everything a scene can say.
 //!
 //! Each table of a scene file (the camera, the light, each kind of device) is described once, by a
-//! struct that [`table!`](crate::table) makes together with its list of [`Key`]s. Reading, messages, the
-//! JSON Schema, the catalogue and the other front ends all follow from that list.
+//! struct that [`table!`](crate::table) makes together with its list of [`Key`]s. Reading,
+//! messages, the JSON Schema, the catalogue and the other front ends all follow from that list.
 
 mod check;
 mod error;
@@ -68,8 +68,8 @@ pub enum KeyKind {
     Vector,
     /// Two whole numbers, such as a resolution.
     IntegerPair,
-    /// An image: the name of a file, or of one that comes with the program. A scene file's reader takes names of
-    /// files relative to its folder.
+    /// An image: the name of a file, or of one that comes with the program. A scene file's reader
+    /// takes names of files relative to its folder.
     Image,
     /// One of a few words, or a number: a polarizer is `"none"`, `"horizontal"` or an angle.
     ChoiceOrNumber {
@@ -82,8 +82,8 @@ pub enum KeyKind {
     Complex,
     /// The corners of a polygon, [x, y] each, three at least.
     Polygon,
-    /// Numbers on a grid: rows of numbers, or the name of a file that holds them. A scene file's reader makes names
-    /// of files relative to its folder.
+    /// Numbers on a grid: rows of numbers, or the name of a file that holds them. A scene file's
+    /// reader makes names of files relative to its folder.
     Samples,
     /// A table with keys of its own.
     Table {

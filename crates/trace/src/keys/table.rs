@@ -2,13 +2,14 @@
 
 use super::{Key, KeyError, Value, VisitFile, unknown};
 
-/// A table of a scene, such as the camera or a device, as a struct: [`table!`](crate::table) implements it.
+/// A table of a scene, such as the camera or a device, as a struct: [`table!`](crate::table)
+/// implements it.
 pub trait Table {
     /// The keys, in the order of the fields.
     fn keys(&self) -> &'static [Key];
 
-    /// The value of a key, as one would hand it over; `None` where there is no such key, or it is absent and its
-    /// absence means something.
+    /// The value of a key, as one would hand it over; `None` where there is no such key, or it is
+    /// absent and its absence means something.
     fn get(&self, name: &str) -> Option<Value>;
 
     /// The keys that a scene has to write for this table.
@@ -55,10 +56,11 @@ pub fn find(keys: &'static [Key], name: &str) -> Result<&'static Key, KeyError> 
     })
 }
 
-/// Makes a table of a scene: the struct, its keys, its defaults, and the way from values to fields and back.
+/// Makes a table of a scene: the struct, its keys, its defaults, and the way from values to fields
+/// and back.
 ///
-/// A field is a key. Its doc comment is what people are told about the key; after its type come its default (where it
-/// is not that of the type), the unit of its numbers and their limits:
+/// A field is a key. Its doc comment is what people are told about the key; after its type come its
+/// default (where it is not that of the type), the unit of its numbers and their limits:
 ///
 /// ```
 /// use cloakroom_trace::keys::{ValueRange, Table};
@@ -94,7 +96,8 @@ pub fn find(keys: &'static [Key], name: &str) -> Result<&'static Key, KeyError> 
 /// # Ok::<(), cloakroom_trace::keys::KeyError>(())
 /// ```
 ///
-/// The type of a field is one of those that implement [`Field`](crate::keys::Field); a table may hold tables.
+/// The type of a field is one of those that implement [`Field`](crate::keys::Field); a table may
+/// hold tables.
 #[macro_export]
 macro_rules! table {
     (

@@ -1,4 +1,5 @@
-//! Borders between devices, and between a device and what is around it: crossed in the world's frame.
+//! Borders between devices, and between a device and what is around it: crossed in the world's
+//! frame.
 
 use super::branch::{Branch, Place};
 use super::event::Event;
@@ -52,7 +53,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         Met::Device(self.assembly.ahead(position, direction, departed))
     }
 
-    /// What a ray in a body, in its frame, meets before the border to which it has passed, and the passage to there.
+    /// What a ray in a body, in its frame, meets before the border to which it has passed, and the
+    /// passage to there.
     pub(super) fn guest_ahead(
         &self,
         branch: &Branch<N>,
@@ -88,7 +90,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         Some((met, to(hit.distance, guest, -pose.vector_to_local(outward))))
     }
 
-    /// Takes a branch from a region across its border, both in the frame of the region's device, to what it meets there.
+    /// Takes a branch from a region across its border, both in the frame of the region's device, to
+    /// what it meets there.
     pub(super) fn leave(
         &mut self,
         branch: &mut Branch<N>,
@@ -168,7 +171,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.assembly.device(number).departed(number, surface)
     }
 
-    /// What lies beyond a border, at which the branch is, in the world's frame; `None` if rounding hides it.
+    /// What lies beyond a border, at which the branch is, in the world's frame; `None` if rounding
+    /// hides it.
     fn destination(&self, branch: &Branch<N>, ahead: Ahead) -> Option<Destination<'a>> {
         let (number, far) = match ahead {
             Ahead::Air => return Some(Destination::Air),

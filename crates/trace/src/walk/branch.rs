@@ -35,9 +35,11 @@ pub(super) struct Branch<const N: usize> {
     /// Whether the tree of each launched polarization alone has this branch.
     pub survives_alone: [bool; N],
     pub optical_path: f64,
-    /// What ways on which the phase runs backwards add to the optical path in the time of flight, cm.
+    /// What ways on which the phase runs backwards add to the optical path in the time of flight,
+    /// cm.
     pub backwards: f64,
-    /// What dispersion adds to the optical path for a pulse, cm; NaN where it is not known, or nobody asks.
+    /// What dispersion adds to the optical path for a pulse, cm; NaN where it is not known, or
+    /// nobody asks.
     pub dispersion: f64,
     /// What it has just left, if it runs outside of it now: in air or in the body around it.
     pub departed: Option<DepartedSurface>,
@@ -114,7 +116,8 @@ impl<const N: usize> Branch<N> {
         part
     }
 
-    /// The branch as one of the waves in which it starts, with its amplitude for each launched polarization.
+    /// The branch as one of the waves in which it starts, with its amplitude for each launched
+    /// polarization.
     pub fn as_wave(&self, wave: &RayWave, amplitudes: [Complex64; N]) -> Self {
         let field = wave.electric.unwrap_or_default();
         Self {
@@ -162,9 +165,10 @@ impl<const N: usize> Branch<N> {
         }
     }
 
-    /// Comes out into air, `departed` being what it leaves: there all that decays across a beam is its profile: behind an absorbing wedge the
-    /// wave of the match decays along the surface, by some 1e-5 of its wave vector; a ray is a plane
-    /// wave along its direction, transverse, and of its power.
+    /// Comes out into air, `departed` being what it leaves: there all that decays across a beam is
+    /// its profile: behind an absorbing wedge the wave of the match decays along the surface, by
+    /// some 1e-5 of its wave vector; a ray is a plane wave along its direction, transverse, and of
+    /// its power.
     pub fn come_out(&mut self, departed: Option<DepartedSurface>) {
         (self.place, self.departed) = (Place::Air, departed);
         if self.attenuation == DVec3::ZERO {

@@ -1,9 +1,11 @@
-//! Leaves that see the same thing add as fields where their paths are alike, as powers where they are not.
+//! Leaves that see the same thing add as fields where their paths are alike, as powers where they
+//! are not.
 //!
-//! The coherency matrix of the light that arrives from an incoherent source is the sum over pairs of ways i and j of
-//! g_ij w_ij (E_i · E_j*) exp(i k0 (l_i - l_j)), with their fields E and phase lengths l. A Gaussian line gives
-//! g = exp(-(π (l_i - l_j)/L)²/(4 ln 2)) with the coherence length L = λ²/Δλ; w is a Gaussian of the distance between
-//! the places that they see. Both kernels are positive definite: there is no negative light.
+//! The coherency matrix of the light that arrives from an incoherent source is the sum over pairs
+//! of ways i and j of g_ij w_ij (E_i · E_j*) exp(i k0 (l_i - l_j)), with their fields E and phase
+//! lengths l. A Gaussian line gives g = exp(-(π (l_i - l_j)/L)²/(4 ln 2)) with the coherence length
+//! L = λ²/Δλ; w is a Gaussian of the distance between the places that they see. Both kernels are
+//! positive definite: there is no negative light.
 
 use super::branch::{Branch, Place};
 use super::{Leaf, LeafEnd};
@@ -90,8 +92,8 @@ impl Coherence {
         Complex64::from_polar(visibility, self.wave_number * difference)
     }
 
-    /// Adds the pairs of ways that interfere; `width` is that of w, the standard deviation of the distance between what
-    /// they see. The order of the ways is changed.
+    /// Adds the pairs of ways that interfere; `width` is that of w, the standard deviation of the
+    /// distance between what they see. The order of the ways is changed.
     pub fn add_pairs(&self, ways: &mut [Way], width: f64, pairs: &mut Vec<Pair>) {
         ways.sort_by(|a, b| a.phase_length.total_cmp(&b.phase_length));
         let reach = self.reach();
@@ -113,8 +115,9 @@ impl Coherence {
         }
     }
 
-    /// Adds leaves of one direction and one end as fields, as they would arrive in the far field: one leaf each, at the
-    /// place of the strongest. Its electric field is that of the mean wavelength, scaled to its power.
+    /// Adds leaves of one direction and one end as fields, as they would arrive in the far field:
+    /// one leaf each, at the place of the strongest. Its electric field is that of the mean
+    /// wavelength, scaled to its power.
     #[must_use]
     pub fn gather(&self, leaves: &[Leaf<1>]) -> Vec<Leaf<1>> {
         let mut order: Vec<usize> = (0..leaves.len()).collect();
@@ -156,8 +159,8 @@ impl Coherence {
 }
 
 impl Coherence {
-    /// The power of waves of one direction, by rising phase length (cm). Those of the same length become one: of the many
-    /// ways through plates, many are as long.
+    /// The power of waves of one direction, by rising phase length (cm). Those of the same length
+    /// become one: of the many ways through plates, many are as long.
     fn power(&self, waves: &mut Vec<(f64, ComplexVector)>) -> f64 {
         waves.dedup_by(|(length, field), (first, sum)| {
             let same = *length - *first <= SAME_LENGTH * self.length;
@@ -190,8 +193,8 @@ const SAME_WAVE: f64 = 1e-11;
 const BESIDE: f64 = 5e-3;
 
 impl Coherence {
-    /// Adds the field of another branch to one that is the same plane wave, of the same phase length and with nothing
-    /// between them; whether it is.
+    /// Adds the field of another branch to one that is the same plane wave, of the same phase
+    /// length and with nothing between them; whether it is.
     pub(super) fn join<const N: usize>(
         &self,
         assembly: &Assembly,
@@ -251,22 +254,24 @@ fn part<const N: usize>(assembly: &Assembly, one: &Branch<N>, other: &Branch<N>)
 }
 
 impl Pair {
-    /// What the pair adds to the sum of the powers of its leaves, for one of the launched polarizations.
+    /// What the pair adds to the sum of the powers of its leaves, for one of the launched
+    /// polarizations.
     #[must_use]
     pub fn power<const N: usize>(&self, leaves: &[Leaf<N>], polarization: usize) -> f64 {
         let [one, other] = self.leaves.map(|leaf| leaves[leaf].electric[polarization]);
         2.0 * (self.degree * one.dot(other.conj())).re
     }
 
-    /// Whether both run in one direction: then what they have more of together, others have less. The fringes of others
-    /// have their maxima and minima side by side.
+    /// Whether both run in one direction: then what they have more of together, others have less.
+    /// The fringes of others have their maxima and minima side by side.
     #[must_use]
     pub fn is_parallel<const N: usize>(&self, leaves: &[Leaf<N>]) -> bool {
         let [one, other] = self.leaves.map(|leaf| leaves[leaf].direction);
         (one - other).length() <= SAME_DIRECTION
     }
 
-    /// What the pair adds to the element of the coherency matrix between the first two launched polarizations.
+    /// What the pair adds to the element of the coherency matrix between the first two launched
+    /// polarizations.
     #[must_use]
     pub fn coherency<const N: usize>(&self, leaves: &[Leaf<N>]) -> Complex64 {
         let [[a, b], [c, d]] =
@@ -276,8 +281,8 @@ impl Pair {
 }
 
 impl<const N: usize> Leaf<N> {
-    /// The optical path to the plane through a point across its direction, cm; to one far off if `direction` is that of
-    /// a way to there.
+    /// The optical path to the plane through a point across its direction, cm; to one far off if
+    /// `direction` is that of a way to there.
     #[must_use]
     pub fn phase_length(&self, direction: DVec3, point: DVec3) -> f64 {
         self.optical_path + direction.dot(point - self.position)

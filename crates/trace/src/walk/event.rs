@@ -26,7 +26,8 @@ impl Event {
     }
 }
 
-/// Marks where an event begins, so that the numbers of one are never read as the next one's; with no pattern in it.
+/// Marks where an event begins, so that the numbers of one are never read as the next one's; with
+/// no pattern in it.
 const BEGIN: u64 = 0x2545_F491_4F6C_DD1D;
 
 /// Adds what happens to a branch to the fingerprint of its path.
@@ -37,7 +38,8 @@ pub(super) fn fingerprint(path: u64, event: impl Hash) -> u64 {
     state.finish()
 }
 
-/// Turns, adds and multiplies by an odd number: few instructions, and no two ways in practice have one number.
+/// Turns, adds and multiplies by an odd number: few instructions, and no two ways in practice have
+/// one number.
 struct Fingerprint(u64);
 
 impl Hasher for Fingerprint {

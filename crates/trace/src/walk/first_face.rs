@@ -4,7 +4,8 @@ use super::{Launch, Limits, PathRecorder, Tracer};
 use optics::interface::{OutgoingWave, Side};
 use optics::medium::ModeKind;
 
-/// What becomes of a ray's power at the first surface that it meets, for each launched polarization.
+/// What becomes of a ray's power at the first surface that it meets, for each launched
+/// polarization.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstFace<const N: usize> {
     /// The share reflected: all of it by metal.
@@ -39,8 +40,8 @@ impl<const N: usize> FirstFace<N> {
 }
 
 impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
-    /// What becomes of a ray at the first surface that it meets, without following it any further: the same walk,
-    /// stopped there. `None` if it meets none before the screen.
+    /// What becomes of a ray at the first surface that it meets, without following it any further:
+    /// the same walk, stopped there. `None` if it meets none before the screen.
     #[must_use]
     pub fn first_face(&self, launch: &Launch<N>) -> Option<FirstFace<N>> {
         let limits = Limits { min_power: 0.0, ..self.limits };

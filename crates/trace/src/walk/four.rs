@@ -1,4 +1,5 @@
-//! Four trees side by side: neighbouring rays meet the same regions, and some take four rays at once.
+//! Four trees side by side: neighbouring rays meet the same regions, and some take four rays at
+//! once.
 
 use super::branch::Branch;
 use super::{Launch, Tracer};

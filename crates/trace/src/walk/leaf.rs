@@ -19,21 +19,23 @@ pub struct Leaf<const N: usize> {
     /// Its electric field for each launched polarization, |E|² = power; it has the phases of the
     /// interfaces but not of the propagation.
     pub electric: [ComplexVector; N],
-    /// Whether the tree of each launched polarization alone has this leaf: elsewhere it is too weak for that one, and
-    /// here because of the others.
+    /// Whether the tree of each launched polarization alone has this leaf: elsewhere it is too weak
+    /// for that one, and here because of the others.
     pub survives_alone: [bool; N],
     /// Optical path length from the ray's origin to `position`, cm.
     pub optical_path: f64,
-    /// The speed of light times the time of flight from the ray's origin to `position`, cm: the delay of the phase, which
-    /// is the optical path, but where the phase runs backwards that of a pulse.
+    /// The speed of light times the time of flight from the ray's origin to `position`, cm: the
+    /// delay of the phase, which is the optical path, but where the phase runs backwards that of a
+    /// pulse.
     pub delay_path: f64,
-    /// The speed of light times what a pulse takes, cm; `None` where that is not known, behind media that absorb, and where
-    /// the tracer has not been [asked](super::Tracer::with_group_delays).
+    /// The speed of light times what a pulse takes, cm; `None` where that is not known, behind
+    /// media that absorb, and where the tracer has not been
+    /// [asked](super::Tracer::with_group_delays).
     pub group_path: Option<f64>,
     /// Where it ends.
     pub end: LeafEnd,
-    /// A fingerprint of the surfaces it met and the branches it took: leaves of neighbouring rays with
-    /// the same one have taken the same way.
+    /// A fingerprint of the surfaces it met and the branches it took: leaves of neighbouring rays
+    /// with the same one have taken the same way.
     pub path: u64,
 }
 
@@ -87,8 +89,8 @@ impl<const N: usize> Default for Outcome<N> {
 }
 
 impl<const N: usize> Outcome<N> {
-    /// By how much what leaves, is absorbed and is pruned differs from what was launched, as a share of it: the
-    /// largest of the polarizations, infinite if one of the powers is no number.
+    /// By how much what leaves, is absorbed and is pruned differs from what was launched, as a
+    /// share of it: the largest of the polarizations, infinite if one of the powers is no number.
     #[must_use]
     pub fn imbalance(&self, leaves: &[Leaf<N>]) -> f64 {
         let off = |i: usize| {
@@ -99,10 +101,11 @@ impl<const N: usize> Outcome<N> {
         (0..N).map(off).fold(0.0, f64::max)
     }
 
-    /// The one check of the account of a ray's power, for tests: it adds up, and nothing was lost on the way. At each
-    /// interface it adds up by construction, for the outgoing waves share what came in: that alone shows only that no
-    /// branch was forgotten. What could not be followed or did not carry its share is counted in
-    /// [`TraceStats::lost`]. `what` is printed if it does not hold.
+    /// The one check of the account of a ray's power, for tests: it adds up, and nothing was lost
+    /// on the way. At each interface it adds up by construction, for the outgoing waves share what
+    /// came in: that alone shows only that no branch was forgotten. What could not be followed or
+    /// did not carry its share is counted in [`TraceStats::lost`]. `what` is printed if it does not
+    /// hold.
     ///
     /// # Panics
     ///
@@ -117,8 +120,8 @@ impl<const N: usize> Outcome<N> {
 /// Rare events, counted so that they do not pass unseen. Their power counts as pruned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TraceStats {
-    /// Branches cut because a tree met more surfaces than can be followed, the weakest first; and those that run
-    /// into an edge and never get there.
+    /// Branches cut because a tree met more surfaces than can be followed, the weakest first; and
+    /// those that run into an edge and never get there.
     pub endless: u64,
     /// Branches that could not be followed through a region.
     pub lost: u64,

@@ -31,7 +31,8 @@ impl Stopped {
 pub struct RaySettings {
     /// How far branches are followed.
     pub limits: Limits,
-    /// The light whose leaves of one direction are added as fields; absent: each leaf stays as it is.
+    /// The light whose leaves of one direction are added as fields; absent: each leaf stays as it
+    /// is.
     pub coherence: Option<Coherence>,
     /// Whether leaves are to know what a pulse takes.
     pub group_delays: bool,
@@ -56,8 +57,8 @@ pub struct LeafTable {
     pub power: Vec<f64>,
     /// Optical path length from the ray's origin to `position`, cm; 0 if it met no device.
     pub optical_path: Vec<f64>,
-    /// The speed of light times what a pulse takes from the ray's origin to `position`, cm; 0 if it met no device, NaN
-    /// where it is not known or not asked for.
+    /// The speed of light times what a pulse takes from the ray's origin to `position`, cm; 0 if it
+    /// met no device, NaN where it is not known or not asked for.
     pub group_path: Vec<f64>,
     /// Its electric field; |E|² = power.
     pub electric_field: Vec<[Complex64; 3]>,
@@ -71,8 +72,9 @@ impl LeafTable {
     /// Bytes that a ray with one leaf takes while the table is put together: twice its row.
     pub const BYTES_PER_RAY: u64 = 2 * (4 + 24 + 24 + 8 + 8 + 8 + 48 + 16);
 
-    /// Traces the rays `launch(0)` to `launch(count - 1)`, which may be 2^32 at most; `done` is told now and then, from
-    /// any thread, how many more have been traced. With the feature `rayon`, on all threads; the table is the same.
+    /// Traces the rays `launch(0)` to `launch(count - 1)`, which may be 2^32 at most; `done` is
+    /// told now and then, from any thread, how many more have been traced. With the feature
+    /// `rayon`, on all threads; the table is the same.
     ///
     /// # Errors
     ///

@@ -1,4 +1,5 @@
-//! An order of rays in which neighbours follow one another: four of them then go alike through the same cells.
+//! An order of rays in which neighbours follow one another: four of them then go alike through the
+//! same cells.
 
 use super::Launch;
 
@@ -8,8 +9,8 @@ const DISTANCE: f64 = 100.0;
 /// A ray's number, where its line comes closest to the world's origin, and where it goes.
 type RayLine = (usize, [f64; 6]);
 
-/// The numbers of the rays, neighbours side by side: their lines are divided in halves across the widest spread, down
-/// to fours.
+/// The numbers of the rays, neighbours side by side: their lines are divided in halves across the
+/// widest spread, down to fours.
 pub(super) fn side_by_side<const N: usize>(launches: &[Launch<N>]) -> Vec<usize> {
     let line = |(number, launch): (usize, &Launch<N>)| {
         let Launch { origin, direction, .. } = *launch;

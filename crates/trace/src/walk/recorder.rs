@@ -63,7 +63,8 @@ pub struct Line {
     pub leaves: bool,
 }
 
-/// What is drawn of a tree: light that is caught in a device goes to and fro in it for ever, or through the same point.
+/// What is drawn of a tree: light that is caught in a device goes to and fro in it for ever, or
+/// through the same point.
 struct Drawn<const N: usize> {
     segments: Vec<PathSegment<N>>,
     /// Segments are drawn that begin at less optical path and are longer than this, cm.
@@ -82,8 +83,8 @@ impl<const N: usize> PathRecorder<N> for Drawn<N> {
     }
 }
 
-/// The pieces of the tree of a ray. `weights` are the shares of the launched polarizations; a leaf is followed for
-/// `reach` (cm), light that does not leave for 100 times that.
+/// The pieces of the tree of a ray. `weights` are the shares of the launched polarizations; a leaf
+/// is followed for `reach` (cm), light that does not leave for 100 times that.
 #[must_use]
 pub fn lines<const N: usize>(
     assembly: &Assembly,

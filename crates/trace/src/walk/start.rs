@@ -39,8 +39,8 @@ impl Assembly {
 }
 
 impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
-    /// Puts a launched branch where it starts; whether it goes on from there. In a birefringent medium it becomes two
-    /// that wait.
+    /// Puts a launched branch where it starts; whether it goes on from there. In a birefringent
+    /// medium it becomes two that wait.
     pub(super) fn start(&mut self, branch: &mut Branch<N>) -> bool {
         if self.started.0 != branch.position {
             let place = self.assembly.region_around(branch.position, branch.direction);
@@ -83,8 +83,8 @@ fn launch_as<const N: usize>(branch: &mut Branch<N>, medium: &Medium, wave: &Ray
     }
 }
 
-/// The amplitudes of the waves in each launched field, which lies across the ray as theirs do; their powers add up to the
-/// branch's.
+/// The amplitudes of the waves in each launched field, which lies across the ray as theirs do;
+/// their powers add up to the branch's.
 fn amplitudes<const N: usize>(branch: &Branch<N>, waves: &[RayWave]) -> [[Complex64; N]; 2] {
     let (first, second) = branch.direction.any_orthonormal_pair();
     let across = |field: ComplexVector| [field.dot_real(first), field.dot_real(second)];

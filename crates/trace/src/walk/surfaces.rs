@@ -15,12 +15,13 @@ use optics::medium::{Medium, ModeKind};
 use optics::propagation::PathPoint;
 use optics::wave::ComplexVector;
 
-/// The square of the largest wave vector that is followed, a billion times the largest index of refraction. Light
-/// that runs into a corner of a hyperbolic medium gets there: each face makes it shorter, and it never comes out.
+/// The square of the largest wave vector that is followed, a billion times the largest index of
+/// refraction. Light that runs into a corner of a hyperbolic medium gets there: each face makes it
+/// shorter, and it never comes out.
 const SHORTEST_WAVE: f64 = 1e30;
 
-/// Light that crosses more borders than this in a row within rounding of one point has spiralled into an
-/// edge of a negative-index body, and never comes out.
+/// Light that crosses more borders than this in a row within rounding of one point has spiralled
+/// into an edge of a negative-index body, and never comes out.
 const MOST_STANDSTILLS: u8 = 16;
 
 /// What is between two media, in the frame of the branch that comes there.
@@ -189,8 +190,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         true
     }
 
-    /// Takes a branch to the surface to which it has passed through a region, or to what stands in a body before it;
-    /// whether it goes on from there.
+    /// Takes a branch to the surface to which it has passed through a region, or to what stands in
+    /// a body before it; whether it goes on from there.
     pub(super) fn pass(
         &mut self,
         branch: &mut Branch<N>,
@@ -221,7 +222,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
     }
 
-    /// Takes a branch along a passage through a region; the medium at its end, or `None` if the branch does not come there.
+    /// Takes a branch along a passage through a region; the medium at its end, or `None` if the
+    /// branch does not come there.
     #[inline]
     fn travel<'m>(
         &mut self,
@@ -306,7 +308,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             // Polarizers have no region that could end there.
             FarSide::Polarizer => self.lose(branch.power),
             FarSide::Outside => {
-                // It has met no surface from outside, which it may meet next unless the device is convex.
+                // It has met no surface from outside, which it may meet next unless the device is
+                // convex.
                 let departed = device.departed(number, None);
                 if !self.stands_alone {
                     let position = device.pose.to_world(branch.position);
@@ -334,8 +337,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
     }
 
-    /// Splits a branch, in the frame of a device, where it comes to a region of it. What is sent back is put into its place by
-    /// `back`.
+    /// Splits a branch, in the frame of a device, where it comes to a region of it. What is sent
+    /// back is put into its place by `back`.
     fn refract(
         &mut self,
         branch: &mut Branch<N>,
@@ -419,8 +422,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         true
     }
 
-    /// Takes a branch through an interface that reflects nothing: the one wave that leaves it goes on as the branch itself,
-    /// put into its place.
+    /// Takes a branch through an interface that reflects nothing: the one wave that leaves it goes
+    /// on as the branch itself, put into its place.
     #[inline]
     fn go_on_alone(
         &mut self,
@@ -439,8 +442,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         true
     }
 
-    /// Lets the waves that leave a surface go on, each put into its place: the last one as the branch itself,
-    /// the others waiting. Whether there is one.
+    /// Lets the waves that leave a surface go on, each put into its place: the last one as the
+    /// branch itself, the others waiting. Whether there is one.
     pub(super) fn go_on(
         &mut self,
         branch: &mut Branch<N>,

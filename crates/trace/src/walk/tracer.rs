@@ -15,7 +15,8 @@ pub struct Launch<const N: usize> {
     pub origin: DVec3,
     /// Its direction, a unit vector.
     pub direction: DVec3,
-    /// The electric fields, across the direction and of unit norm; each has the power 1 wherever it starts.
+    /// The electric fields, across the direction and of unit norm; each has the power 1 wherever it
+    /// starts.
     pub electric: [ComplexVector; N],
 }
 
@@ -28,9 +29,9 @@ pub struct Limits {
     pub tolerance: f64,
 }
 
-/// Few trees meet this many surfaces. Those that do, by light that is trapped or runs almost along the
-/// device, are followed on with a threshold ten times as high, so that the strong branches are not
-/// lost; what that cuts counts as pruned.
+/// Few trees meet this many surfaces. Those that do, by light that is trapped or runs almost along
+/// the device, are followed on with a threshold ten times as high, so that the strong branches are
+/// not lost; what that cuts counts as pruned.
 const MANY_EVENTS: u32 = 100_000;
 
 /// After as many surfaces again the threshold is raised once more.
@@ -45,7 +46,8 @@ const LEAK: f64 = 1e-10;
 /// Where fields may have cancelled, the least power of which that share is asked.
 const CANCELLED: f64 = 1e-6;
 
-/// Traces rays. It keeps its memory from ray to ray: make one a thread. `W` is who watches it, nobody as a rule.
+/// Traces rays. It keeps its memory from ray to ray: make one a thread. `W` is who watches it,
+/// nobody as a rule.
 #[derive(Clone, Debug)]
 pub struct Tracer<'a, const N: usize, W = ()> {
     pub(super) assembly: &'a Assembly,
@@ -64,7 +66,8 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     group_delays: bool,
     /// Whether the screen touches a device.
     pub(super) screen_touches: bool,
-    /// Whether nothing touches what rays leave: there is one device at most, no body, and the screen is apart.
+    /// Whether nothing touches what rays leave: there is one device at most, no body, and the
+    /// screen is apart.
     pub(super) stands_alone: bool,
     /// Where the last rays have started, and in which region of which device.
     pub(super) started: (DVec3, Option<(u16, u16)>),
@@ -121,8 +124,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         Self { screen_touches, stands_alone, screen: Some(screen), ..self }
     }
 
-    /// Makes one branch of those that run together, as fields: in plates the ways are many, and the waves few. Their
-    /// leaves are to be [gathered](Coherence::gather); power that interference moves between leaves is in no account.
+    /// Makes one branch of those that run together, as fields: in plates the ways are many, and the
+    /// waves few. Their leaves are to be [gathered](Coherence::gather); power that interference
+    /// moves between leaves is in no account.
     #[must_use]
     pub fn joining(self, coherence: Coherence) -> Self {
         Self { joining: Some(coherence), ..self }
@@ -135,8 +139,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     }
 
     /// Follows one ray to the end of every branch: the leaves, in the order the tree was walked,
-    /// and the account of the rest of the power. A ray that starts in a medium is launched in those waves of it whose rays
-    /// run along its direction; one that starts in metal is lost.
+    /// and the account of the rest of the power. A ray that starts in a medium is launched in those
+    /// waves of it whose rays run along its direction; one that starts in metal is lost.
     pub fn trace(&mut self, launch: &Launch<N>) -> (&[Leaf<N>], &Outcome<N>) {
         let mut branch = Branch::launched(launch);
         let mut here = self.begin(&mut branch);
@@ -154,8 +158,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         (&self.leaves, &self.outcome)
     }
 
-    /// Follows the tree of a launched ray to where a branch, which takes the place of the given one, is to be
-    /// taken through a region that takes four: the device and its region. None if it is at the end.
+    /// Follows the tree of a launched ray to where a branch, which takes the place of the given
+    /// one, is to be taken through a region that takes four: the device and its region. None if it
+    /// is at the end.
     pub(super) fn begin(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
         self.leaves.clear();
         self.outcome = Outcome::default();
@@ -183,7 +188,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.walk(branch)
     }
 
-    /// Takes rays through a region: see [`Region::advance_four`](crate::device::Region::advance_four).
+    /// Takes rays through a region: see
+    /// [`Region::advance_four`](crate::device::Region::advance_four).
     pub(super) fn advance_four(
         &self,
         (device, region): (u16, u16),
@@ -228,8 +234,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
     }
 
-    /// Puts in place of a branch the one to be followed next: the last that waits, or where branches are joined the one
-    /// of the shortest path with all that run together with it. None if none waits.
+    /// Puts in place of a branch the one to be followed next: the last that waits, or where
+    /// branches are joined the one of the shortest path with all that run together with it. None if
+    /// none waits.
     #[inline(always)]
     fn take_next(&mut self, branch: &mut Branch<N>) -> Option<()> {
         if let Some(coherence) = self.joining {
@@ -255,14 +262,15 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
     }
 
-    /// Whether what a pulse takes on a way of that optical path is asked for, by itself or as the time of flight.
+    /// Whether what a pulse takes on a way of that optical path is asked for, by itself or as the
+    /// time of flight.
     #[inline]
     pub(super) fn wants_group_path(&self, optical_path: f64) -> bool {
         self.group_delays || optical_path < 0.0
     }
 
-    /// Takes from a branch what an absorbing medium keeps of it, given ∫ Im n ds along the way, cm; whether what is left
-    /// is to be followed, for else it is pruned.
+    /// Takes from a branch what an absorbing medium keeps of it, given ∫ Im n ds along the way, cm;
+    /// whether what is left is to be followed, for else it is pruned.
     pub(super) fn extinguish(&mut self, branch: &mut Branch<N>, extinction: f64) -> bool {
         // Power never grows along a ray: rounding must not have it so.
         let depth = (self.assembly.vacuum_wave_number * extinction).max(0.0);
@@ -277,9 +285,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.follows(branch.power)
     }
 
-    /// Counts power as pruned that an interface has left in waves too weak to follow, and as lost what it could
-    /// not hand on: the account must not leak, even where numbers fail. In media that absorb, waves carry together what
-    /// none of them carries alone, of either sign: that counts as absorbed where they part.
+    /// Counts power as pruned that an interface has left in waves too weak to follow, and as lost
+    /// what it could not hand on: the account must not leak, even where numbers fail. In media that
+    /// absorb, waves carry together what none of them carries alone, of either sign: that counts as
+    /// absorbed where they part.
     pub(super) fn check_account(
         &mut self,
         branch: &Branch<N>,
@@ -310,7 +319,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.outcome.stats.lost += u64::from(lost);
     }
 
-    /// Whether a rest of power is that of fields that have cancelled where branches were joined: they have few digits.
+    /// Whether a rest of power is that of fields that have cancelled where branches were joined:
+    /// they have few digits.
     #[cold]
     fn has_cancelled(&self, rest: f64) -> bool {
         self.joining.is_some() && rest.abs() <= LEAK * CANCELLED

@@ -69,7 +69,8 @@ fn pictures_come_coarse_first_and_with_all_else() {
     let section = section.unwrap();
     assert_eq!(section["devices"][0]["metal"].as_array().map(Vec::len), Some(1));
     let numbers = numbers.unwrap();
-    // A perfect cloak absorbs nothing, and looks more like its mirror than bare metal like the empty view.
+    // A perfect cloak absorbs nothing, and looks more like its mirror than bare metal like the
+    // empty view.
     assert_eq!(numbers["absorbed"], json!(0.0));
     let sum: f64 = ["delivered", "escaped", "absorbed", "pruned"]
         .iter()

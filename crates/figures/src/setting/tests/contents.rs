@@ -72,7 +72,8 @@ fn bodies_are_drawn_with_their_indices() {
     assert_eq!(labels(&setting, "dimension-label"), ["Ø 10 cm"]);
     assert_eq!(setting.drawing.of_class("inset").count(), 1);
     assert_eq!(labels(&setting, "distance-label"), ["70 cm", "50 cm"]);
-    // The liquid lies before the glass, and the rod before the liquid, in whichever order they are told.
+    // The liquid lies before the glass, and the rod before the liquid, in whichever order they are
+    // told.
     let order = |text: &str| {
         let setting = drawn(text);
         let bodies = setting.drawing.of_class("body");

@@ -58,9 +58,9 @@ fn edges(solid: &Solid) -> Vec<DVec3> {
     edges
 }
 
-/// How far one must be moved along a unit vector until the other is free: the least over all directions of how
-/// far the planes across them must go. Of prisms these planes lie along two edges; else they are searched for, and what is
-/// found is at least the true distance.
+/// How far one must be moved along a unit vector until the other is free: the least over all
+/// directions of how far the planes across them must go. Of prisms these planes lie along two
+/// edges; else they are searched for, and what is found is at least the true distance.
 fn way_out(a: &Solid, b: &Solid, towards: DVec3) -> f64 {
     let needed = |direction: DVec3| {
         let share = direction.dot(towards);
@@ -183,7 +183,8 @@ proptest! {
         let (wide, small) = (sheet(2.0).placed(&pose), sheet(0.3));
         let normal = pose.vector_to_world(DVec3::Y);
         let turned = |v: DVec3| other.vector_to_world(v);
-        // The corners of the small one as it is turned, by how far they lie from the plane of the wide one.
+        // The corners of the small one as it is turned, by how far they lie from the plane of the
+        // wide one.
         let mut corners = [[0.3, 0.3], [0.3, -0.3], [-0.3, 0.3], [-0.3, -0.3]]
             .map(|[x, z]| turned(DVec3::new(x, 0.0, z)));
         corners.sort_by(|a, b| a.dot(normal).total_cmp(&b.dot(normal)));
@@ -207,7 +208,8 @@ proptest! {
     fn bodies_that_touch_at_odd_angles_do_not_overlap(pose in poses(), turn in -180.0..180.0) {
         let up = Pose::new(DVec3::ZERO, f64::to_radians(turn));
         let slab = cuboid(DVec3::new(4.0, 3.0, 0.5)).placed(&up);
-        // A cube on its corner, one on its edge, one flat; a cylinder on its rim, its side, its end.
+        // A cube on its corner, one on its edge, one flat; a cylinder on its rim, its side, its
+        // end.
         let cube = cuboid(DVec3::ONE);
         let rod = Solid::cylinder(0.7, Extent::centred(Some(2.0)));
         let endless = Solid::cylinder(0.7, Extent::ENDLESS);
@@ -315,7 +317,8 @@ proptest! {
             prop_assert!(!meet(hollow, &rod, way * (free - 1e-6)));
             prop_assert!(meet(hollow, &rod, way * (free + 1e-6)));
         }
-        // One that leans at 3 : 4 through the ring is an ellipse 2.5 long at each end of it, 0.75 apart.
+        // One that leans at 3 : 4 through the ring is an ellipse 2.5 long at each end of it, 0.75
+        // apart.
         prop_assert!(meet(&tube, &long, DVec3::ZERO) && !meet(&ring, &long, DVec3::ZERO));
         let free = 3.0 - 0.5 * 0.75 - 1.25;
         prop_assert!(!meet(&ring, &long, DVec3::X * (free - 1e-6)));

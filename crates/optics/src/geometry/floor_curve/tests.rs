@@ -74,7 +74,8 @@ proptest! {
             prop_assert!(hit.normal.y == 0.0 || (point.y.abs() - height).abs() < 1e-10);
             prop_assert!((hit.normal.length() - 1.0).abs() < 1e-14);
             prop_assert!(hit.normal.dot(direction) < 0.0);
-            // A reflected ray does not hit the same place again, where the metal is thicker than rounding.
+            // A reflected ray does not hit the same place again, where the metal is thicker than
+            // rounding.
             let reflected = direction - 2.0 * direction.dot(hit.normal) * hit.normal;
             if let Some(next) = curve.first_hit(point, reflected, 0.0) {
                 prop_assert!(next.t * length > 1e-9 || height < 1e-9);

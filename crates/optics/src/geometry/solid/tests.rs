@@ -101,7 +101,8 @@ fn others_may_be_in_a_hole_with_a_curved_border() {
     let outline = Outline::rectangle(25.0, 30.0);
     let whole = Solid::Prism { outline, extent };
     let hollow = whole.with_hole(Hole::Lens { curve, pose: Pose::new(DVec3::ZERO, 0.0), extent });
-    // The corner of a box meets the curve; so does a ball, where its distance by plain search is its radius.
+    // The corner of a box meets the curve; so does a ball, where its distance by plain search is
+    // its radius.
     let level = |height: f64| {
         let (mut low, mut high) = (0.0, 25.0);
         for _ in 0..60 {

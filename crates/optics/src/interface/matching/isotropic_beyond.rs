@@ -1,4 +1,5 @@
-//! From a medium of two waves into an isotropic one, where H follows from E: two unknowns instead of four.
+//! From a medium of two waves into an isotropic one, where H follows from E: two unknowns instead
+//! of four.
 
 use super::{Incident, Scattered, Shares, cancelling, fluxes};
 use crate::interface::Side;
@@ -33,7 +34,8 @@ impl<const N: usize> Scattered<'_, N> {
             })
         });
         let on = onward.map_or([0.0; N], |q| fields.map(|field| flux(layer.fluxes(q), field)));
-        // Over the sum, not over the incident flux: the same, but for rounding near grazing incidence.
+        // Over the sum, not over the incident flux: the same, but for rounding near grazing
+        // incidence.
         let total: [f64; N] = std::array::from_fn(|i| back[0][i] + back[1][i] + on[i]);
         let shares = Shares::of(self.splitting.wave.power, total, false);
         let amplitudes = [&amplitudes[0], &amplitudes[1]];
@@ -46,8 +48,9 @@ impl<const N: usize> Scattered<'_, N> {
         }
     }
 
-    /// The amplitudes of both reflected modes. Beyond, H·first = -(q/µ) E·second and H·second = (ε/q) E·first, the
-    /// latter times q to hold at grazing incidence: what both fail by must vanish in the sum.
+    /// The amplitudes of both reflected modes. Beyond, H·first = -(q/µ) E·second and H·second =
+    /// (ε/q) E·first, the latter times q to hold at grazing incidence: what both fail by must
+    /// vanish in the sum.
     fn reflected<T: Number>(
         &self,
         incident: &[Incident<'_, f64, N>],

@@ -17,11 +17,12 @@ use num_complex::Complex64;
 /// Normal components closer than this are those of one wave, that both modes are.
 const ONE_WAVE: f64 = 1e-12;
 
-/// On the axis of a biaxial medium one wave vector has a cone of rays; rays closer than this are one.
+/// On the axis of a biaxial medium one wave vector has a cone of rays; rays closer than this are
+/// one.
 const ONE_RAY: f64 = 1e-9;
 
-/// Splits a wave at the interface of any two media, or at a conductor: adds the outgoing waves that are strong enough;
-/// the power of the others.
+/// Splits a wave at the interface of any two media, or at a conductor: adds the outgoing waves that
+/// are strong enough; the power of the others.
 pub(super) fn split_into_modes<const N: usize>(
     incident_medium: &Medium,
     transmitted_medium: Option<&Medium>,
@@ -72,8 +73,8 @@ fn tangential<const N: usize>(splitting: &Splitting<'_, N>) -> Tangential {
     Tangential::Complex([Complex64::new(*along, decay[0]), Complex64::new(0.0, decay[1])])
 }
 
-/// The outgoing amplitudes, reflected 1, 2, transmitted 1, 2, of `R` incident modes. At a conductor,
-/// where nothing is transmitted, the tangential electric field vanishes.
+/// The outgoing amplitudes, reflected 1, 2, transmitted 1, 2, of `R` incident modes. At a
+/// conductor, where nothing is transmitted, the tangential electric field vanishes.
 pub(super) fn amplitudes<T: Number, const R: usize>(
     incident: [&LocalMode<T>; R],
     reflected: &[LocalMode<T>; 2],
@@ -117,7 +118,8 @@ type Incident<'m, T, const N: usize> = (&'m LocalMode<T>, [Complex64; N]);
 /// The normal fluxes of both modes on one side, for each launched polarization.
 type Fluxes<const N: usize> = [[f64; N]; 2];
 
-/// What turns outgoing fluxes into powers, and matched fields into those of rays but for the length of the Poynting vector.
+/// What turns outgoing fluxes into powers, and matched fields into those of rays but for the length
+/// of the Poynting vector.
 struct Shares<const N: usize> {
     power: [f64; N],
     /// Their square roots.
@@ -127,7 +129,8 @@ struct Shares<const N: usize> {
 }
 
 impl<const N: usize> Shares<N> {
-    /// Of the incident powers, given the incident fluxes or, the same without absorption, the sums of all outgoing ones.
+    /// Of the incident powers, given the incident fluxes or, the same without absorption, the sums
+    /// of all outgoing ones.
     fn of(power: [f64; N], total: [f64; N], absorbing: bool) -> Self {
         let power = std::array::from_fn(|i| if total[i] > 0.0 { power[i] / total[i] } else { 0.0 });
         Self { power, field: power.map(f64::sqrt), absorbing }
@@ -208,8 +211,8 @@ impl<const N: usize> Scattered<'_, N> {
                 }
             })
         } else {
-            // Over the sum, not over the incident flux: the same, but for rounding near grazing incidence, which
-            // would show in the account of the power.
+            // Over the sum, not over the incident flux: the same, but for rounding near grazing
+            // incidence, which would show in the account of the power.
             std::array::from_fn(|i| back[0][i] + back[1][i] + on[0][i] + on[1][i])
         };
         let shares = Shares::of(self.splitting.wave.power, total, absorbing);
@@ -255,7 +258,8 @@ impl<const N: usize> Scattered<'_, N> {
             });
             if self.is_strong(power) {
                 let [ea, eb] = [a, b].map(|mode| frame.complex_vector(mode.electric));
-                // The same ray, but in absorbing media, where p's and s's part a little: their mean.
+                // The same ray, but in absorbing media, where p's and s's part a little: their
+                // mean.
                 let ray = (frame.vector(a.poynting()) + frame.vector(b.poynting())) * 0.5;
                 let wave = (side, ModeKind::Shared, a.q.into());
                 self.push(wave, ray, power, shares, |i, scale| {
@@ -289,7 +293,8 @@ impl<const N: usize> Scattered<'_, N> {
         strong
     }
 
-    /// Adds a wave, given the Poynting vector of a unit of normal flux, and its matched fields times a number.
+    /// Adds a wave, given the Poynting vector of a unit of normal flux, and its matched fields
+    /// times a number.
     fn push(
         &mut self,
         (side, mode, q): (Side, ModeKind, Complex64),
@@ -319,8 +324,9 @@ impl<const N: usize> Scattered<'_, N> {
     }
 }
 
-/// Whether two modes of one wave vector have one ray. s and p do; in absorbing media theirs part a little. Where the
-/// modes have no such names they are two of the plane of fields, each with its own ray on the cone.
+/// Whether two modes of one wave vector have one ray. s and p do; in absorbing media theirs part a
+/// little. Where the modes have no such names they are two of the plane of fields, each with its
+/// own ray on the cone.
 fn share_ray<T: Number>([a, b]: &[LocalMode<T>; 2]) -> bool {
     let ray = |mode: &LocalMode<T>| DVec3::from(mode.poynting()).normalize_or_zero();
     matches!(a.kind, ModeKind::S | ModeKind::P) || ray(a).distance(ray(b)) <= ONE_RAY
@@ -348,7 +354,8 @@ fn matched<T: Number, const N: usize>(
     })
 }
 
-/// The outgoing normal fluxes of modes of the given amplitudes; those that do not propagate have none.
+/// The outgoing normal fluxes of modes of the given amplitudes; those that do not propagate have
+/// none.
 pub(super) fn fluxes<T: Number, const N: usize>(
     modes: &[LocalMode<T>; 2],
     amplitudes: [&[Complex64; N]; 2],
@@ -362,8 +369,8 @@ pub(super) fn fluxes<T: Number, const N: usize>(
     })
 }
 
-/// What two modes on one side carry out of the interface together beyond what each carries alone: nothing in a lossless
-/// medium, where they are orthogonal in flux.
+/// What two modes on one side carry out of the interface together beyond what each carries alone:
+/// nothing in a lossless medium, where they are orthogonal in flux.
 pub(super) fn interference<T: Number>(
     side: Side,
     [a, b]: &[LocalMode<T>; 2],

@@ -2,11 +2,11 @@
 
 use crate::wave::{Number, solve};
 
-/// An eigenvector of `matrix` to the eigenvalue `q`, or to a double one the vector orthogonal to `other`; `None` if
-/// there is none, as at grazing incidence.
+/// An eigenvector of `matrix` to the eigenvalue `q`, or to a double one the vector orthogonal to
+/// `other`; `None` if there is none, as at grazing incidence.
 ///
-/// This is inverse iteration: a shift by a few roundings brings out the eigenvector, a larger one the plane of a double
-/// eigenvalue, against all else.
+/// This is inverse iteration: a shift by a few roundings brings out the eigenvector, a larger one
+/// the plane of a double eigenvalue, against all else.
 pub(super) fn eigenvector<T: Number>(
     matrix: &[[T; 4]; 4],
     q: T,

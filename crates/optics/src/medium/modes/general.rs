@@ -24,7 +24,8 @@ pub(super) struct Berreman<T> {
 type Eigenpair = (Complex64, [Complex64; 4]);
 
 impl<T: Number> Berreman<T> {
-    /// Of tensors whose normal-normal entries are taken for `least` of the largest entry where they are smaller.
+    /// Of tensors whose normal-normal entries are taken for `least` of the largest entry where they
+    /// are smaller.
     fn new(
         permittivity: [[T; 3]; 3],
         permeability: [[T; 3]; 3],
@@ -72,7 +73,8 @@ impl<T: Number> Berreman<T> {
         let matrix = self.complex_matrix();
         let own = Matrix4::from_fn(|i, j| self.matrix[i][j]);
         let schur = own.try_schur(f64::EPSILON, MOST_ROUNDS).or_else(|| {
-            // Its shifts can run in a circle where several eigenvalues have one size, but hardly again in another basis.
+            // Its shifts can run in a circle where several eigenvalues have one size, but hardly
+            // again in another basis.
             MIRRORS.iter().find_map(|across| {
                 let across = Vector4::from(across.map(T::from)).normalize();
                 let mirror = Matrix4::identity() - across * across.transpose() * T::from(2.0);
@@ -107,8 +109,9 @@ fn unnamed<T>(q: T, [e0, e1, h0, h1]: [T; 4], [normal_e, normal_h]: [T; 2]) -> L
     LocalMode { kind: ModeKind::First, propagating: true, q, electric, magnetic }
 }
 
-/// Makes rows and columns of a matrix, off the diagonal, of one size, by powers of two on the diagonal, which are returned:
-/// the small eigenvalues of an uneven matrix would drown in the rounding of the large ones (Parlett & Reinsch 1969).
+/// Makes rows and columns of a matrix, off the diagonal, of one size, by powers of two on the
+/// diagonal, which are returned: the small eigenvalues of an uneven matrix would drown in the
+/// rounding of the large ones (Parlett & Reinsch 1969).
 fn balance<T: Number>(matrix: &mut [[T; 4]; 4]) -> [f64; 4] {
     let mut scale = [1.0; 4];
     for i in (0..4).cycle().take(16) {
@@ -140,8 +143,8 @@ fn bounded<T: Number>(tensor: [[T; 3]; 3], least: f64) -> T {
     }
 }
 
-/// A wave that runs along the surface is, both ways, the limit of waves that hardly cross it: by so much their
-/// tangential wave vectors differ from its own.
+/// A wave that runs along the surface is, both ways, the limit of waves that hardly cross it: by so
+/// much their tangential wave vectors differ from its own.
 const SHIFTS: [f64; 8] = [-1e-14, 1e-14, -1e-12, 1e-12, -1e-10, 1e-10, -1e-8, 1e-8];
 
 /// The modes of a lossless medium.
@@ -220,8 +223,8 @@ impl Berreman<f64> {
         let mut real: ArrayVec<(f64, [f64; 4]), 4> = ArrayVec::new();
         let mut along_the_surface = false;
         for (q, field) in pairs {
-            // A double real root may come out as a pair of conjugates a rounding error apart, and at
-            // grazing incidence half the digits apart.
+            // A double real root may come out as a pair of conjugates a rounding error apart, and
+            // at grazing incidence half the digits apart.
             let grazing = known.is_some_and(|known| (q - known).norm() < 1e-6 * size);
             if q.im.abs() > if grazing { 1e-6 } else { DOUBLE } * size {
                 decaying.push((q, field));
@@ -256,8 +259,8 @@ impl Berreman<f64> {
     }
 }
 
-/// The eigenvalues of a real Schur form. `Schur::complex_eigenvalues` takes those of every block for a conjugate pair, and
-/// is not a number where rounding has left a block of a real double one.
+/// The eigenvalues of a real Schur form. `Schur::complex_eigenvalues` takes those of every block
+/// for a conjugate pair, and is not a number where rounding has left a block of a real double one.
 fn eigenvalues(form: &Matrix4<f64>) -> [Complex64; 4] {
     let mut values = std::array::from_fn(|i| Complex64::from(form[(i, i)]));
     for i in 1..4 {
@@ -314,7 +317,8 @@ fn real_part(field: [Complex64; 4]) -> [f64; 4] {
     field.map(|c| (c * turn).re)
 }
 
-/// The modes of a lossless medium that propagate, of norm 1, and those that do not, each where it heads.
+/// The modes of a lossless medium that propagate, of norm 1, and those that do not, each where it
+/// heads.
 fn by_heading(
     mut real: ArrayVec<LocalMode<f64>, 4>,
     mut evanescent: ArrayVec<LocalMode<Complex64>, 4>,
@@ -354,7 +358,8 @@ fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>]) -> Loc
     }
 }
 
-/// Makes modes orthogonal in flux, as those of a lossless medium are: computed ones are as far as their roots are apart.
+/// Makes modes orthogonal in flux, as those of a lossless medium are: computed ones are as far as
+/// their roots are apart.
 fn orthogonalize_in_flux(modes: &mut [LocalMode<f64>], size: f64) {
     for i in 1..modes.len() {
         for j in 0..i {

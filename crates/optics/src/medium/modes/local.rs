@@ -66,8 +66,8 @@ pub(crate) fn mutual_flux<T: Number>(a: &LocalMode<T>, b: &LocalMode<T>) -> T {
 }
 
 impl LocalMode<Complex64> {
-    /// How decidedly it heads forward. In a passive medium flux and decay agree, so that their sum decides where one of
-    /// them is weak.
+    /// How decidedly it heads forward. In a passive medium flux and decay agree, so that their sum
+    /// decides where one of them is weak.
     pub fn forwardness(&self) -> f64 {
         let flux = self.flux() / self.norm_squared();
         flux + self.q.im / (1.0 + self.q.norm())
@@ -125,7 +125,8 @@ impl<T: Number> LocalMode<T> {
     }
 }
 
-/// A wave whose normal component is closer than this to those of both modes is taken for a mixture of them.
+/// A wave whose normal component is closer than this to those of both modes is taken for a mixture
+/// of them.
 pub(crate) const BOTH_MODES: f64 = 1e-7;
 
 impl Arriving {

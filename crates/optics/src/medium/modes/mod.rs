@@ -115,9 +115,9 @@ impl Medium {
         modes.complex().map(|mode| mode.in_world(&frame, along))
     }
 
-    /// How far a mode is from solving Maxwell's equations p × E = µH and p × H = -εE in this medium, relative to their
-    /// terms: 1e-15 as a rule, more where double precision does not reach, as in media whose principal values differ by
-    /// many powers of ten.
+    /// How far a mode is from solving Maxwell's equations p × E = µH and p × H = -εE in this
+    /// medium, relative to their terms: 1e-15 as a rule, more where double precision does not
+    /// reach, as in media whose principal values differ by many powers of ten.
     #[must_use]
     pub fn residual(&self, mode: &Mode) -> f64 {
         let Mode { wave_vector, electric, magnetic, .. } = *mode;

@@ -1,8 +1,8 @@
 //! Modes of a general medium, made exact to rounding.
 //!
-//! Where an indefinite tensor has a small normal-normal entry, one eigenvalue of Berreman's matrix is
-//! large and the others lose as many digits. Newton's method on Maxwell's equations themselves, in
-//! which no entry is large, finds them again.
+//! Where an indefinite tensor has a small normal-normal entry, one eigenvalue of Berreman's matrix
+//! is large and the others lose as many digits. Newton's method on Maxwell's equations themselves,
+//! in which no entry is large, finds them again.
 
 use super::LocalMode;
 use crate::wave::{Number, cross, dot, solve};
@@ -21,9 +21,9 @@ const ROUNDING: f64 = 4e-15;
 /// Modes that solve Maxwell's equations to this are not sought again.
 const SOLVED: f64 = 1e-10;
 
-/// The modes that `of` finds, and how far they are from solving Maxwell's equations, given the least normal-normal entries.
-/// Beside the reciprocal of a small one, all else in Berreman's matrix loses digits: then the entry is taken for
-/// larger than it is, and Newton's method mends that.
+/// The modes that `of` finds, and how far they are from solving Maxwell's equations, given the
+/// least normal-normal entries. Beside the reciprocal of a small one, all else in Berreman's matrix
+/// loses digits: then the entry is taken for larger than it is, and Newton's method mends that.
 pub(super) fn best<M>(of: impl Fn(f64) -> (M, f64)) -> M {
     let (modes, residual) = of(1e-14);
     if residual < SOLVED {

@@ -89,8 +89,8 @@ fn across_axis<T: Number>(p: [T; 3], axis: [f64; 3]) -> ([T; 3], f64) {
     (u, square(u) / square(p))
 }
 
-/// The direction of one field of a wave; any that is across the plane of incidence where p is along the axis, and whether
-/// it is.
+/// The direction of one field of a wave; any that is across the plane of incidence where p is along
+/// the axis, and whether it is.
 #[inline]
 pub(super) fn field_direction<T: Number>(p: [T; 3], axis: [f64; 3]) -> ([T; 3], bool) {
     let (u, angle) = across_axis(p, axis);
@@ -157,8 +157,8 @@ impl UniaxialWaves<'_> {
         })
     }
 
-    /// The normal component of the ordinary and of the extraordinary wave that run the given way, and the square roots
-    /// in them with their signs, if both run.
+    /// The normal component of the ordinary and of the extraordinary wave that run the given way,
+    /// and the square roots in them with their signs, if both run.
     #[inline]
     fn running(&self, forward: bool) -> Option<[(f64, f64); 2]> {
         let [o_sign, e_sign] = self.signs(forward);
@@ -194,11 +194,11 @@ impl UniaxialWaves<'_> {
         if angle < ONE_WAVE && qo == qe { medium.named_along_axis(o, e) } else { [o, e] }
     }
 
-    /// q and p × a of the extraordinary wave, from its own q and from those of the ordinary one, whose angle
-    /// to the axis has the sin² `angle`.
+    /// q and p × a of the extraordinary wave, from its own q and from those of the ordinary one,
+    /// whose angle to the axis has the sin² `angle`.
     ///
-    /// Close to the axis the two directions p × a must agree better than each is known. With q_e = q_o + d and
-    /// G = µp_o·n, a d² + 2 G d = (µ_e - µ_o) (p_o × a)² and µp_e·n = a d + G.
+    /// Close to the axis the two directions p × a must agree better than each is known. With q_e =
+    /// q_o + d and G = µp_o·n, a d² + 2 G d = (µ_e - µ_o) (p_o × a)² and µp_e·n = a d + G.
     fn extraordinary(
         &self,
         qo: f64,

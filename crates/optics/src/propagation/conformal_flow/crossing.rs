@@ -14,10 +14,12 @@ mod tests;
 /// Rates below this count as going along the border.
 const ALONG: f64 = 1e-14;
 
-/// Steps are not split at less than this share of the map's scale: the interpolation is exact there.
+/// Steps are not split at less than this share of the map's scale: the interpolation is exact
+/// there.
 const SHORTEST_SPLIT: f64 = 1e-3;
 
-/// A border that has been passed by so little, in units of the map's scale and of the step, is found from the end.
+/// A border that has been passed by so little, in units of the map's scale and of the step, is
+/// found from the end.
 const NEAR: f64 = 0.03;
 
 /// Where the interpolation puts an end of the step.
@@ -45,7 +47,8 @@ enum Coordinate {
     Y,
     VirtualY,
     Z,
-    /// The distance from the z axis, as (r²/l + l)/2 with the limit l: it has a derivative on the axis, too.
+    /// The distance from the z axis, as (r²/l + l)/2 with the limit l: it has a derivative on the
+    /// axis, too.
     Radius,
 }
 
@@ -172,8 +175,8 @@ pub(super) struct EventFunctions {
 }
 
 impl EventFunctions {
-    /// Those of a cut map, the space within the first and beyond the second of two radii about the z axis, which
-    /// are infinite where there is none.
+    /// Those of a cut map, the space within the first and beyond the second of two radii about the
+    /// z axis, which are infinite where there is none.
     pub fn new(cut: &Truncation, extent: Extent, rim: f64, core: f64, scale: f64) -> Self {
         let event =
             |boundary, coordinate, sign, limit| EventFunction { boundary, coordinate, sign, limit };
@@ -205,9 +208,9 @@ impl EventFunctions {
             .map(|(event, _)| event.boundary)
     }
 
-    /// What can be seen of the border at both ends of a move of four rays: when they next meet it, by extrapolation from
-    /// the end, infinity for never; and numbers that are not zero if they may have crossed it on the way: see
-    /// [`Self::first_crossing`].
+    /// What can be seen of the border at both ends of a move of four rays: when they next meet it,
+    /// by extrapolation from the end, infinity for never; and numbers that are not zero if they may
+    /// have crossed it on the way: see [`Self::first_crossing`].
     #[inline(always)]
     pub fn outlook<S: Simd>(
         &self,

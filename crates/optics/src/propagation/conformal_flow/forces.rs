@@ -1,13 +1,14 @@
 //! The forces on four rays in virtual space.
 //!
-//! Where the index is ρ(x, y) c/|f'|, H = (|P|² + p_z² |f'|² - c² ρ²)/2, with the gradient g of ρ² in physical space as a
-//! complex number:
+//! Where the index is ρ(x, y) c/|f'|, H = (|P|² + p_z² |f'|² - c² ρ²)/2, with the gradient g of ρ²
+//! in physical space as a complex number:
 //!
 //! dP/dτ = -p_z² f' conj(f'') + c² conj(f') g/2,  d(optical path)/dτ = c² ρ².
 //!
-//! The field turns about the ray as [`super::frame`] says, now with ∇ln n = -conj(f''/f') + γ, γ = conj(f') g/(2ρ²), in
-//! virtual space. Besides the turn p_z |f'| z × ∇ln n about an axis across z, of the turn about z there remains Im(conj(P) γ), as
-//! the map turns its frame by Im(P f''/f') alone. Against the frame bound to the ray, with σ = p_z |f'|/(c ρ),
+//! The field turns about the ray as [`super::frame`] says, now with ∇ln n = -conj(f''/f') + γ, γ =
+//! conj(f') g/(2ρ²), in virtual space. Besides the turn p_z |f'| z × ∇ln n about an axis across z,
+//! of the turn about z there remains Im(conj(P) γ), as the map turns its frame by Im(P f''/f')
+//! alone. Against the frame bound to the ray, with σ = p_z |f'|/(c ρ),
 //!
 //! dθ/dτ = (sign(p_z) Im(conj(P) γ) - σ Im(P f''/f'))/(1 + |σ|).
 
@@ -19,7 +20,8 @@ use crate::lanes::{ComplexLanes, Lanes};
 use crate::propagation::nystrom::{Field, Stage};
 use crate::transformation::{JetLanes, LaneMap};
 
-/// A force on rays, with the quadratures z, θ and, unless it grows with τ, the optical path over c².
+/// A force on rays, with the quadratures z, θ and, unless it grows with τ, the optical path over
+/// c².
 pub(super) trait Force<S: Simd, const Q: usize>: Field<S, Q> {
     /// What is found where the map is known; to be inlined, as all of these.
     fn found(&self, map: JetLanes<S>) -> Self::Jet;
@@ -30,7 +32,8 @@ pub(super) trait Force<S: Simd, const Q: usize>: Field<S, Q> {
     /// What |P|² must be.
     fn momentum_squared(&self, jet: &Self::Jet) -> Lanes<S>;
 
-    /// Adds to the rate of the optical path by how much it grows over `time`, if it is among the quadratures.
+    /// Adds to the rate of the optical path by how much it grows over `time`, if it is among the
+    /// quadratures.
     fn bend_path(&self, _: &PointLanes<S>, _: &Self::Jet, _time: Lanes<S>, _: &mut [Lanes<S>; Q]) {}
 }
 
@@ -65,8 +68,8 @@ impl<S: Simd, M: LaneMap> Field<S, 2> for EvenForce<'_, S, M> {
         Stage { force: jet.f1 * jet.f2.conj() * -(self.p_z * self.p_z), jet }
     }
 
-    /// dz/dτ = p_z |f'|², and dθ/dτ: with σ = p_z |f'|/c the sine of the ray's angle to the virtual plane,
-    /// -σ/(1 + |σ|) Im(P f''/f').
+    /// dz/dτ = p_z |f'|², and dθ/dτ: with σ = p_z |f'|/c the sine of the ray's angle to the virtual
+    /// plane, -σ/(1 + |σ|) Im(P f''/f').
     #[inline(always)]
     fn rates(&self, jet: &JetLanes<S>, momentum: ComplexLanes<S>) -> [Lanes<S>; 2] {
         let square = jet.f1.norm_squared();

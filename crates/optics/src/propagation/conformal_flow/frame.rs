@@ -1,9 +1,10 @@
 //! Transport of the polarization along a ray in virtual space.
 //!
-//! In an isotropic medium the field turns as de/ds = -(e·∇ln n) t (Rytov): it is carried parallel in the
-//! optical metric n² dr², which in virtual space reads c² (dX² + dY²) + n² dz². In an orthonormal
-//! frame along X, Y, z this is a turn of angular velocity p_z |f'| z × g, g = ∇ln n = -conj(f''/f'). The ray
-//! turns likewise, so relative to a frame that is bound to the ray's direction only one angle is left.
+//! In an isotropic medium the field turns as de/ds = -(e·∇ln n) t (Rytov): it is carried parallel
+//! in the optical metric n² dr², which in virtual space reads c² (dX² + dY²) + n² dz². In an
+//! orthonormal frame along X, Y, z this is a turn of angular velocity p_z |f'| z × g, g = ∇ln n =
+//! -conj(f''/f'). The ray turns likewise, so relative to a frame that is bound to the ray's
+//! direction only one angle is left.
 
 use glam::{DMat3, DVec3};
 
@@ -11,8 +12,9 @@ use super::points::Point;
 
 /// A frame bound to a ray's direction in virtual space, and how that space is turned physically.
 struct RayFrame {
-    /// The smallest rotation that takes the z-axis (-z for p_z < 0) into the ray (it is regular both for
-    /// rays along z and for rays across), and then one by arg f' about z, from virtual to physical components.
+    /// The smallest rotation that takes the z-axis (-z for p_z < 0) into the ray (it is regular
+    /// both for rays along z and for rays across), and then one by arg f' about z, from virtual to
+    /// physical components.
     rotation: DMat3,
     sign: f64,
 }

@@ -23,17 +23,18 @@ pub struct IndexPerturbation {
 const CELLS_A_SCALE: f64 = 4.0;
 
 impl IndexPerturbation {
-    /// The perturbation whose factor ρ has the square `square`; `None` if that is not positive everywhere. The grid should
-    /// reach a few cells beyond the device, and resolve what varies in about four cells.
+    /// The perturbation whose factor ρ has the square `square`; `None` if that is not positive
+    /// everywhere. The grid should reach a few cells beyond the device, and resolve what varies in
+    /// about four cells.
     #[must_use]
     pub fn new(square: GridSpline) -> Option<Self> {
         let bounds = square.bounds();
         Self::bounded(square, bounds)
     }
 
-    /// As [`Self::new`], where the square is positive in those cells of the grid whose distances from the z axis, the
-    /// least and the largest (cm), `counts` accepts: what it is elsewhere is not looked at but in steps that are taken
-    /// back.
+    /// As [`Self::new`], where the square is positive in those cells of the grid whose distances
+    /// from the z axis, the least and the largest (cm), `counts` accepts: what it is elsewhere is
+    /// not looked at but in steps that are taken back.
     #[must_use]
     pub fn within(square: GridSpline, counts: impl Fn([f64; 2]) -> bool) -> Option<Self> {
         let bounds = square.bounds_within(counts);
@@ -59,8 +60,8 @@ impl IndexPerturbation {
 }
 
 impl ConformalFlow {
-    /// The same medium with an index that is uneven: ρ times that of the map. The perturbation is that of the upper half
-    /// plane, in which the lower half is looked at as its mirror image.
+    /// The same medium with an index that is uneven: ρ times that of the map. The perturbation is
+    /// that of the upper half plane, in which the lower half is looked at as its mirror image.
     pub fn with_index_perturbation(self, index_perturbation: IndexPerturbation) -> Self {
         Self { index_perturbation: Some(Arc::new(index_perturbation)), ..self }.with_events()
     }
@@ -81,8 +82,8 @@ impl ConformalFlow {
 
     /// How exactly rays are to be followed for a tolerance, cm, that meet the mirror or do not.
     pub(super) fn step_control(&self, tolerance: f64, to_mirror: bool) -> StepControl {
-        // Of a spline, nothing can be counted on, nor that a ray meets the mirror where a straight one would; and the
-        // errors of many short steps add up.
+        // Of a spline, nothing can be counted on, nor that a ray meets the mirror where a straight
+        // one would; and the errors of many short steps add up.
         let uneven = self.is_uneven();
         let smoothness = if uneven { 0.3 } else { self.map.smoothness() };
         let share = if uneven || to_mirror { MIRROR_TOLERANCE } else { 1.0 };

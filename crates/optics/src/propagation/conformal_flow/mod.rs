@@ -1,14 +1,16 @@
 //! The ray inside a cut conformal cloak, followed in virtual space.
 //!
-//! The index n = c/|f'| above the bumped floor comes from a conformal map x + iy = f(ζ), ζ = X + iY. With the
-//! wave vector p, its constant part p_z, P = conj(f') (p_x + i p_y), and τ = (optical path)/c²:
+//! The index n = c/|f'| above the bumped floor comes from a conformal map x + iy = f(ζ), ζ = X +
+//! iY. With the wave vector p, its constant part p_z, P = conj(f') (p_x + i p_y), and τ = (optical
+//! path)/c²:
 //!
 //! dζ/dτ = P,  dP/dτ = -p_z² f' conj(f''),  dz/dτ = p_z |f'|²,  |P|² + p_z² |f'|² = c².
 //!
-//! These are Hamilton's equations of H = (|P|² + p_z² |f'|² - c²)/2, that is of p² = n². For p_z = 0 the
-//! path in ζ is a straight line; else the force is small and smooth, and the method of order 8 takes a
-//! handful of steps. Where the index is ρ(x, y) times that ([`IndexPerturbation`]), it is c² ρ² that |P|² + p_z² |f'|² must be,
-//! and another force comes in: see the module `forces`. Lengths are in cm, wave vectors in units of the vacuum wave number.
+//! These are Hamilton's equations of H = (|P|² + p_z² |f'|² - c²)/2, that is of p² = n². For p_z =
+//! 0 the path in ζ is a straight line; else the force is small and smooth, and the method of order
+//! 8 takes a handful of steps. Where the index is ρ(x, y) times that ([`IndexPerturbation`]), it is
+//! c² ρ² that |P|² + p_z² |f'|² must be, and another force comes in: see the module `forces`.
+//! Lengths are in cm, wave vectors in units of the vacuum wave number.
 
 mod crossing;
 mod forces;
@@ -116,12 +118,12 @@ pub enum FlowError {
     StepLimit,
 }
 
-/// Steps after which a ray is given up; an ordinary one takes about ten, and in an uneven medium some at every line of
-/// its grid.
+/// Steps after which a ray is given up; an ordinary one takes about ten, and in an uneven medium
+/// some at every line of its grid.
 const MAX_STEPS: u32 = 20_000;
 
-/// Reflection at the mirror's bump, a curved surface, makes the error of position and direction grow: a way that leads
-/// to the mirror is followed with this share of the tolerance.
+/// Reflection at the mirror's bump, a curved surface, makes the error of position and direction
+/// grow: a way that leads to the mirror is followed with this share of the tolerance.
 const MIRROR_TOLERANCE: f64 = 0.1;
 
 /// How far (relative to the map's scale) a start may lie outside by rounding.
@@ -152,8 +154,8 @@ pub struct ConformalFlow {
 }
 
 impl ConformalFlow {
-    /// The medium n = c/|f'| of `map` inside `cut` and between the z of `extent`; `index_scale` is c, 1 for
-    /// the cloak that needs no reference medium.
+    /// The medium n = c/|f'| of `map` inside `cut` and between the z of `extent`; `index_scale` is
+    /// c, 1 for the cloak that needs no reference medium.
     pub fn new(map: ConformalMap, cut: Truncation, extent: Extent, index_scale: f64) -> Self {
         let slack = BORDER_SLACK * map.scale();
         let (rim, core) = (f64::INFINITY, f64::INFINITY);
@@ -161,8 +163,8 @@ impl ConformalFlow {
         Self { map, cut, extent, rim, core, index_scale, events, slack, index_perturbation: None }
     }
 
-    /// The same medium (all of it in the upper half) within the radius `rim` about the z axis and beyond the radius
-    /// `core`, both in cm, the latter less than the former.
+    /// The same medium (all of it in the upper half) within the radius `rim` about the z axis and
+    /// beyond the radius `core`, both in cm, the latter less than the former.
     pub fn between(self, core: Option<f64>, rim: Option<f64>) -> Self {
         let [rim, core] = [rim, core].map(|radius| radius.unwrap_or(f64::INFINITY));
         Self { rim, core, ..self }.with_events()
@@ -245,10 +247,10 @@ impl ConformalFlow {
 
     /// Follows a ray from a point inside or on the border to the next point of the border.
     ///
-    /// `wave_vector` is the one inside the medium, |p| = n. `tolerance` (cm, at least 1e-12 is used) bounds
-    /// the error of position and optical path at the end, a tenth of it per cm that of the direction,
-    /// except for rays that leave at grazing incidence. A start on the border moving inwards, or along
-    /// it, goes on; one moving outwards ends at once.
+    /// `wave_vector` is the one inside the medium, |p| = n. `tolerance` (cm, at least 1e-12 is
+    /// used) bounds the error of position and optical path at the end, a tenth of it per cm that of
+    /// the direction, except for rays that leave at grazing incidence. A start on the border moving
+    /// inwards, or along it, goes on; one moving outwards ends at once.
     ///
     /// # Errors
     ///
@@ -264,8 +266,8 @@ impl ConformalFlow {
         end.unwrap_or(Err(FlowError::Outside))
     }
 
-    /// As [`Self::advance_from`], up to four rays at once, which takes hardly longer than one. Each end is what
-    /// it would be alone.
+    /// As [`Self::advance_from`], up to four rays at once, which takes hardly longer than one. Each
+    /// end is what it would be alone.
     pub fn advance_four(
         &self,
         starts: &[Option<(VirtualPoint, DVec3)>; LANES],

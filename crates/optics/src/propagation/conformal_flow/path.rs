@@ -12,8 +12,8 @@ use num_complex::Complex64;
 const DENSITY: f64 = 24.0;
 
 impl ConformalFlow {
-    /// Points along the ray that [`Self::advance_from`] follows, from its start to its end, close enough for a
-    /// smooth drawing.
+    /// Points along the ray that [`Self::advance_from`] follows, from its start to its end, close
+    /// enough for a smooth drawing.
     ///
     /// # Errors
     ///
@@ -75,9 +75,9 @@ impl ConformalFlow {
         Ok(way)
     }
 
-    /// The speed of light times the time that a pulse takes on the way of [`Self::advance_from`], cm, to within about
-    /// `tolerance` (cm), at the least dispersion that causality allows: the group index is n or 1/n, whichever is
-    /// larger.
+    /// The speed of light times the time that a pulse takes on the way of [`Self::advance_from`],
+    /// cm, to within about `tolerance` (cm), at the least dispersion that causality allows: the
+    /// group index is n or 1/n, whichever is larger.
     ///
     /// # Errors
     ///

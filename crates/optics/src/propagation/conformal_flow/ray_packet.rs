@@ -10,7 +10,8 @@ use super::strides::{Move, Rays, StepKind, StepResult};
 use super::{Arrival, Boundary, ConformalFlow, FlowError, MAX_STEPS, VirtualPoint};
 use crate::lanes::LANES;
 
-/// Moves below this share of the map's scale are exact to rounding by Taylor's formula of order two.
+/// Moves below this share of the map's scale are exact to rounding by Taylor's formula of order
+/// two.
 const COASTING: f64 = 1e-4;
 
 /// How far beyond a border that is near to aim, as a share of the map's scale.
@@ -137,7 +138,8 @@ impl RayPacket {
         }
     }
 
-    /// Moves each ray that is not at its end once, or more often if that is cheap; whether one has moved.
+    /// Moves each ray that is not at its end once, or more often if that is cheap; whether one has
+    /// moved.
     pub fn moves(&mut self, flow: &ConformalFlow) -> bool {
         let mut any = false;
         for kind in [StepKind::Full, StepKind::Short, StepKind::Coast] {

@@ -20,8 +20,8 @@ pub(super) struct StepControl {
 }
 
 impl StepControl {
-    /// For rays across z in a medium that varies over `scale` (cm), whose `smoothness` is that of [`ConformalMap::smoothness`], and a largest
-    /// error at the end of `tolerance`, cm.
+    /// For rays across z in a medium that varies over `scale` (cm), whose `smoothness` is that of
+    /// [`ConformalMap::smoothness`], and a largest error at the end of `tolerance`, cm.
     ///
     /// [`ConformalMap::smoothness`]: crate::transformation::ConformalMap::smoothness
     pub fn new(scale: f64, smoothness: f64, tolerance: f64, even: bool) -> Self {
@@ -30,10 +30,11 @@ impl StepControl {
             p_z: 0.0,
             even,
             allowed: smoothness * tolerance,
-            // Where the estimate is low by chance, the order of the method still keeps a shorter step right.
+            // Where the estimate is low by chance, the order of the method still keeps a shorter
+            // step right.
             longest: 1.5 * scale * (tolerance / 1e-6).min(1.0).sqrt().sqrt().sqrt(),
-            // A step of order four is off by less than 2/smoothness times the fifth power of its length, both in
-            // units of the scale; it may be off by a thousandth of the tolerance.
+            // A step of order four is off by less than 2/smoothness times the fifth power of its
+            // length, both in units of the scale; it may be off by a thousandth of the tolerance.
             // (The fourth root is cheaper than the fifth, and stricter for small tolerances.)
             short: 0.69 * scale * (0.1 * smoothness * tolerance / scale).sqrt().sqrt(),
         }

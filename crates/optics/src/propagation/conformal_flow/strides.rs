@@ -13,7 +13,8 @@ use crate::transformation::{LaneMap, of_each};
 /// How a ray moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum StepKind {
-    /// Not at all: it is at its start, where the momentum is still conj(f') and the length of P short of P itself.
+    /// Not at all: it is at its start, where the momentum is still conj(f') and the length of P
+    /// short of P itself.
     Departure,
     /// By Taylor's formula of order two, but for the map at the new place; exact for straight rays.
     Coast,
@@ -70,7 +71,8 @@ pub(super) struct Move<'w> {
 
 impl Move<'_> {
     pub fn take(self) {
-        // Which map it is is settled once for a step, not at every evaluation; portable code is one for all maps.
+        // Which map it is is settled once for a step, not at every evaluation; portable code is one
+        // for all maps.
         let map = &self.flow.map;
         let with_instructions =
             of_each!(map, map => side_by_side(Through(map, self)).map_err(|Through(_, this)| this));
@@ -118,8 +120,9 @@ impl Move<'_> {
             }
             StepKind::Full => {
                 let weight = Lanes::new(simd, self.rays.weight);
-                // z is all there is to control for rays nearly across it, and estimates of a quadrature tend to be low;
-                // so for the optical path. The field's angle is wanted in radians, not in cm.
+                // z is all there is to control for rays nearly across it, and estimates of a
+                // quadrature tend to be low; so for the optical path. The field's angle is wanted
+                // in radians, not in cm.
                 let mut quadrature = [weight * (1.0 / 0.6); Q];
                 quadrature[1] = weight * 0.1;
                 let velocity = weight * self.rays.lever;

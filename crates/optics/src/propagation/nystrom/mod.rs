@@ -1,5 +1,5 @@
-//! Runge-Kutta-Nyström methods: y'' = F(y), for a force that does not depend on the velocity. Four steps are
-//! taken at once.
+//! Runge-Kutta-Nyström methods: y'' = F(y), for a force that does not depend on the velocity. Four
+//! steps are taken at once.
 
 pub(crate) mod order_eight;
 pub(crate) mod order_four;
@@ -122,8 +122,8 @@ mod kepler {
         array::from_fn(|i| [position[i], velocity[i]])
     }
 
-    /// Errors of state and of quadrature after one revolution in `count` steps, in each direction. `step` gives where
-    /// steps of the given lengths end, and their quadrature.
+    /// Errors of state and of quadrature after one revolution in `count` steps, in each direction.
+    /// `step` gives where steps of the given lengths end, and their quadrature.
     pub fn revolution(
         count: u32,
         step: impl Fn([OrbitState; LANES], [f64; LANES]) -> ([OrbitState; LANES], [f64; LANES]),

@@ -49,8 +49,8 @@ fn weighted<S: Simd, const Q: usize>(
     sum
 }
 
-/// Steps of length `h` (negative: backwards) from `start`, where the force is known, and the estimated errors over the
-/// allowed ones: take a step if this is at most 1.
+/// Steps of length `h` (negative: backwards) from `start`, where the force is known, and the
+/// estimated errors over the allowed ones: take a step if this is at most 1.
 #[inline(always)]
 pub(crate) fn step<S: Simd, F: Field<S, Q>, const Q: usize>(
     field: &F,
@@ -78,8 +78,8 @@ pub(crate) fn step<S: Simd, F: Field<S, Q>, const Q: usize>(
     let places = [f0, f2, f3, f4, f5, f6];
     let position = start.coasted(h, 1.0).plus_real(sum(&B, places), square);
     let last = field.look(position);
-    // The velocity formula is the quadrature that interpolates at its nodes, and so are those that give
-    // the velocity there.
+    // The velocity formula is the quadrature that interpolates at its nodes, and so are those that
+    // give the velocity there.
     let forces = [f0, f2, f3, f4, f5, f6, s7.force];
     let velocity = start.velocity.plus_real(sum(&DB, forces), h);
     let g = [
@@ -194,8 +194,8 @@ mod tests {
         OrbitState, Sun, apart, distance, revolution, start, together,
     };
 
-    /// A step of length `h` of four Kepler orbits from `start`; the quadrature is the time integral of the
-    /// speed squared.
+    /// A step of length `h` of four Kepler orbits from `start`; the quadrature is the time integral
+    /// of the speed squared.
     struct Orbits {
         start: [OrbitState; LANES],
         h: [f64; LANES],

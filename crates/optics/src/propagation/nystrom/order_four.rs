@@ -5,8 +5,9 @@ use pulp::Simd;
 use super::{Field, Motion, Stage, Step};
 use crate::lanes::{ComplexLanes, Lanes};
 
-/// Steps of length `h` (negative: backwards) from `start`, where the force is known; three evaluations of it. The
-/// quadratures are by Simpson's rule with the place and velocity in the middle known to order 2.
+/// Steps of length `h` (negative: backwards) from `start`, where the force is known; three
+/// evaluations of it. The quadratures are by Simpson's rule with the place and velocity in the
+/// middle known to order 2.
 #[inline(always)]
 pub(crate) fn step<S: Simd, F: Field<S, Q>, const Q: usize>(
     field: &F,

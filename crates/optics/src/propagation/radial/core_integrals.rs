@@ -2,8 +2,8 @@
 
 /// Q with A > 0 and B <= 0, and the square root of its discriminant B² - 4AC.
 ///
-/// Its radii have the parameter η of either sign, 2 A ρ + B = √D cosh η, √Q = √(D/4A) sinh η: smooth
-/// along the ray, zero at the turning point.
+/// Its radii have the parameter η of either sign, 2 A ρ + B = √D cosh η, √Q = √(D/4A) sinh η:
+/// smooth along the ray, zero at the turning point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RadialQuadratic {
     pub a: f64,
@@ -33,8 +33,8 @@ impl RadialQuadratic {
         (rho, self.root * eta.sinh() / (2.0 * self.a.sqrt()))
     }
 
-    /// The integrals ∫ ρ dρ/√Q, ∫ dρ/√Q and ∫ dρ/(ρ √Q) from the turning point (the larger root of Q) up to a
-    /// parameter. Negative on the way in.
+    /// The integrals ∫ ρ dρ/√Q, ∫ dρ/√Q and ∫ dρ/(ρ √Q) from the turning point (the larger root of
+    /// Q) up to a parameter. Negative on the way in.
     pub fn integrals(&self, eta: f64) -> [f64; 3] {
         let Self { a, b, c, root } = *self;
         let (rho, q) = self.radius(eta);

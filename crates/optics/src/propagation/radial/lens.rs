@@ -30,8 +30,8 @@ enum Profile {
 impl CentralLens {
     /// The ball of radius `radius` (cm) that turns every ray by `angle` radians towards its centre:
     /// π is the lens of Eaton (Trans. IRE Antennas Propag. 4, 66 (1952)), 2π the invisible sphere,
-    /// π/2 the right-angle bender (Hannay & Haeusser, J. Mod. Opt. 40, 1437 (1993)). With m = π/angle and
-    /// v = n^m, r/radius = 2 v^(1 - 1/m)/(1 + v²); the index is infinite at the centre.
+    /// π/2 the right-angle bender (Hannay & Haeusser, J. Mod. Opt. 40, 1437 (1993)). With m =
+    /// π/angle and v = n^m, r/radius = 2 v^(1 - 1/m)/(1 + v²); the index is infinite at the centre.
     pub fn eaton(radius: f64, angle: f64) -> Self {
         debug_assert!(radius > 0.0 && angle >= 0.0);
         Self { profile: Profile::Eaton(angle), radius }
@@ -42,8 +42,8 @@ impl CentralLens {
         Self { profile: Profile::Luneburg, radius }
     }
 
-    /// Maxwell's fish-eye, n = 2/(1 + (r/radius)²), cut where n = 1: a point of the surface is imaged
-    /// to its antipode.
+    /// Maxwell's fish-eye, n = 2/(1 + (r/radius)²), cut where n = 1: a point of the surface is
+    /// imaged to its antipode.
     pub fn fisheye(radius: f64) -> Self {
         Self { profile: Profile::Fisheye, radius }
     }
@@ -86,7 +86,8 @@ impl CentralLens {
                 let turn = angle / PI;
                 let radial = x.try_normalize().unwrap_or(d);
                 let c = eaton_parameter(turn, x.length().max(NEAREST)).tanh();
-                // r n = √(1 - c²), of which these are the components across the radius and along it.
+                // r n = √(1 - c²), of which these are the components across the radius and along
+                // it.
                 let size = (1.0 - c * c).sqrt();
                 let (l, inward) = (size * radial.cross(d).length(), size * -radial.dot(d));
                 let way = EatonWayOut::new(turn, c, l, inward);
@@ -104,7 +105,8 @@ impl CentralLens {
                 (x * cos + p * sin, p * cos - x * sin, sigma + inside * sin)
             }
             Profile::Fisheye => {
-                // On the sphere of which it is the stereographic projection: height 1 - shrunk, climbing.
+                // On the sphere of which it is the stereographic projection: height 1 - shrunk,
+                // climbing.
                 let shrunk = 2.0 / (1.0 + x.length_squared());
                 let climb = shrunk * x.dot(d);
                 let (point, along) = (x * shrunk, d - x * climb);
@@ -174,15 +176,17 @@ impl CentralLens {
 /// Closer to the surface than this share of the radius a ray starts on it.
 pub(super) const AT_SURFACE: f64 = 1e-9;
 
-/// The first angle, from 0 to 2π, at which a cos φ + b sin φ, which is negative at 0, grows through zero.
+/// The first angle, from 0 to 2π, at which a cos φ + b sin φ, which is negative at 0, grows through
+/// zero.
 fn first_rise(a: f64, b: f64) -> f64 {
     // tan φ/2 makes a quadratic of it.
     let [over, under] = first_way_out([a, 2.0 * b, -a]).unwrap_or([0.0, 1.0]);
     2.0 * over.atan2(under)
 }
 
-/// The way to the surface of a ray from a point of a ball of Eaton's family of radius 1, `turn` being 1/m: with L and S the
-/// sine and cosine of the angle to the radius at the surface, c = S sin ψ, ψ from 0 to the turning point at π/2 to π.
+/// The way to the surface of a ray from a point of a ball of Eaton's family of radius 1, `turn`
+/// being 1/m: with L and S the sine and cosine of the angle to the radius at the surface, c = S sin
+/// ψ, ψ from 0 to the turning point at π/2 to π.
 pub(super) struct EatonWayOut {
     turn: f64,
     l: f64,

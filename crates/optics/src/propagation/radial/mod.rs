@@ -1,9 +1,9 @@
 //! Rays through radially symmetric media, in closed form.
 //!
-//! Straight lines in virtual space, exact transfers from border to border, or elementary integrals; no
-//! path is stepped along, so that the singular points (the centre, the border of the hole) need no care.
-//! A ray that is aimed exactly at the axis or centre gets the limit of its neighbours, or that of the
-//! neighbours on one side where they part.
+//! Straight lines in virtual space, exact transfers from border to border, or elementary integrals;
+//! no path is stepped along, so that the singular points (the centre, the border of the hole) need
+//! no care. A ray that is aimed exactly at the axis or centre gets the limit of its neighbours, or
+//! that of the neighbours on one side where they part.
 
 mod core_integrals;
 mod lens;
@@ -75,8 +75,9 @@ impl RadialFlow {
         }
     }
 
-    /// Follows a ray from a point of the medium or its border, where it has the given wave vector and is the given
-    /// wave of the medium, to the next point of the border. On the border it must run into the medium or along it.
+    /// Follows a ray from a point of the medium or its border, where it has the given wave vector
+    /// and is the given wave of the medium, to the next point of the border. On the border it must
+    /// run into the medium or along it.
     pub fn advance(&self, position: DVec3, wave_vector: DVec3, mode: ModeKind) -> PathEnd<Border> {
         match self {
             Self::Lens(lens) => lens.advance(position, wave_vector),
@@ -86,7 +87,8 @@ impl RadialFlow {
         }
     }
 
-    /// Points along the way that [`Self::advance`] takes, from its start to its end, in that many pieces.
+    /// Points along the way that [`Self::advance`] takes, from its start to its end, in that many
+    /// pieces.
     #[must_use]
     pub fn path(
         &self,
@@ -125,8 +127,9 @@ impl RadialFlow {
         }
     }
 
-    /// The speed of light times the time that a pulse takes on the way of [`Self::advance`], cm, to within about
-    /// `tolerance` (cm), at the least dispersion that causality allows: see [`Medium::causal_group_index`].
+    /// The speed of light times the time that a pulse takes on the way of [`Self::advance`], cm, to
+    /// within about `tolerance` (cm), at the least dispersion that causality allows: see
+    /// [`Medium::causal_group_index`].
     #[must_use]
     pub fn causal_group_path(
         &self,

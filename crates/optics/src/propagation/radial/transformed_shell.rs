@@ -6,8 +6,8 @@ use crate::medium::Medium;
 use crate::transformation::{RadialMap, Symmetry};
 use glam::DVec3;
 
-/// The shell ε = µ = J Jᵀ/det J of a radial map. In virtual space, X and P = Jᵀ p, rays are straight
-/// lines, and fields are those of empty space: E = J⁻ᵀ E', H = J⁻ᵀ H'.
+/// The shell ε = µ = J Jᵀ/det J of a radial map. In virtual space, X and P = Jᵀ p, rays are
+/// straight lines, and fields are those of empty space: E = J⁻ᵀ E', H = J⁻ᵀ H'.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransformedShell {
     /// The map.
@@ -19,8 +19,9 @@ pub struct TransformedShell {
 /// How far from the hole, relative to its radius, a point is at its border.
 const AT_HOLE: f64 = 1e-9;
 
-/// There the medium, which is singular, is taken for that so far away, of which double precision can hold the
-/// tensor: waves of the hole come to it, but for those across its border they cannot get in anywhere.
+/// There the medium, which is singular, is taken for that so far away, of which double precision
+/// can hold the tensor: waves of the hole come to it, but for those across its border they cannot
+/// get in anywhere.
 const BESIDE_HOLE: f64 = 1e-5;
 
 impl TransformedShell {

@@ -8,13 +8,13 @@ use crate::medium::{Medium, ModeKind};
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// The invisible sphere with its singular centre transmuted (Tyc & Leonhardt, New J. Phys. 10, 115038
-/// (2008)) into a uniaxial dielectric whose optic axis is the radius.
+/// The invisible sphere with its singular centre transmuted (Tyc & Leonhardt, New J. Phys. 10,
+/// 115038 (2008)) into a uniaxial dielectric whose optic axis is the radius.
 ///
-/// The ordinary index is π + 1 throughout; the extraordinary one is n_e = sin β/x at
-/// x = r/radius = (2π - 2β + sin β)/(π + 1), from 1 at the surface (β = π/2) to (π + 1)/3 at the centre.
-/// The radius is stretched such that the extraordinary ray sweeps the angles that a ray sweeps in
-/// the invisible sphere, with the same optical path: it leaves on its chord, late by 2π radius.
+/// The ordinary index is π + 1 throughout; the extraordinary one is n_e = sin β/x at x = r/radius =
+/// (2π - 2β + sin β)/(π + 1), from 1 at the surface (β = π/2) to (π + 1)/3 at the centre. The
+/// radius is stretched such that the extraordinary ray sweeps the angles that a ray sweeps in the
+/// invisible sphere, with the same optical path: it leaves on its chord, late by 2π radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransmutedSphere {
     /// Its radius, cm.
@@ -85,7 +85,8 @@ impl TransmutedSphere {
             (x, supplement(x.max(NEAREST)).sin_cos())
         };
         let tangential = x * wave_vector.dot(normal.cross(from));
-        // In the invisible sphere r n = sin γ; the radial part of the wave vector is n_o times as much of itself.
+        // In the invisible sphere r n = sin γ; the radial part of the wave vector is n_o times as
+        // much of itself.
         let inward = -sine * wave_vector.dot(from) / Self::ORDINARY_INDEX;
         let way = EatonWayOut::new(2.0, cosine, tangential, inward);
         ExtraordinaryWay { way, from, normal, tangential, radius: self.radius }

@@ -19,8 +19,8 @@ pub enum OpticAxis {
 }
 
 /// A cylindrical shell of non-magnetic uniaxial dielectric (after Cai et al., Nature Photon. 1, 224
-/// (2007)) between the radii a and b, with k = b/(b - a) and s = (r - a)/r: ε_θ = k², ε_r = k² s², and
-/// ε_z = k² for the radial optic axis, ε_z = k² s² for the azimuthal one.
+/// (2007)) between the radii a and b, with k = b/(b - a) and s = (r - a)/r: ε_θ = k², ε_r = k² s²,
+/// and ε_z = k² for the radial optic axis, ε_z = k² s² for the azimuthal one.
 ///
 /// It has the in-plane refraction of the impedance-matched cloak for light with its magnetic field
 /// along z, not its impedance. With L the angular momentum about z and p_z, both kept, the
@@ -38,8 +38,8 @@ pub struct UniaxialCylinder {
     extent: Extent,
 }
 
-/// The medium at the core, where it is singular, is taken for that with this s: the one wave that comes
-/// there, the ordinary wave of the radial axis, does not feel it.
+/// The medium at the core, where it is singular, is taken for that with this s: the one wave that
+/// comes there, the ordinary wave of the radial axis, does not feel it.
 const LEAST_S: f64 = 1e-6;
 
 /// Rays this close to the axis, relative to the outer radius, are aimed at it.
@@ -91,7 +91,8 @@ impl UniaxialCylinder {
         } else if let Some(path) = self.turning_path(position, wave_vector, mode) {
             self.turning(position, wave_vector, path)
         } else {
-            // Those of the other axis that are aimed at the axis, too, as their neighbours in the plane.
+            // Those of the other axis that are aimed at the axis, too, as their neighbours in the
+            // plane.
             self.virtually_straight(position, wave_vector)
         };
         let (here, there) = (self.point(position), self.point(end.position));

@@ -30,7 +30,8 @@ impl UniaxialPoint {
         self.field_across(wave_vector, u, mode)
     }
 
-    /// The same, given the unit vector along which the ordinary electric or the extraordinary magnetic field lies.
+    /// The same, given the unit vector along which the ordinary electric or the extraordinary
+    /// magnetic field lies.
     pub fn field_across(&self, wave_vector: DVec3, u: DVec3, mode: ModeKind) -> DVec3 {
         let curl = wave_vector.cross(u);
         let (electric, magnetic) = if mode == ModeKind::Extraordinary {

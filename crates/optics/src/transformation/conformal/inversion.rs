@@ -5,8 +5,8 @@ use num_complex::Complex64;
 use super::{ConformalMap, MapJet};
 
 impl ConformalMap {
-    /// The virtual point of a physical one above or on the floor; it may lie below Y = 0 by rounding, or
-    /// by more for a point within the metal. None where there is no such point.
+    /// The virtual point of a physical one above or on the floor; it may lie below Y = 0 by
+    /// rounding, or by more for a point within the metal. None where there is no such point.
     #[must_use]
     pub fn invert(&self, z: Complex64) -> Option<Complex64> {
         self.invert_with_jet(z).map(|(zeta, _)| zeta)
@@ -26,7 +26,8 @@ impl ConformalMap {
         self.newton(z, guess).or_else(|| self.invert_from_above(z))
     }
 
-    /// Newton's method for f(ζ) = z, each step bent by f'' (Halley's) and shortened until the residual falls.
+    /// Newton's method for f(ζ) = z, each step bent by f'' (Halley's) and shortened until the
+    /// residual falls.
     fn newton(&self, z: Complex64, mut zeta: Complex64) -> Option<(Complex64, MapJet)> {
         // Well below the floor f' has zeros, and the map branches; the series does so at once.
         let depth = if matches!(self, Self::QuasiConformal(_)) { 1e-6 } else { 0.25 };

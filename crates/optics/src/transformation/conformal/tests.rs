@@ -134,7 +134,8 @@ proptest! {
             let z = map.jet(zeta).f;
             let back = map.invert(z).ok_or(TestCaseError::fail(format!("{zeta}")))?;
             prop_assert!((map.jet(back).f - z).norm() < 1e-13 * (w + z.norm()));
-            // Near the top of a steep bump f' almost vanishes, and the inverse is as badly conditioned.
+            // Near the top of a steep bump f' almost vanishes, and the inverse is as badly
+            // conditioned.
             let slack = 1e-14 * (w + zeta.norm()) / map.jet(zeta).f1.norm();
             prop_assert!((back - zeta).norm() < 10.0 * slack, "{} {}", back, zeta);
         }

@@ -6,12 +6,13 @@ use num_complex::Complex64;
 
 use super::Bump;
 
-/// The highest wave number, in units of 1/w: the floor's curvature jumps at the feet of the bump, so the
-/// coefficients fall like 1/k³, and what fades of them moves the floor by less than 1e-4 h.
+/// The highest wave number, in units of 1/w: the floor's curvature jumps at the feet of the bump,
+/// so the coefficients fall like 1/k³, and what fades of them moves the floor by less than 1e-4 h.
 const FINENESS: f64 = 620.0;
 
-/// The last terms fade like exp(-a (j/J)^p): broken off sharply, they leave ripples all along the floor, with a
-/// curvature like that of the map itself, and a ray near it would have to follow each.
+/// The last terms fade like exp(-a (j/J)^p): broken off sharply, they leave ripples all along the
+/// floor, with a curvature like that of the map itself, and a ray near it would have to follow
+/// each.
 const FADING: (f64, i32) = (36.0, 8);
 
 /// The square of an exponential that no derivative brings back into a sum.
@@ -20,8 +21,8 @@ const NEGLIGIBLE: f64 = 1e-60;
 /// Collocation points for each term.
 const OVERSAMPLING: usize = 2;
 
-/// Rounds of the fixed point; a slope of 1.5 takes about 200, and they are not enough for one of 4: each leaves
-/// slope/√(1 + slope²) of the error.
+/// Rounds of the fixed point; a slope of 1.5 takes about 200, and they are not enough for one of 4:
+/// each leaves slope/√(1 + slope²) of the error.
 const MOST_ROUNDS: u32 = 1000;
 const STEEPEST: f64 = 4.0;
 
@@ -40,8 +41,8 @@ pub(super) struct Series {
 }
 
 impl Series {
-    /// The series of a bump in the box |x| <= A, y <= H. On the floor the map must be
-    /// x(X) = X - Σ b_j coth(k_j H_c) sin(k_j X), y(x(X)) = y0 + Σ b_j cos(k_j X): a fixed point. None if it is
+    /// The series of a bump in the box |x| <= A, y <= H. On the floor the map must be x(X) = X - Σ
+    /// b_j coth(k_j H_c) sin(k_j X), y(x(X)) = y0 + Σ b_j cos(k_j X): a fixed point. None if it is
     /// not found.
     pub fn solve(bump: Bump, half_width: f64, height: f64) -> Option<Self> {
         let count = (FINENESS * half_width / (PI * bump.width)).ceil() as usize;
@@ -55,8 +56,8 @@ impl Series {
         let grid: Vec<f64> =
             (0..points).map(|m| (m as f64 + 0.5) * half_width / points as f64).collect();
         let wave_number = |j: usize| PI * j as f64 / half_width;
-        // What moves x by δ moves y by slope δ, and that x again, a quarter of a wave further on: the damping
-        // under which such a rotation shrinks fastest.
+        // What moves x by δ moves y by slope δ, and that x again, a quarter of a wave further on:
+        // the damping under which such a rotation shrinks fastest.
         let slope = PI * bump.height / bump.width;
         let damping = 1.0 / (1.0 + slope * slope);
         let rounds = if slope > STEEPEST { 0 } else { MOST_ROUNDS };

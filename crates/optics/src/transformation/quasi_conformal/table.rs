@@ -1,7 +1,8 @@
-//! The series as a table of Taylor polynomials: hundreds of terms would be too slow for every step of a ray.
+//! The series as a table of Taylor polynomials: hundreds of terms would be too slow for every step
+//! of a ray.
 //!
-//! The map is least smooth on the floor, where its wavelengths are shortest, and ever smoother above: the
-//! patches double in size from band to band, as their distance from the floor does.
+//! The map is least smooth on the floor, where its wavelengths are shortest, and ever smoother
+//! above: the patches double in size from band to band, as their distance from the floor does.
 
 use num_complex::Complex64;
 use pulp::Simd;
@@ -24,8 +25,8 @@ const INVERSE: [f64; TERMS] = {
     inverse
 };
 
-/// The least distance from the floor in units of a band's spacing, so that the first term left out is below
-/// rounding.
+/// The least distance from the floor in units of a band's spacing, so that the first term left out
+/// is below rounding.
 const DISTANCE: f64 = 8.0;
 
 /// Rows of the lowest band below Y = 0, where steps of a ray may stray.

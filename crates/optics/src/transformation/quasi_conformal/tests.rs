@@ -1,7 +1,7 @@
 //! The map against what defines it, against its series, and against published numbers.
 //!
-//! A map is conformal with these borders only if it is the quasi-conformal one, and by the maximum principle
-//! it is as near to it everywhere as its borders are.
+//! A map is conformal with these borders only if it is the quasi-conformal one, and by the maximum
+//! principle it is as near to it everywhere as its borders are.
 
 use std::sync::LazyLock;
 

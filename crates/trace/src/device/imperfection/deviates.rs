@@ -21,7 +21,8 @@ impl Deviates {
         (bits as f64 + 0.5) / (1_u64 << 53) as f64
     }
 
-    /// A normally distributed number of mean 0 and variance 1 (Box & Muller, Ann. Math. Stat. 29, 610 (1958)).
+    /// A normally distributed number of mean 0 and variance 1 (Box & Muller, Ann. Math. Stat. 29,
+    /// 610 (1958)).
     pub fn normal(&self, number: u64) -> f64 {
         let [a, b] = [0, 1].map(|i| self.uniform(2 * number + i));
         (-2.0 * a.ln()).sqrt() * (TAU * b).cos()

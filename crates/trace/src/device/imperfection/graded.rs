@@ -1,8 +1,9 @@
 //! Graded conformal media: an index that is off by a smooth factor.
 //!
-//! Where the index is clamped or has levels, the deviation from the design, a ratio with kinks and steps, is smoothed by a
-//! Gaussian of the process's resolution, over the medium alone; then comes the random error, a Gaussian field. What is
-//! traced is that smooth index: its steps are wide against the wavelength, and reflect nothing.
+//! Where the index is clamped or has levels, the deviation from the design, a ratio with kinks and
+//! steps, is smoothed by a Gaussian of the process's resolution, over the medium alone; then comes
+//! the random error, a Gaussian field. What is traced is that smooth index: its steps are wide
+//! against the wavelength, and reflect nothing.
 
 use super::super::ConformalRegion;
 use super::{Deviates, Imperfection, TABLE};
@@ -19,7 +20,8 @@ const WAVES: u64 = 512;
 const SAMPLES_A_RESOLUTION: f64 = 2.0;
 const SAMPLES_A_CORRELATION: f64 = 4.0;
 
-/// How far the grid reaches beyond the device, in samples, and how far the smoothing does, in resolutions.
+/// How far the grid reaches beyond the device, in samples, and how far the smoothing does, in
+/// resolutions.
 const MARGIN: f64 = 6.0;
 const REACH: f64 = 5.0;
 
@@ -132,8 +134,9 @@ impl Grid {
         (0..nx).for_each(|x| smooth_line(x, nx, ny));
     }
 
-    /// A Gaussian random field of mean 0 and variance 1, correlated as exp(-r²/(2 l²)): plane waves with normally
-    /// distributed wave vectors and amplitudes. It is a function of the place alone, whatever the grid.
+    /// A Gaussian random field of mean 0 and variance 1, correlated as exp(-r²/(2 l²)): plane waves
+    /// with normally distributed wave vectors and amplitudes. It is a function of the place alone,
+    /// whatever the grid.
     fn random_field(&self, correlation: f64, deviates: &Deviates, half: Half) -> Vec<f64> {
         let side = half.mirrored(DVec3::Y).y;
         let [nx, ny] = self.count;

@@ -13,28 +13,32 @@ use deviates::Deviates;
 crate::table! {
     /// How what is made of a device differs from its design. Zero values change nothing.
     ///
-    /// In this order: each value is brought into the range that can be made, then to the nearest level, then comes the
-    /// random error; loss is added last. In homogeneous media the values are the principal ones of the tensors: a tensor
-    /// that is that of vacuum stays so, as the permeability of a dielectric does, and principal values that are equal
-    /// stay equal. In graded media the value is the index, and what a range and levels change of it is smoothed; loss
+    /// In this order: each value is brought into the range that can be made, then to the nearest
+    /// level, then comes the random error; loss is added last. In homogeneous media the values are
+    /// the principal ones of the tensors: a tensor that is that of vacuum stays so, as the
+    /// permeability of a dielectric does, and principal values that are equal stay equal. In graded
+    /// media the value is the index, and what a range and levels change of it is smoothed; loss
     /// counts along the way, not where light enters or leaves.
     pub struct Imperfection {
-        /// Relative standard deviation of a random error: of the index of a graded medium, or of each principal value of
-        /// the permittivity and the permeability of each homogeneous segment or body.
+        /// Relative standard deviation of a random error: of the index of a graded medium, or of
+        /// each principal value of the permittivity and the permeability of each homogeneous
+        /// segment or body.
         error: f64, in ValueRange::Within(0.0, 0.5),
         /// The length l over which the error of a graded index is correlated, as exp(-r^2/(2 l^2)).
         correlation: f64 = 2.0, "cm", in ValueRange::LENGTH,
-        /// The least value that can be made, of the index of a graded medium or of a principal value; smaller ones become
-        /// this one.
+        /// The least value that can be made, of the index of a graded medium or of a principal
+        /// value; smaller ones become this one.
         minimum: Option<f64>, in ValueRange::Within(-1e6, 1e6),
         /// The largest value that can be made; larger ones become this one.
         maximum: Option<f64>, in ValueRange::Within(-1e6, 1e6),
-        /// How many values can be made, at equal steps from the minimum to the maximum (where these are absent, those of
-        /// the design); 0 for any.
+        /// How many values can be made, at equal steps from the minimum to the maximum (where these
+        /// are absent, those of the design); 0 for any.
         levels: u32, in ValueRange::Whole(0, 1_000_000),
-        /// The standard deviation of the Gaussian that smooths what a range and levels make of a graded index.
+        /// The standard deviation of the Gaussian that smooths what a range and levels make of a
+        /// graded index.
         resolution: f64 = 0.5, "cm", in ValueRange::LENGTH,
-        /// Imaginary part of the permittivity, and of a permeability other than 1, over the real part.
+        /// Imaginary part of the permittivity, and of a permeability other than 1, over the real
+        /// part.
         loss_tangent: f64, in ValueRange::Within(0.0, 0.1),
         /// The seed of the random errors.
         seed: u64, in ValueRange::SEED,
@@ -53,8 +57,8 @@ impl Imperfection {
         self.levels > 0 || self.minimum.is_some() || self.maximum.is_some()
     }
 
-    /// What is made of a device, shown as it is and not as bare metal. `draw` is the number of the device in its
-    /// scene, and which of many draws from the same seed it is: 0 in a scene.
+    /// What is made of a device, shown as it is and not as bare metal. `draw` is the number of the
+    /// device in its scene, and which of many draws from the same seed it is: 0 in a scene.
     ///
     /// # Errors
     ///
