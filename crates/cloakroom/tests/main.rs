@@ -37,5 +37,4 @@ mod rays;
 mod square_cloak;
 mod stokes;
 mod touching;
-mod touching_pairs;
 mod transfer_matrix;

@@ -7,8 +7,6 @@ use cloakroom::assembly::Assembly;
 use cloakroom::output::Samples;
 use cloakroom::trace::{Launch, Leaf, Limits, Tracer};
 use glam::{DVec2, DVec3};
-use std::f64::consts::TAU;
-use std::fmt::Write;
 
 const LIMITS: Limits = Limits { min_power: 1e-9, tolerance: 1e-6 };
 
@@ -156,95 +154,6 @@ fn blocks_of_one_glass_that_touch_are_one_block() {
                 "{first} {bounds:?} {ray:?}"
             );
             assert!(onward(&leaves, ray.direction) > 0.9, "{leaves:?}");
-        }
-    }
-}
-
-/// A convex polygon cut at random: pieces whose sides are no shorter than `shortest`.
-fn cut_at_random(square: &[DVec2], numbers: &mut Numbers, shortest: f64) -> Vec<Vec<DVec2>> {
-    let mut pieces = vec![square.to_vec()];
-    let wanted = 2 + (5.0 * numbers.next()) as usize;
-    for _ in 0..200 {
-        if pieces.len() == wanted {
-            break;
-        }
-        let chosen = (numbers.next() * pieces.len() as f64) as usize;
-        let piece = &pieces[chosen];
-        let sides = piece.len();
-        let first = (numbers.next() * sides as f64) as usize;
-        let second = (first + 1 + (numbers.next() * (sides - 1) as f64) as usize) % sides;
-        let (first, second) = (first.min(second), first.max(second));
-        let [a, b] = [first, second]
-            .map(|side| piece[side].lerp(piece[(side + 1) % sides], numbers.between(0.1, 0.9)));
-        let one: Vec<_> = [&[a][..], &piece[first + 1..=second], &[b]].concat();
-        let other: Vec<_> = [&piece[..=first], &[a, b], &piece[second + 1..]].concat();
-        let long = |piece: &Vec<DVec2>| {
-            let next = piece.iter().cycle().skip(1);
-            piece.iter().zip(next).all(|(a, b)| a.distance(*b) >= shortest)
-        };
-        if long(&one) && long(&other) {
-            pieces[chosen] = one;
-            pieces.push(other);
-        }
-    }
-    pieces
-}
-
-#[test]
-fn a_glass_square_is_the_same_however_it_is_cut() {
-    const SHORTEST: f64 = 0.75;
-    let mut numbers = Numbers(3);
-    for round in 0..count(60, 2000) {
-        let pose = numbers.pose();
-        let turn = DVec2::from_angle(numbers.between(0.0, TAU)) * 3.0;
-        let square = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-            .map(|corner| turn.rotate(DVec2::from(corner)));
-        let pieces = cut_at_random(&square, &mut numbers, SHORTEST);
-        let length = if round % 2 == 0 { "length = 4\n" } else { "" };
-        let place = placed(pose.origin, &pose.rotation());
-        let scene = |parts: &[Vec<DVec2>]| {
-            let mut scene = format!("[[device]]\nkind = \"prisms\"\n{length}{place}");
-            for part in parts {
-                // As one writes corners: with six decimals.
-                let corners = part.iter().map(|at| format!("[{:.6}, {:.6}]", at.x, at.y));
-                let corners = corners.collect::<Vec<_>>().join(", ");
-                writeln!(scene, "[[device.prism]]\ncorners = [{corners}]\npermittivity = 2.25")
-                    .unwrap();
-            }
-            scene
-        };
-        let (cut, whole) = (assembly(&scene(&pieces)), assembly(&scene(&[square.to_vec()])));
-        // Rounded corners turn a piece of a side as moving a corner of the square does that
-        // much farther, which shows where light comes in or out grazing.
-        let by = 1.4e-6 * 6.0 / SHORTEST;
-        let moves = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].map(|way| way * by);
-        let bent: Vec<Assembly> = (0..16)
-            .map(|i| {
-                let mut corners = square;
-                corners[i / 4] += moves[i % 4];
-                assembly(&scene(&[corners.to_vec()]))
-            })
-            .collect();
-        for _ in 0..20 {
-            let target = DVec3::new(0.0, numbers.between(-3.0, 3.0), numbers.between(-1.0, 1.0));
-            let from = DVec3::new(-20.0, 0.1, 0.2);
-            let ray = launch(pose.to_world(from), pose.vector_to_world(target - from));
-            let sorted = |assembly: &Assembly| {
-                let mut powers: Vec<f64> =
-                    leaves(assembly, &ray).iter().map(|leaf| leaf.power[0]).collect();
-                powers.sort_by(|a, b| b.total_cmp(a));
-                powers.truncate(3);
-                powers
-            };
-            let (found, expected) = (sorted(&cut), sorted(&whole));
-            let others: Vec<_> = bent.iter().map(sorted).collect();
-            let is_near = |i: usize| {
-                let most = others.iter().filter_map(|other| other.get(i));
-                let most = most.map(|other| (other - expected[i]).abs()).fold(1e-5, f64::max);
-                (found[i] - expected[i]).abs() < most
-            };
-            let near = found.len() == expected.len() && (0..found.len()).all(is_near);
-            assert!(near, "{found:?} {expected:?} {others:?}\n{}", scene(&pieces));
         }
     }
 }

@@ -3,6 +3,7 @@
 use cloakroom::keys::ValueRange;
 use cloakroom::split_mix::{STEP, mix};
 use glam::DVec3;
+use optics::geometry::Pose;
 use std::f64::consts::TAU;
 
 /// Where choices come from. The same source gives the same choices.
@@ -101,6 +102,17 @@ impl Draws<'_> {
             _ => f64::from_bits(u64::from_le_bytes(self.bytes())),
         };
         if limits.allow(number) || (number.is_finite() && self.chance(8)) { number } else { usual }
+    }
+
+    /// A number of one decimal in an interval.
+    pub fn tenths(&mut self, low: f64, high: f64) -> f64 {
+        (10.0 * self.between(low, high)).round() / 10.0
+    }
+
+    /// A pose about any axis, its origin within 30 cm of the world's.
+    pub fn pose(&mut self) -> Pose {
+        let origin = self.direction() * self.between(0.0, 30.0);
+        Pose::with_axis(origin, self.between(0.0, TAU), self.direction())
     }
 
     /// A direction, evenly on the sphere.

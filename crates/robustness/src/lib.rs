@@ -6,15 +6,21 @@
 //! crate do so briefly, and repeat every input that once found a fault (`regressions/`). The
 //! program `soak` traces random rays through random devices and counts.
 
+mod cuts;
 mod draws;
 mod page;
 mod rays;
 mod scenes;
+mod stacks;
+mod touching;
 mod trials;
 
+pub use cuts::cut_glass;
 pub use draws::Draws;
 pub use rays::{Fault, examine, launch, starts_in_air, timed};
 pub use scenes::scene_of;
+pub use stacks::stack;
+pub use touching::{touch, touch_any, touching_kinds};
 pub use trials::{TRIALS, Trial};
 
 /// Runs the trial of a name.

@@ -51,6 +51,11 @@ pub fn launch(draws: &mut Draws<'_>, reach: f64) -> Launch<2> {
             (flat, DVec3::new(target.x.round(), target.y.round(), 0.0) - flat)
         }
     };
+    launch_along(origin, direction)
+}
+
+/// A ray of horizontal and vertical light; along x without a direction.
+pub(crate) fn launch_along(origin: DVec3, direction: DVec3) -> Launch<2> {
     let direction = direction.try_normalize().unwrap_or(DVec3::X);
     let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
     Launch { origin, direction, electric: [h.into(), v.into()] }

@@ -1,10 +1,16 @@
 //! Random scenes: any device of the catalogue, with any of its keys.
 
 use crate::draws::Draws;
+use cloakroom::assembly::Assembly;
 use cloakroom::device::{CATALOGUE, Entry};
 use cloakroom::keys::{Key, KeyKind, ValueRange};
 use cloakroom::scene::{Placement, TABLES};
+use cloakroom::{render, scene_file};
+use glam::{DMat3, DVec3};
+use optics::geometry::Pose;
 use std::f64::consts::TAU;
+use std::fmt::Display;
+use std::path::Path;
 use toml::{Table, Value};
 
 /// Imaginary parts around this dim light over centimetres at the default wavelength.
@@ -171,6 +177,32 @@ fn samples(draws: &mut Draws<'_>, limits: ValueRange) -> Value {
         (0..columns).map(number).map(Value::from).collect::<Vec<_>>().into()
     };
     (0..rows).map(|_| row()).collect::<Vec<_>>().into()
+}
+
+/// The devices of a scene that must be sound.
+pub(crate) fn assembly(scene: &str) -> Assembly {
+    let told = |error: &dyn Display| -> ! { panic!("{error}\n{scene}") };
+    let loaded = scene_file::parse(scene, "scene", Path::new("/nowhere"), &[]);
+    let loaded = loaded.unwrap_or_else(|error| told(&error));
+    render::assembly(&loaded.scene).unwrap_or_else(|error| told(&error))
+}
+
+/// The keys of a device's pose that put its origin and its axes to where they are given.
+pub(crate) fn placed(origin: DVec3, rotation: &DMat3) -> String {
+    // The axis is turned along; what is left is a rotation about it.
+    let axis = rotation.z_axis;
+    let upright = Pose::with_axis(DVec3::ZERO, 0.0, axis).rotation().transpose() * *rotation;
+    let turn = upright.x_axis.y.atan2(upright.x_axis.x).to_degrees();
+    let (origin, axis) = (origin.to_array(), axis.to_array());
+    format!("position = {origin:?}\nrotation = {turn:?}\naxis = {axis:?}\n")
+}
+
+/// A symmetric tensor of any orientation with principal values in an interval, as in a scene file.
+pub(crate) fn tensor_near(draws: &mut Draws<'_>, low: f64, high: f64) -> String {
+    let turn = draws.pose().rotation();
+    let values = DVec3::from_array([0; 3].map(|_| draws.between(low, high)));
+    let tensor = turn * DMat3::from_diagonal(values) * turn.transpose();
+    format!("{:?}", ((tensor + tensor.transpose()) * 0.5).to_cols_array_2d())
 }
 
 /// A permittivity or a permeability: scalar, diagonal or full; mostly lossless and definite.

@@ -1,6 +1,9 @@
 //! The trials: bytes in, a panic if something is wrong.
 
+use crate::cuts::cut_glass;
 use crate::draws::Draws;
+use crate::stacks::stack;
+use crate::touching::touch_any;
 use crate::{page, rays, scenes};
 use cloakroom::assembly::Assembly;
 use cloakroom::interface_json::{InterfaceRequest, solve_interfaces};
@@ -42,6 +45,9 @@ pub static TRIALS: &[Trial] = &[
     Trial { name: "picture_files", run: picture_files, seeds: picture_bytes },
     Trial { name: "page_messages", run: page::say, seeds: page::messages },
     Trial { name: "physics", run: physics, seeds: random_bytes },
+    Trial { name: "touching", run: |bytes| drawn(bytes, touch_any), seeds: random_bytes },
+    Trial { name: "cuts", run: |bytes| drawn(bytes, cut_glass), seeds: random_bytes },
+    Trial { name: "stacks", run: |bytes| drawn(bytes, stack), seeds: random_bytes },
 ];
 
 /// Branches weaker than this are not followed: trees of the trials end soon.
@@ -266,6 +272,11 @@ fn physics(bytes: &[u8]) {
     let reach = 10f64.powf(draws.between(-3.0, 4.0));
     let launches: Vec<Launch<2>> = (0..count).map(|_| rays::launch(&mut draws, reach)).collect();
     trace(&assembly, render::limits(&loaded.scene), &launches);
+}
+
+/// A scene that bytes choose.
+fn drawn(bytes: &[u8], send: fn(&mut Draws<'_>) -> u64) {
+    send(&mut Draws::Bytes(bytes));
 }
 
 fn scene_texts() -> Vec<Vec<u8>> {

@@ -15,6 +15,7 @@ fn count(trial: &Trial) -> u64 {
         // A connection and a picture each.
         "page_messages" => long::count(10, 60),
         "scene_file" | "physics" => long::count(60, 400),
+        "touching" | "cuts" | "stacks" => long::count(20, 400),
         _ => long::count(500, 3000),
     }
 }
@@ -159,4 +160,19 @@ fn messages_of_pages() {
 #[test]
 fn random_rays_through_random_devices() {
     briefly("physics");
+}
+
+#[test]
+fn devices_that_touch() {
+    briefly("touching");
+}
+
+#[test]
+fn glass_cut_at_random() {
+    briefly("cuts");
+}
+
+#[test]
+fn stacks_of_plates() {
+    briefly("stacks");
 }

@@ -5,3 +5,4 @@ mod briefly;
 #[path = "../../optics/tests/long.rs"]
 mod long;
 mod soaked;
+mod touching;

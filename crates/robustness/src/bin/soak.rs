@@ -1,7 +1,8 @@
 //! Traces random rays through random devices of every kind, for as long as one likes, and counts
 //! what must not be.
 //!
-//! The work is done in parcels: one random device each, and up to 20 000 rays. Every finished
+//! The work is done in parcels: one random device each, and up to 20 000 rays; or as many through
+//! devices that touch, glass cut at random, or stacks of plates. Every finished
 //! parcel is a line of the record; begun again with the same record, the program goes on where it
 //! was. A ray that does not end within a minute of computing is recorded, too, and ends the
 //! program.
@@ -13,7 +14,7 @@
 
 use clap::Parser;
 use cloakroom::assembly::Assembly;
-use cloakroom::device::CATALOGUE;
+use cloakroom::device::{CATALOGUE, Entry};
 use cloakroom::render;
 use cloakroom::scene_file;
 use cloakroom::trace::{Limits, Tracer};
@@ -124,13 +125,38 @@ fn write_line(mut record: &File, line: &Value) -> io::Result<()> {
     record.write_all(format!("\n{line}").as_bytes())
 }
 
-/// One random device and the rays through it.
+/// A random scene that is looked at for what is said of such scenes alone: it sends rays, and
+/// panics if that is not so.
+type Trial = fn(&mut Draws<'_>) -> u64;
+
+/// What parcels are of beside one device each.
+const TRIALS: [(&str, Trial); 3] = [
+    ("devices that touch", robustness::touch_any),
+    ("cut glass", robustness::cut_glass),
+    ("stacks of plates", robustness::stack),
+];
+
+/// What a parcel is of: a device, or a trial.
+fn subject(number: u64) -> Result<&'static Entry, (&'static str, Trial)> {
+    let subject = (number % (CATALOGUE.len() + TRIALS.len()) as u64) as usize;
+    CATALOGUE.get(subject).copied().ok_or_else(|| TRIALS[subject - CATALOGUE.len()])
+}
+
+/// The name of what a parcel is of.
+fn kind(number: u64) -> &'static str {
+    subject(number).map_or_else(|(name, _)| name, |entry| entry.kind)
+}
+
+/// One random device and the rays through it, or a trial as long.
 fn parcel(number: u64) -> Value {
-    let entry = CATALOGUE[(number % CATALOGUE.len() as u64) as usize];
     let mut draws = Draws::Seed(number.wrapping_mul(0xA076_1D64_78BD_642F));
     PARCEL.store(number, Ordering::Relaxed);
     BEGUN.fetch_add(1, Ordering::Relaxed);
     let ran = catch_unwind(AssertUnwindSafe(|| {
+        let entry = match subject(number) {
+            Ok(entry) => entry,
+            Err((_, trial)) => return Some(try_out(trial, &mut draws)),
+        };
         let scene = robustness::scene_of(&mut draws, entry).to_string();
         let loaded = scene_file::parse(&scene, "soak", Path::new("/nowhere"), &[]).ok()?;
         let assembly = render::assembly(&loaded.scene).ok()?;
@@ -143,8 +169,20 @@ fn parcel(number: u64) -> Value {
         Err(_) => json!({ "panics": 1 }),
     };
     line["parcel"] = json!(number);
-    line["kind"] = json!(entry.kind);
+    line["kind"] = json!(kind(number));
     line
+}
+
+/// Repeats a trial.
+fn try_out(trial: Trial, draws: &mut Draws<'_>) -> Value {
+    let start = Instant::now();
+    let (mut scenes, mut rays) = (0, 0);
+    while rays < RAYS && start.elapsed() < LONGEST {
+        BEGUN.fetch_add(1, Ordering::Relaxed);
+        rays += trial(draws);
+        scenes += 1;
+    }
+    json!({ "devices": scenes, "rays": rays, "seconds": start.elapsed().as_secs_f64() })
 }
 
 fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>) -> Value {
@@ -218,8 +256,7 @@ fn watch(start: Instant, record: File) {
                 (begun, since) = (last, now);
             } else if now.saturating_sub(since) > STUCK {
                 let number = PARCEL.load(Ordering::Relaxed);
-                let kind = CATALOGUE[(number % CATALOGUE.len() as u64) as usize].kind;
-                let line = json!({ "parcel": number, "kind": kind, "stuck": 1 });
+                let line = json!({ "parcel": number, "kind": kind(number), "stuck": 1 });
                 let _ = write_line(&record, &line);
                 eprintln!("error: a ray of parcel {number} does not end");
                 std::process::exit(1);
@@ -247,9 +284,10 @@ fn print_table(lines: &[Value]) -> bool {
             largest(lines, "slowest_ms")
         );
     };
-    for entry in CATALOGUE {
-        let of_kind: Vec<&Value> = lines.iter().filter(|line| line["kind"] == entry.kind).collect();
-        row(entry.kind, &of_kind);
+    let kinds = CATALOGUE.iter().map(|entry| entry.kind);
+    for kind in kinds.chain(TRIALS.map(|(name, _)| name)) {
+        let of_kind: Vec<&Value> = lines.iter().filter(|line| line["kind"] == kind).collect();
+        row(kind, &of_kind);
     }
     let all: Vec<&Value> = lines.iter().collect();
     row("all", &all);

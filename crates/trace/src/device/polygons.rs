@@ -71,13 +71,20 @@ impl Films<'_> {
     }
 }
 
-/// The device of the parts.
+/// The device of the parts, whose corners may be off by `rounding` (cm), at least [`SAME_POINT`].
+///
+/// Sides of two parts that lie along each other no farther apart than that are one. A gap beyond
+/// [`SAME_POINT`] that is as wide at both of its ends is none of rounding, and stays a gap.
 ///
 /// # Errors
 ///
 /// If two parts overlap: their numbers.
-pub(super) fn polygonal(parts: &[PolygonPart], extent: Extent) -> Result<Structure, [usize; 2]> {
-    let pieces = pieces(parts)?;
+pub(super) fn polygonal(
+    parts: &[PolygonPart],
+    extent: Extent,
+    rounding: f64,
+) -> Result<Structure, [usize; 2]> {
+    let pieces = pieces(parts, rounding)?;
     let (mut regions, mut surfaces) = (Vec::new(), Vec::new());
     let mut films = Films { parts, known: HashMap::new(), films: Vec::new() };
     for (index, piece) in pieces.iter().enumerate() {
@@ -88,7 +95,7 @@ pub(super) fn polygonal(parts: &[PolygonPart], extent: Extent) -> Result<Structu
             let normal = Wall::new(from, to, extent).normal;
             let plane = Plane { normal, offset: normal.truncate().dot(from) };
             let along = (to - from).normalize();
-            let stretches = stretches(parts, &pieces, index, edge);
+            let stretches = stretches(parts, &pieces, [index, edge], rounding);
             let last = stretches.len() - 1;
             for (number, Stretch { from, to, far, beyond }) in stretches.into_iter().enumerate() {
                 let until = if number == last { f64::INFINITY } else { along.dot(to) };
@@ -123,7 +130,7 @@ pub(super) fn polygonal(parts: &[PolygonPart], extent: Extent) -> Result<Structu
 }
 
 /// The convex pieces of all parts, which must not overlap.
-fn pieces(parts: &[PolygonPart]) -> Result<Vec<Piece>, [usize; 2]> {
+fn pieces(parts: &[PolygonPart], rounding: f64) -> Result<Vec<Piece>, [usize; 2]> {
     let mut pieces: Vec<Piece> = Vec::new();
     let (mut regions, mut metals) = (0, 0);
     for (index, part) in parts.iter().enumerate() {
@@ -136,7 +143,7 @@ fn pieces(parts: &[PolygonPart]) -> Result<Vec<Piece>, [usize; 2]> {
             let outline = part.polygon.outline(&corners);
             let overlapped = pieces
                 .iter()
-                .find(|other| other.part != index && other.outline.overlaps(&outline, SAME_POINT));
+                .find(|other| other.part != index && other.outline.overlaps(&outline, rounding));
             if let Some(other) = overlapped {
                 return Err([other.part, index]);
             }
@@ -151,8 +158,16 @@ fn pieces(parts: &[PolygonPart]) -> Result<Vec<Piece>, [usize; 2]> {
     Ok(pieces)
 }
 
+/// Ends of a gap that differ by no more than this share make it a gap with parallel sides.
+const PARALLEL: f64 = 1e-6;
+
 /// The stretches of an edge of a piece, in order from its first corner to its second.
-fn stretches(parts: &[PolygonPart], pieces: &[Piece], index: usize, edge: usize) -> Vec<Stretch> {
+fn stretches(
+    parts: &[PolygonPart],
+    pieces: &[Piece],
+    [index, edge]: [usize; 2],
+    rounding: f64,
+) -> Vec<Stretch> {
     let piece = &pieces[index];
     let ends = |piece: &Piece, edge: usize| {
         [piece.corners[edge], piece.corners[(edge + 1) % piece.corners.len()]]
@@ -181,11 +196,13 @@ fn stretches(parts: &[PolygonPart], pieces: &[Piece], index: usize, edge: usize)
             // How far off it is where the two are side by side: further on, rounded corners lead
             // astray.
             let off = |at: f64| off_start + (off_end - off_start) * (at - start) / (end - start);
-            let beside = [low, high].iter().all(|at| off(*at).abs() <= SAME_POINT);
-            if beside && high - low > SAME_POINT {
+            let [first, last] = [low, high].map(off);
+            let farther = first.abs().max(last.abs());
+            let is_gap = first.min(last) > SAME_POINT && (first - last).abs() <= PARALLEL * farther;
+            if farther <= rounding && !is_gap && high - low > rounding {
                 let clamped = |p: DVec2, at: f64| match at {
-                    at if at <= SAME_POINT => from,
-                    at if at >= length - SAME_POINT => to,
+                    at if at <= rounding => from,
+                    at if at >= length - rounding => to,
                     _ => p,
                 };
                 let same = !other.itself.is_metal()
@@ -203,13 +220,13 @@ fn stretches(parts: &[PolygonPart], pieces: &[Piece], index: usize, edge: usize)
     let mut stretches = Vec::new();
     let (mut at, mut reached) = (from, 0.0);
     for (low, high, stretch) in touching {
-        if low - reached > SAME_POINT {
+        if low - reached > rounding {
             stretches.push(outside(at, stretch.from));
         }
         (at, reached) = (stretch.to, high);
         stretches.push(stretch);
     }
-    if length - reached > SAME_POINT {
+    if length - reached > rounding {
         stretches.push(outside(at, to));
     }
     stretches

@@ -56,11 +56,14 @@ impl Device for Prisms {
             }
             Show::Mirror => super::refuse_other_views(request, "prisms imitate no mirror")?,
         }
-        polygonal(&parts, Extent::centred(request.length)).map_err(|[first, second]| {
-            let message =
-                format!("prism {second} overlaps prism {first} (counted from 0); cut one of them");
-            KeyError::at(key!(PrismOfMedium.corners), message).within(key!(Self.prism), second)
-        })
+        polygonal(&parts, Extent::centred(request.length), self.rounding()).map_err(
+            |[first, second]| {
+                let message = format!(
+                    "prism {second} overlaps prism {first} (counted from 0); cut one of them"
+                );
+                KeyError::at(key!(PrismOfMedium.corners), message).within(key!(Self.prism), second)
+            },
+        )
     }
 
     fn facts(&self) -> Vec<Fact> {
@@ -91,7 +94,27 @@ impl Prisms {
         });
         prisms.collect()
     }
+
+    /// How far sides that are meant to lie along each other may be apart, cm, where corners are
+    /// rounded to the decimals with which they are written: each of two sides by half a step along x
+    /// and along y. It is less than any side by far.
+    fn rounding(&self) -> f64 {
+        let polygons = || self.prism.iter().filter_map(|prism| prism.corners.as_ref());
+        let numbers = polygons().flatten().flatten();
+        let decimals =
+            |number: &f64| number.to_string().split_once('.').map_or(0, |(_, d)| d.len());
+        let step = numbers.map(decimals).max().map_or(1.0, |most| 10f64.powi(-(most as i32)));
+        let sides = polygons().flat_map(|corners| {
+            let next = corners.iter().cycle().skip(1);
+            corners.iter().zip(next).map(|(a, b)| DVec2::from(*a).distance(DVec2::from(*b)))
+        });
+        let shortest = sides.fold(f64::INFINITY, f64::min);
+        (1.5 * step).min(LARGEST_ROUNDING).min(0.1 * shortest).max(SAME_POINT)
+    }
 }
+
+/// Corners are written with four decimals at least where it matters.
+const LARGEST_ROUNDING: f64 = 1.5e-4;
 
 /// One prism; its corners are moved onto those of earlier ones, `known`, that are the same but for
 /// rounding.

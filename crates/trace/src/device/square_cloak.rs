@@ -10,7 +10,7 @@ use super::{Device, Fact, Hull, Request, Show, Structure};
 use crate::key;
 use crate::keys::{KeyError, ValueRange};
 use glam::{DMat3, DVec2, DVec3};
-use optics::geometry::{Extent, Outline, Polygon, Solid};
+use optics::geometry::{Extent, Outline, Polygon, SAME_POINT, Solid};
 use optics::medium::{Medium, Tensor};
 use optics::transformation::StripToRhombus;
 
@@ -118,7 +118,7 @@ fn square(
     if !open_core {
         parts.push(part(&rhombus, None)?);
     }
-    let structure = polygonal(&parts, extent)
+    let structure = polygonal(&parts, extent, SAME_POINT)
         .map_err(|_| of_kappa("the segments overlap by rounding".to_owned()))?;
     let outline = Outline { corners: if recipe.is_some() { square } else { rhombus }.to_vec() };
     let whole = Solid::Prism { outline, extent };

@@ -1,13 +1,15 @@
 //! Pairs of devices of all kinds that touch, in any pose: all power is accounted for, and no light
 //! is in metal.
 
-use crate::long::count;
-use crate::rays::{Numbers, assembly, launch};
+use crate::draws::Draws;
+use crate::rays::launch_along;
+use crate::scenes::assembly;
 use cloakroom::assembly::{Assembly, Placed};
 use cloakroom::trace::{Launch, LeafEnd, Limits, PathRecorder, PathSegment, Tracer};
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use optics::geometry::Pose;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+use std::sync::LazyLock;
 
 const LIMITS: Limits = Limits { min_power: 1e-3, tolerance: 1e-6 };
 
@@ -185,8 +187,8 @@ fn all_sorts() -> Vec<Sort> {
 }
 
 /// A block of metal or of what is opaque, of sizes of one decimal, and a side of it.
-fn metal_block(numbers: &mut Numbers) -> (Sort, Side) {
-    let half = DVec3::from_array([0; 3].map(|_| numbers.tenths(0.1, 4.0)));
+fn metal_block(draws: &mut Draws<'_>) -> (Sort, Side) {
+    let half = DVec3::from_array([0; 3].map(|_| draws.tenths(0.1, 4.0)));
     let DVec3 { x, y, z } = half;
     let opaque = "surface = { color = [1, 1, 1] }";
     let prism = format!(
@@ -195,22 +197,22 @@ fn metal_block(numbers: &mut Numbers) -> (Sort, Side) {
     let body = |shape: &str| format!("kind = \"body\"\nshape = \"{shape}\"\n{opaque}\n");
     let length = format!("length = {:.1}", 2.0 * z);
     let round = Metal::Cylinder(x, z);
-    let (text, metal, side) = match (6.0 * numbers.next()) as usize {
+    let (text, metal, side) = match draws.below(6) {
         0 => {
             let endless = half.with_z(f64::INFINITY);
             (format!("kind = \"prisms\"\n{prism}\n"), Metal::Box(endless), (DVec3::X, x))
         }
         1 => {
-            let side = *numbers.of(&[(DVec3::X, x), (DVec3::NEG_Y, y), (DVec3::Z, z)]);
+            let side = *draws.pick(&[(DVec3::X, x), (DVec3::NEG_Y, y), (DVec3::Z, z)]);
             (format!("kind = \"prisms\"\n{length}\n{prism}\n"), Metal::Box(half), side)
         }
         2 => {
-            let side = *numbers.of(&[(DVec3::NEG_X, x), (DVec3::Y, y), (DVec3::NEG_Z, z)]);
+            let side = *draws.pick(&[(DVec3::NEG_X, x), (DVec3::Y, y), (DVec3::NEG_Z, z)]);
             let size = format!("size = [{:.1}, {:.1}, {:.1}]\n", 2.0 * x, 2.0 * y, 2.0 * z);
             (body("box") + &size, Metal::Box(half), side)
         }
         3 => {
-            let side = (numbers.direction(), x);
+            let side = (draws.direction(), x);
             (format!("{}radius = {x}\n", body("sphere")), Metal::Ball(x), side)
         }
         4 => (format!("{}radius = {x}\n{length}\n", body("cylinder")), round, (DVec3::NEG_Z, z)),
@@ -220,13 +222,13 @@ fn metal_block(numbers: &mut Numbers) -> (Sort, Side) {
 }
 
 /// A direction by which a device may touch another: often that of a face of it, or across its axis.
-fn normal(numbers: &mut Numbers) -> DVec3 {
-    let sign = numbers.of(&[1.0, -1.0]);
-    match (4.0 * numbers.next()) as usize {
-        0 => *numbers.of(&DVec3::AXES) * *sign,
-        1 => DVec3::new(FRAC_1_SQRT_2, FRAC_1_SQRT_2 * sign, 0.0) * *numbers.of(&[1.0, -1.0]),
-        2 => DVec2::from_angle(numbers.between(0.0, TAU)).extend(0.0),
-        _ => numbers.direction(),
+fn normal(draws: &mut Draws<'_>) -> DVec3 {
+    let sign = draws.pick(&[1.0, -1.0]);
+    match draws.below(4) {
+        0 => *draws.pick(&DVec3::AXES) * *sign,
+        1 => DVec3::new(FRAC_1_SQRT_2, FRAC_1_SQRT_2 * sign, 0.0) * *draws.pick(&[1.0, -1.0]),
+        2 => DVec2::from_angle(draws.between(0.0, TAU)).extend(0.0),
+        _ => draws.direction(),
     }
 }
 
@@ -251,14 +253,14 @@ impl std::fmt::Debug for Pair<'_> {
 impl<'a> Pair<'a> {
     /// Devices side by side along x, each touching by a side, at a place of one decimal; half of
     /// the pairs upright, half turned about any axis.
-    fn new(sorts: [&'a Sort; 2], sides: [Side; 2], numbers: &mut Numbers) -> Self {
-        let at = numbers.tenths(-5.0, 5.0);
-        let is_turned = numbers.next() < 0.5;
-        let pose = if is_turned { numbers.pose() } else { Pose::IDENTITY };
+    fn new(sorts: [&'a Sort; 2], sides: [Side; 2], draws: &mut Draws<'_>) -> Self {
+        let at = draws.tenths(-5.0, 5.0);
+        let is_turned = draws.share() < 0.5;
+        let pose = if is_turned { draws.pose() } else { Pose::IDENTITY };
         let devices = [0, 1].map(|i| {
             let (normal, reach) = sides[i];
             let along = if i == 0 { DVec3::X } else { DVec3::NEG_X };
-            let roll = if is_turned { numbers.between(0.0, TAU) } else { 0.0 };
+            let roll = if is_turned { draws.between(0.0, TAU) } else { 0.0 };
             let turn = DMat3::from_rotation_x(roll)
                 * DMat3::from_quat(DQuat::from_rotation_arc(normal, along));
             // A number as one writes it, where that is short.
@@ -272,14 +274,14 @@ impl<'a> Pair<'a> {
     }
 
     /// A ray onto the plane, from before it or from beyond.
-    fn ray(&self, before: bool, numbers: &mut Numbers) -> Launch<2> {
+    fn ray(&self, before: bool, draws: &mut Draws<'_>) -> Launch<2> {
         let mut across =
-            |half: f64| DVec2::new(numbers.between(-half, half), numbers.between(-half, half));
+            |half: f64| DVec2::new(draws.between(-half, half), draws.between(-half, half));
         let (target, from) = (across(3.0), across(60.0));
         let far = if before { -80.0 } else { 80.0 };
         let (target, from) = (target.extend(self.at), from.extend(self.at + far));
         let [target, from] = [target, from].map(|p| self.pose.to_world(DVec3::new(p.z, p.x, p.y)));
-        launch(from, target - from)
+        launch_along(from, target - from)
     }
 
     /// Follows a ray: all of its power is accounted for, and none of it is in metal.
@@ -337,73 +339,99 @@ impl PathRecorder<2> for Guard<'_> {
     }
 }
 
-#[test]
-fn light_never_goes_through_metal_that_touches_a_device() {
-    let sorts = all_sorts();
-    let mut numbers = Numbers(7);
-    for round in 0..count(1500, 40_000) {
-        let sort = &sorts[round % sorts.len()];
-        let normal = normal(&mut numbers);
-        let (block, side) = metal_block(&mut numbers);
-        let pair = Pair::new([sort, &block], [(normal, sort.reach(normal)), side], &mut numbers);
-        for _ in 0..4 {
-            pair.follow(&pair.ray(true, &mut numbers));
-        }
-    }
+/// All kinds of devices that may touch.
+static SORTS: LazyLock<Vec<Sort>> = LazyLock::new(all_sorts);
+
+/// How many kinds there are.
+#[must_use]
+pub fn touching_kinds() -> usize {
+    SORTS.len()
 }
 
-#[test]
-fn every_pair_of_kinds_that_touch_balances() {
-    let sorts = all_sorts();
-    let mut numbers = Numbers(19);
-    for _ in 0..count(1, 20) {
-        for one in &sorts {
-            for other in &sorts {
-                let sides = [one, other].map(|sort| {
-                    let normal = normal(&mut numbers);
-                    (normal, sort.reach(normal))
-                });
-                let pair = Pair::new([one, other], sides, &mut numbers);
-                for before in [true, false] {
-                    pair.follow(&pair.ray(before, &mut numbers));
-                }
+/// Has two devices of any kinds touch, or one and a block of metal, and sends rays there; how many.
+///
+/// # Panics
+///
+/// As [`touch`].
+pub fn touch_any(draws: &mut Draws<'_>) -> u64 {
+    let kinds = touching_kinds();
+    let (kind, other) = (draws.below(kinds), draws.below(2 * kinds));
+    touch(kind, (other < kinds).then_some(other), draws)
+}
+
+/// Has a device of a kind touch one of another, or a block of metal, anywhere, and sends rays there;
+/// how many.
+///
+/// # Panics
+///
+/// If light is in metal, or power is not accounted for.
+pub fn touch(kind: usize, other: Option<usize>, draws: &mut Draws<'_>) -> u64 {
+    const RAYS: u64 = 4;
+    let side = |sort: &Sort, draws: &mut Draws<'_>| {
+        let normal = normal(draws);
+        (normal, sort.reach(normal))
+    };
+    let one = &SORTS[kind % SORTS.len()];
+    let at_one = side(one, draws);
+    let block;
+    let (other, at_other) = match other {
+        Some(other) => {
+            let other = &SORTS[other % SORTS.len()];
+            (other, side(other, draws))
+        }
+        None => {
+            let (made, side) = metal_block(draws);
+            block = made;
+            (&block, side)
+        }
+    };
+    let pair = Pair::new([one, other], [at_one, at_other], draws);
+    for number in 0..RAYS {
+        pair.follow(&pair.ray(number % 2 == 0, draws));
+    }
+    RAYS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_in_metal_is_seen() {
+        let sorts = [Sort::new(
+            "kind = \"body\"\npermittivity = 2.25\nshape = \"box\"\n",
+            Metal::Ball(2.0),
+        )];
+        let side = |normal| (normal, 5.0);
+        let mut draws = Draws::Seed(3);
+        let pair = Pair::new([&sorts[0], &sorts[0]], [side(DVec3::X), side(DVec3::X)], &mut draws);
+        let mut guard = Guard { pair: &pair, deepest: (0.0, None) };
+        let way = [-20.0, 20.0].map(|x| pair.pose.to_world(DVec3::new(x, 0.5, 0.0)));
+        guard.see(&way, None);
+        assert!((guard.deepest.0 - 1.5).abs() < 1e-9, "{:?}", guard.deepest);
+    }
+
+    #[test]
+    fn bare_metal_beside_another_device_sends_light_back_twice() {
+        // From the flank of the bump to its slope, and on: the same curved surface is met again.
+        let metal = Metal::Triangle(DVec2::new(2.5, 1.7), 0.0);
+        let carpet = "kind = \"gaussian-carpet\"\nw = 4\nh = 1.7\nwidth = 16\nheight = 8\nlength = 12\n\
+                      floor = 0\nshow = \"bare\"\n";
+        let block = "kind = \"body\"\nshape = \"box\"\nposition = [0, -60, 0]\nsize = [1, 1, 1]\n";
+        for scene in
+            [format!("[[device]]\n{carpet}"), format!("[[device]]\n{carpet}[[device]]\n{block}")]
+        {
+            let assembly = assembly(&scene);
+            let from = DVec3::new(-75.65248864504684, 8.861979943570812, -8.55665947216152);
+            let along = DVec3::new(0.9883195716285171, -0.1274860746435289, 0.08349685687502995);
+            let mut tracer = Tracer::new(&assembly, LIMITS);
+            let ray = launch_along(from, along);
+            let (leaves, outcome) = tracer.trace(&ray);
+            outcome.assert_balanced(leaves, 1e-9, &ray);
+            for leaf in leaves {
+                let end = leaf.position + leaf.direction * 100.0;
+                assert!(metal.deepest(leaf.position, end) < DEEP, "{scene}{leaf:?}");
             }
-        }
-    }
-}
-
-#[test]
-fn light_in_metal_is_seen() {
-    let sorts =
-        [Sort::new("kind = \"body\"\npermittivity = 2.25\nshape = \"box\"\n", Metal::Ball(2.0))];
-    let side = |normal| (normal, 5.0);
-    let pair = Pair::new([&sorts[0], &sorts[0]], [side(DVec3::X), side(DVec3::X)], &mut Numbers(3));
-    let mut guard = Guard { pair: &pair, deepest: (0.0, None) };
-    let way = [-20.0, 20.0].map(|x| pair.pose.to_world(DVec3::new(x, 0.5, 0.0)));
-    guard.see(&way, None);
-    assert!((guard.deepest.0 - 1.5).abs() < 1e-9, "{:?}", guard.deepest);
-}
-
-#[test]
-fn bare_metal_beside_another_device_sends_light_back_twice() {
-    // From the flank of the bump to its slope, and on: the same curved surface is met again.
-    let metal = Metal::Triangle(DVec2::new(2.5, 1.7), 0.0);
-    let carpet = "kind = \"gaussian-carpet\"\nw = 4\nh = 1.7\nwidth = 16\nheight = 8\nlength = 12\n\
-                  floor = 0\nshow = \"bare\"\n";
-    let block = "kind = \"body\"\nshape = \"box\"\nposition = [0, -60, 0]\nsize = [1, 1, 1]\n";
-    for scene in
-        [format!("[[device]]\n{carpet}"), format!("[[device]]\n{carpet}[[device]]\n{block}")]
-    {
-        let assembly = assembly(&scene);
-        let from = DVec3::new(-75.65248864504684, 8.861979943570812, -8.55665947216152);
-        let along = DVec3::new(0.9883195716285171, -0.1274860746435289, 0.08349685687502995);
-        let mut tracer = Tracer::new(&assembly, LIMITS);
-        let ray = launch(from, along);
-        let (leaves, outcome) = tracer.trace(&ray);
-        outcome.assert_balanced(leaves, 1e-9, &ray);
-        for leaf in leaves {
-            let end = leaf.position + leaf.direction * 100.0;
-            assert!(metal.deepest(leaf.position, end) < DEEP, "{scene}{leaf:?}");
         }
     }
 }

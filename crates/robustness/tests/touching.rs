@@ -1,0 +1,40 @@
+//! Devices that touch: light is never in metal, and glass is one however it is cut.
+
+use crate::long::count;
+use robustness::{Draws, cut_glass, stack, touch, touching_kinds};
+
+#[test]
+fn light_never_goes_through_metal_that_touches_a_device() {
+    let mut draws = Draws::Seed(7);
+    for round in 0..count(1500, 40_000) {
+        touch(round, None, &mut draws);
+    }
+}
+
+#[test]
+fn every_pair_of_kinds_that_touch_balances() {
+    let mut draws = Draws::Seed(19);
+    for _ in 0..count(1, 20) {
+        for one in 0..touching_kinds() {
+            for other in 0..touching_kinds() {
+                touch(one, Some(other), &mut draws);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_glass_square_is_the_same_however_it_is_cut() {
+    let mut draws = Draws::Seed(3);
+    for _ in 0..count(60, 2000) {
+        cut_glass(&mut draws);
+    }
+}
+
+#[test]
+fn plates_in_any_pose_keep_the_power_of_what_interferes() {
+    let mut draws = Draws::Seed(33);
+    for _ in 0..count(60, 2000) {
+        stack(&mut draws);
+    }
+}
