@@ -128,6 +128,27 @@ fn sides_that_differ_in_the_sixth_decimal_are_one() {
 }
 
 #[test]
+fn a_gap_with_parallel_sides_is_no_rounding() {
+    // Beyond the critical angle: through the gap goes nothing, for rays do not tunnel.
+    let scene = |gap: f64| {
+        let [near, far] = [gap - 1.0, gap + 1.0].map(|y| (y * 1e9).round() / 1e9);
+        assembly(&format!(
+            "[[device]]\nkind = \"prisms\"\n\
+             [[device.prism]]\ncorners = [[-1, -1], [1, -1], [-1, 1]]\npermittivity = 2.25\n\
+             [[device.prism]]\ncorners = [[1, {near:?}], [1, {far:?}], [-1, {far:?}]]\n\
+             permittivity = 2.25\n"
+        ))
+    };
+    let through = |gap: f64| {
+        onward(&leaves(&scene(gap), &launch(DVec3::new(-5.0, 0.3, 0.0), DVec3::X)), DVec3::X)
+    };
+    assert_eq!(through(1e-4), 0.0);
+    assert_eq!(through(3e-6), 0.0);
+    let touching = through(0.0);
+    assert!(touching > 0.9, "{touching}");
+}
+
+#[test]
 fn blocks_of_one_glass_that_touch_are_one_block() {
     let mut numbers = Numbers(11);
     for _ in 0..count(100, 2000) {

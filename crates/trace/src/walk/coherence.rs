@@ -233,9 +233,9 @@ impl Coherence {
 
 /// Whether something stands between two branches in one place that run in one direction.
 fn part<const N: usize>(assembly: &Assembly, one: &Branch<N>, other: &Branch<N>) -> bool {
-    // A hair ahead, off the surfaces that they leave.
+    // A hair ahead, off the surfaces that they leave, and in what is no thinner than can be told.
     let slack = slack_at(one.position);
-    let hair = one.direction * (4.0 * slack);
+    let hair = one.direction * (0.5 * slack);
     let apart = other.position - one.position;
     let distance = apart.length();
     if distance <= slack {
