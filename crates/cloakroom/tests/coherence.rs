@@ -377,8 +377,8 @@ fn what_a_wave_plate_makes_of_horizontal_light_has_the_handedness_of_a_retarder(
 #[test]
 fn light_goes_back_through_plates_that_absorb_as_it_came() {
     let mut numbers = Numbers(33);
-    let mut compared = 0;
-    while compared < count(100, 4000) {
+    let (mut compared, mut off_by_more) = (0, 0);
+    while compared < count(100, 1000) {
         let permittivity = tensor(&mut numbers, 1.5, 4.0);
         let strength = 10f64.powf(numbers.between(-9.0, 0.5));
         // Of what comes in, a tenth to a half goes through.
@@ -392,12 +392,15 @@ fn light_goes_back_through_plates_that_absorb_as_it_came() {
         ));
         let limits = Limits { min_power: 1e-9, tolerance: 1e-9 };
         let mut tracer = Tracer::<1>::new(&assembly, limits);
-        let from = numbers.direction() * 10.0;
-        let ray = launch(from, numbers.direction() * 0.5 - from);
+        let from = numbers.direction() * (20.0 * thickness);
+        let ray = launch(from, numbers.direction() * thickness - from);
         let turn = TAU * numbers.next();
         let [h, v] = ray.electric;
         let electric = h * turn.cos() + v.scaled(Complex64::new(0.0, turn.sin()));
         let there = Launch { origin: from, direction: ray.direction, electric: [electric] };
+        if from.x.abs() < thickness {
+            continue;
+        }
         let (leaves, outcome) = tracer.trace(&there);
         outcome.assert_balanced(leaves, 1e-9, &there);
         // The two waves that go straight through; others share their ways with further ones.
@@ -409,13 +412,14 @@ fn light_goes_back_through_plates_that_absorb_as_it_came() {
         through.sort_by(|a, b| a.optical_path.total_cmp(&b.optical_path));
         for leaf in through.into_iter().take(2).filter(|leaf| leaf.power[0] > 1e-4) {
             let sent = leaf.electric[0].conj() * leaf.power[0].sqrt().recip();
-            let start = leaf.position + leaf.direction * 3.0;
+            let beyond = 6.0 * thickness;
+            let start = leaf.position + leaf.direction * beyond;
             let back = Launch { origin: start, direction: -leaf.direction, electric: [sent] };
             let (returned, _) = tracer.trace(&back);
             // It comes back on its line, by the same way.
             let same = |other: &&Leaf<1>| {
                 let beside = (other.position - from).reject_from(ray.direction).length();
-                let whole = leaf.optical_path + 3.0;
+                let whole = leaf.optical_path + beyond;
                 let way = other.optical_path + (other.position - from).length();
                 other.direction.dot(ray.direction) < 1e-12 - 1.0
                     && beside < 1e-3 * thickness
@@ -424,9 +428,12 @@ fn light_goes_back_through_plates_that_absorb_as_it_came() {
             let power: f64 = (returned.iter().filter(same))
                 .map(|other| other.electric[0].dot(electric).norm_sqr())
                 .sum();
-            let off = power / leaf.power[0] - 1.0;
+            let off = power - leaf.power[0];
+            // Near an optic axis modes have fewer digits.
             assert!(off.abs() < 1e-11, "{off:e} {strength:e} {leaf:?} {returned:?}");
             compared += 1;
+            off_by_more += usize::from(off.abs() > 1e-12);
         }
     }
+    assert!(100 * off_by_more <= compared, "{off_by_more} of {compared}");
 }
