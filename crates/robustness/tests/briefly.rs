@@ -15,8 +15,8 @@ fn count(trial: &Trial) -> u64 {
         // A connection and a picture each.
         "page_messages" => long::count(10, 60),
         "scene_file" | "physics" => long::count(60, 400),
-        "touching" | "cuts" => long::count(20, 400),
-        "stacks" => long::count(20, 60),
+        "touching" | "cuts" => long::count(10, 400),
+        "stacks" => long::count(5, 60),
         _ => long::count(500, 3000),
     }
 }

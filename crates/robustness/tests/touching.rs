@@ -34,7 +34,7 @@ fn a_glass_square_is_the_same_however_it_is_cut() {
 #[test]
 fn plates_in_any_pose_keep_the_power_of_what_interferes() {
     let mut draws = Draws::Seed(33);
-    for _ in 0..count(40, 600) {
+    for _ in 0..count(20, 600) {
         stack(&mut draws);
     }
 }

@@ -37,6 +37,11 @@ const MANY_EVENTS: u32 = 100_000;
 /// After as many surfaces again the threshold is raised once more.
 const MORE_EVENTS: u32 = 10_000;
 
+/// A branch that carries more than so many times what was launched is not followed. In absorbing
+/// media beams carry what their interference takes back; where light starts in a film of such a
+/// medium that is thinner than a wavelength, more of it at each total reflection.
+const MOST_POWER: f64 = 1e3;
+
 /// What rounding leaves of a wave that is not there.
 const NO_POWER: f64 = 1e-24;
 
@@ -200,10 +205,13 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
 
     fn walk(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
         loop {
-            let goes_on = if largest(&branch.power) < self.threshold {
+            let power = largest(&branch.power);
+            let goes_on = if power < self.threshold {
                 self.outcome.stats.endless += 1;
                 self.prune(branch.power);
                 false
+            } else if power > MOST_POWER {
+                self.lose(branch.power)
             } else {
                 self.events += 1;
                 if self.events > MANY_EVENTS {
