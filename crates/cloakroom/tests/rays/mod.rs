@@ -92,16 +92,6 @@ impl Numbers {
         low + (high - low) * self.next()
     }
 
-    /// One of a list.
-    pub fn of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
-        &list[(self.next() * list.len() as f64) as usize]
-    }
-
-    /// A number of one decimal in an interval.
-    pub fn tenths(&mut self, low: f64, high: f64) -> f64 {
-        (10.0 * self.between(low, high)).round() / 10.0
-    }
-
     /// A pose about any axis, its origin within 30 cm of the world's.
     pub fn pose(&mut self) -> Pose {
         let origin = self.direction() * self.between(0.0, 30.0);
