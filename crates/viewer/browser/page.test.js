@@ -140,6 +140,16 @@ test("vectors and tables among the parameters have controls, too", async () => {
   assert.ok(difference(before, await pixels(page)).most > 20);
   await set("error", "");
   assert.equal(difference(before, await pixels(page)).bytes, 0);
+  // A coating has as many layers as one adds.
+  await page.locator("#keys details[data-name=coating] summary").click();
+  const uncoated = await page.evaluate(() => Number(document.body.dataset.pictures));
+  await page.click("text=Add a layer");
+  await page.waitForFunction((n) => Number(document.body.dataset.pictures) > n, uncoated);
+  assert.equal(await page.inputValue("#keys details[data-name=coating] input[aria-label='index, n']"), "1.38");
+  assert.ok(difference(before, await pixels(page)).most > 0);
+  await page.click("text=Remove layer 1");
+  await finished(page);
+  assert.equal(difference(before, await pixels(page)).bytes, 0);
   const up = await page.inputValue("#keys input[aria-label='position y, exactly']");
   assert.equal(up, "0");
   await set("position y", "5");

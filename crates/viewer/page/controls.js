@@ -89,8 +89,76 @@ function rowsOf(name, schema, value, set) {
       return row(called, schema, number(called, { ...one, ...limits }, all[i], setOne));
     });
   }
+  if (schema.type === "array" && schema.items.type === "object") return [layers(name, schema, value, set)];
+  const table = schema.anyOf?.find((one) => one.type === "object");
+  if (table) {
+    const given = typeof value === "object" ? value : undefined;
+    return [group(name, { ...table, description: schema.description }, given, set)];
+  }
+  if (isComplex(schema)) return [row(name, schema, complex(name, value, set))];
   const controls = control(name, schema, value, set);
   return controls ? [row(name, schema, controls)] : [];
+}
+
+// Whether a key is a number or a pair of them and nothing else: an index n or [n, k].
+function isComplex(schema) {
+  const pair = schema.anyOf?.find((one) => one.type === "array" && one.items.type === "number");
+  return pair?.maxItems === 2 && schema.anyOf.length === 2;
+}
+
+// The parts of an index; without a first one there is none.
+function complex(name, value, set) {
+  const parts = typeof value === "number" ? [value, 0] : [...(value ?? [])];
+  return ["n", "k"].map((part, i) => {
+    const field = document.createElement("input");
+    field.type = "number";
+    field.step = "any";
+    field.value = parts[i] ?? "";
+    field.placeholder = part;
+    field.setAttribute("aria-label", `${words(name)}, ${part}`);
+    field.addEventListener("change", () => {
+      parts[i] = field.value === "" ? undefined : field.valueAsNumber;
+      const [n, k] = parts;
+      set(n === undefined ? undefined : k ? [n, k] : n, false);
+    });
+    return field;
+  });
+}
+
+// A layer that is added to a coating: a quarter of a green wave of magnesium fluoride.
+const NEW_LAYER = { index: 1.38, thickness_nm: 99.6 };
+
+// A list of tables, the layers of a coating, from the outside inwards.
+function layers(name, schema, value, set) {
+  const all = [...(value ?? [])];
+  const changed = (moving) => set(all.length > 0 ? [...all] : undefined, moving);
+  const button = (text, action) => {
+    const made = document.createElement("button");
+    made.type = "button";
+    made.textContent = text;
+    made.addEventListener("click", () => {
+      action();
+      changed(false);
+      details.replaceWith(layers(name, schema, all, set));
+    });
+    return made;
+  };
+  const { details, grid } = folded(name, schema);
+  all.forEach((layer, i) => {
+    const setter = (key) => (value, moving) => {
+      const { [key]: _, ...others } = all[i];
+      all[i] = value === undefined ? others : { ...others, [key]: value };
+      changed(moving);
+    };
+    for (const [key, one] of Object.entries(schema.items.properties)) {
+      // It says the same in other words.
+      if (key === "permittivity" && layer.index !== undefined) continue;
+      grid.append(...rowsOf(key, one, layer[key], setter(key)));
+    }
+    grid.append(button(`Remove layer ${i + 1}`, () => all.splice(i, 1)));
+  });
+  grid.append(button("Add a layer", () => all.push({ ...NEW_LAYER })));
+  return details;
 }
 
 // The keys of a table in a table.
@@ -101,6 +169,15 @@ function group(name, schema, value, set) {
     else entries[key] = value;
     set(Object.keys(entries).length > 0 ? { ...entries } : undefined, moving);
   };
+  const { details, grid } = folded(name, schema);
+  for (const [key, one] of Object.entries(schema.properties)) {
+    grid.append(...rowsOf(key, one, entries[key], setter(key)));
+  }
+  return details;
+}
+
+// What opens to show the keys of a table, and where they go.
+function folded(name, schema) {
   const details = document.createElement("details");
   details.dataset.name = name;
   details.open = keys.querySelector(`details[data-name="${name}"]`)?.open ?? false;
@@ -111,11 +188,8 @@ function group(name, schema, value, set) {
   hint.textContent = schema.description ?? "";
   const grid = document.createElement("div");
   grid.className = "keys";
-  for (const [key, one] of Object.entries(schema.properties)) {
-    grid.append(...rowsOf(key, one, entries[key], setter(key)));
-  }
   details.append(summary, hint, grid);
-  return details;
+  return { details, grid };
 }
 
 let rowsMade = 0;
@@ -160,7 +234,9 @@ export function buildControls(device, kind, changed) {
       else device[name] = value;
       changed(moving);
     };
-    const placement = ["length", ...(kind.core_can_be_open ? ["core"] : []), "position", "axis", "imperfection"];
+    const core = kind.core_can_be_open ? ["core"] : [];
+    const materials = ["metal", "coating", "dispersion", "imperfection"];
+    const placement = ["length", ...core, "position", "axis", ...materials];
     for (const name of [...kind.own_keys, ...placement]) {
       if (kind.keys[name]) rows.push(...rowsOf(name, kind.keys[name], device[name], setter(name)));
     }
