@@ -211,7 +211,7 @@ impl Coherence {
             && length.abs() <= SAME_LENGTH * self.length
             && same(branch.wave_vector, other.wave_vector)
             && same(branch.attenuation, other.attenuation)
-            && !part(assembly, branch, other);
+            && !are_separated(assembly, branch, other);
         if together {
             let phase = Complex64::cis(self.wave_number * length);
             for i in 0..N {
@@ -232,7 +232,7 @@ impl Coherence {
 }
 
 /// Whether something stands between two branches in one place that run in one direction.
-fn part<const N: usize>(assembly: &Assembly, one: &Branch<N>, other: &Branch<N>) -> bool {
+fn are_separated<const N: usize>(assembly: &Assembly, one: &Branch<N>, other: &Branch<N>) -> bool {
     // A hair ahead, off the surfaces that they leave, and in what is no thinner than can be told.
     let slack = slack_at(one.position);
     let hair = one.direction * (0.5 * slack);
