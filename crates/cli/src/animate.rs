@@ -7,9 +7,8 @@ use crate::render::warn_of_cut_branches;
 use crate::report::{Failure, Result, say};
 use crate::scene;
 use cloakroom::output;
-use cloakroom::render::{self, ChannelSet, Images};
-use cloakroom::scene::Scene;
-use cloakroom::scene_file::Loaded;
+use cloakroom::render::{self, ChannelSet, Images, PreparedScene};
+use cloakroom::scene_file::{Loaded, SceneText};
 use cloakroom::timeline::Timeline;
 use cloakroom::trace::TraceStats;
 use cloakroom_figures::film::{Film, FilmFormat, FrameFolder};
@@ -50,7 +49,8 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
         ));
         return Ok(());
     }
-    let metadata = scenes.first().map(|loaded| metadata(&loaded.scene, arguments.map_range));
+    let first = scenes.first().map(|loaded| scene::prepared(loaded, &mut images)).transpose()?;
+    let metadata = first.map(|first| metadata(&first, arguments.map_range));
     let (rate, metadata) = (arguments.fps, &metadata.unwrap_or_default());
     supervised(count as u64, "writing", |bar, _| {
         let frame_done = &|| bar.inc(1);
@@ -69,9 +69,10 @@ fn scenes(
     range: Range<usize>,
     images: &mut Images,
 ) -> Result<Vec<Loaded>> {
-    let mut scenes: Vec<Loaded> = Vec::new();
+    let (text, mut scenes) = (SceneText::read(&arguments.scene.scene)?, Vec::<Loaded>::new());
     for frame in range {
-        let loaded = scene::load(&arguments.scene, &timeline.overrides(frame))?;
+        let further = timeline.overrides(frame);
+        let loaded = text.scene(&[&arguments.scene.overrides[..], &further[..]].concat())?;
         scene::prepared(&loaded, images)?;
         if loaded.scene.picture.map.name().is_some() && arguments.map_range.is_none() {
             return Err(Failure::Failed(
@@ -109,9 +110,8 @@ fn render(
         for (loaded, frame) in scenes.iter().zip(range) {
             let scene = &loaded.scene;
             let prepared = scene::prepared(loaded, images)?;
-            let metadata = metadata(scene, arguments.map_range);
-            let files: Vec<_> = scene.files().into_iter().map(|(_, file)| file).collect();
-            if frames.is_finished(frame, &metadata, &files) {
+            let metadata = metadata(&prepared, arguments.map_range);
+            if frames.is_finished(frame, &metadata) {
                 skipped += 1;
                 bar.inc(rows);
                 continue;
@@ -133,10 +133,10 @@ fn render(
 }
 
 /// What the frame of a scene carries: what its picture does, and the range of a map.
-fn metadata(scene: &Scene, map_range: Option<[f64; 2]>) -> Vec<(String, String)> {
-    let range = map_range.filter(|_| scene.picture.map.name().is_some());
+fn metadata(prepared: &PreparedScene<'_>, map_range: Option<[f64; 2]>) -> Vec<(String, String)> {
+    let range = map_range.filter(|_| prepared.scene.picture.map.name().is_some());
     let range = range.map(|[low, high]| ("map_range".to_owned(), format!("{low} {high}")));
-    render::metadata(scene).into_iter().chain(range).collect()
+    prepared.metadata().into_iter().chain(range).collect()
 }
 
 /// Which frames are to be rendered.

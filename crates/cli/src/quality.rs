@@ -8,7 +8,7 @@ use crate::render::warn_of_cut_branches;
 use crate::report::{self, Result};
 use crate::scene;
 use cloakroom::measure::{Constraint, QualityTable, Sweep, SweepPlan, quality};
-use cloakroom::scene_file::Override;
+use cloakroom::scene_file::{Override, SceneText};
 use cloakroom_figures::{TableFormat, write_table};
 use std::fmt::Write;
 
@@ -30,7 +30,8 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
     let sweeps =
         arguments.sweeps.iter().map(|text| Sweep::parse(text)).collect::<Result<_, _>>()?;
-    let load = |further: &[Override]| scene::load(&arguments.scene, further);
+    let written = SceneText::read(&arguments.scene.scene)?;
+    let load = |further: &[Override]| written.scene(&[&arguments.scene.overrides, further].concat());
     let holds =
         arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;
     let plan = SweepPlan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;

@@ -46,7 +46,7 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
         && shown.map.name().is_none()
         && render::strips(&prepared).nth(1).is_some()
     {
-        return in_strips(&prepared, &loaded.scene, path);
+        return in_strips(&prepared, path);
     }
     let picture = picture(&prepared, wanted, "rendering")?;
     for (path, format) in formats {
@@ -73,7 +73,7 @@ fn check_tile(tile: Tile, scene: &Scene, formats: &[(&Path, PictureFormat)]) -> 
 }
 
 /// Renders a large image strip by strip into its file.
-fn in_strips(prepared: &PreparedScene<'_>, scene: &Scene, path: &Path) -> Result<()> {
+fn in_strips(prepared: &PreparedScene<'_>, path: &Path) -> Result<()> {
     let (mut stats, mut failure) = (TraceStats::default(), None);
     let written = supervised(prepared.rows(), "rendering", |_, supervision| {
         let images = render::strips(prepared).map(|part| {
@@ -87,7 +87,7 @@ fn in_strips(prepared: &PreparedScene<'_>, scene: &Scene, path: &Path) -> Result
                 io::Error::other("no strip")
             })
         });
-        let (size, metadata) = (scene.camera.resolution, render::metadata(scene));
+        let (size, metadata) = (prepared.scene.camera.resolution, prepared.metadata());
         output::write_png_in_strips(size, &metadata, path, images)
     });
     failure.map_or(Ok(()), Err)?;

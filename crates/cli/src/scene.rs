@@ -4,11 +4,11 @@ use crate::arguments::{SceneArguments, ThreadsArguments};
 use crate::report::{Failure, Result};
 use cloakroom::assembly::Assembly;
 use cloakroom::render::{self, Images, PreparedScene, PreparedSceneError};
-use cloakroom::scene_file::{self, Loaded, Override, SceneFileError};
+use cloakroom::scene_file::{Loaded, Override, SceneFileError, SceneText};
 
 /// Reads a scene with its overrides and further ones after them.
 pub fn load(arguments: &SceneArguments, further: &[Override]) -> Result<Loaded, SceneFileError> {
-    scene_file::load(&arguments.scene, &[&arguments.overrides, further].concat())
+    SceneText::read(&arguments.scene)?.scene(&[&arguments.overrides, further].concat())
 }
 
 /// What a picture of a scene needs, built; `images` keeps what has been read.

@@ -1,28 +1,81 @@
-//! Numbers on a grid that a scene names by a file: an index.
+//! Files of numbers on a grid that a scene names: an index.
 
 use crate::device::{AnyDevice, Graded};
-use crate::input::read_up_to;
+use crate::input::{Digest, read_file};
 use crate::keys::{KeyError, Sampled, Samples, find};
 use cloakroom_trace::key;
 use ndarray::{ArrayView2, Axis};
 use ndarray_npy::{ViewElement, ViewNpyError, ViewNpyExt};
 use std::borrow::Cow;
-use std::fs::File;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Longer files are no index of a device.
 const LONGEST: u64 = 256 << 20;
 
-/// A device with the numbers in the place of the file that holds them.
+/// A file that has been read.
+#[derive(Debug, PartialEq)]
+pub struct IndexFile {
+    path: PathBuf,
+    samples: Samples,
+    /// Of its content.
+    digest: Digest,
+}
+
+impl IndexFile {
+    /// Of the content of the file at `path`, if that is this one.
+    pub(crate) fn digest_of(&self, path: &Path) -> Option<Digest> {
+        (self.path == path).then_some(self.digest)
+    }
+}
+
+/// Files that have been read, each once: a pipe gives its bytes once only.
+#[derive(Debug, Default)]
+pub(crate) struct IndexFiles(RefCell<Vec<Arc<IndexFile>>>);
+
+impl IndexFiles {
+    /// That of a device, if it has one that can be read; what is wrong with another is told where
+    /// the device is built.
+    pub(crate) fn of(&self, device: &AnyDevice) -> Option<Arc<IndexFile>> {
+        let path = path(device)?;
+        let mut files = self.0.borrow_mut();
+        if let Some(known) = files.iter().find(|file| file.path == path) {
+            return Some(Arc::clone(known));
+        }
+        let file = Arc::new(read(path).ok()?);
+        files.push(Arc::clone(&file));
+        Some(file)
+    }
+}
+
+/// The file of a device's index.
+fn path(device: &AnyDevice) -> Option<&Path> {
+    let AnyDevice::Graded(graded) = device else { return None };
+    match &graded.index {
+        Some(Sampled::InFile(path)) => Some(path),
+        _ => None,
+    }
+}
+
+/// A device with the numbers in the place of the file that holds them; `known` may be that file.
 ///
 /// # Errors
 ///
 /// If the file cannot be read, or a number in it is not allowed.
-pub(crate) fn with_files_read(device: &AnyDevice) -> Result<Cow<'_, AnyDevice>, KeyError> {
-    let AnyDevice::Graded(graded) = device else { return Ok(Cow::Borrowed(device)) };
-    let Some(Sampled::InFile(file)) = &graded.index else { return Ok(Cow::Borrowed(device)) };
+pub(crate) fn with_files_read<'d>(
+    device: &'d AnyDevice,
+    known: Option<&IndexFile>,
+) -> Result<Cow<'d, AnyDevice>, KeyError> {
+    let (AnyDevice::Graded(graded), Some(path)) = (device, path(device)) else {
+        return Ok(Cow::Borrowed(device));
+    };
     let key = find(Graded::KEYS, key!(Graded.index))?;
-    let file = &file.display().to_string();
-    let samples = read(file).map_err(|message| KeyError::at(key.name, message))?;
+    let file = path.display();
+    let samples = match known.filter(|known| known.path == path) {
+        Some(known) => known.samples.clone(),
+        None => read(path).map_err(|message| KeyError::at(key.name, message))?.samples,
+    };
     if let Some(at) = samples.values().iter().position(|number| !key.limits.allow(*number)) {
         let [row, column] = [at / samples.count()[1], at % samples.count()[1]];
         let message = format!(
@@ -42,11 +95,9 @@ pub(crate) fn with_files_read(device: &AnyDevice) -> Result<Cow<'_, AnyDevice>, 
 /// # Errors
 ///
 /// A message that names the file and says why it cannot be used.
-fn read(path: &str) -> Result<Samples, String> {
-    let failed = |reason: String| format!("cannot read {path}: {reason}");
-    let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| read_up_to(LONGEST, file, &mut bytes));
-    read.map_err(|error| failed(error.to_string()))?;
+fn read(path: &Path) -> Result<IndexFile, String> {
+    let failed = |reason: String| format!("cannot read {}: {reason}", path.display());
+    let bytes = read_file(LONGEST, path).map_err(|error| failed(error.to_string()))?;
     let rows = match rows::<f64>(&bytes) {
         Err(ViewNpyError::WrongDescriptor(_)) => rows::<f32>(&bytes),
         rows => rows,
@@ -55,7 +106,8 @@ fn read(path: &str) -> Result<Samples, String> {
         ViewNpyError::WrongDescriptor(_) => failed("its numbers are no floats".to_owned()),
         error => failed(format!("it is no .npy file of an array of two dimensions: {error}")),
     })?;
-    Samples::new(&rows).map_err(|error| failed(error.to_string()))
+    let samples = Samples::new(&rows).map_err(|error| failed(error.to_string()))?;
+    Ok(IndexFile { path: path.to_owned(), samples, digest: Digest::of(&bytes) })
 }
 
 fn rows<T: ViewElement + Copy + Into<f64>>(bytes: &[u8]) -> Result<Vec<Vec<f64>>, ViewNpyError> {
@@ -69,30 +121,29 @@ mod tests {
     use super::*;
     use ndarray::{Array, Array2};
     use ndarray_npy::WriteNpyExt;
+    use std::fs::File;
 
     #[test]
     fn arrays_of_either_order_and_type_are_read() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy");
-        let name = path.to_str().expect("a name");
         let array = Array::from_shape_fn((2, 3), |(i, j)| 1.0 + i as f64 + 0.5 * j as f64);
         let expected = Samples::new(&[vec![1.0, 1.5, 2.0], vec![2.0, 2.5, 3.0]]).expect("a grid");
         array.write_npy(File::create(&path).expect("a file")).expect("written");
-        assert_eq!(read(name), Ok(expected.clone()));
+        assert_eq!(read(&path).map(|file| file.samples), Ok(expected.clone()));
         array.mapv(|n| n as f32).write_npy(File::create(&path).expect("a file")).expect("written");
-        assert_eq!(read(name), Ok(expected.clone()));
+        assert_eq!(read(&path).map(|file| file.samples), Ok(expected.clone()));
         let turned: Array2<f64> = array.t().as_standard_layout().into_owned();
         turned.t().write_npy(File::create(&path).expect("a file")).expect("written");
-        assert_eq!(read(name), Ok(expected));
+        assert_eq!(read(&path).map(|file| file.samples), Ok(expected));
     }
 
     #[test]
     fn what_is_no_such_file_is_refused() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.npy");
-        let name = path.to_str().expect("a name");
         let refused = |part: &str| {
-            let message = read(name).expect_err("must fail");
+            let message = read(&path).expect_err("must fail");
             assert!(message.contains("a.npy") && message.contains(part), "{message}");
         };
         refused("No such file");

@@ -11,7 +11,7 @@
 //! are those of [`optics::wave`].
 
 pub mod flux;
-mod index_file;
+pub mod index_file;
 pub mod input;
 pub mod interface_json;
 pub mod json;

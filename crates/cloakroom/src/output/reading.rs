@@ -10,7 +10,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// The keys of metadata, in the order in which pictures have them.
-const METADATA_KEYS: [&str; 4] = ["software", "scene", "version", "seed"];
+const METADATA_KEYS: [&str; 5] = ["software", "scene", "version", "seed", "inputs"];
 
 /// A file that cannot be read as a picture of this program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -11,7 +11,7 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Li
 use super::linear_image::{LinearImage, MAX_MEMORY, MAX_PIXELS, Texels};
 use super::source::{ImageSource, LoadError, LoadProblem, check};
 use super::{exr_limits, jpeg_markers, srgb};
-use crate::input::read_up_to;
+use crate::input::{Digest, read_up_to};
 
 #[cfg(test)]
 mod tests;
@@ -52,11 +52,23 @@ pub fn dimensions(source: &ImageSource) -> Result<(u32, u32), LoadError> {
 /// large (decided before memory is taken), or where an EXR pixel is not finite: such a pixel would
 /// spread over the picture as soon as it is filtered.
 pub fn load(source: &ImageSource) -> Result<LinearImage, LoadError> {
+    Ok(load_with_digest(source)?.0)
+}
+
+/// The same, with the digest of the file that was read.
+///
+/// # Errors
+///
+/// As [`load()`].
+pub(crate) fn load_with_digest(
+    source: &ImageSource,
+) -> Result<(LinearImage, Option<Digest>), LoadError> {
     if let ImageSource::Memory(image) = source {
-        return Ok(LinearImage::clone(image));
+        return Ok((LinearImage::clone(image), None));
     }
+    let is_file = matches!(source, ImageSource::File(_));
     read_bytes(source)
-        .and_then(|bytes| read(&bytes, MAX_PIXELS))
+        .and_then(|bytes| Ok((read(&bytes, MAX_PIXELS)?, is_file.then(|| Digest::of(&bytes)))))
         .map_err(|problem| LoadError { image: source.clone(), problem })
 }
 

@@ -3,6 +3,8 @@
 use crate::photograph::{
     self, Edges, Equirectangular, ImageSource, LinearImage, LoadError, Pyramid,
 };
+use crate::input::Digest;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Images by their names.
@@ -18,6 +20,8 @@ pub struct Images {
     faces: Named<Pyramid>,
     sides: Named<Pyramid>,
     balls: Named<Equirectangular>,
+    /// The contents of the files that have been read.
+    digests: Vec<(PathBuf, Digest)>,
 }
 
 impl Images {
@@ -27,9 +31,14 @@ impl Images {
         self.photograph = vec![(name, Arc::new(flat(image)))];
     }
 
+    /// What was read from a file.
+    pub(super) fn digest_of(&self, path: &Path) -> Option<Digest> {
+        Some(self.digests.iter().find(|(known, _)| known == path)?.1)
+    }
+
     /// The image of a photograph.
     pub(super) fn photograph(&mut self, source: &ImageSource) -> Result<Arc<Pyramid>, LoadError> {
-        let image = known(&mut self.photograph, source, flat)?;
+        let image = known((&mut self.photograph, &mut self.digests), source, flat)?;
         self.photograph.retain(|(name, _)| name == source);
         Ok(image)
     }
@@ -39,24 +48,27 @@ impl Images {
         &mut self,
         source: &ImageSource,
     ) -> Result<Arc<Equirectangular>, LoadError> {
-        let image = known(&mut self.surroundings, source, Equirectangular::new)?;
+        let known_images = (&mut self.surroundings, &mut self.digests);
+        let image = known(known_images, source, Equirectangular::new)?;
         self.surroundings.retain(|(name, _)| name == source);
         Ok(image)
     }
 
     /// An image for flat faces of a body, which ends at their edges.
     pub(super) fn face(&mut self, source: &ImageSource) -> Result<Arc<Pyramid>, LoadError> {
-        known(&mut self.faces, source, flat)
+        known((&mut self.faces, &mut self.digests), source, flat)
     }
 
     /// An image that goes once around the side of a cylinder.
     pub(super) fn side(&mut self, source: &ImageSource) -> Result<Arc<Pyramid>, LoadError> {
-        known(&mut self.sides, source, |image| Pyramid::new(image, Edges::WrapHorizontally))
+        known((&mut self.sides, &mut self.digests), source, |image| {
+            Pyramid::new(image, Edges::WrapHorizontally)
+        })
     }
 
     /// An image that covers a ball.
     pub(super) fn ball(&mut self, source: &ImageSource) -> Result<Arc<Equirectangular>, LoadError> {
-        known(&mut self.balls, source, Equirectangular::new)
+        known((&mut self.balls, &mut self.digests), source, Equirectangular::new)
     }
 
     /// Forgets all images on bodies but these, unless there are none: the next scene may show them
@@ -77,14 +89,19 @@ fn flat(image: LinearImage) -> Pyramid {
 
 /// An image among those that are known, or read now.
 fn known<T>(
-    images: &mut Named<T>,
+    (images, digests): (&mut Named<T>, &mut Vec<(PathBuf, Digest)>),
     source: &ImageSource,
     make: impl FnOnce(LinearImage) -> T,
 ) -> Result<Arc<T>, LoadError> {
     if let Some((_, image)) = images.iter().find(|(name, _)| name == source) {
         return Ok(image.clone());
     }
-    let image = Arc::new(make(photograph::load(source)?));
+    let (image, digest) = photograph::load_with_digest(source)?;
+    if let (ImageSource::File(path), Some(digest)) = (source, digest) {
+        digests.retain(|(known, _)| known != path);
+        digests.push((path.clone(), digest));
+    }
+    let image = Arc::new(make(image));
     images.push((source.clone(), image.clone()));
     Ok(image)
 }

@@ -187,7 +187,7 @@ fn expose_film<const N: usize>(
             Ok(a)
         })?;
     let [width, height] = [width, height].map(|side| side as usize);
-    let (channels, metadata) = (film.into_channels(), metadata(prepared.scene));
+    let (channels, metadata) = (film.into_channels(), prepared.metadata());
     Ok(Rendered { picture: Picture { width, height, channels, metadata }, stats })
 }
 
@@ -220,7 +220,7 @@ pub fn estimated_seconds(prepared: &PreparedScene<'_>) -> f64 {
     start.elapsed().as_secs_f64() * all / traced / rayon::current_num_threads() as f64
 }
 
-/// What every file carries: scene, version and seed.
+/// What every file that is made of a scene carries: program, scene, version and seed.
 #[must_use]
 pub fn metadata(scene: &Scene) -> Vec<(String, String)> {
     [

@@ -1,13 +1,18 @@
 //! The prepared: a scene made ready to be looked at, images read and devices built.
 
-use super::Images;
 use super::body_surface::BodySurface;
+use super::{Images, metadata};
 use crate::assembly::{Assembly, MOST_DEVICES, Placed, Screen};
+use crate::input::Digest;
 use crate::keys::KeyError;
 use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
 use crate::scene::{Camera, Projection, Scene};
 use crate::trace::{Coherence, Limits, RaySettings};
+use std::path::PathBuf;
 use std::sync::Arc;
+
+/// The key of metadata that says what was in the files a scene names.
+pub(crate) const INPUTS: &str = "inputs";
 
 /// Width of the builtin photograph, cm.
 const BUILTIN_WIDTH: f64 = 110.0;
@@ -251,6 +256,8 @@ pub struct PreparedScene<'s> {
     pub(super) surroundings: Surroundings,
     /// Those of the opaque bodies, by their numbers among the devices.
     body_surfaces: Vec<Option<BodySurface>>,
+    /// The files it was made from: the keys that name them, and their contents.
+    files: Vec<(String, Digest)>,
 }
 
 impl<'s> PreparedScene<'s> {
@@ -303,6 +310,12 @@ impl<'s> PreparedScene<'s> {
             assembly.devices().iter().enumerate().map(surface).collect::<Result<_, _>>()?;
         let coherence = interferes(scene, &assembly).then(|| coherence(scene));
         let limits = if coherence.is_some() { interference_limits(scene) } else { limits(scene) };
+        let digest = |(key, path): (String, PathBuf)| {
+            let index_files = || scene.devices.iter().filter_map(|d| d.index_file.as_ref());
+            let of_index = || index_files().find_map(|file| file.digest_of(&path));
+            Some((key, images.digest_of(&path).or_else(of_index)?))
+        };
+        let files = scene.files().into_iter().filter_map(digest).collect();
         images.keep(&scene.body_images().collect::<Vec<_>>());
         let pixel = PixelWidth::of(&scene.camera);
         Ok(Self {
@@ -315,7 +328,20 @@ impl<'s> PreparedScene<'s> {
             image,
             surroundings,
             body_surfaces,
+            files,
         })
+    }
+
+    /// What every file carries: program, scene, version and seed, and where the scene names files,
+    /// `inputs`, the digest of each.
+    #[must_use]
+    pub fn metadata(&self) -> Vec<(String, String)> {
+        let mut metadata = metadata(self.scene);
+        if !self.files.is_empty() {
+            let files = self.files.iter().map(|(key, digest)| format!("{key} {digest}"));
+            metadata.push((INPUTS.to_owned(), files.collect::<Vec<_>>().join("\n")));
+        }
+        metadata
     }
 
     /// The surface of an opaque body.

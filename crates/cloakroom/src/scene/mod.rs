@@ -22,10 +22,13 @@ pub use tables::{
 
 use crate::device::{self, AnyDevice, Entry, Fact, Metal, Request, Structure};
 pub use crate::device::{Core, Show};
+use crate::index_file::{self, IndexFile};
 use crate::keys::{Field, KeyError, KeyKind, Table, Value, VisitFile, vector_text};
 use crate::photograph::ImageSource;
 use cloakroom_trace::key;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Everything a picture depends on.
 #[derive(Clone, Debug, Default)]
@@ -59,6 +62,9 @@ pub struct DeviceSettings {
     pub placement: Placement,
     /// Which of many draws of its random imperfections it is: 0 in a scene.
     pub draw: u32,
+    /// The file of its index, where one has been read for it; another is read where the device is
+    /// built.
+    pub index_file: Option<Arc<IndexFile>>,
 }
 
 impl Scene {
@@ -223,7 +229,7 @@ impl DeviceSettings {
     pub fn built(&self, show: Show) -> Result<Structure, KeyError> {
         let Placement { core, length, .. } = self.placement;
         let request = Request { show, core, length };
-        let structure = crate::index_file::with_files_read(&self.device)?.build(request)?;
+        let structure = self.with_files_read()?.build(request)?;
         let (key, metal) = (key!(Placement.metal), self.placement.metal.as_ref());
         let message = "metal is false; a cloak without metal has core = \"open\"";
         KeyError::refuse_if(metal == Some(&Metal::None), key, message)?;
@@ -240,13 +246,17 @@ impl DeviceSettings {
     /// [`Device::facts`](crate::device::Device::facts).
     #[must_use]
     pub fn facts(&self) -> Vec<Fact> {
-        let device = crate::index_file::with_files_read(&self.device);
-        device.map(|device| device.facts()).unwrap_or_default()
+        self.with_files_read().map(|device| device.facts()).unwrap_or_default()
     }
 
     /// A device of a kind with everything at its default.
     pub fn new(entry: &Entry) -> Self {
-        Self { device: (entry.device)(), placement: Placement::default(), draw: 0 }
+        let (device, placement) = ((entry.device)(), Placement::default());
+        Self { device, placement, draw: 0, index_file: None }
+    }
+
+    fn with_files_read(&self) -> Result<Cow<'_, AnyDevice>, KeyError> {
+        index_file::with_files_read(&self.device, self.index_file.as_deref())
     }
 
     /// How it is turned, in words: "rotation 10 degrees".

@@ -13,16 +13,16 @@ mod schema;
 mod tests;
 mod tree;
 
-use std::fs::File;
-use std::io::ErrorKind;
-use std::path::Path;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
 
 pub use error::SceneFileError;
 pub use locations::Locations;
 pub use overrides::Override;
 pub use schema::schema;
 
-use crate::input::read_up_to;
+use crate::index_file::IndexFiles;
+use crate::input::{read_file, read_up_to};
 use crate::keys::Value;
 use crate::scene::Scene;
 
@@ -38,15 +38,67 @@ pub struct Loaded {
     pub locations: Locations,
 }
 
-/// Reads a scene file and applies overrides such as `camera.samples=16` to it.
+/// The text of a scene file, of which scenes with different overrides are made. It is read once, and
+/// so is each file of an index that they name: a pipe gives its bytes once only.
+#[derive(Debug)]
+pub struct SceneText {
+    text: String,
+    name: String,
+    base_folder: PathBuf,
+    index_files: IndexFiles,
+}
+
+impl SceneText {
+    /// A text; `name` stands in messages, and files that the scene names are relative to
+    /// `base_folder`.
+    #[must_use]
+    pub fn new(text: &str, name: &str, base_folder: &Path) -> Self {
+        Self {
+            text: text.to_owned(),
+            name: name.to_owned(),
+            base_folder: base_folder.to_owned(),
+            index_files: IndexFiles::default(),
+        }
+    }
+
+    /// Reads the text of a file, or of standard input for `-`.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be read.
+    pub fn read(path: &Path) -> Result<Self, SceneFileError> {
+        let is_standard_input = path == Path::new("-");
+        let name = path.display().to_string();
+        let name = if is_standard_input { "standard input" } else { &name };
+        let text = read_text((!is_standard_input).then_some(path), name)?;
+        Ok(Self::new(&text, name, path.parent().unwrap_or(Path::new(""))))
+    }
+
+    /// The scene, with overrides such as `camera.samples=16`.
+    ///
+    /// # Errors
+    ///
+    /// If the text is not valid TOML, or says something a scene cannot say.
+    pub fn scene(&self, overrides: &[Override]) -> Result<Loaded, SceneFileError> {
+        let Self { text, name, base_folder, index_files } = self;
+        let mut locations = Locations::new(name, text, overrides);
+        let root = tree::parse(&mut locations)?;
+        let mut loaded = read_values(root, base_folder, locations, index_files)?;
+        if overrides.is_empty() {
+            loaded.scene.source.clone_from(text);
+        }
+        Ok(loaded)
+    }
+}
+
+/// Reads a scene file, or standard input for `-`, and applies overrides such as `camera.samples=16`
+/// to it.
 ///
 /// # Errors
 ///
 /// If the file cannot be read, is not valid TOML, or says something a scene cannot say.
 pub fn load(path: &Path, overrides: &[Override]) -> Result<Loaded, SceneFileError> {
-    let name = path.display().to_string();
-    let text = read_text(path, &name)?;
-    parse(&text, &name, path.parent().unwrap_or(Path::new("")), overrides)
+    SceneText::read(path)?.scene(overrides)
 }
 
 /// Reads the text of a scene; `name` stands in messages, and files that the scene names are
@@ -61,13 +113,7 @@ pub fn parse(
     base_folder: &Path,
     overrides: &[Override],
 ) -> Result<Loaded, SceneFileError> {
-    let mut locations = Locations::new(name, text, overrides);
-    let root = tree::parse(&mut locations)?;
-    let mut loaded = read_values(root, base_folder, locations)?;
-    if overrides.is_empty() {
-        loaded.scene.source = text.to_owned();
-    }
-    Ok(loaded)
+    SceneText::new(text, name, base_folder).scene(overrides)
 }
 
 /// The tables of a scene file as they are written.
@@ -91,16 +137,18 @@ pub fn assemble(
     base_folder: &Path,
     overrides: &[Override],
 ) -> Result<Loaded, SceneFileError> {
-    read_values(tables, base_folder, Locations::new(name, "", overrides))
+    let locations = Locations::new(name, "", overrides);
+    read_values(tables, base_folder, locations, &IndexFiles::default())
 }
 
 fn read_values(
     mut root: Value,
     base_folder: &Path,
     mut locations: Locations,
+    index_files: &IndexFiles,
 ) -> Result<Loaded, SceneFileError> {
     overrides::apply(&mut root, &mut locations)?;
-    let mut scene = read::read(&root, &locations, base_folder)?;
+    let mut scene = read::read(&root, &locations, base_folder, index_files)?;
     scene.source = text(&root);
     Ok(Loaded { scene, locations })
 }
@@ -115,9 +163,10 @@ pub fn text(tables: &Value) -> String {
     }
 }
 
-fn read_text(path: &Path, name: &str) -> Result<String, SceneFileError> {
+/// The text of a file, or of standard input.
+fn read_text(path: Option<&Path>, name: &str) -> Result<String, SceneFileError> {
     let fail = |message: String| SceneFileError::whole(name, message);
-    let unreadable = |error: std::io::Error| {
+    let unreadable = |error: io::Error| {
         fail(match error.kind() {
             ErrorKind::NotFound => "there is no such file".to_owned(),
             ErrorKind::IsADirectory => "this is a folder, not a scene file".to_owned(),
@@ -126,12 +175,17 @@ fn read_text(path: &Path, name: &str) -> Result<String, SceneFileError> {
             _ => format!("it cannot be read: {error}"),
         })
     };
-    if path.is_dir() {
+    if path.is_some_and(Path::is_dir) {
         return Err(unreadable(ErrorKind::IsADirectory.into()));
     }
-    let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| read_up_to(LONGEST_FILE, file, &mut bytes));
-    read.map_err(unreadable)?;
+    let read = || match path {
+        Some(path) => read_file(LONGEST_FILE, path),
+        None => {
+            let mut bytes = Vec::new();
+            read_up_to(LONGEST_FILE, io::stdin(), &mut bytes).map(|()| bytes)
+        }
+    };
+    let bytes = read().map_err(unreadable)?;
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;

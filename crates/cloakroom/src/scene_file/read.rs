@@ -5,6 +5,7 @@ use std::path::Path;
 use super::error::SceneFileError;
 use super::locations::{Locations, join};
 use crate::device::{AnyDevice, CATALOGUE};
+use crate::index_file::IndexFiles;
 use crate::keys::{Key, KeyKind, Table, Value, hint, quoted, unknown};
 use crate::scene::{Camera, CameraSettings, DeviceSettings, Placement, Scene, TABLES};
 
@@ -21,8 +22,9 @@ pub(super) fn read(
     root: &Value,
     locations: &Locations,
     base_folder: &Path,
+    index_files: &IndexFiles,
 ) -> Result<Scene, SceneFileError> {
-    let reader = Reader { locations, base_folder };
+    let reader = Reader { locations, base_folder, index_files };
     let mut scene = Scene::default();
     for (name, value) in root.as_table().unwrap_or_default() {
         if name == DEVICES {
@@ -63,6 +65,7 @@ pub(super) fn read(
 struct Reader<'a> {
     locations: &'a Locations,
     base_folder: &'a Path,
+    index_files: &'a IndexFiles,
 }
 
 impl Reader<'_> {
@@ -86,7 +89,8 @@ impl Reader<'_> {
         let place = format!(" in a {}", device.kind());
         let held = self.held(&lists, entries, &[KIND], path, &place)?;
         self.fill(&mut [device.table_mut(), &mut placement], &held, path);
-        let settings = DeviceSettings { device, placement, draw: 0 };
+        let index_file = self.index_files.of(&device);
+        let settings = DeviceSettings { device, placement, draw: 0, index_file };
         settings.pose().map_err(|error| self.locations.key_error(path, &error))?;
         Ok(settings)
     }

@@ -34,24 +34,14 @@ impl FrameFolder {
         self.folder.join(format!("frame-{frame:06}.png"))
     }
 
-    /// Whether a frame is there that shows just this: it carries the same metadata, and none of
-    /// `files` has changed since.
+    /// Whether a frame is there that shows just this: it carries the same metadata, the contents of
+    /// files among them.
     #[must_use]
-    pub fn is_finished(
-        &self,
-        frame: usize,
-        metadata: &[(String, String)],
-        files: &[PathBuf],
-    ) -> bool {
-        let path = self.file(frame);
-        let Ok(made) = fs::metadata(&path).and_then(|file| file.modified()) else { return false };
-        let older = |file: &PathBuf| {
-            fs::metadata(file).and_then(|file| file.modified()).is_ok_and(|time| time < made)
-        };
+    pub fn is_finished(&self, frame: usize, metadata: &[(String, String)]) -> bool {
         let same = |carried: Vec<(String, String)>| {
             carried.len() == metadata.len() && metadata.iter().all(|pair| carried.contains(pair))
         };
-        files.iter().all(older) && carried(&path).is_some_and(same)
+        carried(&self.file(frame)).is_some_and(same)
     }
 
     /// Reads a frame.
@@ -95,23 +85,15 @@ mod tests {
             [("software", "cloakroom"), ("scene", scene)].map(|(k, v)| (k.to_owned(), v.to_owned()))
         };
         let image = RgbImage::from_fn(5, 4, |x, y| image::Rgb([x as u8, y as u8, 9]));
-        assert!(!frames.is_finished(0, &say("a"), &[]));
+        assert!(!frames.is_finished(0, &say("a")));
         write_png(&image, &say("a"), &frames.file(0)).expect("written");
-        assert!(frames.is_finished(0, &say("a"), &[]));
-        assert!(!frames.is_finished(0, &say("b"), &[]) && !frames.is_finished(1, &say("a"), &[]));
-        assert!(!frames.is_finished(0, &say("a")[..1], &[]));
+        assert!(frames.is_finished(0, &say("a")));
+        assert!(!frames.is_finished(0, &say("b"), &[]) && !frames.is_finished(1, &say("a")));
+        assert!(!frames.is_finished(0, &say("a")[..1]));
         assert_eq!(frames.read(0).expect("a frame"), image);
-        // A photograph that has changed since, or is gone.
-        let photo = outer.path().join("photo.png");
-        assert!(!frames.is_finished(0, &say("a"), std::slice::from_ref(&photo)));
-        fs::write(&photo, b"new").expect("written");
-        let later = std::time::SystemTime::now() + std::time::Duration::from_secs(60);
-        let file = fs::File::options().write(true).open(&photo).expect("a file");
-        file.set_modified(later).expect("a time");
-        assert!(!frames.is_finished(0, &say("a"), std::slice::from_ref(&photo)));
         // Half a file is none.
         fs::write(frames.file(0), &fs::read(frames.file(0)).expect("bytes")[..40]).expect("cut");
-        assert!(!frames.is_finished(0, &say("a"), &[]));
+        assert!(!frames.is_finished(0, &say("a")));
         frames.remove();
         assert!(!frames.folder.exists());
     }
