@@ -1,6 +1,7 @@
 //! `cloakroom animate`: a film of a scene while keys of it change.
 
 use crate::arguments::AnimateArguments;
+use crate::files::check_writable;
 use crate::interruption::{self, STOP};
 use crate::progress::supervised;
 use crate::render::warn_of_cut_branches;
@@ -24,7 +25,8 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
     let timeline = Timeline::new(&arguments.sweeps, arguments.frames)?;
     let count = timeline.frames();
     let range = range(arguments.frames_only, count)?;
-    if arguments.frames_only.is_none() && format != FilmFormat::Frames {
+    let makes_film = arguments.frames_only.is_none() && format != FilmFormat::Frames;
+    if makes_film {
         format.check()?;
         output::check_writable(path)?;
     }
@@ -32,7 +34,13 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
     let mut images = Images::default();
     let scenes = scenes(arguments, &timeline, range.clone(), &mut images)?;
     let folder = if format == FilmFormat::Frames { path.clone() } else { frames_beside(path) };
+    let inputs = scenes.iter().flat_map(|loaded| scene::inputs(&arguments.scene, loaded));
+    let inputs: Vec<_> = inputs.collect();
+    if makes_film {
+        check_writable([path], &inputs)?;
+    }
     let frames = FrameFolder::new(&folder, count)?;
+    check_writable((0..count).map(|frame| frames.file(frame)).filter(|file| file.exists()), &inputs)?;
     let _busy = interruption::busy();
     let rendered = render(arguments, &scenes, range, &frames, &mut images);
     if let Err(Failure::Interrupted) = rendered {

@@ -126,6 +126,10 @@ pub struct RenderArguments {
     /// work.
     #[arg(long, value_name = "LEFT,TOP,WIDTH,HEIGHT")]
     pub tile: Option<Tile>,
+    /// Keep what is finished beside the first file, in a folder of its name and .strips, until all of
+    /// them are written, and go on with what a stopped run has kept there.
+    #[arg(long, conflicts_with = "tile")]
+    pub resume: bool,
     /// How many threads work.
     #[command(flatten)]
     pub threads: ThreadsArguments,

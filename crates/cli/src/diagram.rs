@@ -1,7 +1,7 @@
 //! `cloakroom diagram`: ray diagrams and settings.
 
 use crate::arguments::DiagramArguments;
-use crate::files::{check_writable, formats};
+use crate::files::{check_writable, formats, write_each};
 use crate::interruption::{self, STOP};
 use crate::report::Result;
 use crate::scene;
@@ -12,8 +12,8 @@ use cloakroom_figures::{DiagramError, DiagramSettings, DrawingFormat, Source};
 /// Draws a scene and writes every file asked for.
 pub fn run(arguments: &DiagramArguments) -> Result<()> {
     let formats = formats(&arguments.outputs, DrawingFormat::of)?;
-    check_writable(&arguments.outputs)?;
     let loaded = scene::load(&arguments.scene, &[])?;
+    check_writable(&arguments.outputs, &scene::inputs(&arguments.scene, &loaded))?;
     let _busy = interruption::busy();
     let (drawing, title) = if arguments.setting {
         let mut scene = loaded.scene.clone();
@@ -32,10 +32,9 @@ pub fn run(arguments: &DiagramArguments) -> Result<()> {
         (drawing, "Ray diagram")
     };
     let metadata = metadata(&loaded.scene);
-    for (path, format) in formats {
-        drawing.write(format, title, &metadata, arguments.size, path)?;
-    }
-    Ok(())
+    write_each(formats, |path, format| {
+        Ok(drawing.write(format, title, &metadata, arguments.size, path)?)
+    })
 }
 
 fn settings(arguments: &DiagramArguments) -> DiagramSettings {

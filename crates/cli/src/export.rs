@@ -1,6 +1,7 @@
 //! `cloakroom export`: what a device is made of.
 
 use crate::arguments::ExportArguments;
+use crate::files::check_writable;
 use crate::progress::supervised;
 use crate::report::Result;
 use crate::{interruption, scene};
@@ -13,12 +14,14 @@ pub fn run(arguments: &ExportArguments) -> Result<()> {
     let loaded = scene::load(&arguments.scene, &[])?;
     let assembly = scene::assembly(&loaded)?;
     let (scene, device, path) = (&loaded.scene, arguments.device, &arguments.output);
+    let inputs = scene::inputs(&arguments.scene, &loaded);
     if arguments.table {
+        check_writable([path], &inputs)?;
         let segments = material::segments(scene, &assembly, device)?;
         return Ok(material::write_segments(&segments, path)?);
     }
     GridFormat::of(path)?;
-    output::check_writable(path)?;
+    check_writable([path], &inputs)?;
     let frame = if arguments.frame == "world" { Frame::World } else { Frame::Device };
     let resolution = arguments.grid.unwrap_or(Resolution::Default);
     let _busy = interruption::busy();

@@ -12,9 +12,31 @@ pub fn formats<F>(
     files.iter().map(|file| Ok((file.as_path(), of(file)?))).collect()
 }
 
-/// Says before long work that one of some files cannot be written.
-pub fn check_writable<'p>(files: impl IntoIterator<Item = &'p PathBuf>) -> Result<()> {
-    files.into_iter().try_for_each(|file| Ok(output::check_writable(file)?))
+/// Says before long work that one of some files cannot be written, or is one that is read.
+pub fn check_writable<'p>(
+    files: impl IntoIterator<Item = impl AsRef<Path> + 'p>,
+    inputs: &[PathBuf],
+) -> Result<()> {
+    files.into_iter().try_for_each(|file| {
+        let file = file.as_ref();
+        if inputs.iter().any(|input| output::is_same_file(input, file)) {
+            return Err(Failure::Failed(format!(
+                "cannot write {}: this run reads that file; give another name",
+                file.display()
+            )));
+        }
+        Ok(output::check_writable(file)?)
+    })
+}
+
+/// Writes each of some files, whether or not another of them fails: the first failure.
+pub fn write_each<'p, F>(
+    files: impl IntoIterator<Item = (&'p Path, F)>,
+    mut write: impl FnMut(&'p Path, F) -> Result<()>,
+) -> Result<()> {
+    let written: Vec<_> =
+        files.into_iter().map(|(path, format)| write(path, format)).collect();
+    written.into_iter().collect()
 }
 
 /// Makes the folder for files.

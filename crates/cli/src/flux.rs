@@ -1,7 +1,7 @@
 //! `cloakroom flux`: the light that comes through to a receiver.
 
 use crate::arguments::FluxArguments;
-use crate::files::{check_writable, formats};
+use crate::files::{check_writable, formats, write_each};
 use crate::progress::supervised;
 use crate::report::{Failure, Result, say};
 use crate::{interruption, render, report, scene};
@@ -17,9 +17,10 @@ use std::path::Path;
 pub fn run(arguments: &FluxArguments) -> Result<()> {
     let files = formats(&arguments.outputs, TableFormat::of)?;
     let map = formats(arguments.map.as_slice(), DrawingFormat::of)?;
-    check_writable(arguments.outputs.iter().chain(&arguments.map))?;
     scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene, &[])?;
+    let inputs = scene::inputs(&arguments.scene, &loaded);
+    check_writable(arguments.outputs.iter().chain(&arguments.map), &inputs)?;
     let (directions, axis) = directions(arguments, &loaded.scene)?;
     let sampling =
         Sampling { rays: arguments.rays, samples: arguments.samples, cells: arguments.cells };
@@ -35,14 +36,11 @@ pub fn run(arguments: &FluxArguments) -> Result<()> {
     let mut stats = TraceStats::default();
     measured.incidences.iter().for_each(|incidence| stats += incidence.stats);
     render::warn_of_cut_branches(&stats);
-    for (path, format) in files {
-        write(&measured, axis, format, path)?;
-    }
-    for (path, format) in map {
-        if let Some(drawing) = flux_map(&measured, axis) {
-            save(&drawing, "Irradiance of the receiver", &measured, (path, format))?;
-        }
-    }
+    write_each(files, |path, format| write(&measured, axis, format, path))?;
+    write_each(map, |path, format| match flux_map(&measured, axis) {
+        Some(drawing) => save(&drawing, "Irradiance of the receiver", &measured, (path, format)),
+        None => Ok(()),
+    })?;
     report::print(&table(&measured, axis))
 }
 

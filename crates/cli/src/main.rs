@@ -27,6 +27,7 @@ mod report;
 mod scene;
 mod scenes;
 mod schema;
+mod strips;
 mod trace;
 mod verify;
 mod view;

@@ -1,7 +1,7 @@
 //! `cloakroom merge`: tiles into the picture that they are parts of.
 
 use crate::arguments::MergeArguments;
-use crate::files::{check_writable, formats};
+use crate::files::{check_writable, formats, write_each};
 use crate::report::{Failure, Result};
 use cloakroom::output::{self, Format};
 use cloakroom::render;
@@ -13,7 +13,7 @@ use std::path::Path;
 pub fn run(arguments: &MergeArguments) -> Result<()> {
     let tiles = formats(&arguments.tiles, Format::of)?;
     let outputs = formats(&arguments.outputs, PictureFormat::of)?;
-    check_writable(&arguments.outputs)?;
+    check_writable(&arguments.outputs, &arguments.tiles)?;
     let all = |wanted| tiles.iter().all(|(_, format)| *format == wanted);
     let png = PictureFormat::Pixels(Format::Png);
     if all(Format::Npz) {
@@ -23,19 +23,17 @@ pub fn run(arguments: &MergeArguments) -> Result<()> {
             parts.push((path.display().to_string(), picture.metadata.clone(), picture));
         }
         let picture = render::merge(&parts)?;
-        for (path, format) in outputs {
+        write_each(outputs, |path, format| {
             if !format.is_shown() {
-                output::write(&picture, path)?;
-                continue;
+                return Ok(output::write(&picture, path)?);
             }
             // The scene says whether the image or a map is to be seen.
             let scene = picture.metadata.iter().find(|(key, _)| key == "scene");
             let text = scene.map_or("", |(_, text)| text);
             let loaded = scene_file::parse(text, "the scene of the tiles", Path::new(""), &[])?;
             let shown = &loaded.scene.picture;
-            write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)?;
-        }
-        Ok(())
+            Ok(write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)?)
+        })
     } else if all(Format::Png) && outputs.iter().all(|(_, format)| *format == png) {
         let mut parts = Vec::new();
         for (path, _) in tiles {
@@ -43,7 +41,7 @@ pub fn run(arguments: &MergeArguments) -> Result<()> {
             parts.push((path.display().to_string(), metadata, image));
         }
         let (image, metadata) = render::merge_images(&parts)?;
-        outputs.iter().try_for_each(|(path, _)| Ok(output::write_png(&image, &metadata, path)?))
+        write_each(outputs, |path, _| Ok(output::write_png(&image, &metadata, path)?))
     } else {
         Err(Failure::Failed("tiles must be all .npz, or all .png to make a .png of".to_owned()))
     }

@@ -1,7 +1,7 @@
 //! `cloakroom quality`: how well devices work over a range of settings.
 
 use crate::arguments::QualityArguments;
-use crate::files::{check_writable, formats};
+use crate::files::{check_writable, formats, write_each};
 use crate::interruption;
 use crate::progress::supervised;
 use crate::render::warn_of_cut_branches;
@@ -36,14 +36,15 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
         arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;
     let plan = SweepPlan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;
     plan.check_columns(&arguments.plot)?;
-    check_writable(&arguments.outputs)?;
+    let inputs = plan.scenes().flat_map(|loaded| scene::inputs(&arguments.scene, loaded));
+    check_writable(&arguments.outputs, &inputs.collect::<Vec<_>>())?;
     let _busy = interruption::busy();
     let table =
         supervised(plan.steps(), "measuring", |_, supervision| quality(&plan, supervision))?;
     warn_of_cut_branches(&table.stats);
-    for (path, format) in formats {
-        write_table(&table, format, &arguments.plot, path)?;
-    }
+    write_each(formats, |path, format| {
+        Ok(write_table(&table, format, &arguments.plot, path)?)
+    })?;
     if arguments.json {
         return report::print_json(&table.to_json());
     }

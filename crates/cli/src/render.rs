@@ -1,11 +1,12 @@
 //! `cloakroom render`: a scene to pictures and data.
 
 use crate::arguments::RenderArguments;
-use crate::files::formats;
+use crate::files::{check_writable, formats, write_each};
 use crate::interruption;
 use crate::progress::supervised;
 use crate::report::{Failure, Result, say};
 use crate::scene;
+use crate::strips::Strips;
 use cloakroom::output::{self, Format, Picture};
 use cloakroom::render::{self, ChannelSet, Images, PreparedScene, Rendered, Tile};
 use cloakroom::scene::Scene;
@@ -31,8 +32,8 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
         if matches!(format, PictureFormat::Map(_)) && shown.map.name().is_none() {
             return Err(IllustrationError::NoMap { path: path.to_path_buf() }.into());
         }
-        output::check_writable(path)?;
     }
+    check_writable(&arguments.outputs, &scene::inputs(&arguments.scene, &loaded))?;
     let _busy = interruption::busy();
     if let Some(tile) = arguments.tile {
         let tile = check_tile(tile, &loaded.scene, &formats)?;
@@ -40,19 +41,45 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
             render::render_tile(&prepared, wanted, tile, supervision)
         });
         let picture = told(picture?);
-        return formats.iter().try_for_each(|(path, _)| Ok(output::write(&picture, path)?));
+        return write_each(formats, |path, _| Ok(output::write(&picture, path)?));
     }
-    if let [(path, PictureFormat::Pixels(Format::Png))] = formats[..]
-        && shown.map.name().is_none()
-        && render::strips(&prepared).nth(1).is_some()
-    {
-        return in_strips(&prepared, path);
+    let is_image = matches!(formats[..], [(_, PictureFormat::Pixels(Format::Png))])
+        && shown.map.name().is_none();
+    let strips = arguments.resume.then(|| Strips::beside(formats[0].0, &prepared, wanted));
+    let strips = strips.transpose()?;
+    if is_image && render::strips(&prepared).nth(1).is_some() {
+        in_strips(&prepared, strips.as_ref(), formats[0].0)?;
+    } else {
+        let picture = match &strips {
+            Some(strips) => merged(&prepared, wanted, strips)?,
+            None => picture(&prepared, wanted, "rendering")?,
+        };
+        write_each(formats, |path, format| {
+            Ok(write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)?)
+        })?;
     }
-    let picture = picture(&prepared, wanted, "rendering")?;
-    for (path, format) in formats {
-        write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)?;
+    if let Some(strips) = strips {
+        strips.remove();
     }
     Ok(())
+}
+
+/// The picture of its strips, those that are there and the others, rendered one after the other.
+fn merged(prepared: &PreparedScene<'_>, wanted: ChannelSet, strips: &Strips<'_>) -> Result<Picture> {
+    // The strips are there beside the picture for a moment.
+    let [width, height] = prepared.scene.camera.resolution;
+    render::check_memory(prepared, wanted, Tile { left: 0, top: 0, width, height })?;
+    let (mut parts, mut stats) = (Vec::new(), TraceStats::default());
+    supervised(prepared.rows(), "rendering", |_, supervision| {
+        for part in render::small_strips(prepared) {
+            let Rendered { picture, stats: of_part } = strips.strip(part, supervision)?;
+            stats += of_part;
+            parts.push((part.to_string(), picture.metadata.clone(), picture));
+        }
+        Ok::<_, Failure>(())
+    })?;
+    warn_of_cut_branches(&stats);
+    Ok(render::merge(&parts)?)
 }
 
 /// The tile, if the picture has one there and its files can be tiles.
@@ -72,13 +99,24 @@ fn check_tile(tile: Tile, scene: &Scene, formats: &[(&Path, PictureFormat)]) -> 
     Ok(tile.check(scene.camera.resolution)?)
 }
 
-/// Renders a large image strip by strip into its file.
-fn in_strips(prepared: &PreparedScene<'_>, path: &Path) -> Result<()> {
+/// Renders a large image strip by strip into its file; finished ones may be kept.
+fn in_strips(
+    prepared: &PreparedScene<'_>,
+    kept: Option<&Strips<'_>>,
+    path: &Path,
+) -> Result<()> {
     let (mut stats, mut failure) = (TraceStats::default(), None);
     let written = supervised(prepared.rows(), "rendering", |_, supervision| {
-        let images = render::strips(prepared).map(|part| {
-            let strip = render::render_part(prepared, ChannelSet::Image, part, supervision);
-            let image = strip.map_err(Failure::from).and_then(|strip| {
+        let strip = |part| match kept {
+            Some(strips) => strips.strip(part, supervision),
+            None => Ok(render::render_part(prepared, ChannelSet::Image, part, supervision)?),
+        };
+        let parts: Vec<Tile> = match kept {
+            Some(_) => render::small_strips(prepared).collect(),
+            None => render::strips(prepared).collect(),
+        };
+        let images = parts.into_iter().map(|part| {
+            let image = strip(part).and_then(|strip| {
                 stats += strip.stats;
                 Ok(output::to_srgb(&strip.picture)?)
             });

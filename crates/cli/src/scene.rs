@@ -5,10 +5,17 @@ use crate::report::{Failure, Result};
 use cloakroom::assembly::Assembly;
 use cloakroom::render::{self, Images, PreparedScene, PreparedSceneError};
 use cloakroom::scene_file::{Loaded, Override, SceneFileError, SceneText};
+use std::path::PathBuf;
 
 /// Reads a scene with its overrides and further ones after them.
 pub fn load(arguments: &SceneArguments, further: &[Override]) -> Result<Loaded, SceneFileError> {
     SceneText::read(&arguments.scene)?.scene(&[&arguments.overrides, further].concat())
+}
+
+/// The files that a run reads: the scene, and those that it names.
+pub fn inputs(arguments: &SceneArguments, loaded: &Loaded) -> Vec<PathBuf> {
+    let named = loaded.scene.files().into_iter().map(|(_, path)| path);
+    named.chain([arguments.scene.clone()]).collect()
 }
 
 /// What a picture of a scene needs, built; `images` keeps what has been read.

@@ -7,7 +7,7 @@ use crate::render::picture;
 use crate::report::{Failure, Result};
 use crate::scene;
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, Images, metadata};
+use cloakroom::render::{ChannelSet, INPUTS, Images, metadata};
 use cloakroom::scene::Polarizer;
 use cloakroom::scene_file::Loaded;
 use cloakroom_figures::paper::{Panel, Shows};
@@ -50,7 +50,9 @@ impl Subject {
             (None, Polarizer::None) => view.image_through("")?,
             (None, _) => view.image_through(&polarizer.to_string())?,
         };
-        Some(Picture { metadata: metadata(&self.loaded.scene), ..own })
+        let mut metadata = metadata(&self.loaded.scene);
+        metadata.extend(own.metadata.into_iter().filter(|(key, _)| key == INPUTS));
+        Some(Picture { metadata, ..own })
     }
 }
 

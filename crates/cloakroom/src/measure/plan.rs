@@ -97,6 +97,11 @@ impl SweepPlan {
         Ok(Self { draws: draws.max(1), ..self })
     }
 
+    /// The scenes that are measured.
+    pub fn scenes(&self) -> impl Iterator<Item = &Loaded> {
+        self.scenes.iter().map(|combination| &combination.loaded)
+    }
+
     /// How often a scene is drawn.
     pub(super) fn draws_of(&self, scene: &Scene) -> u32 {
         if is_random(scene) { self.draws } else { 1 }

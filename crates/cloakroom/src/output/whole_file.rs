@@ -2,12 +2,13 @@
 
 use super::OutputError;
 use std::fs;
-use std::io::{self, BufWriter, Seek, Write};
+use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 /// Writes a file such that it appears under its name only when it is complete: into a temporary
-/// file beside it, which is renamed at the end and removed if anything goes wrong. A target that
+/// file beside it, which is renamed at the end and removed if anything goes wrong. A file that is
+/// replaced keeps its mode; where the name is a link, what it leads to is replaced. A target that
 /// exists and is not a regular file (a pipe, a device) is written to directly.
 ///
 /// # Errors
@@ -17,7 +18,7 @@ pub fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut dyn WriteSeek) -> io::Result<()>,
 ) -> Result<(), OutputError> {
-    let written = match folder(path)? {
+    let written = match place(path)? {
         None => {
             // Pipes cannot be sought in: the bytes are gathered first.
             let mut bytes = io::Cursor::new(Vec::new());
@@ -25,7 +26,7 @@ pub fn write_whole(
                 fs::OpenOptions::new().write(true).open(path)?.write_all(bytes.get_ref())
             })
         }
-        Some(folder) => write_and_rename(path, &folder, write),
+        Some(place) => place.write(write),
     };
     written.map_err(|error| OutputError::new(path, &error))
 }
@@ -35,18 +36,26 @@ pub trait WriteSeek: Write + Seek {}
 
 impl<T: Write + Seek> WriteSeek for T {}
 
-fn write_and_rename(
-    path: &Path,
-    folder: &Path,
-    write: impl FnOnce(&mut dyn WriteSeek) -> io::Result<()>,
-) -> io::Result<()> {
-    let mut file = temporary(folder)?;
-    let mut buffer = BufWriter::with_capacity(1 << 16, file.as_file_mut());
-    write(&mut buffer)?;
-    buffer.flush()?;
-    drop(buffer);
-    file.persist(path).map_err(|error| error.error)?;
-    Ok(())
+/// Where a file comes into being by a rename.
+struct Place {
+    folder: PathBuf,
+    /// The file, no link.
+    path: PathBuf,
+}
+
+impl Place {
+    fn write(&self, write: impl FnOnce(&mut dyn WriteSeek) -> io::Result<()>) -> io::Result<()> {
+        let mut file = temporary(&self.folder)?;
+        let mut buffer = BufWriter::with_capacity(1 << 16, file.as_file_mut());
+        write(&mut buffer)?;
+        buffer.flush()?;
+        drop(buffer);
+        if let Ok(replaced) = fs::metadata(&self.path) {
+            file.as_file().set_permissions(replaced.permissions())?;
+        }
+        file.persist(&self.path).map_err(|error| error.error)?;
+        Ok(())
+    }
 }
 
 /// A temporary file that others may read once it has its final name, as any file a program makes.
@@ -62,9 +71,26 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// The folder within which a file comes into being by a rename; `None` where it is to be written to
-/// what is there.
-fn folder(path: &Path) -> Result<Option<PathBuf>, OutputError> {
+/// Longer chains of links are none that lead anywhere.
+const MOST_LINKS: usize = 40;
+
+/// The file that a chain of links leads to, whether it is there or not.
+fn followed(path: &Path) -> PathBuf {
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&path) else { break };
+        path = folder_of(&path).join(next);
+    }
+    path
+}
+
+/// The folder in which a name is.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Where a file comes into being by a rename; `None` where it is to be written to what is there.
+fn place(path: &Path) -> Result<Option<Place>, OutputError> {
     let refuse =
         |reason: &str| Err(OutputError::Write { path: path.to_owned(), reason: reason.to_owned() });
     if path.as_os_str().to_string_lossy().ends_with(std::path::is_separator) {
@@ -73,21 +99,35 @@ fn folder(path: &Path) -> Result<Option<PathBuf>, OutputError> {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => return refuse("it is a folder"),
         Ok(found) if !found.is_file() => return Ok(None),
-        // A link is followed, so that it stays one.
-        Ok(_) if path.is_symlink() => {
-            let target = fs::canonicalize(path).map_err(|error| OutputError::new(path, &error))?;
-            return folder(&target);
+        // That there is nothing yet, or no folder for it, is not told here.
+        Err(error) if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            return Err(OutputError::new(path, &error));
         }
         _ => {}
     }
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+    let target = followed(path);
+    let folder = folder_of(&target).to_owned();
     if !folder.is_dir() {
         return refuse(&format!("there is no folder {}", folder.display()));
     }
-    Ok(Some(folder.to_owned()))
+    Ok(Some(Place { folder, path: target }))
+}
+
+/// Whether two names are those of one file that is there, by links of any kind.
+#[must_use]
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    let is_file = |path: &Path| fs::metadata(path).ok().filter(fs::Metadata::is_file);
+    let (Some(a), Some(b)) = (is_file(one), is_file(other)) else { return false };
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        (a.dev(), a.ino()) == (b.dev(), b.ino())
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = (a, b);
+        matches!((fs::canonicalize(one), fs::canonicalize(other)), (Ok(a), Ok(b)) if a == b)
+    }
 }
 
 /// Checks before long work that a file can be written where it is wanted. What can go wrong later
@@ -97,9 +137,9 @@ fn folder(path: &Path) -> Result<Option<PathBuf>, OutputError> {
 ///
 /// [`OutputError`] with the file's name and the reason.
 pub fn check_writable(path: &Path) -> Result<(), OutputError> {
-    let tried = match folder(path)? {
+    let tried = match place(path)? {
         None => fs::OpenOptions::new().write(true).open(path).map(drop),
-        Some(folder) => temporary(&folder).map(drop),
+        Some(place) => temporary(&place.folder).map(drop),
     };
     tried.map_err(|error| OutputError::new(path, &error))
 }
@@ -136,6 +176,37 @@ mod tests {
         assert_eq!(entries(folder.path()), 1);
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn links_stay_and_so_do_modes() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let (one, other) = (tempfile::tempdir().expect("a"), tempfile::tempdir().expect("b"));
+        let target = other.path().join("target.png");
+        let (near, far) = (one.path().join("near.png"), one.path().join("far.png"));
+        symlink(&target, &near).expect("a link");
+        symlink("near.png", &far).expect("a link");
+        for mode in [None, Some(0o640), Some(0o604)] {
+            if let Some(mode) = mode {
+                fs::set_permissions(&target, fs::Permissions::from_mode(mode)).expect("a mode");
+            }
+            let content = format!("{mode:?}");
+            check_writable(&far).expect("can be written");
+            write_whole(&far, |out| out.write_all(content.as_bytes())).expect("written");
+            assert!(far.is_symlink() && near.is_symlink() && !target.is_symlink());
+            assert_eq!(fs::read_to_string(&target).expect("a text"), content);
+            let found = fs::metadata(&target).expect("a file").permissions().mode() & 0o777;
+            assert!(mode.is_none_or(|mode| mode == found), "{mode:?}: {found:o}");
+        }
+        assert!(is_same_file(&far, &target) && !is_same_file(&far, &one.path().join("none")));
+        fs::hard_link(&target, other.path().join("hard")).expect("a link");
+        assert!(is_same_file(&near, &other.path().join("hard")));
+        // Round and round.
+        symlink("b", one.path().join("a")).expect("a link");
+        symlink("a", one.path().join("b")).expect("a link");
+        assert!(check_writable(&one.path().join("a")).is_err());
+        assert_eq!((entries(one.path()), entries(other.path())), (4, 2));
+    }
+
     #[test]
     fn impossible_places_are_named() {
         let folder = tempfile::tempdir().expect("a folder");
@@ -144,6 +215,8 @@ mod tests {
         assert!(error.contains("there is no folder"), "{error}");
         let error = check_writable(folder.path()).expect_err("must fail").to_string();
         assert!(error.contains("it is a folder"), "{error}");
+        let long = folder.path().join(format!("{}.png", "a".repeat(300)));
+        assert!(check_writable(&long).is_err());
     }
 
     #[cfg(target_os = "linux")]

@@ -20,7 +20,7 @@ mod tile;
 pub use channels::{ChannelKind, ChannelSet};
 pub use images::Images;
 pub use prepared_scene::{
-    PreparedScene, PreparedSceneError, assembly, coherence, limits, ray_settings,
+    INPUTS, PreparedScene, PreparedSceneError, assembly, coherence, limits, ray_settings,
 };
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
 pub use tile::{MergeError, Tile, TileError, merge, merge_images};
@@ -94,11 +94,25 @@ pub fn render(
 /// Pixels in a strip: enough for all threads to be busy nearly all the time.
 const STRIP_PIXELS: u32 = 1 << 22;
 
+/// How many small strips a picture of few pixels has.
+const MOST_SMALL_STRIPS: u64 = 32;
+
 /// A picture in strips of equal height, from top to bottom: what is rendered strip by strip needs
 /// no more memory than one of them.
 pub fn strips(prepared: &PreparedScene<'_>) -> impl Iterator<Item = Tile> + use<> {
+    strips_of(prepared, STRIP_PIXELS)
+}
+
+/// The same in as small strips as are worth a file of their own.
+pub fn small_strips(prepared: &PreparedScene<'_>) -> impl Iterator<Item = Tile> + use<> {
     let [width, height] = prepared.scene.camera.resolution;
-    let rows = (STRIP_PIXELS / width / BAND_ROWS).max(1) * BAND_ROWS;
+    let share = u64::from(width) * u64::from(height) / MOST_SMALL_STRIPS;
+    strips_of(prepared, u32::try_from(share).unwrap_or(u32::MAX).min(STRIP_PIXELS))
+}
+
+fn strips_of(prepared: &PreparedScene<'_>, pixels: u32) -> impl Iterator<Item = Tile> + use<> {
+    let [width, height] = prepared.scene.camera.resolution;
+    let rows = (pixels / width / BAND_ROWS).max(1) * BAND_ROWS;
     (0..height).step_by(rows as usize).map(move |top| Tile {
         left: 0,
         top,
@@ -127,8 +141,15 @@ pub fn render_tile(
     let resolution = prepared.scene.camera.resolution;
     assert!(tile.check(resolution).is_ok(), "the tile is not of this picture");
     let mut rendered = render_part(prepared, wanted, tile, supervision)?;
-    rendered.picture.metadata.extend(tile.metadata(resolution));
+    rendered.picture.metadata = tile_metadata(prepared, tile);
     Ok(rendered)
+}
+
+/// The metadata of a tile: those of the picture, and which part of it the tile is.
+#[must_use]
+pub fn tile_metadata(prepared: &PreparedScene<'_>, tile: Tile) -> Vec<(String, String)> {
+    let of_tile = tile.metadata(prepared.scene.camera.resolution);
+    prepared.metadata().into_iter().chain(of_tile).collect()
 }
 
 /// Renders a part of a picture, one of its [`strips`] or all of it: the picture has these pixels
@@ -162,14 +183,10 @@ fn expose_film<const N: usize>(
     detection: Detection<N>,
 ) -> Result<Rendered, RenderError> {
     let Tile { width, height, .. } = tile;
+    check_memory(prepared, wanted, tile)?;
     let settings = &prepared.scene.picture;
     let detection = detection.with_options(wanted, settings);
     let channels = ChannelKind::of(wanted, settings);
-    let bytes: usize = channels.iter().map(|channel| channel.blank(1).bytes()).sum();
-    // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
-    let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2) as u64;
-    let too_large = |shortage| RenderError::TooLarge { width, height, shortage };
-    crate::memory::check(needed, u64::MAX).map_err(too_large)?;
     let mut film = Film::new(tile, &channels);
     let stats = film
         .bands(BAND_ROWS as usize)
@@ -189,6 +206,24 @@ fn expose_film<const N: usize>(
     let [width, height] = [width, height].map(|side| side as usize);
     let (channels, metadata) = (film.into_channels(), prepared.metadata());
     Ok(Rendered { picture: Picture { width, height, channels, metadata }, stats })
+}
+
+/// Refuses a part of a picture that would not fit into memory.
+///
+/// # Errors
+///
+/// [`RenderError::TooLarge`].
+pub fn check_memory(
+    prepared: &PreparedScene<'_>,
+    wanted: ChannelSet,
+    Tile { width, height, .. }: Tile,
+) -> Result<(), RenderError> {
+    let channels = ChannelKind::of(wanted, &prepared.scene.picture);
+    let bytes: usize = channels.iter().map(|channel| channel.blank(1).bytes()).sum();
+    // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
+    let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2) as u64;
+    crate::memory::check(needed, u64::MAX)
+        .map_err(|shortage| RenderError::TooLarge { width, height, shortage })
 }
 
 /// How long rendering the image will take on the threads there are, in seconds: a few thousand

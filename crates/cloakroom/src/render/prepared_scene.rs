@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The key of metadata that says what was in the files a scene names.
-pub(crate) const INPUTS: &str = "inputs";
+pub const INPUTS: &str = "inputs";
 
 /// Width of the builtin photograph, cm.
 const BUILTIN_WIDTH: f64 = 110.0;

@@ -1,7 +1,7 @@
 //! MP4 and WebM, by the program `ffmpeg` where it is installed.
 
 use super::{Film, FilmError};
-use cloakroom::output::{OutputError, check_writable};
+use cloakroom::output::{self, OutputError, check_writable};
 use cloakroom::render::RenderError;
 use cloakroom::trace::Stopped;
 use std::fmt::Display;
@@ -68,7 +68,9 @@ pub(super) fn write(film: &Film<'_>, codec: &[&str]) -> Result<(), FilmError> {
     });
     match done.map_err(|error| failed(&error))? {
         None => Err(RenderError::from(Stopped).into()),
-        Some(true) => std::fs::rename(&file, path).map_err(unwritable),
+        Some(true) => Ok(output::write_whole(path, |out| {
+            io::copy(&mut std::fs::File::open(&file)?, out).map(drop)
+        })?),
         Some(false) => {
             let said = said.unwrap_or_default();
             Err(failed(&said.lines().last().unwrap_or("it has failed")))
