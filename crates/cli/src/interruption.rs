@@ -22,7 +22,7 @@ pub fn watch() -> Result<()> {
         STOP.store(true, Ordering::SeqCst);
         let is_impatient = FIRST.get_or_init(Instant::now).elapsed() > AT_ONCE;
         if is_impatient || !BUSY.load(Ordering::SeqCst) {
-            std::process::exit(130);
+            std::process::exit(Failure::Interrupted.tell().into());
         }
     })
     .map_err(|error| Failure::Failed(format!("cannot watch for Ctrl-C: {error}")))

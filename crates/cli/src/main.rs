@@ -39,11 +39,26 @@ use report::Result;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return refuse(&error),
+    };
     match panic_report::caught(|| run(&arguments.command)) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.tell(),
+        Err(failure) => ExitCode::from(failure.tell()),
     }
+}
+
+/// Says what is wrong with the command line, or what was asked of it: help, the version.
+fn refuse(error: &clap::Error) -> ExitCode {
+    let message = error.to_string();
+    let message = message.trim_end();
+    // In colors where the terminal can show them, but never what an argument would do to it.
+    if error.use_stderr() && report::printable(message) != message {
+        report::say(message);
+        return ExitCode::from(2);
+    }
+    error.exit()
 }
 
 fn run(command: &Command) -> Result<()> {

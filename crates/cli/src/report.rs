@@ -4,7 +4,6 @@ use cloakroom::trace::Stopped;
 use std::error::Error;
 use std::io::Write;
 use std::path::Path;
-use std::process::ExitCode;
 
 /// What a command comes to.
 pub type Result<T, E = Failure> = std::result::Result<T, E>;
@@ -22,14 +21,14 @@ pub enum Failure {
 
 impl Failure {
     /// Tells the user and gives the exit status.
-    pub fn tell(self) -> ExitCode {
+    pub fn tell(self) -> u8 {
         let (words, status) = match self {
             Self::Failed(message) => (format!("error: {message}"), 1),
             Self::Usage(message) => (format!("error: {message}"), 2),
             Self::Interrupted => ("interrupted".to_owned(), 130),
         };
         say(&words);
-        ExitCode::from(status)
+        status
     }
 }
 
@@ -42,7 +41,29 @@ impl<E: Error + 'static> From<E> for Failure {
 
 /// Says something on standard error. Nobody listening is no reason to fail.
 pub fn say(message: &str) {
-    let _ = writeln!(std::io::stderr(), "{message}");
+    let _ = writeln!(std::io::stderr(), "{}", printable(message));
+}
+
+/// Longer messages are cut: what they quote comes from files of any length, in bytes.
+const LONGEST_MESSAGE: usize = 2000;
+
+/// A message that a terminal shows as it is: characters that would command it, or turn the order of
+/// others, are written as escapes.
+pub fn printable(message: &str) -> String {
+    let turns = |c: char| matches!(c, '\u{200e}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let mut shown = String::new();
+    for c in message.chars() {
+        if shown.len() >= LONGEST_MESSAGE - 16 {
+            shown.push_str(" …");
+            break;
+        }
+        if (c.is_control() && c != '\n') || turns(c) {
+            shown.extend(c.escape_default());
+        } else {
+            shown.push(c);
+        }
+    }
+    shown
 }
 
 /// Says that a file has been written.
@@ -66,4 +87,19 @@ pub fn print(text: &str) -> Result<()> {
 /// Prints JSON on standard output, for people to read and programs to parse.
 pub fn print_json(value: &impl serde::Serialize) -> Result<()> {
     print(&format!("{}\n", serde_json::to_string_pretty(value)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_are_short_and_do_not_command_terminals() {
+        assert_eq!(printable("a \u{1b}[2J\u{7}\u{9b}é\nb"), "a \\u{1b}[2J\\u{7}\\u{9b}é\nb");
+        assert_eq!(printable("\u{202e}gnp.exe"), "\\u{202e}gnp.exe");
+        for c in ["a", "é", "\u{1}", "\u{2066}", "𝔸"] {
+            let shown = printable(&c.repeat(5000));
+            assert!(shown.len() <= LONGEST_MESSAGE && shown.ends_with(" …"), "{}", shown.len());
+        }
+    }
 }

@@ -158,7 +158,7 @@ mod tests {
         let path = folder.path().join("a.png");
         let failed = write_whole(&path, |out| {
             out.write_all(b"half")?;
-            Err(io::Error::from(io::ErrorKind::StorageFull))
+            Err(io::Error::from(ErrorKind::StorageFull))
         });
         let message = failed.expect_err("must fail").to_string();
         assert!(message.contains("a.png") && message.contains("no space left"), "{message}");

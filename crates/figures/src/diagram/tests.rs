@@ -116,7 +116,10 @@ fn every_device_can_be_drawn_in_every_way() {
             for axis in axes.iter().cycle().skip(number).take(long::count(2, axes.len())) {
                 let text = text.replacen("\n", &format!("\naxis = {axis}\n"), 1);
                 match drawn(&text, &settings) {
-                    Ok(drawing) => assert!(drawing.of_class("ray").count() >= 3),
+                    Ok(drawing) => {
+                        let rays = drawing.of_class("ray").count();
+                        assert!(rays >= 3, "{text} {source:?}: {rays}");
+                    }
                     // What has no end along the rays is where they would start.
                     Err(error) => assert!(matches!(error, DiagramError::Inside { .. }), "{error}"),
                 }

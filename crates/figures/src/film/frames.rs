@@ -88,7 +88,7 @@ mod tests {
         assert!(!frames.is_finished(0, &say("a")));
         write_png(&image, &say("a"), &frames.file(0)).expect("written");
         assert!(frames.is_finished(0, &say("a")));
-        assert!(!frames.is_finished(0, &say("b"), &[]) && !frames.is_finished(1, &say("a")));
+        assert!(!frames.is_finished(0, &say("b")) && !frames.is_finished(1, &say("a")));
         assert!(!frames.is_finished(0, &say("a")[..1]));
         assert_eq!(frames.read(0).expect("a frame"), image);
         // Half a file is none.

@@ -286,11 +286,15 @@ impl<const N: usize> Scattered<'_, N> {
         let largest = power.iter().copied().fold(0.0, f64::max);
         let strong = largest > 0.0 && largest >= self.splitting.least_power;
         if !strong {
-            for (sum, power) in self.weak.iter_mut().zip(power) {
-                *sum += power;
-            }
+            self.count_as_weak(power);
         }
         strong
+    }
+
+    fn count_as_weak(&mut self, power: [f64; N]) {
+        for (sum, power) in self.weak.iter_mut().zip(power) {
+            *sum += power;
+        }
     }
 
     /// Adds a wave, given the Poynting vector of a unit of normal flux, and its matched fields
@@ -304,14 +308,21 @@ impl<const N: usize> Scattered<'_, N> {
         field: impl Fn(usize, f64) -> ComplexVector,
     ) {
         let length = ray.length();
+        let [first, second] = self.tangential.components();
+        let wave_vector = self.splitting.frame.vector([first.re, second.re, q.re]);
+        if is_evanescent(wave_vector, q, 1.0 / length) {
+            // In a medium that absorbs it counts as absorbed, as what no wave carries does.
+            if !shares.absorbing {
+                self.count_as_weak(power);
+            }
+            return;
+        }
         // The fields of a ray are scaled to its power.
         let narrowing = length.sqrt().recip();
-        let [first, second] = self.tangential.components();
         let attenuation = match self.tangential {
             Tangential::Real(_) if q.im == 0.0 => DVec3::ZERO,
             _ => self.splitting.frame.vector([first.im, second.im, q.im]),
         };
-        let wave_vector = self.splitting.frame.vector([first.re, second.re, q.re]);
         self.splitting.waves.push(OutgoingWave {
             side,
             mode,
@@ -322,6 +333,17 @@ impl<const N: usize> Scattered<'_, N> {
             power,
         });
     }
+}
+
+/// Above this cosine between ray and normal a wave that decays is followed as others are: in metal
+/// it is gone within a wavelength.
+const ALONG_THE_SURFACE: f64 = 0.01;
+
+/// Whether a wave that decays from a surface, or along it, is evanescent but for what the medium
+/// absorbs, or the wave that has made it lost: it decays faster than its power comes away from the
+/// surface. No ray is; followed along its Poynting vector, it would leave the light that feeds it.
+fn is_evanescent(wave_vector: DVec3, q: Complex64, cosine: f64) -> bool {
+    q.im != 0.0 && cosine < ALONG_THE_SURFACE && q.im.abs() > cosine * wave_vector.length()
 }
 
 /// Whether two modes of one wave vector have one ray. s and p do; in absorbing media theirs part a
