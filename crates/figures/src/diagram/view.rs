@@ -15,10 +15,13 @@ const KEY: f64 = 1.8 * TEXT;
 pub(super) fn bounds(assembly: &Assembly) -> Option<[DVec2; 2]> {
     /// What is shown of something without any end, cm to either side.
     const ENDLESS: f64 = 10.0;
+    /// What is thinner is a sheet, turned with rounding, cm: no body is.
+    const SHEET: f64 = 1e-7;
     let boxes = assembly.devices().iter().filter_map(|placed| {
         let [low, high] = placed.structure.hull.bounds(&placed.pose)?.map(DVec3::truncate);
         let size = high - low;
-        let shown = if size.min_element() < REACH { 1.5 * size.min_element() } else { ENDLESS };
+        let width = size.min_element();
+        let shown = if (SHEET..REACH).contains(&width) { 1.5 * width } else { ENDLESS };
         let middle = placed.pose.origin.truncate();
         let is_endless = size.cmpge(DVec2::splat(REACH));
         Some([
