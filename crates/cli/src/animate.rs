@@ -40,7 +40,10 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
         check_writable([path], &inputs)?;
     }
     let frames = FrameFolder::new(&folder, count)?;
-    check_writable((0..count).map(|frame| frames.file(frame)).filter(|file| file.exists()), &inputs)?;
+    check_writable(
+        (0..count).map(|frame| frames.file(frame)).filter(|file| file.exists()),
+        &inputs,
+    )?;
     let _busy = interruption::busy();
     let rendered = render(arguments, &scenes, range, &frames, &mut images);
     if let Err(Failure::Interrupted) = rendered {

@@ -1,9 +1,8 @@
 //! `cloakroom figures`: the figures of the paper, drawn and rendered.
 
 use crate::arguments::FiguresArguments;
-use crate::files::make_folder;
 use crate::interruption;
-use crate::panels::{merge, write_drawing, write_png};
+use crate::panels::{self, merge, write_drawing, write_png};
 use crate::render::rgb;
 use crate::report::{Failure, Result};
 use crate::scene;
@@ -19,9 +18,10 @@ use std::path::PathBuf;
 pub fn run(arguments: &FiguresArguments) -> Result<()> {
     let chosen = paper::select(&arguments.only).map_err(Failure::Usage)?;
     scene::use_threads(&arguments.panels.threads)?;
-    make_folder(&arguments.out)?;
+    let sheets = chosen.iter().map(|panel| file(&panel.figure.to_string(), arguments));
+    let names = chosen.iter().map(|panel| file(panel.name, arguments)).chain(sheets);
+    let mut images = panels::prepare(&arguments.panels, &arguments.out, names)?;
     let _busy = interruption::busy();
-    let mut images = Images::default();
     for panels in chosen.chunk_by(|one, next| one.figure == next.figure) {
         make(panels, arguments, &mut images)?;
     }

@@ -34,8 +34,7 @@ pub fn write_each<'p, F>(
     files: impl IntoIterator<Item = (&'p Path, F)>,
     mut write: impl FnMut(&'p Path, F) -> Result<()>,
 ) -> Result<()> {
-    let written: Vec<_> =
-        files.into_iter().map(|(path, format)| write(path, format)).collect();
+    let written: Vec<_> = files.into_iter().map(|(path, format)| write(path, format)).collect();
     written.into_iter().collect()
 }
 

@@ -14,18 +14,45 @@ static FIRST: OnceLock<Instant> = OnceLock::new();
 /// group that it is in.
 const AT_ONCE: Duration = Duration::from_millis(500);
 
-/// Watches for Ctrl-C and for being asked to end. During work that looks at the flag, the first one
-/// stops it cleanly, and another one, for the impatient, ends the process at once; at any other
-/// time, as while input is awaited, the first one does.
+/// Watches for Ctrl-C and for being asked to end, as by a terminal that is closed; what the parent
+/// process has set to be ignored (`nohup`, a shell's job in the background) stays ignored. During
+/// work that looks at the flag, the first one stops it cleanly, and another one, for the impatient,
+/// ends the process at once; at any other time, as while input is awaited, the first one does.
 pub fn watch() -> Result<()> {
-    ctrlc::set_handler(|| {
-        STOP.store(true, Ordering::SeqCst);
-        let is_impatient = FIRST.get_or_init(Instant::now).elapsed() > AT_ONCE;
-        if is_impatient || !BUSY.load(Ordering::SeqCst) {
-            std::process::exit(Failure::Interrupted.tell().into());
-        }
-    })
-    .map_err(|error| Failure::Failed(format!("cannot watch for Ctrl-C: {error}")))
+    watch_signals().map_err(|error| Failure::Failed(format!("cannot watch for Ctrl-C: {error}")))
+}
+
+fn asked_to_end() {
+    STOP.store(true, Ordering::SeqCst);
+    let is_impatient = FIRST.get_or_init(Instant::now).elapsed() > AT_ONCE;
+    if is_impatient || !BUSY.load(Ordering::SeqCst) {
+        std::process::exit(Failure::Interrupted.tell().into());
+    }
+}
+
+#[cfg(unix)]
+fn watch_signals() -> std::io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let ignored = ignored();
+    let watched = [SIGINT, SIGTERM, SIGHUP].into_iter();
+    let watched = watched.filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    let mut signals = signal_hook::iterator::Signals::new(watched)?;
+    let watching = move || signals.forever().for_each(|_| asked_to_end());
+    std::thread::Builder::new().name("signals".to_owned()).spawn(watching).map(drop)
+}
+
+/// The signals that the parent has set to be ignored, one bit each from the first on; none where the
+/// system does not say (it is Linux that does).
+#[cfg(unix)]
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
+
+#[cfg(not(unix))]
+fn watch_signals() -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(asked_to_end)
 }
 
 /// Work that looks at the flag, or leaves unfinished files if ended at once; over when dropped.

@@ -1,11 +1,14 @@
 //! Panels: scenes that the program carries along, as the command line wants them, and their files.
 
 use crate::arguments::PanelArguments;
+use crate::files::{check_writable, make_folder};
 use crate::report::{Result, wrote};
 use cloakroom::output::{self, RgbImage};
+use cloakroom::photograph::ImageSource;
+use cloakroom::render::Images;
 use cloakroom::scene_file::{self, Loaded, Override};
 use cloakroom_figures::{Drawing, DrawingFormat};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Reads the scene of a panel, with what the command line changes in it, and with more overrides.
 pub fn load(scene: &str, name: &str, arguments: &PanelArguments, more: &[&str]) -> Result<Loaded> {
@@ -21,6 +24,25 @@ pub fn load(scene: &str, name: &str, arguments: &PanelArguments, more: &[&str]) 
     }
     overrides.extend(more.iter().map(|more| Override::from(*more)));
     Ok(scene_file::parse(scene, &format!("{name}.toml"), Path::new(""), &overrides)?)
+}
+
+/// Reads the photograph, if another one is given, and makes the folder of panels, none of which may
+/// be that photograph; `names` are theirs without endings.
+pub fn prepare(
+    arguments: &PanelArguments,
+    folder: &Path,
+    names: impl IntoIterator<Item = PathBuf>,
+) -> Result<Images> {
+    let mut images = Images::default();
+    let photo = arguments.photo.as_deref();
+    if let Some(photo) = photo {
+        images.photograph(&ImageSource::named(photo))?;
+    }
+    make_folder(folder)?;
+    let endings = |name: PathBuf| ["png", "svg", "pdf"].map(|ending| name.with_extension(ending));
+    let inputs: Vec<_> = photo.map(Path::to_owned).into_iter().collect();
+    check_writable(names.into_iter().flat_map(endings), &inputs)?;
+    Ok(images)
 }
 
 /// Writes a PNG and says so.

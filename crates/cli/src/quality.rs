@@ -31,7 +31,8 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let sweeps =
         arguments.sweeps.iter().map(|text| Sweep::parse(text)).collect::<Result<_, _>>()?;
     let written = SceneText::read(&arguments.scene.scene)?;
-    let load = |further: &[Override]| written.scene(&[&arguments.scene.overrides, further].concat());
+    let load =
+        |further: &[Override]| written.scene(&[&arguments.scene.overrides, further].concat());
     let holds =
         arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;
     let plan = SweepPlan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;
@@ -42,9 +43,7 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let table =
         supervised(plan.steps(), "measuring", |_, supervision| quality(&plan, supervision))?;
     warn_of_cut_branches(&table.stats);
-    write_each(formats, |path, format| {
-        Ok(write_table(&table, format, &arguments.plot, path)?)
-    })?;
+    write_each(formats, |path, format| Ok(write_table(&table, format, &arguments.plot, path)?))?;
     if arguments.json {
         return report::print_json(&table.to_json());
     }

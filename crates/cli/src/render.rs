@@ -65,7 +65,11 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
 }
 
 /// The picture of its strips, those that are there and the others, rendered one after the other.
-fn merged(prepared: &PreparedScene<'_>, wanted: ChannelSet, strips: &Strips<'_>) -> Result<Picture> {
+fn merged(
+    prepared: &PreparedScene<'_>,
+    wanted: ChannelSet,
+    strips: &Strips<'_>,
+) -> Result<Picture> {
     // The strips are there beside the picture for a moment.
     let [width, height] = prepared.scene.camera.resolution;
     render::check_memory(prepared, wanted, Tile { left: 0, top: 0, width, height })?;
@@ -100,11 +104,7 @@ fn check_tile(tile: Tile, scene: &Scene, formats: &[(&Path, PictureFormat)]) -> 
 }
 
 /// Renders a large image strip by strip into its file; finished ones may be kept.
-fn in_strips(
-    prepared: &PreparedScene<'_>,
-    kept: Option<&Strips<'_>>,
-    path: &Path,
-) -> Result<()> {
+fn in_strips(prepared: &PreparedScene<'_>, kept: Option<&Strips<'_>>, path: &Path) -> Result<()> {
     let (mut stats, mut failure) = (TraceStats::default(), None);
     let written = supervised(prepared.rows(), "rendering", |_, supervision| {
         let strip = |part| match kept {

@@ -84,11 +84,12 @@ fn killed(arguments: &[&str], clear: bool) {
         child.wait().unwrap();
         for (path, bytes) in files(desk.path()) {
             let name = path.strip_prefix(desk.path()).unwrap();
-            // Frames go when the film is there.
-            match expected.get(name) {
-                Some(expected) => assert!(*expected == bytes, "{} is damaged", name.display()),
-                None => assert!(image::open(&path).is_ok(), "{} is damaged", name.display()),
-            }
+            // Frames and strips go when the work is done.
+            let is_whole = match expected.get(name) {
+                Some(expected) => *expected == bytes,
+                None => image::open(&path).is_ok() || cloakroom::output::read_npz(&path).is_ok(),
+            };
+            assert!(is_whole, "{} is damaged", name.display());
             if clear && name != Path::new("scene.toml") {
                 fs::remove_file(path).unwrap();
             }
@@ -202,4 +203,211 @@ fn clocks_that_jump() {
         assert!(cloakroom(at, &arguments).status().unwrap().success());
         assert!(files(&at.join("frames")) == made);
     }
+}
+
+/// Runs the command with a text on its standard input.
+fn fed(folder: &Path, text: &str, arguments: &[&str]) -> Output {
+    use std::io::Write;
+    let mut command = cloakroom(folder, arguments);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+#[test]
+fn inputs_that_can_be_read_once_are() {
+    let desk = desk();
+    let at = desk.path();
+    let small = ["--set", "camera.resolution=[12, 9]", "--set", "camera.samples=1"];
+    let sweep = ["--sweep", "device.0.rotation=0,5,10"];
+    let frames = |scene, out| [&["animate", scene][..], &small, &sweep, &["-o", out]].concat();
+    assert!(cloakroom(at, &frames("scene.toml", "file")).status().unwrap().success());
+    let measured = |scene| [&["quality", scene, "--json"][..], &small, &sweep].concat();
+    let expected = cloakroom(at, &measured("scene.toml")).stdout(Stdio::piped()).output().unwrap();
+    for (name, folder) in [("-", "dash"), ("/dev/stdin", "device")] {
+        assert!(fed(at, SCENE, &frames(name, folder)).status.success());
+        for frame in 0..3 {
+            let bytes = |folder: &str| {
+                fs::read(at.join(folder).join(format!("frame-{frame:06}.png"))).unwrap()
+            };
+            assert!(bytes(folder) == bytes("file"), "{name} {frame}");
+        }
+        let output = fed(at, SCENE, &measured(name));
+        assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+        assert!(output.stdout == expected.stdout, "{name}");
+    }
+    // An index and a photograph from pipes, too.
+    let array = npy(1.1);
+    fs::write(at.join("index.npy"), &array).unwrap();
+    let picture = image::RgbImage::from_fn(40, 30, |x, y| image::Rgb([x as u8, y as u8, 7]));
+    picture.save(at.join("photo.png")).unwrap();
+    let scene = |index: &str, photograph: &str| {
+        format!(
+            "[photograph]\nimage = \"{photograph}\"\nwidth = 90\n[[device]]\nkind = \"graded\"\nindex = \"{index}\"\n"
+        )
+    };
+    fs::write(at.join("files.toml"), scene("index.npy", "photo.png")).unwrap();
+    fs::write(at.join("pipes.toml"), scene("index.pipe", "photo.pipe")).unwrap();
+    assert!(cloakroom(at, &frames("files.toml", "files")).status().unwrap().success());
+    let script = "mkfifo index.pipe photo.pipe; cat index.npy > index.pipe & cat photo.png > photo.pipe & \
+                  exec timeout 60 \"$0\" \"$@\"";
+    let mut command = Command::new("bash");
+    command.args(["-c", script]).arg(program()).args(frames("pipes.toml", "pipes"));
+    assert!(command.current_dir(at).status().unwrap().success());
+    for frame in 0..3 {
+        let pixels = |folder: &str| {
+            let file = at.join(folder).join(format!("frame-{frame:06}.png"));
+            image::open(file).unwrap().into_rgb8()
+        };
+        assert!(pixels("pipes") == pixels("files"), "{frame}");
+    }
+}
+
+/// A file of numpy: 4 x 4 numbers, of which one is `index` and the others 1.
+fn npy(index: f64) -> Vec<u8> {
+    let text = "{'descr': '<f8', 'fortran_order': False, 'shape': (4, 4), }";
+    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    bytes.extend(format!("{text:<117}\n").bytes());
+    let numbers = (0..16).map(|place| if place == 5 { index } else { 1.0 });
+    bytes.extend(numbers.flat_map(f64::to_le_bytes));
+    bytes
+}
+
+#[test]
+fn frames_of_other_inputs_are_made_again() {
+    let desk = desk();
+    let at = desk.path();
+    let scene = "[camera]\nresolution = [24, 18]\nsamples = 1\n[photograph]\nimage = \"photo.png\"\n\
+                 [[device]]\nkind = \"graded\"\nindex = \"index.npy\"\n";
+    fs::write(at.join("scene.toml"), scene).unwrap();
+    let past = SystemTime::now() - Duration::from_secs(1_000_000);
+    let put = |name: &str, bytes: &[u8]| {
+        fs::write(at.join(name), bytes).unwrap();
+        File::options().write(true).open(at.join(name)).unwrap().set_modified(past).unwrap();
+    };
+    let photo = |blue: u8| {
+        let picture = image::RgbImage::from_fn(8, 6, |x, y| image::Rgb([x as u8, y as u8, blue]));
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+        bytes.into_inner()
+    };
+    let arguments = ["animate", "scene.toml", "--sweep", "device.0.rotation=0,5", "-o", "frames"];
+    let run = || {
+        let output = cloakroom(at, &arguments).stderr(Stdio::piped()).output().unwrap();
+        assert!(output.status.success());
+        let kept = String::from_utf8_lossy(&output.stderr).contains("2 of 2 frames were there");
+        (kept, files(&at.join("frames")))
+    };
+    put("index.npy", &npy(1.1));
+    put("photo.png", &photo(7));
+    let (_, first) = run();
+    assert_eq!(run(), (true, first.clone()));
+    put("index.npy", &npy(1.2));
+    let (kept, second) = run();
+    assert!(!kept && first.values().ne(second.values()));
+    put("photo.png", &photo(200));
+    let (kept, third) = run();
+    assert!(!kept && second.values().ne(third.values()));
+    put("index.npy", &npy(1.1));
+    put("photo.png", &photo(7));
+    assert_eq!(run(), (false, first));
+}
+
+#[test]
+fn what_the_parent_ignores_stays_ignored() {
+    for (signals, sent) in [("HUP", "HUP"), ("INT TERM HUP", "INT"), ("TERM", "TERM")] {
+        let desk = desk();
+        let script = format!(
+            "trap '' {signals}; \"$0\" render scene.toml --set camera.samples=64 -o a.png & \
+             sleep 0.3; kill -{sent} $!; sleep 0.1; kill -{sent} $!; wait $!"
+        );
+        let mut command = Command::new("bash");
+        command.args(["-c", &script]).arg(program()).current_dir(desk.path());
+        assert!(command.status().unwrap().success(), "{signals}");
+        assert!(desk.path().join("a.png").exists(), "{signals}");
+    }
+}
+
+#[test]
+fn a_picture_goes_on_where_it_was_stopped() {
+    killed(&["render", "scene.toml", "--resume", "-o", "a.npz", "-o", "a.png"], false);
+    let desk = desk();
+    let at = desk.path();
+    let plain = ["render", "scene.toml", "-o", "a.npz", "-o", "a.png"];
+    assert!(cloakroom(at, &plain).status().unwrap().success());
+    let made = |name: &str| fs::read(at.join(name)).unwrap();
+    let (npz, png) = (made("a.npz"), made("a.png"));
+    let resumed = ["render", "scene.toml", "--resume", "-o", "a.npz", "-o", "a.png"];
+    // Strips of another scene, and damaged ones, are made again.
+    let folder = at.join("a.npz.strips");
+    fs::create_dir(&folder).unwrap();
+    let other = ["render", "scene.toml", "--set", "camera.seed=9", "--resume", "-o", "a.npz"];
+    let mut child = cloakroom(at, &other).spawn().unwrap();
+    let start = Instant::now();
+    while fs::read_dir(&folder).unwrap().count() < 3 && start.elapsed().as_secs() < 30 {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    if let Some((path, bytes)) = files(&folder).iter().next() {
+        fs::write(path, &bytes[..bytes.len() / 2]).unwrap();
+    }
+    assert!(cloakroom(at, &resumed).status().unwrap().success());
+    assert!(made("a.npz") == npz && made("a.png") == png);
+    let left: Vec<_> = files(at).into_keys().collect();
+    assert_eq!(left.len(), 3, "{left:?}");
+}
+
+#[test]
+fn nothing_is_written_over_what_is_read() {
+    let desk = desk();
+    let at = desk.path();
+    let scene = "[camera]\nresolution = [24, 18]\nsamples = 1\n[photograph]\nimage = \"photo.png\"\n\
+                 [[device]]\nkind = \"graded\"\nindex = \"index.npz\"\n";
+    fs::write(at.join("scene.png"), scene).unwrap();
+    fs::write(at.join("index.npz"), npy(1.1)).unwrap();
+    image::RgbImage::new(8, 6).save(at.join("photo.png")).unwrap();
+    std::os::unix::fs::symlink("photo.png", at.join("link.png")).unwrap();
+    fs::hard_link(at.join("photo.png"), at.join("hard.png")).unwrap();
+    let tile = ["render", "scene.png", "--tile", "0,0,24,18", "-o", "tile.npz"];
+    assert!(cloakroom(at, &tile).status().unwrap().success());
+    fs::create_dir(at.join("fig")).unwrap();
+    image::RgbImage::new(8, 6).save(at.join("fig/fig6c.png")).unwrap();
+    image::RgbImage::new(8, 6).save(at.join("fig/eaton-lens.png")).unwrap();
+    fs::create_dir(at.join("frames")).unwrap();
+    image::RgbImage::new(8, 6).save(at.join("frames/frame-000001.png")).unwrap();
+    let before = files(at);
+    let frame = "photograph.image=frames/frame-000001.png";
+    let sweep = ["--sweep", "device.0.rotation=0,5"];
+    for arguments in [
+        &["render", "scene.png", "-o", "scene.png"][..],
+        &["render", "scene.png", "-o", "a.png", "-o", "./photo.png"],
+        &["render", "scene.png", "-o", "link.png"],
+        &["render", "scene.png", "-o", "hard.png"],
+        &["render", "scene.png", "-o", "index.npz"],
+        &["merge", "tile.npz", "-o", "tile.npz"],
+        &["diagram", "scene.png", "-o", "photo.png"],
+        &["export", "scene.png", "-o", "index.npz"],
+        &["flux", "scene.png", "-o", "photo.png"],
+        &[&["quality", "scene.png", "-o", "photo.png"][..], &sweep].concat(),
+        &[&["animate", "scene.png", "-o", "photo.png"][..], &sweep].concat(),
+        &[&["animate", "scene.png", "--set", frame, "-o", "frames"][..], &sweep].concat(),
+        &["figures", "--only", "6c", "--photo", "fig/fig6c.png", "--out", "fig"],
+        &["gallery", "--only", "eaton-lens", "--photo", "fig/eaton-lens.png", "--out", "fig"],
+    ] {
+        let output = limited(at, "true", arguments);
+        one_message(&output, &["this run reads that file"]);
+        assert!(files(at) == before, "{arguments:?}");
+    }
+}
+
+#[test]
+fn one_file_that_fails_keeps_no_other_from_being_written() {
+    let desk = desk();
+    let at = desk.path();
+    std::os::unix::fs::symlink("/dev/full", at.join("full.png")).unwrap();
+    let arguments = ["render", "scene.toml", "-o", "full.png", "-o", "a.npz", "-o", "b.png"];
+    one_message(&limited(at, "true", &arguments), &["full.png"]);
+    assert!(at.join("a.npz").exists() && image::open(at.join("b.png")).is_ok());
 }

@@ -88,3 +88,28 @@ fn media_too_dense_for_directions_in_air_are_refused() {
     let message = cloak(1e9).unwrap_err();
     assert!(message.contains("minimum") && message.contains("-1000000 to 1000000"), "{message}");
 }
+
+/// Waves that are evanescent but for a loss of 4e-7 were followed along the surfaces that they decay
+/// from, into corners where each reflection made more of them.
+#[test]
+fn evanescent_waves_in_media_that_hardly_absorb_are_no_rays() {
+    let prisms = "kind = \"prisms\"\nrotation = 13\nposition = [1.5, -2, 0.5]\nlength = 18\n\
+        [[device.prism]]\ncorners = [[-8, -6], [4, -6], [4, 0], [-2, 0], [-2, 7], [-8, 7]]\npermittivity = 1.44\n\
+        [[device.prism]]\ncorners = [[4, -4], [9, -4], [9, -2], [4, -2]]\n\
+        permittivity = [[1.3, 0.05, 0], [0.05, 1.4, 0], [0, 0, [1.2, 4e-7]]]\npermeability = [1.03, 1e-7]\n\
+        [[device.prism]]\ncorners = [[-2, 0], [1, 0], [1, 5], [-2, 5]]\nmetal = true";
+    let loaded = scene(prisms).unwrap();
+    let assembly = render::assembly(&loaded.scene).unwrap();
+    let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-9, tolerance: 1e-6 });
+    let origin = DVec3::new(-41.40687795969556, 68.45049640163961, -6.760059984153486);
+    let direction = DVec3::new(0.543574349903507, -0.826157068311472, 0.14829505927701575);
+    let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
+    let (leaves, outcome) =
+        tracer.trace(&Launch { origin, direction, electric: [h.into(), v.into()] });
+    outcome.assert_balanced(leaves, 1e-12, &"the corner");
+    for leaf in leaves {
+        // Along z nothing turns light but the ends, which it does not reach.
+        let along = (leaf.direction.z.abs() - direction.z).abs();
+        assert!(leaf.power.iter().all(|power| *power < 1.0) && along < 1e-6, "{leaf:?}");
+    }
+}

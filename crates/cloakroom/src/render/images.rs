@@ -1,9 +1,9 @@
 //! Images that have been read, kept for the next scene that shows them.
 
+use crate::input::Digest;
 use crate::photograph::{
     self, Edges, Equirectangular, ImageSource, LinearImage, LoadError, Pyramid,
 };
-use crate::input::Digest;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -37,7 +37,11 @@ impl Images {
     }
 
     /// The image of a photograph.
-    pub(super) fn photograph(&mut self, source: &ImageSource) -> Result<Arc<Pyramid>, LoadError> {
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be read.
+    pub fn photograph(&mut self, source: &ImageSource) -> Result<Arc<Pyramid>, LoadError> {
         let image = known((&mut self.photograph, &mut self.digests), source, flat)?;
         self.photograph.retain(|(name, _)| name == source);
         Ok(image)

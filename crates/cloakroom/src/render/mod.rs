@@ -222,8 +222,11 @@ pub fn check_memory(
     let bytes: usize = channels.iter().map(|channel| channel.blank(1).bytes()).sum();
     // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
     let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2) as u64;
-    crate::memory::check(needed, u64::MAX)
-        .map_err(|shortage| RenderError::TooLarge { width, height, shortage })
+    crate::memory::check(needed, u64::MAX).map_err(|shortage| RenderError::TooLarge {
+        width,
+        height,
+        shortage,
+    })
 }
 
 /// How long rendering the image will take on the threads there are, in seconds: a few thousand
