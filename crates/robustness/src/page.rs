@@ -27,8 +27,8 @@ const ANSWER: Duration = Duration::from_secs(30);
 /// Set by nobody: the server ends with the process.
 static STOP: AtomicBool = AtomicBool::new(false);
 
-/// Where the server listens.
-static HOST: LazyLock<String> = LazyLock::new(|| {
+/// Where the server listens, with the secret folder.
+static ADDRESS: LazyLock<String> = LazyLock::new(|| {
     let folder = PathBuf::from("/nowhere");
     let scene = scene_file::parse(SCENE, "a", &folder, &[]).expect("a scene");
     let settings = Settings { scene, name: "a".to_owned(), folder, port: 0 };
@@ -100,10 +100,10 @@ fn caption(bytes: &[u8]) -> Value {
 fn connect() -> WebSocket<TcpStream> {
     // Pages that have just gone may still have their places.
     for _ in 0..600 {
-        let uri = format!("ws://{}/session", *HOST).parse().expect("an address");
-        let request =
-            ClientRequestBuilder::new(uri).with_header("Origin", format!("http://{}", *HOST));
-        let stream = TcpStream::connect(&*HOST).expect("the server is there");
+        let (host, _) = ADDRESS.split_once('/').expect("a folder");
+        let uri = format!("ws://{}/session", *ADDRESS).parse().expect("an address");
+        let request = ClientRequestBuilder::new(uri).with_header("Origin", format!("http://{host}"));
+        let stream = TcpStream::connect(host).expect("the server is there");
         stream.set_read_timeout(Some(ANSWER)).expect("a socket");
         match tungstenite::client(request, stream) {
             Ok((mut socket, _)) => {

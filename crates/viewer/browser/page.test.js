@@ -299,6 +299,8 @@ test("picture and scene are saved, and a link shows the same again", async () =>
   const said = JSON.stringify({ scene: { device: [null] } });
   const nonsense = await openPage(browser.context, `${server.address}#${Buffer.from(said).toString("base64url")}`);
   await nonsense.page.waitForFunction(() => document.body.dataset.pictures);
+  assert.match(await nonsense.page.locator("#banner-text").textContent(), /link is damaged/);
+  assert.ok(await nonsense.page.locator("#banner").isVisible());
   assert.deepEqual([...complaints, ...other.complaints, ...nonsense.complaints], []);
   await nonsense.page.close();
   await other.page.close();

@@ -18,7 +18,7 @@ export class Connection {
   }
 
   open() {
-    const socket = new WebSocket(`ws://${location.host}/session`);
+    const socket = new WebSocket(`ws://${location.host}${location.pathname}session`);
     socket.binaryType = "arraybuffer";
     socket.onmessage = (event) => {
       if (typeof event.data === "string") {

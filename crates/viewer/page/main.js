@@ -17,6 +17,8 @@ let playing = false;
 let probing = [0.5, 0.47];
 let wanted = 0;
 let settle = 0;
+// Whether the link was none, which is said until something else is wished.
+let damaged = false;
 
 // How fast the device turns, degrees a second; how long after the last change the picture is finished, ms.
 const SPEED = 12;
@@ -31,6 +33,7 @@ const look = () => ({ scene: state.scene, size: state.size, samples: state.sampl
 // Something has changed: a coarse picture now if it goes on, else the finished one.
 function changed(moving = false) {
   clearTimeout(settle);
+  damaged = false;
   document.body.dataset.finished = "false";
   ageNumbers();
   if (moving) {
@@ -46,12 +49,19 @@ function changed(moving = false) {
 function greeted(content) {
   hello = content;
   fillLists(hello);
-  const linked = location.hash.length > 1 && state.fromFragment(location.hash.slice(1));
-  if (!linked && !state.exhibit) state.open("opened", hello.scene);
+  const named = location.hash.length > 1;
+  const linked = named && state.fromFragment(location.hash.slice(1));
+  if (named ? !linked : !state.exhibit) state.open("opened", hello.scene);
   $("banner").hidden = true;
   showControls();
   picture.mark(probing);
   changed();
+  if (named && !linked) {
+    damaged = true;
+    $("banner-text").textContent = "This link is damaged: it holds no scene. Here is the one that was opened.";
+    $("retry").hidden = true;
+    $("banner").hidden = false;
+  }
 }
 
 // --- What comes back ---------------------------------------------------------------------------------------------
@@ -120,7 +130,7 @@ function failed({ id, message, key }) {
 }
 
 function clearError() {
-  if ($("retry").hidden) $("banner").hidden = true;
+  if ($("retry").hidden && !damaged) $("banner").hidden = true;
 }
 
 function gone() {
@@ -325,8 +335,5 @@ watchKeys({
 });
 watchDrops(bring);
 addEventListener("hashchange", () => {
-  if (hello && state.fromFragment(location.hash.slice(1))) {
-    showControls();
-    changed();
-  }
+  if (hello) greeted(hello);
 });

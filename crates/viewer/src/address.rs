@@ -1,4 +1,4 @@
-//! Where the server listens, and who may ask: loopback alone.
+//! Where the server listens, and who may ask: loopback alone, and who was told the address.
 
 use axum::http::{HeaderMap, header};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
@@ -51,6 +51,43 @@ impl Names {
     }
 }
 
+/// What the address has that nobody can guess, for everybody on this machine can reach the server
+/// and say any name: 128 random bits in hexadecimal digits, the first folder of each path.
+#[derive(Clone)]
+pub(crate) struct Secret(String);
+
+impl Secret {
+    /// A new one.
+    pub fn new() -> std::io::Result<Self> {
+        let mut bytes = [0; 16];
+        getrandom::fill(&mut bytes).map_err(std::io::Error::other)?;
+        Ok(Self(bytes.iter().map(|byte| format!("{byte:02x}")).collect()))
+    }
+
+    /// The digits.
+    pub fn digits(&self) -> &str {
+        &self.0
+    }
+
+    /// The path within the secret folder; `None` where another one is asked for. How long the answer
+    /// takes does not depend on how much of it is right.
+    pub fn path_within<'p>(&self, path: &'p str) -> Option<&'p str> {
+        let said = path.strip_prefix('/')?;
+        let (said, within) = said.split_at(said.find('/')?);
+        let differing = |sum: u8, (a, b): (u8, u8)| std::hint::black_box(sum | (a ^ b));
+        let is_ours = said.len() == self.0.len()
+            && said.bytes().zip(self.0.bytes()).fold(0, differing) == 0;
+        is_ours.then_some(within)
+    }
+}
+
+/// It is no business of any log.
+impl std::fmt::Debug for Secret {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Secret")
+    }
+}
+
 /// The text of a header that is there once.
 fn only<'h>(headers: &'h HeaderMap, name: &header::HeaderName) -> Option<&'h str> {
     let mut values = headers.get_all(name).iter();
@@ -92,6 +129,30 @@ mod tests {
         let mut two = with(header::HOST, "localhost:8420");
         two.append(header::HOST, HeaderValue::from_static("evil.example"));
         assert!(!names.host_is_ours(&two));
+    }
+
+    #[test]
+    fn only_the_secret_opens() {
+        let (secret, other) = (Secret::new().expect("random"), Secret::new().expect("random"));
+        let digits = secret.digits();
+        assert!(digits.len() == 32 && digits != other.digits());
+        assert_eq!(secret.path_within(&format!("/{digits}/")), Some("/"));
+        assert_eq!(secret.path_within(&format!("/{digits}/a/b")), Some("/a/b"));
+        for wrong in [
+            String::new(),
+            "/".to_owned(),
+            "//".to_owned(),
+            format!("/{digits}"),
+            format!("{digits}/"),
+            format!("//{digits}/"),
+            format!("/{}/", &digits[1..]),
+            format!("/{digits}0/"),
+            format!("/{}/", digits.to_uppercase().replace(|c: char| c.is_ascii_digit(), "A")),
+            format!("/{}/", other.digits()),
+        ] {
+            assert_eq!(secret.path_within(&wrong), None, "{wrong}");
+        }
+        assert!(!format!("{secret:?}").contains(digits));
     }
 
     #[test]

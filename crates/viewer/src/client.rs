@@ -1,5 +1,6 @@
 //! One open page: what it says is read here, and handed to its two threads.
 
+use crate::idle::ASK;
 use crate::painter::{self, Shown, Wish};
 use crate::protocol::{LARGEST_PHOTOGRAPH, Message, error};
 use crate::ray_tree;
@@ -66,12 +67,14 @@ pub(crate) struct Uploaded {
     pub images: Images,
     /// Which of the page's uploads it is.
     pub number: u64,
-    _space: Arc<Space>,
+    /// What it takes.
+    pub space: Arc<Space>,
 }
 
-/// Some of the pixels that all pages may have; given back when dropped.
+/// Some of the pixels that all pages may have; given back when dropped, which is when nothing shows
+/// the photograph any more.
 #[derive(Debug)]
-struct Space {
+pub(crate) struct Space {
     server: Arc<Server>,
     pixels: u64,
 }
@@ -127,15 +130,16 @@ impl Client {
         let image =
             load_bytes(&source, bytes, MOST_PIXELS).map_err(|error| words(error.problem))?;
         let (width, height) = (image.width, image.height);
-        // The old one makes room.
+        // The old one makes room, as soon as no picture of it is under way.
         *lock(&self.uploaded) = None;
+        *lock(&self.shown) = None;
         let space = Space::take(&self.server, (width * height) as u64).ok_or(
             "other pages have brought so many photographs that there is no room; close some",
         )?;
         let mut images = lock(&self.server.images).clone();
         images.hang(source.clone(), image);
         let number = self.uploads.fetch_add(1, Ordering::Relaxed);
-        *lock(&self.uploaded) = Some(Uploaded { source, images, number, _space: Arc::new(space) });
+        *lock(&self.uploaded) = Some(Uploaded { source, images, number, space: Arc::new(space) });
         Ok(json!({ "photograph": { "name": name, "width": width, "height": height } }))
     }
 }
@@ -168,9 +172,15 @@ pub(crate) async fn serve(socket: ws::WebSocket, server: Arc<Server>) {
         let mut session = Session { client: &client, outbox: &outbox, name: None, stop: None };
         let greeting = client.server.greeting.clone();
         let greeted = outbox.0.send(ws::Message::text(greeting)).await;
+        let mut ask = tokio::time::interval(ASK);
         while greeted.is_ok() {
             let message = tokio::select! {
                 message = stream.next() => message,
+                _ = ask.tick() => {
+                    // A page that has more to hear than it takes is there.
+                    let _ = outbox.0.try_send(ws::Message::Ping(Bytes::new()));
+                    continue;
+                }
                 _ = closing.changed() => None,
             };
             let Some(Ok(message)) = message else { break };

@@ -21,10 +21,10 @@ pub(crate) fn figures(
     scene: &Scene,
     images: &mut Images,
     stop: &AtomicBool,
-) -> Result<Value, Box<dyn Error>> {
+) -> Result<Value, Box<dyn Error + Send + Sync>> {
     let supervision = Supervision { rows_done: &|_| {}, stop };
     let scene = small(scene);
-    let mut picture = |scene: &Scene| -> Result<Picture, Box<dyn Error>> {
+    let mut picture = |scene: &Scene| -> Result<Picture, Box<dyn Error + Send + Sync>> {
         let prepared = prepared(scene, images)?;
         Ok(render(&prepared, ChannelSet::Everything, &supervision)?.picture)
     };

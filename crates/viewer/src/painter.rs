@@ -2,7 +2,7 @@
 //! What it sends at each number of samples is the picture that `cloakroom render` makes with that
 //! number.
 
-use crate::client::{Client, Gone, Outbox};
+use crate::client::{Client, Gone, Outbox, Space};
 use crate::cross_section::cross_section;
 use crate::figures::{figures, resized};
 use crate::pace::{Pace, Pass};
@@ -48,10 +48,12 @@ pub(crate) struct Shown {
     pub scene: Scene,
     /// Its images.
     pub images: Images,
+    /// What a photograph among them takes.
+    _space: Option<Arc<Space>>,
 }
 
 /// Why there is no picture.
-type PaintError = Box<dyn Error>;
+type PaintError = Box<dyn Error + Send + Sync>;
 
 /// Whether newer wishes, or the end of the page, are why.
 fn is_stop(error: &PaintError) -> bool {
@@ -69,9 +71,15 @@ pub(crate) fn paint(client: &Client, outbox: &Outbox) {
         devices: Vec::new(),
         section: Value::Null,
     };
+    // Of its own: the system shares the processors out among pages, and light that is trapped in the
+    // device of one keeps no other waiting.
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(rayon::current_num_threads()).build();
     while let Some(wish) = client.looks.take() {
         let id = wish.look.id;
-        let painted = catch_unwind(AssertUnwindSafe(|| painter.paint(&wish)));
+        let painted = catch_unwind(AssertUnwindSafe(|| match &threads {
+            Ok(threads) => threads.install(|| painter.paint(&wish)),
+            Err(_) => painter.paint(&wish),
+        }));
         let said = match painted {
             Ok(Ok(())) => Ok(()),
             Ok(Err(failure)) if is_stop(&failure) => Ok(()),
@@ -97,7 +105,7 @@ struct Painter<'a> {
     outbox: &'a Outbox,
     images: Images,
     /// The images of the page's own photograph, and its number.
-    uploaded: Option<(u64, Images)>,
+    uploaded: Option<(u64, Images, Arc<Space>)>,
     /// How long its pictures take.
     pace: Pace,
     /// The devices that were shown last.
@@ -115,14 +123,15 @@ impl Painter<'_> {
         let scene = opened.read(&look.scene, source)?.scene;
         let Some(uploaded) = uploaded.filter(|own| own.source == scene.photograph.image) else {
             let mut images = std::mem::take(&mut self.images);
-            let painted = self.paint_scene(wish, &scene, &mut images);
+            let painted = self.paint_scene(wish, &scene, (&mut images, None));
             self.images = images;
             return painted;
         };
-        let known = self.uploaded.take().filter(|(number, _)| *number == uploaded.number);
-        let mut images = known.map_or(uploaded.images, |(_, images)| images);
-        let painted = self.paint_scene(wish, &scene, &mut images);
-        self.uploaded = Some((uploaded.number, images));
+        let known = self.uploaded.take().filter(|(number, ..)| *number == uploaded.number);
+        let mut images = known.map_or(uploaded.images, |(_, images, _)| images);
+        let space = uploaded.space;
+        let painted = self.paint_scene(wish, &scene, (&mut images, Some(&space)));
+        self.uploaded = Some((uploaded.number, images, space));
         painted
     }
 
@@ -130,7 +139,7 @@ impl Painter<'_> {
         &mut self,
         wish: &Wish,
         scene: &Scene,
-        images: &mut Images,
+        (images, space): (&mut Images, Option<&Arc<Space>>),
     ) -> Result<(), PaintError> {
         let look = &wish.look;
         let full = resized(scene, look.size, 1);
@@ -142,7 +151,7 @@ impl Painter<'_> {
                 self.section = section;
             }
         }
-        let shown = Shown { scene: full, images: images.clone() };
+        let shown = Shown { scene: full, images: images.clone(), _space: space.cloned() };
         *lock(&self.client.shown) = Some(Arc::new(shown));
         let beside = match look.beside {
             Beside::Nothing => None,

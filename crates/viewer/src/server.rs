@@ -1,9 +1,10 @@
 //! The server: the page's files, and one WebSocket a page.
 
-use crate::address::{Names, listen};
+use crate::address::{Names, Secret, listen};
 use crate::assets::ASSETS;
 use crate::catalogue::greeting;
 use crate::client;
+use crate::idle::Attentive;
 use crate::protocol::{LARGEST_PHOTOGRAPH, LONGEST_TEXT};
 use crate::scenes::Opened;
 use crate::slot::lock;
@@ -85,6 +86,7 @@ pub(crate) struct Server {
     pub closing: watch::Sender<()>,
     pages: Arc<Semaphore>,
     names: Names,
+    secret: Secret,
 }
 
 /// Serves the page on this machine until `stop` is set. `ready` is told the address once it can be
@@ -113,6 +115,7 @@ pub fn serve(
         closing: watch::Sender::new(()),
         pages: Arc::new(Semaphore::new(MOST_PAGES)),
         names: Names::of(port),
+        secret: Secret::new().map_err(ViewerError::Run)?,
     });
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(2)
@@ -124,16 +127,17 @@ pub fn serve(
     let served = runtime.block_on(async {
         // A picture that waits for the page to confirm the last bytes of the one before would wait
         // 40 ms.
-        let listener = tokio::net::TcpListener::from_std(listener)?.tap_io(|stream| {
+        let listener = tokio::net::TcpListener::from_std(listener)?;
+        let listener = Attentive(listener.tap_io(|stream| {
             // If it cannot be had, pages are slower.
             let _ = stream.set_nodelay(true);
-        });
+        }));
         let app = Router::new()
-            .route("/session", get(session))
+            .route("/{secret}/session", get(session))
             .fallback(get(asset))
             .layer(from_fn_with_state(server.clone(), guard))
             .with_state(server.clone());
-        ready(&format!("http://127.0.0.1:{port}/"));
+        ready(&format!("http://127.0.0.1:{port}/{}/", server.secret.digits()));
         let closing = server.clone();
         let end = async move {
             stopped(stop).await;
@@ -169,12 +173,16 @@ fn read_images(scene: &Scene, server: &Arc<Server>) {
     });
 }
 
-/// Refuses who does not come to this server by its name, and says what browsers may do.
+/// Refuses who does not come to this server by its name and its secret, and says what browsers may
+/// do.
 async fn guard(State(server): State<Arc<Server>>, request: Request, next: Next) -> Response {
-    let mut response = if server.names.host_is_ours(request.headers()) {
-        next.run(request).await
+    let refuse = |words: &'static str| (StatusCode::FORBIDDEN, words).into_response();
+    let mut response = if !server.names.host_is_ours(request.headers()) {
+        refuse("this server answers on this machine alone\n")
+    } else if server.secret.path_within(request.uri().path()).is_none() {
+        refuse("open the whole address, as `cloakroom view` has printed it\n")
     } else {
-        (StatusCode::FORBIDDEN, "this server answers on this machine alone\n").into_response()
+        next.run(request).await
     };
     for (name, value) in [
         (header::CONTENT_SECURITY_POLICY, POLICY),
@@ -189,9 +197,10 @@ async fn guard(State(server): State<Arc<Server>>, request: Request, next: Next) 
     response
 }
 
-/// One of the page's files.
-async fn asset(uri: Uri) -> Response {
-    match ASSETS.iter().find(|(path, ..)| *path == uri.path()) {
+/// One of the page's files, by its path within the secret folder.
+async fn asset(State(server): State<Arc<Server>>, uri: Uri) -> Response {
+    let asked = server.secret.path_within(uri.path());
+    match ASSETS.iter().find(|(path, ..)| Some(*path) == asked) {
         Some((_, kind, bytes)) => ([(header::CONTENT_TYPE, *kind)], *bytes).into_response(),
         None => (StatusCode::NOT_FOUND, "there is no such page\n").into_response(),
     }

@@ -20,7 +20,7 @@ case "$1" in
     done
     kill -TERM $page
     wait $page
-    grep -q '^http://127.0.0.1:' address
+    grep -q '^http://127.0.0.1:[0-9]*/[0-9a-f]*/$' address
     ;;
   *) run "$@" ;;
 esac

@@ -56,8 +56,9 @@ impl PartialEq for QuasiConformalMap {
     }
 }
 
-/// The widest box, in widths of the bump.
-pub(super) const MOST_WIDTHS: f64 = 30.0;
+/// The widest box, in widths of the bump: solving for the map takes time as the square of it, some
+/// seconds here.
+pub(super) const MOST_WIDTHS: f64 = 10.0;
 
 impl Bump {
     /// The floor as a curve over x, with its derivatives by x.

@@ -379,7 +379,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         if waves.is_empty() {
             return self.lose(branch.power);
         }
-        if medium.absorbs() {
+        // A wave that has come from a medium that absorbs may hardly be one here either.
+        if medium.absorbs() || branch.attenuation != DVec3::ZERO {
             self.check_account(branch, &mut waves, [0.0; N], true);
         }
         self.go_on(branch, &waves, interface.event, |branch, _| back(branch))

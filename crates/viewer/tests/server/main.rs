@@ -55,7 +55,7 @@ fn the_page_comes_from_the_program_and_nothing_else_does() {
         "*",
     ] {
         let answer = server.get(path, &host);
-        assert!(["400", "404"].contains(&status(&answer)), "{path}: {answer}");
+        assert!(["400", "403", "404"].contains(&status(&answer)), "{path}: {answer}");
         assert!(!answer.contains("root:") && !answer.contains("[package]"), "{path}");
     }
 }
@@ -87,6 +87,41 @@ fn foreign_hosts_and_origins_are_refused() {
     server.connect(Some(&ours), None).expect("our own page");
 }
 
+/// Another user of this machine reaches the server, and may say any name.
+#[test]
+fn only_who_knows_the_whole_address_is_served() {
+    let server = Server::start(0);
+    let (host, ours) = (server.host(), format!("http://{}", server.host()));
+    let other = "0".repeat(32);
+    for path in ["/", "/main.js", "/session", &format!("/{other}/"), &format!("/{}", server.secret)]
+    {
+        let answer = server.raw(
+            format!("GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").as_bytes(),
+        );
+        assert_eq!(status(&answer), "403", "{path}");
+        assert!(answer.contains("the whole address") && !answer.contains(&server.secret));
+    }
+    for wrong in ["", &other, &server.secret[..31], &format!("{}0", server.secret)] {
+        let refused = server.connect_by(wrong, Some(&ours), None).err();
+        assert_eq!(refused, Some(403), "{wrong}");
+    }
+    server.connect(Some(&ours), None).expect("our own page");
+    // The next server has another one.
+    assert_ne!(server.secret, Server::start(0).secret);
+}
+
+/// A page whose pictures take minutes keeps no other waiting.
+#[test]
+fn pages_share_the_processors() {
+    let server = Server::start(0);
+    let (mut slow, mut quick) = (server.page(), server.page());
+    let scene = json!({ "device": [{ "kind": "square-cloak", "material": "negative-uniaxial" }] });
+    slow.say(&json!({ "look": { "id": 1, "scene": scene, "size": [2000, 2000], "samples": 64 } }));
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    quick.say(&look(2, 5.0, 2));
+    quick.finished(2);
+}
+
 #[test]
 fn requests_that_are_none_are_refused() {
     let server = Server::start(0);
@@ -95,12 +130,14 @@ fn requests_that_are_none_are_refused() {
         server.raw(format!("{line}\r\nHost: {host}\r\n{more}Connection: close\r\n\r\n").as_bytes())
     };
     for method in ["POST", "PUT", "DELETE", "OPTIONS", "PATCH"] {
-        let answer = request(&format!("{method} / HTTP/1.1"), "Content-Length: 0\r\n");
-        assert_eq!(status(&answer), "405", "{method}");
+        let line = format!("{method} /{}/ HTTP/1.1", server.secret);
+        assert_eq!(status(&request(&line, "Content-Length: 0\r\n")), "405", "{method}");
     }
     // A session that is no WebSocket.
-    assert!(status(&request("GET /session HTTP/1.1", "")).starts_with('4'));
-    assert!(status(&request("POST /session HTTP/1.1", "Content-Length: 0\r\n")).starts_with('4'));
+    for (method, more) in [("GET", ""), ("POST", "Content-Length: 0\r\n")] {
+        let answer = request(&format!("{method} /{}/session HTTP/1.1", server.secret), more);
+        assert!(status(&answer).starts_with('4') && status(&answer) != "403", "{answer}");
+    }
     for nonsense in [&b"\0\0\0\0\r\n\r\n"[..], b"GET\r\n\r\n", &[b'a'; 100_000]] {
         let answer = server.raw(nonsense);
         assert!(answer.is_empty() || status(&answer).starts_with('4'), "{answer}");

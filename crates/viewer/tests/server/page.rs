@@ -18,6 +18,8 @@ pub const SCENE: &str = "[camera]\nresolution = [32, 24]\n[photograph]\nimage = 
 
 pub struct Server {
     pub port: u16,
+    /// The secret folder of its address.
+    pub secret: String,
     stop: &'static AtomicBool,
     thread: Option<JoinHandle<()>>,
 }
@@ -35,8 +37,10 @@ impl Server {
             serve(&settings, ready, stop).unwrap();
         });
         let address = receiver.recv_timeout(Duration::from_secs(60)).unwrap();
-        let port = address.trim_start_matches("http://127.0.0.1:").trim_end_matches('/');
-        Self { port: port.parse().unwrap(), stop, thread: Some(thread) }
+        let rest = address.strip_prefix("http://127.0.0.1:").unwrap();
+        let (port, secret) = rest.strip_suffix('/').unwrap().split_once('/').unwrap();
+        let (port, secret) = (port.parse().unwrap(), secret.to_owned());
+        Self { port, secret, stop, thread: Some(thread) }
     }
 
     /// Ends the server as Ctrl-C does.
@@ -56,8 +60,10 @@ impl Server {
         String::from_utf8_lossy(&answer).into_owned()
     }
 
-    /// Asks for a path.
+    /// Asks for a path within the secret folder, or another address.
     pub fn get(&self, path: &str, host: &str) -> String {
+        let folder = if path.starts_with('/') { format!("/{}", self.secret) } else { String::new() };
+        let path = format!("{folder}{path}");
         self.raw(
             format!("GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").as_bytes(),
         )
@@ -69,7 +75,17 @@ impl Server {
 
     /// Opens a page's WebSocket; the status if it is refused.
     pub fn connect(&self, origin: Option<&str>, host: Option<&str>) -> Result<Page, u16> {
-        let uri = format!("ws://127.0.0.1:{}/session", self.port).parse().unwrap();
+        self.connect_by(&self.secret, origin, host)
+    }
+
+    /// The same by whoever believes the secret to be this.
+    pub fn connect_by(
+        &self,
+        secret: &str,
+        origin: Option<&str>,
+        host: Option<&str>,
+    ) -> Result<Page, u16> {
+        let uri = format!("ws://127.0.0.1:{}/{secret}/session", self.port).parse().unwrap();
         let mut request = ClientRequestBuilder::new(uri);
         if let Some(origin) = origin {
             request = request.with_header("Origin", origin);

@@ -125,6 +125,6 @@ fn refuses_what_is_not_a_map() {
     assert!(matches!(error(50.1, 1.0), Some(Error::TooWide { .. })));
     assert!(matches!(error(1.0, 1.0), Some(Error::TooNarrow { .. })));
     assert!(matches!(error(28.0, 28.57), Some(Error::TooHigh { .. })));
-    assert!(matches!(error(4.0, 20.0), Some(Error::TooSteep { .. })));
+    assert!(matches!(error(6.0, 27.0), Some(Error::TooSteep { .. })));
     assert!(error(28.0, 14.0).is_none());
 }
