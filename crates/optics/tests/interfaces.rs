@@ -421,8 +421,7 @@ fn media_as_extreme_as_they_may_be_give_numbers() {
             assert!(total < 1.0 + 1e-9, "{total}: {waves:?} in {medium:?}");
             // An evanescent wave takes what the medium absorbs.
             let most = if medium.absorbs() {
-                let scattering =
-                    Scattering::new(&Medium::AIR, Some(medium), direction, DVec3::X);
+                let scattering = Scattering::new(&Medium::AIR, Some(medium), direction, DVec3::X);
                 let beyond = scattering.power.iter().flatten().map(|share| share[2] + share[3]);
                 beyond.fold(0.0, f64::max)
             } else {

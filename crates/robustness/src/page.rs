@@ -102,7 +102,8 @@ fn connect() -> WebSocket<TcpStream> {
     for _ in 0..600 {
         let (host, _) = ADDRESS.split_once('/').expect("a folder");
         let uri = format!("ws://{}/session", *ADDRESS).parse().expect("an address");
-        let request = ClientRequestBuilder::new(uri).with_header("Origin", format!("http://{host}"));
+        let request =
+            ClientRequestBuilder::new(uri).with_header("Origin", format!("http://{host}"));
         let stream = TcpStream::connect(host).expect("the server is there");
         stream.set_read_timeout(Some(ANSWER)).expect("a socket");
         match tungstenite::client(request, stream) {

@@ -75,8 +75,8 @@ impl Secret {
         let said = path.strip_prefix('/')?;
         let (said, within) = said.split_at(said.find('/')?);
         let differing = |sum: u8, (a, b): (u8, u8)| std::hint::black_box(sum | (a ^ b));
-        let is_ours = said.len() == self.0.len()
-            && said.bytes().zip(self.0.bytes()).fold(0, differing) == 0;
+        let is_ours =
+            said.len() == self.0.len() && said.bytes().zip(self.0.bytes()).fold(0, differing) == 0;
         is_ours.then_some(within)
     }
 }

@@ -62,7 +62,8 @@ impl Server {
 
     /// Asks for a path within the secret folder, or another address.
     pub fn get(&self, path: &str, host: &str) -> String {
-        let folder = if path.starts_with('/') { format!("/{}", self.secret) } else { String::new() };
+        let folder =
+            if path.starts_with('/') { format!("/{}", self.secret) } else { String::new() };
         let path = format!("{folder}{path}");
         self.raw(
             format!("GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").as_bytes(),
