@@ -2,11 +2,12 @@
 
 ``pip install './python[distributed]'`` brings Dask; a `dask.distributed.Client` of a local cluster, of machines reached by
 SSH, or of a batch system (dask-jobqueue) does the work. cloakroom must be installed on the workers, and files that a
-scene names must be there, too; arrays travel with the scene.
+scene names must be there, too, with the same content; arrays travel with the scene.
 
-Every result is written to a folder here as it comes, with a line in ``finished.jsonl`` that says of which scene it is.
-What is finished is not done again when the same call is made once more, whatever has ended the last one; a task whose
-worker is lost is given to another one. The results are those of one machine, byte for byte.
+Every result is written to a folder here as it comes, with a line in ``finished.jsonl`` that says what it is made from:
+the scene, and the contents of all files and arrays that it shows or measures. What is finished is not done again when
+the same call is made once more, whatever has ended the last one; a task whose worker is lost is given to another one.
+The results are those of one machine, byte for byte.
 """
 
 from __future__ import annotations
@@ -45,10 +46,12 @@ class _Task:
     #: Called as ``function(scene, *arguments)`` by a worker.
     function: Callable[..., bytes]
     arguments: tuple[Any, ...]
+    #: The digests of the files that the scene names, by the keys that name them.
+    inputs: dict[str, str]
 
     def fingerprint(self) -> str:
-        """What the result depends on, as far as the scene says it."""
-        said = [_cloakroom.__version__, self.scene.toml, self.function.__name__, repr(self.arguments)]
+        """What the result depends on."""
+        said = [_cloakroom.__version__, self.scene.toml, self.function.__name__, repr(self.arguments), repr(self.inputs)]
         digest = hashlib.sha256("\0".join(said).encode())
         for image in self.scene._images:
             if image is not None:
@@ -99,8 +102,9 @@ def render_tiles(
     width, height = scene.resolution
     corners = itertools.product(range(0, height, tile[1]), range(0, width, tile[0]))
     places = [(left, top, min(tile[0], width - left), min(tile[1], height - top)) for top, left in corners]
+    inputs = _inputs(scene, {})
     tasks = [
-        _Task(f"tile-{place[0]:05}-{place[1]:05}.npz", scene, _tile, (place, image_only)) for place in places
+        _Task(f"tile-{place[0]:05}-{place[1]:05}.npz", scene, _tile, (place, image_only), inputs) for place in places
     ]
     files = _run(tasks, Path(folder), client, progress, "rendering tiles")
     map, color_bar = scene._native.map
@@ -150,9 +154,11 @@ def render_frames(
     if ending not in (".png", ".exr", ".npz"):
         raise ValueError(f"ending is {ending!r}; expected .png, .exr or .npz")
     steps = [dict(zip(values, step)) for step in zip(*values.values())]
-    tasks = [
-        _Task(f"frame-{number:05}{ending}", scene.replace(step), _frame, (ending,)) for number, step in enumerate(steps)
-    ]
+    digests: dict[str, str] = {}
+    tasks = []
+    for number, step in enumerate(steps):
+        shown = scene.replace(step)
+        tasks.append(_Task(f"frame-{number:05}{ending}", shown, _frame, (ending,), _inputs(shown, digests)))
     return _run(tasks, Path(folder), client, progress, "rendering frames")
 
 
@@ -189,10 +195,13 @@ def sweep(
         If a key does not exist, a value does not fit, or there is no client.
     """
     values = _swept(scene, keys)
+    digests: dict[str, str] = {}
     tasks = []
     for number, combination in enumerate(itertools.product(*values.values())):
         step = dict(zip(values, combination))
-        tasks.append(_Task(f"sweep-{number:05}.json", scene.replace(step), _measured, (step,)))
+        measured = scene.replace(step)
+        inputs = _inputs(measured, digests)
+        tasks.append(_Task(f"sweep-{number:05}.json", measured, _measured, (step,), inputs))
     files = _run(tasks, Path(folder), client, progress, "measuring")
     return [json.loads(file.read_text(encoding="utf-8")) for file in files]
 
@@ -203,6 +212,14 @@ def _swept(scene: Scene, keys: Mapping[str, Any]) -> dict[str, list[Any]]:
     if not isinstance(keys, Mapping):
         raise TypeError(f"keys is a {type(keys).__name__}; expected a mapping of keys to lists of values")
     return {key: _values(key, given) for key, given in keys.items()}
+
+
+def _inputs(scene: Scene, digests: dict[str, str]) -> dict[str, str]:
+    """The digests of the files that a scene names, by the keys that name them; ``digests`` keeps those known by name."""
+    for _, path in scene._native.files:
+        if path not in digests:
+            digests[path] = hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    return {key: digests[path] for key, path in scene._native.files}
 
 
 # What workers do.
@@ -229,14 +246,19 @@ def _saved(picture: Picture, ending: str) -> bytes:
         return file.read_bytes()
 
 
-def _work(scene: Scene, function: Callable[..., bytes], arguments: tuple[Any, ...]) -> bytes:
-    """Runs in a worker: as many threads as the worker is given."""
+def _work(scene: Scene, function: Callable[..., bytes], arguments: tuple[Any, ...], inputs: dict[str, str]) -> bytes:
+    """Runs in a worker: as many threads as the worker is given, and files of the same content."""
     from distributed import get_worker
 
     threads = get_worker().state.nthreads
     if _cloakroom.threads() != threads:
         _cloakroom.set_threads(threads)
-    return function(scene, *arguments)
+    result = function(scene, *arguments)
+    for key, digest in _inputs(scene, {}).items():
+        if inputs[key] != digest:
+            path = dict(scene._native.files)[key]
+            raise ValueError(f"{key}: {path} has changed, or is another file on a worker; begin again with the same file")
+    return result
 
 
 def _same(scene: Scene) -> Scene:
@@ -315,7 +337,7 @@ def _results(tasks: list[_Task], client: Any) -> Generator[tuple[_Task, bytes], 
         if id(task.scene) not in scenes:
             scenes[id(task.scene)] = client.submit(_same, task.scene, pure=False)
         scene = scenes[id(task.scene)]
-        future = client.submit(_work, scene, task.function, task.arguments, pure=False, retries=_RETRIES)
+        future = client.submit(_work, scene, task.function, task.arguments, task.inputs, pure=False, retries=_RETRIES)
         futures[future] = task
     scenes.clear()
     waiting = as_completed(list(futures))  # type: ignore[no-untyped-call]

@@ -178,6 +178,12 @@ impl Scene {
         (self.scene().picture.map.name(), self.scene().picture.color_bar)
     }
 
+    /// The files that it names, and the keys that name them.
+    #[getter]
+    fn files(&self) -> Vec<(String, PathBuf)> {
+        self.scene().files()
+    }
+
     /// Builds the devices, and the rest of what a picture needs.
     fn check(&self, py: Python<'_>) -> Result<(), Failure> {
         supervised(py, None, |_, _| self.prepared().map(drop))

@@ -128,6 +128,34 @@ def test_what_is_finished_is_not_done_again(cluster, scene: Scene, tmp_path: Pat
     assert not np.array_equal(other.linear, picture.linear)
 
 
+def test_what_other_files_made_is_done_again(cluster, tmp_path: Path) -> None:
+    photographs = [tmp_path / f"photograph-{number}.png" for number in range(2)]
+    for photograph, color in zip(photographs, (0.2, 0.7)):
+        Scene(camera=Camera(resolution=[16, 12]), photograph=np.full((3, 4, 3), color)).render(samples=1).save(photograph)
+    indices = [tmp_path / f"index-{number}.npy" for number in range(2)]
+    for index, value in zip(indices, (1.2, 1.7)):
+        np.save(index, np.full((4, 4), value))
+    photograph, index = tmp_path / "photograph.png", tmp_path / "index.npy"
+    shown = []
+    for photograph_number, index_number in [(0, 0), (0, 0), (1, 0), (1, 1)]:
+        # Other contents, of the same time.
+        for file, content in [(photograph, photographs[photograph_number]), (index, indices[index_number])]:
+            file.write_bytes(content.read_bytes())
+            os.utime(file, ns=(0, 0))
+        scene = Scene(
+            camera=Camera(resolution=[40, 30], samples=1),
+            photograph=str(photograph),
+            devices=cloakroom.Graded(index=index, width=4, height=4),
+        )
+        tiles = render_tiles(scene, tmp_path / "tiles", tile=(20, 30))
+        assert np.array_equal(tiles.linear, scene.render().linear)
+        (frame,) = render_frames(scene, {"device.0.rotation": [0]}, tmp_path / "frames", ending=".npz")
+        assert np.array_equal(Picture.load(frame).linear, tiles.linear)
+        shown.append(tiles.linear)
+    assert np.array_equal(shown[0], shown[1])
+    assert not np.array_equal(shown[1], shown[2]) and not np.array_equal(shown[2], shown[3])
+
+
 def test_frames_are_pictures(cluster, scene: Scene, tmp_path: Path) -> None:
     keys = {"device.0.rotation": np.array([0.0, 5.0, 10.0])}
     files = render_frames(scene, keys, tmp_path)

@@ -50,7 +50,7 @@ export async function startBrowser() {
 // Opens the page; what it asks for elsewhere and what the console says goes into `complaints`.
 export async function openPage(context, address, fragment = "") {
   const page = await context.newPage();
-  const origin = `${new URL(address).origin}/`;
+  const folder = new URL(".", address).href;
   const complaints = [];
   page.on("console", (message) => {
     if (["error", "warning"].includes(message.type())) complaints.push(message.text());
@@ -58,10 +58,10 @@ export async function openPage(context, address, fragment = "") {
   page.on("pageerror", (error) => complaints.push(String(error)));
   page.on("request", (request) => {
     const url = request.url();
-    if (!url.startsWith(origin) && !url.startsWith("blob:") && !url.startsWith("data:")) complaints.push(url);
+    if (!url.startsWith(folder) && !url.startsWith("blob:") && !url.startsWith("data:")) complaints.push(url);
   });
   page.on("websocket", (socket) => {
-    if (socket.url() !== `${origin.replace("http", "ws")}session`) complaints.push(socket.url());
+    if (socket.url() !== `${folder.replace("http", "ws")}session`) complaints.push(socket.url());
   });
   await page.goto(address + fragment);
   return { page, complaints };
