@@ -2,7 +2,7 @@
 
 use cloakroom::trace::Stopped;
 use std::error::Error;
-use std::io::Write;
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::Path;
 
 /// What a command comes to.
@@ -41,7 +41,7 @@ impl<E: Error + 'static> From<E> for Failure {
 
 /// Says something on standard error. Nobody listening is no reason to fail.
 pub fn say(message: &str) {
-    let _ = writeln!(std::io::stderr(), "{}", printable(message));
+    let _ = writeln!(io::stderr(), "{}", printable(message));
 }
 
 /// Longer messages are cut: what they quote comes from files of any length, in bytes.
@@ -74,19 +74,26 @@ pub fn wrote(path: &Path) {
 /// Prints text on standard output. A reader that has gone away (as in `| head`) ends the printing
 /// without a fuss.
 pub fn print(text: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    match written {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::Failed(format!("cannot write to standard output: {error}")))
-        }
-        _ => Ok(()),
-    }
+    print_with(|out| out.write_all(text.as_bytes()))
 }
 
 /// Prints JSON on standard output, for people to read and programs to parse.
 pub fn print_json(value: &impl serde::Serialize) -> Result<()> {
-    print(&format!("{}\n", serde_json::to_string_pretty(value)?))
+    print_with(|out| {
+        serde_json::to_writer_pretty(&mut *out, value)?;
+        out.write_all(b"\n")
+    })
+}
+
+/// Prints on standard output what `write` writes, as it comes.
+pub fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    let mut out = BufWriter::new(io::stdout().lock());
+    match write(&mut out).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Failed(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]

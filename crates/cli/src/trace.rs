@@ -7,7 +7,7 @@ use crate::report::{self, Failure, Result};
 use crate::scene;
 use cloakroom::input::read_up_to;
 use cloakroom::interface_json::solve_interfaces;
-use cloakroom::ray_json::{RayError, RayRequest, trace_rays};
+use cloakroom::ray_json::{RayError, read_rays, trace_rays};
 use cloakroom::render;
 use std::fs::File;
 use std::io::{self, ErrorKind};
@@ -27,20 +27,24 @@ pub fn run(arguments: &TraceArguments) -> Result<()> {
     let TraceArguments { min_power, coherent, group_delay, .. } = *arguments;
     let settings = render::ray_settings(&loaded.scene, min_power, coherent, group_delay);
     let (text, name) = read(&arguments.rays)?;
-    let rays: Vec<RayRequest> = serde_json::from_str(&text).map_err(|error| {
+    let rays = read_rays(&text).map_err(|error| {
         Failure::Failed(format!(
             "{name}: {error}; expected an array of \
              {{\"origin\": [x,y,z], \"direction\": [x,y,z], \"polarization\": P}}, P being \
              \"horizontal\", \"vertical\" or {{\"electric_field\": [[re,im],[re,im],[re,im]]}}"
         ))
     })?;
+    drop(text);
     let busy = interruption::busy();
     let reports = trace_rays(&assembly, settings, &rays, &STOP).map_err(|error| match error {
         RayError::Stopped(_) => Failure::Interrupted,
         error => Failure::Failed(format!("{name}: {error}")),
     })?;
     drop(busy);
-    report::print(&format!("{}\n", serde_json::to_string(&reports)?))
+    report::print_with(|out| {
+        serde_json::to_writer(&mut *out, &reports)?;
+        out.write_all(b"\n")
+    })
 }
 
 /// Solves the interfaces of a file.

@@ -6,6 +6,7 @@ mod tests;
 
 pub use read::{InterfaceError, InterfaceRequest};
 
+use crate::{json, memory};
 use num_complex::Complex64;
 use optics::interface::{JonesMatrices, Scattering};
 use optics::medium::Mode;
@@ -46,6 +47,11 @@ pub struct InterfaceReport {
     pub total_reflected: [Option<f64>; 2],
     /// The same of what is transmitted.
     pub total_transmitted: [Option<f64>; 2],
+}
+
+impl InterfaceReport {
+    /// Bytes that one takes, with the lists that it owns.
+    const BYTES: usize = size_of::<Self>() + 2 * size_of::<ModeReport>() + 4 * (16 + 16 + 32);
 }
 
 /// Two rows of complex numbers, each as [re, im].
@@ -159,25 +165,50 @@ impl InterfaceRequest {
     }
 }
 
-/// Solves the interfaces of a JSON text, one object or an array of them, and answers in the same
-/// form.
+/// What a JSON text asks for, in the same form: one interface or an array of them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Solved {
+    /// One.
+    One(Box<InterfaceReport>),
+    /// An array.
+    Each(Vec<InterfaceReport>),
+}
+
+/// Solves the interfaces of a JSON text, one object or an array of them.
 ///
 /// # Errors
 ///
-/// If the text is no JSON or asks for something that cannot be; the message names the place.
-pub fn solve_interfaces(text: &str) -> Result<serde_json::Value, InterfaceError> {
-    let value: serde_json::Value =
-        serde_json::from_str(text).map_err(|error| InterfaceError::at("", error.to_string()))?;
-    let solve = |(place, item): (String, &serde_json::Value)| {
+/// If the text is no JSON or asks for something that cannot be, the message names the place; or if
+/// there is not enough memory for the answers.
+pub fn solve_interfaces(text: &str) -> Result<Solved, InterfaceError> {
+    let solve = |place: String, item: &serde_json::Value| {
         let solved = InterfaceRequest::read(item, &place)?.solve();
         solved.map_err(|error| InterfaceError { place, ..error })
     };
-    let answer = match &value {
-        serde_json::Value::Array(items) => {
-            let items = items.iter().enumerate().map(|(i, item)| (format!("[{i}]"), item));
-            serde_json::to_value(items.map(solve).collect::<Result<Vec<_>, _>>()?)
-        }
-        item => serde_json::to_value(solve((String::new(), item))?),
-    };
-    answer.map_err(|error| InterfaceError::at("", error.to_string()))
+    let no_json = |error: serde_json::Error| InterfaceError::at("", error.to_string());
+    if !text.trim_start().starts_with('[') {
+        let item = serde_json::from_str(text).map_err(no_json)?;
+        return Ok(Solved::One(solve(String::new(), &item)?.into()));
+    }
+    let (mut reports, mut refused) = (Vec::new(), None);
+    let read = json::read_list(text, |number, item| {
+        let solved = solve(format!("[{number}]"), &item).and_then(|report| {
+            let too_many = |shortage| {
+                InterfaceError::at(
+                    "",
+                    format!("so many interfaces: it {shortage}; give them in parts"),
+                )
+            };
+            memory::make_room(&mut reports, InterfaceReport::BYTES).map_err(too_many)?;
+            reports.push(report);
+            Ok(())
+        });
+        solved.map_err(|error| refused.insert(error).to_string())
+    });
+    match (refused, read) {
+        (Some(error), _) => Err(error),
+        (None, Err(error)) => Err(no_json(error)),
+        (None, Ok(())) => Ok(Solved::Each(reports)),
+    }
 }

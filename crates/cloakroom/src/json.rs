@@ -1,6 +1,45 @@
-//! Values of keys as JSON.
+//! JSON: values of keys, and long lists.
 
 use crate::keys::Value;
+use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// Reads an array and hands each item over as it comes, with its number, for all of them together
+/// may take many times the memory of the text.
+///
+/// # Errors
+///
+/// If the text is no such array; what `each` says is told with the place in the text.
+pub(crate) fn read_list<T: for<'de> Deserialize<'de>>(
+    text: &str,
+    each: impl FnMut(usize, T) -> Result<(), String>,
+) -> serde_json::Result<()> {
+    struct Items<T, F>(F, PhantomData<T>);
+
+    impl<'de, T: Deserialize<'de>, F: FnMut(usize, T) -> Result<(), String>> Visitor<'de>
+        for Items<T, F>
+    {
+        type Value = ();
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a sequence")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(mut self, mut items: A) -> Result<(), A::Error> {
+            let mut number = 0;
+            while let Some(item) = items.next_element()? {
+                (self.0)(number, item).map_err(A::Error::custom)?;
+                number += 1;
+            }
+            Ok(())
+        }
+    }
+
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    deserializer.deserialize_seq(Items(each, PhantomData))?;
+    deserializer.end()
+}
 
 /// The value that JSON says.
 ///

@@ -18,12 +18,36 @@ pub struct Shortage {
     pub available_mb: u64,
 }
 
-/// Refuses what takes more bytes than are [`available`], or than `most` wherever that is less.
-pub(crate) fn check(needed: u64, most: u64) -> Result<(), Shortage> {
-    let available = available().unwrap_or(most).min(most);
-    if needed > available {
+impl Shortage {
+    /// Of bytes needed and free.
+    pub(crate) fn new(needed: u64, available: u64) -> Self {
         let [needed_mb, available_mb] = [needed, available].map(|bytes| bytes / 1_000_000);
-        return Err(Shortage { needed_mb, available_mb });
+        Self { needed_mb, available_mb }
+    }
+}
+
+/// Refuses what takes more bytes than are [`available`], or than `most` wherever that is less.
+///
+/// # Errors
+///
+/// [`Shortage`].
+pub fn check(needed: u64, most: u64) -> Result<(), Shortage> {
+    let available = available().unwrap_or(most).min(most);
+    if needed > available { Err(Shortage::new(needed, available)) } else { Ok(()) }
+}
+
+/// Makes room for one more in a list whose length nobody knows before it has ended; each takes so
+/// many bytes, with what it owns.
+///
+/// # Errors
+///
+/// [`Shortage`], where there is no memory for twice as many.
+pub(crate) fn make_room<T>(list: &mut Vec<T>, each: usize) -> Result<(), Shortage> {
+    if list.len() == list.capacity() {
+        let more = list.len().max(1024);
+        // Those that are there may be copied.
+        check((list.len() * size_of::<T>() + more * each) as u64, u64::MAX)?;
+        list.reserve_exact(more);
     }
     Ok(())
 }
@@ -62,11 +86,15 @@ fn of_group(read: &dyn Fn(&str) -> Option<String>) -> Option<u64> {
     })
 }
 
+/// Address space that the allocator of the C library reserves for a thread that has not begun to
+/// allocate: the one that waits for signals.
+const RESERVED: u64 = 64 << 20;
+
 /// What is left of the address space that the process may have.
 fn of_process(read: &dyn Fn(&str) -> Option<String>) -> Option<u64> {
     let limit = field(&read("/proc/self/limits")?, "Max address space")?;
     let taken = field(&read("/proc/self/status")?, "VmSize:")? * 1024;
-    Some(limit.saturating_sub(taken))
+    Some(limit.saturating_sub(taken + RESERVED))
 }
 
 /// The number after a name at the beginning of a line; `None` where there is none, as in
@@ -98,7 +126,9 @@ mod tests {
             available(&files)
         };
         assert_eq!(limits("Max address space  unlimited  unlimited  bytes\n"), Some(8000 << 10));
-        assert_eq!(limits("Max address space  3072000  unlimited  bytes\n"), Some(2000 << 10));
+        let limit = 3_072_000 + RESERVED;
+        let limited = format!("Max address space  {limit}  unlimited  bytes\n");
+        assert_eq!(limits(&limited), Some(2000 << 10));
         assert_eq!(limits("Max address space  1024  1024  bytes\n"), Some(0));
     }
 

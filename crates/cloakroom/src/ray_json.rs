@@ -1,12 +1,13 @@
 //! Rays in, leaves out, as JSON: the form of `cloakroom trace`.
 
 use crate::assembly::Assembly;
+use crate::json;
 use crate::memory::{self, Shortage};
 use crate::trace::{Launch, LeafTable, RaySettings, Stopped};
 use glam::DVec3;
 use optics::wave::{ComplexVector, transverse_basis, unit};
-use serde::{Deserialize, Serialize};
-use std::sync::atomic::AtomicBool;
+use serde::{Deserialize, Serialize, Serializer};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// How far from transverse a given electric field may be: |E·d|/|E|.
 const TRANSVERSE: f64 = 1e-6;
@@ -140,6 +141,23 @@ fn transverse(components: [[f64; 2]; 3], direction: DVec3) -> Result<ComplexVect
     Ok(across * (1.0 / across.norm_squared().sqrt()))
 }
 
+/// Reads rays from JSON, an array of them.
+///
+/// # Errors
+///
+/// If the text is none, or there is not enough memory for its rays.
+pub fn read_rays(text: &str) -> serde_json::Result<Vec<RayRequest>> {
+    let mut rays = Vec::new();
+    json::read_list(text, |_, ray| {
+        let each = size_of::<RayRequest>();
+        memory::make_room(&mut rays, each)
+            .map_err(|shortage| format!("reading its rays {shortage}"))?;
+        rays.push(ray);
+        Ok(())
+    })?;
+    Ok(rays)
+}
+
 /// Traces the rays `ray(0)` to `ray(count - 1)`: see [`LeafTable::trace`].
 ///
 /// # Errors
@@ -154,12 +172,28 @@ pub fn leaf_table(
     done: &(dyn Fn(u64) + Sync),
     stop: &AtomicBool,
 ) -> Result<LeafTable, RayError> {
-    let needed = count as u64 * LeafTable::BYTES_PER_RAY;
+    let too_many = |shortage| RayError::TooMany { count, shortage };
+    // Twice: while the table is put together.
+    let needed = count as u64 * 2 * LeafTable::BYTES_PER_RAY as u64;
     // Rays are numbered in 32 bits.
-    let most = u64::from(u32::MAX) * LeafTable::BYTES_PER_RAY;
-    memory::check(needed, most).map_err(|shortage| RayError::TooMany { count, shortage })?;
+    let most = u64::from(u32::MAX) * 2 * LeafTable::BYTES_PER_RAY as u64;
+    memory::check(needed, most).map_err(too_many)?;
+    // How many leaves a ray has is known when it has been traced.
+    let room = memory::available().unwrap_or(u64::MAX);
+    let [traced, taken] = [AtomicU64::new(0), AtomicU64::new(0)];
+    let add = |sum: &AtomicU64, more: u64| sum.fetch_add(more, Ordering::Relaxed) + more;
+    let batch_done = |batch: &LeafTable| {
+        add(&traced, batch.absorbed.len() as u64);
+        add(&taken, 2 * batch.bytes() as u64);
+        done(batch.absorbed.len() as u64);
+    };
     // The ray to launch, if it makes sense and starts in air or a medium.
     let launch = |index: usize| {
+        let [traced, taken] = [&traced, &taken].map(|sum| sum.load(Ordering::Relaxed));
+        if taken > room {
+            let each = taken as f64 / traced as f64;
+            return Err(too_many(Shortage::new((each * count as f64) as u64, room)));
+        }
         let wrong = |problem| RayError::Ray { index, problem };
         let launch = ray(index).launch().map_err(wrong)?;
         assembly.region_around(launch.origin, launch.direction).map_err(|device| {
@@ -170,40 +204,63 @@ pub fn leaf_table(
         })?;
         Ok(launch)
     };
-    LeafTable::trace(assembly, settings, count, &launch, done, stop)
+    LeafTable::trace(assembly, settings, count, &launch, &batch_done, stop)
+}
+
+/// What became of rays, in order; as JSON the array of the reports.
+#[derive(Clone, Debug)]
+pub struct RayReports {
+    table: LeafTable,
+    group_delays: bool,
+}
+
+impl RayReports {
+    /// The report of each ray.
+    pub fn iter(&self) -> impl Iterator<Item = RayReport> {
+        let Self { table, group_delays } = self;
+        let mut leaves = (0..table.ray.len()).peekable();
+        let leaf = |leaf: usize| LeafReport {
+            position: Some(table.position[leaf]).filter(|position| !position[0].is_nan()),
+            direction: table.direction[leaf],
+            power: table.power[leaf],
+            optical_path: table.optical_path[leaf],
+            group_path: group_delays.then(|| table.group_path[leaf]),
+            electric_field: table.electric_field[leaf].map(|c| [c.re, c.im]),
+        };
+        let report = move |ray: usize| {
+            let of_ray =
+                std::iter::from_fn(|| leaves.next_if(|leaf| table.ray[*leaf] as usize == ray));
+            RayReport {
+                leaves: of_ray.map(leaf).collect(),
+                absorbed: table.absorbed[ray],
+                pruned: table.pruned[ray],
+            }
+        };
+        (0..table.absorbed.len()).map(report)
+    }
+}
+
+impl Serialize for RayReports {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.iter())
+    }
 }
 
 /// Traces rays, in order.
 ///
 /// # Errors
 ///
-/// If a ray makes no sense or starts in metal or an opaque body, or the work was stopped.
+/// If a ray makes no sense or starts in metal or an opaque body, there is not enough memory for the
+/// leaves, or the work was stopped.
 pub fn trace_rays(
     assembly: &Assembly,
     settings: impl Into<RaySettings>,
     rays: &[RayRequest],
     stop: &AtomicBool,
-) -> Result<Vec<RayReport>, RayError> {
+) -> Result<RayReports, RayError> {
     let settings = settings.into();
     let table = leaf_table(assembly, settings, rays.len(), &|i| rays[i].clone(), &|_| {}, stop)?;
-    let mut leaves = (0..table.ray.len()).peekable();
-    let leaf = |leaf: usize| LeafReport {
-        position: Some(table.position[leaf]).filter(|position| !position[0].is_nan()),
-        direction: table.direction[leaf],
-        power: table.power[leaf],
-        optical_path: table.optical_path[leaf],
-        group_path: settings.group_delays.then(|| table.group_path[leaf]),
-        electric_field: table.electric_field[leaf].map(|c| [c.re, c.im]),
-    };
-    let report = |ray: usize| {
-        let of_ray = std::iter::from_fn(|| leaves.next_if(|leaf| table.ray[*leaf] as usize == ray));
-        RayReport {
-            leaves: of_ray.map(leaf).collect(),
-            absorbed: table.absorbed[ray],
-            pruned: table.pruned[ray],
-        }
-    };
-    Ok((0..rays.len()).map(report).collect())
+    Ok(RayReports { table, group_delays: settings.group_delays })
 }
 
 #[cfg(test)]

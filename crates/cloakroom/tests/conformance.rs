@@ -162,7 +162,7 @@ fn traced(scene: &str, rays: &[RayRequest], coherent: bool) -> Vec<RayReport> {
     let loaded = scene_file::parse(scene, "test", Path::new(""), &[]).unwrap();
     let assembly = render::assembly(&loaded.scene).unwrap();
     let settings = render::ray_settings(&loaded.scene, None, coherent, false);
-    trace_rays(&assembly, settings, rays, &AtomicBool::new(false)).unwrap()
+    trace_rays(&assembly, settings, rays, &AtomicBool::new(false)).unwrap().iter().collect()
 }
 
 #[derive(Deserialize)]

@@ -143,7 +143,7 @@ fn trace_json(bytes: &[u8]) {
     match trace_rays(assembly, limits, &requests, &AtomicBool::new(false)) {
         Err(error) => assert!(!error.to_string().is_empty()),
         Ok(reports) => {
-            assert_eq!(reports.len(), requests.len());
+            assert_eq!(reports.iter().count(), requests.len());
             for (report, request) in reports.iter().zip(&requests) {
                 let leaves: f64 = report.leaves.iter().map(|leaf| leaf.power).sum();
                 let account = leaves + report.absorbed + report.pruned;

@@ -2,7 +2,8 @@ use super::solve_interfaces;
 use serde_json::{Value, json};
 
 fn solve(value: &Value) -> Value {
-    solve_interfaces(&value.to_string()).expect("a sound interface")
+    let solved = solve_interfaces(&value.to_string()).expect("a sound interface");
+    serde_json::to_value(solved).expect("JSON")
 }
 
 fn refusal(value: &Value) -> String {

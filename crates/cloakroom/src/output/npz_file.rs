@@ -5,12 +5,12 @@ use super::{OutputError, Picture, Samples, WriteSeek, write_whole};
 use ndarray::{ArrayView, ArrayView1, Dimension, StrideShape};
 use ndarray_npy::{NpzWriter, WritableElement};
 use serde_json::{Map, Value};
-use std::io;
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 
 /// An archive of arrays that is being written.
 pub(crate) struct Npz<'o> {
-    writer: NpzWriter<&'o mut dyn WriteSeek>,
+    writer: NpzWriter<UntilError<'o>>,
     /// What becomes the array of bytes `metadata`, which holds a JSON object in UTF-8.
     pub metadata: Map<String, Value>,
 }
@@ -28,6 +28,48 @@ impl Npz<'_> {
     }
 }
 
+/// Takes all that comes after an error as if it were written: an archive that is given up is ended
+/// all the same, and would tell on standard error that it cannot be.
+struct UntilError<'o> {
+    out: &'o mut dyn WriteSeek,
+    has_failed: bool,
+}
+
+impl UntilError<'_> {
+    fn first<T>(&mut self, did: io::Result<T>) -> io::Result<T> {
+        self.has_failed |= did.is_err();
+        did
+    }
+}
+
+impl Write for UntilError<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.has_failed {
+            return Ok(bytes.len());
+        }
+        let written = self.out.write(bytes);
+        self.first(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.has_failed {
+            return Ok(());
+        }
+        let flushed = self.out.flush();
+        self.first(flushed)
+    }
+}
+
+impl Seek for UntilError<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        if self.has_failed {
+            return Ok(0);
+        }
+        let sought = self.out.seek(to);
+        self.first(sought)
+    }
+}
+
 /// Writes an archive of the arrays that `add` adds, and metadata as the array of bytes `metadata`.
 ///
 /// # Errors
@@ -40,7 +82,10 @@ pub(crate) fn write_npz(
 ) -> Result<(), OutputError> {
     write_whole(path, |out| {
         let metadata = metadata.iter().map(|(key, text)| (key.clone(), text.clone().into()));
-        let mut npz = Npz { writer: NpzWriter::new(out), metadata: metadata.collect() };
+        let mut npz = Npz {
+            writer: NpzWriter::new(UntilError { out, has_failed: false }),
+            metadata: metadata.collect(),
+        };
         add(&mut npz)?;
         let bytes = serde_json::to_vec(&npz.metadata)?;
         npz.writer.add_array("metadata", &ArrayView1::from(&bytes)).map_err(io::Error::other)?;

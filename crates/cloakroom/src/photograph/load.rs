@@ -8,10 +8,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
+use super::exr_image::ExrImage;
 use super::linear_image::{LinearImage, MAX_MEMORY, MAX_PIXELS, Texels};
 use super::source::{ImageSource, LoadError, LoadProblem, check};
-use super::{exr_limits, jpeg_markers, srgb};
+use super::{jpeg_markers, srgb};
 use crate::input::{Digest, read_up_to};
+use crate::memory;
 
 #[cfg(test)]
 mod tests;
@@ -31,7 +33,11 @@ pub fn dimensions(source: &ImageSource) -> Result<(u32, u32), LoadError> {
     }
     let size = || {
         let bytes = read_bytes(source)?;
-        let (mut decoder, _) = open(&bytes, MAX_PIXELS)?;
+        if format(&bytes)? == ImageFormat::OpenExr {
+            let image = open_exr(&bytes, MAX_PIXELS)?;
+            return Ok(image.size().into());
+        }
+        let mut decoder = open(&bytes, MAX_PIXELS)?;
         let (width, height) = decoder.dimensions();
         let orientation = guarded(|| Ok(orientation(&mut decoder)))?;
         // The odd half of the orientations exchanges rows and columns.
@@ -43,14 +49,16 @@ pub fn dimensions(source: &ImageSource) -> Result<(u32, u32), LoadError> {
 /// Reads an image into linear light.
 ///
 /// PNG (1 to 16 bits, gray, palette, colour) and JPEG are taken as sRGB and turned upright as
-/// their EXIF orientation says; EXR is taken as linear light. Transparent pixels lie over black.
+/// their EXIF orientation says; EXR (red, green and blue, or gray; of several layers the one called
+/// `Combined`) is taken as linear light. Transparent pixels lie over black: the colors of EXR come
+/// multiplied by their alpha already.
 /// The kind of file is seen from its content, not from its name.
 ///
 /// # Errors
 ///
 /// [`LoadError`] where the file is missing, unreadable, no image, damaged, without pixels or too
-/// large (decided before memory is taken), or where an EXR pixel is not finite: such a pixel would
-/// spread over the picture as soon as it is filtered.
+/// large (decided before memory is taken), or where an EXR pixel is not finite or beyond 1e30: such
+/// a pixel would spread over the picture as soon as it is filtered.
 pub fn load(source: &ImageSource) -> Result<LinearImage, LoadError> {
     Ok(load_with_digest(source)?.0)
 }
@@ -88,7 +96,12 @@ pub fn load_bytes(
 
 /// Linear light from the bytes of an image file.
 fn read(bytes: &[u8], most_pixels: u64) -> Result<LinearImage, LoadProblem> {
-    let image = linear(guarded(|| decode(bytes, most_pixels))?);
+    let image = if format(bytes)? == ImageFormat::OpenExr {
+        let image = open_exr(bytes, most_pixels)?;
+        guarded(|| image.read(bytes))?
+    } else {
+        linear(guarded(|| decode(bytes, most_pixels))?)
+    };
     check(&image)?;
     Ok(image)
 }
@@ -121,7 +134,8 @@ fn read_bytes(source: &ImageSource) -> Result<Cow<'static, [u8]>, LoadProblem> {
     let mut bytes = Vec::new();
     file.by_ref().take(16).read_to_end(&mut bytes).map_err(failed)?;
     format(&bytes)?;
-    bytes.reserve(usize::try_from(metadata.len()).unwrap_or(0));
+    let length = usize::try_from(metadata.len()).unwrap_or(0);
+    bytes.try_reserve(length).map_err(|_| failed(io::ErrorKind::OutOfMemory.into()))?;
     read_up_to(MAX_FILE, file, &mut bytes).map_err(failed)?;
     Ok(bytes.into())
 }
@@ -138,43 +152,53 @@ fn format(bytes: &[u8]) -> Result<ImageFormat, LoadProblem> {
     }
 }
 
-/// A decoder that has read the header and found the size acceptable.
-fn open(
-    bytes: &[u8],
-    most_pixels: u64,
-) -> Result<(impl ImageDecoder + use<'_>, ImageFormat), LoadProblem> {
-    let format = format(bytes)?;
-    if format == ImageFormat::OpenExr && !guarded(|| Ok(exr_limits::are_kept(bytes)))? {
-        return Err(LoadProblem::TooLarge);
-    }
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+/// A decoder of a PNG or JPEG that has read the header and found the size acceptable.
+fn open(bytes: &[u8], most_pixels: u64) -> Result<impl ImageDecoder + use<'_>, LoadProblem> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format(bytes)?);
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(MAX_MEMORY);
     reader.limits(limits);
     let decoder = guarded(|| reader.into_decoder().map_err(from_decoder))?;
-    let (width, height) = decoder.dimensions();
-    if width == 0 || height == 0 {
-        return Err(LoadProblem::NoPixels([width, height]));
-    }
-    let pixels = u64::from(width) * u64::from(height);
-    // 8-bit images stay as they are; others become floats beside their decoded form, which the
-    // EXR decoder holds twice. The coarser levels of the pyramid add a third.
+    // 8-bit images stay as they are; others become floats beside their decoded form. The coarser
+    // levels of the pyramid add a third.
     let color = decoder.color_type();
     let decoded = u64::from(color.bytes_per_pixel());
     let per_pixel = match color {
         image::ColorType::Rgb8 | image::ColorType::L8 => decoded + 3 + 4,
         _ => 2 * decoded + 12 + 4,
     };
+    check_size(decoder.dimensions().into(), most_pixels, per_pixel)?;
+    Ok(decoder)
+}
+
+/// The image in an EXR file, its size found acceptable.
+fn open_exr(bytes: &[u8], most_pixels: u64) -> Result<ExrImage, LoadProblem> {
+    let image = guarded(|| ExrImage::find(bytes))?;
+    // Three floats, and those of the coarser levels of the pyramid.
+    check_size(image.size(), most_pixels, 12 + 4)?;
+    Ok(image)
+}
+
+/// Refuses an image without pixels, and one that takes more memory than is allowed or there.
+fn check_size(
+    [width, height]: [u32; 2],
+    most_pixels: u64,
+    per_pixel: u64,
+) -> Result<(), LoadProblem> {
+    if width == 0 || height == 0 {
+        return Err(LoadProblem::NoPixels([width, height]));
+    }
+    let pixels = u64::from(width) * u64::from(height);
     if pixels > most_pixels.min(MAX_PIXELS) || pixels * per_pixel > MAX_MEMORY {
         return Err(LoadProblem::TooLarge);
     }
-    Ok((decoder, format))
+    Ok(memory::check(pixels * per_pixel, u64::MAX)?)
 }
 
-/// The decoded image, upright.
+/// The decoded image of a PNG or JPEG, upright.
 fn decode(bytes: &[u8], most_pixels: u64) -> Result<DynamicImage, LoadProblem> {
-    let (mut decoder, format) = open(bytes, most_pixels)?;
-    if format == ImageFormat::Jpeg && !jpeg_markers::is_complete(bytes) {
+    let mut decoder = open(bytes, most_pixels)?;
+    if format(bytes)? == ImageFormat::Jpeg && !jpeg_markers::is_complete(bytes) {
         return Err(LoadProblem::Damaged("the end-of-image marker is missing".to_owned()));
     }
     let orientation = orientation(&mut decoder);
@@ -218,11 +242,6 @@ fn linear(image: DynamicImage) -> LinearImage {
             let table = srgb::decode_table();
             over_black(&image.into_rgba8(), |code| table[usize::from(code)], 1.0 / 255.0)
         }
-        // EXR colours come multiplied by their alpha already: they lie over black as they are.
-        DynamicImage::ImageRgb32F(pixels) => Texels::Linear(pixels.into_raw()),
-        DynamicImage::ImageRgba32F(pixels) => Texels::Linear(
-            pixels.pixels().flat_map(|pixel| [pixel.0[0], pixel.0[1], pixel.0[2]]).collect(),
-        ),
         deep => {
             let table: Vec<f32> =
                 (0..=u16::MAX).map(|code| srgb::decode(f64::from(code) / 65535.0) as f32).collect();

@@ -11,7 +11,7 @@
 
 mod downsample;
 mod equirectangular;
-mod exr_limits;
+mod exr_image;
 mod footprint;
 mod jpeg_markers;
 mod linear_image;

@@ -5,12 +5,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::keys::BUILT_IN_PREFIX;
+use crate::memory::Shortage;
 
 use super::linear_image::{LinearImage, MAX_MEMORY, MAX_PIXELS, Texels};
 
 /// The images that come with the program, by name: those of
 /// [`BUILT_IN_IMAGES`](crate::keys::BUILT_IN_IMAGES).
 const BUILT_IN: [(&str, &[u8]); 1] = [("bookshelf", include_bytes!("../../assets/bookshelf.jpg"))];
+
+/// Light beyond this would be infinite in a picture that adds it up in single precision.
+const BRIGHTEST: f32 = 1e30;
 
 /// Where an image comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,15 +77,20 @@ pub(super) fn check(image: &LinearImage) -> Result<(), LoadProblem> {
         // Below the largest number of pixels, and thus of 32 bits.
         return Err(LoadProblem::NoPixels([width as u32, height as u32]));
     }
-    let (count, not_finite) = match &image.texels {
+    let (count, no_light) = match &image.texels {
         Texels::Srgb8(codes) => (codes.len(), None),
         Texels::Linear(values) => {
-            (values.len(), values.iter().position(|value| !value.is_finite()))
+            let within = |value: &f32| value.abs() <= BRIGHTEST;
+            (values.len(), values.iter().enumerate().find(|(_, value)| !within(value)))
         }
     };
-    match not_finite {
+    match no_light {
         _ if count != 3 * pixels => Err(LoadProblem::WrongCount(count)),
-        Some(at) => Err(LoadProblem::NotFinite([at / 3 % width, at / 3 / width])),
+        Some((at, value)) => {
+            let place = [at / 3 % width, at / 3 / width];
+            let finite = value.is_finite();
+            Err(if finite { LoadProblem::TooBright(place) } else { LoadProblem::NotFinite(place) })
+        }
         None => Ok(()),
     }
 }
@@ -139,6 +148,18 @@ pub enum LoadProblem {
     /// of the first such one, from 0.
     #[error("has a pixel that is not a finite number, in column {} and row {}", .0[0], .0[1])]
     NotFinite([usize; 2]),
+    /// A pixel is brighter than light that can be added up: its column and row, from 0.
+    #[error("has a pixel beyond {BRIGHTEST:e}, in column {} and row {}", .0[0], .0[1])]
+    TooBright([usize; 2]),
+    /// An EXR image has several layers of colors, which are called so.
+    #[error("has several layers ({0}); write one of them into a file of its own")]
+    Layers(String),
+    /// An EXR image has no colors but these channels.
+    #[error("has the channels {0}; an image has R, G and B, or Y alone")]
+    Channels(String),
+    /// There is not enough memory for the image.
+    #[error(transparent)]
+    NoMemory(#[from] Shortage),
 }
 
 impl LoadProblem {

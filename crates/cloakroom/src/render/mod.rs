@@ -220,8 +220,8 @@ pub fn check_memory(
 ) -> Result<(), RenderError> {
     let channels = ChannelKind::of(wanted, &prepared.scene.picture);
     let bytes: usize = channels.iter().map(|channel| channel.blank(1).bytes()).sum();
-    // Files are made from the finished planes: an eight-bit copy, or a copy in file order.
-    let needed = u64::from(width) * u64::from(height) * (bytes + bytes / 2) as u64;
+    // Files are made from copies of the finished planes.
+    let needed = u64::from(width) * u64::from(height) * 2 * bytes as u64;
     crate::memory::check(needed, u64::MAX).map_err(|shortage| RenderError::TooLarge {
         width,
         height,

@@ -1,6 +1,7 @@
 //! Tiles: rectangles of a picture that are rendered apart, by other processes or machines, and put
 //! together again.
 
+use crate::memory::{self, Shortage};
 use crate::output::{Channel, Picture, RgbImage, Samples};
 use std::fmt;
 use std::str::FromStr;
@@ -135,6 +136,14 @@ pub enum MergeError {
         /// Height of the picture.
         height: u32,
     },
+    /// There is not enough memory for the picture beside its tiles.
+    #[error("the picture {0}")]
+    TooLarge(#[from] Shortage),
+}
+
+/// Refuses a picture that would not fit into memory, and the copy that its files are made from.
+fn check_memory(bytes: usize) -> Result<(), MergeError> {
+    Ok(memory::check(2 * bytes as u64, u64::MAX)?)
 }
 
 /// Pairs of key and text.
@@ -212,6 +221,8 @@ pub fn merge(pieces: &[Piece<Picture>]) -> Result<Picture, MergeError> {
             Samples::F64(_) => Samples::F64(vec![0.0; size]),
         },
     };
+    let samples = pieces.iter().flat_map(|(_, _, piece)| &piece.channels);
+    check_memory(samples.map(|channel| channel.samples.bytes()).sum())?;
     let mut channels: Vec<Channel> = pieces[0].2.channels.iter().map(blank).collect();
     for ((name, _, piece), tile) in pieces.iter().zip(&tiles) {
         let differ = || differ(&pieces[0].0, name, "channels");
@@ -239,6 +250,7 @@ pub fn merge(pieces: &[Piece<Picture>]) -> Result<Picture, MergeError> {
 pub fn merge_images(pieces: &[Piece<RgbImage>]) -> Result<(RgbImage, Metadata), MergeError> {
     let size = |piece: &RgbImage| [piece.width(), piece.height()].map(|side| side as usize);
     let (tiles, [width, height], metadata) = layout(pieces, size)?;
+    check_memory(3 * width as usize * height as usize)?;
     let mut whole = RgbImage::new(width, height);
     for ((_, _, piece), tile) in pieces.iter().zip(&tiles) {
         let (whole, _) = whole.as_chunks_mut::<3>();

@@ -69,12 +69,22 @@ pub struct LeafTable {
 }
 
 impl LeafTable {
-    /// Bytes that a ray with one leaf takes while the table is put together: twice its row.
-    pub const BYTES_PER_RAY: u64 = 2 * (4 + 24 + 24 + 8 + 8 + 8 + 48 + 16);
+    /// Bytes of a leaf.
+    const LEAF: usize = 4 + 24 + 24 + 8 + 8 + 8 + 48;
+
+    /// Bytes that a ray with one leaf takes.
+    pub const BYTES_PER_RAY: usize = Self::LEAF + 16;
+
+    /// Bytes that it takes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.ray.len() * Self::LEAF + self.absorbed.len() * 16
+    }
 
     /// Traces the rays `launch(0)` to `launch(count - 1)`, which may be 2^32 at most; `done` is
-    /// told now and then, from any thread, how many more have been traced. With the feature
-    /// `rayon`, on all threads; the table is the same.
+    /// told now and then, from any thread, what has become of further rays. With the feature
+    /// `rayon`, on all threads; the table is the same. While it is put together it is in memory
+    /// twice.
     ///
     /// # Errors
     ///
@@ -84,7 +94,7 @@ impl LeafTable {
         settings: impl Into<RaySettings>,
         count: usize,
         launch: &(impl Fn(usize) -> Result<Launch<1>, E> + Sync),
-        done: &(dyn Fn(u64) + Sync),
+        done: &(dyn Fn(&Self) + Sync),
         stop: &AtomicBool,
     ) -> Result<Self, E> {
         let settings = settings.into();
@@ -100,16 +110,15 @@ impl LeafTable {
                 None => tracer,
             });
             let rays = batch * size..count.min((batch + 1) * size);
-            let number = rays.len() as u64;
             let table = Self::of_batch(&mut tracers, settings.coherence, rays, launch)?;
-            done(number);
+            done(&table);
             Ok(table)
         });
-        let mut all = Self::default();
         // In order, so that the first bad ray is the one that is named.
-        for batch in batches {
-            all.append(batch?);
-        }
+        let batches = batches.into_iter().collect::<Result<Vec<Self>, E>>()?;
+        let leaves = batches.iter().map(|batch| batch.ray.len()).sum();
+        let mut all = Self::with_capacity(leaves, count);
+        batches.into_iter().for_each(|batch| all.append(batch));
         Ok(all)
     }
 
@@ -176,6 +185,20 @@ impl LeafTable {
         let ended: f64 = leaves.iter().filter(|l| l.body().is_some()).map(|l| l.power[0]).sum();
         self.absorbed.push(outcome.absorbed[0] + ended);
         self.pruned.push(outcome.pruned[0]);
+    }
+
+    fn with_capacity(leaves: usize, rays: usize) -> Self {
+        Self {
+            ray: Vec::with_capacity(leaves),
+            position: Vec::with_capacity(leaves),
+            direction: Vec::with_capacity(leaves),
+            power: Vec::with_capacity(leaves),
+            optical_path: Vec::with_capacity(leaves),
+            group_path: Vec::with_capacity(leaves),
+            electric_field: Vec::with_capacity(leaves),
+            absorbed: Vec::with_capacity(rays),
+            pruned: Vec::with_capacity(rays),
+        }
     }
 
     fn append(&mut self, mut other: Self) {

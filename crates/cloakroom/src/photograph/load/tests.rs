@@ -161,12 +161,16 @@ fn exr_is_linear_light() {
 
 #[test]
 fn exr_pixels_that_are_not_finite_are_refused() {
-    for bad in [f32::NAN, f32::INFINITY] {
+    for (bad, said) in [
+        (f32::NAN, "not a finite number, in column 1 and row 2"),
+        (f32::INFINITY, "not a finite number, in column 1 and row 2"),
+        (-3e38, "beyond 1e30, in column 1 and row 2"),
+    ] {
         let mut picture: ImageBuffer<Rgb<f32>, _> = ImageBuffer::new(4, 3);
         picture.get_pixel_mut(1, 2).0[2] = bad;
         let bytes = encoded(&DynamicImage::ImageRgb32F(picture), ImageFormat::OpenExr);
         let message = message("a.exr", &bytes);
-        assert!(message.contains("not a finite number, in column 1 and row 2"), "{message}");
+        assert!(message.contains(said), "{message}");
     }
 }
 
