@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _cloakroom
+
 __all__ = ["common_length", "image_array", "is_image_array", "numbers", "tensors", "vectors"]
 
 
@@ -19,7 +21,13 @@ def numbers(name: str, value: Any, expected: str, *, allow_complex: bool = False
         raise ValueError(f"{name} is no array: {error}; expected {expected}") from None
     if array.dtype.kind not in ("iufc" if allow_complex else "iuf"):
         raise TypeError(f"{name} is of the type {array.dtype}; expected {expected}")
-    dtype = np.complex128 if allow_complex else np.float64
+    return _required(name, array, np.complex128 if allow_complex else np.float64)
+
+
+def _required(name: str, array: NDArray[Any], dtype: Any) -> NDArray[Any]:
+    """The array as one of a type; a copy is not begun that does not fit into memory."""
+    if array.dtype != dtype or not array.flags.aligned:
+        _cloakroom.check_memory(name, array.size * np.dtype(dtype).itemsize)
     return np.require(array, dtype, ["ALIGNED"])
 
 
@@ -40,6 +48,7 @@ def tensors(name: str, value: Any) -> NDArray[np.complex128]:
     expected = "numbers, real or complex, of the shape (), (N,), (3, 3) or (N, 3, 3)"
     array = numbers(name, value, expected, allow_complex=True)
     if array.ndim <= 1:
+        _cloakroom.check_memory(name, 9 * 16 * array.size)
         spread: NDArray[np.complex128] = np.atleast_1d(array)[:, None, None] * np.eye(3, dtype=np.complex128)
         return spread
     if array.shape == (3, 3):
@@ -81,4 +90,4 @@ def image_array(name: str, value: Any) -> NDArray[Any]:
     if array.ndim != 3 or array.shape[2] != 3 or array.size == 0:
         raise ValueError(f"{name} has the shape {array.shape}; expected {expected}")
     with np.errstate(over="ignore"):
-        return np.require(array, np.uint8 if array.dtype == np.uint8 else np.float32, ["ALIGNED"])
+        return _required(name, array, np.uint8 if array.dtype == np.uint8 else np.float32)

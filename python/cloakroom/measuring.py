@@ -140,9 +140,15 @@ def sweep(
     return columns
 
 
+#: Nobody waits for more.
+_MOST_VALUES = 1_000_000
+
+
 def _values(key: str, given: Any) -> list[Any]:
     if isinstance(given, (str, bytes)) or not hasattr(given, "__len__"):
         raise TypeError(f"keys[{key!r}] is a {type(given).__name__}; expected a list of values")
+    if len(given) > _MOST_VALUES:
+        raise ValueError(f"keys[{key!r}] has {len(given)} values; at most {_MOST_VALUES} are taken")
     values = given.tolist() if isinstance(given, np.ndarray) else list(given)
     if not values:
         raise ValueError(f"keys[{key!r}] is empty; expected one value at least")

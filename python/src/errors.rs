@@ -1,9 +1,10 @@
 //! Errors of the library as Python exceptions, with the same messages.
 
 use cloakroom::material::MaterialError;
+use cloakroom::measure::MeasureError;
 use cloakroom::output::OutputError;
 use cloakroom::ray_json::RayError;
-use cloakroom::render::RenderError;
+use cloakroom::render::{MergeError, RenderError};
 use cloakroom::scene_file::SceneFileError;
 use cloakroom::trace::Stopped;
 use cloakroom_figures::IllustrationError;
@@ -35,7 +36,9 @@ impl<E: Error + 'static> From<E> for Failure {
         };
         let too_large = matches!(error.downcast_ref(), Some(RenderError::TooLarge { .. }))
             || matches!(error.downcast_ref(), Some(MaterialError::TooLarge { .. }))
-            || matches!(error.downcast_ref(), Some(RayError::TooMany { .. }));
+            || matches!(error.downcast_ref(), Some(RayError::TooMany { .. }))
+            || matches!(error.downcast_ref(), Some(MergeError::TooLarge(_)))
+            || matches!(error.downcast_ref(), Some(MeasureError::TooLarge { .. }));
         let unwritten = match error.downcast_ref() {
             Some(IllustrationError::Output(error)) => Some(error),
             _ => error.downcast_ref(),

@@ -1,6 +1,7 @@
 //! Images that are arrays.
 
 use crate::errors::{Failure, value_error};
+use crate::memory::check_copy;
 use cloakroom::photograph::{ImageSource, LinearImage, Texels};
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
@@ -18,6 +19,7 @@ pub struct Image {
 impl Image {
     #[new]
     fn new(array: &Bound<'_, PyAny>) -> Result<Self, Failure> {
+        check_copy("the image", array)?;
         let (shape, texels) = if let Ok(codes) = array.extract::<PyReadonlyArray3<'_, u8>>() {
             (codes.shape().to_vec(), Texels::Srgb8(codes.as_array().iter().copied().collect()))
         } else if let Ok(light) = array.extract::<PyReadonlyArray3<'_, f32>>() {

@@ -1,6 +1,7 @@
 //! Interfaces solved by the thousand.
 
 use crate::errors::{Failure, value_error};
+use crate::memory::check_memory;
 use crate::supervision::supervised;
 use cloakroom::interface_json::{
     ComplexMatrix, InterfaceReport, InterfaceRequest, JonesReport, ModeReport,
@@ -55,6 +56,9 @@ impl<'a> Media<'a> {
     }
 }
 
+/// Bytes of an interface in all arrays: of six modes, of powers, amplitudes and fields.
+const ARRAYS: usize = 6 * (3 * 16 + 24 + 2 * 48 + 1) + 2 * 4 * (8 + 16) + 2 * 64 + 32;
+
 /// Solves interfaces with normals and tangential wave vectors of shape (N, 3). Gives the arrays of
 /// an `Interface` by their names.
 #[pyfunction]
@@ -71,6 +75,9 @@ pub fn interface<'py>(
     let beyond = beyond.transpose()?;
     let (normals, tangentials) = (normals.as_array(), tangentials.as_array());
     let count = tangentials.len_of(Axis(0));
+    // The reports, and the arrays that are made of them.
+    let each = 2 * InterfaceReport::BYTES + ARRAYS;
+    check_memory(&format!("solving {count} interfaces"), count as u64 * each as u64)?;
     let vector = |array: &ArrayView2<'_, f64>, index: usize| {
         DVec3::new(array[[index, 0]], array[[index, 1]], array[[index, 2]])
     };

@@ -7,6 +7,7 @@ mod images;
 mod interfaces;
 mod materials;
 mod measuring;
+mod memory;
 mod pictures;
 mod rays;
 mod scenes;
@@ -25,6 +26,8 @@ mod _cloakroom {
     use super::materials::{export_grid, export_table};
     #[pymodule_export]
     use super::measuring::{flux, quality, sweep, verify};
+    #[pymodule_export]
+    use super::memory::check_memory;
     #[pymodule_export]
     use super::pictures::{merge, png_bytes, read, render, save, srgb};
     #[pymodule_export]

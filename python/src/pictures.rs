@@ -1,6 +1,7 @@
 //! Pictures: rendered into numpy arrays, and from them into files.
 
 use crate::errors::{Failure, unreadable, value_error};
+use crate::memory::check_copy;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
 use cloakroom::output::{self, Channel, Picture, Samples};
@@ -156,6 +157,7 @@ pub fn picture_of(
     let mut taken = Vec::new();
     for (name, array) in channels {
         let name: String = name.extract()?;
+        check_copy(&format!("channel `{name}`"), &array)?;
         let (shape, samples) = if let Ok(plane) = array.extract::<PyReadonlyArray2<'_, f32>>() {
             (plane.shape().to_vec(), Samples::F32(plane.as_array().iter().copied().collect()))
         } else if let Ok(plane) = array.extract::<PyReadonlyArray2<'_, f64>>() {

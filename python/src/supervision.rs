@@ -10,7 +10,7 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -54,7 +54,7 @@ pub fn supervised<T: Send>(
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&Watch, &Supervision<'_>) -> Result<T, Failure> + Send,
 ) -> Result<T, Failure> {
-    let pool = pool()?;
+    let pool = Pool::take()?;
     let (watch, stop) = (Watch::default(), AtomicBool::new(false));
     let rows_done = |rows| _ = watch.done.fetch_add(rows, Ordering::Relaxed);
     let supervision = Supervision { rows_done: &rows_done, stop: &stop };
@@ -64,7 +64,7 @@ pub fn supervised<T: Send>(
             let worker = scope.spawn(|| {
                 let _finished = finished;
                 // What a panic leaves behind is dropped with it.
-                catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&watch, &supervision))))
+                catch_unwind(AssertUnwindSafe(|| pool.run(|| work(&watch, &supervision))))
             });
             let mut raised = None;
             while news.recv_timeout(BEAT) == Err(RecvTimeoutError::Timeout) {
@@ -98,32 +98,63 @@ fn panicked(panic: &(dyn Any + Send)) -> PyErr {
     PyRuntimeError::new_err(format!("a mistake in cloakroom, not in your input: {text}"))
 }
 
-/// The threads of this process. A process that was forked off another has none of the other's
-/// threads.
-struct Pool {
+/// The threads of this process: each work has a pool of its own, so that it neither waits for that
+/// of another Python thread nor is ended by it. A process that was forked off another has none of
+/// the other's threads.
+struct Pools {
     process: u32,
     threads: usize,
-    pool: Option<Arc<ThreadPool>>,
+    /// Those that no work is using.
+    idle: Vec<ThreadPool>,
 }
 
-static POOL: Mutex<Pool> = Mutex::new(Pool { process: 0, threads: 0, pool: None });
+static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, threads: 0, idle: Vec::new() });
 
-fn pool() -> PyResult<Arc<ThreadPool>> {
-    let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(pool) = &known.pool
-        && known.process == std::process::id()
-    {
-        return Ok(Arc::clone(pool));
+/// Those of this process.
+fn pools() -> MutexGuard<'static, Pools> {
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    if pools.process != std::process::id() {
+        // Threads of the parent process cannot be joined here.
+        std::mem::forget(std::mem::take(&mut pools.idle));
+        pools.process = std::process::id();
     }
-    let pool = ThreadPoolBuilder::new()
-        .num_threads(known.threads)
-        .build()
-        .map(Arc::new)
-        .map_err(|error| PyRuntimeError::new_err(format!("cannot start threads: {error}")))?;
-    // Threads of the parent process cannot be joined here.
-    std::mem::forget(known.pool.replace(Arc::clone(&pool)));
-    known.process = std::process::id();
-    Ok(pool)
+    pools
+}
+
+/// A pool that nobody uses, which goes back when it is dropped.
+struct Pool {
+    pool: Option<ThreadPool>,
+    /// What had been asked for when it was built.
+    threads: usize,
+}
+
+impl Pool {
+    fn take() -> PyResult<Self> {
+        let mut pools = pools();
+        let idle = pools.idle.pop();
+        let built =
+            idle.map_or_else(|| ThreadPoolBuilder::new().num_threads(pools.threads).build(), Ok);
+        let failed = |error| PyRuntimeError::new_err(format!("cannot start threads: {error}"));
+        Ok(Self { pool: Some(built.map_err(failed)?), threads: pools.threads })
+    }
+
+    fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+}
+
+impl Drop for Pool {
+    fn drop(&mut self) {
+        let mut pools = pools();
+        if let Some(pool) = self.pool.take()
+            && self.threads == pools.threads
+        {
+            pools.idle.push(pool);
+        }
+    }
 }
 
 /// Lets work use so many threads from now on; 0 stands for all cores.
@@ -133,18 +164,16 @@ pub fn set_threads(count: i64) -> PyResult<()> {
     let threads = threads.ok_or_else(|| {
         PyValueError::new_err(format!("count is {count}; it must be from 0 to {MOST_THREADS}"))
     })?;
-    let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
-    known.threads = threads;
-    if known.process == std::process::id() {
-        known.pool = None;
-    }
+    let mut pools = pools();
+    pools.threads = threads;
+    pools.idle.clear();
     Ok(())
 }
 
 /// How many threads work uses.
 #[pyfunction]
 pub fn threads() -> PyResult<usize> {
-    Ok(pool()?.current_num_threads())
+    Ok(Pool::take()?.run(rayon::current_num_threads))
 }
 
 /// Panics, for the test that a panic does not take the interpreter down.

@@ -20,10 +20,17 @@ const MOST_ENTRIES: usize = 1_000_000;
 ///
 /// `TypeError` if it is nothing that a key takes, `ValueError` if it is too large.
 pub fn value_of(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Value> {
-    convert(name, object, 0)
+    convert(name, object, 0, &mut MOST_ENTRIES.clone())
 }
 
-fn convert(name: &str, object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Value> {
+/// The value of an object within others, and how many entries of lists there may still be: a list
+/// may hold another many times.
+fn convert(
+    name: &str,
+    object: &Bound<'_, PyAny>,
+    depth: usize,
+    left: &mut usize,
+) -> PyResult<Value> {
     if depth > DEEPEST {
         return Err(PyTypeError::new_err(format!("{name} holds lists in lists without end")));
     }
@@ -52,16 +59,16 @@ fn convert(name: &str, object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Valu
             let key: String = key.extract().map_err(|_| {
                 PyTypeError::new_err(format!("{name} has a key that is not a text: {key}"))
             })?;
-            let value = convert(&key, &value, depth + 1)?;
+            let value = convert(&key, &value, depth + 1, left)?;
             Ok((key, value))
         };
         return table.iter().map(entry).collect::<PyResult<_>>().map(Value::Table);
     }
     if object.is_instance_of::<PyList>() || object.is_instance_of::<PyTuple>() {
-        return list(name, object, depth);
+        return list(name, object, depth, left);
     }
     if let Ok(path) = object.call_method0("__fspath__") {
-        return convert(name, &path, depth + 1);
+        return convert(name, &path, depth + 1, left);
     }
     if let Ok(size) = object.getattr("size").and_then(|size| size.extract::<usize>())
         && size > MOST_ENTRIES
@@ -69,7 +76,7 @@ fn convert(name: &str, object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Valu
         return Err(too_many(name, size));
     }
     if let Ok(plain) = object.call_method0("tolist") {
-        return convert(name, &plain, depth + 1);
+        return convert(name, &plain, depth + 1, left);
     }
     Err(PyTypeError::new_err(format!(
         "{name} is a {}; it must be a number, a text, a list or a table",
@@ -77,12 +84,10 @@ fn convert(name: &str, object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Valu
     )))
 }
 
-fn list(name: &str, object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Value> {
+fn list(name: &str, object: &Bound<'_, PyAny>, depth: usize, left: &mut usize) -> PyResult<Value> {
     let length = object.len()?;
-    if length > MOST_ENTRIES {
-        return Err(too_many(name, length));
-    }
-    let items = object.try_iter()?.map(|item| convert(name, &item?, depth + 1));
+    *left = left.checked_sub(length).ok_or_else(|| too_many(name, length))?;
+    let items = object.try_iter()?.map(|item| convert(name, &item?, depth + 1, left));
     items.collect::<PyResult<_>>().map(Value::List)
 }
 

@@ -262,3 +262,32 @@ def test_a_pulse_is_no_faster_than_causality_allows() -> None:
     slab = cloakroom.Body(shape="slab", thickness=2, permittivity=0.25, dispersion="none")
     traced = trace(Scene(devices=slab), [-1, 0, 0], [1, 0, 0], group_delay=True)
     np.testing.assert_allclose(traced.group_path, traced.optical_path)
+
+
+def test_broadcast_arrays_take_no_memory_they_do_not_get() -> None:
+    scene, many = Scene(devices=cloakroom.SquareCloak()), 10**11
+    ray = np.array([1.0, 0.0, 0.0])
+    start = np.broadcast_to([-100.0, 3.0, 0.0], (many, 3))
+    with pytest.raises(MemoryError, match="only .* MB are free"):
+        trace(scene, start, ray)
+    with pytest.raises(MemoryError, match="origins needs"):
+        trace(scene, np.broadcast_to([-100, 3, 0], (many, 3)), ray)
+    along = np.broadcast_to([0.0, 0.5, 0.0], (many, 3))
+    for permittivity in (1.0, np.broadcast_to(1.0, many), np.broadcast_to(np.eye(3), (many, 3, 3))):
+        with pytest.raises(MemoryError):
+            interface(Medium(permittivity, 1.0), Medium(2.0, 1.0), ray, along)
+    gray = np.broadcast_to(np.uint8(7), (10**6, 10**6, 3))
+    for image in (gray, np.broadcast_to(0.5, gray.shape)):
+        with pytest.raises((MemoryError, ValueError)):
+            Scene(photograph=image)
+        with pytest.raises((MemoryError, ValueError)):
+            cloakroom.quality(image, image)
+    with pytest.raises(ValueError, match="values"):
+        cloakroom.sweep(scene, {"device.0.rotation": np.broadcast_to(5.0, many)})
+    nested: list[object] = [1.0] * 1000
+    for _ in range(5):
+        nested = [nested] * 1000
+    with pytest.raises((TypeError, ValueError)):
+        scene.replace({"camera.position": nested})
+    with pytest.raises((MemoryError, ValueError)):
+        cloakroom.Graded(index=np.broadcast_to(1.5, (10**6, 10**6)), width=4, height=4)

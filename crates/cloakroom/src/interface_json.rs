@@ -51,7 +51,7 @@ pub struct InterfaceReport {
 
 impl InterfaceReport {
     /// Bytes that one takes, with the lists that it owns.
-    const BYTES: usize = size_of::<Self>() + 2 * size_of::<ModeReport>() + 4 * (16 + 16 + 32);
+    pub const BYTES: usize = size_of::<Self>() + 2 * size_of::<ModeReport>() + 4 * (16 + 16 + 32);
 }
 
 /// Two rows of complex numbers, each as [re, im].

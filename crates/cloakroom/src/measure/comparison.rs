@@ -101,6 +101,8 @@ pub fn compare(a: &View, b: &View, region: Option<&PixelMask>) -> Result<Compari
     if let Some(second) = others.into_iter().flatten().find(|other| *other != size) {
         return Err(MeasureError::SizesDiffer { first: size, second });
     }
+    // Nothing else takes as much.
+    correlation::check_memory(a)?;
     let differences = flip(a, b, DEFAULT_PIXELS_PER_DEGREE);
     let over = |region: &PixelMask| figures(a, b, region, &differences);
     Ok(Comparison {

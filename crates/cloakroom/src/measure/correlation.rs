@@ -79,6 +79,15 @@ pub fn best_shift(
     Ok([0, 1, 2].map(best))
 }
 
+/// Refuses views for whose [`best_shift`] there is not enough memory.
+///
+/// # Errors
+///
+/// [`MeasureError::TooLarge`].
+pub(super) fn check_memory(view: &View) -> Result<(), MeasureError> {
+    Transform::field(view).map(drop)
+}
+
 /// Fourier transforms of planes laid into a field of zeros so large that no shift wraps around.
 /// Spectra are kept column by column.
 struct Transform {
@@ -94,14 +103,18 @@ struct Transform {
 impl Transform {
     fn new(view: &View) -> Result<Self, MeasureError> {
         let (width, height) = (view.width, view.height);
-        let field = [width, height].map(|side| smooth(2 * side));
-        // Two masks, four spectra and three correlations of a channel, and a copy.
-        let needed = 10 * 16 * field[0] as u64 * field[1] as u64;
-        let too_large = |shortage| MeasureError::TooLarge { width, height, shortage };
-        crate::memory::check(needed, u64::MAX).map_err(too_large)?;
+        let field = Self::field(view)?;
         let plan = |side| [FftDirection::Forward, FftDirection::Inverse].map(|way| fft(side, way));
         let (rows, columns) = (plan(field[0]), plan(field[1]));
         Ok(Self { width, height, field, rows, columns })
+    }
+
+    /// The size of the field for a view.
+    fn field(view: &View) -> Result<[usize; 2], MeasureError> {
+        let field = [view.width, view.height].map(|side| smooth(2 * side));
+        // Two masks, four spectra and three correlations of a channel, and a copy.
+        view.check_room(10 * 16 * field[0] as u64 * field[1] as u64)?;
+        Ok(field)
     }
 
     /// The spectrum of a plane.

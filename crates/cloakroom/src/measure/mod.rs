@@ -80,9 +80,7 @@ pub enum MeasureError {
         height: usize,
     },
     /// There is not enough memory.
-    #[error(
-        "comparing pictures of {width} x {height} pixels over all shifts {shortage}; compare smaller ones"
-    )]
+    #[error("measuring pictures of {width} x {height} pixels {shortage}; take smaller ones")]
     TooLarge {
         /// Width of the pictures.
         width: usize,

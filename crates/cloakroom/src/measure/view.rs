@@ -1,8 +1,11 @@
 //! A picture to be measured.
 
 use super::MeasureError;
+use crate::memory;
 use crate::output::{Format, Picture, ReadError, read_channels};
 use crate::photograph::{ImageSource, LinearImage, Texels, decode_table, load};
+use exr::meta::MetaData;
+use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -74,6 +77,14 @@ impl View {
         }
     }
 
+    /// Bytes of all planes that a pixel may have.
+    const BYTES_PER_PIXEL: u64 = 8 * CHANNELS.len() as u64;
+
+    /// Refuses work on pictures of its size that takes more memory than there is.
+    pub(super) fn check_room(&self, needed: u64) -> Result<(), MeasureError> {
+        check_room([self.width, self.height], needed)
+    }
+
     /// How many pixels it has.
     #[must_use]
     pub fn pixels(&self) -> usize {
@@ -91,6 +102,7 @@ impl View {
     /// If it has no pixels, or one that is not finite.
     pub fn of_linear(image: &LinearImage) -> Result<Self, MeasureError> {
         let LinearImage { width, height, texels } = image;
+        check_room([*width, *height], Self::BYTES_PER_PIXEL * (width * height) as u64)?;
         let table = decode_table();
         let plane = |color: usize| -> Vec<f64> {
             match texels {
@@ -106,6 +118,8 @@ impl View {
     }
 
     fn of_named(picture: &Picture, name: &str) -> Result<Self, MeasureError> {
+        let size = [picture.width, picture.height];
+        check_room(size, Self::BYTES_PER_PIXEL * (picture.width * picture.height) as u64)?;
         let plane = |channel: &str| {
             let samples = &picture.channel(channel)?.samples;
             Some((0..samples.len()).map(|i| samples.get(i)).collect::<Vec<f64>>())
@@ -117,7 +131,7 @@ impl View {
             })
         };
         let light = [color("R")?, color("G")?, color("B")?];
-        Ok(Self::named(name, [picture.width, picture.height], light)?.with_flight(plane))
+        Ok(Self::named(name, size, light)?.with_flight(plane))
     }
 
     /// A view of light alone, if that is finite and there is any.
@@ -157,15 +171,34 @@ impl View {
     }
 }
 
+/// Refuses work on pictures that takes more memory than there is.
+fn check_room([width, height]: [usize; 2], needed: u64) -> Result<(), MeasureError> {
+    memory::check(needed, u64::MAX).map_err(|shortage| MeasureError::TooLarge {
+        width,
+        height,
+        shortage,
+    })
+}
+
 /// The channels of an EXR file that has been found sound.
 fn read_exr(path: &Path) -> Result<Vec<(String, Vec<f64>)>, String> {
-    let read = || {
+    let read = || -> Result<_, Box<dyn Error>> {
+        for header in &MetaData::read_from_file(path, false)?.headers {
+            let bytes = header.channels.bytes_per_pixel as u64;
+            memory::check(
+                (bytes + View::BYTES_PER_PIXEL) * header.layer_size.area() as u64,
+                u64::MAX,
+            )?;
+        }
         let image = exr::prelude::read_first_flat_layer_from_file(path)?;
-        let channels = image.layer_data.channel_data.list.iter().map(|channel| {
-            let samples = channel.sample_data.values_as_f32().map(f64::from).collect();
-            (channel.name.to_string(), samples)
+        let channels = &image.layer_data.channel_data.list;
+        let wanted = channels.iter().filter_map(|channel| {
+            let name = channel.name.to_string();
+            CHANNELS.contains(&&*name).then_some((name, &channel.sample_data))
         });
-        Ok::<_, exr::error::Error>(channels.collect())
+        Ok(wanted
+            .map(|(name, data)| (name, data.values_as_f32().map(f64::from).collect()))
+            .collect())
     };
     // A panic inside the decoder (a bug set off by a damaged file) becomes an error.
     catch_unwind(AssertUnwindSafe(read))

@@ -131,8 +131,8 @@ impl Npy {
         Ok(metadata)
     }
 
-    /// Height and width of an array of a picture, and its numbers row by row; `None` if it is none.
-    fn samples(&self) -> Result<Option<([usize; 2], Samples)>, Box<dyn Error>> {
+    /// The plane of a picture in it; `None` if it is none.
+    fn samples(&self) -> Result<Option<Plane>, Box<dyn Error>> {
         if let Ok(array) = self.array::<f32, Ix2>() {
             let size = [array.nrows(), array.ncols()];
             return Ok(Some((size, Samples::F32(array.iter().copied().collect()))));
@@ -150,6 +150,9 @@ impl Npy {
         Ok(Some((size, Samples::F64(array.iter().copied().collect()))))
     }
 }
+
+/// Height and width of a picture, and its numbers row by row.
+type Plane = ([usize; 2], Samples);
 
 /// Reads a PNG of 8-bit colors, as this program writes it, with its text metadata.
 ///

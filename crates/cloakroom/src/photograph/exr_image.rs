@@ -200,8 +200,8 @@ mod tests {
                 AnyChannel::new(*name, FlatSamples::F32(vec![number as f32; size.0 * size.1]))
             };
             let channels = channels.iter().enumerate().map(channel).collect();
-            let mut attributes = LayerAttributes::default();
-            attributes.layer_name = name.map(Text::from);
+            let layer_name = name.map(Text::from);
+            let attributes = LayerAttributes { layer_name, ..LayerAttributes::default() };
             Layer::new(size, attributes, Encoding::default(), AnyChannels::sort(channels))
         };
         let layers: Layers<_> = layers.iter().map(layer).collect();
