@@ -302,6 +302,35 @@ def test_ctrl_c_stops_a_render(tmp_path: Path) -> None:
     assert out.splitlines()[-1] == "stopped (3, 4)" and process.returncode == 0
 
 
+INTERRUPTED_BESIDE_ANOTHER = """
+import threading, time, cloakroom
+scene = cloakroom.Scene(devices=cloakroom.DoubleGaussianCloak(), camera={"resolution": [2000, 2000], "samples": 50})
+begun = threading.Barrier(2)
+left = []
+def other():
+    told = iter([begun.wait])
+    left.append(scene.render(progress=lambda done, total: next(told, lambda: None)()))
+thread = threading.Thread(target=other, daemon=True)
+thread.start()
+begun.wait()
+try:
+    scene.render(progress=lambda done, total: print("on", flush=True))
+except KeyboardInterrupt:
+    print("stopped", len(left), thread.is_alive(), flush=True)
+    import os; os._exit(0)
+"""
+
+
+def test_ctrl_c_stops_the_render_that_waits_and_no_other(tmp_path: Path) -> None:
+    # The other one has every processor busy; the one that is interrupted ends all the same, and alone.
+    command = [sys.executable, "-c", INTERRUPTED_BESIDE_ANOTHER]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=tmp_path)
+    assert process.stdout is not None and process.stdout.readline() == "on\n"
+    process.send_signal(signal.SIGINT)
+    out, _ = process.communicate(timeout=60)
+    assert out.splitlines()[-1] == "stopped 0 True" and process.returncode == 0
+
+
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 def test_a_forked_process_has_threads_of_its_own(tmp_path: Path) -> None:
     code = (

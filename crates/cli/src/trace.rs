@@ -18,6 +18,13 @@ const LONGEST: u64 = 1 << 30;
 
 /// Traces the rays of a file through a scene.
 pub fn run(arguments: &TraceArguments) -> Result<()> {
+    if [&arguments.scene.scene, &arguments.rays].iter().all(|path| path.as_path() == Path::new("-"))
+    {
+        return Err(Failure::Usage(
+            "the scene and --rays cannot both be standard input; give one of them as a file"
+                .to_owned(),
+        ));
+    }
     scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene, &[])?;
     let assembly = scene::assembly(&loaded)?;

@@ -21,9 +21,11 @@ pub fn run(arguments: &ViewArguments) -> Result<()> {
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let settings = Settings { scene, name, folder: folder.to_owned(), port: arguments.port };
-    let _busy = interruption::busy();
+    // While the server is being set up there is nothing to end in good order.
+    let mut busy = None;
     let mut told = Ok(());
     let ready = |address: &str| {
+        busy = Some(interruption::busy());
         told = print(&format!("{address}\n"));
         say("Ctrl-C ends it");
         if !arguments.no_open && open::that_detached(address).is_err() {
@@ -31,6 +33,7 @@ pub fn run(arguments: &ViewArguments) -> Result<()> {
         }
     };
     serve(&settings, ready, &STOP)?;
+    drop(busy);
     told?;
     Err(Failure::Interrupted)
 }

@@ -230,6 +230,10 @@ fn wrong_usage_is_another_status() {
         (&["figures", "--size", "0x4"], "WIDTHxHEIGHT"),
         (&["flux", "scene.toml", "--sun", "91,0"], "LATITUDE,DECLINATION"),
         (&["flux", "scene.toml", "--angles", "0..1:0.0001"], "at most 10000 angles"),
+        (&["flux", "scene.toml", "--tilt", "nan"], "less than 90"),
+        (&["flux", "scene.toml", "--angles", "nan"], "FROM..TO:STEP"),
+        (&["flux", "scene.toml", "--sun", "nan,0"], "LATITUDE,DECLINATION"),
+        (&["trace", "-", "--rays", "-"], "standard input"),
         (&["render", "scene.toml", "-o", "out.png", "--threads", "0"], "--threads"),
     ] {
         let output = desk.cloakroom(arguments).output().unwrap();

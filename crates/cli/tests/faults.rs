@@ -147,6 +147,11 @@ fn disks_that_run_full() {
         &["figures", "--only", "6c", "--size", "200x150", "--samples", "1", "--out", "out"][..],
         &["animate", "scene.toml", "--sweep", "device.0.rotation=0,1", "-o", "out.gif"],
         &["export", "scene.toml", "-o", "out.vti"],
+        &["export", "scene.toml", "-o", "out.npz"],
+        &["render", "scene.toml", "--set", "camera.resolution=[200, 150]", "-o", "out.npz"],
+        &["render", "scene.toml", "--set", "camera.resolution=[200, 150]", "-o", "out.exr"],
+        &["flux", "scene.toml", "--rays", "16", "--angles", "0..40:1", "-o", "out.npz"],
+        &["quality", "scene.toml", "--sweep", "device.0.rotation=0..20:1", "-o", "out.npz"],
     ] {
         let desk = desk();
         one_message(&limited(desk.path(), full, arguments), &["cannot write"]);

@@ -1,6 +1,6 @@
 //! Arguments of the commands that measure, draw and export.
 
-use super::values::{angles, grid, point, rectangle, size, sun, view};
+use super::values::{angles, grid, point, rectangle, size, sun, tilt, view};
 use super::{SceneArguments, ThreadsArguments};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -30,6 +30,7 @@ pub struct FluxArguments {
         value_name = "DEGREES",
         allow_hyphen_values = true,
         default_value_t = 0.0,
+        value_parser = tilt,
         conflicts_with = "sun"
     )]
     pub tilt: f64,

@@ -20,6 +20,14 @@ pub(super) fn sun(text: &str) -> Result<[f64; 2], &'static str> {
         .ok_or("write LATITUDE,DECLINATION, each from -90 to 90 degrees, as in 49,23.44")
 }
 
+/// Reads an angle of incidence in degrees.
+pub(super) fn tilt(text: &str) -> Result<f64, &'static str> {
+    numbers(text)
+        .map(|[angle]: [f64; 1]| angle)
+        .filter(|angle| angle.abs() < 90.0)
+        .ok_or("write degrees, more than -90 and less than 90, as in 30")
+}
+
 /// Reads angles such as -60..60:5, or a single one: first, last and step.
 pub(super) fn angles(text: &str) -> Result<[f64; 3], &'static str> {
     let parts = text.split_once("..").and_then(|(from, rest)| {

@@ -116,6 +116,12 @@ pub fn flux(
     if scene.devices.is_empty() {
         return Err(FluxError::NoDevice);
     }
+    for direction in directions {
+        let degrees = direction.incidence(&scene.receiver);
+        if degrees.is_nan() || degrees >= 90.0 {
+            return Err(FluxError::FromBehind(degrees));
+        }
+    }
     let cloaked = assembly(scene)?;
     let launcher = Launcher::new(scene, &cloaked, sampling)?;
     let bare = measure::bare(scene).map_or_else(|| Ok(cloaked.clone()), |bare| assembly(&bare))?;
@@ -124,10 +130,6 @@ pub fn flux(
     begun((directions.len() * STANDS.len()) as u64);
     let mut incidences = Vec::new();
     for direction in directions {
-        let degrees = direction.incidence(&scene.receiver);
-        if degrees >= 90.0 {
-            return Err(FluxError::FromBehind(degrees));
-        }
         let mut tallies = Vec::new();
         for assembly in &assemblies {
             tallies.push(tally(scene, assembly, &launcher, *direction, sampling, supervision)?);
@@ -135,7 +137,12 @@ pub fn flux(
         }
         let field = launcher.field(*direction);
         let rays = (field.count(), field.share);
-        incidences.push(Incidence::new(*direction, degrees, &tallies, rays));
+        incidences.push(Incidence::new(
+            *direction,
+            direction.incidence(&scene.receiver),
+            &tallies,
+            rays,
+        ));
     }
     Ok(FluxReport {
         cells: launcher.cells,

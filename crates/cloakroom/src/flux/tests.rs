@@ -175,6 +175,7 @@ fn what_cannot_be_measured_is_said() {
     refused(&format!("[receiver]\nposition = [5, 0, 0]\n{SQUARE}"), &[0.0], "reaches");
     refused(&format!("{RECEIVER}{SQUARE}"), &[], "no direction");
     refused(&format!("{RECEIVER}{SQUARE}"), &[120.0], "front");
+    refused(&format!("{RECEIVER}{SQUARE}"), &[0.0, f64::NAN], "front");
     refused(RECEIVER, &[0.0], "no device");
     refused(&format!("[receiver]\nnormal = [-1, 0, 1]\n{SQUARE}"), &[0.0], "endless along z");
     let none = Sampling { rays: 0, ..FEW };

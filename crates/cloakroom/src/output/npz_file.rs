@@ -28,45 +28,59 @@ impl Npz<'_> {
     }
 }
 
-/// Takes all that comes after an error as if it were written: an archive that is given up is ended
-/// all the same, and would tell on standard error that it cannot be.
+/// Takes all that comes after an error as if it were written, and where: an archive that is given
+/// up is ended all the same, and would tell on standard error that it cannot be.
 struct UntilError<'o> {
     out: &'o mut dyn WriteSeek,
     has_failed: bool,
+    position: u64,
+    length: u64,
 }
 
-impl UntilError<'_> {
-    fn first<T>(&mut self, did: io::Result<T>) -> io::Result<T> {
-        self.has_failed |= did.is_err();
+impl<'o> UntilError<'o> {
+    fn new(out: &'o mut dyn WriteSeek) -> Self {
+        Self { out, has_failed: false, position: 0, length: 0 }
+    }
+
+    /// Does it if nothing has failed yet; `otherwise` stands for what would have come of it.
+    fn unless_failed<T>(
+        &mut self,
+        otherwise: T,
+        act: impl FnOnce(&mut dyn WriteSeek) -> io::Result<T>,
+    ) -> io::Result<T> {
+        if self.has_failed {
+            return Ok(otherwise);
+        }
+        let did = act(self.out);
+        self.has_failed = did.is_err();
         did
     }
 }
 
 impl Write for UntilError<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.has_failed {
-            return Ok(bytes.len());
-        }
-        let written = self.out.write(bytes);
-        self.first(written)
+        let written = self.unless_failed(bytes.len(), |out| out.write(bytes))?;
+        self.position += written as u64;
+        self.length = self.length.max(self.position);
+        Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        if self.has_failed {
-            return Ok(());
-        }
-        let flushed = self.out.flush();
-        self.first(flushed)
+        self.unless_failed((), |out| out.flush())
     }
 }
 
 impl Seek for UntilError<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        if self.has_failed {
-            return Ok(0);
-        }
-        let sought = self.out.seek(to);
-        self.first(sought)
+        let from = |start: u64, by: i64| start.checked_add_signed(by);
+        let expected = match to {
+            SeekFrom::Start(position) => Some(position),
+            SeekFrom::End(by) => from(self.length, by),
+            SeekFrom::Current(by) => from(self.position, by),
+        };
+        let expected = expected.ok_or(io::ErrorKind::InvalidInput)?;
+        self.position = self.unless_failed(expected, |out| out.seek(to))?;
+        Ok(self.position)
     }
 }
 
@@ -80,17 +94,21 @@ pub(crate) fn write_npz(
     metadata: &[(String, String)],
     add: impl FnOnce(&mut Npz<'_>) -> io::Result<()>,
 ) -> Result<(), OutputError> {
-    write_whole(path, |out| {
-        let metadata = metadata.iter().map(|(key, text)| (key.clone(), text.clone().into()));
-        let mut npz = Npz {
-            writer: NpzWriter::new(UntilError { out, has_failed: false }),
-            metadata: metadata.collect(),
-        };
-        add(&mut npz)?;
-        let bytes = serde_json::to_vec(&npz.metadata)?;
-        npz.writer.add_array("metadata", &ArrayView1::from(&bytes)).map_err(io::Error::other)?;
-        npz.writer.finish().map(drop).map_err(io::Error::other)
-    })
+    write_whole(path, |out| write_archive(out, metadata, add))
+}
+
+fn write_archive(
+    out: &mut dyn WriteSeek,
+    metadata: &[(String, String)],
+    add: impl FnOnce(&mut Npz<'_>) -> io::Result<()>,
+) -> io::Result<()> {
+    let metadata = metadata.iter().map(|(key, text)| (key.clone(), text.clone().into()));
+    let mut npz =
+        Npz { writer: NpzWriter::new(UntilError::new(out)), metadata: metadata.collect() };
+    add(&mut npz)?;
+    let bytes = serde_json::to_vec(&npz.metadata)?;
+    npz.writer.add_array("metadata", &ArrayView1::from(&bytes)).map_err(io::Error::other)?;
+    npz.writer.finish().map(drop).map_err(io::Error::other)
 }
 
 /// Writes every channel as an array (height, width) under its name, and the metadata.
@@ -117,6 +135,50 @@ mod tests {
     use super::*;
     use ndarray::{Array1, Array2, Array3};
     use ndarray_npy::NpzReader;
+
+    /// A file on a disk of so many bytes.
+    struct Small(io::Cursor<Vec<u8>>, u64);
+
+    impl Write for Small {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            let room = usize::try_from(self.1.saturating_sub(self.0.position())).expect("small");
+            if room == 0 {
+                return Err(io::ErrorKind::StorageFull.into());
+            }
+            self.0.write(&bytes[..room.min(bytes.len())])
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    impl Seek for Small {
+        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+            self.0.seek(to)
+        }
+    }
+
+    #[test]
+    fn a_disk_full_at_any_byte_is_an_error() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.npz");
+        let add = |npz: &mut Npz<'_>| {
+            npz.add("one", 40, &[1.0; 40])?;
+            npz.add("other", (3, 2), &[0_u8; 6])
+        };
+        write_npz(&path, &[], add).expect("written");
+        let size = std::fs::metadata(&path).expect("a file").len();
+        for room in 0..=size {
+            let mut small = Small(io::Cursor::default(), room);
+            let written = write_archive(&mut small, &[], add);
+            assert_eq!(written.is_ok(), room == size, "{room} of {size}");
+            if let Err(error) = written {
+                let told = OutputError::new(&path, &error).to_string();
+                assert!(told.contains("no space left"), "{told}");
+            }
+        }
+    }
 
     #[test]
     fn arrays_can_be_read_back() {
