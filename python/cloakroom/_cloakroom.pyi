@@ -8,6 +8,7 @@ __all__ = [
     "__version__",
     "Image",
     "Scene",
+    "check_memory",
     "export_grid",
     "export_table",
     "fail_on_purpose",
