@@ -113,3 +113,20 @@ fn evanescent_waves_in_media_that_hardly_absorb_are_no_rays() {
         assert!(leaf.power.iter().all(|power| *power < 1.0) && along < 1e-6, "{leaf:?}");
     }
 }
+
+/// A graded medium can keep light for longer than it can be followed: that has no end, and is not
+/// lost.
+#[test]
+fn light_that_a_graded_medium_keeps_has_no_end() {
+    // With n² = 3 - 2.5 r², r in units of 20 cm, light goes round at r² = 0.6.
+    let index = |i: u32, j: u32| {
+        let [x, y] = [i, j].map(|k| f64::from(k) / 8.0 - 1.0);
+        (3.0 - 2.5 * (x * x + y * y)).max(0.1).sqrt()
+    };
+    let rows: Vec<String> = (0..17)
+        .map(|i| format!("{:?}", (0..17).map(|j| index(i, j)).collect::<Vec<_>>()))
+        .collect();
+    let keys = format!("kind = \"graded\"\nshape = \"circle\"\nindex = [{}]", rows.join(", "));
+    let stats = sound(&keys, DVec3::new(20.0 * 0.6f64.sqrt(), 0.0, 0.0), DVec3::Y, 1e-6);
+    assert_eq!((stats.endless, stats.lost), (1, 0));
+}

@@ -56,7 +56,8 @@ pub use material_at::MaterialAt;
 pub use optics::geometry::REACH;
 pub use prisms::PrismOfMedium;
 pub use region::{
-    ConformalRegion, Face, HomogeneousRegion, InnerRay, Passage, RadialRegion, Region, RegionBorder,
+    ConformalRegion, Face, HomogeneousRegion, InnerRay, NoPassage, Passage, RadialRegion, Region,
+    RegionBorder,
 };
 pub use square_cloak::SegmentMaterial;
 pub use structure::{Body, Coating, FarSide, Hull, Structure, SurfaceHit};

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::Plane;
 use optics::medium::{Medium, ModeKind};
 use optics::propagation::{
-    Border, Boundary, ConformalEnd, ConformalFlow, Half, PathEnd, PathPoint, RadialFlow,
+    Border, Boundary, ConformalEnd, ConformalFlow, FlowError, Half, PathEnd, PathPoint, RadialFlow,
     VirtualPoint,
 };
 use optics::wave::ComplexVector;
@@ -145,6 +145,15 @@ pub struct Passage {
     pub coating: Coating,
 }
 
+/// Why a ray does not get to the next surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoPassage {
+    /// It has been lost in rounding at an edge, or an integration failed.
+    Lost,
+    /// A graded medium keeps it for longer than it can be followed.
+    Endless,
+}
+
 impl Region {
     /// What a ray finds that enters the region at a point of its border: the point in the virtual
     /// space of a conformal region, and the medium, see [`Region::medium`]. `None` if a conformal
@@ -243,19 +252,20 @@ impl Region {
     ///
     /// `tolerance` (cm) bounds the error of position and optical path where the way is integrated.
     ///
-    /// `None` if the ray cannot be followed: it is lost in rounding at an edge, or an integration
-    /// failed.
-    #[must_use]
-    pub fn advance(&self, ray: &InnerRay, tolerance: f64) -> Option<Passage> {
-        match self {
+    /// # Errors
+    ///
+    /// [`NoPassage`].
+    pub fn advance(&self, ray: &InnerRay, tolerance: f64) -> Result<Passage, NoPassage> {
+        let passage = match self {
             Self::Homogeneous(region) => region.advance(ray),
             Self::Conformal(region) => {
                 let [passage, ..] = region.advance_four(&[Some(*ray), None, None, None], tolerance);
-                passage
+                return passage.unwrap_or(Err(NoPassage::Lost));
             }
             Self::Radial(region) => region.advance(ray),
             Self::ClosedForm(region) => region.advance(ray),
-        }
+        };
+        passage.ok_or(NoPassage::Lost)
     }
 
     /// As [`Region::advance`], up to four rays at once: see [`Region::takes_four`]. Each gets what
@@ -265,10 +275,10 @@ impl Region {
         &self,
         rays: &[Option<InnerRay>; 4],
         tolerance: f64,
-    ) -> [Option<Passage>; 4] {
+    ) -> [Option<Result<Passage, NoPassage>>; 4] {
         match self {
             Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) => {
-                rays.map(|ray| ray.and_then(|ray| self.advance(&ray, tolerance)))
+                rays.map(|ray| ray.map(|ray| self.advance(&ray, tolerance)))
             }
             Self::Conformal(region) => region.advance_four(rays, tolerance),
         }
@@ -402,12 +412,20 @@ impl ConformalRegion {
         ray.virtual_point.or_else(here)
     }
 
-    fn advance_four(&self, rays: &[Option<InnerRay>; 4], tolerance: f64) -> [Option<Passage>; 4] {
+    fn advance_four(
+        &self,
+        rays: &[Option<InnerRay>; 4],
+        tolerance: f64,
+    ) -> [Option<Result<Passage, NoPassage>>; 4] {
         let starts = rays.map(|ray| Some((self.start(&ray?)?, ray?.wave_vector)));
         let ends = self.flow.advance_four(&starts, tolerance);
         std::array::from_fn(|i| {
-            let end = ends[i].as_ref()?.as_ref().ok()?;
-            Some(self.passage(rays[i].as_ref()?, end))
+            let ray = rays[i].as_ref()?;
+            Some(match ends[i].as_ref() {
+                Some(Ok(end)) => Ok(self.passage(ray, end)),
+                Some(Err(FlowError::StepLimit)) => Err(NoPassage::Endless),
+                Some(Err(_)) | None => Err(NoPassage::Lost),
+            })
         })
     }
 

@@ -32,9 +32,9 @@ impl<'a, const N: usize> FourTracers<'a, N> {
                 (regions[i] == Some(region)).then(|| branches[i].inner_ray())
             });
             let passages = self.tracers[0].advance_four(region, &rays);
-            for (i, passage) in passages.iter().enumerate() {
-                if rays[i].is_some() {
-                    regions[i] = self.tracers[i].resume(&mut branches[i], region, passage.as_ref());
+            for (i, passage) in passages.into_iter().enumerate() {
+                if let Some(passage) = passage {
+                    regions[i] = self.tracers[i].resume(&mut branches[i], region, passage);
                 }
             }
         }

@@ -120,8 +120,8 @@ impl<const N: usize> Outcome<N> {
 /// Rare events, counted so that they do not pass unseen. Their power counts as pruned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TraceStats {
-    /// Branches cut because a tree met more surfaces than can be followed, the weakest first; and
-    /// those that run into an edge and never get there.
+    /// Branches cut because a tree met more surfaces than can be followed, the weakest first; those
+    /// that a graded medium keeps; and those that run into an edge and never get there.
     pub endless: u64,
     /// Branches that could not be followed through a region.
     pub lost: u64,

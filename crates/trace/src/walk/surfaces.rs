@@ -5,7 +5,7 @@ use super::branch::{Branch, Place};
 use super::event::Event;
 use super::{LeafEnd, PathRecorder, PathSegment, Tracer};
 use crate::assembly::{Ahead, DepartedSurface, Placed, slack_at};
-use crate::device::{Coating, FarSide, Passage, Region, Shape, SurfaceHit};
+use crate::device::{Coating, FarSide, NoPassage, Passage, Region, Shape, SurfaceHit};
 use glam::DVec3;
 use optics::interface::{
     Backing, Film, FilmLayer, OutgoingWave, OutgoingWaves, Reflectionless, Side,
@@ -196,14 +196,16 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         &mut self,
         branch: &mut Branch<N>,
         place: (u16, u16),
-        passage: Option<&Passage>,
+        passage: Result<&Passage, &NoPassage>,
     ) -> bool {
         let device = self.assembly.device(place.0);
         let is_body = device.body().is_some();
-        let guest = if is_body { self.guest_ahead(branch, place.0, passage) } else { None };
-        let Some(passage) = guest.as_ref().map(|(_, passage)| passage).or(passage) else {
+        let guest = if is_body { self.guest_ahead(branch, place.0, passage.ok()) } else { None };
+        let passage = match (&guest, passage) {
+            (Some((_, passage)), _) | (None, Ok(passage)) => passage,
             // It is lost in rounding, or runs along an endless body for ever.
-            return self.lose(branch.power);
+            (None, Err(NoPassage::Lost)) => return self.lose(branch.power),
+            (None, Err(NoPassage::Endless)) => return self.cut(branch.power),
         };
         if is_body {
             if !self.moves(branch, (passage.position - branch.position).length()) {
@@ -416,9 +418,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let stands = distance < slack_at(branch.position);
         branch.standstills = if stands { branch.standstills + 1 } else { 0 };
         if branch.standstills > MOST_STANDSTILLS {
-            self.outcome.stats.endless += 1;
-            self.prune(branch.power);
-            return false;
+            return self.cut(branch.power);
         }
         true
     }
@@ -512,8 +512,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         waves: &mut OutgoingWaves<N>,
     ) {
         if branch.wave_vector.length_squared() > SHORTEST_WAVE {
-            self.outcome.stats.endless += 1;
-            self.prune(branch.power);
+            self.cut(branch.power);
             return;
         }
         let wave = branch.incident();

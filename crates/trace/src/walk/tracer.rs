@@ -3,7 +3,7 @@
 use super::branch::{Branch, Place, largest};
 use super::{Coherence, Leaf, Outcome, PathRecorder};
 use crate::assembly::{Assembly, Screen};
-use crate::device::{InnerRay, Passage};
+use crate::device::{InnerRay, NoPassage, Passage};
 use glam::DVec3;
 use optics::interface::OutgoingWaves;
 use optics::wave::ComplexVector;
@@ -152,7 +152,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         while let Some((device, number)) = here {
             let region = self.assembly.device(device).region(number);
             let passage = region.advance(&branch.inner_ray(), self.limits.tolerance);
-            here = self.resume(&mut branch, (device, number), passage.as_ref());
+            here = self.resume(&mut branch, (device, number), passage);
         }
         self.traced()
     }
@@ -185,9 +185,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         &mut self,
         branch: &mut Branch<N>,
         region: (u16, u16),
-        passage: Option<&Passage>,
+        passage: Result<Passage, NoPassage>,
     ) -> Option<(u16, u16)> {
-        if !self.pass(branch, region, passage) {
+        if !self.pass(branch, region, passage.as_ref()) {
             self.take_next(branch)?;
         }
         self.walk(branch)
@@ -199,7 +199,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         &self,
         (device, region): (u16, u16),
         rays: &[Option<InnerRay>; 4],
-    ) -> [Option<Passage>; 4] {
+    ) -> [Option<Result<Passage, NoPassage>>; 4] {
         self.assembly.device(device).region(region).advance_four(rays, self.limits.tolerance)
     }
 
@@ -207,9 +207,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         loop {
             let power = largest(&branch.power);
             let goes_on = if power < self.threshold {
-                self.outcome.stats.endless += 1;
-                self.prune(branch.power);
-                false
+                self.cut(branch.power)
             } else if power > MOST_POWER {
                 self.lose(branch.power)
             } else {
@@ -354,6 +352,13 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// Gives up a branch that cannot be followed: it does not go on.
     pub(super) fn lose(&mut self, power: [f64; N]) -> bool {
         self.outcome.stats.lost += 1;
+        self.prune(power);
+        false
+    }
+
+    /// Cuts a branch that has no end: it does not go on.
+    pub(super) fn cut(&mut self, power: [f64; N]) -> bool {
+        self.outcome.stats.endless += 1;
         self.prune(power);
         false
     }

@@ -116,9 +116,12 @@ pub enum FlowError {
     /// The ray stayed inside for too many steps; it may be trapped.
     #[error("the ray did not leave within {MAX_STEPS} steps")]
     StepLimit,
+    /// No step is short enough, or the border could not be found: lost in rounding at an edge.
+    #[error("the ray cannot be followed")]
+    Stalled,
 }
 
-/// Steps after which a ray is given up; an ordinary one takes about ten, and in an uneven medium
+/// Steps after which a ray counts as trapped; an ordinary one takes about ten, and in an uneven medium
 /// some at every line of its grid.
 const MAX_STEPS: u32 = 20_000;
 

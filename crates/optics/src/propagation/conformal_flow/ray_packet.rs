@@ -209,7 +209,7 @@ impl RayPacket {
                 boundary,
             }),
             RayStatus::Failed(error) => Err(error),
-            _ => Err(FlowError::StepLimit),
+            _ => Err(FlowError::Stalled),
         }
     }
 
@@ -222,7 +222,7 @@ impl RayPacket {
                 match refinement.check(&self.here.at(i), &flow.events, self.controls[i].p_z) {
                     RootStatus::Continue => {}
                     RootStatus::Found(boundary) => ray.status = RayStatus::Arrived(boundary),
-                    RootStatus::Lost => ray.status = RayStatus::Failed(FlowError::StepLimit),
+                    RootStatus::Lost => ray.status = RayStatus::Failed(FlowError::Stalled),
                 }
             }
             RayStatus::Absent | RayStatus::Arrived(_) | RayStatus::Failed(_) => {}
@@ -235,7 +235,11 @@ impl RayPacket {
         ray.stride = length * self.result.factor[i];
         ray.steps += 1;
         let good = error <= 1.0;
-        if ray.steps > MAX_STEPS || !(good || ray.stride >= 1e-9 * flow.slack) {
+        if !(good || ray.stride >= 1e-9 * flow.slack) {
+            ray.status = RayStatus::Failed(FlowError::Stalled);
+            return;
+        }
+        if ray.steps > MAX_STEPS {
             ray.status = RayStatus::Failed(FlowError::StepLimit);
             return;
         }
