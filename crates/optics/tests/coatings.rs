@@ -406,3 +406,26 @@ fn thick_metals_hold_and_films_on_metal_reflect_what_they_do_not_absorb() {
         }
     }
 }
+
+/// Where a layer's waves run along it, forward and backward ones are one.
+#[test]
+fn layers_whose_waves_run_along_them_keep_the_power() {
+    let mut worst: f64 = 0.0;
+    for index in [3.54e-3, 1e-2, 0.1, 0.5, 0.9] {
+        let film = [layer(index, 162.88)];
+        let critical = f64::asin(index);
+        for i in -60_i32..=60 {
+            let off = 10f64.powf(-0.25 * f64::from(i).abs() - 1.0) * f64::from(i).signum();
+            let wave = arriving(1.0, critical * (1.0 + off));
+            let waves = coated(
+                &of_index(Complex64::ONE),
+                &film,
+                Backing::Medium(&of_index(Complex64::ONE)),
+                &wave,
+            );
+            let sums: [f64; 2] = std::array::from_fn(|p| waves.iter().map(|w| w.power[p]).sum());
+            worst = sums.iter().fold(worst, |worst, sum| worst.max((sum - 1.0).abs()));
+        }
+    }
+    assert!(worst < 1e-13, "{worst:e}");
+}

@@ -10,8 +10,12 @@ use optics::wave::transverse_basis;
 /// How far the account of the power may be off, of what is launched.
 pub(crate) const BALANCE: f64 = 1e-9;
 
-/// How far a leaf's direction may be from unit length, and |E|² from its power.
+/// How far a leaf's direction may be from unit length, and |E|² from its power, for each kilometre of
+/// its way or less: the normals of a surface some cm wide are as uncertain as the places on it.
 const SOUND: f64 = 1e-9;
+
+/// A kilometre, cm.
+const KILOMETRE: f64 = 1e5;
 
 /// How much sooner than light in air a pulse may come by rounding, as a share of the way.
 const SOONER: f64 = 1e-6;
@@ -98,9 +102,10 @@ pub fn examine<const N: usize>(
         // What ends on an opaque body counts as a leaf in air, too: there the field is that which
         // arrives.
         let sizes = leaf.electric.iter().zip(leaf.power);
+        let sound = SOUND * (leaf.optical_path.abs() / KILOMETRE).max(1.0);
         let unsound = (leaf.direction.length() - 1.0).abs() > SOUND
             || leaf.power.iter().any(|power| *power < 0.0)
-            || sizes.into_iter().any(|(field, power)| (field.norm_squared() - power).abs() > SOUND);
+            || sizes.into_iter().any(|(field, power)| (field.norm_squared() - power).abs() > sound);
         if unsound {
             return Err(Fault::Unsound);
         }

@@ -161,7 +161,12 @@ fn parcel(number: u64) -> Value {
         let loaded = scene_file::parse(&scene, "soak", Path::new("/nowhere"), &[]).ok()?;
         let assembly = render::assembly(&loaded.scene).ok()?;
         let tolerance = loaded.scene.trace.tolerance;
-        Some(trace(&assembly, Limits { min_power: LEAST_POWER, tolerance }, &mut draws))
+        let limits = Limits { min_power: LEAST_POWER, tolerance };
+        let (line, fault) = trace(&assembly, limits, &mut draws);
+        if let Some(fault) = fault {
+            eprintln!("parcel {number}: {fault}\n{scene}");
+        }
+        Some(line)
     }));
     let mut line = match ran {
         Ok(None) => json!({ "refused": 1 }),
@@ -185,15 +190,16 @@ fn try_out(trial: Trial, draws: &mut Draws<'_>) -> Value {
     json!({ "devices": scenes, "rays": rays, "seconds": start.elapsed().as_secs_f64() })
 }
 
-fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>) -> Value {
+/// Traces rays: what is counted, and the first fault.
+fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>) -> (Value, Option<String>) {
     let start = Instant::now();
     let tracer = Tracer::new(assembly, limits);
     let timed = draws.below(8) == 0;
     let mut tracer = if timed { robustness::timed(tracer, assembly) } else { tracer };
     let reach = 10f64.powf(draws.between(0.7, 1.7));
     let [mut rays, mut leaves, mut lost, mut endless] = [0u64; 4];
-    let [mut unbalanced, mut not_finite, mut unsound, mut early, mut with_losses] = [0u64; 5];
-    let (mut worst, mut slowest) = (0.0f64, Duration::ZERO);
+    let [mut unbalanced, mut not_finite, mut unsound, mut early] = [0u64; 4];
+    let (mut worst, mut slowest, mut first) = (0.0f64, Duration::ZERO, None);
     let mut last = start;
     // A device may be so large that rays begin in it: others are taken, but not for ever.
     let launches = (0..2 * RAYS).map(|_| robustness::launch(draws, reach));
@@ -215,22 +221,21 @@ fn trace(assembly: &Assembly, limits: Limits, draws: &mut Draws<'_>) -> Value {
                     Fault::NotFinite => not_finite += 1,
                     Fault::Unsound => unsound += 1,
                     Fault::Early(_) => early += 1,
-                    Fault::Lost(_) => with_losses += 1,
+                    Fault::Lost(_) => {}
                 }
-                if unbalanced + not_finite + unsound + early + with_losses == 1 {
-                    eprintln!("{fault:?}: {launch:?}");
-                }
+                first.get_or_insert_with(|| format!("{fault:?}: {launch:?}"));
             }
         }
         let now = Instant::now();
         slowest = slowest.max(now - last);
         last = now;
     }
-    json!({
+    let line = json!({
         "devices": 1, "rays": rays, "leaves": leaves, "unbalanced": unbalanced, "not_finite": not_finite,
         "unsound": unsound, "early": early, "lost": lost, "endless": endless, "worst_balance": worst,
         "slowest_ms": slowest.as_secs_f64() * 1e3, "seconds": start.elapsed().as_secs_f64(),
-    })
+    });
+    (line, first)
 }
 
 /// The parcel that is computed, and how many rays and parcels have been begun.

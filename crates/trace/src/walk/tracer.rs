@@ -317,7 +317,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 self.outcome.absorbed[i] += rest[i];
                 continue;
             }
-            if rest[i].abs() > LEAK * power && !self.has_cancelled(rest[i]) {
+            if rest[i].abs() > LEAK * power && !self.is_rounding(rest[i]) {
                 self.outcome.pruned[i] += rest[i];
                 lost = true;
             }
@@ -325,11 +325,12 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.outcome.stats.lost += u64::from(lost);
     }
 
-    /// Whether a rest of power is that of fields that have cancelled where branches were joined:
+    /// Whether a rest of power is that of a polarization that has died, as that may which does not
+    /// see what keeps the other caught, or of fields that have cancelled where branches were joined:
     /// they have few digits.
     #[cold]
-    fn has_cancelled(&self, rest: f64) -> bool {
-        self.joining.is_some() && rest.abs() <= LEAK * CANCELLED
+    fn is_rounding(&self, rest: f64) -> bool {
+        rest.abs() <= NO_POWER || self.joining.is_some() && rest.abs() <= LEAK * CANCELLED
     }
 
     /// Whether a branch of that power is followed; else it is pruned, and need not be made.
