@@ -29,12 +29,18 @@ impl Medium {
                 Berreman::modes_of(frame, &permittivity, &permeability, k)
             }
         };
-        modes.map(|pair| LocalModes::Complex(pair.map(normalized)))
+        let [forward, backward] = modes;
+        [
+            LocalModes::Complex(forward.map(|mode| normalized(mode, 1.0))),
+            LocalModes::Complex(backward.map(|mode| normalized(mode, -1.0))),
+        ]
     }
 }
 
-fn normalized(mode: ComplexMode) -> ComplexMode {
-    let (flux, norm) = (mode.flux().abs(), mode.norm_squared());
+/// A mode of normal flux 1. Under a wave that decays along the surface one that decays away from it
+/// may carry power towards it: that counts as evanescent.
+fn normalized(mode: ComplexMode, heading: f64) -> ComplexMode {
+    let (flux, norm) = (mode.flux() * heading, mode.norm_squared());
     let propagating = flux > NO_FLUX * norm;
     let size = if propagating { flux } else { norm };
     LocalMode { propagating, ..mode.scaled(size.sqrt().recip()) }
