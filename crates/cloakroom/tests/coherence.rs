@@ -257,6 +257,38 @@ fn middle(scene: &str) -> PulseList {
     pulses(&PreparedScene::new(&loaded.scene).unwrap(), [1, 1]).unwrap()
 }
 
+/// Films of any thickness, at any angle, at the limits of a picture: what a white photograph shows is
+/// what the channels say that it gets, and that is what the transfer matrix has.
+#[test]
+fn what_is_delivered_through_films_is_what_is_seen_through_them() {
+    let mut numbers = Numbers(29);
+    for case in 0..count(60, 1000) {
+        let index = numbers.between(1.2, 3.6);
+        let nm = [10.0, 400.0, 1e6][case % 3] * numbers.between(1.0, 2.0);
+        let loss = if case % 4 == 3 { numbers.between(0.0, 0.5) } else { 0.0 };
+        let rotation = numbers.between(0.0, 60.0);
+        let permittivity = DMat3::IDENTITY * (index * index);
+        let loss = DMat3::IDENTITY * if nm < 1000.0 { loss } else { 0.0 };
+        let film = Layer { permittivity, loss, ..glass(nm * 1e-7) };
+        let scene = format!(
+            "[light]\nbandwidth_nm = 0\n[surroundings]\ncolor = [0, 0, 0]\n{}rotation = {rotation}\n",
+            slabs(&[film])
+        );
+        let list = middle(&scene);
+        let delivered: f64 = list.pulses.iter().map(|pulse| pulse.power).sum();
+        let sum = delivered + list.escaped + list.absorbed + list.pruned;
+        assert!((sum - 1.0).abs() < 1e-9, "{sum} {scene}");
+        for share in [delivered, list.escaped, list.absorbed, list.pruned] {
+            assert!(share > -1e-12, "{list:?} {scene}");
+        }
+        if nm < 1000.0 {
+            let exact = jones(&[film], WAVE_NUMBER, rotation.to_radians().sin()).transmitted;
+            let exact = 0.5 * exact.as_flattened().iter().map(|t| t.norm_sqr()).sum::<f64>();
+            assert!((delivered - exact).abs() < 1e-3, "{delivered} {exact} {scene}");
+        }
+    }
+}
+
 fn polarizer(x: f64, angle: f64) -> String {
     format!("[[device]]\nkind = \"polarizer\"\nposition = [{x}, 0, 0]\nangle = {angle}\n")
 }

@@ -44,8 +44,7 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
     let absorbed = detection.detected(&here.outcome.absorbed);
     if COHERENT {
         interference.find(prepared, detection, here.leaves, here.ray.origin, absorbed);
-        let missing = if absorbed > 0.0 { &mut pixel.absorbed } else { &mut pixel.pruned };
-        *missing -= interference.added;
+        pixel.absorbed -= interference.added;
     }
     pixel.absorbed += absorbed;
     pixel.pruned += detection.detected(&here.outcome.pruned);

@@ -10,10 +10,6 @@ use glam::DVec3;
 /// below 1e-12.
 const FARTHEST: f64 = 7.5;
 
-/// To this the leaves of a ray of which nothing was absorbed add up to it, as fields; else they are
-/// booked as powers.
-const OPEN: f64 = 1e-6;
-
 /// What a leaf sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sight {
@@ -27,8 +23,7 @@ enum Sight {
 pub(super) struct Interference {
     /// The pairs.
     pub pairs: Vec<Pair>,
-    /// The power that the pairs add to that of all leaves: it is missing in what was absorbed, or
-    /// where nothing was in branches that were pruned.
+    /// The power that the pairs add to that of all leaves: it is missing in what was absorbed.
     pub added: f64,
     /// What each leaf's power is multiplied by, as one of those that it interferes with; none
     /// without pairs.
@@ -58,13 +53,54 @@ impl Interference {
         self.lights.clear();
         self.pair_up(prepared, detection, leaves, camera);
         self.share_out(detection, leaves);
-        // Else the ray alone does not tell: it is one of a beam, of which parts come to an edge or
-        // to another place.
-        let closes = self.added.abs() <= OPEN || (absorbed > 0.0 && self.added <= absorbed);
-        if !closes {
-            self.gain.clear();
-            self.added = 0.0;
+        self.close(detection, leaves, absorbed);
+    }
+
+    /// Has the shares of the power add up. What the photograph gets is that which the picture shows of
+    /// it. The rest takes what is left: where nothing was absorbed all of it, whatever the pairs give
+    /// it. They give it something else where parts of the beam come to an edge or to another place,
+    /// which the ray alone does not tell, or by the fields of branches that were pruned.
+    fn close<const N: usize>(
+        &mut self,
+        detection: &Detection<N>,
+        leaves: &[Leaf<N>],
+        absorbed: f64,
+    ) {
+        if self.gain.is_empty() {
+            return;
         }
+        // Of the photograph, and of the rest: the power without pairs, and with them.
+        let mut sums = [[0.0; 2]; 2];
+        for (number, leaf) in leaves.iter().enumerate() {
+            let power = detection.detected(&leaf.power);
+            let [alone, together] = &mut sums[usize::from(!self.sees_photograph(number, leaf))];
+            *alone += power;
+            *together += power * self.gain[number];
+        }
+        let [[alone_seen, seen], [alone_rest, rest]] = sums;
+        let alone = alone_seen + alone_rest;
+        let most = alone + absorbed;
+        let together = if absorbed > 0.0 { (seen + rest).min(most) } else { alone };
+        let rest_share = if alone_rest > 0.0 { (together - seen).max(0.0) } else { 0.0 };
+        let seen_share = together - rest_share;
+        for (number, leaf) in leaves.iter().enumerate() {
+            let [share, with, without] = if self.sees_photograph(number, leaf) {
+                [seen_share, seen, alone_seen]
+            } else {
+                [rest_share, rest, alone_rest]
+            };
+            let gain = &mut self.gain[number];
+            if with > 0.0 {
+                *gain *= share / with;
+            } else if without > 0.0 {
+                *gain = share / without;
+            }
+        }
+        self.added = together - alone;
+    }
+
+    fn sees_photograph<const N: usize>(&self, number: usize, leaf: &Leaf<N>) -> bool {
+        leaf.body().is_none() && self.screens[number].is_some()
     }
 
     fn pair_up<const N: usize>(
@@ -123,7 +159,7 @@ impl Interference {
         self.gain.get(leaf).copied().unwrap_or(1.0)
     }
 
-    /// Works out the gains, and the sum of what is added. Parallel pairs alone count: of the
+    /// Works out the gains. Parallel pairs alone count: of the
     /// fringes of others it is the mean.
     fn share_out<const N: usize>(&mut self, detection: &Detection<N>, leaves: &[Leaf<N>]) {
         self.gain.clear();
@@ -146,7 +182,6 @@ impl Interference {
         for pair in self.pairs.iter().filter(|pair| pair.is_parallel(leaves)) {
             let more = detection.detected(&std::array::from_fn(|i| pair.power(leaves, i)));
             self.gain[first(&self.clusters, pair.leaves[0])] += more;
-            self.added += more;
         }
         for number in (0..leaves.len()).rev() {
             let first = first(&self.clusters, number);

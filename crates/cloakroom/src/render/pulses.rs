@@ -115,8 +115,6 @@ fn list<const N: usize>(
     let mut interference = Interference::default();
     let absorbed = detection.detected(&outcome.absorbed);
     interference.find(prepared, detection, leaves, ray.origin, absorbed);
-    let [from_absorbed, from_pruned] =
-        if absorbed > 0.0 { [interference.added, 0.0] } else { [0.0, interference.added] };
     let (mut arrivals, mut escaped, mut ended) = (Vec::new(), 0.0, 0.0);
     for (number, leaf) in leaves.iter().enumerate() {
         let power = detection.detected(&leaf.power) * interference.gain(number);
@@ -158,8 +156,8 @@ fn list<const N: usize>(
         mean_time_of_flight_ns: number(ChannelKind::TimeOfFlight),
         time_of_flight_spread_ns: number(ChannelKind::TimeOfFlightSpread),
         escaped,
-        absorbed: absorbed - from_absorbed + ended,
-        pruned: detection.detected(&outcome.pruned) - from_pruned,
+        absorbed: absorbed - interference.added + ended,
+        pruned: detection.detected(&outcome.pruned),
     }
 }
 
