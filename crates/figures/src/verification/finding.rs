@@ -216,8 +216,8 @@ pub fn markdown(findings: &[Finding]) -> String {
          reflection is seen, or significant, from {} of the light on. Which rule stands for which word is our choice; the numbers\n\
          let everyone choose another.\n\n\
          The paper gives neither the camera's distance nor its field of view. Ours, 100 cm and a half view of {HALF_VIEW} degrees, are an\n\
-         assumption. Where a row hangs on it, the number for a half view of {WIDE_HALF_VIEW} degrees stands in brackets beside it; the\n\
-         verdict is that of {HALF_VIEW} degrees.\n\n\
+         assumption. Where a bound over the view hangs on it, the number for a half view of {WIDE_HALF_VIEW} degrees stands in brackets beside\n\
+         it; the verdict is that of {HALF_VIEW} degrees. Light in place, means and reflections of pictures are those of our view.\n\n\
          Pictures are of 160 x 120 pixels with one ray each, `min_power` 1e-4; main paths are of every second row and\n\
          column. H and V are horizontal and vertical polarization.\n\n",
         percent(CLOSE, 0),
