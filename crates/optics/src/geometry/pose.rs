@@ -44,7 +44,9 @@ impl Pose {
     #[must_use]
     pub fn with_axis(origin: DVec3, rotation: f64, axis: DVec3) -> Self {
         let upright = Self::new(origin, rotation);
-        let axis = unit(axis).unwrap_or(DVec3::Z);
+        // A part that is nothing beside the others, whose square is not even a number.
+        let exact = |x: f64| if x.abs() < 1e-100 { 0.0 } else { x };
+        let axis = unit(axis).map_or(DVec3::Z, |axis| axis.map(exact));
         let aside = axis.truncate();
         let sin = aside.length();
         if sin == 0.0 && axis.z > 0.0 {

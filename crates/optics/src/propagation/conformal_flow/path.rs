@@ -49,15 +49,41 @@ impl ConformalFlow {
     }
 
     /// Points of a ray from its start to its end, close enough for a smooth drawing.
+    ///
+    /// A ray that grazes a border may meet it by small steps and not by those of
+    /// [`Self::advance_from`]: then the points are of the latter.
     fn waypoints(
         &self,
         start: &VirtualPoint,
         wave_vector: DVec3,
         tolerance: f64,
     ) -> Result<Vec<Point>, FlowError> {
+        let spacing = self.map.scale() / DENSITY;
+        let known = self.advance_from(start, wave_vector, tolerance)?;
+        let is_same = |way: &Vec<Point>| {
+            let last = way.last().map_or(0.0, |end| end.tau);
+            (last * self.index_scale * self.index_scale - known.optical_path).abs() < spacing
+        };
+        let points = |longest| self.points_by_steps(start, wave_vector, tolerance, longest);
+        match points(Some(spacing)).ok().filter(is_same) {
+            Some(way) => Ok(way),
+            None => points(None),
+        }
+    }
+
+    /// The same by steps that are no longer than `longest`, cm.
+    fn points_by_steps(
+        &self,
+        start: &VirtualPoint,
+        wave_vector: DVec3,
+        tolerance: f64,
+        longest: Option<f64>,
+    ) -> Result<Vec<Point>, FlowError> {
         let mut packet =
             RayPacket::new(self, &[Some((*start, wave_vector)), None, None, None], tolerance);
-        packet.even_out(self, 0, self.map.scale() / DENSITY);
+        if let Some(longest) = longest {
+            packet.even_out(self, 0, longest);
+        }
         let mut way: Vec<Point> = Vec::new();
         loop {
             if let Some(point) = packet.waypoint(0)
