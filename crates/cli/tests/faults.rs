@@ -365,6 +365,46 @@ fn a_picture_goes_on_where_it_was_stopped() {
 }
 
 #[test]
+fn finished_strips_are_taken_as_they_are() {
+    use std::os::unix::fs::MetadataExt;
+    for ending in ["png", "npz", "exr"] {
+        let desk = desk();
+        let at = desk.path();
+        let name = format!("a.{ending}");
+        assert!(cloakroom(at, &["render", "scene.toml", "-o", &name]).status().unwrap().success());
+        let whole = fs::read(at.join(&name)).unwrap();
+        // The picture cannot be written in the end: all strips stay.
+        fs::remove_file(at.join(&name)).unwrap();
+        std::os::unix::fs::symlink("/dev/full", at.join(&name)).unwrap();
+        let resumed = ["render", "scene.toml", "--resume", "-o", &name];
+        let strips = || -> Vec<(PathBuf, u64, SystemTime)> {
+            let folder = files(&at.join(format!("{name}.strips")));
+            let strip = |path: PathBuf| {
+                let found = fs::metadata(&path).unwrap();
+                (path, found.ino(), found.modified().unwrap())
+            };
+            folder.into_keys().map(strip).collect()
+        };
+        one_message(&limited(at, "true", &resumed), &[&name]);
+        let first = strips();
+        assert!(first.len() > 2, "{}", first.len());
+        one_message(&limited(at, "true", &resumed), &[&name]);
+        assert_eq!(strips(), first);
+        // A damaged one is made again, and no other.
+        fs::write(&first[1].0, b"PK").unwrap();
+        let damaged = strips();
+        one_message(&limited(at, "true", &resumed), &[&name]);
+        let mended = strips();
+        let is_kept = |number: &usize| mended[*number] == damaged[*number];
+        assert_eq!((0..first.len()).filter(|n| !is_kept(n)).collect::<Vec<_>>(), [1]);
+        fs::remove_file(at.join(&name)).unwrap();
+        assert!(cloakroom(at, &resumed).status().unwrap().success());
+        assert!(fs::read(at.join(&name)).unwrap() == whole, "{name}");
+        assert_eq!(files(at).len(), 2);
+    }
+}
+
+#[test]
 fn nothing_is_written_over_what_is_read() {
     let desk = desk();
     let at = desk.path();
