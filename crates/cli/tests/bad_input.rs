@@ -171,6 +171,30 @@ fn devices_in_each_others_way() {
 }
 
 #[test]
+fn sheets_that_lie_on_each_other() {
+    let polarizers = |second: &str| {
+        let one = "[[device]]\nkind = \"polarizer\"\n";
+        small(&format!("{one}rotation = 30\n{one}angle = 45\n{second}"))
+    };
+    for second in [
+        "rotation = 30\n",
+        "rotation = 210\n",
+        // Along the first.
+        "rotation = 30\nwidth = 2\nposition = [-4, 6.9282032302755, 1]\n",
+    ] {
+        polarizers(second).refuses(&["scene.toml:7:1", "overlaps"]);
+    }
+    for second in [
+        "rotation = 30\nposition = [0.1, 0, 0]\n",
+        "rotation = 30\nposition = [-10, 17.320508075689, 0]\n",
+        "rotation = 31\nposition = [0.5, 0, 0]\n",
+    ] {
+        let desk = polarizers(second);
+        desk.cloakroom(&["check", "scene.toml"]).assert().success();
+    }
+}
+
+#[test]
 fn outputs_that_cannot_be() {
     let desk = small("");
     let render = |to: &str, parts: &[&str]| {
