@@ -456,3 +456,76 @@ fn one_file_that_fails_keeps_no_other_from_being_written() {
     one_message(&limited(at, "true", &arguments), &["full.png"]);
     assert!(at.join("a.npz").exists() && image::open(at.join("b.png")).is_ok());
 }
+
+#[test]
+fn all_files_that_fail_are_named_and_the_rest_is_given() {
+    let desk = desk();
+    let at = desk.path();
+    for name in ["full.png", "full.csv", "full.exr"] {
+        std::os::unix::fs::symlink("/dev/full", at.join(name)).unwrap();
+    }
+    let render = ["render", "scene.toml", "-o", "full.png", "-o", "a.npz", "-o", "full.exr"];
+    one_message(&limited(at, "true", &render), &["write full.png: ", "; cannot write full.exr: "]);
+    assert!(at.join("a.npz").exists());
+    let flux = ["flux", "scene.toml", "--rays", "16", "--angles", "0..10:5"];
+    let files = ["-o", "full.csv", "-o", "k.npz", "--map", "map.svg"];
+    let output = limited(at, "true", &[&flux[..], &files].concat());
+    one_message(&output, &["full.csv"]);
+    assert!(at.join("map.svg").exists() && at.join("k.npz").exists());
+    assert!(String::from_utf8_lossy(&output.stdout).contains("convergence at"));
+    let quality = ["quality", "scene.toml", "--set", "camera.samples=1", "-o", "full.csv"];
+    let quality = [&quality[..], &["--sweep", "device.0.rotation=0,5"]].concat();
+    let output = limited(at, "true", &quality);
+    one_message(&output, &["full.csv"]);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("correlation"));
+    let output = limited(at, "true", &[&quality[..], &["--json"]].concat());
+    one_message(&output, &["full.csv"]);
+    assert!(serde_json::from_slice::<serde_json::Value>(&output.stdout).is_ok());
+    // Before the work, too.
+    let none = ["render", "scene.toml", "-o", "no/a.png", "-o", "b.npz", "-o", "none/c.exr"];
+    one_message(&limited(at, "true", &none), &["no/a.png: ", "none/c.exr: "]);
+    assert!(!at.join("b.npz").exists());
+}
+
+#[test]
+fn two_outputs_are_two_files() {
+    let desk = desk();
+    let at = desk.path();
+    fs::create_dir(at.join("sub")).unwrap();
+    std::os::unix::fs::symlink("new.png", at.join("link.png")).unwrap();
+    fs::write(at.join("old.png"), "").unwrap();
+    std::os::unix::fs::symlink("old.png", at.join("to-old.png")).unwrap();
+    let names = || -> std::collections::BTreeSet<_> {
+        fs::read_dir(at).unwrap().map(|entry| entry.unwrap().file_name()).collect()
+    };
+    let before = names();
+    let sweep = ["--sweep", "device.0.rotation=0,5"];
+    for arguments in [
+        &["flux", "scene.toml", "-o", "two.png", "--map", "two.png"][..],
+        &["render", "scene.toml", "-o", "a.png", "-o", "a.png"],
+        &["render", "scene.toml", "-o", "a.png", "-o", "sub/../a.png"],
+        &["render", "scene.toml", "-o", "new.png", "-o", "./link.png"],
+        &["render", "scene.toml", "-o", "to-old.png", "-o", "old.png"],
+        &["diagram", "scene.toml", "-o", "a.png", "-o", "./a.png"],
+        &[&["quality", "scene.toml", "-o", "a.png", "-o", "a.png"][..], &sweep].concat(),
+    ] {
+        let output = limited(at, "true", arguments);
+        one_message(&output, &["another output of this run is that file"]);
+        assert_eq!(names(), before, "{arguments:?}");
+        assert_eq!(fs::metadata(at.join("old.png")).unwrap().len(), 0);
+    }
+}
+
+#[test]
+fn words_of_a_scene_command_no_terminal() {
+    let desk = desk();
+    let at = desk.path();
+    let name = "a\u{1b}[2J\u{202e}b.png";
+    image::RgbImage::new(8, 6).save(at.join(name)).unwrap();
+    let set = format!("photograph.image={name:?}").replace("\\u{1b}", "\\u001b");
+    let set = set.replace("\\u{202e}", "\\u202e");
+    let output = limited(at, "true", &["check", "scene.toml", "--set", &set]);
+    let words = String::from_utf8(output.stdout).unwrap();
+    assert!(words.contains("a\\u{1b}[2J\\u{202e}b.png"), "{words}");
+    assert!(!words.contains(['\u{1b}', '\u{202e}']));
+}
