@@ -269,6 +269,37 @@ fn inputs_that_can_be_read_once_are() {
     }
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn one_pipe_is_one_input() {
+    let desk = desk();
+    let at = desk.path();
+    let told = "are one pipe, which gives its bytes once only";
+    let rays = |scene, rays| ["trace", scene, "--rays", rays];
+    for (scene, name) in [("-", "/dev/stdin"), ("/dev/stdin", "-"), ("-", "/dev/fd/0")] {
+        one_message(&fed(at, SCENE, &rays(scene, name)), &[told, name]);
+    }
+    let images = ["photograph.image=\"/dev/stdin\"", "surroundings.image=\"/dev/fd/0\""];
+    let check = ["check", "scene.toml", "--set", images[0], "--set", images[1]];
+    one_message(&fed(at, "", &check), &[told, "/dev/stdin and /dev/fd/0"]);
+    let sweep = ["--set", images[1], "--sweep", "device.0.rotation=0,5", "-o", "frames"];
+    let animate = [&["animate", "scene.toml", "--set", images[0]][..], &sweep].concat();
+    one_message(&fed(at, "", &animate), &[told]);
+    // A pipe of an index that is none is not read again.
+    let index = ["--set", "device.0={kind=\"graded\", index=\"/dev/stdin\"}"];
+    for (bytes, said) in [("nothing at all", "no .npy file of an array"), ("", "no .npy file")] {
+        let output = fed(at, bytes, &[&["check", "scene.toml"][..], &index].concat());
+        one_message(&output, &["/dev/stdin", said]);
+    }
+    fs::write(at.join("bad.npy"), "\u{93}NUMPX").unwrap();
+    let message = |name: &str, text: &str| {
+        let set = format!("device.0={{kind=\"graded\", index=\"{name}\"}}");
+        let output = fed(at, text, &["check", "scene.toml", "--set", &set]);
+        String::from_utf8(output.stderr).unwrap().rsplit_once(name).unwrap().1.to_owned()
+    };
+    assert_eq!(message("/dev/stdin", "\u{93}NUMPX"), message("bad.npy", ""));
+}
+
 /// A file of numpy: 4 x 4 numbers, of which one is `index` and the others 1.
 fn npy(index: f64) -> Vec<u8> {
     let text = "{'descr': '<f8', 'fortran_order': False, 'shape': (4, 4), }";

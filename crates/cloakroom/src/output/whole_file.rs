@@ -126,6 +126,26 @@ pub fn is_same_file(one: &Path, other: &Path) -> bool {
     }
 }
 
+/// Whether two names are those of one pipe, of which each byte can be read once.
+#[must_use]
+pub fn is_same_pipe(one: &Path, other: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{FileTypeExt, MetadataExt};
+        let pipe = |path: &Path| {
+            let found = fs::metadata(path).ok()?;
+            let kind = found.file_type();
+            (kind.is_fifo() || kind.is_socket()).then(|| (found.dev(), found.ino()))
+        };
+        pipe(one).is_some_and(|found| pipe(other) == Some(found))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = (one, other);
+        false
+    }
+}
+
 /// Whether what is written under two names is one file, which need not be there yet. Different names
 /// of a pipe or a device are not: it takes what is written one after the other.
 #[must_use]
