@@ -6,7 +6,8 @@ scene names must be there, too, with the same content; arrays travel with the sc
 
 Every result is written to a folder here as it comes, with a line in ``finished.jsonl`` that says what it is made from:
 the scene, and the contents of all files and arrays that it shows or measures. What is finished is not done again when
-the same call is made once more, whatever has ended the last one; a task whose worker is lost is given to another one.
+the same call is made once more, whatever has ended the last one, unless its file has changed since; a task whose worker is
+lost is given to another one.
 The results are those of one machine, byte for byte.
 """
 
@@ -277,7 +278,7 @@ def _run(tasks: list[_Task], folder: Path, client: Any, progress: Progress, what
     waiting = [
         task
         for task in tasks
-        if finished.get(task.file) != fingerprints[task.file] or not (folder / task.file).exists()
+        if finished.get(task.file) != (fingerprints[task.file], _digest(folder / task.file))
     ]
     with told(progress, what) as tell:
         done = len(tasks) - len(waiting)
@@ -289,7 +290,8 @@ def _run(tasks: list[_Task], folder: Path, client: Any, progress: Progress, what
             lines.write("\n")
             for task, result in results:
                 _write(folder / task.file, result)
-                lines.write(json.dumps({"file": task.file, "fingerprint": fingerprints[task.file]}) + "\n")
+                entry = {"file": task.file, "fingerprint": fingerprints[task.file], "result": _sha256(result)}
+                lines.write(json.dumps(entry) + "\n")
                 lines.flush()
                 done += 1
                 if tell is not None:
@@ -297,15 +299,27 @@ def _run(tasks: list[_Task], folder: Path, client: Any, progress: Progress, what
     return [folder / task.file for task in tasks]
 
 
-def _finished(record: Path) -> Iterator[tuple[str, str]]:
-    """Files and their fingerprints; a line that was cut short is none."""
+def _finished(record: Path) -> Iterator[tuple[str, tuple[str, str]]]:
+    """Files, their fingerprints and the digests of what was written; a line that was cut short is none."""
     if record.exists():
         for line in record.read_text(encoding="utf-8").splitlines():
             try:
                 entry = json.loads(line)
-                yield entry["file"], entry["fingerprint"]
+                yield entry["file"], (entry["fingerprint"], entry["result"])
             except (ValueError, KeyError, TypeError):
                 continue
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _digest(file: Path) -> str | None:
+    """The digest of what is in a file; none if it cannot be read."""
+    try:
+        return _sha256(file.read_bytes())
+    except OSError:
+        return None
 
 
 def _write(file: Path, content: bytes) -> None:

@@ -35,7 +35,10 @@ impl<E: Error + 'static> From<E> for Failure {
             Err(error) => error,
         };
         let too_large = matches!(error.downcast_ref(), Some(RenderError::TooLarge { .. }))
-            || matches!(error.downcast_ref(), Some(MaterialError::TooLarge { .. }))
+            || matches!(
+                error.downcast_ref(),
+                Some(MaterialError::TooLarge { .. } | MaterialError::TooFine)
+            )
             || matches!(error.downcast_ref(), Some(RayError::TooMany { .. }))
             || matches!(error.downcast_ref(), Some(MergeError::TooLarge(_)))
             || matches!(error.downcast_ref(), Some(MeasureError::TooLarge { .. }));

@@ -156,6 +156,27 @@ def test_what_other_files_made_is_done_again(cluster, tmp_path: Path) -> None:
     assert not np.array_equal(shown[1], shown[2]) and not np.array_equal(shown[2], shown[3])
 
 
+def test_what_was_damaged_is_done_again(cluster, scene: Scene, tmp_path: Path) -> None:
+    def rendered() -> tuple[int, Picture]:
+        told: list[int] = []
+        picture = render_tiles(scene, tmp_path, tile=(40, 30), progress=lambda done, total: told.append(done))
+        return told[0], picture
+
+    rendered()
+    whole = {file.name: file.read_bytes() for file in tmp_path.glob("*.npz")}
+    assert len(whole) == 4
+    names = sorted(whole)
+    # Cut short, replaced by another tile, and gone.
+    (tmp_path / names[0]).write_bytes(whole[names[0]][:-10])
+    (tmp_path / names[1]).write_bytes(whole[names[2]])
+    (tmp_path / names[3]).unlink()
+    kept, picture = rendered()
+    assert kept == 1
+    assert {file.name: file.read_bytes() for file in tmp_path.glob("*.npz")} == whole
+    assert np.array_equal(picture.linear, scene.render().linear)
+    assert rendered()[0] == 4
+
+
 def test_frames_are_pictures(cluster, scene: Scene, tmp_path: Path) -> None:
     keys = {"device.0.rotation": np.array([0.0, 5.0, 10.0])}
     files = render_frames(scene, keys, tmp_path)

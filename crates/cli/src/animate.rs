@@ -83,8 +83,10 @@ fn scenes(
     let (text, mut scenes) = (SceneText::read(&arguments.scene.scene)?, Vec::<Loaded>::new());
     for frame in range {
         let further = timeline.overrides(frame);
-        let loaded = text.scene(&[&arguments.scene.overrides[..], &further[..]].concat())?;
-        scene::prepared(&loaded, images)?;
+        let loaded = text.scene(&[&arguments.scene.overrides[..], &further[..]].concat());
+        let loaded = loaded.map_err(|error| swept(error.into()))?;
+        scene::check_pipes(&arguments.scene, &loaded, None)?;
+        scene::prepared(&loaded, images).map_err(swept)?;
         if loaded.scene.picture.map.name().is_some() && arguments.map_range.is_none() {
             return Err(Failure::Failed(
                 "a film of a map needs one scale for all frames; give --map-range LOW,HIGH, in ns for times \
@@ -101,6 +103,16 @@ fn scenes(
         scenes.push(loaded);
     }
     Ok(scenes)
+}
+
+/// A failure of a scene: what is said to be wrong with an override may be so with a swept value.
+fn swept(failure: Failure) -> Failure {
+    match failure {
+        Failure::Failed(message) => {
+            Failure::Failed(message.replacen("--set ", "--set or --sweep ", 1))
+        }
+        other => other,
+    }
 }
 
 /// Renders the frames of a range that are not finished.

@@ -1,7 +1,7 @@
 //! `cloakroom diagram`: ray diagrams and settings.
 
 use crate::arguments::DiagramArguments;
-use crate::files::{check_writable, formats, write_each};
+use crate::files::{check_outputs, formats, write_each};
 use crate::interruption::{self, STOP};
 use crate::report::Result;
 use crate::scene;
@@ -13,7 +13,7 @@ use cloakroom_figures::{DiagramError, DiagramSettings, DrawingFormat, Source};
 pub fn run(arguments: &DiagramArguments) -> Result<()> {
     let formats = formats(&arguments.outputs, DrawingFormat::of)?;
     let loaded = scene::load(&arguments.scene, &[])?;
-    check_writable(&arguments.outputs, &scene::inputs(&arguments.scene, &loaded))?;
+    check_outputs(&arguments.outputs, &scene::inputs(&arguments.scene, &loaded))?;
     let _busy = interruption::busy();
     let (drawing, title) = if arguments.setting {
         let mut scene = loaded.scene.clone();

@@ -1,6 +1,6 @@
 //! The files that commands write.
 
-use crate::report::{Failure, Result, wrote};
+use crate::report::{Failure, Result, all, wrote};
 use cloakroom::output::{self, OutputError};
 use std::path::{Path, PathBuf};
 
@@ -10,6 +10,24 @@ pub fn formats<F>(
     of: fn(&Path) -> Result<F, OutputError>,
 ) -> Result<Vec<(&Path, F)>> {
     files.iter().map(|file| Ok((file.as_path(), of(file)?))).collect()
+}
+
+/// Says before long work which of the files that a user has named cannot be written, are read by this
+/// run, or are one file under two names.
+pub fn check_outputs<'p>(
+    files: impl IntoIterator<Item = &'p PathBuf>,
+    inputs: &[PathBuf],
+) -> Result<()> {
+    let files: Vec<&PathBuf> = files.into_iter().collect();
+    all(files.iter().enumerate().map(|(number, file)| {
+        if files[..number].iter().any(|other| output::is_same_output(other, file)) {
+            return Err(Failure::Failed(format!(
+                "cannot write {}: another output of this run is that file; give another name",
+                file.display()
+            )));
+        }
+        check_writable([file], inputs)
+    }))
 }
 
 /// Says before long work that one of some files cannot be written, or is one that is read.
@@ -29,13 +47,12 @@ pub fn check_writable<'p>(
     })
 }
 
-/// Writes each of some files, whether or not another of them fails: the first failure.
+/// Writes each of some files, whether or not another of them fails: all failures.
 pub fn write_each<'p, F>(
     files: impl IntoIterator<Item = (&'p Path, F)>,
     mut write: impl FnMut(&'p Path, F) -> Result<()>,
 ) -> Result<()> {
-    let written: Vec<_> = files.into_iter().map(|(path, format)| write(path, format)).collect();
-    written.into_iter().collect()
+    all(files.into_iter().map(|(path, format)| write(path, format)))
 }
 
 /// Makes the folder for files.

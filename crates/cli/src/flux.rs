@@ -1,9 +1,9 @@
 //! `cloakroom flux`: the light that comes through to a receiver.
 
 use crate::arguments::FluxArguments;
-use crate::files::{check_writable, formats, write_each};
+use crate::files::{check_outputs, formats, write_each};
 use crate::progress::supervised;
-use crate::report::{Failure, Result, say};
+use crate::report::{Failure, Result, all, say};
 use crate::{interruption, render, report, scene};
 use cloakroom::flux::{self, Direction, FluxError, FluxReport, Gain, Sampling};
 use cloakroom::output;
@@ -20,7 +20,7 @@ pub fn run(arguments: &FluxArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene, &[])?;
     let inputs = scene::inputs(&arguments.scene, &loaded);
-    check_writable(arguments.outputs.iter().chain(&arguments.map), &inputs)?;
+    check_outputs(arguments.outputs.iter().chain(&arguments.map), &inputs)?;
     let (directions, axis) = directions(arguments, &loaded.scene)?;
     let sampling =
         Sampling { rays: arguments.rays, samples: arguments.samples, cells: arguments.cells };
@@ -36,12 +36,12 @@ pub fn run(arguments: &FluxArguments) -> Result<()> {
     let mut stats = TraceStats::default();
     measured.incidences.iter().for_each(|incidence| stats += incidence.stats);
     render::warn_of_cut_branches(&stats);
-    write_each(files, |path, format| write(&measured, axis, format, path))?;
-    write_each(map, |path, format| match flux_map(&measured, axis) {
+    let written = write_each(files, |path, format| write(&measured, axis, format, path));
+    let mapped = write_each(map, |path, format| match flux_map(&measured, axis) {
         Some(drawing) => save(&drawing, "Irradiance of the receiver", &measured, (path, format)),
         None => Ok(()),
-    })?;
-    report::print(&table(&measured, axis))
+    });
+    all([written, mapped, report::print(&table(&measured, axis))])
 }
 
 /// The directions asked for, and what they are named by.

@@ -25,7 +25,8 @@ pub fn run(arguments: &ManualArguments) -> Result<()> {
     let wanted = arguments.command.as_deref().unwrap_or_else(|| command.get_name());
     let page = pages.into_iter().find(|page| page.get_name() == wanted);
     let page = page.ok_or_else(|| Failure::Usage(format!("there is no command `{wanted}`")))?;
-    report::print(&String::from_utf8_lossy(&page_text(page)?))
+    let text = page_text(page)?;
+    report::print_with(|out| out.write_all(&text))
 }
 
 /// A page in the language of `man`.
@@ -40,5 +41,5 @@ pub fn completions(shell: Shell) -> Result<()> {
     let mut command = Arguments::command();
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command, "cloakroom", &mut script);
-    report::print(&String::from_utf8_lossy(&script))
+    report::print_with(|out| out.write_all(&script))
 }

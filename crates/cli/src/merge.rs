@@ -1,7 +1,7 @@
 //! `cloakroom merge`: tiles into the picture that they are parts of.
 
 use crate::arguments::MergeArguments;
-use crate::files::{check_writable, formats, write_each};
+use crate::files::{check_outputs, formats, write_each};
 use crate::report::{Failure, Result};
 use cloakroom::output::{self, Format};
 use cloakroom::render;
@@ -13,7 +13,7 @@ use std::path::Path;
 pub fn run(arguments: &MergeArguments) -> Result<()> {
     let tiles = formats(&arguments.tiles, Format::of)?;
     let outputs = formats(&arguments.outputs, PictureFormat::of)?;
-    check_writable(&arguments.outputs, &arguments.tiles)?;
+    check_outputs(&arguments.outputs, &arguments.tiles)?;
     let all = |wanted| tiles.iter().all(|(_, format)| *format == wanted);
     let png = PictureFormat::Pixels(Format::Png);
     if all(Format::Npz) {

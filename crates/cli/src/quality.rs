@@ -1,11 +1,11 @@
 //! `cloakroom quality`: how well devices work over a range of settings.
 
 use crate::arguments::QualityArguments;
-use crate::files::{check_writable, formats, write_each};
+use crate::files::{check_outputs, formats, write_each};
 use crate::interruption;
 use crate::progress::supervised;
 use crate::render::warn_of_cut_branches;
-use crate::report::{self, Result};
+use crate::report::{self, Result, all};
 use crate::scene;
 use cloakroom::measure::{Constraint, QualityTable, Sweep, SweepPlan, quality};
 use cloakroom::scene_file::{Override, SceneText};
@@ -38,16 +38,19 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let plan = SweepPlan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;
     plan.check_columns(&arguments.plot)?;
     let inputs = plan.scenes().flat_map(|loaded| scene::inputs(&arguments.scene, loaded));
-    check_writable(&arguments.outputs, &inputs.collect::<Vec<_>>())?;
+    check_outputs(&arguments.outputs, &inputs.collect::<Vec<_>>())?;
     let _busy = interruption::busy();
     let table =
         supervised(plan.steps(), "measuring", |_, supervision| quality(&plan, supervision))?;
     warn_of_cut_branches(&table.stats);
-    write_each(formats, |path, format| Ok(write_table(&table, format, &arguments.plot, path)?))?;
-    if arguments.json {
-        return report::print_json(&table.to_json());
-    }
-    report::print(&text(&table)?)
+    let written =
+        write_each(formats, |path, format| Ok(write_table(&table, format, &arguments.plot, path)?));
+    let printed = if arguments.json {
+        report::print_json(&table.to_json())
+    } else {
+        report::print(&text(&table)?)
+    };
+    all([written, printed])
 }
 
 /// The table for people.

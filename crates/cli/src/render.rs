@@ -1,7 +1,7 @@
 //! `cloakroom render`: a scene to pictures and data.
 
 use crate::arguments::RenderArguments;
-use crate::files::{check_writable, formats, write_each};
+use crate::files::{check_outputs, formats, write_each};
 use crate::interruption;
 use crate::progress::supervised;
 use crate::report::{Failure, Result, say};
@@ -33,7 +33,7 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
             return Err(IllustrationError::NoMap { path: path.to_path_buf() }.into());
         }
     }
-    check_writable(&arguments.outputs, &scene::inputs(&arguments.scene, &loaded))?;
+    check_outputs(&arguments.outputs, &scene::inputs(&arguments.scene, &loaded))?;
     let _busy = interruption::busy();
     if let Some(tile) = arguments.tile {
         let tile = check_tile(tile, &loaded.scene, &formats)?;

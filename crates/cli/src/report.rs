@@ -20,6 +20,15 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// Both of two; the messages of failed work are told together.
+    fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Failed(one), Self::Failed(other)) => Self::Failed(format!("{one}; {other}")),
+            (Self::Interrupted, _) | (_, Self::Interrupted) => Self::Interrupted,
+            (first, _) => first,
+        }
+    }
+
     /// Tells the user and gives the exit status.
     pub fn tell(self) -> u8 {
         let (words, status) = match self {
@@ -39,6 +48,12 @@ impl<E: Error + 'static> From<E> for Failure {
     }
 }
 
+/// Does all of some work, whether or not a part of it fails; what has failed is one failure.
+pub fn all(parts: impl IntoIterator<Item = Result<()>>) -> Result<()> {
+    let failures: Vec<Failure> = parts.into_iter().filter_map(Result::err).collect();
+    failures.into_iter().reduce(Failure::and).map_or(Ok(()), Err)
+}
+
 /// Says something on standard error. Nobody listening is no reason to fail.
 pub fn say(message: &str) {
     let _ = writeln!(io::stderr(), "{}", printable(message));
@@ -50,20 +65,25 @@ const LONGEST_MESSAGE: usize = 2000;
 /// A message that a terminal shows as it is: characters that would command it, or turn the order of
 /// others, are written as escapes.
 pub fn printable(message: &str) -> String {
-    let turns = |c: char| matches!(c, '\u{200e}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let mut shown = String::new();
     for c in message.chars() {
         if shown.len() >= LONGEST_MESSAGE - 16 {
             shown.push_str(" …");
             break;
         }
-        if (c.is_control() && c != '\n') || turns(c) {
-            shown.extend(c.escape_default());
-        } else {
-            shown.push(c);
-        }
+        push_escaped(&mut shown, c);
     }
     shown
+}
+
+fn push_escaped(shown: &mut String, c: char) {
+    let turns =
+        matches!(c, '\u{200e}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    if (c.is_control() && c != '\n') || turns {
+        shown.extend(c.escape_default());
+    } else {
+        shown.push(c);
+    }
 }
 
 /// Says that a file has been written.
@@ -71,10 +91,12 @@ pub fn wrote(path: &Path) {
     say(&path.display().to_string());
 }
 
-/// Prints text on standard output. A reader that has gone away (as in `| head`) ends the printing
-/// without a fuss.
+/// Prints text for people on standard output, with the escapes of [`printable`], for it may quote a
+/// scene. A reader that has gone away (as in `| head`) ends the printing without a fuss.
 pub fn print(text: &str) -> Result<()> {
-    print_with(|out| out.write_all(text.as_bytes()))
+    let mut shown = String::with_capacity(text.len());
+    text.chars().for_each(|c| push_escaped(&mut shown, c));
+    print_with(|out| out.write_all(shown.as_bytes()))
 }
 
 /// Prints JSON on standard output, for people to read and programs to parse.

@@ -3,13 +3,47 @@
 use crate::arguments::{SceneArguments, ThreadsArguments};
 use crate::report::{Failure, Result};
 use cloakroom::assembly::Assembly;
+use cloakroom::output;
 use cloakroom::render::{self, Images, PreparedScene, PreparedSceneError};
-use cloakroom::scene_file::{Loaded, Override, SceneFileError, SceneText};
-use std::path::PathBuf;
+use cloakroom::scene_file::{Loaded, Override, SceneText};
+use std::path::{Path, PathBuf};
 
 /// Reads a scene with its overrides and further ones after them.
-pub fn load(arguments: &SceneArguments, further: &[Override]) -> Result<Loaded, SceneFileError> {
-    SceneText::read(&arguments.scene)?.scene(&[&arguments.overrides, further].concat())
+pub fn load(arguments: &SceneArguments, further: &[Override]) -> Result<Loaded> {
+    let loaded =
+        SceneText::read(&arguments.scene)?.scene(&[&arguments.overrides, further].concat())?;
+    check_pipes(arguments, &loaded, None)?;
+    Ok(loaded)
+}
+
+/// Refuses a pipe that is to be read for two things: it gives its bytes once only. `rays` is what is
+/// read beside the scene and the files that it names.
+pub fn check_pipes(arguments: &SceneArguments, loaded: &Loaded, rays: Option<&Path>) -> Result<()> {
+    // One image or index of several devices is read once.
+    let of_number = |key: String| key.rsplit('.').take(2).collect::<Vec<_>>().join(".");
+    let named = loaded.scene.files().into_iter().map(|(key, path)| (of_number(key), path));
+    let mut files: Vec<(String, PathBuf)> = named.collect();
+    files.push(("the scene".to_owned(), arguments.scene.clone()));
+    files.extend(rays.map(|path| ("--rays".to_owned(), path.to_owned())));
+    for (number, (what, path)) in files.iter().enumerate() {
+        for (other, same) in &files[..number] {
+            let is_read_once = what == other && path == same;
+            if !is_read_once && output::is_same_pipe(&opened(path), &opened(same)) {
+                return Err(Failure::Failed(format!(
+                    "{} and {} are one pipe, which gives its bytes once only; give one of them as \
+                     a file",
+                    same.display(),
+                    path.display()
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The file that a name of an input stands for.
+fn opened(path: &Path) -> PathBuf {
+    if path == Path::new("-") { "/dev/stdin".into() } else { path.to_owned() }
 }
 
 /// The files that a run reads: the scene, and those that it names.

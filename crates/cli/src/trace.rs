@@ -27,6 +27,7 @@ pub fn run(arguments: &TraceArguments) -> Result<()> {
     }
     scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene, &[])?;
+    scene::check_pipes(&arguments.scene, &loaded, Some(&arguments.rays))?;
     let assembly = scene::assembly(&loaded)?;
     if let Some(p) = arguments.min_power.filter(|p| !(0.0..=1.0).contains(p)) {
         return Err(Failure::Usage(format!("--min-power is {p}; it must be from 0 to 1")));

@@ -171,6 +171,30 @@ fn devices_in_each_others_way() {
 }
 
 #[test]
+fn sheets_that_lie_on_each_other() {
+    let polarizers = |second: &str| {
+        let one = "[[device]]\nkind = \"polarizer\"\n";
+        small(&format!("{one}rotation = 30\n{one}angle = 45\n{second}"))
+    };
+    for second in [
+        "rotation = 30\n",
+        "rotation = 210\n",
+        // Along the first.
+        "rotation = 30\nwidth = 2\nposition = [-4, 6.9282032302755, 1]\n",
+    ] {
+        polarizers(second).refuses(&["scene.toml:7:1", "overlaps"]);
+    }
+    for second in [
+        "rotation = 30\nposition = [0.1, 0, 0]\n",
+        "rotation = 30\nposition = [-10, 17.320508075689, 0]\n",
+        "rotation = 31\nposition = [0.5, 0, 0]\n",
+    ] {
+        let desk = polarizers(second);
+        desk.cloakroom(&["check", "scene.toml"]).assert().success();
+    }
+}
+
+#[test]
 fn outputs_that_cannot_be() {
     let desk = small("");
     let render = |to: &str, parts: &[&str]| {
@@ -221,6 +245,26 @@ fn overrides_are_pointed_at() {
 }
 
 #[test]
+fn swept_values_and_normals_are_pointed_at() {
+    let desk = small("[[device]]\nkind = \"square-cloak\"\n");
+    let animate =
+        |sweep| ["animate", "scene.toml", "--sweep", sweep, "--frames", "2", "-o", "a.gif"];
+    let named = ["--set or --sweep device.0.bad=0", "unknown key `bad`"];
+    desk.refuses_with(&animate("device.0.bad=0..1"), &named);
+    let metal = ["--set or --sweep camera.position=", "inside"];
+    desk.refuses_with(&animate("camera.position=[0,0,0],[0,0,1]"), &metal);
+    let check = |set| ["check", "scene.toml", "--set", set];
+    let normal = ["error: --set photograph.normal=[0,1,0]: up is [0, 1, 0]"];
+    desk.refuses_with(&check("photograph.normal=[0,1,0]"), &normal);
+    let up = ["error: --set photograph.up=[1,0,0]: up is [1, 0, 0]"];
+    desk.refuses_with(&check("photograph.up=[1,0,0]"), &up);
+    let target = ["error: --set camera.target=[-100,9,0]: up is [0, 1, 0]"];
+    let position = ["check", "scene.toml", "--set", "camera.position=[-100,0,0]", "--set"];
+    desk.refuses_with(&[&position[..], &["camera.target=[-100,9,0]"]].concat(), &target);
+    desk.refuses_with(&check("trace.tolerance=1e300"), &["tolerance", "above 0 and below 1"]);
+}
+
+#[test]
 fn wrong_usage_is_another_status() {
     let desk = small("");
     for (arguments, part) in [
@@ -249,7 +293,10 @@ fn exports_that_cannot_be_made() {
     let export = |grid: &'static str| ["export", "scene.toml", "-o", "out.npz", "--grid", grid];
     square.refuses_with(&export("0x3x3"), &["at least one cell"]);
     square.refuses_with(&export("0"), &["positive spacing"]);
-    square.refuses_with(&export("4000000000x4000000000x4000000000"), &["MB of memory"]);
+    square.refuses_with(&export("4000000000x1000000x1"), &["MB of memory"]);
+    for large in ["4000000000x4000000000x4000000000", "1e-9", "1e-300"] {
+        square.refuses_with(&export(large), &["so fine a grid is too large"]);
+    }
     square.refuses_with(&["export", "scene.toml", "-o", "out.png"], &[".npz, .vti or .csv"]);
     square.refuses_with(&["export", "scene.toml", "--table", "-o", "out.npz"], &[".csv or .json"]);
     square.refuses_with(&["export", "scene.toml", "--device", "3", "-o", "out.npz"], &["device 3"]);

@@ -269,6 +269,37 @@ fn inputs_that_can_be_read_once_are() {
     }
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn one_pipe_is_one_input() {
+    let desk = desk();
+    let at = desk.path();
+    let told = "are one pipe, which gives its bytes once only";
+    let rays = |scene, rays| ["trace", scene, "--rays", rays];
+    for (scene, name) in [("-", "/dev/stdin"), ("/dev/stdin", "-"), ("-", "/dev/fd/0")] {
+        one_message(&fed(at, SCENE, &rays(scene, name)), &[told, name]);
+    }
+    let images = ["photograph.image=\"/dev/stdin\"", "surroundings.image=\"/dev/fd/0\""];
+    let check = ["check", "scene.toml", "--set", images[0], "--set", images[1]];
+    one_message(&fed(at, "", &check), &[told, "/dev/stdin and /dev/fd/0"]);
+    let sweep = ["--set", images[1], "--sweep", "device.0.rotation=0,5", "-o", "frames"];
+    let animate = [&["animate", "scene.toml", "--set", images[0]][..], &sweep].concat();
+    one_message(&fed(at, "", &animate), &[told]);
+    // A pipe of an index that is none is not read again.
+    let index = ["--set", "device.0={kind=\"graded\", index=\"/dev/stdin\"}"];
+    for (bytes, said) in [("nothing at all", "no .npy file of an array"), ("", "no .npy file")] {
+        let output = fed(at, bytes, &[&["check", "scene.toml"][..], &index].concat());
+        one_message(&output, &["/dev/stdin", said]);
+    }
+    fs::write(at.join("bad.npy"), "\u{93}NUMPX").unwrap();
+    let message = |name: &str, text: &str| {
+        let set = format!("device.0={{kind=\"graded\", index=\"{name}\"}}");
+        let output = fed(at, text, &["check", "scene.toml", "--set", &set]);
+        String::from_utf8(output.stderr).unwrap().rsplit_once(name).unwrap().1.to_owned()
+    };
+    assert_eq!(message("/dev/stdin", "\u{93}NUMPX"), message("bad.npy", ""));
+}
+
 /// A file of numpy: 4 x 4 numbers, of which one is `index` and the others 1.
 fn npy(index: f64) -> Vec<u8> {
     let text = "{'descr': '<f8', 'fortran_order': False, 'shape': (4, 4), }";
@@ -365,6 +396,46 @@ fn a_picture_goes_on_where_it_was_stopped() {
 }
 
 #[test]
+fn finished_strips_are_taken_as_they_are() {
+    use std::os::unix::fs::MetadataExt;
+    for ending in ["png", "npz", "exr"] {
+        let desk = desk();
+        let at = desk.path();
+        let name = format!("a.{ending}");
+        assert!(cloakroom(at, &["render", "scene.toml", "-o", &name]).status().unwrap().success());
+        let whole = fs::read(at.join(&name)).unwrap();
+        // The picture cannot be written in the end: all strips stay.
+        fs::remove_file(at.join(&name)).unwrap();
+        std::os::unix::fs::symlink("/dev/full", at.join(&name)).unwrap();
+        let resumed = ["render", "scene.toml", "--resume", "-o", &name];
+        let strips = || -> Vec<(PathBuf, u64, SystemTime)> {
+            let folder = files(&at.join(format!("{name}.strips")));
+            let strip = |path: PathBuf| {
+                let found = fs::metadata(&path).unwrap();
+                (path, found.ino(), found.modified().unwrap())
+            };
+            folder.into_keys().map(strip).collect()
+        };
+        one_message(&limited(at, "true", &resumed), &[&name]);
+        let first = strips();
+        assert!(first.len() > 2, "{}", first.len());
+        one_message(&limited(at, "true", &resumed), &[&name]);
+        assert_eq!(strips(), first);
+        // A damaged one is made again, and no other.
+        fs::write(&first[1].0, b"PK").unwrap();
+        let damaged = strips();
+        one_message(&limited(at, "true", &resumed), &[&name]);
+        let mended = strips();
+        let is_kept = |number: &usize| mended[*number] == damaged[*number];
+        assert_eq!((0..first.len()).filter(|n| !is_kept(n)).collect::<Vec<_>>(), [1]);
+        fs::remove_file(at.join(&name)).unwrap();
+        assert!(cloakroom(at, &resumed).status().unwrap().success());
+        assert!(fs::read(at.join(&name)).unwrap() == whole, "{name}");
+        assert_eq!(files(at).len(), 2);
+    }
+}
+
+#[test]
 fn nothing_is_written_over_what_is_read() {
     let desk = desk();
     let at = desk.path();
@@ -415,4 +486,77 @@ fn one_file_that_fails_keeps_no_other_from_being_written() {
     let arguments = ["render", "scene.toml", "-o", "full.png", "-o", "a.npz", "-o", "b.png"];
     one_message(&limited(at, "true", &arguments), &["full.png"]);
     assert!(at.join("a.npz").exists() && image::open(at.join("b.png")).is_ok());
+}
+
+#[test]
+fn all_files_that_fail_are_named_and_the_rest_is_given() {
+    let desk = desk();
+    let at = desk.path();
+    for name in ["full.png", "full.csv", "full.exr"] {
+        std::os::unix::fs::symlink("/dev/full", at.join(name)).unwrap();
+    }
+    let render = ["render", "scene.toml", "-o", "full.png", "-o", "a.npz", "-o", "full.exr"];
+    one_message(&limited(at, "true", &render), &["write full.png: ", "; cannot write full.exr: "]);
+    assert!(at.join("a.npz").exists());
+    let flux = ["flux", "scene.toml", "--rays", "16", "--angles", "0..10:5"];
+    let files = ["-o", "full.csv", "-o", "k.npz", "--map", "map.svg"];
+    let output = limited(at, "true", &[&flux[..], &files].concat());
+    one_message(&output, &["full.csv"]);
+    assert!(at.join("map.svg").exists() && at.join("k.npz").exists());
+    assert!(String::from_utf8_lossy(&output.stdout).contains("convergence at"));
+    let quality = ["quality", "scene.toml", "--set", "camera.samples=1", "-o", "full.csv"];
+    let quality = [&quality[..], &["--sweep", "device.0.rotation=0,5"]].concat();
+    let output = limited(at, "true", &quality);
+    one_message(&output, &["full.csv"]);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("correlation"));
+    let output = limited(at, "true", &[&quality[..], &["--json"]].concat());
+    one_message(&output, &["full.csv"]);
+    assert!(serde_json::from_slice::<serde_json::Value>(&output.stdout).is_ok());
+    // Before the work, too.
+    let none = ["render", "scene.toml", "-o", "no/a.png", "-o", "b.npz", "-o", "none/c.exr"];
+    one_message(&limited(at, "true", &none), &["no/a.png: ", "none/c.exr: "]);
+    assert!(!at.join("b.npz").exists());
+}
+
+#[test]
+fn two_outputs_are_two_files() {
+    let desk = desk();
+    let at = desk.path();
+    fs::create_dir(at.join("sub")).unwrap();
+    std::os::unix::fs::symlink("new.png", at.join("link.png")).unwrap();
+    fs::write(at.join("old.png"), "").unwrap();
+    std::os::unix::fs::symlink("old.png", at.join("to-old.png")).unwrap();
+    let names = || -> std::collections::BTreeSet<_> {
+        fs::read_dir(at).unwrap().map(|entry| entry.unwrap().file_name()).collect()
+    };
+    let before = names();
+    let sweep = ["--sweep", "device.0.rotation=0,5"];
+    for arguments in [
+        &["flux", "scene.toml", "-o", "two.png", "--map", "two.png"][..],
+        &["render", "scene.toml", "-o", "a.png", "-o", "a.png"],
+        &["render", "scene.toml", "-o", "a.png", "-o", "sub/../a.png"],
+        &["render", "scene.toml", "-o", "new.png", "-o", "./link.png"],
+        &["render", "scene.toml", "-o", "to-old.png", "-o", "old.png"],
+        &["diagram", "scene.toml", "-o", "a.png", "-o", "./a.png"],
+        &[&["quality", "scene.toml", "-o", "a.png", "-o", "a.png"][..], &sweep].concat(),
+    ] {
+        let output = limited(at, "true", arguments);
+        one_message(&output, &["another output of this run is that file"]);
+        assert_eq!(names(), before, "{arguments:?}");
+        assert_eq!(fs::metadata(at.join("old.png")).unwrap().len(), 0);
+    }
+}
+
+#[test]
+fn words_of_a_scene_command_no_terminal() {
+    let desk = desk();
+    let at = desk.path();
+    let name = "a\u{1b}[2J\u{202e}b.png";
+    image::RgbImage::new(8, 6).save(at.join(name)).unwrap();
+    let set = format!("photograph.image={name:?}").replace("\\u{1b}", "\\u001b");
+    let set = set.replace("\\u{202e}", "\\u202e");
+    let output = limited(at, "true", &["check", "scene.toml", "--set", &set]);
+    let words = String::from_utf8(output.stdout).unwrap();
+    assert!(words.contains("a\\u{1b}[2J\\u{202e}b.png"), "{words}");
+    assert!(!words.contains(['\u{1b}', '\u{202e}']));
 }

@@ -8,25 +8,32 @@ use ndarray::{ArrayView2, Axis};
 use ndarray_npy::{ViewElement, ViewNpyError, ViewNpyExt};
 use std::borrow::Cow;
 use std::cell::RefCell;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Longer files are no index of a device.
 const LONGEST: u64 = 256 << 20;
 
-/// A file that has been read.
+/// A file that has been read, or a pipe of which it is known why it cannot be: its bytes are gone.
 #[derive(Debug, PartialEq)]
 pub struct IndexFile {
     path: PathBuf,
+    content: Result<Content, String>,
+}
+
+/// What was in a file.
+#[derive(Debug, PartialEq)]
+struct Content {
     samples: Samples,
-    /// Of its content.
+    /// Of its bytes.
     digest: Digest,
 }
 
 impl IndexFile {
     /// Of the content of the file at `path`, if that is this one.
     pub(crate) fn digest_of(&self, path: &Path) -> Option<Digest> {
-        (self.path == path).then_some(self.digest)
+        Some(self.content.as_ref().ok().filter(|_| self.path == path)?.digest)
     }
 }
 
@@ -35,15 +42,22 @@ impl IndexFile {
 pub(crate) struct IndexFiles(RefCell<Vec<Arc<IndexFile>>>);
 
 impl IndexFiles {
-    /// That of a device, if it has one that can be read; what is wrong with another is told where
-    /// the device is built.
+    /// That of a device, if it has one that can be read, or read once only; what is wrong with one is
+    /// told where the device is built.
     pub(crate) fn of(&self, device: &AnyDevice) -> Option<Arc<IndexFile>> {
         let path = path(device)?;
         let mut files = self.0.borrow_mut();
         if let Some(known) = files.iter().find(|file| file.path == path) {
             return Some(Arc::clone(known));
         }
-        let file = Arc::new(read(path).ok()?);
+        let content = read(path);
+        // A file may be mended until the device is built.
+        let gives_again =
+            || fs::metadata(path).map_or(true, |found| found.is_file() || found.is_dir());
+        if content.is_err() && gives_again() {
+            return None;
+        }
+        let file = Arc::new(IndexFile { path: path.to_owned(), content });
         files.push(Arc::clone(&file));
         Some(file)
     }
@@ -73,9 +87,12 @@ pub(crate) fn with_files_read<'d>(
     let key = find(Graded::KEYS, key!(Graded.index))?;
     let file = path.display();
     let samples = match known.filter(|known| known.path == path) {
-        Some(known) => known.samples.clone(),
-        None => read(path).map_err(|message| KeyError::at(key.name, message))?.samples,
+        Some(known) => {
+            known.content.as_ref().map(|known| known.samples.clone()).map_err(Clone::clone)
+        }
+        None => read(path).map(|content| content.samples),
     };
+    let samples = samples.map_err(|message| KeyError::at(key.name, message))?;
     if let Some(at) = samples.values().iter().position(|number| !key.limits.allow(*number)) {
         let [row, column] = [at / samples.count()[1], at % samples.count()[1]];
         let message = format!(
@@ -95,7 +112,7 @@ pub(crate) fn with_files_read<'d>(
 /// # Errors
 ///
 /// A message that names the file and says why it cannot be used.
-fn read(path: &Path) -> Result<IndexFile, String> {
+fn read(path: &Path) -> Result<Content, String> {
     let failed = |reason: String| format!("cannot read {}: {reason}", path.display());
     let bytes = read_file(LONGEST, path).map_err(|error| failed(error.to_string()))?;
     let rows = match rows::<f64>(&bytes) {
@@ -107,7 +124,7 @@ fn read(path: &Path) -> Result<IndexFile, String> {
         error => failed(format!("it is no .npy file of an array of two dimensions: {error}")),
     })?;
     let samples = Samples::new(&rows).map_err(|error| failed(error.to_string()))?;
-    Ok(IndexFile { path: path.to_owned(), samples, digest: Digest::of(&bytes) })
+    Ok(Content { samples, digest: Digest::of(&bytes) })
 }
 
 fn rows<T: ViewElement + Copy + Into<f64>>(bytes: &[u8]) -> Result<Vec<Vec<f64>>, ViewNpyError> {
@@ -147,7 +164,7 @@ mod tests {
             assert!(message.contains("a.npy") && message.contains(part), "{message}");
         };
         refused("No such file");
-        std::fs::write(&path, b"nothing").expect("written");
+        fs::write(&path, b"nothing").expect("written");
         refused("no .npy file");
         Array::from_elem((2, 2), 1_i32)
             .write_npy(File::create(&path).expect("a file"))
@@ -164,7 +181,7 @@ mod tests {
         );
         let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
         bytes.extend(header.bytes());
-        std::fs::write(&path, &bytes).expect("written");
+        fs::write(&path, &bytes).expect("written");
         refused("two dimensions");
     }
 }

@@ -175,6 +175,11 @@ pub enum Solved {
     Each(Vec<InterfaceReport>),
 }
 
+/// What a text of interfaces looks like.
+const EXPECTED: &str = "{\"incident\": M, \"transmitted\": M, \"normal\": [x,y,z], \"tangential\": \
+                        [x,y,z]} or an array of such, M being {\"permittivity\": T, \"permeability\": T} or, \
+                        of \"transmitted\", \"metal\", and T a number, [re,im] or 3 x 3 of either";
+
 /// Solves the interfaces of a JSON text, one object or an array of them.
 ///
 /// # Errors
@@ -186,7 +191,8 @@ pub fn solve_interfaces(text: &str) -> Result<Solved, InterfaceError> {
         let solved = InterfaceRequest::read(item, &place)?.solve();
         solved.map_err(|error| InterfaceError { place, ..error })
     };
-    let no_json = |error: serde_json::Error| InterfaceError::at("", error.to_string());
+    let no_json =
+        |error: serde_json::Error| InterfaceError::at("", format!("{error}; expected {EXPECTED}"));
     if !text.trim_start().starts_with('[') {
         let item = serde_json::from_str(text).map_err(no_json)?;
         return Ok(Solved::One(solve(String::new(), &item)?.into()));

@@ -140,5 +140,9 @@ fn errors_name_the_place() {
     assert!(refusal(&request).contains("did you mean `tangential`?"));
     assert!(refusal(&json!({"incident": 1})).contains("missing"));
     assert!(refusal(&json!(3)).contains("expected an object"));
-    assert!(solve_interfaces("{").is_err());
+    for text in ["{", "nonsense", "", "[nonsense]", "[{}"] {
+        let refused = solve_interfaces(text).expect_err("no JSON").to_string();
+        let expected = text == "[{}" || refused.contains("; expected {\"incident\": M, ");
+        assert!(expected, "{text}: {refused}");
+    }
 }

@@ -90,6 +90,9 @@ fn check_memory(cells: [f64; 3]) -> Result<(), MaterialError> {
     /// arrays.
     const BYTES: f64 = 2.0 * 8.0 * (2.0 + 4.0 * 6.0);
     let needed = cells.iter().product::<f64>() * BYTES;
+    if needed >= u64::MAX as f64 {
+        return Err(MaterialError::TooFine);
+    }
     let is_countable = cells.iter().all(|count| *count <= MOST_CELLS);
     let most = if is_countable { f64::INFINITY } else { MOST_CELLS * BYTES };
     crate::memory::check(needed as u64, most as u64).map_err(|shortage| MaterialError::TooLarge {

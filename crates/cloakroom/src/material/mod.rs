@@ -53,6 +53,9 @@ pub enum MaterialError {
         /// The memory needed and there.
         shortage: Shortage,
     },
+    /// The grid has more cells than there is a number for their bytes.
+    #[error("so fine a grid is too large for any memory; take fewer cells, or a larger spacing")]
+    TooFine,
     /// The device has no end in the plane, so no grid fits around it.
     #[error("the device is endless along every axis of the grid; take the device's frame")]
     Endless,

@@ -17,7 +17,9 @@ pub use png_file::{encode_png, to_srgb, write_png, write_png_in_strips};
 pub use png_file::{encoder as png_encoder, texts as png_texts};
 pub(crate) use reading::read_channels;
 pub use reading::{ReadError, read_npz, read_png};
-pub use whole_file::{WriteSeek, check_writable, is_same_file, write_whole};
+pub use whole_file::{
+    WriteSeek, check_writable, is_same_file, is_same_output, is_same_pipe, write_whole,
+};
 
 use std::error::Error;
 use std::io;

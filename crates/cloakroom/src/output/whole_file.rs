@@ -58,17 +58,13 @@ impl Place {
     }
 }
 
-/// A temporary file that others may read once it has its final name, as any file a program makes.
+/// A temporary file that others may read once it has its final name, as any file a program makes:
+/// its mode is narrowed by the umask. Its own name, which is nobody's, stands in no error.
 fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".cloakroom-").suffix(".part");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // Narrowed by the umask.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
+    builder.prefix(".cloakroom-").suffix(".part").make_in(folder, |path| {
+        fs::OpenOptions::new().read(true).write(true).create_new(true).open(path)
+    })
 }
 
 /// Longer chains of links are none that lead anywhere.
@@ -128,6 +124,39 @@ pub fn is_same_file(one: &Path, other: &Path) -> bool {
         let _ = (a, b);
         matches!((fs::canonicalize(one), fs::canonicalize(other)), (Ok(a), Ok(b)) if a == b)
     }
+}
+
+/// Whether two names are those of one pipe, of which each byte can be read once.
+#[must_use]
+pub fn is_same_pipe(one: &Path, other: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{FileTypeExt, MetadataExt};
+        let pipe = |path: &Path| {
+            let found = fs::metadata(path).ok()?;
+            let kind = found.file_type();
+            (kind.is_fifo() || kind.is_socket()).then(|| (found.dev(), found.ino()))
+        };
+        pipe(one).is_some_and(|found| pipe(other) == Some(found))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = (one, other);
+        false
+    }
+}
+
+/// Whether what is written under two names is one file, which need not be there yet. Different names
+/// of a pipe or a device are not: it takes what is written one after the other.
+#[must_use]
+pub fn is_same_output(one: &Path, other: &Path) -> bool {
+    let resolved = |path: &Path| {
+        let Place { folder, path } = place(path).ok()??;
+        Some(fs::canonicalize(folder).ok()?.join(path.file_name()?))
+    };
+    one == other
+        || is_same_file(one, other)
+        || resolved(one).is_some_and(|path| Some(path) == resolved(other))
 }
 
 /// Checks before long work that a file can be written where it is wanted. What can go wrong later
@@ -198,6 +227,12 @@ mod tests {
             assert!(mode.is_none_or(|mode| mode == found), "{mode:?}: {found:o}");
         }
         assert!(is_same_file(&far, &target) && !is_same_file(&far, &one.path().join("none")));
+        let new = other.path().join("new.png");
+        symlink(&new, one.path().join("to-new.png")).expect("a link");
+        assert!(is_same_output(&one.path().join("to-new.png"), &new) && !new.exists());
+        assert!(is_same_output(&other.path().join("./new.png"), &new));
+        assert!(is_same_output(&far, &target) && !is_same_output(&far, &new));
+        fs::remove_file(one.path().join("to-new.png")).expect("removed");
         fs::hard_link(&target, other.path().join("hard")).expect("a link");
         assert!(is_same_file(&near, &other.path().join("hard")));
         // Round and round.
@@ -217,6 +252,18 @@ mod tests {
         assert!(error.contains("it is a folder"), "{error}");
         let long = folder.path().join(format!("{}.png", "a".repeat(300)));
         assert!(check_writable(&long).is_err());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn messages_name_the_file_that_is_wanted() {
+        // A folder in which nobody can make a file.
+        let path = Path::new("/proc/x.png");
+        for failed in [check_writable(path), write_whole(path, |_| Ok(()))] {
+            let message = failed.expect_err("must fail").to_string();
+            assert!(message.starts_with("cannot write /proc/x.png: "), "{message}");
+            assert!(!message.contains(".part"), "{message}");
+        }
     }
 
     #[cfg(target_os = "linux")]

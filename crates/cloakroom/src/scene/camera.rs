@@ -3,7 +3,7 @@
 use glam::DVec3;
 use optics::wave::transverse_basis;
 
-use super::{CameraSettings, Projection, across, direction};
+use super::{CameraSettings, Projection, across, direction, key_of};
 use crate::keys::{KeyError, Table, vector_text};
 use cloakroom_trace::key;
 use optics::geometry::Pose;
@@ -94,7 +94,10 @@ impl Camera {
             return Err(KeyError::at(key!(CameraSettings.target), message));
         };
         let up = direction(key!(CameraSettings.up), settings.up)?;
-        let right = across(forward.cross(up), (forward, "the line of sight"), settings.up)?;
+        let is_default = settings.up == CameraSettings::default().up;
+        let key = key_of(is_default, key!(CameraSettings.target));
+        let line = (forward, "the line of sight");
+        let right = across(forward.cross(up), line, (key, settings.up))?;
         let [width, height] = settings.resolution;
         Ok(Camera {
             forward,

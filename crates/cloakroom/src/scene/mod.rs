@@ -113,7 +113,8 @@ impl PhotographSettings {
         KeyError::refuse_if(self.position.given && self.x.given, key!(Self.position), message)?;
         let front = direction(key!(Self.normal), self.normal)?;
         let upward = direction(key!(Self.up), self.up)?;
-        let across = across(upward.cross(front), (front, "the normal"), self.up)?;
+        let key = key_of(self.up == Self::default().up, key!(Self.normal));
+        let across = across(upward.cross(front), (front, "the normal"), (key, self.up))?;
         let rotation = DMat3::from_cols(-front, front.cross(across), across);
         Ok(Pose::from_rotation(self.middle(), rotation))
     }
@@ -290,12 +291,23 @@ fn direction(key: &'static str, vector: DVec3) -> Result<DVec3, KeyError> {
     })
 }
 
-/// The unit vector along a product of the direction `up`, as it is written, with another one.
-fn across(product: DVec3, (along, words): (DVec3, &str), up: DVec3) -> Result<DVec3, KeyError> {
+/// The key at fault where `up` does not point across another direction: `up`, unless it is what it
+/// is by default, or else the one of that direction.
+fn key_of(is_default: bool, other: &'static str) -> &'static str {
+    if is_default { other } else { key!(CameraSettings.up) }
+}
+
+/// The unit vector along a product of the direction `up`, as it is written, with another one; `key` is
+/// the one at fault where they are parallel.
+fn across(
+    product: DVec3,
+    (along, words): (DVec3, &str),
+    (key, up): (&'static str, DVec3),
+) -> Result<DVec3, KeyError> {
     /// The sine of the angle between two directions below which they count as parallel.
     const PARALLEL: f64 = 1e-9;
     let message = format!("up is {}, along {words}; it must point across it", vector_text(up));
-    KeyError::refuse_if(product.length() < PARALLEL, key!(CameraSettings.up), message)?;
+    KeyError::refuse_if(product.length() < PARALLEL, key, message)?;
     // Where the two are nearly parallel, the product is not yet perpendicular to the last digit.
     Ok(product.normalize().reject_from_normalized(along).normalize())
 }

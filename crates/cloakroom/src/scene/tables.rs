@@ -108,7 +108,7 @@ table! {
         /// Branches of a ray weaker than this share of it are not followed but counted as pruned.
         min_power: Given<f64> = Given::by_default(1e-4), in ValueRange::Within(0.0, 1.0),
         /// Largest error of position and optical path on leaving a device.
-        tolerance: f64 = 1e-6, "cm", in ValueRange::Positive,
+        tolerance: f64 = 1e-6, "cm", in ValueRange::Between(0.0, 1.0),
     }
 }
 

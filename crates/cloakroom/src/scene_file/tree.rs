@@ -24,12 +24,21 @@ pub(super) fn parse(locations: &mut Locations) -> Result<Value, SceneFileError> 
         // The parser says what it expected, but not which key is there twice.
         let message = match (error.message(), text.get(span.clone())) {
             ("duplicate key", Some(key)) => format!("`{key}` is given twice"),
+            // By its first letter the parser takes a word for a number.
+            (message, Some(word)) if is_float_of(message, word) => {
+                format!("text must be quoted: {word:?}")
+            }
             (message, _) => message.to_owned(),
         };
         locations.error(&Origin::File(span), message)
     })?;
     table(document.into_inner(), "", locations)
         .map_err(|(span, message)| locations.error(&Origin::File(span), message))
+}
+
+/// Whether a message is that of a number, such as `nan`, and what stands there a word.
+fn is_float_of(message: &str, word: &str) -> bool {
+    message.starts_with("invalid float") && word.starts_with(|c: char| c.is_alphabetic())
 }
 
 /// Reads the value of an override; what is no TOML is a bare text.

@@ -159,9 +159,9 @@ impl Assembly {
         &self.interfaces[usize::from(device)]
     }
 
-    /// The first two devices that overlap, if any do. Bodies may, unless their priorities are
-    /// equal; and a device may stand within a body of a medium, whose border its thin mirror may
-    /// cross.
+    /// The first two devices that overlap, if any do: sheets without thickness do that lie on each
+    /// other, for none of them comes first. Bodies may, unless their priorities are equal; and a
+    /// device may stand within a body of a medium, whose border its thin mirror may cross.
     #[must_use]
     pub fn overlap(&self) -> Option<(usize, usize)> {
         let solids: Vec<Vec<Solid>> = self.devices.iter().map(Placed::solids).collect();
@@ -172,7 +172,11 @@ impl Assembly {
                 let thin = mirrors[i].as_ref();
                 thin.is_some_and(|mirror| solids[j].iter().any(|solid| touch(mirror, solid)))
             };
-            let mirrors = mirrors[i].as_ref().zip(mirrors[j].as_ref());
+            let lie_on = |i: usize, j: usize| {
+                let [sheets, others] = [i, j].map(|of| solids[of].iter().chain(&mirrors[of]));
+                sheets.into_iter().any(|a| others.clone().any(|b| a.coincides(b, TOUCHING)))
+            };
+            let both_mirrors = mirrors[i].as_ref().zip(mirrors[j].as_ref());
             let solids_do = solids[i].iter().any(|a| solids[j].iter().any(|b| touch(a, b)));
             let host = |host: usize, guest: usize| {
                 let medium = !self.devices[host].structure.is_opaque()
@@ -188,7 +192,8 @@ impl Assembly {
                     solids_do
                         || meet(i, j)
                         || meet(j, i)
-                        || mirrors.is_some_and(|(a, b)| touch(a, b) || a.coincides(b, TOUCHING))
+                        || both_mirrors.is_some_and(|(a, b)| touch(a, b))
+                        || lie_on(i, j)
                 }
             }
         };

@@ -17,6 +17,20 @@ fn override_message(text: &str, override_text: &str) -> String {
 }
 
 #[test]
+fn words_without_quotes_are_told() {
+    for (word, part) in [
+        ("nix", "text must be quoted: \"nix\""),
+        ("impossible", "text must be quoted: \"impossible\""),
+        ("abc", "must be quoted"),
+    ] {
+        let text = format!("[[device]]\nkind = \"square-cloak\"\nmaterial = {word}\n");
+        let error = read(&text).expect_err("no text");
+        assert!(error.message.contains(part), "{}", error.message);
+        assert_eq!((error.line, error.column), (Some(3), Some(12)));
+    }
+}
+
+#[test]
 fn an_unknown_key_is_shown_with_the_nearest_known_one() {
     let error = read("# a scene\n[camera]\npositon = [-100, 0, 0]\n").expect_err("a slip");
     assert_eq!(
