@@ -127,7 +127,9 @@ fn strangers_take_no_room() {
     assert_eq!(status(&server.get("/", &server.host())), "200");
     // The oldest are gone: the others would keep silent for longer than one waits here.
     for stream in &mut strangers[..100] {
-        assert!(matches!(stream.read(&mut [0; 999]), Ok(_)), "still there");
+        // Closed, or reset where words were left unread.
+        let silent = |error: std::io::Error| error.kind() == std::io::ErrorKind::WouldBlock;
+        assert!(!stream.read(&mut [0; 999]).is_err_and(silent), "still there");
     }
     page.say(&look(1, 5.0, 1));
     page.finished(1);
