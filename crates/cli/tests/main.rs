@@ -11,3 +11,4 @@ mod long;
 mod measuring;
 mod release;
 mod running;
+mod viewing;

@@ -33,22 +33,41 @@ struct Content {
 impl IndexFile {
     /// Of the content of the file at `path`, if that is this one.
     pub(crate) fn digest_of(&self, path: &Path) -> Option<Digest> {
-        Some(self.content.as_ref().ok().filter(|_| self.path == path)?.digest)
+        let content = self.content.as_ref().ok().filter(|_| self.is_at(path))?;
+        Some(content.digest)
+    }
+
+    /// Whether that is its path, from the current folder or in full.
+    fn is_at(&self, path: &Path) -> bool {
+        let full = |path: &Path| std::path::absolute(path).ok();
+        self.path == path || full(&self.path).is_some_and(|own| Some(own) == full(path))
     }
 }
 
 /// Files that have been read, each once: a pipe gives its bytes once only.
 #[derive(Debug, Default)]
-pub(crate) struct IndexFiles(RefCell<Vec<Arc<IndexFile>>>);
+pub(crate) struct IndexFiles {
+    known: RefCell<Vec<Arc<IndexFile>>>,
+    /// Whether these are all, and no other is opened.
+    are_all: bool,
+}
 
 impl IndexFiles {
+    /// Files that have been read before, and no others.
+    pub(crate) fn only(known: &[Arc<IndexFile>]) -> Self {
+        Self { known: RefCell::new(known.to_vec()), are_all: true }
+    }
+
     /// That of a device, if it has one that can be read, or read once only; what is wrong with one is
     /// told where the device is built.
     pub(crate) fn of(&self, device: &AnyDevice) -> Option<Arc<IndexFile>> {
         let path = path(device)?;
-        let mut files = self.0.borrow_mut();
-        if let Some(known) = files.iter().find(|file| file.path == path) {
+        let mut files = self.known.borrow_mut();
+        if let Some(known) = files.iter().find(|file| file.is_at(path)) {
             return Some(Arc::clone(known));
+        }
+        if self.are_all {
+            return None;
         }
         let content = read(path);
         // A file may be mended until the device is built.
@@ -86,7 +105,7 @@ pub(crate) fn with_files_read<'d>(
     };
     let key = find(Graded::KEYS, key!(Graded.index))?;
     let file = path.display();
-    let samples = match known.filter(|known| known.path == path) {
+    let samples = match known.filter(|known| known.is_at(path)) {
         Some(known) => {
             known.content.as_ref().map(|known| known.samples.clone()).map_err(Clone::clone)
         }

@@ -121,6 +121,33 @@ test("devices and their parameters are switched", async () => {
   await page.close();
 });
 
+test("the bandwidth of the light has a control, and a link keeps it", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  assert.equal(await page.inputValue("#bandwidth"), "");
+  const set = async (value) => {
+    await page.fill("#bandwidth", value);
+    await page.keyboard.press("Tab");
+    await finished(page);
+  };
+  const light = () =>
+    page.evaluate(() => {
+      const text = location.hash.slice(1).replaceAll("-", "+").replaceAll("_", "/");
+      return JSON.parse(atob(text)).scene.light;
+    });
+  await set("0");
+  assert.deepEqual(await light(), { bandwidth_nm: 0 });
+  await set("");
+  assert.equal(await light(), undefined);
+  // What is no bandwidth is explained.
+  await page.fill("#bandwidth", "-5");
+  await page.keyboard.press("Tab");
+  await page.waitForSelector("#banner:not([hidden])");
+  assert.match(await page.textContent("#banner-text"), /bandwidth_nm/);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
 test("vectors and tables among the parameters have controls, too", async () => {
   const { page, complaints } = await open();
   await small(page);

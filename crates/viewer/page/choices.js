@@ -44,6 +44,7 @@ export function showState(state, hello, { changed, setShow }) {
   $("polarizer").value = typeof polarizer === "number" ? "angle" : polarizer;
   $("angle-label").hidden = typeof polarizer !== "number";
   if (typeof polarizer === "number") $("angle").value = polarizer;
+  $("bandwidth").value = state.scene.light?.bandwidth_nm ?? "";
   $("map").value = state.scene.picture?.map ?? "none";
   $("beside").value = state.beside;
   $("width").value = String(state.width);

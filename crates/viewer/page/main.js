@@ -278,6 +278,12 @@ $("angle").addEventListener("change", () => {
   state.set("camera", "polarizer", $("angle").valueAsNumber);
   changed();
 });
+$("bandwidth").addEventListener("change", () => {
+  const given = $("bandwidth").value !== "";
+  if (given && !Number.isFinite($("bandwidth").valueAsNumber)) return;
+  state.set("light", "bandwidth_nm", given ? $("bandwidth").valueAsNumber : undefined);
+  changed();
+});
 $("map").addEventListener("change", () => {
   const map = $("map").value;
   state.set("picture", "map", map === "none" ? undefined : map);

@@ -2,11 +2,13 @@
 //! opened.
 
 use crate::protocol::SceneTables;
+use cloakroom::index_file::IndexFile;
 use cloakroom::json;
 use cloakroom::photograph::ImageSource;
 use cloakroom::scene_file::{self, Loaded};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Weakest branches that a page may ask for.
 const LEAST_POWER: f64 = 1e-7;
@@ -30,6 +32,8 @@ pub(crate) struct Opened {
     folder: PathBuf,
     /// The files that it names.
     files: Vec<PathBuf>,
+    /// Those of an index, read: a pipe gives its bytes once only.
+    index_files: Vec<Arc<IndexFile>>,
 }
 
 impl Opened {
@@ -51,7 +55,10 @@ impl Opened {
             }
             known.extend([path, absolute]);
         }
-        Ok(Self { tables, name: name.to_owned(), folder: folder.to_owned(), files: known })
+        let devices = loaded.scene.devices.iter();
+        let index_files = devices.filter_map(|device| device.index_file.clone()).collect();
+        let (name, folder) = (name.to_owned(), folder.to_owned());
+        Ok(Self { tables, name, folder, files: known, index_files })
     }
 
     /// Where a photograph of that name would lie, were it a file of the scene's folder. Uploaded
@@ -60,7 +67,7 @@ impl Opened {
         ImageSource::File(self.folder.join(name))
     }
 
-    /// Reads the scene of a page. `uploaded` is the photograph that the page has brought.
+    /// Reads the scene of a page, and opens no file for it. `uploaded` is the photograph that the page has brought.
     ///
     /// # Errors
     ///
@@ -71,7 +78,7 @@ impl Opened {
         uploaded: Option<&ImageSource>,
     ) -> Result<Loaded, String> {
         let tables = json::value(&Value::Object(scene.clone()))?;
-        let mut loaded = scene_file::assemble(tables, NAME, &self.folder, &[])
+        let mut loaded = scene_file::assemble_with(&self.index_files, tables, NAME, &self.folder)
             .map_err(|error| error.message.clone())?;
         // What the page has brought is the photograph and nothing else: on a body or around the
         // scene a file of that name would be looked for.

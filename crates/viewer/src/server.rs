@@ -4,13 +4,13 @@ use crate::address::{Names, Secret, listen};
 use crate::assets::ASSETS;
 use crate::catalogue::greeting;
 use crate::client;
-use crate::idle::Attentive;
+use crate::idle::{Attentive, Standing};
 use crate::protocol::{LARGEST_PHOTOGRAPH, LONGEST_TEXT};
 use crate::scenes::Opened;
 use crate::slot::lock;
 use axum::Router;
 use axum::extract::ws::WebSocketUpgrade;
-use axum::extract::{Request, State};
+use axum::extract::{ConnectInfo, Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
@@ -128,7 +128,7 @@ pub fn serve(
         // A picture that waits for the page to confirm the last bytes of the one before would wait
         // 40 ms.
         let listener = tokio::net::TcpListener::from_std(listener)?;
-        let listener = Attentive(listener.tap_io(|stream| {
+        let listener = Attentive::new(listener.tap_io(|stream| {
             // If it cannot be had, pages are slower.
             let _ = stream.set_nodelay(true);
         }));
@@ -136,7 +136,8 @@ pub fn serve(
             .route("/{secret}/session", get(session))
             .fallback(get(asset))
             .layer(from_fn_with_state(server.clone(), guard))
-            .with_state(server.clone());
+            .with_state(server.clone())
+            .into_make_service_with_connect_info::<Standing>();
         ready(&format!("http://127.0.0.1:{port}/{}/", server.secret.digits()));
         let closing = server.clone();
         let end = async move {
@@ -175,13 +176,19 @@ fn read_images(scene: &Scene, server: &Arc<Server>) {
 
 /// Refuses who does not come to this server by its name and its secret, and says what browsers may
 /// do.
-async fn guard(State(server): State<Arc<Server>>, request: Request, next: Next) -> Response {
+async fn guard(
+    State(server): State<Arc<Server>>,
+    ConnectInfo(standing): ConnectInfo<Standing>,
+    request: Request,
+    next: Next,
+) -> Response {
     let refuse = |words: &'static str| (StatusCode::FORBIDDEN, words).into_response();
     let mut response = if !server.names.host_is_ours(request.headers()) {
         refuse("this server answers on this machine alone\n")
     } else if server.secret.path_within(request.uri().path()).is_none() {
         refuse("open the whole address, as `cloakroom view` has printed it\n")
     } else {
+        standing.introduce();
         next.run(request).await
     };
     for (name, value) in [

@@ -15,13 +15,14 @@ mod tree;
 
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 pub use error::SceneFileError;
 pub use locations::Locations;
 pub use overrides::Override;
 pub use schema::schema;
 
-use crate::index_file::IndexFiles;
+use crate::index_file::{IndexFile, IndexFiles};
 use crate::input::{read_file, read_up_to};
 use crate::keys::Value;
 use crate::scene::Scene;
@@ -139,6 +140,22 @@ pub fn assemble(
 ) -> Result<Loaded, SceneFileError> {
     let locations = Locations::new(name, "", overrides);
     read_values(tables, base_folder, locations, &IndexFiles::default())
+}
+
+/// The same without opening a file: the indices of devices are those of files that have been read
+/// before, or are left to be read where the devices are built.
+///
+/// # Errors
+///
+/// As [`assemble`].
+pub fn assemble_with(
+    index_files: &[Arc<IndexFile>],
+    tables: Value,
+    name: &str,
+    base_folder: &Path,
+) -> Result<Loaded, SceneFileError> {
+    let locations = Locations::new(name, "", &[]);
+    read_values(tables, base_folder, locations, &IndexFiles::only(index_files))
 }
 
 fn read_values(

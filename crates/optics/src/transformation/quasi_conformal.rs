@@ -1,5 +1,6 @@
 //! The quasi-conformal map of the carpet cloak of Li & Pendry.
 
+mod chirp;
 mod series;
 mod table;
 
@@ -56,8 +57,8 @@ impl PartialEq for QuasiConformalMap {
     }
 }
 
-/// The widest box, in widths of the bump: solving for the map takes time as the square of it, some
-/// seconds here.
+/// The widest box, in widths of the bump: the table of the map takes time and room as the square of
+/// it, some tenths of a second here.
 pub(super) const MOST_WIDTHS: f64 = 10.0;
 
 impl Bump {

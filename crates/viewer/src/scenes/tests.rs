@@ -53,6 +53,49 @@ fn a_page_can_name_no_other_file() {
     }
 }
 
+/// Nobody writes into the pipe: whoever opened it would wait for ever.
+#[test]
+#[cfg(unix)]
+fn a_file_that_a_page_may_not_name_is_not_opened() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = folder.path().join("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo");
+    assert!(made.success());
+    let (sender, receiver) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        let scene = json!({ "device": [{ "kind": "graded", "index": pipe }] });
+        let read = opened(Path::new("/home/user/scenes")).read(&object(scene), None);
+        sender.send(read.map(drop)).expect("heard");
+    });
+    let refused = receiver.recv_timeout(std::time::Duration::from_secs(20)).expect("an answer");
+    assert!(refused.expect_err("refused").contains("it can open no file"));
+}
+
+/// A pipe gives its bytes once only, however often a page looks.
+#[test]
+fn the_index_of_the_scene_that_was_opened_is_read_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.npy");
+    let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (4, 4), }";
+    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    bytes.extend(format!("{header:<117}\n").bytes());
+    bytes.extend([1.5_f64; 16].iter().flat_map(|number| number.to_le_bytes()));
+    for overridden in [false, true] {
+        std::fs::write(&path, &bytes).expect("written");
+        let named = if overridden { "kind = 'graded'" } else { "kind = 'graded'\nindex = 'a.npy'" };
+        let change = format!("device.0.index={}", path.display());
+        let changes: Vec<_> = overridden.then(|| change.as_str().into()).into_iter().collect();
+        let text = format!("[[device]]\n{named}\n");
+        let loaded = scene_file::parse(&text, "a", folder.path(), &changes).expect("a scene");
+        let opened = Opened::new(&loaded, "a", folder.path()).expect("tables");
+        std::fs::remove_file(&path).expect("removed");
+        for _ in 0..2 {
+            let read = opened.read(&object(opened.tables.clone()), None).expect("its own scene");
+            cloakroom::render::assembly(&read.scene).expect("a device");
+        }
+    }
+}
+
 #[test]
 fn files_named_in_overrides_are_those_of_the_user() {
     let folder = Path::new("/home/user/scenes");

@@ -9,7 +9,8 @@ mod pictures;
 
 use page::{Heard, Server, look};
 use serde_json::json;
-use std::net::TcpListener;
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
 use tokio_tungstenite::tungstenite::Message;
 
 fn status(answer: &str) -> &str {
@@ -108,6 +109,48 @@ fn only_who_knows_the_whole_address_is_served() {
     server.connect(Some(&ours), None).expect("our own page");
     // The next server has another one.
     assert_ne!(server.secret, Server::start(0).secret);
+}
+
+/// Another user opens connections and says nothing of use on them.
+#[test]
+fn strangers_take_no_room() {
+    let server = Server::start(0);
+    let mut page = server.page();
+    let mut strangers: Vec<_> = (0..200)
+        .map(|_| {
+            let mut stream = TcpStream::connect(("127.0.0.1", server.port)).unwrap();
+            stream.write_all(b"GET / HT").unwrap();
+            stream.set_read_timeout(Some(std::time::Duration::from_secs(1))).unwrap();
+            stream
+        })
+        .collect();
+    assert_eq!(status(&server.get("/", &server.host())), "200");
+    // The oldest are gone: the others would keep silent for longer than one waits here.
+    for stream in &mut strangers[..100] {
+        // Closed, or reset where words were left unread.
+        let silent = |error: std::io::Error| error.kind() == std::io::ErrorKind::WouldBlock;
+        assert!(!stream.read(&mut [0; 999]).is_err_and(silent), "still there");
+    }
+    page.say(&look(1, 5.0, 1));
+    page.finished(1);
+}
+
+/// A page whose light is trapped in a device, with branches followed for long, keeps no
+/// other waiting.
+#[test]
+fn trapped_light_keeps_no_page_waiting() {
+    let server = Server::start(0);
+    let (mut slow, mut quick) = (server.page(), server.page());
+    let scene = json!({
+        "trace": { "min_power": 1e-9 },
+        "device": [{ "kind": "square-cloak", "material": "negative-uniaxial", "rotation": 7 }],
+    });
+    slow.say(&json!({ "look": { "id": 1, "scene": scene, "size": [2000, 2000], "samples": 64 } }));
+    slow.hear_of("section");
+    let start = std::time::Instant::now();
+    quick.say(&look(2, 5.0, 1));
+    quick.finished(2);
+    assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
 }
 
 /// A page whose pictures take minutes keeps no other waiting.

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 
 use super::Bump;
+use super::chirp::ChirpTransform;
 
 /// The highest wave number, in units of 1/w: the floor's curvature jumps at the feet of the bump,
 /// so the coefficients fall like 1/k³, and what fades of them moves the floor by less than 1e-4 h.
@@ -21,8 +22,7 @@ const NEGLIGIBLE: f64 = 1e-60;
 /// Collocation points for each term.
 const OVERSAMPLING: usize = 2;
 
-/// Rounds of the fixed point; a slope of 1.5 takes about 200, and they are not enough for one of 4:
-/// each leaves slope/√(1 + slope²) of the error.
+/// Rounds of the fixed point; a slope of 1.5 takes about 50, one of 4 about 170.
 const MOST_ROUNDS: u32 = 1000;
 const STEEPEST: f64 = 4.0;
 
@@ -47,40 +47,45 @@ impl Series {
     pub fn solve(bump: Bump, half_width: f64, height: f64) -> Option<Self> {
         let count = (FINENESS * half_width / (PI * bump.width)).ceil() as usize;
         let points = OVERSAMPLING * count;
-        // cos(π i/(2 points)): all cosines and sines at the points X = (m + 1/2) A/points.
-        let circle = 4 * points;
-        let cosines: Vec<f64> =
-            (0..circle).map(|i| (2.0 * PI * i as f64 / circle as f64).cos()).collect();
-        let cosine = |index: usize| cosines[index % circle];
-        let sine = |index: usize| cosines[(index + circle - points) % circle];
         let grid: Vec<f64> =
             (0..points).map(|m| (m as f64 + 0.5) * half_width / points as f64).collect();
         let wave_number = |j: usize| PI * j as f64 / half_width;
-        // What moves x by δ moves y by slope δ, and that x again, a quarter of a wave further on:
-        // the damping under which such a rotation shrinks fastest.
+        // What x moves by δ moves y by slope δ, and that x again, a quarter of a wave further on:
+        // steps from the last place but one are those under which such a rotation shrinks fastest
+        // (Concus & Golub 1976, Widlund 1978). In a low box coth makes more of it than the slope,
+        // so √2 of that is reckoned with.
         let slope = PI * bump.height / bump.width;
-        let damping = 1.0 / (1.0 + slope * slope);
+        let momentum = 2.0 / (1.0 + (1.0 + 2.0 * slope * slope).sqrt());
         let rounds = if slope > STEEPEST { 0 } else { MOST_ROUNDS };
-        let mut x = grid.clone();
+        // At the points X = (m + 1/2) A/points a term has the phase π (j/2 + jm)/points.
+        let phase = |n: u64| {
+            let circle = 4 * points as u64;
+            Complex64::cis(2.0 * PI * (n % circle) as f64 / circle as f64)
+        };
+        let mut transform = ChirpTransform::new(points, points, phase);
+        let half_steps: Vec<_> = (1..=count as u64).map(phase).collect();
+        let (mut x, mut last) = (grid.clone(), grid.clone());
         let mut b = vec![0.0; count];
         for _ in 0..rounds {
             let y: Vec<f64> = x.iter().map(|x| bump.height_at(*x)).collect();
             let mean = y.iter().sum::<f64>() / points as f64;
             let virtual_height = height - mean;
-            let mut shift = vec![0.0; points];
-            for (j, b) in (1..).zip(&mut b) {
-                let sum: f64 = (0..points).map(|m| y[m] * cosine(j * (2 * m + 1))).sum();
-                *b = 2.0 / points as f64 * sum;
-                let along = *b / (wave_number(j) * virtual_height).tanh();
-                for (m, shift) in shift.iter_mut().enumerate() {
-                    *shift += along * sine(j * (2 * m + 1));
-                }
+            // b_j is a sum of cosines over the points, x one of sines over the terms.
+            let mut along = vec![Complex64::ZERO; count];
+            let sums = transform.sums(y.iter().map(|y| y.into())).skip(1);
+            for ((j, sum), ((b, along), half)) in
+                (1..).zip(sums).zip(b.iter_mut().zip(&mut along).zip(&half_steps))
+            {
+                *b = 2.0 / points as f64 * (sum * half).re;
+                *along = *b / (wave_number(j) * virtual_height).tanh() * half;
             }
+            let shift = transform.sums(std::iter::once(Complex64::ZERO).chain(along));
             let mut residual = 0.0_f64;
-            for ((x, grid), shift) in x.iter_mut().zip(&grid).zip(&shift) {
-                let change = grid - shift - *x;
-                residual = residual.max(change.abs());
-                *x += damping * change;
+            for (((x, last), grid), shift) in x.iter_mut().zip(&mut last).zip(&grid).zip(shift) {
+                let moved = grid - shift.im;
+                residual = residual.max((moved - *x).abs());
+                let next = *last + momentum * (moved - *last);
+                (*last, *x) = (*x, next);
             }
             if residual < 1e-13 * half_width {
                 let rising = x.windows(2).all(|pair| pair[0] < pair[1]);
@@ -99,6 +104,64 @@ impl Series {
     /// The highest wave number, 1/cm.
     pub fn highest_wave_number(&self) -> f64 {
         self.terms.len() as f64 * PI / self.half_width
+    }
+
+    /// What [`Self::taylor_along`] needs for so many points that are `step` inverse highest wave
+    /// numbers apart, on rows at `bottom` or higher.
+    pub fn transform_along(&self, columns: usize, step: u64, bottom: f64) -> ChirpTransform {
+        // What has faded there is left out.
+        let rate = PI / self.half_width;
+        let last = -0.5 * NEGLIGIBLE.ln() / (rate * bottom.max(0.0));
+        let terms = self.terms.len().min(last.ceil() as usize);
+        // Whole radians are told apart from the rest, or large ones would be inexact.
+        let circle = 2 * self.terms.len() as u128;
+        ChirpTransform::new(terms + 1, columns, |square| {
+            let n = u128::from(square) * u128::from(step);
+            let (whole, rest) = ((n / circle) as f64, (n % circle) as f64 / circle as f64);
+            Complex64::cis(whole) * Complex64::cis(rest)
+        })
+    }
+
+    /// [`Self::taylor`] at points of one height, from X = 0 on, `spacing` apart.
+    pub fn taylor_along<const N: usize>(
+        &self,
+        transform: &mut ChirpTransform,
+        columns: usize,
+        spacing: f64,
+        y: f64,
+    ) -> Vec<[Complex64; N]> {
+        let rate = PI / self.half_width;
+        let wave_numbers = || (1..=self.terms.len()).map(|j| rate * j as f64);
+        let terms = || wave_numbers().zip(&self.terms);
+        let mut rising: Vec<f64> = terms().map(|(k, c)| c * (-k * y).exp()).collect();
+        let below_image = y - 2.0 * self.virtual_height;
+        let mut falling: Vec<f64> = terms().map(|(k, c)| -c * (k * below_image).exp()).collect();
+        let place = |m: usize| Complex64::new(m as f64 * spacing, y + self.mean);
+        let mut taylor = vec![[Complex64::ZERO; N]; columns];
+        let mut factor = Complex64::i();
+        let mut conjugate_factor = Complex64::i();
+        for n in 0..N {
+            let mut add = |amplitudes: &[f64], term: &dyn Fn(Complex64) -> Complex64| {
+                let inputs = std::iter::once(0.0).chain(amplitudes.iter().copied());
+                for (taylor, sum) in taylor.iter_mut().zip(transform.sums(inputs.map(Into::into))) {
+                    taylor[n] += term(sum);
+                }
+            };
+            add(&rising, &|sum| factor * sum);
+            add(&falling, &|sum| conjugate_factor * sum.conj());
+            // (i k)^n/n! of both exponentials: in the second the sign alternates.
+            factor *= Complex64::i();
+            conjugate_factor *= -Complex64::i();
+            for (k, (rising, falling)) in wave_numbers().zip(rising.iter_mut().zip(&mut falling)) {
+                *rising *= k / (n + 1) as f64;
+                *falling *= k / (n + 1) as f64;
+            }
+        }
+        for (m, taylor) in taylor.iter_mut().enumerate() {
+            taylor[0] += place(m);
+            taylor[1] += Complex64::ONE;
+        }
+        taylor
     }
 
     /// The first Taylor coefficients of f about a point, two or more.

@@ -63,14 +63,16 @@ struct Band {
 impl Table {
     pub fn new(series: &Series) -> Self {
         let (half_width, virtual_height) = (series.half_width, series.virtual_height);
-        let mut spacing = 1.0 / series.highest_wave_number();
-        let band = |spacing: f64, bottom: f64| {
-            Band::new(series, spacing, bottom, (2.0 * DISTANCE * spacing).min(virtual_height))
+        let least = 1.0 / series.highest_wave_number();
+        let band = |step: u64, bottom: f64| {
+            let top = 2.0 * DISTANCE * step as f64 * least;
+            Band::new(series, (step, least), bottom, top.min(virtual_height))
         };
-        let mut bands = vec![band(spacing, -(BELOW as f64) * spacing)];
-        while 2.0 * DISTANCE * spacing < virtual_height {
-            spacing *= 2.0;
-            bands.push(band(spacing, DISTANCE * spacing));
+        let mut step = 1;
+        let mut bands = vec![band(step, -(BELOW as f64) * least)];
+        while 2.0 * DISTANCE * step as f64 * least < virtual_height {
+            step *= 2;
+            bands.push(band(step, DISTANCE * step as f64 * least));
         }
         let [top, ..] = series.taylor::<2>(Complex64::new(0.0, virtual_height));
         Self { half_width, virtual_height, height: top.im, bands }
@@ -177,19 +179,20 @@ struct TablePoint<'a> {
 }
 
 impl Band {
-    /// The patches on 0 <= X <= A between two Y.
-    fn new(series: &Series, spacing: f64, bottom: f64, top: f64) -> Self {
+    /// The patches on 0 <= X <= A between two Y, `step` times the least spacing apart.
+    fn new(series: &Series, (step, least): (u64, f64), bottom: f64, top: f64) -> Self {
+        let spacing = step as f64 * least;
         let columns = (series.half_width / spacing).round() as usize + 1;
         let rows = ((top - bottom) / spacing).round() as usize + 1;
-        let patches = (0..rows * columns)
-            .map(|index| {
-                let (row, column) = (index / columns, index % columns);
-                let zeta = Complex64::new(column as f64 * spacing, bottom + row as f64 * spacing);
-                let taylor = series.taylor::<{ TERMS + 1 }>(zeta);
-                Patch {
-                    value: taylor[0],
-                    slopes: std::array::from_fn(|n| (n + 1) as f64 * taylor[n + 1]),
-                }
+        let mut transform = series.transform_along(columns, step, bottom);
+        let patches = (0..rows)
+            .flat_map(|row| {
+                let y = bottom + row as f64 * spacing;
+                series.taylor_along::<{ TERMS + 1 }>(&mut transform, columns, spacing, y)
+            })
+            .map(|taylor| Patch {
+                value: taylor[0],
+                slopes: std::array::from_fn(|n| (n + 1) as f64 * taylor[n + 1]),
             })
             .collect();
         Self { spacing, inverse_spacing: spacing.recip(), bottom, rows, patches, columns }

@@ -10,7 +10,7 @@ use crate::transformation::ConformalMap;
 
 const CUT: Truncation = Truncation { x_min: -25.0, x_max: 25.0, y_max: 28.57 };
 
-/// Solved once: the narrow bumps take seconds.
+/// Solved once.
 static MAPS: LazyLock<[(QuasiConformalMap, Truncation); 6]> = LazyLock::new(|| {
     [
         (28.0, 4.25, CUT),
@@ -127,4 +127,55 @@ fn refuses_what_is_not_a_map() {
     assert!(matches!(error(28.0, 28.57), Some(Error::TooHigh { .. })));
     assert!(matches!(error(6.0, 27.0), Some(Error::TooSteep { .. })));
     assert!(error(28.0, 14.0).is_none());
+}
+
+/// Whoever waits for a carpet waits a moment: the widest one took eight seconds when each sum was
+/// added up term by term.
+#[test]
+fn the_widest_map_takes_a_moment() {
+    let start = std::time::Instant::now();
+    let map = QuasiConformalMap::new(39.0, 4.25, &Truncation::centred(390.0, 30.0)).expect("a map");
+    // A tenth of a second on a machine that does nothing else.
+    assert!(start.elapsed().as_secs() < 3, "{:?}", start.elapsed());
+    let steep = QuasiConformalMap::new(10.0, 12.7, &Truncation::centred(100.0, 30.0));
+    assert!(start.elapsed().as_secs() < 3, "{:?}", start.elapsed());
+    for map in [map, steep.expect("a map")] {
+        let (height, width) = (map.bump.height, map.bump.width);
+        for k in 0..=1000 {
+            let f = map.jet((f64::from(k) * 1e-3 * width).into()).f;
+            assert!((f.im - map.bump.height_at(f.re)).abs() < 1e-4 * height, "{f}");
+        }
+    }
+}
+
+/// Rows of the table are found all points at once.
+#[test]
+fn rows_of_points_are_the_series() {
+    for (map, _) in MAPS.iter() {
+        let series = &map.solved.series;
+        let least = series.highest_wave_number().recip();
+        for (step, bottom) in [(1, -8.0), (1, 0.0), (4, 32.0), (64, 512.0)] {
+            let (spacing, bottom) = (step as f64 * least, bottom * least);
+            let columns = (series.half_width / spacing).round() as usize + 1;
+            let mut transform = series.transform_along(columns, step, bottom);
+            for y in [bottom, bottom + 5.0 * spacing] {
+                if y > map.virtual_height() {
+                    continue;
+                }
+                let row = series.taylor_along::<4>(&mut transform, columns, spacing, y);
+                for (column, found) in row.iter().enumerate() {
+                    let zeta = Complex64::new(column as f64 * spacing, y);
+                    let expected = series.taylor::<4>(zeta);
+                    for (n, (a, b)) in (0..).zip(found.iter().zip(expected)) {
+                        // As much as it moves a place within a patch.
+                        let error = (a - b).norm() * spacing.powi(n);
+                        assert!(
+                            error < 1e-13 * series.half_width,
+                            "{step} {y} {column} {n}: {error:e}"
+                        );
+                    }
+                }
+            }
+        }
+    }
 }
