@@ -128,6 +128,38 @@ fn sides_that_differ_in_the_sixth_decimal_are_one() {
 }
 
 #[test]
+fn rounded_sides_of_one_cut_that_are_parallel_are_no_gap() {
+    // A square cut into five; two pieces along one cut, between corners on each other's sides, are
+    // 1.06e-5 apart and parallel, for corners of four decimals are points of a grid.
+    let glass =
+        |corners: &str| format!("[[device.prism]]\ncorners = [{corners}]\npermittivity = 2.25\n");
+    let pieces = [
+        "[-3.0139, 0.4589], [-3.4186, -0.7233], [-1.3164, 1.8941]",
+        "[1.0122, 2.8244], [-0.2281, 3.2491], [-2.6959, 0.1765]",
+        "[-0.2281, 3.2491], [-1.8665, 3.8100], [-3.0139, 0.4589], [-1.3164, 1.8941]",
+        "[3.5117, 0.9951], [3.8100, 1.8665], [1.0122, 2.8244], [-1.5109, 1.0227]",
+        "[-3.8100, -1.8665], [1.8665, -3.8100], [3.5117, 0.9951], [-1.5109, 1.0227], [-2.6959, 0.1765], \
+         [-3.4186, -0.7233]",
+    ];
+    let device = |prisms: &[&str]| {
+        let prisms: String = prisms.iter().map(|corners| glass(corners)).collect();
+        assembly(&format!("[[device]]\nkind = \"prisms\"\n{prisms}"))
+    };
+    let whole = device(&["[-3.81, -1.8665], [1.8665, -3.81], [3.81, 1.8665], [-1.8665, 3.81]"]);
+    let cut = device(&pieces);
+    for i in 0..100 {
+        let target = DVec3::new(0.0, f64::from(i) * 0.05 - 2.5, 0.3);
+        let origin = DVec3::new(-20.0, 0.1, 0.2);
+        let ray = launch(origin, (target - origin).normalize());
+        let most = |assembly: &Assembly| {
+            leaves(assembly, &ray).iter().map(|leaf| leaf.power[0]).fold(0.0, f64::max)
+        };
+        let [found, expected] = [&cut, &whole].map(most);
+        assert!((found - expected).abs() < 1e-3, "{target} {found} {expected}");
+    }
+}
+
+#[test]
 fn a_gap_with_parallel_sides_is_no_rounding() {
     // Beyond the critical angle: through the gap goes nothing, for rays do not tunnel.
     let scene = |gap: f64| {

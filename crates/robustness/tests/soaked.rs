@@ -130,3 +130,49 @@ fn light_that_a_graded_medium_keeps_has_no_end() {
     let stats = sound(&keys, DVec3::new(20.0 * 0.6f64.sqrt(), 0.0, 0.0), DVec3::Y, 1e-6);
     assert_eq!((stats.endless, stats.lost), (1, 0));
 }
+
+/// The parts of an axis beside one of 1e164 were no zeros, but their squares were: light that ran in
+/// the face of a hemisphere had no field across it.
+#[test]
+fn axes_have_no_parts_that_vanish_beside_the_others() {
+    let hemisphere = "kind = \"fisheye-hemisphere\"\naxis = [1e164, 2.137734543543963, 1.0]\n";
+    let origin = DVec3::new(-120.4735406782299, -5.944445621457249, 0.0);
+    let direction = DVec3::new(0.9999687564699546, 0.007904813972037806, 0.0);
+    assert_eq!(sound(hemisphere, origin, direction, 7e-6), TraceStats::default());
+}
+
+/// A ray that grazes the foot of a bump came to it by the small steps by which what a pulse takes was
+/// found, and not by those of its way.
+#[test]
+fn what_a_pulse_takes_is_along_the_way_of_the_light() {
+    let carpet = "kind = \"quasi-conformal-carpet\"\nfloor = 503.8954196273643\n\
+        axis = [0.0, 638698.8130304975, 1.9259908616386807]\n";
+    let origin = DVec3::new(-27.91436934363442, 2.228178051906128, 0.0);
+    let direction = DVec3::new(0.9792352855033787, -0.2027270470981034, 0.0);
+    assert_eq!(sound(carpet, origin, direction, 0.00010822768594988541), TraceStats::default());
+}
+
+/// Of two polarizations one may be caught in a film while the other has died, to 5e-324 of its power:
+/// that was lost.
+#[test]
+fn polarizations_die_out_and_are_not_lost() {
+    let lens = "kind = \"fisheye-lens\"\n\
+        [[device.coating]]\nindex = 0.14140796372666956\nthickness_nm = 4976.360905284972\n\
+        [[device.coating]]\npermittivity = 0.7659500560054262\nthickness_nm = 82.11196440280335\n";
+    let origin = DVec3::new(11.97567927552844, -13.322946814317506, 0.0);
+    let direction = DVec3::new(-0.7251096047204221, 0.6886334737305418, 0.0);
+    assert_eq!(sound(lens, origin, direction, 1.4e-6), TraceStats::default());
+}
+
+/// In the corner of a cloak that absorbs, a wave that decays away from a side and carries power
+/// towards it was reflected there without end, and grew.
+#[test]
+fn waves_that_carry_power_towards_the_side_they_leave_are_no_rays() {
+    let cloak = "kind = \"square-cloak\"\n\
+        [[device.coating]]\nindex = 2.596332782460377\nthickness_nm = 43.08152300341924\n\
+        [device.imperfection]\nerror = 0.3490822655148804\nlevels = 0\n\
+        loss_tangent = 0.064131916500628\nmaximum = 0.7031211703393523\nresolution = 1.0853888969868422\n";
+    let origin = DVec3::new(-54.074179593271715, 106.8971008325951, -41.51944081438979);
+    let direction = DVec3::new(0.49175400655702073, -0.8207917844771357, 0.290652444630966);
+    assert_eq!(sound(cloak, origin, direction, 4.3e-7), TraceStats::default());
+}

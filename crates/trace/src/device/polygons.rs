@@ -73,8 +73,9 @@ impl Films<'_> {
 
 /// The device of the parts, whose corners may be off by `rounding` (cm), at least [`SAME_POINT`].
 ///
-/// Sides of two parts that lie along each other no farther apart than that are one. A gap beyond
-/// [`SAME_POINT`] that is as wide at both of its ends is none of rounding, and stays a gap.
+/// Sides of two parts that lie along each other no farther apart than that are one. A gap that is as
+/// wide at both of its ends, and as wide as a step of the last digit may make it, is none of
+/// rounding, and stays a gap.
 ///
 /// # Errors
 ///
@@ -161,6 +162,10 @@ fn pieces(parts: &[PolygonPart], rounding: f64) -> Result<Vec<Piece>, [usize; 2]
 /// Ends of a gap that differ by no more than this share make it a gap with parallel sides.
 const PARALLEL: f64 = 1e-6;
 
+/// The least gap that is meant, as a share of the rounding, which is 1.5 steps of the last digit: a
+/// step along x or y, across a side at 45 degrees. Rounded sides of one line may be parallel, too.
+const NARROWEST_GAP: f64 = std::f64::consts::FRAC_1_SQRT_2 / 1.5;
+
 /// The stretches of an edge of a piece, in order from its first corner to its second.
 fn stretches(
     parts: &[PolygonPart],
@@ -198,7 +203,8 @@ fn stretches(
             let off = |at: f64| off_start + (off_end - off_start) * (at - start) / (end - start);
             let [first, last] = [low, high].map(off);
             let farther = first.abs().max(last.abs());
-            let is_gap = first.min(last) > SAME_POINT && (first - last).abs() <= PARALLEL * farther;
+            let is_gap = first.min(last) > SAME_POINT.max(NARROWEST_GAP * rounding)
+                && (first - last).abs() <= PARALLEL * farther;
             if farther <= rounding && !is_gap && high - low > rounding {
                 let clamped = |p: DVec2, at: f64| match at {
                     at if at <= rounding => from,
