@@ -325,8 +325,10 @@ fn what_cannot_be_given_is_said() {
     let device = |resolution| sampled(SQUARE, Frame::Device, resolution);
     assert_eq!(device(Resolution::Cells([0, 3, 3])), Err(MaterialError::EmptyGrid));
     assert_eq!(device(Resolution::Spacing(-1.0)), Err(MaterialError::EmptyGrid));
-    for huge in [Resolution::Cells([u32::MAX; 3]), Resolution::Spacing(1e-9)] {
-        assert!(matches!(device(huge), Err(MaterialError::TooLarge { .. })));
+    let huge = device(Resolution::Spacing(1e-5));
+    assert!(matches!(huge, Err(MaterialError::TooLarge { .. })), "{huge:?}");
+    for finer in [Resolution::Cells([u32::MAX; 3]), Resolution::Spacing(1e-9)] {
+        assert_eq!(device(finer), Err(MaterialError::TooFine));
     }
     for (scene, part) in [
         (format!("{SQUARE}show = \"bare\""), "bare metal"),

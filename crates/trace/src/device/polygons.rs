@@ -163,8 +163,9 @@ fn pieces(parts: &[PolygonPart], rounding: f64) -> Result<Vec<Piece>, [usize; 2]
 const PARALLEL: f64 = 1e-6;
 
 /// The least gap that is meant, as a share of the rounding, which is 1.5 steps of the last digit: a
-/// step along x or y, across a side at 45 degrees. Rounded sides of one line may be parallel, too.
-const NARROWEST_GAP: f64 = std::f64::consts::FRAC_1_SQRT_2 / 1.5;
+/// step along x or y is 0.71 of it across a side at 45 degrees. Rounded sides of one line may be
+/// parallel, too.
+const NARROWEST_GAP: f64 = 0.7 / 1.5;
 
 /// The stretches of an edge of a piece, in order from its first corner to its second.
 fn stretches(
