@@ -176,3 +176,12 @@ fn waves_that_carry_power_towards_the_side_they_leave_are_no_rays() {
     let direction = DVec3::new(0.49175400655702073, -0.8207917844771357, 0.290652444630966);
     assert_eq!(sound(cloak, origin, direction, 4.3e-7), TraceStats::default());
 }
+
+/// Light that grazes a face within 1e-7 had a field that carried its power to 4e-9.
+#[test]
+fn light_that_grazes_carries_its_power() {
+    let cloak = "kind = \"square-cloak\"\ncore = \"open\"\naxis = [0.0, 1.14750184406617, 3.0165967103093863]\n";
+    let origin = DVec3::new(45.442281519200115, -36.243348897323095, -95.27395840359677);
+    let direction = DVec3::new(-0.4071701302923157, 0.32474621870642073, 0.853669947013259);
+    assert_eq!(sound(cloak, origin, direction, 1.58e-9), TraceStats::default());
+}

@@ -65,8 +65,13 @@ impl Branch<'_> {
         let frame = &splitting.frame;
         let wave_vector = frame.first * splitting.along + frame.normal * self.q;
         let vectors = [wave_vector, self.surface.ray_direction(wave_vector)];
-        splitting
-            .outgoing(side, vectors, fluxes, |i, scale| self.wave.lifted(frame, fields[i]) * scale)
+        let [flux, total] = fluxes;
+        splitting.outgoing(side, vectors, fluxes, |i, _| {
+            // The normal flux has few digits near grazing incidence: |S| has all.
+            let field = self.wave.lifted(frame, fields[i]);
+            let power = splitting.wave.power[i] * (flux[i] / total[i]);
+            field * (power / self.surface.poynting(wave_vector, field)).sqrt()
+        })
     }
 }
 

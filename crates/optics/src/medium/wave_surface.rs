@@ -1,6 +1,7 @@
 //! The wave vectors a medium carries where both polarizations share them.
 
 use super::quadratic::{Quadratic, Roots};
+use crate::wave::ComplexVector;
 use glam::{DMat3, DVec3};
 
 /// The wave surface p·Ap = c of an isotropic or impedance-matched medium.
@@ -25,6 +26,21 @@ impl WaveSurface {
     /// The unit vector of the Poynting vector of a wave with wave vector `p`.
     pub fn ray_direction(&self, wave_vector: DVec3) -> DVec3 {
         self.ray(wave_vector).normalize()
+    }
+
+    /// |Re(E × H*)| of a wave with wave vector `p` and the electric field E: |Ap| (E·AE)/det A, for an
+    /// isotropic medium |Ap| |E|².
+    pub fn poynting(&self, wave_vector: DVec3, electric: ComplexVector) -> f64 {
+        let of = |form: &DMat3| {
+            electric.re.dot(*form * electric.re) + electric.im.dot(*form * electric.im)
+        };
+        let is_isotropic = self.form == DMat3::from_diagonal(DVec3::splat(self.form.x_axis.x));
+        let size = if is_isotropic {
+            electric.norm_squared()
+        } else {
+            of(&self.form) / self.form.determinant()
+        };
+        self.ray(wave_vector).length() * size.abs()
     }
 
     /// Ap, along the ray of a wave with wave vector `p`.
