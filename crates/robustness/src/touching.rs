@@ -7,7 +7,7 @@ use crate::scenes::assembly;
 use cloakroom::assembly::{Assembly, Placed};
 use cloakroom::trace::{Launch, LeafEnd, Limits, PathRecorder, PathSegment, Tracer};
 use glam::{DMat3, DQuat, DVec2, DVec3};
-use optics::geometry::Pose;
+use optics::geometry::{Pose, Solid};
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use std::sync::LazyLock;
 
@@ -81,24 +81,24 @@ impl Sort {
         Self { text, metal, device, border }
     }
 
-    /// How far it reaches along a direction.
-    fn reach(&self, normal: DVec3) -> f64 {
+    /// From where to where its parts reach along a direction.
+    fn reaches(&self, normal: DVec3) -> impl Iterator<Item = [f64; 2]> {
         let turn = DMat3::from_quat(DQuat::from_rotation_arc(normal, DVec3::X));
         let pose = Pose::from_rotation(DVec3::ZERO, turn);
         let hull = &self.device.structure.hull;
+        let bounds = move |solid: &Solid| solid.placed(&pose).bounds();
         let solids = hull.solids.iter().chain(&hull.thin_mirror);
-        let ends = solids.filter_map(|solid| solid.placed(&pose).bounds());
-        ends.map(|[_, high]| high.x).fold(f64::NEG_INFINITY, f64::max)
+        solids.filter_map(bounds).map(|ends| ends.map(|end| end.x))
+    }
+
+    /// How far it reaches along a direction.
+    fn reach(&self, normal: DVec3) -> f64 {
+        self.reaches(normal).map(|[_, high]| high).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Whether it has a sheet without thickness there.
     fn ends_in_sheet(&self, (normal, reach): Side) -> bool {
-        let turn = DMat3::from_quat(DQuat::from_rotation_arc(normal, DVec3::X));
-        let pose = Pose::from_rotation(DVec3::ZERO, turn);
-        let hull = &self.device.structure.hull;
-        let solids = hull.solids.iter().chain(&hull.thin_mirror);
-        let mut ends = solids.filter_map(|solid| solid.placed(&pose).bounds());
-        ends.any(|[low, high]| high.x - low.x < 1e-9 && reach - high.x < 1e-9)
+        self.reaches(normal).any(|[low, high]| high - low < 1e-9 && reach - high < 1e-9)
     }
 }
 

@@ -67,7 +67,8 @@ impl Opened {
         ImageSource::File(self.folder.join(name))
     }
 
-    /// Reads the scene of a page, and opens no file for it. `uploaded` is the photograph that the page has brought.
+    /// Reads the scene of a page, and opens no file for it. `uploaded` is the photograph that the
+    /// page has brought.
     ///
     /// # Errors
     ///
