@@ -45,7 +45,7 @@ fn the_secret_is_on_no_command_line() {
     }
     let told = |name: &str| fs::read_to_string(heard.join(name)).unwrap_or_default();
     let (arguments, page, modes) = (told("arguments"), told("page"), told("modes"));
-    let asked = Command::new("kill").args(["-INT", &view.id().to_string()]).status().unwrap();
+    let asked = Command::new("kill").args(["-TERM", &view.id().to_string()]).status().unwrap();
     assert!(asked.success());
     assert_eq!(view.wait().unwrap().code(), Some(130));
     let secret = address.trim_end_matches('/').rsplit('/').next().unwrap();
