@@ -4,6 +4,7 @@ use cloakroom::trace::Stopped;
 use std::error::Error;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a command comes to.
 pub type Result<T, E = Failure> = std::result::Result<T, E>;
@@ -18,6 +19,9 @@ pub enum Failure {
     /// Ctrl-C.
     Interrupted,
 }
+
+/// Whether it has been told that the command was interrupted.
+static TOLD: AtomicBool = AtomicBool::new(false);
 
 impl Failure {
     /// Both of two; the messages of failed work are told together.
@@ -34,6 +38,8 @@ impl Failure {
         let (words, status) = match self {
             Self::Failed(message) => (format!("error: {message}"), 1),
             Self::Usage(message) => (format!("error: {message}"), 2),
+            // The command may end as a second signal comes: it is told once.
+            Self::Interrupted if TOLD.swap(true, Ordering::SeqCst) => return 130,
             Self::Interrupted => ("interrupted".to_owned(), 130),
         };
         say(&words);
