@@ -5,7 +5,7 @@ use crate::devices::fact_lines;
 use crate::report::{self, Result};
 use crate::scene;
 use cloakroom::assembly::Placed;
-use cloakroom::render::{Images, PreparedScene, estimated_seconds};
+use cloakroom::render::{Estimate, Images, PreparedScene, estimate};
 use cloakroom::scene::Scene;
 use cloakroom::threads;
 use std::fmt::Write;
@@ -57,7 +57,15 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
             )?;
         }
     }
-    let seconds = estimated_seconds(prepared);
-    writeln!(text, "estimate     {seconds:.1} s to render on {} threads", threads::count())?;
+    let Estimate { seconds, walks } = estimate(prepared);
+    let samples = f64::from(width) * f64::from(height) * f64::from(camera.samples);
+    writeln!(
+        text,
+        "estimate     {seconds:.1} s to render on {} threads; {:.2} million of {:.2} million rays traced, \
+         the others seen past every device or interpolated",
+        threads::count(),
+        1e-6 * walks,
+        1e-6 * samples,
+    )?;
     Ok(text)
 }

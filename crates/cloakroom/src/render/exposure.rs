@@ -226,12 +226,16 @@ impl<const N: usize> Neighbour<'_, N> {
 
     /// The leaf of the neighbouring camera ray that has taken the same way, if there is one.
     fn twin(&self) -> Option<&Leaf<N>> {
-        let mut leaves = (self.neighbour.leaves.iter())
+        let leaves = (self.neighbour.leaves.iter())
             .filter(|leaf| self.alone.is_none_or(|polarization| leaf.survives_alone[polarization]));
         leaves.clone().find(|twin| twin.path == self.leaf.path).or_else(|| {
             // Light that enters by another face of a cloak may leave as if nothing had happened.
             let moved = self.moved();
-            leaves.find(|other| is_close(&moved, self.leaf, other))
+            let off = |other: &Leaf<N>| (other.direction - moved.direction).length_squared();
+            let closest = leaves.min_by(|one, other| {
+                off(one).total_cmp(&off(other)).then(one.path.cmp(&other.path))
+            });
+            closest.filter(|other| is_close(&moved, self.leaf, other))
         })
     }
 

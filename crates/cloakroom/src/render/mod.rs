@@ -7,10 +7,12 @@ mod body_surface;
 mod channels;
 mod contrast;
 mod detection;
+mod estimate;
 mod exposure;
 mod film;
 mod images;
 mod interference;
+mod patch;
 mod pixel;
 mod prepared_scene;
 mod pulses;
@@ -18,6 +20,7 @@ mod sampling;
 mod tile;
 
 pub use channels::{ChannelKind, ChannelSet};
+pub use estimate::{Estimate, estimate};
 pub use images::Images;
 pub use prepared_scene::{
     INPUTS, PreparedScene, PreparedSceneError, assembly, coherence, limits, ray_settings,
@@ -27,18 +30,20 @@ pub use tile::{MergeError, Tile, TileError, merge, merge_images};
 
 use crate::output::Picture;
 use crate::scene::Scene;
+use crate::split_mix::mix;
 use crate::trace::{FourTracers, Stopped, TraceStats, Tracer};
 use contrast::{Contrast, first_look};
 use detection::Detection;
 use exposure::{Traced, Working, expose, expose_unhindered};
 use film::{Band, Film};
+use patch::{Fit, LeafPatches, Patch};
 use pixel::Pixel;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
-/// Rows in a band; even, so that bands hold whole blocks of 2 x 2 pixels.
-const BAND_ROWS: u32 = 4;
+/// Rows in a band: those of a row of patches, which are shared by neighbouring rays.
+const BAND_ROWS: u32 = patch::SIDE as u32;
 
 /// How a long work is watched and stopped.
 #[derive(Clone, Copy)]
@@ -188,8 +193,10 @@ fn expose_film<const N: usize>(
     let detection = detection.with_options(wanted, settings);
     let channels = ChannelKind::of(wanted, settings);
     let mut film = Film::new(tile, &channels);
-    let stats = film
-        .bands(BAND_ROWS as usize)
+    let mut bands = film.bands(BAND_ROWS as usize);
+    // In no order, so that what is done says how long the rest will take.
+    bands.sort_by_cached_key(|band| mix(band.corner[1] as u64));
+    let stats = bands
         .into_par_iter()
         .map_init(
             || Exposer::new(prepared, &detection),
@@ -229,35 +236,6 @@ pub fn check_memory(
     })
 }
 
-/// How long rendering the image will take on the threads there are, in seconds: a few thousand
-/// rays, spread over the picture, are traced and timed, or as many as two seconds or a block of
-/// four pixels take.
-#[must_use]
-pub fn estimated_seconds(prepared: &PreparedScene<'_>) -> f64 {
-    const GRID: [u32; 2] = [64, 48];
-    const LONGEST: Duration = Duration::from_secs(2);
-    // A prime above the number of blocks: its multiples visit them all, here and there in the
-    // picture.
-    const STRIDE: u32 = 7919;
-    let camera = &prepared.scene.camera;
-    let [width, height] = camera.resolution;
-    let [columns, rows] = [GRID[0].min(width), GRID[1].min(height)];
-    let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &prepared.scene.picture);
-    let mut exposer = Exposer::new(prepared, &detection);
-    let start = Instant::now();
-    let mut blocks = 0;
-    while blocks < columns * rows && (blocks == 0 || start.elapsed() < LONGEST) {
-        let block = (blocks + 1) * STRIDE % (columns * rows);
-        let [column, row] = [block % columns, block / columns];
-        let corner = [column * width / columns, row * height / rows].map(|i| i as usize);
-        exposer.expose_block(corner, 0, &mut [Pixel::default(); 4]);
-        blocks += 1;
-    }
-    let traced = f64::from(4 * blocks);
-    let all = f64::from(width) * f64::from(height) * f64::from(camera.samples);
-    start.elapsed().as_secs_f64() * all / traced / rayon::current_num_threads() as f64
-}
-
 /// What every file that is made of a scene carries: program, scene, version and seed.
 #[must_use]
 pub fn metadata(scene: &Scene) -> Vec<(String, String)> {
@@ -276,7 +254,10 @@ struct Exposer<'a, const N: usize> {
     prepared: &'a PreparedScene<'a>,
     detection: &'a Detection<N>,
     tracers: FourTracers<'a, N>,
+    patches: Option<LeafPatches<'a, N>>,
     working: Working,
+    /// How many rays of samples have been followed to their ends.
+    walks: f64,
 }
 
 impl<'a, const N: usize> Exposer<'a, N> {
@@ -287,49 +268,106 @@ impl<'a, const N: usize> Exposer<'a, N> {
             prepared,
             detection,
             tracers: FourTracers::new(&tracer),
+            patches: LeafPatches::new(prepared, detection, &tracer),
             working: Working::default(),
+            walks: 0.0,
         }
     }
 
-    /// Exposes a band, 2 x 2 pixels at a time; `None` if it was stopped.
+    /// Exposes a band, patch by patch; `None` if it was stopped.
     fn expose_band(&mut self, band: &mut Band<'_>, stop: &AtomicBool) -> Option<TraceStats> {
+        let mut stats = TraceStats::default();
+        // Patches are those of the whole picture, and may reach beyond the band.
+        let [left, top] = band.corner.map(|corner| corner / patch::SIDE * patch::SIDE);
+        let (corner, size) = (band.corner, [band.width, band.rows]);
+        let is_seen = |patch: Patch| !patch.part_of(corner, size).iter().any(Range::is_empty);
+        let mut take = |this: &mut Self, patch: Patch, traced: f64| {
+            let [columns, rows] = patch.part_of(corner, size);
+            for top in rows.step_by(2) {
+                for left in columns.clone().step_by(2) {
+                    stats += this.expose_pixels([left, top], traced, band, stop)?;
+                }
+            }
+            Some(())
+        };
+        for top in (top..corner[1] + size[1]).step_by(patch::SIDE) {
+            for left in (left..corner[0] + size[0]).step_by(patch::SIDE) {
+                let patch = Patch { corner: [left, top], size: [patch::SIDE; 2] };
+                self.divide(
+                    (patch, 0),
+                    &|patch| is_seen(patch) && !stop.load(Ordering::Relaxed),
+                    &mut take,
+                )?;
+            }
+        }
+        (!stop.load(Ordering::Relaxed)).then_some(stats)
+    }
+
+    /// Divides a patch as far as is worthwhile, and does to each part, of which some share is to be
+    /// traced, what is to be done; parts that are not wanted are left out. `None` where that says so.
+    fn divide(
+        &mut self,
+        (patch, level): (Patch, usize),
+        is_wanted: &impl Fn(Patch) -> bool,
+        take: &mut impl FnMut(&mut Self, Patch, f64) -> Option<()>,
+    ) -> Option<()> {
+        if !is_wanted(patch) {
+            return Some(());
+        }
+        let mut traced = 1.0;
+        if let Some(patches) = &mut self.patches
+            && let Fit::Traced(share) = patches.fit(patch, level)
+        {
+            if let Some(halves) = patches.division() {
+                return halves
+                    .into_iter()
+                    .try_for_each(|half| self.divide((half, level + 1), is_wanted, take));
+            }
+            traced = share;
+        }
+        take(self, patch, traced)
+    }
+
+    /// Exposes the pixels of a block, in a patch of which so much is traced.
+    fn expose_pixels(
+        &mut self,
+        [left, top]: [usize; 2],
+        traced: f64,
+        band: &mut Band<'_>,
+        stop: &AtomicBool,
+    ) -> Option<TraceStats> {
         let camera = &self.prepared.scene.camera;
-        let Band { width, rows, corner: [first_column, first_row], .. } = *band;
         let samples = camera.samples;
         let look = if camera.adaptive > 0.0 { first_look(samples) } else { 0 };
         let mut stats = TraceStats::default();
-        // Blocks are those of the whole picture, and may reach beyond the band.
-        for top in ((first_row & !1)..first_row + rows).step_by(2) {
-            for left in ((first_column & !1)..first_column + width).step_by(2) {
-                let mut pixels = [Pixel::default(); 4];
-                let mut contrast = Contrast::new();
-                let mut taken = 0;
-                while taken < samples {
-                    if stop.load(Ordering::Relaxed) {
-                        return None;
-                    }
-                    let before = (taken < look).then_some(pixels);
-                    stats += self.expose_block([left, top], taken, &mut pixels);
-                    taken += 1;
-                    if let Some(before) = before {
-                        contrast.add(&before, &pixels);
-                    }
-                    if taken == look && contrast.is_within(camera.adaptive) {
-                        break;
-                    }
-                }
-                for (i, pixel) in pixels.iter().enumerate() {
-                    let column = (left + i % 2).checked_sub(first_column);
-                    let row = (top + i / 2).checked_sub(first_row);
-                    if let (Some(x), Some(y)) = (column, row)
-                        && x < width
-                        && y < rows
-                    {
-                        band.set(y * width + x, |channel, color| {
-                            pixel.value(channel, color, f64::from(taken))
-                        });
-                    }
-                }
+        let mut pixels = [Pixel::default(); 4];
+        let mut contrast = Contrast::new();
+        let mut taken = 0;
+        while taken < samples {
+            if stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            let before = (taken < look).then_some(pixels);
+            stats += self.expose_block([left, top], taken, traced, &mut pixels);
+            taken += 1;
+            if let Some(before) = before {
+                contrast.add(&before, &pixels);
+            }
+            if taken == look && contrast.is_within(camera.adaptive) {
+                break;
+            }
+        }
+        let Band { width, rows, corner: [first_column, first_row], .. } = *band;
+        for (i, pixel) in pixels.iter().enumerate() {
+            let column = (left + i % 2).checked_sub(first_column);
+            let row = (top + i / 2).checked_sub(first_row);
+            if let (Some(x), Some(y)) = (column, row)
+                && x < width
+                && y < rows
+            {
+                band.set(y * width + x, |channel, color| {
+                    pixel.value(channel, color, f64::from(taken))
+                });
             }
         }
         Some(stats)
@@ -340,17 +378,34 @@ impl<'a, const N: usize> Exposer<'a, N> {
         &mut self,
         [column, row]: [usize; 2],
         sample: u32,
+        traced: f64,
         pixels: &mut [Pixel; 4],
     ) -> TraceStats {
         let camera = &self.prepared.scene.camera;
         let samples = camera.samples;
         let block = [column as u32 / 2, row as u32 / 2];
         let offset = sampling::offset(sample, samples, block, camera.seed);
-        let rays = std::array::from_fn(|i| {
-            camera.ray((column + i % 2) as f64 + offset[0], (row + i / 2) as f64 + offset[1])
+        let points = std::array::from_fn(|i| {
+            [(column + i % 2) as f64 + offset[0], (row + i / 2) as f64 + offset[1]]
         });
+        let rays = points.map(|[x, y]| camera.ray(x, y));
         let spacing = 1.0 / f64::from(samples).sqrt();
         let mut stats = TraceStats::default();
+        if let Some(patches) = self.patches.as_mut().filter(|_| traced < 1.0)
+            && patches.sample(&points, &rays, &mut stats)
+        {
+            self.walks += 4.0 * traced;
+            let block: [Traced<'_, N>; 4] = std::array::from_fn(|i| {
+                let (leaves, outcome) = &patches.samples[i];
+                Traced { ray: rays[i], leaves, outcome, first_face: None }
+            });
+            for (i, pixel) in pixels.iter_mut().enumerate() {
+                let rays = [&block[i], &block[i ^ 1], &block[i ^ 2]];
+                let (prepared, working) = (self.prepared, &mut self.working);
+                expose::<N, false>(prepared, self.detection, rays, spacing, pixel, working);
+            }
+            return stats;
+        }
         let any = &self.tracers.tracers[0];
         if !(self.detection.times || self.detection.stokes || self.detection.first_face)
             && rays.iter().all(|ray| any.meets_nothing(ray.origin, ray.direction))
@@ -360,6 +415,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
         }
         let launches = rays.each_ref().map(|ray| self.detection.launch(camera, ray));
         self.tracers.trace(&launches);
+        self.walks += 4.0;
         let block: [Traced<'_, N>; 4] = std::array::from_fn(|i| {
             let tracer = &self.tracers.tracers[i];
             let (leaves, outcome) = tracer.traced();

@@ -109,6 +109,9 @@ table! {
         min_power: Given<f64> = Given::by_default(1e-4), in ValueRange::Within(0.0, 1.0),
         /// Largest error of position and optical path on leaving a device.
         tolerance: f64 = 1e-6, "cm", in ValueRange::Between(0.0, 1.0),
+        /// Whether every ray of a picture is traced by itself. Else, where neighbouring rays take
+        /// the same ways, a few are traced and the others interpolated, within the tolerance.
+        exact: bool,
     }
 }
 

@@ -138,6 +138,13 @@ impl Assembly {
         })
     }
 
+    /// Whether light is followed step by step through a graded medium.
+    #[must_use]
+    pub fn is_graded(&self) -> bool {
+        let structures = self.devices.iter().map(|device| &device.structure);
+        structures.flat_map(|structure| &structure.regions).any(Region::takes_four)
+    }
+
     /// The devices, in the order of the scene.
     #[must_use]
     pub fn devices(&self) -> &[Placed] {

@@ -2,20 +2,20 @@
 //! once.
 
 use super::branch::Branch;
-use super::{Launch, Tracer};
+use super::{Launch, PathRecorder, Tracer};
 use crate::device::InnerRay;
 
 /// Traces four rays at once. Each tree is what [`Tracer::trace`] makes of its ray alone.
 #[derive(Clone, Debug)]
-pub struct FourTracers<'a, const N: usize> {
+pub struct FourTracers<'a, const N: usize, W = ()> {
     /// The tracers; each keeps what it has [traced](Tracer::traced) last.
-    pub tracers: [Tracer<'a, N>; 4],
+    pub tracers: [Tracer<'a, N, W>; 4],
 }
 
-impl<'a, const N: usize> FourTracers<'a, N> {
+impl<'a, const N: usize, W: PathRecorder<N> + Clone> FourTracers<'a, N, W> {
     /// Four tracers like the given one.
     #[must_use]
-    pub fn new(tracer: &Tracer<'a, N>) -> Self {
+    pub fn new(tracer: &Tracer<'a, N, W>) -> Self {
         Self { tracers: std::array::from_fn(|_| tracer.clone()) }
     }
 

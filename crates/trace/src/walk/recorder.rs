@@ -15,6 +15,18 @@ pub trait PathRecorder<const N: usize> {
 
     /// Called with the waves that leave the first surface, if rays end there.
     fn stopped(&mut self, _waves: &[OutgoingWave<N>]) {}
+
+    /// Called where a branch of the fingerprint `from` goes on from a border, or starts, as one of
+    /// the fingerprint `to` and some power.
+    #[inline(always)]
+    fn went_on(&mut self, _from: u64, _to: u64, _power: &[f64; N]) {}
+
+    /// Whether a branch that is met, of some fingerprint, is to be left out with all that comes of
+    /// it, and is in no account.
+    #[inline(always)]
+    fn leaves_out(&mut self, _path: u64) -> bool {
+        false
+    }
 }
 
 /// The first surface that a ray meets, as it is looked at on its own.

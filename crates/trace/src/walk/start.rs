@@ -63,7 +63,9 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
             }
             waves => {
                 for (wave, amplitudes) in waves.iter().zip(amplitudes(branch, waves)) {
-                    self.await_turn(branch.as_wave(wave, amplitudes));
+                    let started = branch.as_wave(wave, amplitudes);
+                    self.recorder.went_on(branch.path, started.path, &started.power);
+                    self.await_turn(started);
                 }
                 false
             }

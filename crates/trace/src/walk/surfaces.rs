@@ -72,6 +72,13 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.surface_ahead(origin, direction, None).is_none()
     }
 
+    /// The device and its surface that a ray in air meets first, before the screen.
+    #[must_use]
+    pub fn first_surface(&self, origin: DVec3, direction: DVec3) -> Option<(u16, u16)> {
+        let (device, hit) = self.surface_ahead(origin, direction, None)?;
+        Some((device, hit.surface))
+    }
+
     /// Follows a branch in air to the next surface; whether it goes on from there.
     pub(super) fn through_air(&mut self, branch: &mut Branch<N>) -> bool {
         let hit = self.surface_ahead(branch.position, branch.direction, branch.departed);
@@ -185,8 +192,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
         let parted = region.parted(branch.position, branch.wave_vector);
         let Some([(a, in_a), (b, in_b)]) = parted else { return false };
-        self.await_turn(branch.part(a, in_a, in_b));
-        self.await_turn(branch.part(b, in_b, in_a));
+        for part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
+            self.recorder.went_on(branch.path, part.path, &part.power);
+            self.await_turn(part);
+        }
         true
     }
 
@@ -438,7 +447,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             self.recorder.stopped(std::slice::from_ref(&wave));
             return false;
         }
+        let from = branch.path;
         branch.go_on_as(&wave, event);
+        self.recorder.went_on(from, branch.path, &branch.power);
         put(branch);
         true
     }
@@ -467,13 +478,16 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 self.waiting.push(*branch);
                 if let Some(other) = self.waiting.last_mut() {
                     other.go_on_as(earlier, (event, earlier.side, earlier.mode));
+                    self.recorder.went_on(branch.path, other.path, &other.power);
                     other.update_survival(least_power);
                     put(other, earlier.side);
                 }
             }
         }
         let Some(wave) = last else { return false };
+        let from = branch.path;
         branch.go_on_as(wave, (event, wave.side, wave.mode));
+        self.recorder.went_on(from, branch.path, &branch.power);
         branch.update_survival(least_power);
         put(branch, wave.side);
         true

@@ -100,7 +100,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     fn watching(assembly: &'a Assembly, limits: Limits, recorder: W) -> Self {
         Self {
             assembly,
-            limits: Limits { min_power: limits.min_power.max(NO_POWER), ..limits },
+            limits,
             screen: None,
             joining: None,
             group_delays: false,
@@ -114,9 +114,15 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             started: (DVec3::NAN, None),
             recorder,
         }
+        .within(limits)
     }
 
-    /// Who has watched it.
+    /// Who watches it.
+    pub fn watcher(&self) -> &W {
+        &self.recorder
+    }
+
+    /// Who watches it, to be changed.
     pub fn recorder(&mut self) -> &mut W {
         &mut self.recorder
     }
@@ -135,6 +141,13 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     #[must_use]
     pub fn joining(self, coherence: Coherence) -> Self {
         Self { joining: Some(coherence), ..self }
+    }
+
+    /// Follows rays within other limits.
+    #[must_use]
+    pub fn within(self, limits: Limits) -> Self {
+        let min_power = limits.min_power.max(NO_POWER);
+        Self { limits: Limits { min_power, ..limits }, ..self }
     }
 
     /// Works out what a pulse takes, too, [`Leaf::group_path`].
@@ -206,7 +219,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     fn walk(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
         loop {
             let power = largest(&branch.power);
-            let goes_on = if power < self.threshold {
+            let goes_on = if self.recorder.leaves_out(branch.path) {
+                false
+            } else if power < self.threshold {
                 self.cut(branch.power)
             } else if power > MOST_POWER {
                 self.lose(branch.power)

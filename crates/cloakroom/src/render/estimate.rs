@@ -1,0 +1,83 @@
+//! How long a picture will take.
+
+use super::detection::Detection;
+use super::patch::{Patch, SIDE};
+use super::pixel::Pixel;
+use super::{ChannelSet, Exposer, PreparedScene};
+use std::time::{Duration, Instant};
+
+/// What rendering an image will take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Seconds on the threads there are.
+    pub seconds: f64,
+    /// How many rays will be followed to their ends; one of which a part is interpolated counts by
+    /// the rest.
+    pub walks: f64,
+}
+
+/// How long the image of a scene is looked at.
+const LONGEST: Duration = Duration::from_secs(2);
+
+/// Patches that are looked at, if there is time.
+const MOST_PATCHES: usize = 192;
+
+/// Blocks of a part of a patch that are exposed, of one sample each.
+const BLOCKS: usize = 12;
+
+/// A prime above the number of patches: its multiples visit them all, here and there in the picture.
+const STRIDE: usize = 1_000_003;
+
+/// Estimates what rendering the image will take: patches here and there in the picture are rendered
+/// in part and timed, as many as two seconds take.
+#[must_use]
+pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
+    let camera = &prepared.scene.camera;
+    let size = camera.resolution.map(|side| side as usize);
+    let [columns, rows] = size.map(|side| side.div_ceil(SIDE));
+    let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &prepared.scene.picture);
+    let mut exposer = Exposer::new(prepared, &detection);
+    let start = Instant::now();
+    let (mut looked_at, mut seconds, mut walks) = (0.0, 0.0, 0.0);
+    for number in 0..(columns * rows).min(MOST_PATCHES) {
+        if number > 0 && start.elapsed() >= LONGEST {
+            break;
+        }
+        let place = (number + 1) * STRIDE % (columns * rows);
+        let corner = [place % columns * SIDE, place / columns * SIDE];
+        let is_seen = |patch: Patch| (0..2).all(|i| patch.corner[i] < size[i]);
+        let began = Instant::now();
+        // What exposing the blocks took, and would take of all.
+        let (mut exposing, mut all) = (0.0, 0.0);
+        let mut expose = |exposer: &mut Exposer<'_, 2>, patch: Patch, traced: f64| {
+            let (began, walked) = (Instant::now(), exposer.walks);
+            let [across, down] =
+                patch.part_of([0; 2], size).map(|range| (range.start, range.len().div_ceil(2)));
+            let blocks = across.1 * down.1;
+            let step = blocks.div_ceil(BLOCKS);
+            // From the middle of the first step on: columns and rows are met evenly.
+            let taken = (step / 2..blocks).step_by(step);
+            let count = taken.len() as f64;
+            for block in taken {
+                let corner = [across.0 + block % across.1 * 2, down.0 + block / across.1 * 2];
+                exposer.expose_block(corner, 0, traced, &mut [Pixel::default(); 4]);
+            }
+            let took = began.elapsed().as_secs_f64();
+            let scale = blocks as f64 / count * f64::from(camera.samples);
+            exposing += took;
+            all += took * scale;
+            walks += (exposer.walks - walked) * scale;
+            Some(())
+        };
+        let patch = Patch { corner, size: [SIDE; 2] };
+        exposer.divide((patch, 0), &is_seen, &mut expose);
+        seconds += began.elapsed().as_secs_f64() - exposing + all;
+        looked_at += 1.0;
+    }
+    walks += exposer.patches.as_ref().map_or(0.0, |patches| patches.walks);
+    let scale = (columns * rows) as f64 / looked_at;
+    Estimate {
+        seconds: seconds * scale / rayon::current_num_threads() as f64,
+        walks: walks * scale,
+    }
+}

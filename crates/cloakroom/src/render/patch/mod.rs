@@ -1,0 +1,549 @@
+//! Rays that share their neighbours' work: the leaves over a small patch of the picture.
+//!
+//! Where all rays of a patch take the same way, position, direction, path and power of its leaf are
+//! smooth functions of the place in the picture. They are traced at the nodes of a grid and
+//! interpolated between them; points between the nodes tell whether that is true. A way that only
+//! some rays take, or on which the functions are not smooth, is traced for each sample; a patch
+//! with much of that is divided, and of its parts only that is looked at again.
+
+mod nodes;
+#[cfg(test)]
+mod tests;
+mod ways;
+
+use super::detection::Detection;
+use super::prepared_scene::PreparedScene;
+use crate::scene::CameraRay;
+use crate::trace::{FourTracers, Leaf, Limits, Outcome, TraceStats, Tracer};
+use glam::DVec3;
+use nodes::{COUNT, LANES, Nodes, Weights, bits};
+use optics::wave::ComplexVector;
+use pulp::Arch;
+use std::ops::Range;
+use ways::{LeftOut, Trail, Ways};
+
+/// Width and height of the largest patches, pixels.
+pub(super) const SIDE: usize = 32;
+
+/// The least width and height: patches hold whole blocks of 2 x 2 pixels.
+const LEAST_SIDE: usize = 2;
+
+/// Rays at the nodes are followed to this share of the least power, so that what is above it in one
+/// place of a patch is known in all.
+const DEEPER: f64 = 0.25;
+
+/// They are traced so much more exactly, for errors of theirs are not smooth.
+const CLOSER: f64 = 0.1;
+
+/// What a ray at a node costs in terms of a sample's.
+const COST: f64 = 2.0;
+
+/// What it costs at least, as a share of that, for light has to come to where rays part.
+const LEAST_COST: f64 = 0.1;
+
+/// What a division leaves to be traced of what was.
+const LEFT_AFTER_DIVISION: f64 = 0.5;
+
+/// Divisions are in vain that leave this share of what was to be traced, and after so many of them
+/// there are no more.
+const VAIN: (f64, usize) = (0.85, 2);
+
+/// The largest error of a power, as a share of what was launched.
+const POWER_TOLERANCE: f64 = 1e-6;
+
+/// The largest error of the place on the photograph, and of the optical path, in terms of the
+/// tolerance of paths, times the share of power that goes there.
+const PLACE_TOLERANCE: f64 = 0.3;
+
+/// The same whatever goes there.
+const WEAK_PLACE_TOLERANCE: f64 = 100.0;
+
+/// A rectangle of the picture: its first column and row, and its width and height in pixels.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Patch {
+    pub corner: [usize; 2],
+    pub size: [usize; 2],
+}
+
+impl Patch {
+    /// Its halves, parted across (0) or down (1) the picture.
+    pub fn halves(self, axis: usize) -> [Self; 2] {
+        let mut first = self;
+        first.size[axis] /= 2;
+        let mut second = first;
+        second.corner[axis] += first.size[axis];
+        [first, second]
+    }
+
+    /// The columns and rows of its blocks that have pixels in a rectangle, given as a patch is.
+    pub fn part_of(self, corner: [usize; 2], size: [usize; 2]) -> [Range<usize>; 2] {
+        [0, 1].map(|i| {
+            let (first, end) = (corner[i], corner[i] + size[i]);
+            self.corner[i].max(first & !1)..(self.corner[i] + self.size[i]).min(end)
+        })
+    }
+
+    /// The point of the picture at the coordinates -1 to 1 of the patch.
+    fn point(self, place: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| self.corner[i] as f64 + 0.5 * self.size[i] as f64 * (1.0 + place[i]))
+    }
+
+    /// The coordinates, -1 to 1, of a point of the picture.
+    fn place(self, point: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| (point[i] - self.corner[i] as f64) / (0.5 * self.size[i] as f64) - 1.0)
+    }
+}
+
+/// What becomes of a patch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Fit {
+    /// Its leaves are interpolated, but for this share of what is to be traced: 1 where all is.
+    Traced(f64),
+    /// Nothing would be gained, however it is divided.
+    Simple,
+}
+
+/// The leaf of one way over a patch.
+#[derive(Clone, Copy, Debug)]
+struct SmoothLeaf<const N: usize> {
+    /// That at the first node.
+    first: Leaf<N>,
+    /// The number of the patch over which it was found to be smooth, from the largest on.
+    level: usize,
+    /// Where its values begin.
+    values: usize,
+    /// The longest beginning of its way that rays share, from which on it is left out, and where
+    /// that is among those.
+    beginning: u64,
+    place: usize,
+}
+
+/// What is known of a patch.
+#[derive(Clone, Debug, Default)]
+struct Level<const N: usize> {
+    patch: Patch,
+    /// The surface that its rays meet first.
+    surface: Option<(u16, u16)>,
+    /// The leaves that are interpolated, those of larger patches that it is part of, too.
+    smooth: Vec<SmoothLeaf<N>>,
+    /// The share of all that is to be traced.
+    traced: f64,
+    left_out: LeftOut,
+    /// How many divisions in a row have left hardly less to be traced.
+    vain: usize,
+    /// Where the values of larger patches end.
+    values: usize,
+}
+
+/// Divisions of a patch by two, each way, and the patch itself.
+const MOST_LEVELS: usize = 9;
+
+/// Interpolates leaves over patches, one after the other.
+pub(super) struct LeafPatches<'a, const N: usize> {
+    prepared: &'a PreparedScene<'a>,
+    detection: &'a Detection<N>,
+    scouts: FourTracers<'a, N, Trail>,
+    /// They trace what is not interpolated.
+    tracers: FourTracers<'a, N, LeftOut>,
+    nodes: Nodes,
+    /// Those that the processor has; they change no number.
+    instructions: Arch,
+    /// Functions a leaf, in [`LANES`].
+    lanes: usize,
+    /// Whether rays go through graded media.
+    graded: bool,
+    /// The patch that was fitted last, and before it the larger ones that it is part of.
+    levels: Vec<Level<N>>,
+    /// The values at nodes of what is interpolated.
+    values: Vec<[f64; LANES]>,
+    /// How often neighbouring rays of the last patch part, across the picture and down.
+    cuts: [usize; 2],
+    // Memory to work in.
+    ways: Ways,
+    order: Vec<(u64, usize, usize)>,
+    found: Vec<(usize, Leaf<N>)>,
+    /// How many rays have been traced at nodes and between them.
+    pub walks: f64,
+    /// The leaves of the samples of a block, and what became of the rest.
+    pub samples: [(Vec<Leaf<N>>, Outcome<N>); 4],
+}
+
+impl<'a, const N: usize> LeafPatches<'a, N> {
+    /// For pictures of a scene; `None` if they are to be exact, or would gain nothing.
+    pub fn new(
+        prepared: &'a PreparedScene<'a>,
+        detection: &'a Detection<N>,
+        tracer: &Tracer<'a, N>,
+    ) -> Option<Self> {
+        let graded = prepared.assembly.is_graded();
+        let exact = prepared.scene.trace.exact
+            || prepared.coherence.is_some()
+            || prepared.assembly.absorbs()
+            || detection.first_face
+            || detection.group_delays
+            || detection.times && !graded;
+        if exact {
+            return None;
+        }
+        let Limits { min_power, tolerance } = prepared.limits;
+        let limits = Limits { min_power: DEEPER * min_power, tolerance: CLOSER * tolerance };
+        let paths = if detection.times { 2 } else { 0 };
+        let fields = if detection.stokes { 6 * N } else { 0 };
+        Some(Self {
+            prepared,
+            detection,
+            scouts: FourTracers::new(&tracer.clone().within(limits).watched(Trail::default())),
+            tracers: FourTracers::new(&tracer.clone().watched(LeftOut::default())),
+            nodes: Nodes::new(),
+            instructions: Arch::new(),
+            lanes: (6 + N + paths + fields).div_ceil(LANES),
+            graded,
+            levels: Vec::new(),
+            values: Vec::new(),
+            cuts: [0; 2],
+            ways: Ways::default(),
+            order: Vec::new(),
+            found: Vec::new(),
+            walks: 0.0,
+            samples: std::array::from_fn(|_| (Vec::new(), Outcome::default())),
+        })
+    }
+
+    /// How the patch that was fitted last is to be divided, if it is.
+    pub fn division(&self) -> Option<[Patch; 2]> {
+        let Level { patch, traced, vain, .. } = self.levels.last()?;
+        if *vain >= VAIN.1 {
+            return None;
+        }
+        let [width, height] = patch.size;
+        let samples = width * height * self.prepared.scene.camera.samples as usize;
+        let gain = traced * (1.0 - LEFT_AFTER_DIVISION) * samples as f64;
+        let rays = 2 * self.nodes.points.len();
+        if gain <= COST * traced.max(LEAST_COST) * rays as f64 {
+            return None;
+        }
+        let [across, down] = self.cuts;
+        let axis = usize::from(if across == down { height > width } else { down > across });
+        let divisible = |axis: &usize| patch.size[*axis] > LEAST_SIDE;
+        Some(patch.halves([axis, 1 - axis].into_iter().find(divisible)?))
+    }
+
+    /// Traces the rays of a patch, of that level: 0, or one more than that of the patch of which it
+    /// is a half.
+    pub fn fit(&mut self, patch: Patch, level: usize) -> Fit {
+        if let Some(first) = self.levels.get(level) {
+            self.values.truncate(first.values);
+        }
+        self.levels.truncate(level);
+        let mut here = Level { patch, traced: 1.0, values: self.values.len(), ..Level::default() };
+        let fit = self.look(&mut here);
+        self.levels.push(here);
+        fit
+    }
+
+    fn look(&mut self, here: &mut Level<N>) -> Fit {
+        let camera = &self.prepared.scene.camera;
+        let rays: Vec<CameraRay> = (self.nodes.points.iter())
+            .map(|place| {
+                let [x, y] = here.patch.point(*place);
+                camera.ray(x, y)
+            })
+            .collect();
+        let any = &self.scouts.tracers[0];
+        let surface = |ray: &CameraRay| any.first_surface(ray.origin, ray.direction);
+        let met = surface(&rays[0]);
+        let beside = |ray: &CameraRay| surface(ray) == met;
+        let same = bits(rays.iter().enumerate().filter(|(_, ray)| beside(ray)).map(|(i, _)| i));
+        self.cuts = self.nodes.cuts(same);
+        if same.count_ones() as usize != rays.len() {
+            return Fit::Traced(1.0);
+        }
+        if met.is_none() {
+            return Fit::Simple;
+        }
+        here.surface = met;
+        self.found.clear();
+        self.ways.clear();
+        let above = self.levels.last();
+        let left_out = above.map(|above| above.left_out.clone()).unwrap_or_default();
+        for tracer in &mut self.scouts.tracers {
+            tracer.recorder().left_out.clone_from(&left_out);
+        }
+        for (number, four) in rays.chunks(4).enumerate() {
+            let launches = std::array::from_fn(|i| {
+                self.detection.launch(camera, &four[i.min(four.len() - 1)])
+            });
+            self.scouts.trace(&launches);
+            self.walks += four.len() as f64 * above.map_or(1.0, |above| above.traced);
+            for (i, tracer) in self.scouts.tracers.iter_mut().enumerate() {
+                if i < four.len() {
+                    self.ways.add(4 * number + i, tracer.recorder());
+                }
+                tracer.recorder().clear();
+                let (leaves, outcome) = tracer.traced();
+                if outcome.stats != TraceStats::default() {
+                    // Light without end is told of in the picture's account, and takes its time.
+                    return Fit::Simple;
+                }
+                if i < four.len() {
+                    self.found.extend(leaves.iter().map(|leaf| (4 * number + i, *leaf)));
+                }
+            }
+            if number == 0 && !self.graded && above.is_none() && self.found.len() == 4 {
+                // One branch in closed form is quicker than any polynomial.
+                return Fit::Simple;
+            }
+        }
+        self.ways.gather(rays.len(), self.prepared.limits.min_power);
+        self.interpolate(here);
+        for part in self.ways.some_have() {
+            let cuts = self.nodes.cuts(part);
+            self.cuts = [0, 1].map(|axis| self.cuts[axis] + cuts[axis]);
+        }
+        let above = self.levels.last();
+        here.traced = self.ways.traced_share() * above.map_or(1.0, |above| above.traced);
+        let is_vain = |above: &&Level<N>| here.traced > VAIN.0 * above.traced;
+        here.vain = above.filter(is_vain).map_or(0, |above| above.vain + 1);
+        let known = above.map_or(&[][..], |above| &above.smooth);
+        here.smooth.extend(known.iter().filter(|leaf| !self.ways.parts(leaf.beginning)));
+        if here.traced > 0.0 {
+            here.left_out = LeftOut::new(self.ways.shared());
+            for leaf in &mut here.smooth {
+                leaf.beginning = self.ways.shared_beginning(leaf.beginning);
+                leaf.place = here.left_out.place(leaf.beginning);
+            }
+            for tracer in &mut self.tracers.tracers {
+                tracer.recorder().clone_from(&here.left_out);
+            }
+        }
+        Fit::Traced(here.traced)
+    }
+
+    /// Makes functions of the leaves of the ways that all rays take.
+    fn interpolate(&mut self, here: &mut Level<N>) {
+        let nodes = &self.nodes;
+        let least = self.prepared.limits.min_power;
+        // Leaves are large, and stay where they are.
+        let order = &mut self.order;
+        order.clear();
+        order.extend(self.found.iter().enumerate().map(|(i, (ray, leaf))| (leaf.path, *ray, i)));
+        order.sort_unstable();
+        for way in order.chunk_by(|(one, ..), (other, ..)| one == other) {
+            let leaf_of = |&(.., i): &(u64, usize, usize)| &self.found[i].1;
+            let power = way.iter().map(|one| largest(&leaf_of(one).power)).fold(0.0, f64::max);
+            if power < least {
+                continue;
+            }
+            let first = *leaf_of(&way[0]);
+            let values = self.values.len();
+            let is_whole = way.len() >= COUNT
+                && way[..COUNT].iter().enumerate().all(|(node, one)| {
+                    let leaf = leaf_of(one);
+                    node == one.1 && (leaf.end, leaf.met_device) == (first.end, first.met_device)
+                });
+            if is_whole {
+                for lane in 0..self.lanes {
+                    let at_nodes = way[..COUNT].iter();
+                    self.values
+                        .extend(at_nodes.map(|one| functions(self.detection, leaf_of(one), lane)));
+                }
+                let level = self.levels.len();
+                let leaf = SmoothLeaf { first, level, values, beginning: first.path, place: 0 };
+                let mut between = way[COUNT..].iter().peekable();
+                let is_smooth = (COUNT..).zip(&nodes.checks).all(|(number, weights)| {
+                    let mut here = first;
+                    let view = (self.detection, &self.values[..], self.lanes);
+                    move_leaf(&mut here, &leaf, weights, view);
+                    match between.next_if(|one| one.1 == number) {
+                        Some(one) => agree(self.prepared, self.detection, &here, leaf_of(one)),
+                        // It is too weak to be known there.
+                        None => largest(&here.power) < least,
+                    }
+                });
+                if is_smooth && between.peek().is_none() && !self.ways.parts(first.path) {
+                    here.smooth.push(leaf);
+                    continue;
+                }
+                self.cuts[nodes.rougher(&self.values[values..values + COUNT])] += 1;
+            }
+            self.values.truncate(values);
+            self.ways.part_at(first.path);
+        }
+        // A way may part from others after its leaf was found to be smooth.
+        here.smooth.retain(|leaf| !self.ways.parts(leaf.first.path));
+    }
+
+    /// Finds the leaves of the rays of a block of the patch that was fitted last; whether its rays
+    /// are like those of the patch. What was rare goes to `stats`.
+    pub fn sample(
+        &mut self,
+        points: &[[f64; 2]; 4],
+        rays: &[CameraRay; 4],
+        stats: &mut TraceStats,
+    ) -> bool {
+        let Some(Level { surface, traced, .. }) = self.levels.last() else { return false };
+        let is_traced = *traced > 0.0;
+        let tracer = &self.tracers.tracers[0];
+        let met = |ray: &CameraRay| tracer.first_surface(ray.origin, ray.direction) == *surface;
+        if !rays.iter().all(met) {
+            return false;
+        }
+        if is_traced {
+            let camera = &self.prepared.scene.camera;
+            self.tracers.tracers.iter_mut().for_each(|tracer| tracer.recorder().begin());
+            self.tracers.trace(&rays.each_ref().map(|ray| self.detection.launch(camera, ray)));
+        }
+        let mut samples = std::mem::take(&mut self.samples);
+        let mut as_traced = true;
+        let mut rare = TraceStats::default();
+        for (i, (leaves, outcome)) in samples.iter_mut().enumerate() {
+            leaves.clear();
+            *outcome = Outcome::default();
+            let traced = is_traced.then_some(i);
+            as_traced &=
+                self.instructions.dispatch(|| self.interpolated(points[i], traced, leaves));
+            if is_traced {
+                let (others, outcome) = self.tracers.tracers[i].traced();
+                leaves.extend_from_slice(others);
+                rare += outcome.stats;
+            }
+        }
+        if as_traced {
+            *stats += rare;
+        }
+        for (leaves, outcome) in &mut samples {
+            for (i, pruned) in outcome.pruned.iter_mut().enumerate() {
+                *pruned = (1.0 - leaves.iter().map(|leaf| leaf.power[i]).sum::<f64>()).max(0.0);
+            }
+        }
+        self.samples = samples;
+        as_traced
+    }
+
+    /// The leaves at a point of the picture that are interpolated and strong enough; whether the
+    /// ray of that number in its block, if it is traced, has met the branches of all of them.
+    #[inline(always)]
+    fn interpolated(
+        &self,
+        point: [f64; 2],
+        traced: Option<usize>,
+        leaves: &mut Vec<Leaf<N>>,
+    ) -> bool {
+        let Some(here) = self.levels.last() else { return false };
+        let least = self.prepared.limits.min_power;
+        let mut weights: [Option<Weights>; MOST_LEVELS] = [None; MOST_LEVELS];
+        let mut as_traced = true;
+        let view = (self.detection, &self.values[..], self.lanes);
+        for smooth in &here.smooth {
+            let weights = weights[smooth.level].get_or_insert_with(|| {
+                self.nodes.weights(self.levels[smooth.level].patch.place(point))
+            });
+            // Leaves are large, and made where they are to be.
+            leaves.push(smooth.first);
+            let Some(leaf) = leaves.last_mut() else { break };
+            move_leaf(leaf, smooth, weights, view);
+            if largest(&leaf.power) < least {
+                leaves.pop();
+                continue;
+            }
+            leaf.survives_alone = leaf.power.map(|power| power >= least);
+            let met = |ray: usize| self.tracers.tracers[ray].watcher().has_met(smooth.place);
+            as_traced &= traced.is_none_or(met);
+        }
+        as_traced
+    }
+}
+
+/// Whether an interpolated leaf is as a traced one.
+fn agree<const N: usize>(
+    prepared: &PreparedScene<'_>,
+    detection: &Detection<N>,
+    one: &Leaf<N>,
+    other: &Leaf<N>,
+) -> bool {
+    /// How far leaves are looked at that end nowhere, cm.
+    const REACH: f64 = 100.0;
+    let [least, most] = [PLACE_TOLERANCE / largest(&other.power), WEAK_PLACE_TOLERANCE];
+    let tolerance = least.min(most) * prepared.limits.tolerance;
+    let distance = other.distance_to(&prepared.screen).unwrap_or(REACH);
+    let place = |leaf: &Leaf<N>| leaf.position + leaf.direction * distance;
+    let is_near = |one: f64, other: f64, tolerance: f64| (one - other).abs() <= tolerance;
+    let same_paths = !detection.times
+        || is_near(one.optical_path, other.optical_path, tolerance)
+            && is_near(one.delay_path, other.delay_path, tolerance);
+    let same_fields = !detection.stokes
+        || (one.electric.iter().zip(&other.electric))
+            .all(|(one, other)| (*one - *other).norm_squared() <= POWER_TOLERANCE.powi(2));
+    let mut powers = one.power.iter().zip(&other.power);
+    (one.end, one.met_device) == (other.end, other.met_device)
+        && place(one).distance(place(other)) <= tolerance
+        && powers.all(|(one, other)| is_near(*one, *other, POWER_TOLERANCE))
+        && same_paths
+        && same_fields
+}
+
+/// Moves a leaf to a point of the patch over which it is smooth, where the nodes have these weights:
+/// `detection` and `lanes` say what the values are.
+#[inline(always)]
+fn move_leaf<const N: usize>(
+    leaf: &mut Leaf<N>,
+    smooth: &SmoothLeaf<N>,
+    weights: &Weights,
+    (detection, values, lanes): (&Detection<N>, &[[f64; LANES]], usize),
+) {
+    let lane = |lane: usize| {
+        let start = smooth.values + lane * COUNT;
+        weights.mean(&values[start..start + COUNT])
+    };
+    let first = lane(0);
+    leaf.position = DVec3::from_slice(&first[..3]);
+    leaf.direction = DVec3::from_slice(&first[3..6]).normalize();
+    if lanes == 1 {
+        for (power, value) in leaf.power.iter_mut().zip(&first[6..]) {
+            *power = *value;
+        }
+        return;
+    }
+    let mut all = [first; 4];
+    for (number, values) in all[..lanes].iter_mut().enumerate().skip(1) {
+        *values = lane(number);
+    }
+    let mut rest = all.as_flattened()[6..].iter().copied();
+    let mut next = || rest.next().unwrap_or(0.0);
+    leaf.power = std::array::from_fn(|_| next());
+    if detection.times {
+        leaf.optical_path = next();
+        leaf.delay_path = next();
+    }
+    if detection.stokes {
+        for field in &mut leaf.electric {
+            let [x, y, z] = std::array::from_fn(|_| [next(), next()]);
+            let [re, im] = [0, 1].map(|part| DVec3::new(x[part], y[part], z[part]));
+            *field = ComplexVector::new(re, im);
+        }
+    }
+}
+
+/// What is interpolated of a leaf: position, direction, powers, paths and fields.
+fn functions<const N: usize>(
+    detection: &Detection<N>,
+    leaf: &Leaf<N>,
+    lane: usize,
+) -> [f64; LANES] {
+    let paths = if detection.times { 2 } else { 0 };
+    let fields = if detection.stokes { N } else { 0 };
+    let fields = leaf.electric[..fields].iter().flat_map(|field| {
+        field.components().into_iter().flat_map(|component| [component.re, component.im])
+    });
+    let mut all = (leaf.position.to_array().into_iter())
+        .chain(leaf.direction.to_array())
+        .chain(leaf.power)
+        .chain([leaf.optical_path, leaf.delay_path].into_iter().take(paths))
+        .chain(fields)
+        .skip(lane * LANES);
+    std::array::from_fn(|_| all.next().unwrap_or(0.0))
+}
+
+fn largest<const N: usize>(power: &[f64; N]) -> f64 {
+    power.iter().copied().fold(0.0, f64::max)
+}

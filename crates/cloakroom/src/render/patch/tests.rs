@@ -1,0 +1,146 @@
+//! Interpolated leaves against those of the same rays traced one by one.
+
+use super::*;
+use crate::render::{ChannelSet, sampling};
+use crate::scene::Scene;
+use crate::scene_file;
+use std::path::Path;
+
+/// The largest errors of interpolated leaves: of the place on the photograph times the power, cm;
+/// of the power; of the optical path times the power, cm; and how many rays have other leaves.
+#[derive(Debug, Default)]
+struct Errors {
+    place: f64,
+    power: f64,
+    path: f64,
+    rays: u32,
+    others: u32,
+}
+
+fn scene(toml: &str) -> Scene {
+    scene_file::parse(toml, "test", Path::new(""), &[]).expect("a scene").scene
+}
+
+/// Compares the leaves of every sample of every so many-th block of the patches of a part of the
+/// picture.
+fn errors<const N: usize>(
+    scene: &Scene,
+    detection: &Detection<N>,
+    corner: [usize; 2],
+    (count, step): (usize, usize),
+) -> Errors {
+    let prepared = PreparedScene::new(scene).expect("sound");
+    let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
+    let mut exact = tracer.clone();
+    let mut patches = LeafPatches::new(&prepared, detection, &tracer).expect("interpolated");
+    let mut errors = Errors::default();
+    for number in 0..count {
+        let patch = Patch { corner: [corner[0] + number * SIDE, corner[1]], size: [SIDE; 2] };
+        compare(&mut patches, (patch, 0), &mut exact, step, &mut errors);
+    }
+    errors
+}
+
+fn compare<const N: usize>(
+    patches: &mut LeafPatches<'_, N>,
+    (patch, level): (Patch, usize),
+    exact: &mut Tracer<'_, N>,
+    step: usize,
+    errors: &mut Errors,
+) {
+    if patches.fit(patch, level) == Fit::Simple {
+        return;
+    }
+    if let Some(halves) = patches.division() {
+        for half in halves {
+            compare(patches, (half, level + 1), exact, step, errors);
+        }
+        return;
+    }
+    let prepared = patches.prepared;
+    let camera = &prepared.scene.camera;
+    let blocks = (0..patch.size[1] / 2).flat_map(|j| (0..patch.size[0] / 2).map(move |i| [i, j]));
+    for [i, j] in blocks.step_by(step) {
+        let block = [patch.corner[0] / 2 + i, patch.corner[1] / 2 + j];
+        for sample in 0..camera.samples {
+            let offset = sampling::offset(sample, camera.samples, block.map(|b| b as u32), 0);
+            let points: [[f64; 2]; 4] = std::array::from_fn(|k| {
+                [
+                    (2 * block[0] + k % 2) as f64 + offset[0],
+                    (2 * block[1] + k / 2) as f64 + offset[1],
+                ]
+            });
+            let rays = points.map(|[x, y]| camera.ray(x, y));
+            if !patches.sample(&points, &rays, &mut TraceStats::default()) {
+                continue;
+            }
+            for (k, ray) in rays.iter().enumerate() {
+                let (leaves, _) = exact.trace(&patches.detection.launch(camera, ray));
+                errors.rays += 1;
+                let mut same = true;
+                for leaf in leaves {
+                    let found = patches.samples[k].0.iter().find(|found| found.path == leaf.path);
+                    let Some(found) = found else {
+                        same &= largest(&leaf.power) < 1.1 * prepared.limits.min_power;
+                        continue;
+                    };
+                    let distance = leaf.distance_to(&prepared.screen).unwrap_or(100.0);
+                    let place = |leaf: &Leaf<N>| leaf.position + leaf.direction * distance;
+                    let power = largest(&leaf.power);
+                    let off = place(leaf).distance(place(found)) * power;
+                    errors.place = errors.place.max(off);
+                    let path = (leaf.optical_path - found.optical_path).abs() * power;
+                    errors.path = errors.path.max(path);
+                    let powers = leaf.power.iter().zip(found.power);
+                    errors.power = powers.map(|(a, b)| (a - b).abs()).fold(errors.power, f64::max);
+                }
+                for found in &patches.samples[k].0 {
+                    if !leaves.iter().any(|leaf| leaf.path == found.path) {
+                        same &= largest(&found.power) < 1.1 * prepared.limits.min_power;
+                    }
+                }
+                errors.others += u32::from(!same);
+            }
+        }
+    }
+}
+
+/// Devices with what makes rays part: edges, total reflection, caustics, mirrors.
+const DEVICES: [&str; 6] = [
+    "kind = 'square-cloak'\nmaterial = 'positive-uniaxial'",
+    "kind = 'square-cloak'\nmaterial = 'negative-uniaxial'\nrotation = 10",
+    "kind = 'double-gaussian-cloak'\nrotation = 10",
+    "kind = 'cylinder-cloak'\nmaterial = 'radial-uniaxial'\nrotation = 5",
+    "kind = 'gaussian-carpet'\nrotation = 3",
+    "kind = 'body'\nshape = 'sphere'\nradius = 5\npermittivity = 2.25",
+];
+
+/// Everything but paths, which pictures do without.
+#[test]
+fn interpolated_leaves_are_those_of_traced_rays() {
+    let mut rays = 0;
+    for device in DEVICES {
+        for corner in [[96, 480], [512, 288], [320, 416], [416, 512]] {
+            let text =
+                format!("[camera]\nresolution = [1024, 1024]\nsamples = 4\n[[device]]\n{device}\n");
+            let scene = scene(&text);
+            let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &scene.picture);
+            let errors = errors(&scene, &detection, corner, (2, 37));
+            rays += errors.rays;
+            let is_true = errors.place < 1e-6 && errors.power < 2e-6 && errors.others == 0;
+            assert!(is_true, "{device} {corner:?}: {errors:?}");
+        }
+    }
+    assert!(rays > 5000, "{rays} rays are hardly a trial");
+}
+
+/// With times, in a graded medium, and Stokes parameters.
+#[test]
+fn interpolated_paths_are_those_of_traced_rays() {
+    let text = "[camera]\nresolution = [1024, 1024]\nsamples = 4\n[picture]\nchannels = ['stokes']\n[[device]]\nkind = 'double-gaussian-cloak'\nrotation = 10\n";
+    let scene = scene(text);
+    let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Everything, &scene.picture);
+    let errors = errors(&scene, &detection, [320, 416], (4, 11));
+    let is_true = errors.place < 1e-6 && errors.path < 1e-6 && errors.others == 0;
+    assert!(is_true && errors.rays > 1000, "{errors:?}");
+}
