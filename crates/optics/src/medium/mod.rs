@@ -13,6 +13,7 @@ mod group_index;
 mod modes;
 mod principal_axes;
 mod quadratic;
+mod quartic;
 mod ray_waves;
 mod tensor;
 mod wave_surface;

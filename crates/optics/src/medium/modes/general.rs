@@ -1,6 +1,7 @@
 //! Modes of any medium: Berreman's eigenproblem for the tangential fields.
 
 use super::eigenvector::eigenvector;
+use super::fresnel::Fresnel;
 use super::local::mutual_flux;
 use super::refinement::{Maxwell, best};
 use super::{BothWays, LocalMode, LocalModes, ModeKind};
@@ -160,25 +161,42 @@ impl Medium {
     /// The modes of a lossless medium without a closed form.
     pub(super) fn general_modes(&self, frame: &Frame, along: f64, known: Option<f64>) -> BothWays {
         let tensors = [&self.real.permittivity, &self.real.permeability].map(|t| frame.tensor(t));
-        let at = |along| {
-            best(|least| {
-                let problem = Berreman::new(tensors[0], tensors[1], [along, 0.0], least);
-                let found = problem.lossless_modes(known);
-                let [forward, backward] = &found.modes;
-                let residual =
-                    problem.residual(forward.complex().iter().chain(&backward.complex()));
-                (found, residual)
-            })
-        };
-        let exactly = at(along);
-        if !exactly.along_the_surface {
-            return exactly.modes;
+        if let Some(modes) = Fresnel::new(tensors[0], tensors[1], along).modes() {
+            return modes;
         }
-        let mut near = SHIFTS.iter().map(|shift| at(along * (1.0 + shift)));
-        near.find(|near| !near.along_the_surface && near.propagating == exactly.propagating)
-            .unwrap_or(exactly)
-            .modes
+        eigenmodes(tensors, along, known)
     }
+
+    /// Those that head forward.
+    pub(super) fn general_onward(&self, frame: &Frame, along: f64) -> LocalModes {
+        let tensors = [&self.real.permittivity, &self.real.permeability].map(|t| frame.tensor(t));
+        let fresnel = Fresnel::new(tensors[0], tensors[1], along);
+        if let Some(modes) = fresnel.onward() {
+            return modes;
+        }
+        fresnel.modes().unwrap_or_else(|| eigenmodes(tensors, along, None))[0]
+    }
+}
+
+/// The modes of a lossless medium by the eigenproblem.
+fn eigenmodes(tensors: [[[f64; 3]; 3]; 2], along: f64, known: Option<f64>) -> BothWays {
+    let at = |along| {
+        best(|least| {
+            let problem = Berreman::new(tensors[0], tensors[1], [along, 0.0], least);
+            let found = problem.lossless_modes(known);
+            let [forward, backward] = &found.modes;
+            let residual = problem.residual(forward.complex().iter().chain(&backward.complex()));
+            (found, residual)
+        })
+    };
+    let exactly = at(along);
+    if !exactly.along_the_surface {
+        return exactly.modes;
+    }
+    let mut near = SHIFTS.iter().map(|shift| at(along * (1.0 + shift)));
+    near.find(|near| !near.along_the_surface && near.propagating == exactly.propagating)
+        .unwrap_or(exactly)
+        .modes
 }
 
 impl Berreman<Complex64> {
@@ -334,14 +352,14 @@ fn by_heading(
     // Half of the propagating ones head each way; the rank, where rounding at grazing incidence
     // hides the sign.
     real.sort_by(|a, b| b.flux().total_cmp(&a.flux()));
-    orthogonalize_in_flux(&mut real, size);
+    orthogonalize_in_flux(&mut real.iter_mut().collect::<ArrayVec<_, 4>>(), size);
     evanescent.sort_by(|a, b| b.q.im.total_cmp(&a.q.im));
     let (r, e) = (real.len() / 2, evanescent.len() / 2);
     [gathered(&real[..r], &evanescent[..e]), gathered(&real[r..], &evanescent[e..])]
 }
 
 /// Two modes of one heading, normalized and in order.
-fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>]) -> LocalModes {
+pub(super) fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>]) -> LocalModes {
     let normalized = |mode: &LocalMode<f64>| {
         let flux = mode.flux().abs().max(1e-15);
         mode.scaled(flux.sqrt().recip())
@@ -358,15 +376,17 @@ fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>]) -> Loc
     }
 }
 
-/// Makes modes orthogonal in flux, as those of a lossless medium are: computed ones are as far as
+/// Makes modes of norm 1 orthogonal in flux, as those of a lossless medium are: computed ones are as far as
 /// their roots are apart.
-fn orthogonalize_in_flux(modes: &mut [LocalMode<f64>], size: f64) {
+pub(super) fn orthogonalize_in_flux(modes: &mut [&mut LocalMode<f64>], size: f64) {
     for i in 1..modes.len() {
-        for j in 0..i {
-            let share = mutual_flux(&modes[j], &modes[i]) / modes[j].flux();
+        let (before, after) = modes.split_at_mut(i);
+        let mode = &mut *after[0];
+        for other in before {
+            let share = mutual_flux(&**other, mode) / other.flux();
             // At grazing incidence there may be no flux: only what Maxwell's equations do not feel.
-            if (share * (modes[i].q - modes[j].q)).abs() < 1e-14 * size {
-                modes[i] = added(modes[i], &modes[j], -share);
+            if (share * (mode.q - other.q)).abs() < 1e-14 * size {
+                *mode = added(*mode, other, -share);
             }
         }
     }
@@ -385,7 +405,7 @@ fn diagonal_in_flux(a: LocalMode<f64>, b: LocalMode<f64>) -> [LocalMode<f64>; 2]
 }
 
 /// a + factor b.
-fn added(mut a: LocalMode<f64>, b: &LocalMode<f64>, factor: f64) -> LocalMode<f64> {
+pub(super) fn added(mut a: LocalMode<f64>, b: &LocalMode<f64>, factor: f64) -> LocalMode<f64> {
     for i in 0..3 {
         a.electric[i] += factor * b.electric[i];
         a.magnetic[i] += factor * b.magnetic[i];

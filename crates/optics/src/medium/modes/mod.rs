@@ -6,6 +6,7 @@
 
 mod absorbing;
 mod eigenvector;
+mod fresnel;
 mod general;
 mod local;
 mod refinement;
@@ -180,6 +181,9 @@ impl Medium {
             }
             (Class::Uniaxial(medium), Tangential::Real(along)) => {
                 medium.waves(frame, along, None).modes(true)
+            }
+            (Class::General, Tangential::Real(along)) if !self.absorbs() => {
+                self.general_onward(frame, along)
             }
             _ => self.both_ways(frame, tangential, None)[0],
         }
