@@ -6,8 +6,11 @@ use super::quadratic::{Quadratic, Roots};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quartic(pub [f64; 5]);
 
-/// Steps that make the root of the resolvent exact to rounding.
-const STEPS: usize = 2;
+/// Steps to the root of the resolvent; where it is double, each gains a factor 2.
+const MOST_STEPS: usize = 40;
+
+/// A step this small, relative to the root, leaves its square.
+const EXACT: f64 = 1e-8;
 
 impl Quartic {
     /// The derivative.
@@ -21,7 +24,8 @@ impl Quartic {
     /// `None` where there are fewer than four, or their sizes are beyond double precision.
     pub fn roots(&self) -> Option<[Roots; 2]> {
         let [c0, c1, c2, c3, c4] = self.0;
-        let [a, b, c, d] = [c3, c2, c1, c0].map(|coefficient| coefficient / c4);
+        let inverse = c4.recip();
+        let [a, b, c, d] = [c3, c2, c1, c0].map(|coefficient| coefficient * inverse);
         // x⁴ + p x² + r x + s of x = q + shift.
         let shift = 0.25 * a;
         let square = shift * shift;
@@ -29,16 +33,7 @@ impl Quartic {
         let r = c - 2.0 * shift * (b - 4.0 * square);
         let s = d - shift * (c - shift * (b - 3.0 * square));
         // (x² + α x + β)(x² - α x + γ), of the largest root α² of the resolvent.
-        let mut u = largest_root(2.0 * p, p * p - 4.0 * s, -r * r);
-        for _ in 0..STEPS {
-            let value = ((u + 2.0 * p) * u + (p * p - 4.0 * s)) * u - r * r;
-            let slope = (3.0 * u + 4.0 * p) * u + (p * p - 4.0 * s);
-            let step = value / slope;
-            if step.abs() < 0.1 * u.abs() {
-                u -= step;
-            }
-        }
-        let u = u.max(0.0);
+        let u = largest_root(2.0 * p, p * p - 4.0 * s, -r * r).max(0.0);
         let alpha = u.sqrt();
         let sum = p + u;
         let difference = if u > 1e-8 * (p.abs() + s.abs().sqrt()) {
@@ -64,22 +59,32 @@ impl Quartic {
     }
 }
 
-/// The largest real root of u³ + a u² + b u + c = 0, roughly.
+/// The largest real root of u³ + a u² + b u + c = 0.
 fn largest_root(a: f64, b: f64, c: f64) -> f64 {
     let third = a / 3.0;
     let q = third * third - b / 3.0;
     let r = third * third * third - 0.5 * third * b + 0.5 * c;
     let (r2, q3) = (r * r, q * q * q);
-    if r2 < q3 {
-        // Viète.
-        let angle = (r / q3.sqrt()).acos();
-        2.0 * q.sqrt() * ((std::f64::consts::PI - angle) / 3.0).cos() - third
+    let mut u = if r2 < q3 {
+        // Of three real roots none is larger than if the other two were one.
+        2.0 * q.sqrt() - third
     } else {
         // Cardano.
         let size = (r.abs() + (r2 - q3).sqrt()).cbrt().copysign(-r);
         let other = if size == 0.0 { 0.0 } else { q / size };
         size + other - third
+    };
+    // Newton's method, from above.
+    for _ in 0..MOST_STEPS {
+        let value = ((u + a) * u + b) * u + c;
+        let slope = (3.0 * u + 2.0 * a) * u + b;
+        let step = value / slope;
+        u -= step;
+        if step.is_nan() || step.abs() <= EXACT * u.abs() {
+            break;
+        }
     }
+    u
 }
 
 #[cfg(test)]

@@ -15,21 +15,32 @@ use crate::wave::{Number, cross, dot};
 use arrayvec::ArrayVec;
 use num_complex::Complex64;
 
-/// Roots closer than this, relative to the largest, are left to the eigenproblem, as are waves whose
-/// power runs along the surface.
-const APART: f64 = 1e-5;
+/// Roots closer than this, relative to the largest, are left to the eigenproblem.
+const APART: f64 = 1e-4;
 
-/// Roots farther apart than this are so whatever their rounding.
-const FAR_APART: f64 = 1e-3;
+/// Roots farther apart than this before their rounding is mended are so after it, but for pairs of
+/// one heading.
+const FAR_APART: f64 = 5e-4;
 
-/// Residuals, relative to the terms of Maxwell's equations, that rounding leaves.
-const SOLVED: f64 = 4e-15;
+/// Waves of less normal flux, relative to |E|² + |H|², are left to the eigenproblem, and those that
+/// decay slower, relative to the largest root: two of opposite headings are nearly one there, and
+/// their fluxes lose digits.
+const CROSSES: f64 = 1e-2;
 
-/// Digits of q that are lost in rounding.
-const EXACT: f64 = 1e-15;
+/// Residuals, relative to the terms of Maxwell's equations, that rounding leaves as a rule.
+const SOLVED: f64 = 1e-15;
+
+/// Those that are not bettered after some rounds.
+const STILL_SOLVED: f64 = 4e-15;
+
+/// Steps of q, relative to the largest, that change no field by more than rounding.
+const EXACT: f64 = 4e-15;
 
 /// Rounds of field and q.
-const MOST_ROUNDS: usize = 4;
+const MOST_ROUNDS: usize = 5;
+
+/// W by rows, and µp.
+type Operator<T> = ([[T; 3]; 3], [T; 3]);
 
 /// Fresnel's equation for real tensors and a wave vector in the plane of the first tangent and the
 /// normal.
@@ -85,7 +96,7 @@ impl Fresnel {
             match pair {
                 Roots::Real { plus, minus, .. } => {
                     for q in [plus, minus] {
-                        let wave = self.wave(q, size)?;
+                        let wave = self.real_wave(q, size)?;
                         let is_near = |other: &LocalMode<f64>| (other.q - wave.q).abs() < near;
                         if forward.iter().chain(&backward).any(is_near) {
                             return None;
@@ -95,9 +106,9 @@ impl Fresnel {
                     }
                 }
                 Roots::Complex { re, im, .. } => {
-                    let wave = self.wave(Complex64::new(re, im), size)?;
+                    let wave = self.decaying_wave(Complex64::new(re, im), size)?;
                     let is_near = |other: &LocalMode<Complex64>| (other.q - wave.q).norm() < near;
-                    if wave.q.im < near || decaying.iter().any(is_near) {
+                    if wave.q.im < CROSSES * size || decaying.iter().any(is_near) {
                         return None;
                     }
                     decaying.push(wave);
@@ -108,9 +119,8 @@ impl Fresnel {
             return None;
         }
         let conjugates: ArrayVec<_, 2> = decaying.iter().map(conjugate).collect();
-        if let ([f1, f2], [b1, b2]) = (&mut forward[..], &mut backward[..]) {
-            orthogonalize_in_flux(&mut [f1, f2, b1, b2], size);
-        }
+        let real = forward.iter_mut().chain(&mut backward);
+        orthogonalize_in_flux(&mut real.collect::<ArrayVec<_, 4>>(), size);
         Some([gathered(&forward, &decaying), gathered(&backward, &conjugates)])
     }
 
@@ -118,69 +128,126 @@ impl Fresnel {
     pub fn onward(&self) -> Option<LocalModes> {
         let pairs = self.quartic.roots()?;
         let size = size(&pairs);
-        if least_gap(&pairs) < FAR_APART * size {
+        (least_gap(&pairs) > FAR_APART * size).then_some(())?;
+        self.headed(&pairs, size, true)
+    }
+
+    /// The mode whose root is closest to `q`, and those that head back, if they are known to
+    /// rounding and far from all others.
+    pub fn arriving_and_back(&self, q: f64) -> Option<(LocalMode<f64>, LocalModes)> {
+        let pairs = self.quartic.roots()?;
+        let size = size(&pairs);
+        (least_gap(&pairs) > FAR_APART * size).then_some(())?;
+        let real = pairs.iter().flat_map(|pair| match *pair {
+            Roots::Real { plus, minus, .. } => [plus, minus],
+            Roots::Complex { .. } => [f64::INFINITY; 2],
+        });
+        let nearest = real.min_by(|a, b| (a - q).abs().total_cmp(&(b - q).abs()))?;
+        if (nearest - q).abs() > APART * size {
             return None;
         }
-        let mut forward: ArrayVec<LocalMode<f64>, 2> = ArrayVec::new();
+        let arriving = self.real_wave(nearest, size)?;
+        (arriving.flux() > 0.0).then_some((arriving, self.headed(&pairs, size, false)?))
+    }
+
+    /// The modes of one heading.
+    fn headed(&self, pairs: &[Roots; 2], size: f64, forward: bool) -> Option<LocalModes> {
+        let sign = if forward { 1.0 } else { -1.0 };
+        let mut real: ArrayVec<LocalMode<f64>, 2> = ArrayVec::new();
         let mut decaying: ArrayVec<LocalMode<Complex64>, 2> = ArrayVec::new();
         for pair in pairs {
-            match pair {
+            match *pair {
                 Roots::Real { plus, minus, .. } => {
                     for q in [plus, minus] {
-                        if self.heads_forward(q) {
-                            forward.try_push(self.wave(q, size)?).ok()?;
+                        let operator = self.operator(&self.maxwell, q);
+                        if self.heads_forward(q, &operator) == forward {
+                            let wave = self.wave(&self.maxwell, q, operator, size)?;
+                            (wave.flux() * sign > 0.0).then_some(())?;
+                            real.try_push(wave).ok()?;
                         }
                     }
                 }
                 Roots::Complex { re, im, .. } => {
-                    decaying.push(self.wave(Complex64::new(re, im), size)?);
+                    let wave = self.decaying_wave(Complex64::new(re, im * sign), size)?;
+                    (wave.q.im * sign > CROSSES * size).then_some(())?;
+                    decaying.push(wave);
                 }
             }
         }
-        if forward.len() + decaying.len() != 2 || forward.iter().any(|wave| wave.flux() <= 0.0) {
-            return None;
-        }
-        if let [a, b] = &mut forward[..] {
+        if let [a, b] = &mut real[..] {
+            ((a.q - b.q).abs() > APART * size).then_some(())?;
             orthogonalize_in_flux(&mut [a, b], size);
         }
-        Some(gathered(&forward, &decaying))
+        if let [a, b] = &decaying[..] {
+            ((a.q - b.q).norm() > APART * size).then_some(())?;
+        }
+        (real.len() + decaying.len() == 2).then(|| gathered(&real, &decaying))
     }
 
     /// Whether the wave of a real root carries power forward: (det W)' = -2 tr(adj W) S·n/|E|².
-    fn heads_forward(&self, q: f64) -> bool {
-        let (w, _) = self.matrix(&self.maxwell, q);
+    fn heads_forward(&self, q: f64, (w, _): &Operator<f64>) -> bool {
         let minor = |i: usize, j: usize| w[i][i] * w[j][j] - w[i][j] * w[i][j];
         let trace = minor(0, 1) + minor(1, 2) + minor(2, 0);
         (self.quartic.slope(q) * self.inverse_determinant < 0.0) == (trace > 0.0)
     }
 
+    fn real_wave(&self, q: f64, size: f64) -> Option<LocalMode<f64>> {
+        self.wave(&self.maxwell, q, self.operator(&self.maxwell, q), size)
+    }
+
+    fn decaying_wave(&self, q: Complex64, size: f64) -> Option<LocalMode<Complex64>> {
+        let maxwell = self.maxwell.map(Complex64::from);
+        self.wave(&maxwell, q, self.operator(&maxwell, q), size)
+    }
+
     /// The wave of a root, of norm 1.
-    fn wave<T: Number>(&self, mut q: T, size: f64) -> Option<LocalMode<T>> {
-        let maxwell = self.maxwell.map(T::from);
-        for _ in 0..MOST_ROUNDS {
-            let mode = self.field(&maxwell, q);
-            let [faraday, ampere] = maxwell.residual(&mode);
-            // The symmetric form E·(p × H + εE) - H·(p × E - µH) changes with q by -2 n·(E × H).
-            let form = dot(mode.electric, ampere) - dot(mode.magnetic, faraday);
-            let (e, h) = (mode.electric, mode.magnetic);
+    fn wave<T: Number>(
+        &self,
+        maxwell: &Maxwell<T>,
+        mut q: T,
+        mut operator: Operator<T>,
+        size: f64,
+    ) -> Option<LocalMode<T>> {
+        for round in 1..=MOST_ROUNDS {
+            let (e, form) = null_vector(&operator.0);
+            // µ⁻¹ (p × E) = µp × µE/det µ.
+            let response = maxwell.permeability.map(|row| dot(row, e));
+            let h = cross(operator.1, response).map(|c| c * self.inverse_determinant);
+            // The symmetric form E·WE changes with q by -2 n·(E × H).
             let flux = e[0] * h[1] - e[1] * h[0];
-            let step = form / (flux * 2.0);
-            if step.magnitude_squared() < (EXACT * size) * (EXACT * size) {
-                let norm = square(&e) + square(&h);
-                let residual = square(&faraday) + square(&ampere);
-                let terms = self.terms + q.magnitude_squared();
-                let is_solved = residual < SOLVED * SOLVED * norm * terms;
-                let crosses = flux.magnitude_squared() > (APART * norm) * (APART * norm);
-                return (is_solved && crosses).then(|| mode.scaled(norm.sqrt().recip()));
+            let per_flux = T::from(0.5) / flux;
+            let step = form * per_flux;
+            if step.magnitude_squared() > (EXACT * size) * (EXACT * size) {
+                q += step;
+                operator = self.operator(maxwell, q);
+                continue;
             }
+            // The same form without E or H eliminated: E·(p × H + εE) - H·(p × E - µH).
+            let kind = ModeKind::First;
+            let mode = LocalMode { kind, propagating: true, q, electric: e, magnetic: h };
+            let [mut faraday, mut ampere] = maxwell.residual(&mode);
+            let step = (dot(e, ampere) - dot(h, faraday)) * per_flux;
             q += step;
+            // The residual of the same fields with the better q.
+            for (part, field) in [(&mut faraday, e), (&mut ampere, h)] {
+                part[0] -= step * field[1];
+                part[1] += step * field[0];
+            }
+            let norm = square(&e) + square(&h);
+            let residual = square(&faraday) + square(&ampere);
+            let terms = self.terms + q.magnitude_squared();
+            let most = if round < MOST_ROUNDS { SOLVED } else { STILL_SOLVED };
+            if residual < most * most * norm * terms {
+                let crosses = flux.magnitude_squared() > (CROSSES * norm) * (CROSSES * norm);
+                return crosses.then(|| LocalMode { q, ..mode.scaled(norm.sqrt().recip()) });
+            }
+            operator = self.operator(maxwell, q);
         }
         None
     }
 
-    /// W by rows, and µp.
     #[inline]
-    fn matrix<T: Number>(&self, maxwell: &Maxwell<T>, q: T) -> ([[T; 3]; 3], [T; 3]) {
+    fn operator<T: Number>(&self, maxwell: &Maxwell<T>, q: T) -> Operator<T> {
         let (e, m) = (&maxwell.permittivity, &maxwell.permeability);
         let induction = m.map(|row| row[0] * self.along + row[2] * q);
         let square = induction[0] * self.along + induction[2] * q;
@@ -191,16 +258,6 @@ impl Fresnel {
         let (xx, xy, xz) = (entry(0, 0), entry(0, 1), entry(0, 2));
         let (yy, yz, zz) = (entry(1, 1), entry(1, 2), entry(2, 2));
         ([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], induction)
-    }
-
-    /// The fields of a wave vector for which W is singular.
-    fn field<T: Number>(&self, maxwell: &Maxwell<T>, q: T) -> LocalMode<T> {
-        let (w, induction) = self.matrix(maxwell, q);
-        let electric = null_vector(&w);
-        // µ⁻¹ (p × E) = µp × µE/det µ.
-        let response = maxwell.permeability.map(|row| dot(row, electric));
-        let magnetic = cross(induction, response).map(|c| c * self.inverse_determinant);
-        LocalMode { kind: ModeKind::First, propagating: true, q, electric, magnetic }
     }
 }
 
@@ -238,9 +295,11 @@ fn conjugate(mode: &LocalMode<Complex64>) -> LocalMode<Complex64> {
     }
 }
 
-/// The vector that a singular matrix of rank 2 takes to 0, by elimination with complete pivoting:
-/// where the second pivot is small, too, what rounding adds is of the plane of both.
-fn null_vector<T: Number>(w: &[[T; 3]; 3]) -> [T; 3] {
+/// The vector v that a nearly singular matrix of rank 2 takes to 0, by elimination with complete
+/// pivoting, and v·wv: where the second pivot is small, too, what rounding adds to v is of the plane
+/// of both.
+#[inline]
+fn null_vector<T: Number>(w: &[[T; 3]; 3]) -> ([T; 3], T) {
     let (mut i, mut j, mut largest) = (0, 0, w[0][0].magnitude_squared());
     for (row, column) in [(0, 1), (0, 2), (1, 1), (1, 2), (2, 2)] {
         let size = w[row][column].magnitude_squared();
@@ -255,11 +314,21 @@ fn null_vector<T: Number>(w: &[[T; 3]; 3]) -> [T; 3] {
     let row = |r: usize| [w[r][c] - w[r][j] * to_c, w[r][d] - w[r][j] * to_d];
     let size = |[x, y]: [T; 2]| x.magnitude_squared() + y.magnitude_squared();
     let (one, other) = (row(a), row(b));
-    let [x, y] = if size(one) >= size(other) { one } else { other };
-    let mut vector = [T::default(); 3];
-    (vector[c], vector[d]) = (y, -x);
-    vector[j] = x * to_d - y * to_c;
-    vector
+    let ([x, y], rest, last) =
+        if size(one) >= size(other) { (one, other, b) } else { (other, one, a) };
+    // Selected, not stored by index: what is stored in parts is slow to read whole.
+    let (at_c, at_d, at_j) = (y, -x, x * to_d - y * to_c);
+    let vector = match j {
+        0 => [at_j, at_c, at_d],
+        1 => [at_d, at_j, at_c],
+        _ => [at_c, at_d, at_j],
+    };
+    let of_last = match last {
+        0 => vector[0],
+        1 => vector[1],
+        _ => vector[2],
+    };
+    (vector, of_last * (rest[0] * y - rest[1] * x))
 }
 
 /// The other two of three indices.

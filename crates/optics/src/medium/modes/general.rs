@@ -4,7 +4,7 @@ use super::eigenvector::eigenvector;
 use super::fresnel::Fresnel;
 use super::local::mutual_flux;
 use super::refinement::{Maxwell, best};
-use super::{BothWays, LocalMode, LocalModes, ModeKind};
+use super::{Arriving, BothWays, LocalMode, LocalModes, ModeKind};
 use crate::medium::{Medium, Tensor};
 use crate::wave::{Frame, Number, dot};
 use arrayvec::ArrayVec;
@@ -165,6 +165,23 @@ impl Medium {
             return modes;
         }
         eigenmodes(tensors, along, known)
+    }
+
+    /// The mode of a wave that arrives with the normal component `q`, and those that head back.
+    pub(super) fn general_arriving(
+        &self,
+        frame: &Frame,
+        along: f64,
+        q: f64,
+    ) -> (Arriving, LocalModes) {
+        let tensors = [&self.real.permittivity, &self.real.permeability].map(|t| frame.tensor(t));
+        let fresnel = Fresnel::new(tensors[0], tensors[1], along);
+        if let Some((arriving, back)) = fresnel.arriving_and_back(q) {
+            return (Arriving::One(arriving), back);
+        }
+        let modes = fresnel.modes().unwrap_or_else(|| eigenmodes(tensors, along, Some(q)));
+        let [forward, backward] = modes;
+        (Arriving::Both(forward), backward)
     }
 
     /// Those that head forward.

@@ -169,6 +169,11 @@ impl Medium {
             let waves = medium.waves(frame, along, Some(q));
             return (waves.arriving(q), waves.modes(false));
         }
+        if let (Class::General, Tangential::Real(along), false) =
+            (&self.class, tangential, self.absorbs())
+        {
+            return self.general_arriving(frame, along, q);
+        }
         let [forward, backward] = self.both_ways(frame, tangential, Some(q));
         (Arriving::Both(forward), backward)
     }
