@@ -6,6 +6,8 @@ use super::quadratic::{Quadratic, Roots};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quartic(pub [f64; 5]);
 
+const THIRD: f64 = 1.0 / 3.0;
+
 /// Steps to the root of the resolvent; where it is double, each gains a factor 2.
 const MOST_STEPS: usize = 40;
 
@@ -61,8 +63,8 @@ impl Quartic {
 
 /// The largest real root of u³ + a u² + b u + c = 0.
 fn largest_root(a: f64, b: f64, c: f64) -> f64 {
-    let third = a / 3.0;
-    let q = third * third - b / 3.0;
+    let third = a * THIRD;
+    let q = third * third - b * THIRD;
     let r = third * third * third - 0.5 * third * b + 0.5 * c;
     let (r2, q3) = (r * r, q * q * q);
     let mut u = if r2 < q3 {

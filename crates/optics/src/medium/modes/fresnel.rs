@@ -129,7 +129,7 @@ impl Fresnel {
         let pairs = self.quartic.roots()?;
         let size = size(&pairs);
         (least_gap(&pairs) > FAR_APART * size).then_some(())?;
-        self.headed(&pairs, size, true)
+        self.headed(&pairs, size, true, f64::NAN)
     }
 
     /// The mode whose root is closest to `q`, and those that head back, if they are known to
@@ -147,11 +147,11 @@ impl Fresnel {
             return None;
         }
         let arriving = self.real_wave(nearest, size)?;
-        (arriving.flux() > 0.0).then_some((arriving, self.headed(&pairs, size, false)?))
+        (arriving.flux() > 0.0).then_some((arriving, self.headed(&pairs, size, false, nearest)?))
     }
 
-    /// The modes of one heading.
-    fn headed(&self, pairs: &[Roots; 2], size: f64, forward: bool) -> Option<LocalModes> {
+    /// The modes of one heading; the wave of the root `but` is known to have the other.
+    fn headed(&self, pairs: &[Roots; 2], size: f64, forward: bool, but: f64) -> Option<LocalModes> {
         let sign = if forward { 1.0 } else { -1.0 };
         let mut real: ArrayVec<LocalMode<f64>, 2> = ArrayVec::new();
         let mut decaying: ArrayVec<LocalMode<Complex64>, 2> = ArrayVec::new();
@@ -159,6 +159,9 @@ impl Fresnel {
             match *pair {
                 Roots::Real { plus, minus, .. } => {
                     for q in [plus, minus] {
+                        if q == but {
+                            continue;
+                        }
                         let operator = self.operator(&self.maxwell, q);
                         if self.heads_forward(q, &operator) == forward {
                             let wave = self.wave(&self.maxwell, q, operator, size)?;
@@ -201,6 +204,7 @@ impl Fresnel {
     }
 
     /// The wave of a root, of norm 1.
+    #[inline(always)]
     fn wave<T: Number>(
         &self,
         maxwell: &Maxwell<T>,

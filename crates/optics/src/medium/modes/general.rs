@@ -442,3 +442,71 @@ fn ordered<T: Number>(modes: [LocalMode<T>; 2]) -> [LocalMode<T>; 2] {
     let (a, b) = if swap { (b, a) } else { (a, b) };
     [LocalMode { kind: ModeKind::First, ..a }, LocalMode { kind: ModeKind::Second, ..b }]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers from 0 to 1, `SplitMix64`.
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = *state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        #[expect(clippy::cast_precision_loss, reason = "53 bits")]
+        let bits = ((z ^ (z >> 31)) >> 11) as f64;
+        bits / 9_007_199_254_740_992.0
+    }
+
+    fn symmetric(state: &mut u64, diagonal: f64) -> [[f64; 3]; 3] {
+        let [a, b, c] = [0; 3].map(|_| diagonal + 2.0 * random(state));
+        let [d, e, f] = [0; 3].map(|_| 1.2 * random(state) - 0.6);
+        [[a, d, e], [d, b, f], [e, f, c]]
+    }
+
+    /// Each mode of one has a partner in the other with the same q, the same fields but for a phase,
+    /// and the same name.
+    fn assert_alike(ours: LocalModes, theirs: LocalModes) {
+        for (a, b) in ours.complex().iter().zip(&theirs.complex()) {
+            assert_eq!((a.kind, a.propagating), (b.kind, b.propagating));
+            assert!((a.q - b.q).norm() < 1e-11, "{a:?} {b:?}");
+            let inner = |a: &LocalMode<Complex64>, b: &LocalMode<Complex64>| {
+                let product = |a: [Complex64; 3], b: [Complex64; 3]| dot(a.map(|c| c.conj()), b);
+                (product(a.electric, b.electric) + product(a.magnetic, b.magnetic)).norm()
+            };
+            let cosine = inner(a, b) / (inner(a, a) * inner(b, b)).sqrt();
+            assert!((cosine - 1.0).abs() < 1e-13, "{cosine} {a:?} {b:?}");
+            assert!((a.flux() - b.flux()).abs() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn fresnels_quartic_and_the_eigenproblem_agree() {
+        let mut state = 21;
+        let (mut solved, mut decaying) = (0, 0);
+        for number in 0..2_000 {
+            // Every second one is indefinite or nearly so.
+            let diagonal = if number % 2 == 0 { 1.5 } else { -1.0 };
+            let tensors = [symmetric(&mut state, diagonal), symmetric(&mut state, 1.5)];
+            let along = 3.0 * random(&mut state);
+            let fresnel = Fresnel::new(tensors[0], tensors[1], along);
+            let Some([forward, backward]) = fresnel.modes() else { continue };
+            let [expected, expected_back] = eigenmodes(tensors, along, None);
+            assert_alike(forward, expected);
+            assert_alike(backward, expected_back);
+            solved += 1;
+            decaying += usize::from(forward.real().is_none());
+            if let Some(onward) = fresnel.onward() {
+                assert_alike(onward, expected);
+            }
+            for mode in expected.complex().iter().filter(|mode| mode.propagating) {
+                if let Some((arriving, back)) = fresnel.arriving_and_back(mode.q.re) {
+                    assert!((arriving.q - mode.q.re).abs() < 1e-11);
+                    assert_alike(back, expected_back);
+                }
+            }
+        }
+        // Nearly all, with waves of either sort.
+        assert!(solved > 1_800 && decaying > 400 && solved - decaying > 400, "{solved} {decaying}");
+    }
+}
