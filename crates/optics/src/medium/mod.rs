@@ -245,7 +245,7 @@ impl Medium {
         (Tensor { re: self.real.permittivity, im: e }, Tensor { re: self.real.permeability, im: m })
     }
 
-    /// The same medium, its waves found by the general eigenproblem instead of a closed form:
+    /// The same medium, its waves found as those of any medium instead of by its closed form:
     /// slower, and a check on the closed forms.
     pub fn without_closed_form(self) -> Self {
         Self { class: Class::General, ..self }

@@ -1,5 +1,7 @@
-//! Modes of any medium: Berreman's eigenproblem for the tangential fields.
+//! Modes of any medium: Fresnel's equation where it serves, elsewhere Berreman's eigenproblem for the
+//! tangential fields.
 
+use super::eigenvalues::eigenvalues;
 use super::eigenvector::eigenvector;
 use super::fresnel::Fresnel;
 use super::local::mutual_flux;
@@ -8,7 +10,6 @@ use super::{Arriving, BothWays, LocalMode, LocalModes, ModeKind};
 use crate::medium::{Medium, Tensor};
 use crate::wave::{Frame, Number, dot};
 use arrayvec::ArrayVec;
-use nalgebra::{ComplexField, Const, Matrix4, Schur, Vector4};
 use num_complex::Complex64;
 use std::ops::Mul;
 
@@ -63,26 +64,10 @@ impl<T: Number> Berreman<T> {
         residual.fold(0.0, |worst, one| if one.is_nan() { f64::INFINITY } else { one.max(worst) })
     }
 
-    /// The eigenvalues by Schur's form, which `values` reads, and their vectors.
-    fn eigenpairs(
-        &self,
-        values: impl FnOnce(&Schur<T, Const<4>>) -> Option<[Complex64; 4]>,
-    ) -> [Eigenpair; 4]
-    where
-        T: ComplexField<RealField = f64>,
-    {
+    /// The eigenvalues and their vectors.
+    fn eigenpairs(&self) -> [Eigenpair; 4] {
         let matrix = self.complex_matrix();
-        let own = Matrix4::from_fn(|i, j| self.matrix[i][j]);
-        let schur = own.try_schur(f64::EPSILON, MOST_ROUNDS).or_else(|| {
-            // Its shifts can run in a circle where several eigenvalues have one size, but hardly
-            // again in another basis.
-            MIRRORS.iter().find_map(|across| {
-                let across = Vector4::from(across.map(T::from)).normalize();
-                let mirror = Matrix4::identity() - across * across.transpose() * T::from(2.0);
-                (mirror * own * mirror).try_schur(f64::EPSILON, MOST_ROUNDS)
-            })
-        });
-        schur.as_ref().and_then(values).map_or_else(fallback, |values| {
+        eigenvalues(&self.matrix).map_or_else(fallback, |values| {
             std::array::from_fn(|i| {
                 let field = eigenvector(&matrix, values[i], None);
                 (values[i], field.unwrap_or(fallback()[i].1))
@@ -238,7 +223,7 @@ impl Berreman<Complex64> {
     }
 
     fn complex_modes(&self) -> [[LocalMode<Complex64>; 2]; 2] {
-        let mut pairs = self.eigenpairs(|schur| schur.eigenvalues().map(Into::into));
+        let mut pairs = self.eigenpairs();
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         separate_double_roots(&self.matrix, &mut pairs, size);
         let mut modes = pairs.map(|(q, field)| self.mode(q, field));
@@ -250,7 +235,7 @@ impl Berreman<Complex64> {
 
 impl Berreman<f64> {
     fn lossless_modes(&self, known: Option<f64>) -> Lossless {
-        let mut pairs = self.eigenpairs(|schur| Some(eigenvalues(&schur.unpack().1)));
+        let mut pairs = self.eigenpairs();
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         // Evanescent ones come as conjugates; the real ones in order show which are double.
         pairs.sort_by(|(a, _), (b, _)| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
@@ -294,21 +279,6 @@ impl Berreman<f64> {
     }
 }
 
-/// The eigenvalues of a real Schur form. `Schur::complex_eigenvalues` takes those of every block
-/// for a conjugate pair, and is not a number where rounding has left a block of a real double one.
-fn eigenvalues(form: &Matrix4<f64>) -> [Complex64; 4] {
-    let mut values = std::array::from_fn(|i| Complex64::from(form[(i, i)]));
-    for i in 1..4 {
-        let (a, b, c, d) = (form[(i - 1, i - 1)], form[(i - 1, i)], form[(i, i - 1)], form[(i, i)]);
-        if c != 0.0 {
-            let (middle, half) = (0.5 * (a + d), 0.5 * (a - d));
-            let root = Complex64::from(half * half + b * c).sqrt();
-            [values[i - 1], values[i]] = [middle + root, middle - root];
-        }
-    }
-    values
-}
-
 /// Roots closer than this, relative to the largest, are one.
 const DOUBLE: f64 = 1e-13;
 
@@ -332,12 +302,6 @@ fn parts_across(field: [Complex64; 4]) -> [Complex64; 4] {
     let phase = if square.norm() > 0.0 { (square / square.norm()).sqrt() } else { Complex64::ONE };
     field.map(|c| c / phase)
 }
-
-/// Rounds of the eigensolver; it takes about ten.
-const MOST_ROUNDS: usize = 200;
-
-/// Normals of mirrors that have no symmetry in common with a matrix.
-const MIRRORS: [[f64; 4]; 2] = [[0.53, -0.37, 0.61, 0.46], [0.19, 0.83, -0.27, 0.44]];
 
 /// Should the eigensolver ever give up: no waves but decaying ones without fields that matter.
 fn fallback() -> [Eigenpair; 4] {

@@ -5,6 +5,7 @@
 //! misleading in hyperbolic and negative-index media.
 
 mod absorbing;
+mod eigenvalues;
 mod eigenvector;
 mod fresnel;
 mod general;
