@@ -1,6 +1,6 @@
 //! Modes of a lossless medium by Fresnel's equation of wave normals, a quartic for q.
 //!
-//! With E eliminated H, or the other way round, W E = 0 with W = ε + p × µ⁻¹ p × = ε - ((p·µp) µ -
+//! With H eliminated, W E = 0 with W = ε + p × µ⁻¹ p × = ε - ((p·µp) µ -
 //! µp (µp)ᵀ)/det µ, and det µ det W = (p·εp)(p·µp) - p·Gp + det ε det µ with
 //! G = tr(µ adj ε) µ - µ adj(ε) µ. Its roots are as exact as the distance between them allows; the
 //! pencil of Maxwell's equations is symmetric, so that its quotient with a field known to n digits
