@@ -89,11 +89,55 @@ fn air_to_uniaxial_evanescent(bencher: Bencher) {
     bench_split(bencher, &Medium::AIR, &rare);
 }
 
+/// A biaxial crystal, off its principal axes.
+fn topaz() -> Medium {
+    let turn = DMat3::from_axis_angle(DVec3::new(0.36, 0.48, 0.8), 1.1);
+    let tensor = turn * DMat3::from_diagonal(DVec3::new(2.609, 2.613, 2.641)) * turn.transpose();
+    Medium::new((tensor + tensor.transpose()) * 0.5, 1.0).expect("a sound medium")
+}
+
+/// A medium without symmetry.
+fn general() -> Medium {
+    let tensor = |values: DVec3, axis: DVec3| {
+        let turn = DMat3::from_axis_angle(axis, 0.7);
+        let tensor = turn * DMat3::from_diagonal(values) * turn.transpose();
+        (tensor + tensor.transpose()) * 0.5
+    };
+    let permittivity = tensor(DVec3::new(1.3, 2.4, 3.1), DVec3::new(0.48, 0.6, 0.64));
+    let permeability = tensor(DVec3::new(1.7, 1.1, 0.8), DVec3::new(0.64, -0.48, 0.6));
+    Medium::new(permittivity, permeability).expect("a sound medium")
+}
+
 #[divan::bench]
 fn uniaxial_to_general(bencher: Bencher) {
-    let topaz = Medium::new(DMat3::from_diagonal(DVec3::new(2.609, 2.613, 2.641)), 1.0)
-        .expect("a sound medium");
-    bench_split(bencher, &birefringent(DVec2::ONE), &topaz);
+    bench_split(bencher, &birefringent(DVec2::ONE), &topaz());
+}
+
+#[divan::bench]
+fn air_to_biaxial(bencher: Bencher) {
+    bench_split(bencher, &Medium::AIR, &topaz());
+}
+
+#[divan::bench]
+fn air_to_general(bencher: Bencher) {
+    bench_split(bencher, &Medium::AIR, &general());
+}
+
+/// One wave beyond is evanescent.
+#[divan::bench]
+fn air_to_general_evanescent(bencher: Bencher) {
+    let rare = Medium::new(DMat3::from_diagonal(DVec3::new(0.5, 0.15, 3.0)), 1.0);
+    bench_split(bencher, &Medium::AIR, &rare.expect("a sound medium"));
+}
+
+#[divan::bench]
+fn general_to_air(bencher: Bencher) {
+    bench_split(bencher, &general(), &Medium::AIR);
+}
+
+#[divan::bench]
+fn general_to_general(bencher: Bencher) {
+    bench_split(bencher, &general(), &topaz());
 }
 
 #[divan::bench]

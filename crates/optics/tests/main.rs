@@ -15,3 +15,4 @@ mod paths;
 mod radial_flow;
 mod random_media;
 mod square_cloak_faces;
+mod typed_tensors;

@@ -13,6 +13,7 @@ mod group_index;
 mod modes;
 mod principal_axes;
 mod quadratic;
+mod quartic;
 mod ray_waves;
 mod tensor;
 mod wave_surface;
@@ -59,6 +60,10 @@ impl Medium {
 
     /// A medium of any relative permittivity and permeability tensors.
     ///
+    /// Tensors that are uniaxial, or one of them a multiple of the other, but for 1e-9 of their
+    /// size are taken to be so, and become so: the digits that people type. Anisotropy below 1e-6
+    /// is left as it is, and an exactly uniaxial tensor is so however weak its birefringence.
+    ///
     /// # Errors
     ///
     /// If a tensor is not symmetric, has principal values beyond 1e-12 to 1e12 or one a 1e12th of
@@ -85,7 +90,7 @@ impl Medium {
         let permittivity = permittivity.into().checked("permittivity")?;
         let permeability = permeability.into().checked("permeability")?;
         not_too_dense(permittivity.size(), permeability.size())?;
-        let class = Class::of(&permittivity, &permeability);
+        let (class, [permittivity, permeability]) = Class::of(permittivity, permeability);
         Ok(Self::of_class(&permittivity, &permeability, class))
     }
 
@@ -240,7 +245,7 @@ impl Medium {
         (Tensor { re: self.real.permittivity, im: e }, Tensor { re: self.real.permeability, im: m })
     }
 
-    /// The same medium, its waves found by the general eigenproblem instead of a closed form:
+    /// The same medium, its waves found as those of any medium instead of by its closed form:
     /// slower, and a check on the closed forms.
     pub fn without_closed_form(self) -> Self {
         Self { class: Class::General, ..self }
@@ -250,6 +255,37 @@ impl Medium {
     #[must_use]
     pub fn is_isotropic(&self) -> bool {
         matches!(self.class, Class::Isotropic(_) | Class::AbsorbingIsotropic(..))
+    }
+
+    /// What the medium is, for reports: `isotropic`, `impedance matched` (ε a multiple of µ),
+    /// `uniaxial`, `biaxial` (one tensor scalar, the other of three principal values) or `general`;
+    /// of one that absorbs, `absorbing, isotropic`, `absorbing, uniaxial` or `absorbing, general`.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use glam::{DMat3, DVec3};
+    /// use optics::medium::Medium;
+    ///
+    /// let topaz = DMat3::from_diagonal(DVec3::new(2.609, 2.613, 2.641));
+    /// assert_eq!(Medium::new(topaz, 1.0)?.class_name(), "biaxial");
+    /// assert_eq!(Medium::AIR.class_name(), "isotropic");
+    /// # Ok::<(), optics::medium::MediumError>(())
+    /// ```
+    #[must_use]
+    pub fn class_name(&self) -> &'static str {
+        match self.class {
+            Class::Isotropic(_) => "isotropic",
+            Class::Matched(_) => "impedance matched",
+            Class::Uniaxial(_) => "uniaxial",
+            Class::AbsorbingIsotropic(..) => "absorbing, isotropic",
+            Class::AbsorbingUniaxial(_) => "absorbing, uniaxial",
+            Class::General if self.absorbs() => "absorbing, general",
+            Class::General => {
+                let (permittivity, permeability) = self.tensors();
+                if class::is_biaxial(&permittivity, &permeability) { "biaxial" } else { "general" }
+            }
+        }
     }
 
     /// Whether the medium takes power from light.

@@ -105,12 +105,19 @@ impl Tensor {
         Complex64::new(trace(&self.re), trace(&self.im))
     }
 
+    /// The tensor less another one.
+    pub(super) fn difference(&self, other: &Self) -> Self {
+        Self { re: self.re - other.re, im: self.im - other.im }
+    }
+
+    /// The largest entry of what makes it differ from a scalar.
+    pub(super) fn anisotropy(&self) -> f64 {
+        self.difference(&(self.trace() / 3.0).into()).size()
+    }
+
     /// What the tensor is up to `tolerance`, relative to its size.
     pub(super) fn shape(&self, tolerance: f64) -> Shape {
-        let near = |other: &Self| {
-            let difference = Self { re: self.re - other.re, im: self.im - other.im };
-            difference.size() <= tolerance * self.size()
-        };
+        let near = |other: &Self| self.difference(other).size() <= tolerance * self.size();
         let mean = self.trace() / 3.0;
         if near(&mean.into()) {
             return Shape::Scalar(mean);

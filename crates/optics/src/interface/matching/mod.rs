@@ -1,6 +1,7 @@
 //! The interface of any two media: two modes out on either side, four tangential fields to match.
 
 mod coated;
+mod isotropic_before;
 mod isotropic_beyond;
 
 pub use coated::{Backing, Film, FilmLayer, split_coated};
@@ -31,10 +32,21 @@ pub(super) fn split_into_modes<const N: usize>(
     let Splitting { wave, frame, .. } = splitting;
     let normal_component = wave.wave_vector.dot(frame.normal);
     let tangential = tangential(&splitting);
+    let mut scattered = Scattered { splitting, tangential, weak: [0.0; N] };
     // Modes are large, and stay where they are made.
+    if let (Some(medium), Some(beyond), Tangential::Real(along)) =
+        (incident_medium.scalars(), transmitted_medium, tangential)
+        && !beyond.absorbs()
+    {
+        let layer = Layer::new(medium, along);
+        match &beyond.onward(&frame, tangential) {
+            LocalModes::Real(modes) => scattered.match_from_isotropic(layer, modes),
+            LocalModes::Complex(modes) => scattered.match_from_isotropic(layer, modes),
+        }
+        return scattered.weak;
+    }
     let (arriving, backward) =
         &incident_medium.arriving_and_back(&frame, tangential, normal_component);
-    let mut scattered = Scattered { splitting, tangential, weak: [0.0; N] };
     let arriving_real = arriving.real().zip(backward.real());
     if let (Some(medium), Tangential::Real(along)) =
         (transmitted_medium.and_then(Medium::scalars), tangential)

@@ -1,13 +1,15 @@
-//! Modes of any medium: Berreman's eigenproblem for the tangential fields.
+//! Modes of any medium: Fresnel's equation where it serves, elsewhere Berreman's eigenproblem for the
+//! tangential fields.
 
+use super::eigenvalues::eigenvalues;
 use super::eigenvector::eigenvector;
+use super::fresnel::Fresnel;
 use super::local::mutual_flux;
 use super::refinement::{Maxwell, best};
-use super::{BothWays, LocalMode, LocalModes, ModeKind};
+use super::{Arriving, BothWays, LocalMode, LocalModes, ModeKind};
 use crate::medium::{Medium, Tensor};
 use crate::wave::{Frame, Number, dot};
 use arrayvec::ArrayVec;
-use nalgebra::{ComplexField, Const, Matrix4, Schur, Vector4};
 use num_complex::Complex64;
 use std::ops::Mul;
 
@@ -62,26 +64,10 @@ impl<T: Number> Berreman<T> {
         residual.fold(0.0, |worst, one| if one.is_nan() { f64::INFINITY } else { one.max(worst) })
     }
 
-    /// The eigenvalues by Schur's form, which `values` reads, and their vectors.
-    fn eigenpairs(
-        &self,
-        values: impl FnOnce(&Schur<T, Const<4>>) -> Option<[Complex64; 4]>,
-    ) -> [Eigenpair; 4]
-    where
-        T: ComplexField<RealField = f64>,
-    {
+    /// The eigenvalues and their vectors.
+    fn eigenpairs(&self) -> [Eigenpair; 4] {
         let matrix = self.complex_matrix();
-        let own = Matrix4::from_fn(|i, j| self.matrix[i][j]);
-        let schur = own.try_schur(f64::EPSILON, MOST_ROUNDS).or_else(|| {
-            // Its shifts can run in a circle where several eigenvalues have one size, but hardly
-            // again in another basis.
-            MIRRORS.iter().find_map(|across| {
-                let across = Vector4::from(across.map(T::from)).normalize();
-                let mirror = Matrix4::identity() - across * across.transpose() * T::from(2.0);
-                (mirror * own * mirror).try_schur(f64::EPSILON, MOST_ROUNDS)
-            })
-        });
-        schur.as_ref().and_then(values).map_or_else(fallback, |values| {
+        eigenvalues(&self.matrix).map_or_else(fallback, |values| {
             std::array::from_fn(|i| {
                 let field = eigenvector(&matrix, values[i], None);
                 (values[i], field.unwrap_or(fallback()[i].1))
@@ -160,25 +146,59 @@ impl Medium {
     /// The modes of a lossless medium without a closed form.
     pub(super) fn general_modes(&self, frame: &Frame, along: f64, known: Option<f64>) -> BothWays {
         let tensors = [&self.real.permittivity, &self.real.permeability].map(|t| frame.tensor(t));
-        let at = |along| {
-            best(|least| {
-                let problem = Berreman::new(tensors[0], tensors[1], [along, 0.0], least);
-                let found = problem.lossless_modes(known);
-                let [forward, backward] = &found.modes;
-                let residual =
-                    problem.residual(forward.complex().iter().chain(&backward.complex()));
-                (found, residual)
-            })
-        };
-        let exactly = at(along);
-        if !exactly.along_the_surface {
-            return exactly.modes;
+        if let Some(modes) = Fresnel::new(tensors[0], tensors[1], along).modes() {
+            return modes;
         }
-        let mut near = SHIFTS.iter().map(|shift| at(along * (1.0 + shift)));
-        near.find(|near| !near.along_the_surface && near.propagating == exactly.propagating)
-            .unwrap_or(exactly)
-            .modes
+        eigenmodes(tensors, along, known)
     }
+
+    /// The mode of a wave that arrives with the normal component `q`, and those that head back.
+    pub(super) fn general_arriving(
+        &self,
+        frame: &Frame,
+        along: f64,
+        q: f64,
+    ) -> (Arriving, LocalModes) {
+        let tensors = [&self.real.permittivity, &self.real.permeability].map(|t| frame.tensor(t));
+        let fresnel = Fresnel::new(tensors[0], tensors[1], along);
+        if let Some((arriving, back)) = fresnel.arriving_and_back(q) {
+            return (Arriving::One(arriving), back);
+        }
+        let modes = fresnel.modes().unwrap_or_else(|| eigenmodes(tensors, along, Some(q)));
+        let [forward, backward] = modes;
+        (Arriving::Both(forward), backward)
+    }
+
+    /// Those that head forward.
+    pub(super) fn general_onward(&self, frame: &Frame, along: f64) -> LocalModes {
+        let tensors = [&self.real.permittivity, &self.real.permeability].map(|t| frame.tensor(t));
+        let fresnel = Fresnel::new(tensors[0], tensors[1], along);
+        if let Some(modes) = fresnel.onward() {
+            return modes;
+        }
+        fresnel.modes().unwrap_or_else(|| eigenmodes(tensors, along, None))[0]
+    }
+}
+
+/// The modes of a lossless medium by the eigenproblem.
+fn eigenmodes(tensors: [[[f64; 3]; 3]; 2], along: f64, known: Option<f64>) -> BothWays {
+    let at = |along| {
+        best(|least| {
+            let problem = Berreman::new(tensors[0], tensors[1], [along, 0.0], least);
+            let found = problem.lossless_modes(known);
+            let [forward, backward] = &found.modes;
+            let residual = problem.residual(forward.complex().iter().chain(&backward.complex()));
+            (found, residual)
+        })
+    };
+    let exactly = at(along);
+    if !exactly.along_the_surface {
+        return exactly.modes;
+    }
+    let mut near = SHIFTS.iter().map(|shift| at(along * (1.0 + shift)));
+    near.find(|near| !near.along_the_surface && near.propagating == exactly.propagating)
+        .unwrap_or(exactly)
+        .modes
 }
 
 impl Berreman<Complex64> {
@@ -203,7 +223,7 @@ impl Berreman<Complex64> {
     }
 
     fn complex_modes(&self) -> [[LocalMode<Complex64>; 2]; 2] {
-        let mut pairs = self.eigenpairs(|schur| schur.eigenvalues().map(Into::into));
+        let mut pairs = self.eigenpairs();
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         separate_double_roots(&self.matrix, &mut pairs, size);
         let mut modes = pairs.map(|(q, field)| self.mode(q, field));
@@ -215,7 +235,7 @@ impl Berreman<Complex64> {
 
 impl Berreman<f64> {
     fn lossless_modes(&self, known: Option<f64>) -> Lossless {
-        let mut pairs = self.eigenpairs(|schur| Some(eigenvalues(&schur.unpack().1)));
+        let mut pairs = self.eigenpairs();
         let size = pairs.iter().map(|(q, _)| q.norm()).fold(1.0, f64::max);
         // Evanescent ones come as conjugates; the real ones in order show which are double.
         pairs.sort_by(|(a, _), (b, _)| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
@@ -259,21 +279,6 @@ impl Berreman<f64> {
     }
 }
 
-/// The eigenvalues of a real Schur form. `Schur::complex_eigenvalues` takes those of every block
-/// for a conjugate pair, and is not a number where rounding has left a block of a real double one.
-fn eigenvalues(form: &Matrix4<f64>) -> [Complex64; 4] {
-    let mut values = std::array::from_fn(|i| Complex64::from(form[(i, i)]));
-    for i in 1..4 {
-        let (a, b, c, d) = (form[(i - 1, i - 1)], form[(i - 1, i)], form[(i, i - 1)], form[(i, i)]);
-        if c != 0.0 {
-            let (middle, half) = (0.5 * (a + d), 0.5 * (a - d));
-            let root = Complex64::from(half * half + b * c).sqrt();
-            [values[i - 1], values[i]] = [middle + root, middle - root];
-        }
-    }
-    values
-}
-
 /// Roots closer than this, relative to the largest, are one.
 const DOUBLE: f64 = 1e-13;
 
@@ -297,12 +302,6 @@ fn parts_across(field: [Complex64; 4]) -> [Complex64; 4] {
     let phase = if square.norm() > 0.0 { (square / square.norm()).sqrt() } else { Complex64::ONE };
     field.map(|c| c / phase)
 }
-
-/// Rounds of the eigensolver; it takes about ten.
-const MOST_ROUNDS: usize = 200;
-
-/// Normals of mirrors that have no symmetry in common with a matrix.
-const MIRRORS: [[f64; 4]; 2] = [[0.53, -0.37, 0.61, 0.46], [0.19, 0.83, -0.27, 0.44]];
 
 /// Should the eigensolver ever give up: no waves but decaying ones without fields that matter.
 fn fallback() -> [Eigenpair; 4] {
@@ -334,14 +333,14 @@ fn by_heading(
     // Half of the propagating ones head each way; the rank, where rounding at grazing incidence
     // hides the sign.
     real.sort_by(|a, b| b.flux().total_cmp(&a.flux()));
-    orthogonalize_in_flux(&mut real, size);
+    orthogonalize_in_flux(&mut real.iter_mut().collect::<ArrayVec<_, 4>>(), size);
     evanescent.sort_by(|a, b| b.q.im.total_cmp(&a.q.im));
     let (r, e) = (real.len() / 2, evanescent.len() / 2);
     [gathered(&real[..r], &evanescent[..e]), gathered(&real[r..], &evanescent[e..])]
 }
 
 /// Two modes of one heading, normalized and in order.
-fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>]) -> LocalModes {
+pub(super) fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>]) -> LocalModes {
     let normalized = |mode: &LocalMode<f64>| {
         let flux = mode.flux().abs().max(1e-15);
         mode.scaled(flux.sqrt().recip())
@@ -358,15 +357,17 @@ fn gathered(real: &[LocalMode<f64>], evanescent: &[LocalMode<Complex64>]) -> Loc
     }
 }
 
-/// Makes modes orthogonal in flux, as those of a lossless medium are: computed ones are as far as
+/// Makes modes of norm 1 orthogonal in flux, as those of a lossless medium are: computed ones are as far as
 /// their roots are apart.
-fn orthogonalize_in_flux(modes: &mut [LocalMode<f64>], size: f64) {
+pub(super) fn orthogonalize_in_flux(modes: &mut [&mut LocalMode<f64>], size: f64) {
     for i in 1..modes.len() {
-        for j in 0..i {
-            let share = mutual_flux(&modes[j], &modes[i]) / modes[j].flux();
+        let (before, after) = modes.split_at_mut(i);
+        let mode = &mut *after[0];
+        for other in before {
+            let share = mutual_flux(&**other, mode) / other.flux();
             // At grazing incidence there may be no flux: only what Maxwell's equations do not feel.
-            if (share * (modes[i].q - modes[j].q)).abs() < 1e-14 * size {
-                modes[i] = added(modes[i], &modes[j], -share);
+            if (share * (mode.q - other.q)).abs() < 1e-14 * size {
+                *mode = added(*mode, other, -share);
             }
         }
     }
@@ -385,7 +386,7 @@ fn diagonal_in_flux(a: LocalMode<f64>, b: LocalMode<f64>) -> [LocalMode<f64>; 2]
 }
 
 /// a + factor b.
-fn added(mut a: LocalMode<f64>, b: &LocalMode<f64>, factor: f64) -> LocalMode<f64> {
+pub(super) fn added(mut a: LocalMode<f64>, b: &LocalMode<f64>, factor: f64) -> LocalMode<f64> {
     for i in 0..3 {
         a.electric[i] += factor * b.electric[i];
         a.magnetic[i] += factor * b.magnetic[i];
@@ -404,4 +405,72 @@ fn ordered<T: Number>(modes: [LocalMode<T>; 2]) -> [LocalMode<T>; 2] {
         || (a.propagating == b.propagating && size(&b) < size(&a));
     let (a, b) = if swap { (b, a) } else { (a, b) };
     [LocalMode { kind: ModeKind::First, ..a }, LocalMode { kind: ModeKind::Second, ..b }]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers from 0 to 1, `SplitMix64`.
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = *state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        #[expect(clippy::cast_precision_loss, reason = "53 bits")]
+        let bits = ((z ^ (z >> 31)) >> 11) as f64;
+        bits / 9_007_199_254_740_992.0
+    }
+
+    fn symmetric(state: &mut u64, diagonal: f64) -> [[f64; 3]; 3] {
+        let [a, b, c] = [0; 3].map(|_| diagonal + 2.0 * random(state));
+        let [d, e, f] = [0; 3].map(|_| 1.2 * random(state) - 0.6);
+        [[a, d, e], [d, b, f], [e, f, c]]
+    }
+
+    /// Each mode of one has a partner in the other with the same q, the same fields but for a phase,
+    /// and the same name.
+    fn assert_alike(ours: LocalModes, theirs: LocalModes) {
+        for (a, b) in ours.complex().iter().zip(&theirs.complex()) {
+            assert_eq!((a.kind, a.propagating), (b.kind, b.propagating));
+            assert!((a.q - b.q).norm() < 1e-11, "{a:?} {b:?}");
+            let inner = |a: &LocalMode<Complex64>, b: &LocalMode<Complex64>| {
+                let product = |a: [Complex64; 3], b: [Complex64; 3]| dot(a.map(|c| c.conj()), b);
+                (product(a.electric, b.electric) + product(a.magnetic, b.magnetic)).norm()
+            };
+            let cosine = inner(a, b) / (inner(a, a) * inner(b, b)).sqrt();
+            assert!((cosine - 1.0).abs() < 1e-13, "{cosine} {a:?} {b:?}");
+            assert!((a.flux() - b.flux()).abs() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn fresnels_quartic_and_the_eigenproblem_agree() {
+        let mut state = 21;
+        let (mut solved, mut decaying) = (0, 0);
+        for number in 0..2_000 {
+            // Every second one is indefinite or nearly so.
+            let diagonal = if number % 2 == 0 { 1.5 } else { -1.0 };
+            let tensors = [symmetric(&mut state, diagonal), symmetric(&mut state, 1.5)];
+            let along = 3.0 * random(&mut state);
+            let fresnel = Fresnel::new(tensors[0], tensors[1], along);
+            let Some([forward, backward]) = fresnel.modes() else { continue };
+            let [expected, expected_back] = eigenmodes(tensors, along, None);
+            assert_alike(forward, expected);
+            assert_alike(backward, expected_back);
+            solved += 1;
+            decaying += usize::from(forward.real().is_none());
+            if let Some(onward) = fresnel.onward() {
+                assert_alike(onward, expected);
+            }
+            for mode in expected.complex().iter().filter(|mode| mode.propagating) {
+                if let Some((arriving, back)) = fresnel.arriving_and_back(mode.q.re) {
+                    assert!((arriving.q - mode.q.re).abs() < 1e-11);
+                    assert_alike(back, expected_back);
+                }
+            }
+        }
+        // Nearly all, with waves of either sort.
+        assert!(solved > 1_800 && decaying > 400 && solved - decaying > 400, "{solved} {decaying}");
+    }
 }

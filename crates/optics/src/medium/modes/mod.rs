@@ -5,7 +5,9 @@
 //! misleading in hyperbolic and negative-index media.
 
 mod absorbing;
+mod eigenvalues;
 mod eigenvector;
+mod fresnel;
 mod general;
 mod local;
 mod refinement;
@@ -168,6 +170,11 @@ impl Medium {
             let waves = medium.waves(frame, along, Some(q));
             return (waves.arriving(q), waves.modes(false));
         }
+        if let (Class::General, Tangential::Real(along), false) =
+            (&self.class, tangential, self.absorbs())
+        {
+            return self.general_arriving(frame, along, q);
+        }
         let [forward, backward] = self.both_ways(frame, tangential, Some(q));
         (Arriving::Both(forward), backward)
     }
@@ -180,6 +187,9 @@ impl Medium {
             }
             (Class::Uniaxial(medium), Tangential::Real(along)) => {
                 medium.waves(frame, along, None).modes(true)
+            }
+            (Class::General, Tangential::Real(along)) if !self.absorbs() => {
+                self.general_onward(frame, along)
             }
             _ => self.both_ways(frame, tangential, None)[0],
         }

@@ -65,7 +65,7 @@ impl<T: Number> Maxwell<T> {
     }
 
     /// p × E - µH and p × H + εE.
-    fn residual(&self, mode: &LocalMode<T>) -> [[T; 3]; 2] {
+    pub fn residual(&self, mode: &LocalMode<T>) -> [[T; 3]; 2] {
         let [k1, k2] = self.tangential;
         let p = [k1, k2, mode.q];
         let (e, h) = (mode.electric, mode.magnetic);
