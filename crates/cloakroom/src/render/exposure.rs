@@ -231,11 +231,15 @@ impl<const N: usize> Neighbour<'_, N> {
         leaves.clone().find(|twin| twin.path == self.leaf.path).or_else(|| {
             // Light that enters by another face of a cloak may leave as if nothing had happened.
             let moved = self.moved();
-            let off = |other: &Leaf<N>| (other.direction - moved.direction).length_squared();
-            let closest = leaves.min_by(|one, other| {
-                off(one).total_cmp(&off(other)).then(one.path.cmp(&other.path))
-            });
-            closest.filter(|other| is_close(&moved, self.leaf, other))
+            let there =
+                moved.origin + moved.direction * self.leaf.position.distance(self.here.ray.origin);
+            let off = |other: &Leaf<N>| {
+                (other.direction - moved.direction).length_squared() * AFAR * AFAR
+                    + (other.position - there).length_squared()
+            };
+            leaves
+                .filter(|other| is_close(&moved, self.leaf, other))
+                .min_by(|one, other| off(one).total_cmp(&off(other)))
         })
     }
 
@@ -244,6 +248,9 @@ impl<const N: usize> Neighbour<'_, N> {
         self.twin().map(|twin| Line { origin: twin.position, direction: twin.direction })
     }
 }
+
+/// How far on two lines are compared, cm.
+const AFAR: f64 = 100.0;
 
 /// Whether a neighbour's leaf goes on much like this one moved by a pixel.
 fn is_close<const N: usize>(moved: &Line, leaf: &Leaf<N>, other: &Leaf<N>) -> bool {

@@ -316,14 +316,14 @@ impl<'a, const N: usize> Exposer<'a, N> {
         }
         let mut traced = 1.0;
         if let Some(patches) = &mut self.patches
-            && let Fit::Traced(share) = patches.fit(patch, level)
+            && patches.fit(patch, level) == Fit::Shared
         {
             if let Some(halves) = patches.division() {
                 return halves
                     .into_iter()
                     .try_for_each(|half| self.divide((half, level + 1), is_wanted, take));
             }
-            traced = share;
+            traced = patches.traced();
         }
         take(self, patch, traced)
     }

@@ -44,9 +44,11 @@ const LEAST_COST: f64 = 0.1;
 /// What a division leaves to be traced of what was.
 const LEFT_AFTER_DIVISION: f64 = 0.5;
 
-/// Divisions are in vain that leave this share of what was to be traced, and after so many of them
-/// there are no more.
-const VAIN: (f64, usize) = (0.85, 2);
+/// A division is in vain that leaves this share of what was to be traced: there are no more.
+const VAIN: f64 = 0.9;
+
+/// Where this share is to be traced, all is: to interpolate the rest takes as long.
+const MOST_TRACED: f64 = 0.7;
 
 /// The largest error of a power, as a share of what was launched.
 const POWER_TOLERANCE: f64 = 1e-6;
@@ -95,12 +97,12 @@ impl Patch {
 }
 
 /// What becomes of a patch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fit {
-    /// Its leaves are interpolated, but for this share of what is to be traced: 1 where all is.
-    Traced(f64),
+    /// Leaves are interpolated, of all ways or of some, or will be in its parts.
+    Shared,
     /// Nothing would be gained, however it is divided.
-    Simple,
+    Alone,
 }
 
 /// The leaf of one way over a patch.
@@ -129,8 +131,8 @@ struct Level<const N: usize> {
     /// The share of all that is to be traced.
     traced: f64,
     left_out: LeftOut,
-    /// How many divisions in a row have left hardly less to be traced.
-    vain: usize,
+    /// Whether the last division has left hardly less to be traced.
+    in_vain: bool,
     /// Where the values of larger patches end.
     values: usize,
 }
@@ -209,10 +211,16 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         })
     }
 
+    /// The share of the patch that was fitted last that is to be traced for each sample.
+    pub fn traced(&self) -> f64 {
+        let share = self.levels.last().map_or(1.0, |level| level.traced);
+        if share > MOST_TRACED { 1.0 } else { share }
+    }
+
     /// How the patch that was fitted last is to be divided, if it is.
     pub fn division(&self) -> Option<[Patch; 2]> {
-        let Level { patch, traced, vain, .. } = self.levels.last()?;
-        if *vain >= VAIN.1 {
+        let Level { patch, traced, in_vain, .. } = self.levels.last()?;
+        if *in_vain {
             return None;
         }
         let [width, height] = patch.size;
@@ -256,10 +264,10 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let same = bits(rays.iter().enumerate().filter(|(_, ray)| beside(ray)).map(|(i, _)| i));
         self.cuts = self.nodes.cuts(same);
         if same.count_ones() as usize != rays.len() {
-            return Fit::Traced(1.0);
+            return Fit::Shared;
         }
         if met.is_none() {
-            return Fit::Simple;
+            return Fit::Alone;
         }
         here.surface = met;
         self.found.clear();
@@ -283,7 +291,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 let (leaves, outcome) = tracer.traced();
                 if outcome.stats != TraceStats::default() {
                     // Light without end is told of in the picture's account, and takes its time.
-                    return Fit::Simple;
+                    return Fit::Alone;
                 }
                 if i < four.len() {
                     self.found.extend(leaves.iter().map(|leaf| (4 * number + i, *leaf)));
@@ -291,7 +299,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             }
             if number == 0 && !self.graded && above.is_none() && self.found.len() == 4 {
                 // One branch in closed form is quicker than any polynomial.
-                return Fit::Simple;
+                return Fit::Alone;
             }
         }
         self.ways.gather(rays.len(), self.prepared.limits.min_power);
@@ -302,8 +310,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         }
         let above = self.levels.last();
         here.traced = self.ways.traced_share() * above.map_or(1.0, |above| above.traced);
-        let is_vain = |above: &&Level<N>| here.traced > VAIN.0 * above.traced;
-        here.vain = above.filter(is_vain).map_or(0, |above| above.vain + 1);
+        here.in_vain = above.is_some_and(|above| here.traced > VAIN * above.traced);
         let known = above.map_or(&[][..], |above| &above.smooth);
         here.smooth.extend(known.iter().filter(|leaf| !self.ways.parts(leaf.beginning)));
         if here.traced > 0.0 {
@@ -316,7 +323,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 tracer.recorder().clone_from(&here.left_out);
             }
         }
-        Fit::Traced(here.traced)
+        Fit::Shared
     }
 
     /// Makes functions of the leaves of the ways that all rays take.

@@ -48,7 +48,7 @@ fn compare<const N: usize>(
     step: usize,
     errors: &mut Errors,
 ) {
-    if patches.fit(patch, level) == Fit::Simple {
+    if patches.fit(patch, level) == Fit::Alone {
         return;
     }
     if let Some(halves) = patches.division() {
