@@ -1,7 +1,7 @@
 //! `cloakroom check`: is the scene sound, what does it hold, how long will it take.
 
 use crate::arguments::SceneArguments;
-use crate::devices::fact_lines;
+use crate::devices::{fact_lines, media_line};
 use crate::report::{self, Result};
 use crate::scene;
 use cloakroom::assembly::Placed;
@@ -42,7 +42,8 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
     for (index, device) in scene.devices.iter().enumerate() {
         let show = device.placement.show.word();
         writeln!(text, "device {index}     {}, shown as {show}, {}", device.kind(), device.turn())?;
-        for line in fact_lines(device.facts()) {
+        let structure = &prepared.assembly.devices()[index].structure;
+        for line in media_line(structure).into_iter().chain(fact_lines(device.facts())) {
             writeln!(text, "             {line}")?;
         }
     }

@@ -1,7 +1,7 @@
 //! `cloakroom devices`: the catalogue with computed facts.
 
 use crate::report::{self, Result};
-use cloakroom::device::{CATALOGUE, Entry, Fact, FactValue};
+use cloakroom::device::{CATALOGUE, Entry, Fact, FactValue, Request, Structure};
 use cloakroom::json::json as value_json;
 use cloakroom::keys::Key;
 use serde_json::{Value, json};
@@ -26,6 +26,7 @@ fn as_json(entry: &Entry) -> Value {
         "title": entry.title,
         "summary": entry.summary,
         "keys": keys_as_json(entry.keys),
+        "media": (entry.device)().build(Request::default()).map(|structure| structure.media()).unwrap_or_default(),
     });
     for fact in (entry.device)().facts() {
         object[fact.name] = match fact.value {
@@ -66,10 +67,20 @@ fn describe(entry: &Entry, text: &mut String) -> std::fmt::Result {
         writeln!(text, "  {name:<12} {} ({})", key.doc, key.describe())?;
     }
     writeln!(text)?;
-    for line in fact_lines((entry.device)().facts()) {
+    let device = (entry.device)();
+    let media = device.build(Request::default()).ok().and_then(|structure| media_line(&structure));
+    for line in media.into_iter().chain(fact_lines(device.facts())) {
         writeln!(text, "  {line}")?;
     }
     writeln!(text)
+}
+
+/// How its media were classified, for that decides how long rays take; `None` without media.
+pub fn media_line(structure: &Structure) -> Option<String> {
+    let media = structure.media();
+    let words: Vec<String> =
+        media.iter().map(|(class, count)| format!("{count} {class}")).collect();
+    (!words.is_empty()).then(|| format!("{:<32} {}", "media", words.join(", ")))
 }
 
 /// The computed facts of a device, a line each.

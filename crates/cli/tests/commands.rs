@@ -219,6 +219,28 @@ fn scenes_are_checked() {
     }
 }
 
+/// Calcite with its optic axis along (0, 0.6, 0.8), typed in ten digits, is no general medium.
+#[test]
+fn media_are_named_for_what_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    let (ordinary, extraordinary) = (2.749_407_3, 2.207_693_2);
+    let [across, along, mixed] = [0.36, 0.64, 0.48].map(|share| share * (extraordinary - ordinary));
+    let [across, along] = [across, along].map(|change| ordinary + change);
+    for (off, class) in [(0.0, "1 uniaxial"), (1e-3, "1 biaxial")] {
+        let text = format!(
+            "[[device]]\nkind = \"body\"\nshape = \"slab\"\nthickness = 2\n\
+             permittivity = [[{}, 0, 0], [0, {across:.10}, {mixed:.10}], [0, {mixed:.10}, {along:.10}]]\n",
+            ordinary + off
+        );
+        fs::write(&scene, text).unwrap();
+        let text = String::from_utf8(stdout(cloakroom().arg("check").arg(&scene))).unwrap();
+        assert!(text.contains(class), "{text}");
+    }
+    let text = String::from_utf8(stdout(cloakroom().arg("devices"))).unwrap();
+    assert!(text.contains("4 impedance matched"), "{text}");
+}
+
 #[test]
 fn films_made_of_bodies_are_warned_of() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,7 @@
 //! How long a picture will take.
 
 use super::detection::Detection;
-use super::patch::{Patch, SIDE};
+use super::patch::Patch;
 use super::pixel::Pixel;
 use super::{ChannelSet, Exposer, PreparedScene};
 use std::time::{Duration, Instant};
@@ -34,9 +34,10 @@ const STRIDE: usize = 1_000_003;
 pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
     let camera = &prepared.scene.camera;
     let size = camera.resolution.map(|side| side as usize);
-    let [columns, rows] = size.map(|side| side.div_ceil(SIDE));
     let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &prepared.scene.picture);
     let mut exposer = Exposer::new(prepared, &detection);
+    let side = exposer.side();
+    let [columns, rows] = size.map(|pixels| pixels.div_ceil(side));
     let start = Instant::now();
     let (mut looked_at, mut seconds, mut walks) = (0.0, 0.0, 0.0);
     for number in 0..(columns * rows).min(MOST_PATCHES) {
@@ -44,7 +45,7 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
             break;
         }
         let place = (number + 1) * STRIDE % (columns * rows);
-        let corner = [place % columns * SIDE, place / columns * SIDE];
+        let corner = [place % columns * side, place / columns * side];
         let is_seen = |patch: Patch| (0..2).all(|i| patch.corner[i] < size[i]);
         let began = Instant::now();
         // What exposing the blocks took, and would take of all.
@@ -69,7 +70,7 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
             walks += (exposer.walks - walked) * scale;
             Some(())
         };
-        let patch = Patch { corner, size: [SIDE; 2] };
+        let patch = Patch { corner, size: [side; 2] };
         exposer.divide((patch, 0), &is_seen, &mut expose);
         seconds += began.elapsed().as_secs_f64() - exposing + all;
         looked_at += 1.0;

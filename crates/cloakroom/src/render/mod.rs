@@ -278,7 +278,8 @@ impl<'a, const N: usize> Exposer<'a, N> {
     fn expose_band(&mut self, band: &mut Band<'_>, stop: &AtomicBool) -> Option<TraceStats> {
         let mut stats = TraceStats::default();
         // Patches are those of the whole picture, and may reach beyond the band.
-        let [left, top] = band.corner.map(|corner| corner / patch::SIDE * patch::SIDE);
+        let side = self.side();
+        let [left, top] = band.corner.map(|corner| corner / side * side);
         let (corner, size) = (band.corner, [band.width, band.rows]);
         let is_seen = |patch: Patch| !patch.part_of(corner, size).iter().any(Range::is_empty);
         let mut take = |this: &mut Self, patch: Patch, traced: f64| {
@@ -290,9 +291,9 @@ impl<'a, const N: usize> Exposer<'a, N> {
             }
             Some(())
         };
-        for top in (top..corner[1] + size[1]).step_by(patch::SIDE) {
-            for left in (left..corner[0] + size[0]).step_by(patch::SIDE) {
-                let patch = Patch { corner: [left, top], size: [patch::SIDE; 2] };
+        for top in (top..corner[1] + size[1]).step_by(side) {
+            for left in (left..corner[0] + size[0]).step_by(side) {
+                let patch = Patch { corner: [left, top], size: [side; 2] };
                 self.divide(
                     (patch, 0),
                     &|patch| is_seen(patch) && !stop.load(Ordering::Relaxed),
@@ -301,6 +302,11 @@ impl<'a, const N: usize> Exposer<'a, N> {
             }
         }
         (!stop.load(Ordering::Relaxed)).then_some(stats)
+    }
+
+    /// Width and height of the largest patches.
+    fn side(&self) -> usize {
+        self.patches.as_ref().map_or(patch::SIDE, |patches| patches.side)
     }
 
     /// Divides a patch as far as is worthwhile, and does to each part, of which some share is to be

@@ -81,6 +81,19 @@ impl Placed {
             .reduce(|[low, high], [from, to]| [low.min(from), high.max(to)])
     }
 
+    /// How large the smallest part of it looks at least, from wherever it is seen but edge on, cm: the
+    /// middle one of the sides of a box around it. Infinite if it is nowhere.
+    #[must_use]
+    pub fn least_extent(&self) -> f64 {
+        let extent = |solid: &Solid| {
+            let [low, high] = solid.bounds()?;
+            let mut sides = (high - low).to_array();
+            sides.sort_by(f64::total_cmp);
+            Some(sides[1])
+        };
+        self.structure.hull.solids.iter().filter_map(extent).fold(f64::INFINITY, f64::min)
+    }
+
     /// The body that it is, if it is one.
     #[must_use]
     pub fn body(&self) -> Option<&Body> {

@@ -290,6 +290,15 @@ impl Region {
         matches!(self, Self::Conformal(_))
     }
 
+    /// Which closed form gives the waves of its medium ([`Medium::class_name`]), or `graded`.
+    #[must_use]
+    pub fn medium_class(&self) -> &'static str {
+        match self {
+            Self::Homogeneous(region) => region.medium.class_name(),
+            Self::Conformal(_) | Self::Radial(_) | Self::ClosedForm(_) => "graded",
+        }
+    }
+
     /// Points along the way that [`Region::advance`] takes to `end`, with the optical path from its
     /// start: for drawings. Without those between where they cannot be had.
     #[must_use]

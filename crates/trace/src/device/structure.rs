@@ -6,6 +6,7 @@ use glam::DVec3;
 use optics::geometry::{Extent, FloorCurve, Hole, Outline, Pose, Solid};
 use optics::interface::FilmLayer;
 use optics::medium::Medium;
+use std::collections::BTreeMap;
 
 /// What lies on the other side of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -229,6 +230,16 @@ impl Structure {
     #[must_use]
     pub fn empty() -> Self {
         Self::new(Vec::new(), Vec::new(), Hull::of_parts(Vec::new()))
+    }
+
+    /// How many of its regions are of which class of media: see [`Region::medium_class`].
+    #[must_use]
+    pub fn media(&self) -> BTreeMap<&'static str, usize> {
+        let mut media = BTreeMap::new();
+        for region in &self.regions {
+            *media.entry(region.medium_class()).or_default() += 1;
+        }
+        media
     }
 
     /// Whether it is an opaque body.

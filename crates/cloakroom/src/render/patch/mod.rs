@@ -13,6 +13,7 @@ mod ways;
 
 use super::detection::Detection;
 use super::prepared_scene::PreparedScene;
+use crate::assembly::Placed;
 use crate::scene::CameraRay;
 use crate::trace::{FourTracers, Leaf, Limits, Outcome, TraceStats, Tracer};
 use glam::DVec3;
@@ -50,8 +51,8 @@ const VAIN: f64 = 0.9;
 /// Where this share is to be traced, all is: to interpolate the rest takes as long.
 const MOST_TRACED: f64 = 0.7;
 
-/// The largest error of a power, as a share of what was launched.
-const POWER_TOLERANCE: f64 = 1e-6;
+/// The largest error of a power, in terms of the least power.
+const POWER_TOLERANCE: f64 = 0.01;
 
 /// The largest error of the place on the photograph, and of the optical path, in terms of the
 /// tolerance of paths, times the share of power that goes there.
@@ -154,6 +155,8 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     lanes: usize,
     /// Whether rays go through graded media.
     graded: bool,
+    /// Width and height of the largest patches, pixels.
+    pub side: usize,
     /// The patch that was fitted last, and before it the larger ones that it is part of.
     levels: Vec<Level<N>>,
     /// The values at nodes of what is interpolated.
@@ -187,6 +190,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         if exact {
             return None;
         }
+        let side = largest_side(prepared)?;
         let Limits { min_power, tolerance } = prepared.limits;
         let limits = Limits { min_power: DEEPER * min_power, tolerance: CLOSER * tolerance };
         let paths = if detection.times { 2 } else { 0 };
@@ -200,6 +204,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             instructions: Arch::new(),
             lanes: (6 + N + paths + fields).div_ceil(LANES),
             graded,
+            side,
             levels: Vec::new(),
             values: Vec::new(),
             cuts: [0; 2],
@@ -461,6 +466,21 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     }
 }
 
+/// How large patches may be, pixels: no larger than the smallest of several devices looks, so that
+/// none is stepped over by the nodes; `None` if there may be no patches.
+fn largest_side(prepared: &PreparedScene<'_>) -> Option<usize> {
+    let devices = prepared.assembly.devices();
+    let from = prepared.scene.camera.position;
+    let pixels = |device: &Placed| {
+        let distance = from.distance(device.pose.to_world(DVec3::ZERO));
+        device.least_extent() / prepared.pixel.width_at(distance)
+    };
+    let smallest = devices.iter().map(pixels).fold(f64::INFINITY, f64::min);
+    let smallest = if devices.len() > 1 { smallest } else { f64::INFINITY };
+    let sides = std::iter::successors(Some(SIDE), |side| Some(side / 2));
+    sides.take_while(|side| *side >= LEAST_SIDE).find(|side| *side as f64 <= smallest)
+}
+
 /// Whether an interpolated leaf is as a traced one.
 fn agree<const N: usize>(
     prepared: &PreparedScene<'_>,
@@ -474,17 +494,18 @@ fn agree<const N: usize>(
     let tolerance = least.min(most) * prepared.limits.tolerance;
     let distance = other.distance_to(&prepared.screen).unwrap_or(REACH);
     let place = |leaf: &Leaf<N>| leaf.position + leaf.direction * distance;
+    let power_tolerance = POWER_TOLERANCE * prepared.limits.min_power;
     let is_near = |one: f64, other: f64, tolerance: f64| (one - other).abs() <= tolerance;
     let same_paths = !detection.times
         || is_near(one.optical_path, other.optical_path, tolerance)
             && is_near(one.delay_path, other.delay_path, tolerance);
     let same_fields = !detection.stokes
         || (one.electric.iter().zip(&other.electric))
-            .all(|(one, other)| (*one - *other).norm_squared() <= POWER_TOLERANCE.powi(2));
+            .all(|(one, other)| (*one - *other).norm_squared() <= power_tolerance.powi(2));
     let mut powers = one.power.iter().zip(&other.power);
     (one.end, one.met_device) == (other.end, other.met_device)
         && place(one).distance(place(other)) <= tolerance
-        && powers.all(|(one, other)| is_near(*one, *other, POWER_TOLERANCE))
+        && powers.all(|(one, other)| is_near(*one, *other, power_tolerance))
         && same_paths
         && same_fields
 }
