@@ -57,6 +57,15 @@ def test_the_image_alone_is_the_same_image(cloak: Scene) -> None:
         cloak.replace({"picture.map": "delivered"}).render(image_only=True)
 
 
+def test_interpolated_pictures_are_those_of_rays_traced_one_by_one(paper) -> None:
+    scene = Scene.load(paper("8c")).replace({"camera.resolution": [160, 120], "camera.samples": 4})
+    shared, exact = (scene.replace({"trace.exact": exact}).render(image_only=True) for exact in (False, True))
+    assert not np.array_equal(shared.linear, exact.linear), "some are interpolated"
+    np.testing.assert_allclose(shared.linear, exact.linear, atol=1e-6)
+    steps = np.abs(shared.image.astype(int) - exact.image)
+    assert steps.max() <= 1 and np.any(steps, axis=-1).mean() < 1e-3
+
+
 def test_maps_are_images(cloak: Scene) -> None:
     picture = cloak.replace({"picture.map": "time_of_flight", "picture.color_bar": False}).render()
     assert picture.image.shape == (30, 40, 3)
