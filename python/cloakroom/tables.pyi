@@ -1027,15 +1027,15 @@ class TraceSettings(Table):
     def __init__(
         self,
         *,
+        exact: bool | None = ...,
         min_power: float | None = ...,
         tolerance: float | None = ...,
-        exact: bool | None = ...,
     ) -> None: ...
+    @property
+    def exact(self) -> bool: ...
     @property
     def min_power(self) -> float: ...
     @property
     def tolerance(self) -> float: ...
-    @property
-    def exact(self) -> bool: ...
 
 __all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name", "SquareCloak", "DoubleGaussianCloak", "CylinderCloak", "SphereCloak", "InvisibleSphere", "BendingSphere", "EatonLens", "LuneburgLens", "FisheyeLens", "FisheyeHemisphere", "MirrorDetour", "Prisms", "Graded", "GradedBox", "Body", "Polarizer", "GaussianCarpet", "GratingCarpet", "QuasiConformalCarpet", "Camera", "Light", "Photograph", "PictureSettings", "Receiver", "Surroundings", "TraceSettings"]
