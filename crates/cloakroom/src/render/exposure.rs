@@ -65,8 +65,9 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
             }
             (None, None) => pixel.escaped += arriving,
         }
-        let beside =
-            |alone| [across, down].map(|neighbour| Neighbour { here, leaf, neighbour, alone });
+        let beside = |alone| {
+            [across, down].map(|neighbour| Neighbour { here, number, leaf, neighbour, alone })
+        };
         let among_all = beside(None);
         let light = light(prepared, leaf, screen, &among_all, spacing);
         if COHERENT {
@@ -205,6 +206,8 @@ struct Line {
 #[derive(Clone, Copy, Debug)]
 struct Neighbour<'a, const N: usize> {
     here: &'a Traced<'a, N>,
+    /// The leaf's among those of its ray.
+    number: usize,
     leaf: &'a Leaf<N>,
     neighbour: &'a Traced<'a, N>,
     /// The polarization in whose tree alone to look, else in that of all.
@@ -226,9 +229,14 @@ impl<const N: usize> Neighbour<'_, N> {
 
     /// The leaf of the neighbouring camera ray that has taken the same way, if there is one.
     fn twin(&self) -> Option<&Leaf<N>> {
-        let leaves = (self.neighbour.leaves.iter())
-            .filter(|leaf| self.alone.is_none_or(|polarization| leaf.survives_alone[polarization]));
-        leaves.clone().find(|twin| twin.path == self.leaf.path).or_else(|| {
+        let is_in = |leaf: &&Leaf<N>| {
+            self.alone.is_none_or(|polarization| leaf.survives_alone[polarization])
+        };
+        let is_twin = |leaf: &&Leaf<N>| leaf.path == self.leaf.path && is_in(leaf);
+        let leaves = self.neighbour.leaves;
+        // As a rule it is in the same place.
+        let twin = leaves.get(self.number).filter(is_twin);
+        twin.or_else(|| leaves.iter().find(is_twin)).or_else(|| {
             // Light that enters by another face of a cloak may leave as if nothing had happened.
             let moved = self.moved();
             let there =
@@ -238,6 +246,8 @@ impl<const N: usize> Neighbour<'_, N> {
                     + (other.position - there).length_squared()
             };
             leaves
+                .iter()
+                .filter(is_in)
                 .filter(|other| is_close(&moved, self.leaf, other))
                 .min_by(|one, other| off(one).total_cmp(&off(other)))
         })

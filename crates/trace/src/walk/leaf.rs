@@ -1,5 +1,6 @@
 //! Where a ray tree ends: leaves, and the account of the power.
 
+use super::branch::largest;
 use crate::assembly::Screen;
 use glam::DVec3;
 use optics::wave::ComplexVector;
@@ -58,6 +59,12 @@ impl<const N: usize> Leaf<N> {
             LeafEnd::Body(body) => Some(body),
             LeafEnd::Away | LeafEnd::Screen => None,
         }
+    }
+
+    /// Its share of the power launched in the strongest polarization.
+    #[must_use]
+    pub fn largest_power(&self) -> f64 {
+        largest(&self.power)
     }
 
     /// How far it goes on from its position to a screen, cm; `None` where it does not meet it.

@@ -17,9 +17,9 @@ pub trait PathRecorder<const N: usize> {
     fn stopped(&mut self, _waves: &[OutgoingWave<N>]) {}
 
     /// Called where a branch of the fingerprint `from` goes on from a border, or starts, as one of
-    /// the fingerprint `to` and some power.
+    /// the fingerprint `to`, given the power of its strongest polarization.
     #[inline(always)]
-    fn went_on(&mut self, _from: u64, _to: u64, _power: &[f64; N]) {}
+    fn went_on(&mut self, _from: u64, _to: u64, _power: f64) {}
 
     /// Whether a branch that is met, of some fingerprint, is to be left out with all that comes of
     /// it, and is in no account.

@@ -1,6 +1,6 @@
 //! Rays that start in a medium.
 
-use super::branch::{Branch, Place};
+use super::branch::{Branch, Place, largest};
 use super::{PathRecorder, Tracer};
 use crate::assembly::{Ahead, Assembly};
 use glam::DVec3;
@@ -64,7 +64,7 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
             waves => {
                 for (wave, amplitudes) in waves.iter().zip(amplitudes(branch, waves)) {
                     let started = branch.as_wave(wave, amplitudes);
-                    self.recorder.went_on(branch.path, started.path, &started.power);
+                    self.recorder.went_on(branch.path, started.path, largest(&started.power));
                     self.await_turn(started);
                 }
                 false

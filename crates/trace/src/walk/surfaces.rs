@@ -1,7 +1,7 @@
 //! From surface to surface: how a branch runs on, and what becomes of it where media meet.
 
 use super::borders::Met;
-use super::branch::{Branch, Place};
+use super::branch::{Branch, Place, largest};
 use super::event::Event;
 use super::{LeafEnd, PathRecorder, PathSegment, Tracer};
 use crate::assembly::{Ahead, DepartedSurface, Placed, slack_at};
@@ -193,7 +193,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let parted = region.parted(branch.position, branch.wave_vector);
         let Some([(a, in_a), (b, in_b)]) = parted else { return false };
         for part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
-            self.recorder.went_on(branch.path, part.path, &part.power);
+            self.recorder.went_on(branch.path, part.path, largest(&part.power));
             self.await_turn(part);
         }
         true
@@ -449,7 +449,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
         let from = branch.path;
         branch.go_on_as(&wave, event);
-        self.recorder.went_on(from, branch.path, &branch.power);
+        self.recorder.went_on(from, branch.path, largest(&branch.power));
         put(branch);
         true
     }
@@ -478,7 +478,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 self.waiting.push(*branch);
                 if let Some(other) = self.waiting.last_mut() {
                     other.go_on_as(earlier, (event, earlier.side, earlier.mode));
-                    self.recorder.went_on(branch.path, other.path, &other.power);
+                    self.recorder.went_on(branch.path, other.path, largest(&other.power));
                     other.update_survival(least_power);
                     put(other, earlier.side);
                 }
@@ -487,7 +487,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let Some(wave) = last else { return false };
         let from = branch.path;
         branch.go_on_as(wave, (event, wave.side, wave.mode));
-        self.recorder.went_on(from, branch.path, &branch.power);
+        self.recorder.went_on(from, branch.path, largest(&branch.power));
         branch.update_survival(least_power);
         put(branch, wave.side);
         true

@@ -6,7 +6,8 @@
 //! some rays take, or on which the functions are not smooth, is traced for each sample; a patch
 //! with much of that is divided, and of its parts only that is looked at again.
 
-mod nodes;
+mod grid;
+mod smooth_leaf;
 #[cfg(test)]
 mod tests;
 mod ways;
@@ -16,10 +17,11 @@ use super::prepared_scene::PreparedScene;
 use crate::assembly::Placed;
 use crate::scene::CameraRay;
 use crate::trace::{FourTracers, Leaf, Limits, Outcome, TraceStats, Tracer};
+use arrayvec::ArrayVec;
 use glam::DVec3;
-use nodes::{COUNT, LANES, Nodes, Weights, bits};
-use optics::wave::ComplexVector;
+use grid::{Coefficients, Grid, LANES, MOST, Terms, bits};
 use pulp::Arch;
+use smooth_leaf::{Functions, MOST_LANES, SmoothLeaf};
 use std::ops::Range;
 use ways::{LeftOut, Trail, Ways};
 
@@ -50,16 +52,6 @@ const VAIN: f64 = 0.9;
 
 /// Where this share is to be traced, all is: to interpolate the rest takes as long.
 const MOST_TRACED: f64 = 0.7;
-
-/// The largest error of a power, in terms of the least power.
-const POWER_TOLERANCE: f64 = 0.01;
-
-/// The largest error of the place on the photograph, and of the optical path, in terms of the
-/// tolerance of paths, times the share of power that goes there.
-const PLACE_TOLERANCE: f64 = 0.3;
-
-/// The same whatever goes there.
-const WEAK_PLACE_TOLERANCE: f64 = 100.0;
 
 /// A rectangle of the picture: its first column and row, and its width and height in pixels.
 #[derive(Clone, Copy, Debug, Default)]
@@ -106,21 +98,6 @@ pub(super) enum Fit {
     Alone,
 }
 
-/// The leaf of one way over a patch.
-#[derive(Clone, Copy, Debug)]
-struct SmoothLeaf<const N: usize> {
-    /// That at the first node.
-    first: Leaf<N>,
-    /// The number of the patch over which it was found to be smooth, from the largest on.
-    level: usize,
-    /// Where its values begin.
-    values: usize,
-    /// The longest beginning of its way that rays share, from which on it is left out, and where
-    /// that is among those.
-    beginning: u64,
-    place: usize,
-}
-
 /// What is known of a patch.
 #[derive(Clone, Debug, Default)]
 struct Level<const N: usize> {
@@ -134,9 +111,13 @@ struct Level<const N: usize> {
     left_out: LeftOut,
     /// Whether the last division has left hardly less to be traced.
     in_vain: bool,
-    /// Where the values of larger patches end.
-    values: usize,
+    /// Where the coefficients of larger patches end.
+    coefficients: usize,
 }
+
+/// Patches of at most this width and height need fewer nodes, and those of at most half of it still
+/// fewer, to tell as much.
+const SMALL: usize = 8;
 
 /// Divisions of a patch by two, each way, and the patch itself.
 const MOST_LEVELS: usize = 9;
@@ -148,19 +129,19 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     scouts: FourTracers<'a, N, Trail>,
     /// They trace what is not interpolated.
     tracers: FourTracers<'a, N, LeftOut>,
-    nodes: Nodes,
+    /// Those of the smallest patches, of small ones and of others.
+    grids: [Grid; 3],
     /// Those that the processor has; they change no number.
     instructions: Arch,
-    /// Functions a leaf, in [`LANES`].
-    lanes: usize,
+    functions: Functions<'a, N>,
     /// Whether rays go through graded media.
     graded: bool,
     /// Width and height of the largest patches, pixels.
     pub side: usize,
     /// The patch that was fitted last, and before it the larger ones that it is part of.
     levels: Vec<Level<N>>,
-    /// The values at nodes of what is interpolated.
-    values: Vec<[f64; LANES]>,
+    /// The coefficients of what is interpolated.
+    coefficients: Vec<[f64; LANES]>,
     /// How often neighbouring rays of the last patch part, across the picture and down.
     cuts: [usize; 2],
     // Memory to work in.
@@ -193,20 +174,18 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let side = largest_side(prepared)?;
         let Limits { min_power, tolerance } = prepared.limits;
         let limits = Limits { min_power: DEEPER * min_power, tolerance: CLOSER * tolerance };
-        let paths = if detection.times { 2 } else { 0 };
-        let fields = if detection.stokes { 6 * N } else { 0 };
         Some(Self {
             prepared,
             detection,
             scouts: FourTracers::new(&tracer.clone().within(limits).watched(Trail::default())),
             tracers: FourTracers::new(&tracer.clone().watched(LeftOut::default())),
-            nodes: Nodes::new(),
+            grids: [MOST - 2, MOST - 1, MOST].map(Grid::new),
             instructions: Arch::new(),
-            lanes: (6 + N + paths + fields).div_ceil(LANES),
+            functions: Functions::of(prepared, detection),
             graded,
             side,
             levels: Vec::new(),
-            values: Vec::new(),
+            coefficients: Vec::new(),
             cuts: [0; 2],
             ways: Ways::default(),
             order: Vec::new(),
@@ -214,6 +193,13 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             walks: 0.0,
             samples: std::array::from_fn(|_| (Vec::new(), Outcome::default())),
         })
+    }
+
+    /// Where rays of a patch are traced.
+    fn grid(&self, patch: Patch) -> &Grid {
+        let [width, height] = patch.size;
+        let side = width.max(height);
+        &self.grids[usize::from(side > SMALL / 2) + usize::from(side > SMALL)]
     }
 
     /// The share of the patch that was fitted last that is to be traced for each sample.
@@ -228,27 +214,26 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         if *in_vain {
             return None;
         }
-        let [width, height] = patch.size;
-        let samples = width * height * self.prepared.scene.camera.samples as usize;
-        let gain = traced * (1.0 - LEFT_AFTER_DIVISION) * samples as f64;
-        let rays = 2 * self.nodes.points.len();
-        if gain <= COST * traced.max(LEAST_COST) * rays as f64 {
-            return None;
-        }
         let [across, down] = self.cuts;
+        let [width, height] = patch.size;
         let axis = usize::from(if across == down { height > width } else { down > across });
         let divisible = |axis: &usize| patch.size[*axis] > LEAST_SIDE;
-        Some(patch.halves([axis, 1 - axis].into_iter().find(divisible)?))
+        let halves = patch.halves([axis, 1 - axis].into_iter().find(divisible)?);
+        let samples = width * height * self.prepared.scene.camera.samples as usize;
+        let gain = traced * (1.0 - LEFT_AFTER_DIVISION) * samples as f64;
+        let rays = 2 * self.grid(halves[0]).points.len();
+        (gain > COST * traced.max(LEAST_COST) * rays as f64).then_some(halves)
     }
 
     /// Traces the rays of a patch, of that level: 0, or one more than that of the patch of which it
     /// is a half.
     pub fn fit(&mut self, patch: Patch, level: usize) -> Fit {
         if let Some(first) = self.levels.get(level) {
-            self.values.truncate(first.values);
+            self.coefficients.truncate(first.coefficients);
         }
         self.levels.truncate(level);
-        let mut here = Level { patch, traced: 1.0, values: self.values.len(), ..Level::default() };
+        let coefficients = self.coefficients.len();
+        let mut here = Level { patch, traced: 1.0, coefficients, ..Level::default() };
         let fit = self.look(&mut here);
         self.levels.push(here);
         fit
@@ -256,7 +241,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
 
     fn look(&mut self, here: &mut Level<N>) -> Fit {
         let camera = &self.prepared.scene.camera;
-        let rays: Vec<CameraRay> = (self.nodes.points.iter())
+        let grid = self.grid(here.patch);
+        let rays: Vec<CameraRay> = (grid.points.iter())
             .map(|place| {
                 let [x, y] = here.patch.point(*place);
                 camera.ray(x, y)
@@ -267,7 +253,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let met = surface(&rays[0]);
         let beside = |ray: &CameraRay| surface(ray) == met;
         let same = bits(rays.iter().enumerate().filter(|(_, ray)| beside(ray)).map(|(i, _)| i));
-        self.cuts = self.nodes.cuts(same);
+        self.cuts = grid.cuts(same);
         if same.count_ones() as usize != rays.len() {
             return Fit::Shared;
         }
@@ -310,7 +296,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         self.ways.gather(rays.len(), self.prepared.limits.min_power);
         self.interpolate(here);
         for part in self.ways.some_have() {
-            let cuts = self.nodes.cuts(part);
+            let cuts = self.grid(here.patch).cuts(part);
             self.cuts = [0, 1].map(|axis| self.cuts[axis] + cuts[axis]);
         }
         let above = self.levels.last();
@@ -333,54 +319,60 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
 
     /// Makes functions of the leaves of the ways that all rays take.
     fn interpolate(&mut self, here: &mut Level<N>) {
-        let nodes = &self.nodes;
+        let (nodes, level) = (self.grid(here.patch).nodes(), self.levels.len());
         let least = self.prepared.limits.min_power;
         // Leaves are large, and stay where they are.
-        let order = &mut self.order;
+        let mut order = std::mem::take(&mut self.order);
         order.clear();
         order.extend(self.found.iter().enumerate().map(|(i, (ray, leaf))| (leaf.path, *ray, i)));
         order.sort_unstable();
         for way in order.chunk_by(|(one, ..), (other, ..)| one == other) {
             let leaf_of = |&(.., i): &(u64, usize, usize)| &self.found[i].1;
-            let power = way.iter().map(|one| largest(&leaf_of(one).power)).fold(0.0, f64::max);
+            let power = way.iter().map(|one| leaf_of(one).largest_power()).fold(0.0, f64::max);
             if power < least {
                 continue;
             }
             let first = *leaf_of(&way[0]);
-            let values = self.values.len();
-            let is_whole = way.len() >= COUNT
-                && way[..COUNT].iter().enumerate().all(|(node, one)| {
+            let is_whole = way.len() >= nodes
+                && way[..nodes].iter().enumerate().all(|(node, one)| {
                     let leaf = leaf_of(one);
                     node == one.1 && (leaf.end, leaf.met_device) == (first.end, first.met_device)
                 });
             if is_whole {
-                for lane in 0..self.lanes {
-                    let at_nodes = way[..COUNT].iter();
-                    self.values
-                        .extend(at_nodes.map(|one| functions(self.detection, leaf_of(one), lane)));
-                }
-                let level = self.levels.len();
-                let leaf = SmoothLeaf { first, level, values, beginning: first.path, place: 0 };
-                let mut between = way[COUNT..].iter().peekable();
-                let is_smooth = (COUNT..).zip(&nodes.checks).all(|(number, weights)| {
+                let grid = self.grid(here.patch);
+                let coefficients = (0..self.functions.lanes).map(|lane| {
+                    let values = way[..nodes].iter();
+                    let values: ArrayVec<_, { MOST * MOST }> =
+                        values.map(|one| self.functions.values(leaf_of(one), lane)).collect();
+                    grid.coefficients(&values)
+                });
+                let coefficients: ArrayVec<Coefficients, MOST_LANES> = coefficients.collect();
+                let terms = self.functions.terms(&first, power, &coefficients);
+                let start = self.coefficients.len();
+                let leaf =
+                    SmoothLeaf { first, level, start, terms, beginning: first.path, place: 0 };
+                let rougher = grid.rougher(&coefficients);
+                self.coefficients.extend(coefficients.iter().flat_map(|lane| &lane[..terms]));
+                let mut between = way[nodes..].iter().peekable();
+                let is_smooth = (nodes..).zip(&self.grid(here.patch).checks).all(|(number, at)| {
                     let mut here = first;
-                    let view = (self.detection, &self.values[..], self.lanes);
-                    move_leaf(&mut here, &leaf, weights, view);
+                    self.functions.move_leaf(&mut here, &leaf, at, &self.coefficients);
                     match between.next_if(|one| one.1 == number) {
-                        Some(one) => agree(self.prepared, self.detection, &here, leaf_of(one)),
+                        Some(one) => self.functions.agree(&here, leaf_of(one)),
                         // It is too weak to be known there.
-                        None => largest(&here.power) < least,
+                        None => here.largest_power() < least,
                     }
                 });
                 if is_smooth && between.peek().is_none() && !self.ways.parts(first.path) {
                     here.smooth.push(leaf);
                     continue;
                 }
-                self.cuts[nodes.rougher(&self.values[values..values + COUNT])] += 1;
+                self.coefficients.truncate(start);
+                self.cuts[rougher] += 1;
             }
-            self.values.truncate(values);
             self.ways.part_at(first.path);
         }
+        self.order = order;
         // A way may part from others after its leaf was found to be smooth.
         here.smooth.retain(|leaf| !self.ways.parts(leaf.first.path));
     }
@@ -443,18 +435,16 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     ) -> bool {
         let Some(here) = self.levels.last() else { return false };
         let least = self.prepared.limits.min_power;
-        let mut weights: [Option<Weights>; MOST_LEVELS] = [None; MOST_LEVELS];
+        let mut terms: [Option<Terms>; MOST_LEVELS] = [None; MOST_LEVELS];
         let mut as_traced = true;
-        let view = (self.detection, &self.values[..], self.lanes);
         for smooth in &here.smooth {
-            let weights = weights[smooth.level].get_or_insert_with(|| {
-                self.nodes.weights(self.levels[smooth.level].patch.place(point))
-            });
+            let terms = terms[smooth.level]
+                .get_or_insert_with(|| Terms::at(self.levels[smooth.level].patch.place(point)));
             // Leaves are large, and made where they are to be.
             leaves.push(smooth.first);
             let Some(leaf) = leaves.last_mut() else { break };
-            move_leaf(leaf, smooth, weights, view);
-            if largest(&leaf.power) < least {
+            self.functions.move_leaf(leaf, smooth, terms, &self.coefficients);
+            if leaf.largest_power() < least {
                 leaves.pop();
                 continue;
             }
@@ -479,99 +469,4 @@ fn largest_side(prepared: &PreparedScene<'_>) -> Option<usize> {
     let smallest = if devices.len() > 1 { smallest } else { f64::INFINITY };
     let sides = std::iter::successors(Some(SIDE), |side| Some(side / 2));
     sides.take_while(|side| *side >= LEAST_SIDE).find(|side| *side as f64 <= smallest)
-}
-
-/// Whether an interpolated leaf is as a traced one.
-fn agree<const N: usize>(
-    prepared: &PreparedScene<'_>,
-    detection: &Detection<N>,
-    one: &Leaf<N>,
-    other: &Leaf<N>,
-) -> bool {
-    /// How far leaves are looked at that end nowhere, cm.
-    const REACH: f64 = 100.0;
-    let [least, most] = [PLACE_TOLERANCE / largest(&other.power), WEAK_PLACE_TOLERANCE];
-    let tolerance = least.min(most) * prepared.limits.tolerance;
-    let distance = other.distance_to(&prepared.screen).unwrap_or(REACH);
-    let place = |leaf: &Leaf<N>| leaf.position + leaf.direction * distance;
-    let power_tolerance = POWER_TOLERANCE * prepared.limits.min_power;
-    let is_near = |one: f64, other: f64, tolerance: f64| (one - other).abs() <= tolerance;
-    let same_paths = !detection.times
-        || is_near(one.optical_path, other.optical_path, tolerance)
-            && is_near(one.delay_path, other.delay_path, tolerance);
-    let same_fields = !detection.stokes
-        || (one.electric.iter().zip(&other.electric))
-            .all(|(one, other)| (*one - *other).norm_squared() <= power_tolerance.powi(2));
-    let mut powers = one.power.iter().zip(&other.power);
-    (one.end, one.met_device) == (other.end, other.met_device)
-        && place(one).distance(place(other)) <= tolerance
-        && powers.all(|(one, other)| is_near(*one, *other, power_tolerance))
-        && same_paths
-        && same_fields
-}
-
-/// Moves a leaf to a point of the patch over which it is smooth, where the nodes have these weights:
-/// `detection` and `lanes` say what the values are.
-#[inline(always)]
-fn move_leaf<const N: usize>(
-    leaf: &mut Leaf<N>,
-    smooth: &SmoothLeaf<N>,
-    weights: &Weights,
-    (detection, values, lanes): (&Detection<N>, &[[f64; LANES]], usize),
-) {
-    let lane = |lane: usize| {
-        let start = smooth.values + lane * COUNT;
-        weights.mean(&values[start..start + COUNT])
-    };
-    let first = lane(0);
-    leaf.position = DVec3::from_slice(&first[..3]);
-    leaf.direction = DVec3::from_slice(&first[3..6]).normalize();
-    if lanes == 1 {
-        for (power, value) in leaf.power.iter_mut().zip(&first[6..]) {
-            *power = *value;
-        }
-        return;
-    }
-    let mut all = [first; 4];
-    for (number, values) in all[..lanes].iter_mut().enumerate().skip(1) {
-        *values = lane(number);
-    }
-    let mut rest = all.as_flattened()[6..].iter().copied();
-    let mut next = || rest.next().unwrap_or(0.0);
-    leaf.power = std::array::from_fn(|_| next());
-    if detection.times {
-        leaf.optical_path = next();
-        leaf.delay_path = next();
-    }
-    if detection.stokes {
-        for field in &mut leaf.electric {
-            let [x, y, z] = std::array::from_fn(|_| [next(), next()]);
-            let [re, im] = [0, 1].map(|part| DVec3::new(x[part], y[part], z[part]));
-            *field = ComplexVector::new(re, im);
-        }
-    }
-}
-
-/// What is interpolated of a leaf: position, direction, powers, paths and fields.
-fn functions<const N: usize>(
-    detection: &Detection<N>,
-    leaf: &Leaf<N>,
-    lane: usize,
-) -> [f64; LANES] {
-    let paths = if detection.times { 2 } else { 0 };
-    let fields = if detection.stokes { N } else { 0 };
-    let fields = leaf.electric[..fields].iter().flat_map(|field| {
-        field.components().into_iter().flat_map(|component| [component.re, component.im])
-    });
-    let mut all = (leaf.position.to_array().into_iter())
-        .chain(leaf.direction.to_array())
-        .chain(leaf.power)
-        .chain([leaf.optical_path, leaf.delay_path].into_iter().take(paths))
-        .chain(fields)
-        .skip(lane * LANES);
-    std::array::from_fn(|_| all.next().unwrap_or(0.0))
-}
-
-fn largest<const N: usize>(power: &[f64; N]) -> f64 {
-    power.iter().copied().fold(0.0, f64::max)
 }

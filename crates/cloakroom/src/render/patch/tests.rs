@@ -81,12 +81,12 @@ fn compare<const N: usize>(
                 for leaf in leaves {
                     let found = patches.samples[k].0.iter().find(|found| found.path == leaf.path);
                     let Some(found) = found else {
-                        same &= largest(&leaf.power) < 1.1 * prepared.limits.min_power;
+                        same &= leaf.largest_power() < 1.1 * prepared.limits.min_power;
                         continue;
                     };
                     let distance = leaf.distance_to(&prepared.screen).unwrap_or(100.0);
                     let place = |leaf: &Leaf<N>| leaf.position + leaf.direction * distance;
-                    let power = largest(&leaf.power);
+                    let power = leaf.largest_power();
                     let off = place(leaf).distance(place(found)) * power;
                     errors.place = errors.place.max(off);
                     let path = (leaf.optical_path - found.optical_path).abs() * power;
@@ -96,7 +96,7 @@ fn compare<const N: usize>(
                 }
                 for found in &patches.samples[k].0 {
                     if !leaves.iter().any(|leaf| leaf.path == found.path) {
-                        same &= largest(&found.power) < 1.1 * prepared.limits.min_power;
+                        same &= found.largest_power() < 1.1 * prepared.limits.min_power;
                     }
                 }
                 errors.others += u32::from(!same);

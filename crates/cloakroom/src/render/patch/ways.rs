@@ -1,6 +1,6 @@
 //! The ways that the rays of a patch take, and which of them all rays of it have.
 
-use super::nodes::bits;
+use super::grid::bits;
 use crate::trace::{PathRecorder, PathSegment};
 
 /// A branch that goes on from a border, of one ray.
@@ -30,8 +30,8 @@ impl<const N: usize> PathRecorder<N> for Trail {
     #[inline(always)]
     fn record(&mut self, _: impl FnOnce() -> PathSegment<N>) {}
 
-    fn went_on(&mut self, from: u64, to: u64, power: &[f64; N]) {
-        self.steps.push(Step { to, from, power: super::largest(power), ray: 0 });
+    fn went_on(&mut self, from: u64, to: u64, power: f64) {
+        self.steps.push(Step { to, from, power, ray: 0 });
     }
 
     #[inline]
@@ -233,7 +233,7 @@ mod tests {
     fn went_on(ways: &mut Ways, ray: usize, steps: &[(u64, u64, f64)]) {
         let mut trail = Trail::default();
         for &(from, to, power) in steps {
-            PathRecorder::<1>::went_on(&mut trail, from, to, &[power]);
+            PathRecorder::<1>::went_on(&mut trail, from, to, power);
         }
         ways.add(ray, &mut trail);
     }
