@@ -108,6 +108,8 @@ struct Level<const N: usize> {
     smooth: Vec<SmoothLeaf<N>>,
     /// The share of all that is to be traced.
     traced: f64,
+    /// How many borders a ray meets of which nothing is left out, if that is known.
+    borders: Option<f64>,
     left_out: LeftOut,
     /// Whether the last division has left hardly less to be traced.
     in_vain: bool,
@@ -300,7 +302,9 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             self.cuts = [0, 1].map(|axis| self.cuts[axis] + cuts[axis]);
         }
         let above = self.levels.last();
-        here.traced = self.ways.traced_share() * above.map_or(1.0, |above| above.traced);
+        let borders = above.and_then(|above| above.borders).unwrap_or_else(|| self.ways.borders());
+        here.borders = Some(borders);
+        here.traced = (self.ways.borders_to_trace() / borders).min(1.0);
         here.in_vain = above.is_some_and(|above| here.traced > VAIN * above.traced);
         let known = above.map_or(&[][..], |above| &above.smooth);
         here.smooth.extend(known.iter().filter(|leaf| !self.ways.parts(leaf.beginning)));

@@ -119,16 +119,20 @@ impl Ways {
         self.find(path).is_none_or(|number| self.beginnings[number].parts)
     }
 
-    /// The share of all borders met on ways on which rays part.
-    pub fn traced_share(&self) -> f64 {
-        if !self.part {
-            return 0.0;
-        }
-        let met = |part: bool| {
-            let of = self.beginnings.iter().filter(|beginning| !part || beginning.parts);
-            1 + of.map(|beginning| beginning.rays.count_ones()).sum::<u32>()
-        };
-        f64::from(met(true)) / f64::from(met(false))
+    /// How many borders a ray meets in the mean, where it starts among them.
+    pub fn borders(&self) -> f64 {
+        self.borders_of(|_| true)
+    }
+
+    /// The same on ways on which rays part.
+    pub fn borders_to_trace(&self) -> f64 {
+        if self.part { self.borders_of(|beginning| beginning.parts) } else { 0.0 }
+    }
+
+    fn borders_of(&self, is_wanted: impl Fn(&Beginning) -> bool) -> f64 {
+        let wanted = self.beginnings.iter().filter(|beginning| is_wanted(beginning));
+        let met: u32 = wanted.map(|beginning| beginning.rays.count_ones()).sum();
+        1.0 + f64::from(met) / self.rays as f64
     }
 
     /// For each beginning of a way that some rays have and others have not, those that have it.
@@ -253,11 +257,11 @@ mod tests {
         assert!(!ways.parts(4) && !ways.parts(5));
         assert_eq!(ways.shared().collect::<Vec<_>>(), [4]);
         assert_eq!([4, 5].map(|path| ways.shared_beginning(path)), [4, 4]);
-        // 1 twice, 2 and 3 once, of those and twice 4 and 5; and the start of all.
-        assert_eq!(ways.traced_share(), 5.0 / 9.0);
+        // The start and 1, and 2 or 3; and 4 and 5.
+        assert_eq!((ways.borders(), ways.borders_to_trace()), (5.0, 3.0));
         ways.part_at(5);
         assert_eq!(ways.shared().count(), 0);
-        assert_eq!(ways.traced_share(), 1.0);
+        assert_eq!(ways.borders_to_trace(), ways.borders());
     }
 
     #[test]
