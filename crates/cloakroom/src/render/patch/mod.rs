@@ -39,7 +39,7 @@ const DEEPER: f64 = 0.25;
 const CLOSER: f64 = 0.1;
 
 /// What a ray at a node costs in terms of a sample's.
-const COST: f64 = 2.0;
+const COST: f64 = 4.0;
 
 /// What it costs at least, as a share of that, for light has to come to where rays part.
 const LEAST_COST: f64 = 0.1;
@@ -47,11 +47,8 @@ const LEAST_COST: f64 = 0.1;
 /// What a division leaves to be traced of what was.
 const LEFT_AFTER_DIVISION: f64 = 0.5;
 
-/// A division is in vain that leaves this share of what was to be traced: there are no more.
-const VAIN: f64 = 0.9;
-
 /// Where this share is to be traced, all is: to interpolate the rest takes as long.
-const MOST_TRACED: f64 = 0.7;
+const MOST_TRACED: f64 = 0.9;
 
 /// A rectangle of the picture: its first column and row, and its width and height in pixels.
 #[derive(Clone, Copy, Debug, Default)]
@@ -111,8 +108,6 @@ struct Level<const N: usize> {
     /// How many borders a ray meets of which nothing is left out, if that is known.
     borders: Option<f64>,
     left_out: LeftOut,
-    /// Whether the last division has left hardly less to be traced.
-    in_vain: bool,
     /// Where the coefficients of larger patches end.
     coefficients: usize,
 }
@@ -212,10 +207,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
 
     /// How the patch that was fitted last is to be divided, if it is.
     pub fn division(&self) -> Option<[Patch; 2]> {
-        let Level { patch, traced, in_vain, .. } = self.levels.last()?;
-        if *in_vain {
-            return None;
-        }
+        let Level { patch, traced, .. } = self.levels.last()?;
         let [across, down] = self.cuts;
         let [width, height] = patch.size;
         let axis = usize::from(if across == down { height > width } else { down > across });
@@ -305,7 +297,6 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let borders = above.and_then(|above| above.borders).unwrap_or_else(|| self.ways.borders());
         here.borders = Some(borders);
         here.traced = (self.ways.borders_to_trace() / borders).min(1.0);
-        here.in_vain = above.is_some_and(|above| here.traced > VAIN * above.traced);
         let known = above.map_or(&[][..], |above| &above.smooth);
         here.smooth.extend(known.iter().filter(|leaf| !self.ways.parts(leaf.beginning)));
         if here.traced > 0.0 {
