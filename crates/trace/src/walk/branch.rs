@@ -22,40 +22,78 @@ pub(super) enum Place {
     Region { device: u16, region: u16 },
 }
 
-/// A branch: a ray with the fields of `N` launched polarizations.
+/// A branch of a ray tree on its way: a ray with the fields of `N` launched polarizations. It is in
+/// the world's frame where it runs through air, else in that of the device.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Branch<const N: usize> {
-    pub place: Place,
+pub struct Branch<const N: usize> {
+    pub(super) place: Place,
+    /// Where it is, cm.
     pub position: DVec3,
+    /// Its wave vector, in units of that in vacuum.
     pub wave_vector: DVec3,
-    pub attenuation: DVec3,
+    pub(super) attenuation: DVec3,
+    /// Its unit vector, that of the Poynting vector.
     pub direction: DVec3,
+    /// Its electric field for each launched polarization.
     pub electric: [ComplexVector; N],
+    /// Its share of the power launched, for each launched polarization.
     pub power: [f64; N],
     /// Whether the tree of each launched polarization alone has this branch.
-    pub survives_alone: [bool; N],
+    pub(super) survives_alone: [bool; N],
+    /// Optical path length from the ray's origin, cm.
     pub optical_path: f64,
     /// What ways on which the phase runs backwards add to the optical path in the time of flight,
     /// cm.
     pub backwards: f64,
     /// What dispersion adds to the optical path for a pulse, cm; NaN where it is not known, or
     /// nobody asks.
-    pub dispersion: f64,
+    pub(super) dispersion: f64,
     /// What it has just left, if it runs outside of it now: in air or in the body around it.
-    pub departed: Option<DepartedSurface>,
+    pub(super) departed: Option<DepartedSurface>,
     /// How many borders in a row it has crossed without getting anywhere.
-    pub standstills: u8,
-    pub met_device: bool,
+    pub(super) standstills: u8,
+    pub(super) met_device: bool,
+    /// A fingerprint of the surfaces it has met and the branches it has taken.
     pub path: u64,
     /// Which of the waves of the medium it is in.
-    pub mode: ModeKind,
+    pub(super) mode: ModeKind,
     /// Where it is in the virtual space of a conformal region.
-    pub virtual_point: Option<VirtualPoint>,
+    pub(super) virtual_point: Option<VirtualPoint>,
 }
 
 impl<const N: usize> Branch<N> {
+    /// Its power in the strongest polarization.
+    #[must_use]
+    pub fn largest_power(&self) -> f64 {
+        largest(&self.power)
+    }
+
+    /// Whether a branch may take its place, and be followed from there, with nothing changed but
+    /// what is public: it runs on in a medium that is known without its point.
+    #[must_use]
+    pub fn is_movable(&self) -> bool {
+        matches!(self.place, Place::Region { .. })
+            && self.attenuation == DVec3::ZERO
+            && self.dispersion.is_nan()
+            && self.departed.is_none()
+            && self.standstills == 0
+            && self.virtual_point.is_none()
+    }
+
+    /// Notes which launched polarizations alone would have brought it here, where branches below
+    /// that power are not followed and power is never gained.
+    pub fn survive(&mut self, least_power: f64) {
+        self.survives_alone = self.power.map(|power| power >= least_power);
+    }
+
+    /// Whether it is the same wave in the same region as another.
+    #[must_use]
+    pub fn is_like(&self, other: &Self) -> bool {
+        (self.place, self.mode, self.met_device) == (other.place, other.mode, other.met_device)
+    }
+
     /// The root of the tree of a ray launched in air.
-    pub fn launched(launch: &Launch<N>) -> Self {
+    pub(super) fn launched(launch: &Launch<N>) -> Self {
         Self {
             place: Place::Air,
             position: launch.origin,
@@ -78,7 +116,7 @@ impl<const N: usize> Branch<N> {
     }
 
     /// The wave as an interface sees it.
-    pub fn incident(&self) -> IncidentWave<N> {
+    pub(super) fn incident(&self) -> IncidentWave<N> {
         IncidentWave {
             wave_vector: self.wave_vector,
             attenuation: self.attenuation,
@@ -89,7 +127,7 @@ impl<const N: usize> Branch<N> {
     }
 
     /// The ray as a region sees it.
-    pub fn inner_ray(&self) -> InnerRay {
+    pub(super) fn inner_ray(&self) -> InnerRay {
         InnerRay {
             position: self.position,
             wave_vector: self.wave_vector,
@@ -101,7 +139,7 @@ impl<const N: usize> Branch<N> {
 
     /// The part of the branch whose field lies along `field`, as a wave of its own; `across` is the
     /// field of the other part, perpendicular to it.
-    pub fn part(&self, mode: ModeKind, field: DVec3, across: DVec3) -> Self {
+    pub(super) fn part(&self, mode: ModeKind, field: DVec3, across: DVec3) -> Self {
         let [along, beside] =
             [field, across].map(|field| self.electric.map(|e| e.dot_real(field.normalize())));
         let mut part = *self;
@@ -118,7 +156,7 @@ impl<const N: usize> Branch<N> {
 
     /// The branch as one of the waves in which it starts, with its amplitude for each launched
     /// polarization.
-    pub fn as_wave(&self, wave: &RayWave, amplitudes: [Complex64; N]) -> Self {
+    pub(super) fn as_wave(&self, wave: &RayWave, amplitudes: [Complex64; N]) -> Self {
         let field = wave.electric.unwrap_or_default();
         Self {
             wave_vector: wave.wave_vector,
@@ -132,7 +170,7 @@ impl<const N: usize> Branch<N> {
     }
 
     /// Goes on from here as `wave`, the event telling how.
-    pub fn go_on_as(&mut self, wave: &OutgoingWave<N>, event: impl Hash) {
+    pub(super) fn go_on_as(&mut self, wave: &OutgoingWave<N>, event: impl Hash) {
         self.wave_vector = wave.wave_vector;
         self.attenuation = wave.attenuation;
         self.direction = wave.direction;
@@ -143,7 +181,7 @@ impl<const N: usize> Branch<N> {
     }
 
     /// Its field for the launched polarization of which it has most.
-    pub fn strongest_field(&self) -> ComplexVector {
+    pub(super) fn strongest_field(&self) -> ComplexVector {
         let fields = self.electric.iter().zip(self.power);
         let strongest = fields.max_by(|(_, a), (_, b)| a.total_cmp(b));
         strongest.map_or(ComplexVector::ZERO, |(field, _)| *field)
@@ -151,7 +189,7 @@ impl<const N: usize> Branch<N> {
 
     /// Notes what a pulse takes on a way before the branch takes it.
     #[cold]
-    pub fn delay(&mut self, passage: &Passage, group: f64) {
+    pub(super) fn delay(&mut self, passage: &Passage, group: f64) {
         let more = group - passage.optical_path;
         self.dispersion += more;
         if passage.optical_path < 0.0 {
@@ -169,7 +207,7 @@ impl<const N: usize> Branch<N> {
     /// its profile: behind an absorbing wedge the wave of the match decays along the surface, by
     /// some 1e-5 of its wave vector; a ray is a plane wave along its direction, transverse, and of
     /// its power.
-    pub fn come_out(&mut self, departed: Option<DepartedSurface>) {
+    pub(super) fn come_out(&mut self, departed: Option<DepartedSurface>) {
         (self.place, self.departed) = (Place::Air, departed);
         if self.attenuation == DVec3::ZERO {
             return;
@@ -186,7 +224,7 @@ impl<const N: usize> Branch<N> {
     }
 
     /// The branch as a leaf with its end.
-    pub fn leaf(&self, end: LeafEnd) -> Leaf<N> {
+    pub(super) fn leaf(&self, end: LeafEnd) -> Leaf<N> {
         Leaf {
             position: self.position,
             met_device: self.met_device,
@@ -203,7 +241,7 @@ impl<const N: usize> Branch<N> {
     }
 
     /// Takes the branch from the world's frame into that of a device.
-    pub fn enter_frame(&mut self, pose: &Pose) {
+    pub(super) fn enter_frame(&mut self, pose: &Pose) {
         self.position = pose.to_local(self.position);
         self.wave_vector = pose.vector_to_local(self.wave_vector);
         self.attenuation = pose.vector_to_local(self.attenuation);
@@ -212,7 +250,7 @@ impl<const N: usize> Branch<N> {
     }
 
     /// Takes the branch from the frame of a device into the world's.
-    pub fn leave_frame(&mut self, pose: &Pose) {
+    pub(super) fn leave_frame(&mut self, pose: &Pose) {
         self.position = pose.to_world(self.position);
         self.wave_vector = pose.vector_to_world(self.wave_vector);
         self.attenuation = pose.vector_to_world(self.attenuation);
@@ -221,14 +259,19 @@ impl<const N: usize> Branch<N> {
     }
 
     /// Enters a region of the device in whose frame it is.
-    pub fn enter_region(&mut self, device: u16, region: u16, virtual_point: Option<VirtualPoint>) {
+    pub(super) fn enter_region(
+        &mut self,
+        device: u16,
+        region: u16,
+        virtual_point: Option<VirtualPoint>,
+    ) {
         self.place = Place::Region { device, region };
         self.virtual_point = virtual_point;
         self.departed = None;
     }
 
     /// Notes that branches below that power are not followed.
-    pub fn update_survival(&mut self, least_power: f64) {
+    pub(super) fn update_survival(&mut self, least_power: f64) {
         for (survives, power) in self.survives_alone.iter_mut().zip(self.power) {
             *survives &= power >= least_power;
         }

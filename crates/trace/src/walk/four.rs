@@ -22,11 +22,27 @@ impl<'a, const N: usize, W: PathRecorder<N> + Clone> FourTracers<'a, N, W> {
     /// Follows four rays to the end of every branch. See [`Tracer::trace`].
     pub fn trace(&mut self, launches: &[Launch<N>; 4]) {
         let mut branches = launches.each_ref().map(Branch::launched);
-        // Where each waits to be taken through a region.
-        let mut regions: [Option<(u16, u16)>; 4] = [None; 4];
-        for (i, region) in regions.iter_mut().enumerate() {
-            *region = self.tracers[i].begin(&mut branches[i]);
-        }
+        let regions = std::array::from_fn(|i| self.tracers[i].begin(&mut branches[i]));
+        self.follow(&mut branches, regions);
+    }
+
+    /// Follows of four trees what comes of those branches, and of the launched rays themselves only
+    /// if `launched` says so. Group delays are not known then.
+    pub fn trace_further_on(
+        &mut self,
+        launches: &[Launch<N>; 4],
+        launched: bool,
+        further_on: &[Vec<Branch<N>>; 4],
+    ) {
+        let mut branches = launches.each_ref().map(Branch::launched);
+        let regions = std::array::from_fn(|i| {
+            self.tracers[i].begin_further_on(&mut branches[i], launched, &further_on[i])
+        });
+        self.follow(&mut branches, regions);
+    }
+
+    /// Follows the branches that each wait to be taken through a region, and all others.
+    fn follow(&mut self, branches: &mut [Branch<N>; 4], mut regions: [Option<(u16, u16)>; 4]) {
         while let Some(&region) = regions.iter().flatten().next() {
             let rays: [Option<InnerRay>; 4] = std::array::from_fn(|i| {
                 (regions[i] == Some(region)).then(|| branches[i].inner_ray())

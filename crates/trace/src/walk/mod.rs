@@ -18,6 +18,7 @@ mod start;
 mod surfaces;
 mod tracer;
 
+pub use branch::Branch;
 pub use coherence::{Coherence, Pair, Way};
 pub use first_face::FirstFace;
 pub use four::FourTracers;

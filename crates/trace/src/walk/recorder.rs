@@ -1,6 +1,6 @@
 //! The ways that rays take, for drawings.
 
-use super::{FirstFace, Launch, LeafEnd, Limits, Tracer};
+use super::{Branch, FirstFace, Launch, LeafEnd, Limits, Tracer};
 use crate::assembly::Assembly;
 use optics::interface::OutgoingWave;
 use optics::propagation::PathPoint;
@@ -16,16 +16,16 @@ pub trait PathRecorder<const N: usize> {
     /// Called with the waves that leave the first surface, if rays end there.
     fn stopped(&mut self, _waves: &[OutgoingWave<N>]) {}
 
-    /// Called where a branch of the fingerprint `from` goes on from a border, or starts, as one of
-    /// the fingerprint `to`, given the power of its strongest polarization.
+    /// Called for each branch that is to be followed from where it is.
     #[inline(always)]
-    fn went_on(&mut self, _from: u64, _to: u64, _power: f64) {}
+    fn begins(&mut self, _branch: &Branch<N>) {}
 
-    /// Whether a branch that is met, of some fingerprint, is to be left out with all that comes of
-    /// it, and is in no account.
+    /// Called where a branch of the fingerprint `from` goes on from a border, or starts, as one of
+    /// the fingerprint `to`, given the power of its strongest polarization. Whether that is to be
+    /// followed: else it is left out with all that comes of it, and is in no account.
     #[inline(always)]
-    fn leaves_out(&mut self, _path: u64) -> bool {
-        false
+    fn went_on(&mut self, _from: u64, _to: u64, _power: f64) -> bool {
+        true
     }
 }
 

@@ -64,8 +64,10 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
             waves => {
                 for (wave, amplitudes) in waves.iter().zip(amplitudes(branch, waves)) {
                     let started = branch.as_wave(wave, amplitudes);
-                    self.recorder.went_on(branch.path, started.path, largest(&started.power));
-                    self.await_turn(started);
+                    let power = largest(&started.power);
+                    if self.recorder.went_on(branch.path, started.path, power) {
+                        self.await_turn(started);
+                    }
                 }
                 false
             }

@@ -193,8 +193,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let parted = region.parted(branch.position, branch.wave_vector);
         let Some([(a, in_a), (b, in_b)]) = parted else { return false };
         for part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
-            self.recorder.went_on(branch.path, part.path, largest(&part.power));
-            self.await_turn(part);
+            if self.recorder.went_on(branch.path, part.path, largest(&part.power)) {
+                self.await_turn(part);
+            }
         }
         true
     }
@@ -449,9 +450,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
         let from = branch.path;
         branch.go_on_as(&wave, event);
-        self.recorder.went_on(from, branch.path, largest(&branch.power));
         put(branch);
-        true
+        self.recorder.went_on(from, branch.path, largest(&branch.power))
     }
 
     /// Lets the waves that leave a surface go on, each put into its place: the last one as the
@@ -478,19 +478,21 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 self.waiting.push(*branch);
                 if let Some(other) = self.waiting.last_mut() {
                     other.go_on_as(earlier, (event, earlier.side, earlier.mode));
-                    self.recorder.went_on(branch.path, other.path, largest(&other.power));
                     other.update_survival(least_power);
                     put(other, earlier.side);
+                    let power = largest(&other.power);
+                    if !self.recorder.went_on(branch.path, other.path, power) {
+                        self.waiting.truncate(self.waiting.len() - 1);
+                    }
                 }
             }
         }
         let Some(wave) = last else { return false };
         let from = branch.path;
         branch.go_on_as(wave, (event, wave.side, wave.mode));
-        self.recorder.went_on(from, branch.path, largest(&branch.power));
         branch.update_survival(least_power);
         put(branch, wave.side);
-        true
+        self.recorder.went_on(from, branch.path, largest(&branch.power))
     }
 
     /// The surface that a ray in air meets before the screen; `departed` is what it has just left.

@@ -180,10 +180,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// one, is to be taken through a region that takes four: the device and its region. None if it
     /// is at the end.
     pub(super) fn begin(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
-        self.leaves.clear();
-        self.outcome = Outcome::default();
-        self.waiting.clear();
-        (self.events, self.threshold) = (0, self.limits.min_power);
+        self.clear();
         if self.group_delays {
             branch.dispersion = 0.0;
         }
@@ -191,6 +188,29 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             self.take_next(branch)?;
         }
         self.walk(branch)
+    }
+
+    /// As [`Self::begin`], but with branches further on to be followed, and the launched ray only if
+    /// `launched` says so.
+    pub(super) fn begin_further_on(
+        &mut self,
+        branch: &mut Branch<N>,
+        launched: bool,
+        further_on: &[Branch<N>],
+    ) -> Option<(u16, u16)> {
+        self.clear();
+        self.waiting.extend_from_slice(further_on);
+        if !(launched && self.start(branch)) {
+            self.take_next(branch)?;
+        }
+        self.walk(branch)
+    }
+
+    fn clear(&mut self) {
+        self.leaves.clear();
+        self.outcome = Outcome::default();
+        self.waiting.clear();
+        (self.events, self.threshold) = (0, self.limits.min_power);
     }
 
     /// As [`Self::begin`], from where the branch has been taken through a region.
@@ -219,9 +239,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     fn walk(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
         loop {
             let power = largest(&branch.power);
-            let goes_on = if self.recorder.leaves_out(branch.path) {
-                false
-            } else if power < self.threshold {
+            let goes_on = if power < self.threshold {
                 self.cut(branch.power)
             } else if power > MOST_POWER {
                 self.lose(branch.power)
@@ -231,6 +249,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                     self.events -= MORE_EVENTS;
                     self.threshold *= 10.0;
                 }
+                self.recorder.begins(branch);
                 match branch.place {
                     Place::Air => self.through_air(branch),
                     Place::Region { device, region: number } => {

@@ -7,7 +7,7 @@
 //! with much of that is divided, and of its parts only that is looked at again.
 
 mod grid;
-mod smooth_leaf;
+mod smooth;
 #[cfg(test)]
 mod tests;
 mod ways;
@@ -16,14 +16,14 @@ use super::detection::Detection;
 use super::prepared_scene::PreparedScene;
 use crate::assembly::Placed;
 use crate::scene::CameraRay;
-use crate::trace::{FourTracers, Leaf, Limits, Outcome, TraceStats, Tracer};
+use crate::trace::{Branch, FourTracers, Leaf, Limits, Outcome, TraceStats, Tracer};
 use arrayvec::ArrayVec;
 use glam::DVec3;
-use grid::{Coefficients, Grid, LANES, MOST, Terms, bits};
+use grid::{Grid, LANES, MOST, Terms, bits};
 use pulp::Arch;
-use smooth_leaf::{Functions, MOST_LANES, SmoothLeaf};
+use smooth::{Functions, Rough, Smooth, smooth};
 use std::ops::Range;
-use ways::{LeftOut, Trail, Ways};
+use ways::{LeftOut, ROOT, Trail, Ways};
 
 /// Width and height of the largest patches, pixels.
 pub(super) const SIDE: usize = 32;
@@ -96,18 +96,23 @@ pub(super) enum Fit {
 }
 
 /// What is known of a patch.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Level<const N: usize> {
     patch: Patch,
     /// The surface that its rays meet first.
     surface: Option<(u16, u16)>,
     /// The leaves that are interpolated, those of larger patches that it is part of, too.
-    smooth: Vec<SmoothLeaf<N>>,
+    leaves: Vec<Smooth<Leaf<N>>>,
+    /// Whether rays are to be traced from their start on.
+    launched: bool,
+    /// The branches from which on they are, interpolated up to there.
+    branches: Vec<Smooth<Branch<N>>>,
+    /// What all rays have of what is met there.
+    left_out: LeftOut,
     /// The share of all that is to be traced.
     traced: f64,
     /// How many borders a ray meets of which nothing is left out, if that is known.
     borders: Option<f64>,
-    left_out: LeftOut,
     /// Where the coefficients of larger patches end.
     coefficients: usize,
 }
@@ -116,6 +121,9 @@ struct Level<const N: usize> {
 /// fewer, to tell as much.
 const SMALL: usize = 8;
 
+/// Rays of a patch at most: they are bits of a number.
+const MOST_RAYS: usize = 64;
+
 /// Divisions of a patch by two, each way, and the patch itself.
 const MOST_LEVELS: usize = 9;
 
@@ -123,14 +131,14 @@ const MOST_LEVELS: usize = 9;
 pub(super) struct LeafPatches<'a, const N: usize> {
     prepared: &'a PreparedScene<'a>,
     detection: &'a Detection<N>,
-    scouts: FourTracers<'a, N, Trail>,
+    scouts: FourTracers<'a, N, Trail<N>>,
     /// They trace what is not interpolated.
     tracers: FourTracers<'a, N, LeftOut>,
     /// Those of the smallest patches, of small ones and of others.
     grids: [Grid; 3],
     /// Those that the processor has; they change no number.
     instructions: Arch,
-    functions: Functions<'a, N>,
+    functions: Functions<'a>,
     /// Whether rays go through graded media.
     graded: bool,
     /// Width and height of the largest patches, pixels.
@@ -142,9 +150,11 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     /// How often neighbouring rays of the last patch part, across the picture and down.
     cuts: [usize; 2],
     // Memory to work in.
-    ways: Ways,
-    order: Vec<(u64, usize, usize)>,
+    ways: Ways<N>,
     found: Vec<(usize, Leaf<N>)>,
+    further_on: [Vec<Branch<N>>; 4],
+    /// Where those are among what is left out that stand for branches further on.
+    met: [Vec<usize>; 4],
     /// How many rays have been traced at nodes and between them.
     pub walks: f64,
     /// The leaves of the samples of a block, and what became of the rest.
@@ -185,8 +195,9 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             coefficients: Vec::new(),
             cuts: [0; 2],
             ways: Ways::default(),
-            order: Vec::new(),
             found: Vec::new(),
+            further_on: std::array::from_fn(|_| Vec::new()),
+            met: std::array::from_fn(|_| Vec::new()),
             walks: 0.0,
             samples: std::array::from_fn(|_| (Vec::new(), Outcome::default())),
         })
@@ -194,9 +205,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
 
     /// Where rays of a patch are traced.
     fn grid(&self, patch: Patch) -> &Grid {
-        let [width, height] = patch.size;
-        let side = width.max(height);
-        &self.grids[usize::from(side > SMALL / 2) + usize::from(side > SMALL)]
+        &self.grids[grid_of(patch)]
     }
 
     /// The share of the patch that was fitted last that is to be traced for each sample.
@@ -226,8 +235,17 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             self.coefficients.truncate(first.coefficients);
         }
         self.levels.truncate(level);
-        let coefficients = self.coefficients.len();
-        let mut here = Level { patch, traced: 1.0, coefficients, ..Level::default() };
+        let mut here = Level {
+            patch,
+            surface: None,
+            leaves: Vec::new(),
+            launched: true,
+            branches: Vec::new(),
+            left_out: LeftOut::default(),
+            traced: 1.0,
+            borders: None,
+            coefficients: self.coefficients.len(),
+        };
         let fit = self.look(&mut here);
         self.levels.push(here);
         fit
@@ -257,20 +275,25 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         here.surface = met;
         self.found.clear();
         self.ways.clear();
-        let above = self.levels.last();
-        let left_out = above.map(|above| above.left_out.clone()).unwrap_or_default();
+        let above = self.levels.len().checked_sub(1);
+        let launched = above.is_none_or(|above| self.levels[above].launched);
         for tracer in &mut self.scouts.tracers {
-            tracer.recorder().left_out.clone_from(&left_out);
+            let left_out = above.map(|above| self.levels[above].left_out.clone());
+            tracer.recorder().left_out = left_out.unwrap_or_default();
         }
+        let share = above.map_or(1.0, |above| self.levels[above].traced);
         for (number, four) in rays.chunks(4).enumerate() {
-            let launches = std::array::from_fn(|i| {
-                self.detection.launch(camera, &four[i.min(four.len() - 1)])
-            });
-            self.scouts.trace(&launches);
-            self.walks += four.len() as f64 * above.map_or(1.0, |above| above.traced);
+            let first = 4 * number;
+            let ray = |i: usize| i.min(four.len() - 1);
+            let launches = std::array::from_fn(|i| self.detection.launch(camera, &four[ray(i)]));
+            let grid = self.grid(here.patch);
+            let points = std::array::from_fn(|i| here.patch.point(grid.points[first + ray(i)]));
+            self.go_further_on(above, &points, DEEPER * self.prepared.limits.min_power);
+            self.scouts.trace_further_on(&launches, launched, &self.further_on);
+            self.walks += four.len() as f64 * share;
             for (i, tracer) in self.scouts.tracers.iter_mut().enumerate() {
                 if i < four.len() {
-                    self.ways.add(4 * number + i, tracer.recorder());
+                    self.ways.add(first + i, tracer.recorder());
                 }
                 tracer.recorder().clear();
                 let (leaves, outcome) = tracer.traced();
@@ -279,7 +302,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                     return Fit::Alone;
                 }
                 if i < four.len() {
-                    self.found.extend(leaves.iter().map(|leaf| (4 * number + i, *leaf)));
+                    self.found.extend(leaves.iter().map(|leaf| (first + i, *leaf)));
                 }
             }
             if number == 0 && !self.graded && above.is_none() && self.found.len() == 4 {
@@ -287,89 +310,155 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 return Fit::Alone;
             }
         }
-        self.ways.gather(rays.len(), self.prepared.limits.min_power);
-        self.interpolate(here);
+        self.gather(here, rays.len());
+        Fit::Shared
+    }
+
+    /// Puts the branches in place from which on four rays of a patch, of that level or a part of
+    /// it, are followed, if they are strong enough: none without a level.
+    fn go_further_on(&mut self, level: Option<usize>, points: &[[f64; 2]; 4], least: f64) {
+        let branches = level.map_or(&[][..], |level| &self.levels[level].branches);
+        for (i, point) in points.iter().enumerate() {
+            let (further_on, met) = (&mut self.further_on[i], &mut self.met[i]);
+            further_on.clear();
+            met.clear();
+            let mut terms = TermsOfLevels::at(*point);
+            for smooth in branches {
+                further_on.push(smooth.first);
+                let Some(branch) = further_on.last_mut() else { break };
+                let terms = terms.of(&self.levels, smooth.level);
+                smooth.move_to(branch, terms, self.functions, &self.coefficients);
+                if branch.largest_power() < least {
+                    further_on.pop();
+                    continue;
+                }
+                branch.survive(least);
+                met.extend(smooth.met.map(|_| smooth.place));
+            }
+        }
+    }
+
+    /// Finds out what rays of a patch share, of what so many of them have been found to meet.
+    fn gather(&mut self, here: &mut Level<N>, rays: usize) {
+        let least = self.prepared.limits.min_power;
+        let level = self.levels.len();
+        let (mut leaves, mut branches) = match self.levels.last() {
+            Some(above) => (above.leaves.clone(), above.branches.clone()),
+            None => (Vec::new(), Vec::new()),
+        };
+        let launched = self.levels.last().is_none_or(|above| above.launched);
+        let starts = launched.then_some(ROOT).into_iter();
+        let starts = starts.chain(branches.iter().map(|branch| branch.first.path));
+        self.ways.gather(rays, starts, least);
+        // What larger patches know holds on where all rays still come to it.
+        let lost = |ways: &Ways<N>, met: Option<u64>| met.is_some_and(|path| !ways.has(path));
+        while let Some(number) = branches.iter().position(|branch| lost(&self.ways, branch.met)) {
+            self.ways.forget(branches.remove(number).first.path);
+        }
+        leaves.retain(|leaf| !lost(&self.ways, leaf.met));
+        self.fit_leaves(here.patch, level, &mut leaves);
+        self.fit_branches(here.patch, level, &mut branches);
+        let starts: Vec<(u64, Option<u64>)> =
+            branches.iter().map(|branch| (branch.first.path, branch.met)).collect();
+        branches.retain(|branch| self.ways.parts(branch.first.path));
         for part in self.ways.some_have() {
             let cuts = self.grid(here.patch).cuts(part);
             self.cuts = [0, 1].map(|axis| self.cuts[axis] + cuts[axis]);
         }
-        let above = self.levels.last();
-        let borders = above.and_then(|above| above.borders).unwrap_or_else(|| self.ways.borders());
+        let borders = self.levels.last().and_then(|above| above.borders);
+        let borders = borders.unwrap_or_else(|| self.ways.borders());
         here.borders = Some(borders);
         here.traced = (self.ways.borders_to_trace() / borders).min(1.0);
-        let known = above.map_or(&[][..], |above| &above.smooth);
-        here.smooth.extend(known.iter().filter(|leaf| !self.ways.parts(leaf.beginning)));
-        if here.traced > 0.0 {
-            here.left_out = LeftOut::new(self.ways.shared());
-            for leaf in &mut here.smooth {
-                leaf.beginning = self.ways.shared_beginning(leaf.beginning);
-                leaf.place = here.left_out.place(leaf.beginning);
+        here.launched = self.ways.parts(ROOT);
+        here.left_out = LeftOut::new(self.ways.met());
+        let met_before = |mut path: u64| loop {
+            match self.ways.met_on_the_way(path) {
+                Ok(met) => return Some(met),
+                // What is before it larger patches know.
+                Err(start) => path = starts.iter().find(|(path, _)| *path == start)?.1?,
             }
-            for tracer in &mut self.tracers.tracers {
-                tracer.recorder().clone_from(&here.left_out);
-            }
+        };
+        let find = |path: u64, level_of: usize, known: Option<u64>| {
+            let met = if level_of == level { Some(path) } else { known }.and_then(met_before);
+            (met, met.map_or(0, |path| here.left_out.place(path)))
+        };
+        for leaf in &mut leaves {
+            (leaf.met, leaf.place) = find(leaf.first.path, leaf.level, leaf.met);
         }
-        Fit::Shared
+        for branch in &mut branches {
+            (branch.met, branch.place) = find(branch.first.path, branch.level, branch.met);
+        }
+        (here.leaves, here.branches) = (leaves, branches);
+        for tracer in &mut self.tracers.tracers {
+            tracer.recorder().clone_from(&here.left_out);
+        }
     }
 
-    /// Makes functions of the leaves of the ways that all rays take.
-    fn interpolate(&mut self, here: &mut Level<N>) {
-        let (nodes, level) = (self.grid(here.patch).nodes(), self.levels.len());
-        let least = self.prepared.limits.min_power;
-        // Leaves are large, and stay where they are.
-        let mut order = std::mem::take(&mut self.order);
-        order.clear();
-        order.extend(self.found.iter().enumerate().map(|(i, (ray, leaf))| (leaf.path, *ray, i)));
-        order.sort_unstable();
-        for way in order.chunk_by(|(one, ..), (other, ..)| one == other) {
-            let leaf_of = |&(.., i): &(u64, usize, usize)| &self.found[i].1;
-            let power = way.iter().map(|one| leaf_of(one).largest_power()).fold(0.0, f64::max);
-            if power < least {
+    /// Makes functions of the leaves that all rays have; where they are none, rays part.
+    fn fit_leaves(&mut self, patch: Patch, level: usize, smooth_leaves: &mut Vec<Smooth<Leaf<N>>>) {
+        let mut found: Vec<_> =
+            (self.found.iter()).map(|(ray, leaf)| (leaf.path, *ray, leaf)).collect();
+        found.sort_unstable_by_key(|(path, ray, _)| (*path, *ray));
+        for way in found.chunk_by(|(one, ..), (other, ..)| one == other) {
+            let path = way[0].0;
+            let power = way.iter().map(|(.., leaf)| leaf.largest_power()).fold(0.0, f64::max);
+            if power < self.prepared.limits.min_power {
                 continue;
             }
-            let first = *leaf_of(&way[0]);
-            let is_whole = way.len() >= nodes
-                && way[..nodes].iter().enumerate().all(|(node, one)| {
-                    let leaf = leaf_of(one);
-                    node == one.1 && (leaf.end, leaf.met_device) == (first.end, first.met_device)
-                });
-            if is_whole {
-                let grid = self.grid(here.patch);
-                let coefficients = (0..self.functions.lanes).map(|lane| {
-                    let values = way[..nodes].iter();
-                    let values: ArrayVec<_, { MOST * MOST }> =
-                        values.map(|one| self.functions.values(leaf_of(one), lane)).collect();
-                    grid.coefficients(&values)
-                });
-                let coefficients: ArrayVec<Coefficients, MOST_LANES> = coefficients.collect();
-                let terms = self.functions.terms(&first, power, &coefficients);
-                let start = self.coefficients.len();
-                let leaf =
-                    SmoothLeaf { first, level, start, terms, beginning: first.path, place: 0 };
-                let rougher = grid.rougher(&coefficients);
-                self.coefficients.extend(coefficients.iter().flat_map(|lane| &lane[..terms]));
-                let mut between = way[nodes..].iter().peekable();
-                let is_smooth = (nodes..).zip(&self.grid(here.patch).checks).all(|(number, at)| {
-                    let mut here = first;
-                    self.functions.move_leaf(&mut here, &leaf, at, &self.coefficients);
-                    match between.next_if(|one| one.1 == number) {
-                        Some(one) => self.functions.agree(&here, leaf_of(one)),
-                        // It is too weak to be known there.
-                        None => here.largest_power() < least,
-                    }
-                });
-                if is_smooth && between.peek().is_none() && !self.ways.parts(first.path) {
-                    here.smooth.push(leaf);
-                    continue;
-                }
-                self.coefficients.truncate(start);
-                self.cuts[rougher] += 1;
+            if !self.ways.has(path) {
+                continue;
             }
-            self.ways.part_at(first.path);
+            let of_rays: ArrayVec<(usize, &Leaf<N>), MOST_RAYS> =
+                way.iter().map(|(_, ray, leaf)| (*ray, *leaf)).collect();
+            let grid = &self.grids[grid_of(patch)];
+            match smooth(&of_rays, grid, self.functions, level, &mut self.coefficients) {
+                Ok(leaf) => smooth_leaves.push(leaf),
+                Err(rough) => {
+                    if let Rough::Along(axis) = rough {
+                        self.cuts[axis] += 1;
+                    }
+                    self.ways.part_at(path);
+                }
+            }
         }
-        self.order = order;
-        // A way may part from others after its leaf was found to be smooth.
-        here.smooth.retain(|leaf| !self.ways.parts(leaf.first.path));
+    }
+
+    /// Makes functions of the branches at whose ends rays part; those that are none are followed
+    /// from the branch before.
+    fn fit_branches(
+        &mut self,
+        patch: Patch,
+        level: usize,
+        smooth_branches: &mut Vec<Smooth<Branch<N>>>,
+    ) {
+        let mut known: Vec<u64> = smooth_branches.iter().map(|branch| branch.first.path).collect();
+        known.push(ROOT);
+        loop {
+            let parting = self.ways.parting().filter(|path| !known.contains(path));
+            let parting: Vec<u64> = parting.collect();
+            if parting.is_empty() {
+                return;
+            }
+            let mut rough: Vec<u64> = Vec::new();
+            let movable = self.ways.movable(&parting);
+            let mut ways = movable.chunk_by(|(one, ..), (other, ..)| one == other).peekable();
+            for path in parting {
+                let way = ways.next_if(|way| way[0].0 == path).unwrap_or_default();
+                let of_rays: ArrayVec<(usize, &Branch<N>), MOST_RAYS> =
+                    way.iter().map(|(_, ray, branch)| (*ray, *branch)).collect();
+                let grid = &self.grids[grid_of(patch)];
+                match smooth(&of_rays, grid, self.functions, level, &mut self.coefficients) {
+                    Ok(branch) => {
+                        known.push(path);
+                        smooth_branches.push(branch);
+                    }
+                    Err(_) => rough.push(path),
+                }
+            }
+            for path in rough {
+                self.ways.part_before(path);
+            }
+        }
     }
 
     /// Finds the leaves of the rays of a block of the patch that was fitted last; whether its rays
@@ -380,17 +469,24 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         rays: &[CameraRay; 4],
         stats: &mut TraceStats,
     ) -> bool {
-        let Some(Level { surface, traced, .. }) = self.levels.last() else { return false };
-        let is_traced = *traced > 0.0;
+        let Some(Level { surface, traced, launched, .. }) = self.levels.last() else {
+            return false;
+        };
+        let (is_traced, launched) = (*traced > 0.0, *launched);
         let tracer = &self.tracers.tracers[0];
         let met = |ray: &CameraRay| tracer.first_surface(ray.origin, ray.direction) == *surface;
         if !rays.iter().all(met) {
             return false;
         }
         if is_traced {
+            let level = self.levels.len().checked_sub(1);
+            let least = self.prepared.limits.min_power;
+            let instructions = self.instructions;
+            instructions.dispatch(|| self.go_further_on(level, points, least));
             let camera = &self.prepared.scene.camera;
             self.tracers.tracers.iter_mut().for_each(|tracer| tracer.recorder().begin());
-            self.tracers.trace(&rays.each_ref().map(|ray| self.detection.launch(camera, ray)));
+            let launches = rays.each_ref().map(|ray| self.detection.launch(camera, ray));
+            self.tracers.trace_further_on(&launches, launched, &self.further_on);
         }
         let mut samples = std::mem::take(&mut self.samples);
         let mut as_traced = true;
@@ -405,6 +501,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
                 let (others, outcome) = self.tracers.tracers[i].traced();
                 leaves.extend_from_slice(others);
                 rare += outcome.stats;
+                let left_out = self.tracers.tracers[i].watcher();
+                as_traced &= self.met[i].iter().all(|place| left_out.has_met(*place));
             }
         }
         if as_traced {
@@ -420,7 +518,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     }
 
     /// The leaves at a point of the picture that are interpolated and strong enough; whether the
-    /// ray of that number in its block, if it is traced, has met the branches of all of them.
+    /// ray of that number in its block, if it is traced, has met what is left out of it for them.
     #[inline(always)]
     fn interpolated(
         &self,
@@ -430,25 +528,50 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     ) -> bool {
         let Some(here) = self.levels.last() else { return false };
         let least = self.prepared.limits.min_power;
-        let mut terms: [Option<Terms>; MOST_LEVELS] = [None; MOST_LEVELS];
+        let mut terms = TermsOfLevels::at(point);
         let mut as_traced = true;
-        for smooth in &here.smooth {
-            let terms = terms[smooth.level]
-                .get_or_insert_with(|| Terms::at(self.levels[smooth.level].patch.place(point)));
+        for smooth in &here.leaves {
+            let terms = terms.of(&self.levels, smooth.level);
             // Leaves are large, and made where they are to be.
             leaves.push(smooth.first);
             let Some(leaf) = leaves.last_mut() else { break };
-            self.functions.move_leaf(leaf, smooth, terms, &self.coefficients);
+            smooth.move_to(leaf, terms, self.functions, &self.coefficients);
             if leaf.largest_power() < least {
                 leaves.pop();
                 continue;
             }
             leaf.survives_alone = leaf.power.map(|power| power >= least);
-            let met = |ray: usize| self.tracers.tracers[ray].watcher().has_met(smooth.place);
-            as_traced &= traced.is_none_or(met);
+            if let (Some(ray), Some(_)) = (traced, smooth.met) {
+                as_traced &= self.tracers.tracers[ray].watcher().has_met(smooth.place);
+            }
         }
         as_traced
     }
+}
+
+/// The terms at one point of the picture in a patch and the larger ones that it is part of.
+struct TermsOfLevels {
+    point: [f64; 2],
+    terms: [Option<Terms>; MOST_LEVELS],
+}
+
+impl TermsOfLevels {
+    #[inline(always)]
+    fn at(point: [f64; 2]) -> Self {
+        Self { point, terms: [None; MOST_LEVELS] }
+    }
+
+    #[inline(always)]
+    fn of<const N: usize>(&mut self, levels: &[Level<N>], level: usize) -> &Terms {
+        self.terms[level].get_or_insert_with(|| Terms::at(levels[level].patch.place(self.point)))
+    }
+}
+
+/// Which of the grids is that of a patch.
+fn grid_of(patch: Patch) -> usize {
+    let [width, height] = patch.size;
+    let side = width.max(height);
+    usize::from(side > SMALL / 2) + usize::from(side > SMALL)
 }
 
 /// How large patches may be, pixels: no larger than the smallest of several devices looks, so that

@@ -125,7 +125,7 @@ fn interpolated_leaves_are_those_of_traced_rays() {
                 format!("[camera]\nresolution = [1024, 1024]\nsamples = 4\n[[device]]\n{device}\n");
             let scene = scene(&text);
             let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &scene.picture);
-            let errors = errors(&scene, &detection, corner, (2, 37));
+            let errors = errors(&scene, &detection, corner, (2, 13));
             rays += errors.rays;
             let is_true = errors.place < 1e-6 && errors.power < 2e-6 && errors.others == 0;
             assert!(is_true, "{device} {corner:?}: {errors:?}");

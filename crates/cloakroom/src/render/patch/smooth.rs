@@ -1,0 +1,341 @@
+//! Leaves and branches as functions of the place in a patch.
+
+use super::grid::{Coefficients, Grid, LANES, MOST, Terms};
+use crate::render::detection::Detection;
+use crate::render::prepared_scene::PreparedScene;
+use crate::trace::{Branch, Leaf};
+use arrayvec::ArrayVec;
+use glam::DVec3;
+use optics::wave::ComplexVector;
+
+/// The largest error of a power, in terms of the least power.
+const POWER_TOLERANCE: f64 = 0.01;
+
+/// The largest error of the place on the photograph, and of the optical path, in terms of the
+/// tolerance of paths, times the share of power that goes there.
+const PLACE_TOLERANCE: f64 = 0.3;
+
+/// The same whatever goes there.
+const WEAK_PLACE_TOLERANCE: f64 = 100.0;
+
+/// The share of each of them that terms which are left out may have.
+const LEFT_OUT: f64 = 0.1;
+
+/// How far leaves are looked at that end nowhere, and branches, cm.
+const REACH: f64 = 100.0;
+
+/// So many hold all functions: position, direction, two powers, wave vector, two paths and two
+/// fields.
+const MOST_LANES: usize = 4;
+
+/// What is interpolated of a leaf or branch, all its functions in order.
+type Lanes = [[f64; LANES]; MOST_LANES];
+
+/// A leaf or branch as a function of the place in a patch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Smooth<T> {
+    /// That at the first node.
+    pub first: T,
+    /// The number of the patch over which it was found to be smooth, from the largest on.
+    pub level: usize,
+    /// Where its coefficients begin.
+    start: usize,
+    /// How many terms it has.
+    terms: usize,
+    /// The last branch on the way to it that is met where rays are traced.
+    pub met: Option<u64>,
+    /// Where that is among those that are left out.
+    pub place: usize,
+}
+
+impl<T: Interpolated> Smooth<T> {
+    /// Moves that at the first node to a place of the patch.
+    #[inline(always)]
+    pub fn move_to(
+        &self,
+        thing: &mut T,
+        at: &Terms,
+        kept: Functions<'_>,
+        coefficients: &[[f64; LANES]],
+    ) {
+        let lane = |lane: usize| {
+            let start = self.start + lane * self.terms;
+            at.sum(&coefficients[start..start + self.terms])
+        };
+        let count = T::lanes(kept);
+        let mut lanes = [lane(0), [0.0; LANES], [0.0; LANES], [0.0; LANES]];
+        for (number, values) in lanes[..count].iter_mut().enumerate().skip(1) {
+            *values = lane(number);
+        }
+        thing.put(kept, &lanes);
+    }
+}
+
+/// What is interpolated, and how exactly.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Functions<'a> {
+    prepared: &'a PreparedScene<'a>,
+    /// Whether paths and fields of leaves are asked for.
+    paths: bool,
+    fields: bool,
+}
+
+impl<'a> Functions<'a> {
+    pub fn of<const N: usize>(prepared: &'a PreparedScene<'a>, detection: &Detection<N>) -> Self {
+        Self { prepared, paths: detection.times, fields: detection.stokes }
+    }
+
+    /// The largest error of places and paths of what has that power, cm.
+    fn place_tolerance(&self, power: f64) -> f64 {
+        (PLACE_TOLERANCE / power).min(WEAK_PLACE_TOLERANCE) * self.prepared.limits.tolerance
+    }
+
+    fn power_tolerance(&self) -> f64 {
+        POWER_TOLERANCE * self.prepared.limits.min_power
+    }
+}
+
+/// What is a function of the place in a patch.
+pub(super) trait Interpolated: Copy {
+    /// How many numbers it has, in [`LANES`].
+    fn lanes(kept: Functions<'_>) -> usize;
+
+    /// Its numbers: position, direction and powers, and then others.
+    fn values(&self, kept: Functions<'_>) -> Lanes;
+
+    /// How far each may be off, for something of that power.
+    fn tolerances(&self, kept: Functions<'_>, power: f64) -> Lanes;
+
+    /// Takes over its numbers.
+    fn put(&mut self, kept: Functions<'_>, lanes: &Lanes);
+
+    /// Whether it is as another, which has been traced.
+    fn agrees(&self, other: &Self, kept: Functions<'_>) -> bool;
+
+    /// Whether both are the same but for their numbers.
+    fn is_like(&self, other: &Self) -> bool;
+
+    fn largest_power(&self) -> f64;
+}
+
+/// Puts numbers in order.
+fn in_order(numbers: impl IntoIterator<Item = f64>) -> Lanes {
+    let mut lanes = [[0.0; LANES]; MOST_LANES];
+    for (place, number) in lanes.as_flattened_mut().iter_mut().zip(numbers) {
+        *place = number;
+    }
+    lanes
+}
+
+fn numbers_of<const N: usize>(fields: &[ComplexVector; N]) -> impl Iterator<Item = f64> {
+    fields.iter().flat_map(|field| [field.re.to_array(), field.im.to_array()]).flatten()
+}
+
+fn put_fields<const N: usize>(fields: &mut [ComplexVector; N], numbers: &[f64]) {
+    for (field, numbers) in fields.iter_mut().zip(numbers.chunks_exact(6)) {
+        let [re, im] = [&numbers[..3], &numbers[3..]].map(DVec3::from_slice);
+        *field = ComplexVector::new(re, im);
+    }
+}
+
+fn are_near<const N: usize>(
+    one: &[ComplexVector; N],
+    other: &[ComplexVector; N],
+    tolerance: f64,
+) -> bool {
+    let mut pairs = one.iter().zip(other);
+    pairs.all(|(one, other)| (*one - *other).norm_squared() <= tolerance * tolerance)
+}
+
+fn all_near(one: &[f64], other: &[f64], tolerance: f64) -> bool {
+    one.iter().zip(other).all(|(one, other)| (one - other).abs() <= tolerance)
+}
+
+impl<const N: usize> Interpolated for Leaf<N> {
+    fn lanes(kept: Functions<'_>) -> usize {
+        let count = 6 + N + if kept.paths { 2 } else { 0 } + if kept.fields { 6 * N } else { 0 };
+        count.div_ceil(LANES)
+    }
+
+    fn values(&self, kept: Functions<'_>) -> Lanes {
+        let places = self.position.to_array().into_iter().chain(self.direction.to_array());
+        let paths = [self.optical_path, self.delay_path].into_iter();
+        let fields = numbers_of(&self.electric).take(if kept.fields { 6 * N } else { 0 });
+        let paths = paths.take(if kept.paths { 2 } else { 0 });
+        in_order(places.chain(self.power).chain(paths).chain(fields))
+    }
+
+    fn tolerances(&self, kept: Functions<'_>, power: f64) -> Lanes {
+        let [place, power] = [kept.place_tolerance(power), kept.power_tolerance()];
+        let reach = self.distance_to(&kept.prepared.screen).unwrap_or(REACH);
+        let paths = if kept.paths { 2 } else { 0 };
+        let places = [place, place, place].into_iter().chain([place / reach; 3]);
+        let paths = [place; 2].into_iter().take(paths);
+        in_order(places.chain([power; N]).chain(paths).chain(std::iter::repeat(power)))
+    }
+
+    #[inline(always)]
+    fn put(&mut self, kept: Functions<'_>, lanes: &Lanes) {
+        let numbers = lanes.as_flattened();
+        self.position = DVec3::from_slice(&numbers[..3]);
+        self.direction = DVec3::from_slice(&numbers[3..6]).normalize();
+        self.power = std::array::from_fn(|i| numbers[6 + i]);
+        let mut rest = &numbers[6 + N..];
+        if kept.paths {
+            [self.optical_path, self.delay_path] = [rest[0], rest[1]];
+            rest = &rest[2..];
+        }
+        if kept.fields {
+            put_fields(&mut self.electric, rest);
+        }
+    }
+
+    fn agrees(&self, other: &Self, kept: Functions<'_>) -> bool {
+        let tolerance = kept.place_tolerance(other.largest_power());
+        let power_tolerance = kept.power_tolerance();
+        let distance = other.distance_to(&kept.prepared.screen).unwrap_or(REACH);
+        let place = |leaf: &Self| leaf.position + leaf.direction * distance;
+        let paths = |leaf: &Self| [leaf.optical_path, leaf.delay_path];
+        self.is_like(other)
+            && place(self).distance(place(other)) <= tolerance
+            && all_near(&self.power, &other.power, power_tolerance)
+            && (!kept.paths || all_near(&paths(self), &paths(other), tolerance))
+            && (!kept.fields || are_near(&self.electric, &other.electric, power_tolerance))
+    }
+
+    fn is_like(&self, other: &Self) -> bool {
+        (self.end, self.met_device) == (other.end, other.met_device)
+    }
+
+    fn largest_power(&self) -> f64 {
+        self.largest_power()
+    }
+}
+
+impl<const N: usize> Interpolated for Branch<N> {
+    fn lanes(_: Functions<'_>) -> usize {
+        (6 + N + 5 + 6 * N).div_ceil(LANES)
+    }
+
+    fn values(&self, _: Functions<'_>) -> Lanes {
+        let places = self.position.to_array().into_iter().chain(self.direction.to_array());
+        let rest =
+            self.wave_vector.to_array().into_iter().chain([self.optical_path, self.backwards]);
+        in_order(places.chain(self.power).chain(rest).chain(numbers_of(&self.electric)))
+    }
+
+    fn tolerances(&self, kept: Functions<'_>, power: f64) -> Lanes {
+        let [place, power] = [kept.place_tolerance(power), kept.power_tolerance()];
+        let direction = place / REACH;
+        let places = [place, place, place, direction, direction, direction];
+        let rest = [direction, direction, direction, place, place];
+        in_order(places.into_iter().chain([power; N]).chain(rest).chain(std::iter::repeat(power)))
+    }
+
+    #[inline(always)]
+    fn put(&mut self, _: Functions<'_>, lanes: &Lanes) {
+        let numbers = lanes.as_flattened();
+        self.position = DVec3::from_slice(&numbers[..3]);
+        self.direction = DVec3::from_slice(&numbers[3..6]).normalize();
+        self.power = std::array::from_fn(|i| numbers[6 + i]);
+        let rest = &numbers[6 + N..];
+        self.wave_vector = DVec3::from_slice(&rest[..3]);
+        [self.optical_path, self.backwards] = [rest[3], rest[4]];
+        put_fields(&mut self.electric, &rest[5..]);
+    }
+
+    fn agrees(&self, other: &Self, kept: Functions<'_>) -> bool {
+        let tolerance = kept.place_tolerance(other.largest_power());
+        let power_tolerance = kept.power_tolerance();
+        let place = |branch: &Self| branch.position + branch.direction * REACH;
+        let paths = |branch: &Self| [branch.optical_path, branch.backwards];
+        self.is_like(other)
+            && place(self).distance(place(other)) <= tolerance
+            && self.wave_vector.distance(other.wave_vector) * REACH <= tolerance
+            && all_near(&self.power, &other.power, power_tolerance)
+            && all_near(&paths(self), &paths(other), tolerance)
+            && are_near(&self.electric, &other.electric, power_tolerance)
+    }
+
+    fn is_like(&self, other: &Self) -> bool {
+        self.is_like(other)
+    }
+
+    fn largest_power(&self) -> f64 {
+        self.largest_power()
+    }
+}
+
+/// Why something is no function over a patch.
+pub(super) enum Rough {
+    /// Some rays do not have it.
+    Parted,
+    /// It varies too much along an axis.
+    Along(usize),
+}
+
+/// Makes a function of what the rays of a patch have, which are given by their numbers: all at the
+/// nodes, and those between that have at least the least power.
+pub(super) fn smooth<T: Interpolated>(
+    found: &[(usize, &T)],
+    grid: &Grid,
+    kept: Functions<'_>,
+    level: usize,
+    coefficients: &mut Vec<[f64; LANES]>,
+) -> Result<Smooth<T>, Rough> {
+    let nodes = grid.nodes();
+    let at_nodes = found.get(..nodes).ok_or(Rough::Parted)?;
+    let first = at_nodes[0].1;
+    let is_there = |(node, one): (usize, &(usize, &T))| node == one.0 && one.1.is_like(first);
+    if !at_nodes.iter().enumerate().all(is_there) {
+        return Err(Rough::Parted);
+    }
+    let values: ArrayVec<Lanes, { MOST * MOST }> =
+        at_nodes.iter().map(|(_, one)| one.values(kept)).collect();
+    let lanes: ArrayVec<Coefficients, MOST_LANES> = (0..T::lanes(kept))
+        .map(|lane| {
+            let values: ArrayVec<[f64; LANES], { MOST * MOST }> =
+                values.iter().map(|lanes| lanes[lane]).collect();
+            grid.coefficients(&values)
+        })
+        .collect();
+    let power = found.iter().map(|(_, one)| one.largest_power()).fold(0.0, f64::max);
+    let terms = terms(&lanes, &first.tolerances(kept, power));
+    let start = coefficients.len();
+    coefficients.extend(lanes.iter().flat_map(|lane| &lane[..terms]));
+    let smooth = Smooth { first: *first, level, start, terms, met: None, place: 0 };
+    let mut between = found[nodes..].iter().peekable();
+    let is_smooth = (nodes..).zip(&grid.checks).all(|(number, at)| {
+        let mut here = *first;
+        smooth.move_to(&mut here, at, kept, coefficients);
+        match between.next_if(|one| one.0 == number) {
+            Some((_, one)) => here.agrees(one, kept),
+            // It is too weak to be known there.
+            None => here.largest_power() < kept.prepared.limits.min_power,
+        }
+    });
+    if is_smooth && between.peek().is_none() {
+        Ok(smooth)
+    } else {
+        coefficients.truncate(start);
+        Err(Rough::Along(grid.rougher(&lanes)))
+    }
+}
+
+/// How many of the terms are needed.
+fn terms(lanes: &[Coefficients], tolerances: &Lanes) -> usize {
+    let mut needed = 1;
+    for (lane, tolerances) in lanes.iter().zip(tolerances) {
+        let mut left = tolerances.map(|most| LEFT_OUT * most);
+        for (term, values) in lane.iter().enumerate().skip(needed).rev() {
+            for (left, value) in left.iter_mut().zip(values) {
+                *left -= value.abs();
+            }
+            if left.iter().any(|left| *left < 0.0) {
+                needed = term + 1;
+                break;
+            }
+        }
+    }
+    needed
+}
