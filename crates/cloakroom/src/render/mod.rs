@@ -396,9 +396,8 @@ impl<'a, const N: usize> Exposer<'a, N> {
         });
         let rays = points.map(|[x, y]| camera.ray(x, y));
         let spacing = 1.0 / f64::from(samples).sqrt();
-        let mut stats = TraceStats::default();
         if let Some(patches) = self.patches.as_mut().filter(|_| traced < 1.0)
-            && patches.sample(&points, &rays, &mut stats)
+            && patches.sample(&points, &rays)
         {
             self.walks += 4.0 * traced;
             let block: [Traced<'_, N>; 4] = std::array::from_fn(|i| {
@@ -410,8 +409,9 @@ impl<'a, const N: usize> Exposer<'a, N> {
                 let (prepared, working) = (self.prepared, &mut self.working);
                 expose::<N, false>(prepared, self.detection, rays, spacing, pixel, working);
             }
-            return stats;
+            return TraceStats::default();
         }
+        let mut stats = TraceStats::default();
         let any = &self.tracers.tracers[0];
         if !(self.detection.times || self.detection.stokes || self.detection.first_face)
             && rays.iter().all(|ray| any.meets_nothing(ray.origin, ray.direction))

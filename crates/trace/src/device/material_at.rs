@@ -51,10 +51,7 @@ impl Region {
     /// on its border.
     pub(crate) fn enter_if_within(&self, point: DVec3) -> Option<(Option<VirtualPoint>, Medium)> {
         let within = match self {
-            Self::Homogeneous(region) => region.faces().iter().all(|face| {
-                let slack = 1e-12 * (1.0 + face.plane.offset.abs());
-                face.plane.normal.dot(point) - face.plane.offset <= slack
-            }),
+            Self::Homogeneous(_) => self.is_within_faces(point, 1e-12),
             // There is no virtual_point elsewhere.
             Self::Conformal(_) => true,
             Self::Radial(region) => {
@@ -66,6 +63,16 @@ impl Region {
         let mut graded = None;
         let (virtual_point, medium) = within.then(|| self.enter(point, &mut graded))??;
         Some((virtual_point, *medium))
+    }
+
+    /// Whether a point is within the plane faces of a homogeneous medium, or beyond them by no more
+    /// than `slack`, relative to their distance and absolute, cm.
+    pub(crate) fn is_within_faces(&self, point: DVec3, slack: f64) -> bool {
+        let Self::Homogeneous(region) = self else { return true };
+        region.faces().iter().all(|face| {
+            let slack = slack * (1.0 + face.plane.offset.abs());
+            face.plane.normal.dot(point) - face.plane.offset <= slack
+        })
     }
 }
 

@@ -42,6 +42,10 @@ const MORE_EVENTS: u32 = 10_000;
 /// medium that is thinner than a wavelength, more of it at each total reflection.
 const MOST_POWER: f64 = 1e3;
 
+/// A branch that is taken further on than its ray starts may be so far out of its region, in terms
+/// of the tolerance.
+const MOST_BEYOND: f64 = 100.0;
+
 /// What rounding leaves of a wave that is not there.
 const NO_POWER: f64 = 1e-24;
 
@@ -190,7 +194,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.walk(branch)
     }
 
-    /// As [`Self::begin`], but with branches further on to be followed, and the launched ray only if
+    /// As [`Self::begin`], but with branches further on to be followed, those in regions, and the launched ray only if
     /// `launched` says so.
     pub(super) fn begin_further_on(
         &mut self,
@@ -199,7 +203,15 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         further_on: &[Branch<N>],
     ) -> Option<(u16, u16)> {
         self.clear();
-        self.waiting.extend_from_slice(further_on);
+        for further_on in further_on {
+            let Place::Region { device, region } = further_on.place else { continue };
+            let region = self.assembly.device(device).region(region);
+            if region.is_within_faces(further_on.position, MOST_BEYOND * self.limits.tolerance) {
+                self.waiting.push(*further_on);
+            } else {
+                self.lose(further_on.power);
+            }
+        }
         if !(launched && self.start(branch)) {
             self.take_next(branch)?;
         }

@@ -462,13 +462,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
     }
 
     /// Finds the leaves of the rays of a block of the patch that was fitted last; whether its rays
-    /// are like those of the patch. What was rare goes to `stats`.
-    pub fn sample(
-        &mut self,
-        points: &[[f64; 2]; 4],
-        rays: &[CameraRay; 4],
-        stats: &mut TraceStats,
-    ) -> bool {
+    /// are like those of the patch, and nothing rare has come of them.
+    pub fn sample(&mut self, points: &[[f64; 2]; 4], rays: &[CameraRay; 4]) -> bool {
         let Some(Level { surface, traced, launched, .. }) = self.levels.last() else {
             return false;
         };
@@ -490,7 +485,6 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         }
         let mut samples = std::mem::take(&mut self.samples);
         let mut as_traced = true;
-        let mut rare = TraceStats::default();
         for (i, (leaves, outcome)) in samples.iter_mut().enumerate() {
             leaves.clear();
             *outcome = Outcome::default();
@@ -500,13 +494,11 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             if is_traced {
                 let (others, outcome) = self.tracers.tracers[i].traced();
                 leaves.extend_from_slice(others);
-                rare += outcome.stats;
+                // What is rare is looked at more closely.
+                as_traced &= outcome.stats == TraceStats::default();
                 let left_out = self.tracers.tracers[i].watcher();
                 as_traced &= self.met[i].iter().all(|place| left_out.has_met(*place));
             }
-        }
-        if as_traced {
-            *stats += rare;
         }
         for (leaves, outcome) in &mut samples {
             for (i, pruned) in outcome.pruned.iter_mut().enumerate() {

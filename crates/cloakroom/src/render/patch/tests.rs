@@ -71,7 +71,7 @@ fn compare<const N: usize>(
                 ]
             });
             let rays = points.map(|[x, y]| camera.ray(x, y));
-            if !patches.sample(&points, &rays, &mut TraceStats::default()) {
+            if !patches.sample(&points, &rays) {
                 continue;
             }
             for (k, ray) in rays.iter().enumerate() {
