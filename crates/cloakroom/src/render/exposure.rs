@@ -3,7 +3,7 @@
 use super::detection::Detection;
 use super::interference::Interference;
 use super::pixel::{Pixel, Pulses};
-use super::prepared_scene::{PreparedScene, Surroundings};
+use super::prepared_scene::PreparedScene;
 use crate::scene::CameraRay;
 use crate::trace::{FirstFace, Leaf, Outcome};
 use glam::{DQuat, DVec3};
@@ -141,8 +141,8 @@ fn interfere<const N: usize>(
 }
 
 /// Adds to the pixels of a 2 x 2 block what they see past every device, where all its rays end on
-/// the photograph; whether they do. The same as [`expose`] with those rays as leaves, but for what
-/// is worked out once for the block.
+/// the photograph or none does; whether that is so. The same as [`expose`] with those rays as leaves,
+/// but for what is worked out once for the block.
 pub(super) fn expose_unhindered<const N: usize>(
     prepared: &PreparedScene<'_>,
     detection: &Detection<N>,
@@ -152,18 +152,32 @@ pub(super) fn expose_unhindered<const N: usize>(
 ) -> bool {
     let screen = &prepared.screen;
     let mut places = [[0.0; 2]; 4];
+    let mut on_screen = 0;
     for (place, ray) in places.iter_mut().zip(rays) {
-        let Some(distance) = screen.hit(ray.origin, ray.direction, 0.0) else { return false };
-        let point = ray.origin + ray.direction * distance;
-        *place = screen.image_position(ray.direction)(point);
+        if let Some(distance) = screen.hit(ray.origin, ray.direction, 0.0) {
+            let point = ray.origin + ray.direction * distance;
+            *place = screen.image_position(ray.direction)(point);
+            on_screen += 1;
+        }
+    }
+    if on_screen % rays.len() != 0 {
+        return false;
     }
     let power = detection.detected(&[1.0; N]);
     for (i, pixel) in pixels.iter_mut().enumerate() {
-        let [u, v] = places[i];
-        let [dx, dy] = [places[i ^ 1], places[i ^ 2]]
-            .map(|[beside_u, beside_v]| [(beside_u - u) * spacing, (beside_v - v) * spacing]);
-        let light = prepared.image.sample(places[i], dx, dy).map(f64::from);
-        pixel.delivered += power;
+        let beside = [i ^ 1, i ^ 2];
+        let light = if on_screen > 0 {
+            let [u, v] = places[i];
+            let [dx, dy] =
+                beside.map(|j| [(places[j][0] - u) * spacing, (places[j][1] - v) * spacing]);
+            pixel.delivered += power;
+            prepared.image.sample(places[i], dx, dy).map(f64::from)
+        } else {
+            pixel.escaped += power;
+            let direction = rays[i].direction;
+            let steps = || beside.map(|j| (rays[j].direction - direction) * spacing);
+            prepared.surroundings.light(direction, steps)
+        };
         add(&mut pixel.image, power, light);
         if detection.separate {
             add(&mut pixel.horizontal, 1.0, light);
@@ -329,12 +343,8 @@ fn light<const N: usize>(
             let [dx, dy] = steps.map(|step| step.map(|change| change * spacing));
             prepared.image.sample(here, dx, dy).map(f64::from)
         }
-        (None, None) => match &prepared.surroundings {
-            Surroundings::Color(color) => *color,
-            Surroundings::Image(image) => {
-                let [dx, dy] = lines().map(|line| (line.direction - leaf.direction) * spacing);
-                image.sample(leaf.direction, dx, dy).map(f64::from)
-            }
-        },
+        (None, None) => prepared.surroundings.light(leaf.direction, || {
+            lines().map(|line| (line.direction - leaf.direction) * spacing)
+        }),
     }
 }

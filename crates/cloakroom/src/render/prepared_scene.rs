@@ -8,6 +8,7 @@ use crate::keys::KeyError;
 use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
 use crate::scene::{Camera, Projection, Scene};
 use crate::trace::{Coherence, Limits, RaySettings};
+use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -235,6 +236,19 @@ pub(super) enum Surroundings {
     Image(Arc<Equirectangular>),
 }
 
+impl Surroundings {
+    /// The light that comes against a direction, given what that changes by from sample to sample.
+    pub fn light(&self, direction: DVec3, steps: impl FnOnce() -> [DVec3; 2]) -> [f64; 3] {
+        match self {
+            Self::Color(color) => *color,
+            Self::Image(image) => {
+                let [dx, dy] = steps();
+                image.sample(direction, dx, dy).map(f64::from)
+            }
+        }
+    }
+}
+
 /// A scene ready to be rendered.
 #[derive(Clone, Debug)]
 pub struct PreparedScene<'s> {
@@ -361,7 +375,7 @@ impl<'s> PreparedScene<'s> {
 fn camera_inside(scene: &Scene, assembly: &Assembly) -> Option<usize> {
     let camera = &scene.camera;
     let forward = camera.forward();
-    let inside = |origin: glam::DVec3| assembly.region_around(origin, forward).err();
+    let inside = |origin: DVec3| assembly.region_around(origin, forward).err();
     match camera.projection {
         Projection::Perspective => inside(camera.position),
         Projection::Orthographic => {

@@ -235,6 +235,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             self.coefficients.truncate(first.coefficients);
         }
         self.levels.truncate(level);
+        self.samples.iter_mut().for_each(|(leaves, _)| leaves.clear());
         let mut here = Level {
             patch,
             surface: None,
@@ -486,7 +487,6 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let mut samples = std::mem::take(&mut self.samples);
         let mut as_traced = true;
         for (i, (leaves, outcome)) in samples.iter_mut().enumerate() {
-            leaves.clear();
             *outcome = Outcome::default();
             let traced = is_traced.then_some(i);
             as_traced &=
@@ -521,22 +521,26 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let Some(here) = self.levels.last() else { return false };
         let least = self.prepared.limits.min_power;
         let mut terms = TermsOfLevels::at(point);
-        let mut as_traced = true;
+        let (mut as_traced, mut count) = (true, 0);
         for smooth in &here.leaves {
             let terms = terms.of(&self.levels, smooth.level);
-            // Leaves are large, and made where they are to be.
-            leaves.push(smooth.first);
-            let Some(leaf) = leaves.last_mut() else { break };
+            // Leaves are large: those of the last sample stay where they are, and are moved.
+            if leaves.get(count).is_none_or(|leaf| leaf.path != smooth.first.path) {
+                leaves.truncate(count);
+                leaves.push(smooth.first);
+            }
+            let leaf = &mut leaves[count];
             smooth.move_to(leaf, terms, self.functions, &self.coefficients);
             if leaf.largest_power() < least {
-                leaves.pop();
                 continue;
             }
+            count += 1;
             leaf.survives_alone = leaf.power.map(|power| power >= least);
             if let (Some(ray), Some(_)) = (traced, smooth.met) {
                 as_traced &= self.tracers.tracers[ray].watcher().has_met(smooth.place);
             }
         }
+        leaves.truncate(count);
         as_traced
     }
 }

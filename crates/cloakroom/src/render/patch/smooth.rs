@@ -19,7 +19,7 @@ const PLACE_TOLERANCE: f64 = 0.3;
 const WEAK_PLACE_TOLERANCE: f64 = 100.0;
 
 /// The share of each of them that terms which are left out may have.
-const LEFT_OUT: f64 = 0.1;
+const LEFT_OUT: f64 = 0.2;
 
 /// How far leaves are looked at that end nowhere, and branches, cm.
 const REACH: f64 = 100.0;
