@@ -114,6 +114,36 @@ fn evanescent_waves_in_media_that_hardly_absorb_are_no_rays() {
     }
 }
 
+/// A box of a biaxial crystal keeps light for ever, in ever more branches: what is cut of them are
+/// the weakest, and the account says how much.
+#[test]
+fn the_strongest_of_trapped_light_is_followed_first() {
+    let crystal = "kind = \"body\"\nshape = \"box\"\nsize = [10, 10, 10]\nrotation = 20\n\
+        permittivity = [[6.0, 0.8, 0.5], [0.8, 7.5, 0.4], [0.5, 0.4, 8.2]]";
+    let loaded = scene(crystal).unwrap();
+    let assembly = render::assembly(&loaded.scene).unwrap();
+    let within = |min_power| Tracer::new(&assembly, Limits { min_power, tolerance: 1e-6 });
+    let (mut strong, mut all) = (within(1e-3), within(1e-6));
+    let mut cut = 0;
+    for i in 0..40 {
+        let origin = DVec3::new(-100.0, 0.0, 0.0);
+        let aim = DVec3::new(0.0, 0.3 * f64::from(i) - 6.0, 1.0 + 0.05 * f64::from(i));
+        let direction = (aim - origin).normalize();
+        let (h, v) = transverse_basis(direction, DVec3::Z, DVec3::X);
+        let launch = Launch { origin, direction, electric: [h.into(), v.into()] };
+        let (leaves, outcome) = all.trace(&launch);
+        outcome.assert_balanced(leaves, 1e-12, &i);
+        cut += u32::from(outcome.stats.endless > 0);
+        let (expected, outcome) = strong.trace(&launch);
+        assert_eq!(outcome.stats, TraceStats::default());
+        for leaf in expected {
+            let found = leaves.iter().find(|found| found.path == leaf.path).unwrap();
+            assert_eq!(found.power, leaf.power);
+        }
+    }
+    assert!(cut > 2, "{cut} of these trees are large");
+}
+
 /// A graded medium can keep light for longer than it can be followed: that has no end, and is not
 /// lost.
 #[test]

@@ -30,12 +30,15 @@ pub struct Limits {
 }
 
 /// Few trees meet this many surfaces. Those that do, by light that is trapped or runs almost along
-/// the device, are followed on with a threshold ten times as high, so that the strong branches are
-/// not lost; what that cuts counts as pruned.
-const MANY_EVENTS: u32 = 100_000;
+/// the device, are followed on with the strongest branch first.
+const MANY_EVENTS: u32 = 5_000;
 
-/// After as many surfaces again the threshold is raised once more.
-const MORE_EVENTS: u32 = 10_000;
+/// So many more surfaces they may meet for each share of the least power that still waits then;
+/// what is left counts as pruned.
+const EVENTS_DESERVED: f64 = 10.0;
+
+/// No tree meets more than so many then.
+const MOST_EVENTS: f64 = 50_000.0;
 
 /// A branch that carries more than so many times what was launched is not followed. In absorbing
 /// media beams carry what their interference takes back; where light starts in a film of such a
@@ -65,9 +68,12 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     pub(super) waiting: Vec<Branch<N>>,
     pub(super) leaves: Vec<Leaf<N>>,
     pub(super) outcome: Outcome<N>,
-    /// Surfaces met, and the power below which branches have become endless.
+    /// Surfaces met, and how many may be.
     events: u32,
-    threshold: f64,
+    most_events: u32,
+    /// Of the branches that wait, how many are in a heap, the strongest first; `None` where the last
+    /// is taken.
+    heaped: Option<usize>,
     pub(super) recorder: W,
     /// The light whose branches become one where they run together.
     joining: Option<Coherence>,
@@ -114,7 +120,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             leaves: Vec::new(),
             outcome: Outcome::default(),
             events: 0,
-            threshold: 0.0,
+            most_events: MANY_EVENTS,
+            heaped: None,
             started: (DVec3::NAN, None),
             recorder,
         }
@@ -222,7 +229,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.leaves.clear();
         self.outcome = Outcome::default();
         self.waiting.clear();
-        (self.events, self.threshold) = (0, self.limits.min_power);
+        (self.events, self.most_events, self.heaped) = (0, MANY_EVENTS, None);
     }
 
     /// As [`Self::begin`], from where the branch has been taken through a region.
@@ -233,6 +240,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         passage: Result<Passage, NoPassage>,
     ) -> Option<(u16, u16)> {
         if !self.pass(branch, region, passage.as_ref()) {
+            self.take_next(branch)?;
+        } else if self.heaped.is_some() {
+            self.waiting.push(*branch);
             self.take_next(branch)?;
         }
         self.walk(branch)
@@ -251,16 +261,14 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     fn walk(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
         loop {
             let power = largest(&branch.power);
-            let goes_on = if power < self.threshold {
+            let goes_on = if self.events >= self.most_events && !self.may_go_on(branch) {
+                self.cut_all(branch)
+            } else if power < self.limits.min_power {
                 self.cut(branch.power)
             } else if power > MOST_POWER {
                 self.lose(branch.power)
             } else {
                 self.events += 1;
-                if self.events > MANY_EVENTS {
-                    self.events -= MORE_EVENTS;
-                    self.threshold *= 10.0;
-                }
                 self.recorder.begins(branch);
                 match branch.place {
                     Place::Air => self.through_air(branch),
@@ -279,20 +287,78 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             };
             if !goes_on {
                 self.take_next(branch)?;
-            } else if self.joining.is_some() {
+            } else if self.joining.is_some() || self.heaped.is_some() {
                 self.waiting.push(*branch);
                 self.take_next(branch)?;
             }
         }
     }
 
-    /// Puts in place of a branch the one to be followed next: the last that waits, or where
-    /// branches are joined the one of the shortest path with all that run together with it. None if
-    /// none waits.
+    /// Whether a tree that has met many surfaces is to be followed further: for as long as the power
+    /// deserves that still waits.
+    #[cold]
+    fn may_go_on(&mut self, branch: &Branch<N>) -> bool {
+        if self.heaped.is_some() {
+            return false;
+        }
+        self.heaped = Some(0);
+        let mut left = branch.power;
+        for waiting in &self.waiting {
+            left.iter_mut().zip(waiting.power).for_each(|(left, power)| *left += power);
+        }
+        let deserved = EVENTS_DESERVED * largest(&left) / self.limits.min_power;
+        self.most_events += deserved.min(MOST_EVENTS) as u32;
+        true
+    }
+
+    /// Cuts a branch and all that wait.
+    #[cold]
+    fn cut_all(&mut self, branch: &Branch<N>) -> bool {
+        for waiting in std::mem::take(&mut self.waiting) {
+            self.cut(waiting.power);
+        }
+        self.cut(branch.power)
+    }
+
+    /// Takes the strongest of the branches that wait: a heap of which the last ones are not yet
+    /// part.
+    #[cold]
+    fn take_strongest(&mut self, heaped: usize) -> Option<Branch<N>> {
+        let power = |waiting: &[Branch<N>], i: usize| largest(&waiting[i].power);
+        let waiting = &mut self.waiting;
+        for new in heaped..waiting.len() {
+            let mut child = new;
+            while child > 0 && power(waiting, child) > power(waiting, (child - 1) / 2) {
+                waiting.swap(child, (child - 1) / 2);
+                child = (child - 1) / 2;
+            }
+        }
+        let last = waiting.len().checked_sub(1)?;
+        waiting.swap(0, last);
+        let strongest = waiting.pop();
+        let mut parent = 0;
+        while let Some(child) = (2 * parent + 1..last.min(2 * parent + 3))
+            .max_by(|&one, &other| power(waiting, one).total_cmp(&power(waiting, other)))
+            && power(waiting, child) > power(waiting, parent)
+        {
+            waiting.swap(child, parent);
+            parent = child;
+        }
+        self.heaped = Some(last);
+        strongest
+    }
+
+    /// Puts in place of a branch the one to be followed next: the last that waits, or the strongest
+    /// in large trees, or where branches are joined the one of the shortest path with all that run
+    /// together with it. None if none waits.
     #[inline(always)]
     fn take_next(&mut self, branch: &mut Branch<N>) -> Option<()> {
         if let Some(coherence) = self.joining {
             return self.take_joined(branch, coherence);
+        }
+        if let Some(heaped) = self.heaped {
+            *branch = self.take_strongest(heaped)?;
+            return Some(());
         }
         *branch = *self.waiting.last()?;
         self.waiting.truncate(self.waiting.len() - 1);
