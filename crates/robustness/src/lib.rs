@@ -8,6 +8,7 @@
 
 mod cuts;
 mod draws;
+mod interpolation;
 mod page;
 mod rays;
 mod scenes;
@@ -17,6 +18,7 @@ mod trials;
 
 pub use cuts::cut_glass;
 pub use draws::Draws;
+pub use interpolation::interpolate;
 pub use rays::{Fault, examine, launch, starts_in_air, timed};
 pub use scenes::scene_of;
 pub use stacks::stack;

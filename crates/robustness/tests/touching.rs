@@ -1,7 +1,7 @@
 //! Devices that touch: light is never in metal, and glass is one however it is cut.
 
 use crate::long::count;
-use robustness::{Draws, cut_glass, stack, touch, touching_kinds};
+use robustness::{Draws, cut_glass, interpolate, stack, touch, touching_kinds};
 
 #[test]
 fn light_never_goes_through_metal_that_touches_a_device() {
@@ -36,5 +36,13 @@ fn plates_in_any_pose_keep_the_power_of_what_interferes() {
     let mut draws = Draws::Seed(33);
     for _ in 0..count(20, 600) {
         stack(&mut draws);
+    }
+}
+
+#[test]
+fn pictures_of_shared_rays_are_those_of_traced_ones() {
+    let mut draws = Draws::Seed(20);
+    for _ in 0..count(30, 600) {
+        interpolate(&mut draws);
     }
 }

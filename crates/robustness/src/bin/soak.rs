@@ -130,10 +130,11 @@ fn write_line(mut record: &File, line: &Value) -> io::Result<()> {
 type Trial = fn(&mut Draws<'_>) -> u64;
 
 /// What parcels are of beside one device each.
-const TRIALS: [(&str, Trial); 3] = [
+const TRIALS: [(&str, Trial); 4] = [
     ("devices that touch", robustness::touch_any),
     ("cut glass", robustness::cut_glass),
     ("stacks of plates", robustness::stack),
+    ("pictures of shared rays", robustness::interpolate),
 ];
 
 /// What a parcel is of: a device, or a trial.
