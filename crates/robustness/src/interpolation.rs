@@ -35,10 +35,13 @@ pub fn interpolate(draws: &mut Draws<'_>) -> u64 {
         ("target".to_owned(), vec![0.0; 3].into()),
     ]);
     scene.insert("camera".to_owned(), camera.into());
+    // Pictures differ within the tolerance: coarser ones would show.
+    let tolerance = 10f64.powf(draws.between(-9.0, -6.0));
     let looked_at = |exact: bool| {
         let mut scene = scene.clone();
-        let trace = scene.entry("trace").or_insert_with(|| Table::new().into());
-        trace.as_table_mut()?.insert("exact".to_owned(), Value::Boolean(exact));
+        let trace: [(_, Value); 2] = [("tolerance", tolerance.into()), ("exact", exact.into())];
+        let trace = trace.map(|(key, value)| (key.to_owned(), value));
+        scene.insert("trace".to_owned(), Value::Table(Table::from_iter(trace)));
         let text = scene.to_string();
         let loaded = scene_file::parse(&text, "soak", Path::new("/nowhere"), &[]).ok()?;
         let prepared = PreparedScene::new(&loaded.scene).ok()?;

@@ -148,6 +148,30 @@ test("the bandwidth of the light has a control, and a link keeps it", async () =
   await page.close();
 });
 
+test("rays may be traced one by one", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  const trace = () =>
+    page.evaluate(() => {
+      const text = location.hash.slice(1).replaceAll("-", "+").replaceAll("_", "/");
+      return JSON.parse(atob(text)).scene.trace;
+    });
+  // The control lies in a folded part of the page.
+  const choose = async (value) => {
+    await page.locator("#exact").evaluate((choice, to) => {
+      choice.value = to;
+      choice.dispatchEvent(new Event("change"));
+    }, value);
+    await finished(page);
+  };
+  await choose("true");
+  assert.deepEqual(await trace(), { exact: true });
+  await choose("false");
+  assert.equal(await trace(), undefined);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
 test("vectors and tables among the parameters have controls, too", async () => {
   const { page, complaints } = await open();
   await small(page);

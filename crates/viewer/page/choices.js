@@ -50,6 +50,7 @@ export function showState(state, hello, { changed, setShow }) {
   $("width").value = String(state.width);
   $("samples").value = String(state.samples);
   $("min-power").value = String(state.scene.trace?.min_power ?? 0.0001);
+  $("exact").value = String(state.scene.trace?.exact ?? false);
   buildControls(device, kind, changed);
   showShows(state, hello, setShow);
   showRotation(state);

@@ -301,6 +301,10 @@ $("min-power").addEventListener("change", () => {
   state.set("trace", "min_power", Number($("min-power").value));
   changed();
 });
+$("exact").addEventListener("change", () => {
+  state.set("trace", "exact", $("exact").value === "true" ? true : undefined);
+  changed();
+});
 $("whole").addEventListener("change", () => {
   sectionView.whole = $("whole").checked;
   sectionView.fit();

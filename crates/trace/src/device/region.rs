@@ -290,6 +290,12 @@ impl Region {
         matches!(self, Self::Conformal(_))
     }
 
+    /// Whether rays run straight through it.
+    #[must_use]
+    pub fn is_homogeneous(&self) -> bool {
+        matches!(self, Self::Homogeneous(_))
+    }
+
     /// Which closed form gives the waves of its medium ([`Medium::class_name`]), or `graded`.
     #[must_use]
     pub fn medium_class(&self) -> &'static str {

@@ -16,7 +16,7 @@ pub trait PathRecorder<const N: usize> {
     /// Called with the waves that leave the first surface, if rays end there.
     fn stopped(&mut self, _waves: &[OutgoingWave<N>]) {}
 
-    /// Called for each branch that is to be followed from where it is.
+    /// Called for each branch that is to be followed from where it is in a homogeneous medium.
     #[inline(always)]
     fn begins(&mut self, _branch: &Branch<N>) {}
 

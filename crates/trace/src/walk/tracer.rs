@@ -269,13 +269,15 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 self.lose(branch.power)
             } else {
                 self.events += 1;
-                self.recorder.begins(branch);
                 match branch.place {
                     Place::Air => self.through_air(branch),
                     Place::Region { device, region: number } => {
                         let region = self.assembly.device(device).region(number);
                         if region.takes_four() {
                             return Some((device, number));
+                        }
+                        if region.is_homogeneous() {
+                            self.recorder.begins(branch);
                         }
                         !self.parts(branch, region) && {
                             let ray = branch.inner_ray();
