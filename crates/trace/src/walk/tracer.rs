@@ -37,8 +37,8 @@ const MANY_EVENTS: u32 = 5_000;
 /// what is left counts as pruned.
 const EVENTS_DESERVED: f64 = 10.0;
 
-/// No tree meets more than so many then.
-const MOST_EVENTS: f64 = 50_000.0;
+/// No tree meets more than so many then for each factor of ten between that power and the least.
+const MOST_EVENTS: f64 = 10_000.0;
 
 /// A branch that carries more than so many times what was launched is not followed. In absorbing
 /// media beams carry what their interference takes back; where light starts in a film of such a
@@ -308,8 +308,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         for waiting in &self.waiting {
             left.iter_mut().zip(waiting.power).for_each(|(left, power)| *left += power);
         }
-        let deserved = EVENTS_DESERVED * largest(&left) / self.limits.min_power;
-        self.most_events += deserved.min(MOST_EVENTS) as u32;
+        let shares = largest(&left) / self.limits.min_power;
+        let most = MOST_EVENTS * shares.log10().max(0.0);
+        self.most_events += (EVENTS_DESERVED * shares).min(most) as u32;
         true
     }
 
