@@ -403,14 +403,12 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         for way in found.chunk_by(|(one, ..), (other, ..)| one == other) {
             let path = way[0].0;
             let power = way.iter().map(|(.., leaf)| leaf.largest_power()).fold(0.0, f64::max);
-            if power < self.prepared.limits.min_power {
+            if power < self.prepared.limits.min_power || !self.ways.has(path) {
                 continue;
             }
-            if !self.ways.has(path) {
-                continue;
-            }
-            let of_rays: ArrayVec<(usize, &Leaf<N>), MOST_RAYS> =
-                way.iter().map(|(_, ray, leaf)| (*ray, *leaf)).collect();
+            // Were there two of a ray, they would be no function.
+            let of_rays = way.iter().map(|(_, ray, leaf)| (*ray, *leaf)).take(MOST_RAYS);
+            let of_rays: ArrayVec<(usize, &Leaf<N>), MOST_RAYS> = of_rays.collect();
             let grid = &self.grids[grid_of(patch)];
             match smooth(&of_rays, grid, self.functions, level, &mut self.coefficients) {
                 Ok(leaf) => smooth_leaves.push(leaf),
@@ -445,8 +443,8 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let mut ways = movable.chunk_by(|(one, ..), (other, ..)| one == other).peekable();
             for path in parting {
                 let way = ways.next_if(|way| way[0].0 == path).unwrap_or_default();
-                let of_rays: ArrayVec<(usize, &Branch<N>), MOST_RAYS> =
-                    way.iter().map(|(_, ray, branch)| (*ray, *branch)).collect();
+                let of_rays = way.iter().map(|(_, ray, branch)| (*ray, *branch)).take(MOST_RAYS);
+                let of_rays: ArrayVec<(usize, &Branch<N>), MOST_RAYS> = of_rays.collect();
                 let grid = &self.grids[grid_of(patch)];
                 match smooth(&of_rays, grid, self.functions, level, &mut self.coefficients) {
                     Ok(branch) => {
