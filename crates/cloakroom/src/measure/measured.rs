@@ -41,10 +41,14 @@ impl Measured {
     ) -> Result<Self, MeasureError> {
         let silhouette = PixelMask::new(view.width, rays.silhouette.clone()).ok();
         let share = silhouette.as_ref().map_or(0.0, PixelMask::share);
-        let likeness = [
-            Some(compare(wanted, view, silhouette.as_ref())?),
-            Some(compare(empty, view, silhouette.as_ref())?),
-        ];
+        let with_wanted = compare(wanted, view, silhouette.as_ref())?;
+        // What stands edge-on is often not to be seen.
+        let with_empty = if wanted.light == empty.light {
+            with_wanted.clone()
+        } else {
+            compare(empty, view, silhouette.as_ref())?
+        };
+        let likeness = [with_wanted, with_empty].map(Some);
         let Some(region) = silhouette else {
             return Ok(Self { silhouette_share: Some(share), likeness, ..Self::default() });
         };

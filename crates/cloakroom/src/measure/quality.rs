@@ -77,7 +77,7 @@ pub fn quality(
         let scene = &loaded.scene;
         let failed = |error| located(loaded, &error);
         let mut picture = |prepared: &PreparedScene<'_>| {
-            let rendered = render(prepared, ChannelSet::Everything, supervision)?;
+            let rendered = render(prepared, ChannelSet::Measures, supervision)?;
             stats += rendered.stats;
             Ok::<_, QualityError>(rendered.picture)
         };

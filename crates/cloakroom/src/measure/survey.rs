@@ -2,11 +2,12 @@
 //! should.
 
 use crate::assembly::Screen;
-use crate::render::{PreparedScene, RenderError, Supervision};
+use crate::render::{
+    BAND_ROWS, BlockTracer, ChannelSet, Detection, PreparedScene, RenderError, Supervision, Traced,
+};
 use crate::scene::Camera;
-use crate::trace::{Launch, Leaf, Outcome, Stopped, Tracer};
+use crate::trace::{Leaf, Outcome, Stopped, Tracer};
 use rayon::prelude::*;
-use std::sync::atomic::Ordering;
 
 /// How near to where it should a ray must land to count as cloaked, cm on the photograph.
 pub const CLOAKED_WITHIN_CM: f64 = 1.0;
@@ -78,49 +79,63 @@ pub fn survey(
     supervision: &Supervision<'_>,
 ) -> Result<Survey, RenderError> {
     match prepared.scene.camera.polarizer.amplitudes() {
-        Some(amplitudes) => launched(prepared, ideal, [amplitudes], supervision),
-        None => launched(prepared, ideal, [[1.0, 0.0], [0.0, 1.0]], supervision),
+        Some(amplitudes) => surveyed(prepared, ideal, Detection::image(amplitudes), supervision),
+        None => surveyed(prepared, ideal, Detection::UNPOLARIZED, supervision),
     }
 }
 
-fn launched<const N: usize>(
+fn surveyed<const N: usize>(
     prepared: &PreparedScene<'_>,
     ideal: &PreparedScene<'_>,
-    amplitudes: [[f64; 2]; N],
+    detection: Detection<N>,
     supervision: &Supervision<'_>,
 ) -> Result<Survey, RenderError> {
     let camera = &prepared.scene.camera;
-    let [width, height] = camera.resolution;
-    fn tracer<'b, const N: usize>(prepared: &'b PreparedScene<'_>) -> Tracer<'b, N> {
-        Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen)
-    }
-    let rows: Result<Vec<Vec<Sight>>, _> = (0..height)
-        .into_par_iter()
+    let [width, height] = camera.resolution.map(|side| side as usize);
+    let detection = detection.with_options(ChannelSet::Image, &prepared.scene.picture);
+    let mut sights = vec![Sight::default(); width * height];
+    let bands: Result<(), Stopped> = sights
+        .par_chunks_mut(width * BAND_ROWS as usize)
+        .enumerate()
         .map_init(
-            || (tracer::<N>(prepared), tracer::<N>(ideal)),
-            |(tracer, ideal), row| {
-                if supervision.stop.load(Ordering::Relaxed) {
-                    return Err(RenderError::from(Stopped));
-                }
-                let sights = (0..width).map(|column| {
-                    let ray = camera.ray(f64::from(column) + 0.5, f64::from(row) + 0.5);
-                    let (h, v) = camera.polarization_basis(ray.direction);
-                    let electric = amplitudes.map(|[a, b]| (h * a + v * b).into());
-                    let launch = Launch { origin: ray.origin, direction: ray.direction, electric };
-                    let (wanted, _) = ideal.trace(&launch);
-                    let wanted = strongest(wanted).copied();
-                    let (leaves, outcome) = tracer.trace(&launch);
-                    sight(&prepared.screen, leaves, outcome, wanted.as_ref())
-                });
-                let sights = sights.collect();
-                (supervision.rows_done)(1);
-                Ok(sights)
+            || {
+                let limits = ideal.limits;
+                let ideal = Tracer::new(&ideal.assembly, limits).with_screen(ideal.screen);
+                (BlockTracer::new(prepared, &detection, 1), ideal)
+            },
+            |(tracer, ideal), (band, sights)| {
+                let first = band * BAND_ROWS as usize;
+                let size = [width, sights.len() / width];
+                let stop = supervision.stop;
+                tracer.for_blocks([0, first], size, stop, |tracer, [left, top], traced| {
+                    let points =
+                        PIXELS.map(|[x, y]| [(left + x) as f64 + 0.5, (top + y) as f64 + 0.5]);
+                    let rays = points.map(|[x, y]| camera.ray(x, y));
+                    if !tracer.interpolate(&points, &rays, traced) {
+                        tracer.trace(&rays);
+                    }
+                    for (traced, [x, y]) in tracer.traced(&rays).into_iter().zip(PIXELS) {
+                        let (column, row) = (left + x, top + y - first);
+                        if column < width && row < size[1] {
+                            let (wanted, _) = ideal.trace(&detection.launch(camera, &traced.ray));
+                            let Traced { leaves, outcome, .. } = traced;
+                            sights[row * width + column] =
+                                sight(&prepared.screen, leaves, outcome, strongest(wanted));
+                        }
+                    }
+                    Ok(())
+                })?;
+                (supervision.rows_done)(size[1] as u64);
+                Ok(())
             },
         )
         .collect();
-    let sights: Vec<Sight> = rows?.into_iter().flatten().collect();
+    bands?;
     Ok(summary(&sights, camera, &prepared.screen))
 }
+
+/// The columns and rows of the pixels of a block.
+const PIXELS: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
 fn power<const N: usize>(leaf: &Leaf<N>) -> f64 {
     leaf.power.iter().sum::<f64>() / N as f64

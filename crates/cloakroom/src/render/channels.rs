@@ -12,6 +12,9 @@ pub enum ChannelSet {
     /// `vertical.B`, as pictures through them alone would be. Where every channel is wanted, these
     /// too show all branches that are followed.
     Polarizers,
+    /// What views are measured by: the image through the camera's polarizer, times of flight,
+    /// interpolated where the image is (to 1e-6 cm/c), and powers.
+    Measures,
     /// Every channel that every file of data holds, and the others that the scene asks for.
     Everything,
 }
@@ -126,7 +129,20 @@ impl ChannelKind {
         let first = match wanted {
             ChannelSet::Image => 3,
             ChannelSet::Polarizers => 9,
-            ChannelSet::Everything => Self::NAMES.len(),
+            ChannelSet::Measures | ChannelSet::Everything => Self::NAMES.len(),
+        };
+        let is_wanted = |channel: &Self| {
+            let is_measure = matches!(
+                channel,
+                Self::Image(_)
+                    | Self::TimeOfFlight
+                    | Self::TimeOfFlightDifference
+                    | Self::Delivered
+                    | Self::Escaped
+                    | Self::Absorbed
+                    | Self::Pruned
+            );
+            is_measure || wanted != ChannelSet::Measures
         };
         // The word with which a scene asks for a channel, where it must.
         let asked = |channel: &Self| match channel {
@@ -139,7 +155,8 @@ impl ChannelKind {
             }
             _ => true,
         };
-        Self::NAMES[..first].iter().map(|(channel, _)| *channel).filter(asked).collect()
+        let channels = Self::NAMES[..first].iter().map(|(channel, _)| *channel);
+        channels.filter(is_wanted).filter(asked).collect()
     }
 }
 

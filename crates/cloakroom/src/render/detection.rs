@@ -6,7 +6,7 @@ use crate::trace::Launch;
 
 /// The polarizations launched with each camera ray, and what each counts for.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Detection<const N: usize> {
+pub(crate) struct Detection<const N: usize> {
     /// Amplitudes of the launched polarizations along the camera's horizontal and vertical.
     launched: [[f64; 2]; N],
     /// Weights of the launched polarizations in what the camera with its polarizer sees.
@@ -19,6 +19,8 @@ pub(super) struct Detection<const N: usize> {
     pub alone: bool,
     /// Whether times of flight are wanted.
     pub times: bool,
+    /// Whether these are to be traced wherever that can be done without error.
+    pub exact_times: bool,
     /// Whether what pulses take is wanted.
     pub group_delays: bool,
     /// Whether the Stokes parameters are wanted: for those the first two are needed.
@@ -58,6 +60,7 @@ impl<const N: usize> Detection<N> {
             separate: N > 1,
             alone: false,
             times: true,
+            exact_times: true,
             group_delays: false,
             stokes: false,
             first_face: false,
@@ -70,8 +73,9 @@ impl<const N: usize> Detection<N> {
         let everything = wanted == ChannelSet::Everything;
         let asked = |channel| everything && picture.asks_for(channel);
         Self {
-            separate: self.separate && wanted != ChannelSet::Image,
-            times: everything,
+            separate: self.separate && (everything || wanted == ChannelSet::Polarizers),
+            times: everything || wanted == ChannelSet::Measures,
+            exact_times: everything,
             group_delays: everything && picture.asks_for_group_delay(),
             alone: wanted == ChannelSet::Polarizers,
             stokes: self.separate && asked("stokes"),

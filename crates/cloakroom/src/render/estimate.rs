@@ -3,7 +3,7 @@
 use super::detection::Detection;
 use super::patch::Patch;
 use super::pixel::Pixel;
-use super::{ChannelSet, Exposer, PreparedScene};
+use super::{BlockTracer, ChannelSet, Exposer, PreparedScene};
 use std::time::{Duration, Instant};
 
 /// What rendering an image will take.
@@ -35,8 +35,8 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
     let camera = &prepared.scene.camera;
     let size = camera.resolution.map(|side| side as usize);
     let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &prepared.scene.picture);
-    let mut exposer = Exposer::new(prepared, &detection);
-    let side = exposer.side();
+    let (mut exposer, mut tracer) = Exposer::new(prepared, &detection);
+    let side = tracer.side();
     let [columns, rows] = size.map(|pixels| pixels.div_ceil(side));
     let start = Instant::now();
     let (mut looked_at, mut seconds, mut walks) = (0.0, 0.0, 0.0);
@@ -50,8 +50,8 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
         let began = Instant::now();
         // What exposing the blocks took, and would take of all.
         let (mut exposing, mut all) = (0.0, 0.0);
-        let mut expose = |exposer: &mut Exposer<'_, 2>, patch: Patch, traced: f64| {
-            let (began, walked) = (Instant::now(), exposer.walks);
+        let mut expose = |tracer: &mut BlockTracer<'_, 2>, patch: Patch, traced: f64| {
+            let (began, walked) = (Instant::now(), tracer.walks);
             let [across, down] =
                 patch.part_of([0; 2], size).map(|range| (range.start, range.len().div_ceil(2)));
             let blocks = across.1 * down.1;
@@ -61,21 +61,22 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
             let count = taken.len() as f64;
             for block in taken {
                 let corner = [across.0 + block % across.1 * 2, down.0 + block / across.1 * 2];
-                exposer.expose_block(corner, 0, traced, &mut [Pixel::default(); 4]);
+                exposer.expose_block(tracer, corner, 0, traced, &mut [Pixel::default(); 4]);
             }
             let took = began.elapsed().as_secs_f64();
             let scale = blocks as f64 / count * f64::from(camera.samples);
             exposing += took;
             all += took * scale;
-            walks += (exposer.walks - walked) * scale;
-            Some(())
+            walks += (tracer.walks - walked) * scale;
+            Ok(())
         };
         let patch = Patch { corner, size: [side; 2] };
-        exposer.divide((patch, 0), &is_seen, &mut expose);
+        let looked = tracer.divide((patch, 0), &is_seen, &mut expose);
+        debug_assert!(looked.is_ok(), "nothing stops it");
         seconds += began.elapsed().as_secs_f64() - exposing + all;
         looked_at += 1.0;
     }
-    walks += exposer.patches.as_ref().map_or(0.0, |patches| patches.walks);
+    walks += tracer.walks_at_nodes();
     let scale = (columns * rows) as f64 / looked_at;
     Estimate {
         seconds: seconds * scale / rayon::current_num_threads() as f64,

@@ -11,7 +11,7 @@ use optics::wave::{SPEED_OF_LIGHT, arriving_stokes, stokes_of_coherency};
 
 /// One traced camera ray.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Traced<'t, const N: usize> {
+pub(crate) struct Traced<'t, const N: usize> {
     pub ray: CameraRay,
     pub leaves: &'t [Leaf<N>],
     pub outcome: &'t Outcome<N>,
@@ -151,12 +151,12 @@ pub(super) fn expose_unhindered<const N: usize>(
     pixels: &mut [Pixel; 4],
 ) -> bool {
     let screen = &prepared.screen;
-    let mut places = [[0.0; 2]; 4];
+    let (mut places, mut distances) = ([[0.0; 2]; 4], [0.0; 4]);
     let mut on_screen = 0;
-    for (place, ray) in places.iter_mut().zip(rays) {
+    for (i, ray) in rays.iter().enumerate() {
         if let Some(distance) = screen.hit(ray.origin, ray.direction, 0.0) {
             let point = ray.origin + ray.direction * distance;
-            *place = screen.image_position(ray.direction)(point);
+            (places[i], distances[i]) = (screen.image_position(ray.direction)(point), distance);
             on_screen += 1;
         }
     }
@@ -171,6 +171,10 @@ pub(super) fn expose_unhindered<const N: usize>(
             let [dx, dy] =
                 beside.map(|j| [(places[j][0] - u) * spacing, (places[j][1] - v) * spacing]);
             pixel.delivered += power;
+            if detection.times {
+                let time = distances[i] / SPEED_OF_LIGHT;
+                pixel.times.add(&[(time, power)], Some(time));
+            }
             prepared.image.sample(places[i], dx, dy).map(f64::from)
         } else {
             pixel.escaped += power;

@@ -3,6 +3,7 @@
 //! The picture is exposed in bands of rows, each by one thread; what a pixel shows depends on the
 //! scene and the pixel alone, so the result does not depend on the number of threads.
 
+mod block_tracer;
 mod body_surface;
 mod channels;
 mod contrast;
@@ -31,19 +32,16 @@ pub use tile::{MergeError, Tile, TileError, merge, merge_images};
 use crate::output::Picture;
 use crate::scene::Scene;
 use crate::split_mix::mix;
-use crate::trace::{FourTracers, Stopped, TraceStats, Tracer};
+use crate::trace::{Stopped, TraceStats};
+pub(crate) use block_tracer::{BAND_ROWS, BlockTracer};
 use contrast::{Contrast, first_look};
-use detection::Detection;
-use exposure::{Traced, Working, expose, expose_unhindered};
+pub(crate) use detection::Detection;
+pub(crate) use exposure::Traced;
+use exposure::{Working, expose, expose_unhindered};
 use film::{Band, Film};
-use patch::{Fit, LeafPatches, Patch};
 use pixel::Pixel;
 use rayon::prelude::*;
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Rows in a band: those of a row of patches, which are shared by neighbouring rays.
-const BAND_ROWS: u32 = patch::SIDE as u32;
 
 /// How a long work is watched and stopped.
 #[derive(Clone, Copy)]
@@ -200,8 +198,8 @@ fn expose_film<const N: usize>(
         .into_par_iter()
         .map_init(
             || Exposer::new(prepared, &detection),
-            |exposer, mut band| {
-                let stats = exposer.expose_band(&mut band, supervision.stop).ok_or(Stopped)?;
+            |(exposer, tracer), mut band| {
+                let stats = exposer.expose_band(tracer, &mut band, supervision.stop)?;
                 (supervision.rows_done)(band.rows as u64);
                 Ok::<_, Stopped>(stats)
             },
@@ -253,95 +251,43 @@ pub fn metadata(scene: &Scene) -> Vec<(String, String)> {
 struct Exposer<'a, const N: usize> {
     prepared: &'a PreparedScene<'a>,
     detection: &'a Detection<N>,
-    tracers: FourTracers<'a, N>,
-    patches: Option<LeafPatches<'a, N>>,
     working: Working,
-    /// How many rays of samples have been followed to their ends.
-    walks: f64,
 }
 
 impl<'a, const N: usize> Exposer<'a, N> {
-    fn new(prepared: &'a PreparedScene<'a>, detection: &'a Detection<N>) -> Self {
-        let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
-        let tracer = if detection.group_delays { tracer.with_group_delays() } else { tracer };
-        Self {
-            prepared,
-            detection,
-            tracers: FourTracers::new(&tracer),
-            patches: LeafPatches::new(prepared, detection, &tracer),
-            working: Working::default(),
-            walks: 0.0,
-        }
+    fn new(
+        prepared: &'a PreparedScene<'a>,
+        detection: &'a Detection<N>,
+    ) -> (Self, BlockTracer<'a, N>) {
+        let tracer = BlockTracer::new(prepared, detection, prepared.scene.camera.samples);
+        (Self { prepared, detection, working: Working::default() }, tracer)
     }
 
-    /// Exposes a band, patch by patch; `None` if it was stopped.
-    fn expose_band(&mut self, band: &mut Band<'_>, stop: &AtomicBool) -> Option<TraceStats> {
-        let mut stats = TraceStats::default();
-        // Patches are those of the whole picture, and may reach beyond the band.
-        let side = self.side();
-        let [left, top] = band.corner.map(|corner| corner / side * side);
-        let (corner, size) = (band.corner, [band.width, band.rows]);
-        let is_seen = |patch: Patch| !patch.part_of(corner, size).iter().any(Range::is_empty);
-        let mut take = |this: &mut Self, patch: Patch, traced: f64| {
-            let [columns, rows] = patch.part_of(corner, size);
-            for top in rows.step_by(2) {
-                for left in columns.clone().step_by(2) {
-                    stats += this.expose_pixels([left, top], traced, band, stop)?;
-                }
-            }
-            Some(())
-        };
-        for top in (top..corner[1] + size[1]).step_by(side) {
-            for left in (left..corner[0] + size[0]).step_by(side) {
-                let patch = Patch { corner: [left, top], size: [side; 2] };
-                self.divide(
-                    (patch, 0),
-                    &|patch| is_seen(patch) && !stop.load(Ordering::Relaxed),
-                    &mut take,
-                )?;
-            }
-        }
-        (!stop.load(Ordering::Relaxed)).then_some(stats)
-    }
-
-    /// Width and height of the largest patches.
-    fn side(&self) -> usize {
-        self.patches.as_ref().map_or(patch::SIDE, |patches| patches.side)
-    }
-
-    /// Divides a patch as far as is worthwhile, and does to each part, of which some share is to be
-    /// traced, what is to be done; parts that are not wanted are left out. `None` where that says so.
-    fn divide(
+    /// Exposes a band, patch by patch.
+    fn expose_band(
         &mut self,
-        (patch, level): (Patch, usize),
-        is_wanted: &impl Fn(Patch) -> bool,
-        take: &mut impl FnMut(&mut Self, Patch, f64) -> Option<()>,
-    ) -> Option<()> {
-        if !is_wanted(patch) {
-            return Some(());
-        }
-        let mut traced = 1.0;
-        if let Some(patches) = &mut self.patches
-            && patches.fit(patch, level) == Fit::Shared
-        {
-            if let Some(halves) = patches.division() {
-                return halves
-                    .into_iter()
-                    .try_for_each(|half| self.divide((half, level + 1), is_wanted, take));
-            }
-            traced = patches.traced();
-        }
-        take(self, patch, traced)
+        tracer: &mut BlockTracer<'_, N>,
+        band: &mut Band<'_>,
+        stop: &AtomicBool,
+    ) -> Result<TraceStats, Stopped> {
+        let mut stats = TraceStats::default();
+        let (corner, size) = (band.corner, [band.width, band.rows]);
+        tracer.for_blocks(corner, size, stop, |tracer, corner, traced| {
+            stats += self.expose_pixels(tracer, corner, traced, band, stop)?;
+            Ok(())
+        })?;
+        Ok(stats)
     }
 
     /// Exposes the pixels of a block, in a patch of which so much is traced.
     fn expose_pixels(
         &mut self,
+        tracer: &mut BlockTracer<'_, N>,
         [left, top]: [usize; 2],
         traced: f64,
         band: &mut Band<'_>,
         stop: &AtomicBool,
-    ) -> Option<TraceStats> {
+    ) -> Result<TraceStats, Stopped> {
         let camera = &self.prepared.scene.camera;
         let samples = camera.samples;
         let look = if camera.adaptive > 0.0 { first_look(samples) } else { 0 };
@@ -351,10 +297,10 @@ impl<'a, const N: usize> Exposer<'a, N> {
         let mut taken = 0;
         while taken < samples {
             if stop.load(Ordering::Relaxed) {
-                return None;
+                return Err(Stopped);
             }
             let before = (taken < look).then_some(pixels);
-            stats += self.expose_block([left, top], taken, traced, &mut pixels);
+            stats += self.expose_block(tracer, [left, top], taken, traced, &mut pixels);
             taken += 1;
             if let Some(before) = before {
                 contrast.add(&before, &pixels);
@@ -376,18 +322,20 @@ impl<'a, const N: usize> Exposer<'a, N> {
                 });
             }
         }
-        Some(stats)
+        Ok(stats)
     }
 
     /// Traces one sample of each pixel of a block and adds what they see.
     fn expose_block(
         &mut self,
+        tracer: &mut BlockTracer<'_, N>,
         [column, row]: [usize; 2],
         sample: u32,
         traced: f64,
         pixels: &mut [Pixel; 4],
     ) -> TraceStats {
-        let camera = &self.prepared.scene.camera;
+        let (prepared, detection) = (self.prepared, self.detection);
+        let camera = &prepared.scene.camera;
         let samples = camera.samples;
         let block = [column as u32 / 2, row as u32 / 2];
         let offset = sampling::offset(sample, samples, block, camera.seed);
@@ -396,46 +344,22 @@ impl<'a, const N: usize> Exposer<'a, N> {
         });
         let rays = points.map(|[x, y]| camera.ray(x, y));
         let spacing = 1.0 / f64::from(samples).sqrt();
-        if let Some(patches) = self.patches.as_mut().filter(|_| traced < 1.0)
-            && patches.sample(&points, &rays)
-        {
-            self.walks += 4.0 * traced;
-            let block: [Traced<'_, N>; 4] = std::array::from_fn(|i| {
-                let (leaves, outcome) = &patches.samples[i];
-                Traced { ray: rays[i], leaves, outcome, first_face: None }
-            });
-            for (i, pixel) in pixels.iter_mut().enumerate() {
-                let rays = [&block[i], &block[i ^ 1], &block[i ^ 2]];
-                let (prepared, working) = (self.prepared, &mut self.working);
-                expose::<N, false>(prepared, self.detection, rays, spacing, pixel, working);
+        if !tracer.interpolate(&points, &rays, traced) {
+            if !(detection.group_delays || detection.stokes || detection.first_face)
+                && tracer.meet_nothing(&rays)
+                && expose_unhindered(prepared, detection, &rays, spacing, pixels)
+            {
+                return TraceStats::default();
             }
-            return TraceStats::default();
+            tracer.trace(&rays);
         }
-        let mut stats = TraceStats::default();
-        let any = &self.tracers.tracers[0];
-        if !(self.detection.times || self.detection.stokes || self.detection.first_face)
-            && rays.iter().all(|ray| any.meets_nothing(ray.origin, ray.direction))
-            && expose_unhindered(self.prepared, self.detection, &rays, spacing, pixels)
-        {
-            return stats;
-        }
-        let launches = rays.each_ref().map(|ray| self.detection.launch(camera, ray));
-        self.tracers.trace(&launches);
-        self.walks += 4.0;
-        let block: [Traced<'_, N>; 4] = std::array::from_fn(|i| {
-            let tracer = &self.tracers.tracers[i];
-            let (leaves, outcome) = tracer.traced();
-            stats += outcome.stats;
-            let first_face =
-                if self.detection.first_face { tracer.first_face(&launches[i]) } else { None };
-            Traced { ray: rays[i], leaves, outcome, first_face }
-        });
-        let coherent = self.prepared.coherence.is_some();
+        let block = tracer.traced(&rays);
+        let coherent = prepared.coherence.is_some();
         let expose = if coherent { expose::<N, true> } else { expose::<N, false> };
         for (i, pixel) in pixels.iter_mut().enumerate() {
             let rays = [&block[i], &block[i ^ 1], &block[i ^ 2]];
-            expose(self.prepared, self.detection, rays, spacing, pixel, &mut self.working);
+            expose(prepared, detection, rays, spacing, pixel, &mut self.working);
         }
-        stats
+        tracer.stats()
     }
 }

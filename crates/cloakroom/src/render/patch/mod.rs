@@ -141,6 +141,7 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     functions: Functions<'a>,
     /// Whether rays go through graded media.
     graded: bool,
+    rays_per_pixel: u32,
     /// Width and height of the largest patches, pixels.
     pub side: usize,
     /// The patch that was fitted last, and before it the larger ones that it is part of.
@@ -162,11 +163,12 @@ pub(super) struct LeafPatches<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> LeafPatches<'a, N> {
-    /// For pictures of a scene; `None` if they are to be exact, or would gain nothing.
+    /// For pictures of a scene with so many rays of each pixel; `None` if they are to be exact, or would gain nothing.
     pub fn new(
         prepared: &'a PreparedScene<'a>,
         detection: &'a Detection<N>,
         tracer: &Tracer<'a, N>,
+        rays_per_pixel: u32,
     ) -> Option<Self> {
         let graded = prepared.assembly.is_graded();
         let exact = prepared.scene.trace.exact
@@ -174,7 +176,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             || prepared.assembly.absorbs()
             || detection.first_face
             || detection.group_delays
-            || detection.times && !graded;
+            || detection.exact_times && !graded;
         if exact {
             return None;
         }
@@ -190,6 +192,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             instructions: Arch::new(),
             functions: Functions::of(prepared, detection),
             graded,
+            rays_per_pixel,
             side,
             levels: Vec::new(),
             coefficients: Vec::new(),
@@ -222,7 +225,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         let axis = usize::from(if across == down { height > width } else { down > across });
         let divisible = |axis: &usize| patch.size[*axis] > LEAST_SIDE;
         let halves = patch.halves([axis, 1 - axis].into_iter().find(divisible)?);
-        let samples = width * height * self.prepared.scene.camera.samples as usize;
+        let samples = width * height * self.rays_per_pixel as usize;
         let gain = traced * (1.0 - LEFT_AFTER_DIVISION) * samples as f64;
         let rays = 2 * self.grid(halves[0]).points.len();
         (gain > COST * traced.max(LEAST_COST) * rays as f64).then_some(halves)

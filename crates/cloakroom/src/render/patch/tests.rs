@@ -32,7 +32,7 @@ fn errors<const N: usize>(
     let prepared = PreparedScene::new(scene).expect("sound");
     let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
     let mut exact = tracer.clone();
-    let mut patches = LeafPatches::new(&prepared, detection, &tracer).expect("interpolated");
+    let mut patches = LeafPatches::new(&prepared, detection, &tracer, 4).expect("interpolated");
     let mut errors = Errors::default();
     for number in 0..count {
         let patch = Patch { corner: [corner[0] + number * SIDE, corner[1]], size: [SIDE; 2] };
