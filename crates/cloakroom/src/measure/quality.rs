@@ -10,6 +10,7 @@ use super::{View, empty, ideal, survey};
 use crate::render::{ChannelSet, Images, PreparedScene, Supervision, render};
 use crate::scene::Scene;
 use crate::trace::TraceStats;
+use rayon::prelude::*;
 
 /// The figures of one combination of settings.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +50,16 @@ impl QualityTable {
     pub fn column(&self, name: &str) -> Result<usize, UnknownColumn> {
         find_column(&self.columns, name)
     }
+}
+
+/// Pixels of pictures that are measured at once, at most.
+const PIXELS_AT_ONCE: u64 = 1 << 22;
+
+/// How many draws of a scene are measured at once: what one does on a single thread, another fills
+/// up.
+fn draws_at_once(scene: &Scene) -> usize {
+    let [width, height] = scene.camera.resolution.map(u64::from);
+    (PIXELS_AT_ONCE / (width * height)).clamp(1, 4) as usize
 }
 
 /// Whether the empty views of two scenes are the same.
@@ -100,16 +111,26 @@ pub fn quality(
             View::of(&picture(&wanted_prepared)?)?
         };
         let mut statistics = Statistics::default();
-        for draw in 0..plan.draws_of(scene) {
-            let scene = &drawn(scene, draw);
-            let drawn = PreparedScene::with_images(scene, &mut images).map_err(failed)?;
-            let shown = picture(&drawn)?;
-            let view = View::of(&shown)?;
-            let rays = survey(&drawn, &wanted_prepared, supervision)?;
-            let measured = Measured::of(&shown, &view, [&wanted, &empty], rays)?;
-            statistics.add(&measured.numbers().numbers);
-            if metadata.is_empty() {
-                metadata = shown.metadata;
+        let draws: Vec<Scene> = (0..plan.draws_of(scene)).map(|draw| drawn(scene, draw)).collect();
+        for scenes in draws.chunks(draws_at_once(scene)) {
+            let prepared =
+                scenes.iter().map(|scene| PreparedScene::with_images(scene, &mut images));
+            let prepared = prepared.collect::<Result<Vec<_>, _>>().map_err(failed)?;
+            let measured = prepared.par_iter().map(|prepared| {
+                let rendered = render(prepared, ChannelSet::Measures, supervision)?;
+                let view = View::of(&rendered.picture)?;
+                let rays = survey(prepared, &wanted_prepared, supervision)?;
+                let measured = Measured::of(&rendered.picture, &view, [&wanted, &empty], rays)?;
+                Ok((measured.numbers(), rendered.stats, rendered.picture.metadata))
+            });
+            let measured: Vec<Result<_, QualityError>> = measured.collect();
+            for measured in measured {
+                let (numbers, rare, of_first) = measured?;
+                statistics.add(&numbers.numbers);
+                stats += rare;
+                if metadata.is_empty() {
+                    metadata = of_first;
+                }
             }
         }
         let of_held = |other: f64| std::iter::repeat_n(other, held.len());
