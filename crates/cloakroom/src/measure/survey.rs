@@ -5,7 +5,7 @@ use crate::assembly::Screen;
 use crate::render::{
     BAND_ROWS, BlockTracer, ChannelSet, Detection, PreparedScene, RenderError, Supervision, Traced,
 };
-use crate::scene::Camera;
+use crate::scene::{Camera, CameraRay};
 use crate::trace::{Leaf, Outcome, Stopped, Tracer};
 use rayon::prelude::*;
 
@@ -108,19 +108,11 @@ fn surveyed<const N: usize>(
                 let size = [width, sights.len() / width];
                 let stop = supervision.stop;
                 tracer.for_blocks([0, first], size, stop, |tracer, [left, top], traced| {
-                    let points =
-                        PIXELS.map(|[x, y]| [(left + x) as f64 + 0.5, (top + y) as f64 + 0.5]);
-                    let rays = points.map(|[x, y]| camera.ray(x, y));
-                    if !tracer.interpolate(&points, &rays, traced) {
-                        tracer.trace(&rays);
-                    }
-                    for (traced, [x, y]) in tracer.traced(&rays).into_iter().zip(PIXELS) {
+                    let block = sights_of_block(tracer, ideal, &detection, [left, top], traced);
+                    for (sight, [x, y]) in block.into_iter().zip(PIXELS) {
                         let (column, row) = (left + x, top + y - first);
                         if column < width && row < size[1] {
-                            let (wanted, _) = ideal.trace(&detection.launch(camera, &traced.ray));
-                            let Traced { leaves, outcome, .. } = traced;
-                            sights[row * width + column] =
-                                sight(&prepared.screen, leaves, outcome, strongest(wanted));
+                            sights[row * width + column] = sight;
                         }
                     }
                     Ok(())
@@ -136,6 +128,30 @@ fn surveyed<const N: usize>(
 
 /// The columns and rows of the pixels of a block.
 const PIXELS: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
+
+/// The shares of the pixels of a block, of which so much is traced.
+fn sights_of_block<const N: usize>(
+    tracer: &mut BlockTracer<'_, N>,
+    ideal: &mut Tracer<'_, N>,
+    detection: &Detection<N>,
+    [left, top]: [usize; 2],
+    traced: f64,
+) -> [Sight; 4] {
+    let PreparedScene { scene, screen, .. } = tracer.prepared;
+    let points = PIXELS.map(|[x, y]| [(left + x) as f64 + 0.5, (top + y) as f64 + 0.5]);
+    let rays = points.map(|[x, y]| scene.camera.ray(x, y));
+    let meets_nothing = |ray: &CameraRay| ideal.meets_nothing(ray.origin, ray.direction);
+    if tracer.meet_nothing(&rays) && rays.iter().all(meets_nothing) {
+        return [Sight { faithful: 1.0, in_place: [1.0; 2], ..Sight::default() }; 4];
+    }
+    if !tracer.interpolate(&points, &rays, traced) {
+        tracer.trace(&rays);
+    }
+    tracer.traced(&rays).map(|Traced { ray, leaves, outcome, .. }| {
+        let (wanted, _) = ideal.trace(&detection.launch(&scene.camera, &ray));
+        sight(screen, leaves, outcome, strongest(wanted))
+    })
+}
 
 fn power<const N: usize>(leaf: &Leaf<N>) -> f64 {
     leaf.power.iter().sum::<f64>() / N as f64

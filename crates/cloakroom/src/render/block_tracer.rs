@@ -15,7 +15,7 @@ pub(crate) const BAND_ROWS: u32 = patch::SIDE as u32;
 
 /// One thread's tracers.
 pub(crate) struct BlockTracer<'a, const N: usize> {
-    prepared: &'a PreparedScene<'a>,
+    pub prepared: &'a PreparedScene<'a>,
     detection: &'a Detection<N>,
     tracers: FourTracers<'a, N>,
     patches: Option<LeafPatches<'a, N>>,
