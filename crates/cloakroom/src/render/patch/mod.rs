@@ -36,7 +36,7 @@ const LEAST_SIDE: usize = 2;
 const DEEPER: f64 = 0.25;
 
 /// They are traced so much more exactly, for errors of theirs are not smooth.
-const CLOSER: f64 = 0.1;
+const CLOSER: f64 = 0.2;
 
 /// What a ray at a node costs in terms of a sample's, where pixels have one and where they have more
 /// (measured: more divisions would save rays, and cost each sample the terms of more patches).
