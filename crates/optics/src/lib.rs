@@ -8,6 +8,7 @@
 //! | --- | --- |
 //! | [`wave`] | wave vectors, fields, polarization, Poynting vectors |
 //! | [`medium`] | permittivity and permeability tensors and the waves they carry |
+//! | [`material`] | how real media depend on the wavelength |
 //! | [`interface`] | reflection and refraction where two media, or a medium and a metal, meet |
 //! | [`geometry`] | surfaces and where a ray meets them |
 //! | [`transformation`] | coordinate maps, their inverses and tensors |
@@ -16,6 +17,7 @@
 pub mod geometry;
 pub mod interface;
 mod lanes;
+pub mod material;
 pub mod medium;
 pub mod propagation;
 pub mod transformation;

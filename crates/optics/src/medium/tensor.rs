@@ -23,7 +23,8 @@ pub struct Tensor {
 impl Tensor {
     /// value (1 - a aᵀ) + along a aᵀ: `along` in the direction of the unit vector a, `across`
     /// perpendicular to it.
-    pub(super) fn uniaxial(across: Complex64, along: Complex64, axis: DVec3) -> Self {
+    #[must_use]
+    pub fn uniaxial(across: Complex64, along: Complex64, axis: DVec3) -> Self {
         let dyad = DMat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z);
         let rest = DMat3::IDENTITY - dyad;
         Self { re: dyad * along.re + rest * across.re, im: dyad * along.im + rest * across.im }

@@ -31,7 +31,7 @@ impl Device for BendingSphere {
         Ok(ball(self.radius, RadialFlow::Lens(self.lens()), None))
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let (radius, angle) = (self.radius, self.angle);
         vec![
             Fact::number("index_min", 1.0),

@@ -13,7 +13,7 @@ use crate::keys::{Given, KeyError, ValueRange};
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::geometry::{Cylinder, Extent, Sphere};
-use optics::medium::{Medium, Tensor};
+use optics::medium::Tensor;
 use std::path::PathBuf;
 
 crate::choice! {
@@ -35,7 +35,7 @@ crate::table! {
     /// opaque one. Where bodies overlap, the one of the larger priority is there: a rod in a glass
     /// of water is three bodies. After Dolling, Wegener, Linden & Hormann, Opt. Express 14, 1842
     /// (2006).
-    pub struct SolidBody {
+    pub struct SolidBody with words: MediumWords {
         /// Its shape, centred on `position`; a slab stands across x and is endless along y and z,
         /// the axis of a cylinder is z.
         shape: BodyShape,
@@ -79,7 +79,7 @@ impl Device for SolidBody {
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         super::refuse_other_views(request, "a body is no cloak")?;
         let shape = self.convex(request.length)?;
-        let medium = self.medium()?;
+        let medium = self.medium(request.wavelength_nm)?;
         let pictured = self.surface.as_ref().is_some_and(|surface| surface.image.is_some());
         let message = "an endless body has no place for an image; give a cylinder its `length`, and take a \
                        box instead of a slab";
@@ -89,9 +89,9 @@ impl Device for SolidBody {
         let body = Body { shape, priority: self.priority };
         let far = if medium.is_some() { FarSide::Region(0) } else { FarSide::Opaque };
         let group_index = self.group_index;
-        let region = |medium| {
+        let region = |DispersiveMedium { medium, law }| {
             let border = RegionBorder::Convex(shape);
-            HomogeneousRegion { medium, group_index, border, coating: Coating::None }
+            HomogeneousRegion { medium, law, group_index, border, coating: Coating::None }
         };
         let regions = medium.into_iter().map(region).map(Region::Homogeneous).collect();
         let surfaces = vec![Surface::new(Shape::Convex(shape), far)];
@@ -99,14 +99,18 @@ impl Device for SolidBody {
         Ok(Structure::new(regions, surfaces, hull))
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, request: Request) -> Vec<Fact> {
         let entry = |tensor: Tensor| {
             let entry = Complex64::new(tensor.re.x_axis.x, tensor.im.x_axis.x);
             (tensor == entry.into()).then_some(entry)
         };
+        let medium = self.medium(request.wavelength_nm).ok().flatten();
+        let (permittivity, permeability) = match medium {
+            Some(found) => found.medium.tensors(),
+            None => (1.0.into(), 1.0.into()),
+        };
         let mut facts = vec![Fact::number("priority", self.priority as f64)];
-        if let (Some(e), Some(m)) = (entry(self.permittivity.value), entry(self.permeability.value))
-        {
+        if let (Some(e), Some(m)) = (entry(permittivity), entry(permeability)) {
             // The product of the roots with positive imaginary parts is that of the wave that
             // decays.
             let root = |value: Complex64| {
@@ -152,16 +156,21 @@ impl SolidBody {
     }
 
     /// What fills it; nothing that light could enter if it has a surface of its own.
-    fn medium(&self) -> Result<Option<Medium>, KeyError> {
+    fn medium(&self, wavelength_nm: f64) -> Result<Option<DispersiveMedium>, KeyError> {
         let Some(surface) = &self.surface else {
-            return super::medium(self.permittivity.value, self.permeability.value).map(Some);
+            let tensors = [
+                (key!(Self.permittivity), self.permittivity),
+                (key!(Self.permeability), self.permeability),
+            ];
+            return super::medium(&self.words, tensors, wavelength_nm).map(Some);
         };
         let of_media = [
             (key!(Self.permittivity), self.permittivity.given),
             (key!(Self.permeability), self.permeability.given),
             (key!(Self.group_index), self.group_index.is_some()),
         ];
-        if let Some((key, _)) = of_media.into_iter().find(|(_, given)| *given) {
+        let of_media = of_media.into_iter().filter_map(|(key, given)| given.then_some(key));
+        if let Some(key) = of_media.chain(self.words.word()).next() {
             let message = format!("a body with a surface of its own is opaque; it has no {key}");
             return Err(KeyError::at(key, message));
         }

@@ -1,6 +1,7 @@
 //! Thin layers on the surfaces of devices, and what metal is made of.
 
-use super::{Coating, Convex, FarSide, Region, RegionBorder, Structure};
+use super::medium_words::of_index;
+use super::{Coating, Convex, FarSide, MaterialWord, MediumWords, Region, RegionBorder, Structure};
 use crate::key;
 use crate::keys::{Field, KeyError, KeyKind, Value, ValueRange};
 use glam::DVec3;
@@ -15,59 +16,51 @@ const CM_PER_NM: f64 = 1e-7;
 
 crate::table! {
     /// A thin layer on a surface.
-    pub struct CoatingLayer {
+    pub struct CoatingLayer with words: MediumWords {
         /// Its thickness.
         thickness_nm: Option<f64>, "nm", in ValueRange::Within(0.0, 1e6),
-        /// Its index of refraction n, or [n, k] where it absorbs; instead of `permittivity`.
-        index: Option<Complex64>,
-        /// Its relative permittivity, in the device's frame also where the surface is tilted or
+        /// Its relative permittivity, instead of words for its medium, in the device's frame also where the surface is tilted or
         /// curved; symmetric.
         permittivity: Option<Tensor>,
     }
 }
 
 impl CoatingLayer {
-    fn layer(&self) -> Result<FilmLayer, KeyError> {
+    fn layer(&self, wavelength_nm: f64) -> Result<FilmLayer, KeyError> {
         let missing = || KeyError::general("this layer has no `thickness_nm`");
         let thickness = CM_PER_NM * self.thickness_nm.ok_or_else(missing)?;
-        let medium = match (self.index, self.permittivity) {
-            (Some(index), None) => of_index(key!(Self.index), index)?,
-            (None, Some(permittivity)) => Medium::new(permittivity, 1.0)
-                .map_err(|error| KeyError::at(key!(Self.permittivity), error.to_string()))?,
-            (None, None) => {
-                return Err(KeyError::general("this layer has neither `index` nor `permittivity`"));
-            }
-            (Some(_), Some(_)) => {
-                let message = "index and permittivity are both given; a layer takes one of them";
-                return Err(KeyError::at(key!(Self.index), message));
+        let key = key!(Self.permittivity);
+        let tensors = self.permittivity.map(|_| key);
+        let medium = match self.words.medium(tensors.as_slice(), wavelength_nm)? {
+            Some(found) => found.medium,
+            None => {
+                let missing = || {
+                    KeyError::general("this layer has no medium: give it an `index`, a `material` or a `permittivity`")
+                };
+                let permittivity = self.permittivity.ok_or_else(missing)?;
+                Medium::new(permittivity, 1.0)
+                    .map_err(|error| KeyError::at(key, error.to_string()))?
             }
         };
         Ok(FilmLayer { medium, thickness })
     }
 }
 
-/// The medium of a complex index n + ik and of µ = 1, which the key says.
-fn of_index(key: &'static str, index: Complex64) -> Result<Medium, KeyError> {
-    let message = format!(
-        "{key} is [{}, {}]; n and k of n + ik must be 0 or above, and not both 0",
-        index.re, index.im
-    );
-    let refused = index.re < 0.0 || index.im < 0.0 || index == Complex64::ZERO;
-    KeyError::refuse_if(refused, key, message)?;
-    Medium::new(index * index, 1.0).map_err(|error| KeyError::at(key, error.to_string()))
-}
-
-/// The layers of a key, from the outside inwards.
+/// The layers of a key, from the outside inwards, at a wavelength in vacuum, nm.
 ///
 /// # Errors
 ///
 /// If there are too many, or one is not sound.
-pub fn layers(key: &'static str, coating: &[CoatingLayer]) -> Result<Vec<FilmLayer>, KeyError> {
+pub fn layers(
+    key: &'static str,
+    coating: &[CoatingLayer],
+    wavelength_nm: f64,
+) -> Result<Vec<FilmLayer>, KeyError> {
     let count = coating.len();
     let message = format!("{key} has {count} layers; it may have {MOST_LAYERS}");
     KeyError::refuse_if(count > MOST_LAYERS, key, message)?;
     let layer = |(number, layer): (usize, &CoatingLayer)| {
-        layer.layer().map_err(|error| error.within(key, number))
+        layer.layer(wavelength_nm).map_err(|error| error.within(key, number))
     };
     coating.iter().enumerate().map(layer).collect()
 }
@@ -94,21 +87,30 @@ crate::table! {
     pub struct MetalOfIndex {
         /// Its complex index of refraction, [n, k].
         index: Option<Complex64>,
+        /// What it is of instead, such as "silver": see `cloakroom materials`.
+        material: Option<MaterialWord>,
     }
 }
 
 impl Metal {
-    /// The medium of a metal; `None` for a perfect conductor.
+    /// The medium of a metal at a wavelength in vacuum (nm); `None` for a perfect conductor.
     ///
     /// # Errors
     ///
     /// If its index is missing or that of no medium.
-    pub fn medium(&self) -> Result<Option<Medium>, KeyError> {
+    pub fn medium(&self, wavelength_nm: f64) -> Result<Option<Medium>, KeyError> {
         let Self::OfIndex(metal) = self else { return Ok(None) };
-        let message = "this metal has no `index`; give it one, [n, k], or write metal = true for a \
-                       perfect conductor";
-        let index = metal.index.ok_or_else(|| KeyError::at("metal", message))?;
-        of_index("metal.index", index).map(Some)
+        let message = "this metal has neither `index` nor `material`; give it one, as index = [n, k] or \
+                       material = \"silver\", or write metal = true for a perfect conductor";
+        match (metal.index, &metal.material) {
+            (Some(index), None) => of_index("metal.index", index).map(Some),
+            (None, Some(material)) => material.metal("metal.material", wavelength_nm).map(Some),
+            (None, None) => Err(KeyError::at("metal", message)),
+            (Some(_), Some(_)) => {
+                let message = "index and material are both given; a metal takes one of them";
+                Err(KeyError::at("metal.material", message))
+            }
+        }
     }
 }
 

@@ -81,7 +81,7 @@ impl Device for CylinderCloak {
         })
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let Ok((inner, outer)) = self.radii() else { return Vec::new() };
         let border = DVec3::X * outer;
         let mut facts = vec![Fact::number("cloaked_area_cm2", PI * inner * inner)];

@@ -80,7 +80,7 @@ impl Device for DoubleGaussianCloak {
         })
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let Ok((gaussian, cut)) = self.parts() else { return Vec::new() };
         let map = ConformalMap::Gaussian(gaussian);
         let c = self.index_scale(&map, &cut);

@@ -56,7 +56,7 @@ impl Device for FisheyeHemisphere {
         Ok(filled(ClosedFormBorder::CutBall(ball), medium))
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let deepest = (self.cut_distance / self.radius).min(0.0);
         vec![
             Fact::number("index_min", self.index),

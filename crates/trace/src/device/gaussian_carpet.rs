@@ -40,7 +40,7 @@ impl Device for GaussianCarpet {
         Ok(carpet::structure(ConformalMap::Gaussian(map), cut, 1.0, self.floor, request))
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let Ok((gaussian, cut)) = self.parts() else { return Vec::new() };
         let map = ConformalMap::Gaussian(gaussian);
         let areas = [

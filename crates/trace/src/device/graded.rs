@@ -204,7 +204,7 @@ impl Device for Graded {
         }
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let Ok(plan) = Plan::new(self) else { return Vec::new() };
         let mut facts = vec![Fact::number("medium_area_cm2", plan.area())];
         if plan.core.is_some() {

@@ -55,7 +55,7 @@ impl Device for GradedBox {
         Ok(filled(ClosedFormBorder::Box(0.5 * self.sides), self.medium()))
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let [least, largest] = self.squares();
         if least < LEAST {
             return Vec::new();

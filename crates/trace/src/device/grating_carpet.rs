@@ -54,7 +54,7 @@ impl Device for GratingCarpet {
         Ok(carpet::structure(ConformalMap::Grating(map), cut, 1.0, self.floor, request))
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let Ok((grating, cut)) = self.parts() else { return Vec::new() };
         let area = Fact::number("cloaked_area_per_period_cm2", grating.area_of_a_period());
         carpet::facts(&ConformalMap::Grating(grating), &cut, 1.0, &[area])

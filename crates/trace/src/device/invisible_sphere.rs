@@ -46,7 +46,7 @@ impl Device for InvisibleSphere {
         Ok(ball(radius, flow, None))
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let radius = self.radius;
         let delay = Fact::number("time_of_flight_difference_ns", TAU * radius / SPEED_OF_LIGHT);
         if self.material == SphereMaterial::Regularized {

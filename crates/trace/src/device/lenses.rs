@@ -30,7 +30,7 @@ macro_rules! lens {
                 Ok(ball(self.radius, RadialFlow::Lens(lens(self.radius)), None))
             }
 
-            fn facts(&self) -> Vec<Fact> {
+            fn facts(&self, _: Request) -> Vec<Fact> {
                 let (lens, facts): (fn(f64) -> CentralLens, fn(CentralLens) -> [Fact; 2]) =
                     ($lens, $facts);
                 [vec![Fact::number("index_min", 1.0)], facts(lens(self.radius)).into()].concat()

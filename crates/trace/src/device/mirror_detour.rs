@@ -47,7 +47,7 @@ impl Device for MirrorDetour {
         Ok(Structure::new(Vec::new(), surfaces, Hull::of_parts(solids)))
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let (s, l) = (self.offset, self.half_length);
         vec![
             Fact::number("cloaked_height_cm", 2.0 * s),

@@ -31,6 +31,7 @@ mod imperfection;
 mod invisible_sphere;
 mod lenses;
 mod material_at;
+mod medium_words;
 mod mirror_detour;
 mod polarizer;
 mod polygons;
@@ -53,6 +54,10 @@ pub use graded::GradedShape;
 pub use imperfection::Imperfection;
 pub use invisible_sphere::SphereMaterial;
 pub use material_at::MaterialAt;
+pub use medium_words::{
+    BiaxialWords, DispersiveMedium, DispersiveTensors, DrudeTerm, LorentzTerm, MaterialLaw, MaterialWord,
+    MediumWords, SellmeierTerm, UniaxialWords,
+};
 pub use optics::geometry::REACH;
 pub use prisms::PrismOfMedium;
 pub use region::{
@@ -64,7 +69,7 @@ pub use structure::{Body, Coating, FarSide, Hull, Structure, SurfaceHit};
 pub use surface::{Part, Shape, Surface};
 
 use crate::key;
-use crate::keys::{Key, KeyError, Table};
+use crate::keys::{Given, Key, KeyError, Table};
 use glam::{DMat3, DVec2};
 use optics::geometry::{Extent, Outline, Solid, Wall};
 use optics::medium::{Medium, Tensor};
@@ -102,7 +107,7 @@ crate::choice! {
 }
 
 /// What every device is asked for beside its own keys.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
     /// What of it is looked at.
     pub show: Show,
@@ -110,9 +115,21 @@ pub struct Request {
     pub core: Core,
     /// Its whole length along z, cm; endless if absent.
     pub length: Option<f64>,
+    /// The wavelength of the light in vacuum, nm: media of materials depend on it.
+    pub wavelength_nm: f64,
+}
+
+impl Default for Request {
+    fn default() -> Self {
+        let (show, core) = (Show::default(), Core::default());
+        Self { show, core, length: None, wavelength_nm: Self::DESIGN_WAVELENGTH_NM }
+    }
 }
 
 impl Request {
+    /// The middle of what eyes see.
+    pub const DESIGN_WAVELENGTH_NM: f64 = 550.0;
+
     /// Whether the hidden region is to be air.
     #[must_use]
     pub fn has_open_core(&self) -> bool {
@@ -136,7 +153,7 @@ pub trait Device: Table {
     fn structure(&self, request: Request) -> Result<Structure, KeyError>;
 
     /// Computes what can be said about it in numbers; nothing if it cannot be built.
-    fn facts(&self) -> Vec<Fact>;
+    fn facts(&self, request: Request) -> Vec<Fact>;
 
     /// Makes the device.
     ///
@@ -248,8 +265,8 @@ macro_rules! catalogue {
 
             /// What can be said about it in numbers: see [`Device::facts`].
             #[must_use]
-            pub fn facts(&self) -> Vec<Fact> {
-                match self { $(Self::$kind(device) => device.facts()),+ }
+            pub fn facts(&self, request: Request) -> Vec<Fact> {
+                match self { $(Self::$kind(device) => device.facts(request)),+ }
             }
         }
     };
@@ -283,9 +300,19 @@ pub fn entry(kind: &str) -> Option<&'static Entry> {
     CATALOGUE.iter().copied().find(|entry| entry.kind == kind)
 }
 
-/// The medium of the keys `permittivity` and `permeability`.
-fn medium(permittivity: Tensor, permeability: Tensor) -> Result<Medium, KeyError> {
-    Medium::new(permittivity, permeability).map_err(|error| {
+/// The medium of words, or of the keys `permittivity` and `permeability`, at a wavelength in vacuum,
+/// nm.
+fn medium(
+    words: &MediumWords,
+    tensors: [(&'static str, Given<Tensor>); 2],
+    wavelength_nm: f64,
+) -> Result<DispersiveMedium, KeyError> {
+    let given = tensors.iter().filter_map(|(key, tensor)| tensor.given.then_some(*key));
+    if let Some(medium) = words.medium(&given.collect::<Vec<_>>(), wavelength_nm)? {
+        return Ok(medium);
+    }
+    let [permittivity, permeability] = tensors.map(|(_, tensor)| tensor.value);
+    Medium::new(permittivity, permeability).map(DispersiveMedium::from).map_err(|error| {
         let magnetic = error.quantity() == Some("permeability");
         let key =
             if magnetic { key!(SolidBody.permeability) } else { key!(SolidBody.permittivity) };

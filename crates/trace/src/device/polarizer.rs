@@ -41,7 +41,7 @@ impl Device for Polarizer {
         Ok(Structure::new(Vec::new(), vec![Surface::new(shape, FarSide::Polarizer)], hull))
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         vec![Fact::numbers("passes_along", self.axis().to_array())]
     }
 }

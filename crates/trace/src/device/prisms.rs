@@ -22,7 +22,7 @@ crate::table! {
 
 crate::table! {
     /// One of the prisms of [`Prisms`].
-    pub struct PrismOfMedium {
+    pub struct PrismOfMedium with words: MediumWords {
         /// The corners of its cross-section in the xy-plane, one after the other; it may be
         /// concave.
         corners: Option<Vec<[f64; 2]>>, "cm", in ValueRange::COORDINATE,
@@ -46,7 +46,7 @@ impl Device for Prisms {
     const TITLE: &'static str = "Prisms of one's own";
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
-        let mut parts = self.parts()?;
+        let mut parts = self.parts(request.wavelength_nm)?;
         match request.show {
             Show::Cloak => {}
             Show::Bare => {
@@ -66,8 +66,8 @@ impl Device for Prisms {
         )
     }
 
-    fn facts(&self) -> Vec<Fact> {
-        let parts = self.parts().unwrap_or_default();
+    fn facts(&self, request: Request) -> Vec<Fact> {
+        let parts = self.parts(request.wavelength_nm).unwrap_or_default();
         let area = |metal: bool| {
             let chosen = parts.iter().filter(|part| part.medium.is_none() == metal);
             chosen.map(|part| part.polygon.area()).sum::<f64>()
@@ -82,7 +82,7 @@ impl Device for Prisms {
 
 impl Prisms {
     /// The prisms, each sound in itself.
-    fn parts(&self) -> Result<Vec<PolygonPart>, KeyError> {
+    fn parts(&self, wavelength_nm: f64) -> Result<Vec<PolygonPart>, KeyError> {
         if self.prism.is_empty() {
             let message = "there is no prism; give each one a table [[device.prism]] with `corners` and \
                            `permittivity` or `metal = true`";
@@ -90,7 +90,7 @@ impl Prisms {
         }
         let mut known: Vec<DVec2> = Vec::new();
         let prisms = self.prism.iter().enumerate().map(|(number, prism)| {
-            part(prism, &mut known).map_err(|error| error.within(key!(Self.prism), number))
+            part(prism, &mut known, wavelength_nm).map_err(|error| error.within(key!(Self.prism), number))
         });
         prisms.collect()
     }
@@ -118,7 +118,11 @@ const LARGEST_ROUNDING: f64 = 1.5e-4;
 
 /// One prism; its corners are moved onto those of earlier ones, `known`, that are the same but for
 /// rounding.
-fn part(prism: &PrismOfMedium, known: &mut Vec<DVec2>) -> Result<PolygonPart, KeyError> {
+fn part(
+    prism: &PrismOfMedium,
+    known: &mut Vec<DVec2>,
+    wavelength_nm: f64,
+) -> Result<PolygonPart, KeyError> {
     let missing = || KeyError::general("this prism has no `corners`: three or more [x, y]");
     let corners = prism.corners.as_ref().ok_or_else(missing)?;
     let refused = known.len() + corners.len() > MOST_CORNERS;
@@ -142,8 +146,9 @@ fn part(prism: &PrismOfMedium, known: &mut Vec<DVec2>) -> Result<PolygonPart, Ke
         (prism.permittivity.given, key!(PrismOfMedium.permittivity)),
         (prism.permeability.given, key!(PrismOfMedium.permeability)),
     ];
-    let medium = match given.into_iter().find(|(given, _)| *given) {
-        Some((_, key)) if prism.metal != Metal::None => {
+    let given = given.into_iter().filter_map(|(given, key)| given.then_some(key));
+    let medium = match given.chain(prism.words.word()).next() {
+        Some(key) if prism.metal != Metal::None => {
             let message = match prism.metal {
                 Metal::OfIndex(_) => format!("metal has its `index`, and takes no {key}"),
                 _ => format!("metal is a perfect conductor; it has no {key}"),
@@ -152,13 +157,19 @@ fn part(prism: &PrismOfMedium, known: &mut Vec<DVec2>) -> Result<PolygonPart, Ke
         }
         _ if prism.metal != Metal::None => None,
         None => {
-            let message = "this prism has neither `permittivity` nor `permeability` nor `metal = true`; \
-                           a prism of air is left out";
+            let message = "this prism has no medium: give it an `index`, a `material`, a `permittivity` or \
+                           `metal = true`; a prism of air is left out";
             return Err(KeyError::general(message));
         }
-        Some(_) => Some(super::medium(prism.permittivity.value, prism.permeability.value)?),
+        Some(_) => {
+            let tensors = [
+                (key!(PrismOfMedium.permittivity), prism.permittivity),
+                (key!(PrismOfMedium.permeability), prism.permeability),
+            ];
+            Some(super::medium(&prism.words, tensors, wavelength_nm)?)
+        }
     };
-    let metal = prism.metal.medium()?;
-    let film = coating::layers(key!(PrismOfMedium.coating), &prism.coating)?;
+    let metal = prism.metal.medium(wavelength_nm)?;
+    let film = coating::layers(key!(PrismOfMedium.coating), &prism.coating, wavelength_nm)?;
     Ok(PolygonPart { polygon, medium, metal, film })
 }

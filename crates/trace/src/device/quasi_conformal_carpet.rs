@@ -58,7 +58,7 @@ impl Device for QuasiConformalCarpet {
         ))
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let Ok((quasi_conformal, cut)) = self.parts() else { return Vec::new() };
         let c = quasi_conformal.index_scale();
         let anisotropy = quasi_conformal.anisotropy();

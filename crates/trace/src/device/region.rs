@@ -1,6 +1,6 @@
 //! Regions of a device, each filled with one medium.
 
-use super::{ClosedFormRegion, Coating, Convex, Dispersion, FarSide};
+use super::{ClosedFormRegion, Coating, Convex, Dispersion, DispersiveTensors, FarSide};
 use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::Plane;
 use optics::medium::{Medium, ModeKind};
@@ -60,7 +60,9 @@ pub struct ConformalRegion {
 pub struct HomogeneousRegion {
     /// What fills it.
     pub medium: Medium,
-    /// The speed of light over that of a pulse; absent: as the dispersion says.
+    /// How the medium depends on the frequency; `None`: as the dispersion of the device says.
+    pub law: Option<DispersiveTensors>,
+    /// The speed of light over that of a pulse, which comes before both; absent: as they say.
     pub group_index: Option<f64>,
     /// Where it ends.
     pub border: RegionBorder,
@@ -335,7 +337,7 @@ impl HomogeneousRegion {
     #[must_use]
     pub fn between(medium: Medium, faces: Vec<Face>) -> Self {
         let border = RegionBorder::Faces(faces);
-        Self { medium, group_index: None, border, coating: Coating::None }
+        Self { medium, law: None, group_index: None, border, coating: Coating::None }
     }
 
     /// The planes that bound it; none where it is bounded otherwise.

@@ -46,7 +46,7 @@ impl Device for SphereCloak {
         })
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let Ok(map) = self.map() else { return Vec::new() };
         let tensor = map.tensor(DVec3::X * self.outer);
         vec![

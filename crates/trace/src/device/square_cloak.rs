@@ -61,7 +61,7 @@ impl Device for SquareCloak {
         }
     }
 
-    fn facts(&self) -> Vec<Fact> {
+    fn facts(&self, _: Request) -> Vec<Fact> {
         let map = self.map();
         let (d, b) = (map.half_diagonal, map.half_height());
         let recipe = Recipe::new(self, &map);

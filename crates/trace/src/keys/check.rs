@@ -1,8 +1,12 @@
 //! A value held against its key: type, limits, and the message if it does not fit.
 
-use super::nearest::nearest;
+use super::field::is_material_file;
+use super::nearest::{hint, nearest};
 use super::value::{Value, items_of, number_text, quoted};
 use super::{BUILT_IN_IMAGES, BUILT_IN_PREFIX, Key, KeyKind, Samples, ValueRange, find, tensor};
+use glam::DVec3;
+use optics::material::Material;
+use optics::wave::unit;
 
 impl ValueRange {
     /// Whether a number is allowed; NaN and the infinities never are.
@@ -53,6 +57,12 @@ impl Key {
             }
             KeyKind::Tensor => "a number, [re, im], or 3 x 3 of either".to_owned(),
             KeyKind::Complex => "a number or [re, im]".to_owned(),
+            KeyKind::Direction => format!("three numbers, or an angle in the x, y plane{unit}"),
+            KeyKind::Axes => "three directions at right angles, [x, y, z] each".to_owned(),
+            KeyKind::Material => "the name of a material or of a .yml file".to_owned(),
+            KeyKind::MaterialOrTable { keys } => {
+                format!("the name of a material or of a .yml file, or a table with {}", key_names(keys))
+            }
             KeyKind::Polygon => format!("three or more corners [x, y]{unit}"),
             KeyKind::Samples => "rows of numbers, or the name of a file".to_owned(),
             KeyKind::Table { keys } => format!("a table with {}", key_names(keys)),
@@ -139,6 +149,34 @@ impl Key {
                 }
                 value.clone()
             }
+            KeyKind::Direction => match value.as_number() {
+                Some(number) => {
+                    self.limit(self.name, number)?;
+                    number.into()
+                }
+                None => self.direction(self.name, value)?.into(),
+            },
+            KeyKind::Axes => {
+                let items: &[Value; 3] = self
+                    .of_type(value, value.as_list().and_then(|items| items.try_into().ok()))?;
+                let name = format!("an axis of {}", self.name);
+                let axes = [0, 1, 2].map(|i| self.direction(&name, &items[i]));
+                let [x, y, z] = axes;
+                let axes = [x?, y?, z?].map(DVec3::from_array);
+                right_angles(self.name, axes)?;
+                value.clone()
+            }
+            KeyKind::Material => {
+                check_material_name(self.of_type(value, value.as_text())?)?;
+                value.clone()
+            }
+            KeyKind::MaterialOrTable { keys } => match value {
+                Value::Table(_) => self.table(value, keys)?,
+                _ => {
+                    check_material_name(self.of_type(value, value.as_text())?)?;
+                    value.clone()
+                }
+            },
             KeyKind::Polygon => self.polygon(value)?,
             KeyKind::Table { keys } => self.table(value, keys)?,
             KeyKind::FlagOrTable { keys } => match value {
@@ -151,6 +189,18 @@ impl Key {
                 Value::List(tables.collect::<Result<_, _>>()?)
             }
         })
+    }
+
+    /// Three finite numbers that are not all zero.
+    fn direction(&self, name: &str, value: &Value) -> Result<[f64; 3], String> {
+        let numbers: [f64; 3] = self.of_type(value, items_of(value, Value::as_number))?;
+        if let Some(number) = numbers.iter().find(|number| !number.is_finite()) {
+            return Err(format!("{name} holds {number}; numbers must be finite"));
+        }
+        match unit(DVec3::from_array(numbers)) {
+            Some(_) => Ok(numbers),
+            None => Err(format!("{name} is {value}; it must be a direction")),
+        }
     }
 
     fn polygon(&self, value: &Value) -> Result<Value, String> {
@@ -235,6 +285,28 @@ impl Key {
             _ => Ok(()),
         }
     }
+}
+
+/// Refuses axes that are not at right angles but for the digits that people type.
+fn right_angles(name: &str, axes: [DVec3; 3]) -> Result<(), String> {
+    const RIGHT: f64 = 1e-6;
+    let [x, y, z] = axes.map(|axis| unit(axis).unwrap_or_default());
+    let largest = [x.dot(y), y.dot(z), z.dot(x)].into_iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+    if largest <= RIGHT {
+        return Ok(());
+    }
+    let off = largest.asin().to_degrees();
+    Err(format!("{name} are {} degrees off right angles", number_text((off * 1e6).round() / 1e6)))
+}
+
+/// Refuses names of materials that do not come with the program; whether a file is there is not
+/// looked at.
+fn check_material_name(name: &str) -> Result<(), String> {
+    if is_material_file(name) || Material::NAMES.contains(&name) {
+        return Ok(());
+    }
+    let hint = hint(name, &Material::NAMES, "there are");
+    Err(format!("there is no material {}{hint}; a file's name ends in .yml", quoted(name, '`')))
 }
 
 /// Refuses names of built-in images that do not exist; whether a file is there is not looked at.

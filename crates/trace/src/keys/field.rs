@@ -4,11 +4,29 @@ use super::value::items_of;
 use super::{BUILT_IN_PREFIX, Key, KeyKind, Samples, Value, tensor};
 use glam::DVec3;
 use num_complex::Complex64;
+use optics::material::Material;
 use optics::medium::Tensor;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Is told each file that a table names, and the path of the key that names it.
-pub type VisitFile<'a> = dyn FnMut(&str, &mut PathBuf) + 'a;
+pub type VisitFile<'a> = dyn FnMut(&str, NamedFile<'_>) + 'a;
+
+/// A file that a table names.
+#[derive(Debug)]
+pub struct NamedFile<'f> {
+    /// Where it is.
+    pub path: &'f mut PathBuf,
+    /// Where the material belongs that it holds, if it holds one.
+    pub material: Option<&'f mut Option<Arc<Material>>>,
+}
+
+impl<'f> NamedFile<'f> {
+    /// One that is read where it is needed.
+    pub fn of(path: &'f mut PathBuf) -> Self {
+        Self { path, material: None }
+    }
+}
 
 /// A type that a field of a table can have.
 pub trait Field: Sized {
@@ -134,7 +152,104 @@ impl Field for PathBuf {
 
     fn show_files(&mut self, path: &str, visit: &mut VisitFile<'_>) {
         if !self.to_string_lossy().starts_with(BUILT_IN_PREFIX) {
-            visit(path, self);
+            visit(path, NamedFile::of(self));
+        }
+    }
+}
+
+/// A direction as scenes write it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Direction {
+    /// A vector of any length.
+    Along(DVec3),
+    /// In the x, y plane, so many degrees from x to y.
+    Angle(f64),
+}
+
+impl Direction {
+    /// The unit vector; zero of a vector without direction.
+    #[must_use]
+    pub fn unit(self) -> DVec3 {
+        match self {
+            Self::Along(vector) => optics::wave::unit(vector).unwrap_or_default(),
+            Self::Angle(degrees) => {
+                let angle = degrees.rem_euclid(360.0).to_radians();
+                DVec3::new(angle.cos(), angle.sin(), 0.0)
+            }
+        }
+    }
+}
+
+field!(Direction, Direction, |value| match value.as_number() {
+    Some(degrees) => Some(Self::Angle(degrees)),
+    None => numbers(value).map(|vector| Self::Along(DVec3::from_array(vector))),
+}, |direction| match direction {
+    Direction::Along(vector) => vector.to_array().into(),
+    Direction::Angle(degrees) => (*degrees).into(),
+});
+field!(
+    [DVec3; 3],
+    Axes,
+    |value| items_of(value, |axis| numbers(axis).map(DVec3::from_array)),
+    |axes| axes.map(|axis| axis.to_array()).into()
+);
+
+/// What the names of files of materials end with.
+const MATERIAL_ENDINGS: [&str; 2] = [".yml", ".yaml"];
+
+/// Whether the name of a material is that of a file.
+pub(super) fn is_material_file(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    MATERIAL_ENDINGS.iter().any(|ending| name.ends_with(ending))
+}
+
+/// A material by its name.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MaterialName {
+    /// One that comes with the program.
+    BuiltIn(String),
+    /// One of a file, and what has been read there.
+    InFile {
+        /// Where the file is.
+        path: PathBuf,
+        /// The material, once it has been read.
+        material: Option<Arc<Material>>,
+    },
+}
+
+impl MaterialName {
+    /// The material; `None` if there is none of that name, or its file has not been read.
+    #[must_use]
+    pub fn material(&self) -> Option<Arc<Material>> {
+        match self {
+            Self::BuiltIn(name) => Material::named(name).map(Arc::new),
+            Self::InFile { material, .. } => material.clone(),
+        }
+    }
+}
+
+impl Field for MaterialName {
+    const KIND: KeyKind = KeyKind::Material;
+
+    fn from_value(value: &Value) -> Option<Self> {
+        let name = value.as_text()?;
+        Some(if is_material_file(name) {
+            Self::InFile { path: name.into(), material: None }
+        } else {
+            Self::BuiltIn(name.to_owned())
+        })
+    }
+
+    fn value(&self) -> Option<Value> {
+        Some(match self {
+            Self::BuiltIn(name) => name.as_str().into(),
+            Self::InFile { path, .. } => path.display().to_string().into(),
+        })
+    }
+
+    fn show_files(&mut self, key: &str, visit: &mut VisitFile<'_>) {
+        if let Self::InFile { path, material } = self {
+            visit(key, NamedFile { path, material: Some(material) });
         }
     }
 }
@@ -158,7 +273,7 @@ impl Field for Sampled {
 
     fn show_files(&mut self, path: &str, visit: &mut VisitFile<'_>) {
         if let Self::InFile(file) = self {
-            visit(path, file);
+            visit(path, NamedFile::of(file));
         }
     }
 

@@ -16,10 +16,10 @@ mod tests;
 mod value;
 
 pub use error::KeyError;
-pub use field::{Field, Given, Item, Sampled, VisitFile};
+pub use field::{Direction, Field, Given, Item, MaterialName, NamedFile, Sampled, VisitFile};
 pub use nearest::{hint, nearest, unknown};
 pub use samples::Samples;
-pub use table::{Table, find};
+pub use table::{Table, find, joined};
 pub use value::{Value, number_text, quoted, vector_text};
 
 /// What the name of an image begins with that comes with the program.
@@ -80,6 +80,19 @@ pub enum KeyKind {
     Tensor,
     /// A complex number: a number, or [re, im].
     Complex,
+    /// A direction: three numbers, or an angle in the x, y plane, counted from x to y.
+    Direction,
+    /// Three directions at right angles.
+    Axes,
+    /// A material: the name of one that comes with the program, or of a file of the
+    /// refractiveindex.info database (`.yml`). A scene file's reader makes names of files relative
+    /// to its folder.
+    Material,
+    /// The same, or a table with keys of its own.
+    MaterialOrTable {
+        /// Its keys.
+        keys: &'static [Key],
+    },
     /// The corners of a polygon, [x, y] each, three at least.
     Polygon,
     /// Numbers on a grid: rows of numbers, or the name of a file that holds them. A scene file's
@@ -107,7 +120,10 @@ impl KeyKind {
     #[must_use]
     pub fn inner_keys(self) -> Option<&'static [Key]> {
         match self {
-            Self::Table { keys } | Self::FlagOrTable { keys } | Self::Tables { keys } => Some(keys),
+            Self::Table { keys }
+            | Self::FlagOrTable { keys }
+            | Self::MaterialOrTable { keys }
+            | Self::Tables { keys } => Some(keys),
             _ => None,
         }
     }

@@ -56,6 +56,23 @@ pub fn find(keys: &'static [Key], name: &str) -> Result<&'static Key, KeyError> 
     })
 }
 
+/// The keys of two tables, one after the other.
+///
+/// # Panics
+///
+/// If they are not `N` together, or none.
+#[must_use]
+pub const fn joined<const N: usize>(first: &[Key], second: &[Key]) -> [Key; N] {
+    assert!(first.len() + second.len() == N, "all keys");
+    let mut keys = [first[0]; N];
+    let mut i = 0;
+    while i < N {
+        keys[i] = if i < first.len() { first[i] } else { second[i - first.len()] };
+        i += 1;
+    }
+    keys
+}
+
 /// Makes a table of a scene: the struct, its keys, its defaults, and the way from values to fields
 /// and back.
 ///
@@ -97,12 +114,13 @@ pub fn find(keys: &'static [Key], name: &str) -> Result<&'static Key, KeyError> 
 /// ```
 ///
 /// The type of a field is one of those that implement [`Field`](crate::keys::Field); a table may
-/// hold tables.
+/// hold tables. `pub struct Plate with words: Words` adds the keys of the table `Words` to its own,
+/// in the field `words`.
 #[macro_export]
 macro_rules! table {
     (
         $(#[doc = $about:literal])+
-        pub struct $table:ident {
+        pub struct $table:ident $(with $more:ident : $more_type:ty)? {
             $(
                 $(#[doc = $doc:literal])+
                 $name:ident : $type:ty $(= $default:expr)? $(, $unit:literal)? $(, in $limits:expr)?
@@ -118,11 +136,18 @@ macro_rules! table {
                 $(#[doc = concat!("\n\nIn ", $unit, ".")])?
                 pub $name: $type,
             )*
+            $(
+                /// The keys that it shares with other tables.
+                pub $more: $more_type,
+            )?
         }
 
         impl Default for $table {
             fn default() -> Self {
-                Self { $($name: $crate::table!(@default $($default)?),)* }
+                Self {
+                    $($name: $crate::table!(@default $($default)?),)*
+                    $($more: <$more_type>::default(),)?
+                }
             }
         }
 
@@ -130,15 +155,24 @@ macro_rules! table {
             /// What it is, in a sentence or two.
             pub const SUMMARY: &'static str = concat!($($about),+).trim_ascii_start();
 
+            /// Whether it has a key of that name.
+            #[must_use]
+            pub fn has(name: &str) -> bool {
+                Self::KEYS.iter().any(|key| key.name == name)
+            }
+
             /// Its keys.
-            pub const KEYS: &'static [$crate::keys::Key] = &[$($crate::keys::Key {
-                name: stringify!($name),
-                doc: concat!($($doc),+).trim_ascii_start(),
-                kind: <$type as $crate::keys::Field>::KIND,
-                unit: concat!($($unit)?),
-                limits: $crate::table!(@limits $($limits)?),
-                default: || $crate::keys::Field::value(&Self::default().$name),
-            }),*];
+            pub const KEYS: &'static [$crate::keys::Key] = {
+                const OWN: &[$crate::keys::Key] = &[$($crate::keys::Key {
+                    name: stringify!($name),
+                    doc: concat!($($doc),+).trim_ascii_start(),
+                    kind: <$type as $crate::keys::Field>::KIND,
+                    unit: concat!($($unit)?),
+                    limits: $crate::table!(@limits $($limits)?),
+                    default: || $crate::keys::Field::value(&$table::default().$name),
+                }),*];
+                $crate::table!(@keys OWN $(, $more_type)?)
+            };
         }
 
         impl $crate::keys::Table for $table {
@@ -149,13 +183,15 @@ macro_rules! table {
             fn get(&self, name: &str) -> Option<$crate::keys::Value> {
                 match name {
                     $(stringify!($name) => $crate::keys::Field::value(&self.$name),)*
+                    $(_ if <$more_type>::has(name) => $crate::keys::Table::get(&self.$more, name),)?
                     _ => None,
                 }
             }
 
             fn written(&self) -> Vec<(String, $crate::keys::Value)> {
                 let entries = [$((stringify!($name), $crate::keys::Field::written_value(&self.$name))),*];
-                entries.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))).collect()
+                let own = entries.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
+                own$(.chain($crate::keys::Table::written(&self.$more)))?.collect()
             }
 
             fn put(&mut self, name: &str, value: &$crate::keys::Value) -> bool {
@@ -163,6 +199,7 @@ macro_rules! table {
                     $(stringify!($name) => {
                         $crate::keys::Field::from_value(value).map(|field| self.$name = field).is_some()
                     })*
+                    $(_ if <$more_type>::has(name) => $crate::keys::Table::put(&mut self.$more, name, value),)?
                     _ => false,
                 }
             }
@@ -173,6 +210,7 @@ macro_rules! table {
                     &format!("{path}.{}", stringify!($name)),
                     visit,
                 );)*
+                $($crate::keys::Table::visit_files(&mut self.$more, path, visit);)?
             }
 
             fn check(&self) -> Result<(), $crate::keys::KeyError> {
@@ -181,6 +219,7 @@ macro_rules! table {
                     $crate::keys::Field::check_against(&self.$name, key)
                         .map_err(|message| $crate::keys::KeyError::at(key.name, message))?;
                 })*
+                $($crate::keys::Table::check(&self.$more)?;)?
                 Ok(())
             }
         }
@@ -209,6 +248,12 @@ macro_rules! table {
             const LIST: $crate::keys::KeyKind = $crate::keys::KeyKind::Tables { keys: Self::KEYS };
         }
     };
+    (@keys $own:ident) => { $own };
+    (@keys $own:ident, $more:ty) => {{
+        const ALL: [$crate::keys::Key; $own.len() + <$more>::KEYS.len()] =
+            $crate::keys::joined($own, <$more>::KEYS);
+        &ALL
+    }};
     (@default) => { Default::default() };
     (@default $default:expr) => { $default };
     (@limits) => { $crate::keys::ValueRange::Finite };
