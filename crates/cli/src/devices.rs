@@ -28,7 +28,7 @@ fn as_json(entry: &Entry) -> Value {
         "keys": keys_as_json(entry.keys),
         "media": (entry.device)().build(Request::default()).map(|structure| structure.media()).unwrap_or_default(),
     });
-    for fact in (entry.device)().facts() {
+    for fact in (entry.device)().facts(Request::default()) {
         object[fact.name] = match fact.value {
             FactValue::Number(number) => json!(number),
             FactValue::Numbers(numbers) => json!(numbers),
@@ -69,7 +69,7 @@ fn describe(entry: &Entry, text: &mut String) -> std::fmt::Result {
     writeln!(text)?;
     let device = (entry.device)();
     let media = device.build(Request::default()).ok().and_then(|structure| media_line(&structure));
-    for line in media.into_iter().chain(fact_lines(device.facts())) {
+    for line in media.into_iter().chain(fact_lines(device.facts(Request::default()))) {
         writeln!(text, "  {line}")?;
     }
     writeln!(text)

@@ -57,6 +57,9 @@ fn allowed(key: &Key) -> String {
     match (key.kind, key.limits) {
         // The rows that follow name the keys.
         (KeyKind::Table { .. }, _) => "a table".to_owned(),
+        (KeyKind::MaterialOrTable { .. }, _) => {
+            "the name of a material or of a .yml file, or a table".to_owned()
+        }
         (KeyKind::FlagOrTable { .. }, _) => "true, false or a table".to_owned(),
         (KeyKind::Tables { .. }, _) => "a list of tables".to_owned(),
         (_, ValueRange::Finite) => key.describe(),

@@ -16,6 +16,7 @@ pub mod input;
 pub mod interface_json;
 pub mod json;
 pub mod material;
+pub mod material_file;
 pub mod measure;
 pub mod memory;
 pub mod output;

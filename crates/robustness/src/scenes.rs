@@ -8,6 +8,7 @@ use cloakroom::scene::{Placement, TABLES};
 use cloakroom::{render, scene_file};
 use glam::{DMat3, DVec3};
 use optics::geometry::Pose;
+use optics::material::Material;
 use std::f64::consts::TAU;
 use std::fmt::Display;
 use std::path::Path;
@@ -134,6 +135,16 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
             0 => draws.number(1.5, limits).into(),
             _ => Value::from([1.5, 2.0].map(|usual| draws.number(usual, limits)).to_vec()),
         },
+        KeyKind::Direction => match draws.below(2) {
+            0 => draws.number(30.0, limits).into(),
+            _ => vector(draws),
+        },
+        KeyKind::Axes => Value::Array(vec![vector(draws), vector(draws), vector(draws)]),
+        KeyKind::Material => material(draws),
+        KeyKind::MaterialOrTable { keys } => match draws.below(3) {
+            0 => Value::Table(table(draws, keys, 60)),
+            _ => material(draws),
+        },
         KeyKind::Polygon => polygon(draws),
         KeyKind::Samples => samples(draws, limits),
         KeyKind::Table { keys } => Value::Table(table(draws, keys, 128)),
@@ -164,6 +175,20 @@ fn layer(draws: &mut Draws<'_>) -> Value {
         ("thickness_nm".to_owned(), thickness.into()),
         (name.to_owned(), value),
     ]))
+}
+
+/// A material, as a rule one that comes with the program.
+fn material(draws: &mut Draws<'_>) -> Value {
+    if draws.chance(20) {
+        return (*draws.pick(&["glas", "", "nowhere.yml", "/"])).into();
+    }
+    (*draws.pick(&Material::NAMES)).into()
+}
+
+/// Three numbers, as a rule those of a direction.
+fn vector(draws: &mut Draws<'_>) -> Value {
+    let number = |draws: &mut Draws<'_>| draws.number(1.0, ValueRange::Within(-1.0, 1.0));
+    vec![number(draws), number(draws), number(draws)].into()
 }
 
 /// Numbers on a grid, mostly near one another.

@@ -38,7 +38,7 @@ pub(crate) fn greeting(opened: &Opened) -> Value {
 /// A kind of device: its keys as the schema of scene files describes them, and how it can be shown.
 fn kind(entry: &Entry, schema: &Value) -> Value {
     let built = |show, core| {
-        let request = Request { show, core, length: None };
+        let request = Request { show, core, ..Request::default() };
         (entry.device)().build(request).ok()
     };
     let shows: Vec<&str> = [("cloak", Show::Cloak), ("bare", Show::Bare), ("mirror", Show::Mirror)]

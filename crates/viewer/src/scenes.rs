@@ -4,6 +4,7 @@
 use crate::protocol::SceneTables;
 use cloakroom::index_file::IndexFile;
 use cloakroom::json;
+use cloakroom::material_file::MaterialFile;
 use cloakroom::photograph::ImageSource;
 use cloakroom::scene_file::{self, Loaded};
 use serde_json::Value;
@@ -34,6 +35,7 @@ pub(crate) struct Opened {
     files: Vec<PathBuf>,
     /// Those of an index, read: a pipe gives its bytes once only.
     index_files: Vec<Arc<IndexFile>>,
+    material_files: Vec<Arc<MaterialFile>>,
 }
 
 impl Opened {
@@ -58,7 +60,8 @@ impl Opened {
         let devices = loaded.scene.devices.iter();
         let index_files = devices.filter_map(|device| device.index_file.clone()).collect();
         let (name, folder) = (name.to_owned(), folder.to_owned());
-        Ok(Self { tables, name, folder, files: known, index_files })
+        let material_files = loaded.scene.material_files.clone();
+        Ok(Self { tables, name, folder, files: known, index_files, material_files })
     }
 
     /// Where a photograph of that name would lie, were it a file of the scene's folder. Uploaded
@@ -79,8 +82,14 @@ impl Opened {
         uploaded: Option<&ImageSource>,
     ) -> Result<Loaded, String> {
         let tables = json::value(&Value::Object(scene.clone()))?;
-        let mut loaded = scene_file::assemble_with(&self.index_files, tables, NAME, &self.folder)
-            .map_err(|error| error.message.clone())?;
+        let mut loaded = scene_file::assemble_with(
+            &self.index_files,
+            &self.material_files,
+            tables,
+            NAME,
+            &self.folder,
+        )
+        .map_err(|error| error.message.clone())?;
         // What the page has brought is the photograph and nothing else: on a body or around the
         // scene a file of that name would be looked for.
         let brought = uploaded == Some(&loaded.scene.photograph.image);

@@ -327,7 +327,9 @@ impl<'s> PreparedScene<'s> {
         let digest = |(key, path): (String, PathBuf)| {
             let index_files = || scene.devices.iter().filter_map(|d| d.index_file.as_ref());
             let of_index = || index_files().find_map(|file| file.digest_of(&path));
-            Some((key, images.digest_of(&path).or_else(of_index)?))
+            let material = scene.material_files.iter().find(|file| file.is_at(&path));
+            let of_material = || material.map(|file| file.digest);
+            Some((key, images.digest_of(&path).or_else(of_index).or_else(of_material)?))
         };
         let files = scene.files().into_iter().filter_map(digest).collect();
         images.keep(&scene.body_images().collect::<Vec<_>>());

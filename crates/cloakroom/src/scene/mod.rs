@@ -23,7 +23,8 @@ pub use tables::{
 use crate::device::{self, AnyDevice, Entry, Fact, Metal, Request, Structure};
 pub use crate::device::{Core, Show};
 use crate::index_file::{self, IndexFile};
-use crate::keys::{Field, KeyError, KeyKind, Table, Value, VisitFile, vector_text};
+use crate::keys::{Field, KeyError, KeyKind, NamedFile, Table, Value, VisitFile, vector_text};
+use crate::material_file::MaterialFile;
 use crate::photograph::ImageSource;
 use cloakroom_trace::key;
 use std::borrow::Cow;
@@ -49,6 +50,8 @@ pub struct Scene {
     pub receiver: Receiver,
     /// The devices, in the order of the scene file.
     pub devices: Vec<DeviceSettings>,
+    /// The files of materials that have been read for it.
+    pub material_files: Vec<Arc<MaterialFile>>,
     /// The scene as TOML, overrides applied: it goes into the metadata of pictures.
     pub source: String,
 }
@@ -65,6 +68,8 @@ pub struct DeviceSettings {
     /// The file of its index, where one has been read for it; another is read where the device is
     /// built.
     pub index_file: Option<Arc<IndexFile>>,
+    /// The wavelength of the scene's light in vacuum, nm.
+    pub wavelength_nm: f64,
 }
 
 impl Scene {
@@ -81,12 +86,13 @@ impl Scene {
     pub fn files(&self) -> Vec<(String, PathBuf)> {
         let mut files = Vec::new();
         let mut visit =
-            |path: &str, file: &mut PathBuf| files.push((path.to_owned(), file.clone()));
+            |path: &str, file: NamedFile<'_>| files.push((path.to_owned(), file.path.clone()));
         self.photograph.clone().visit_files("photograph", &mut visit);
         self.surroundings.clone().visit_files("surroundings", &mut visit);
         for (number, device) in self.devices.iter().enumerate() {
             let path = format!("device.{number}");
             device.device.clone().table_mut().visit_files(&path, &mut visit);
+            device.placement.clone().visit_files(&path, &mut visit);
         }
         files
     }
@@ -211,7 +217,7 @@ impl DeviceSettings {
         let message = format!("{} with these keys has no core that could be open", self.kind());
         let closed = self.has_open_core() && structure.hull.filled.is_none();
         KeyError::refuse_if(closed, key!(Placement.core), message)?;
-        let layers = device::layers(key!(Placement.coating), coating)?;
+        let layers = device::layers(key!(Placement.coating), coating, self.wavelength_nm)?;
         if *show != Show::Cloak {
             return Ok(structure);
         }
@@ -228,13 +234,12 @@ impl DeviceSettings {
     ///
     /// As [`Self::structure`].
     pub fn built(&self, show: Show) -> Result<Structure, KeyError> {
-        let Placement { core, length, .. } = self.placement;
-        let request = Request { show, core, length };
-        let structure = self.with_files_read()?.build(request)?;
+        let structure = self.with_files_read()?.build(self.request(show))?;
         let (key, metal) = (key!(Placement.metal), self.placement.metal.as_ref());
         let message = "metal is false; a cloak without metal has core = \"open\"";
         KeyError::refuse_if(metal == Some(&Metal::None), key, message)?;
-        let Some(metal) = metal.map(Metal::medium).transpose()?.flatten() else {
+        let metal = metal.map(|metal| metal.medium(self.wavelength_nm)).transpose()?.flatten();
+        let Some(metal) = metal else {
             return Ok(structure);
         };
         let (structure, found) = structure.of_metal(metal);
@@ -247,13 +252,20 @@ impl DeviceSettings {
     /// [`Device::facts`](crate::device::Device::facts).
     #[must_use]
     pub fn facts(&self) -> Vec<Fact> {
-        self.with_files_read().map(|device| device.facts()).unwrap_or_default()
+        let request = self.request(Show::Cloak);
+        self.with_files_read().map(|device| device.facts(request)).unwrap_or_default()
     }
 
     /// A device of a kind with everything at its default.
     pub fn new(entry: &Entry) -> Self {
         let (device, placement) = ((entry.device)(), Placement::default());
-        Self { device, placement, draw: 0, index_file: None }
+        let wavelength_nm = Request::DESIGN_WAVELENGTH_NM;
+        Self { device, placement, draw: 0, index_file: None, wavelength_nm }
+    }
+
+    fn request(&self, show: Show) -> Request {
+        let Placement { core, length, .. } = self.placement;
+        Request { show, core, length, wavelength_nm: self.wavelength_nm }
     }
 
     fn with_files_read(&self) -> Result<Cow<'_, AnyDevice>, KeyError> {
@@ -326,7 +338,7 @@ impl Field for ImageSource {
 
     fn show_files(&mut self, path: &str, visit: &mut VisitFile<'_>) {
         if let Self::File(file) = self {
-            visit(path, file);
+            visit(path, NamedFile::of(file));
         }
     }
 }

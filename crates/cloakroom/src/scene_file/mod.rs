@@ -25,6 +25,7 @@ pub use schema::schema;
 use crate::index_file::{IndexFile, IndexFiles};
 use crate::input::{read_file, read_up_to};
 use crate::keys::Value;
+use crate::material_file::{MaterialFile, MaterialFiles};
 use crate::scene::Scene;
 
 /// Longer files are no scenes.
@@ -46,7 +47,14 @@ pub struct SceneText {
     text: String,
     name: String,
     base_folder: PathBuf,
-    index_files: IndexFiles,
+    files: NamedFiles,
+}
+
+/// The files that a scene names and that are read with it.
+#[derive(Debug, Default)]
+struct NamedFiles {
+    indices: IndexFiles,
+    materials: MaterialFiles,
 }
 
 impl SceneText {
@@ -58,7 +66,7 @@ impl SceneText {
             text: text.to_owned(),
             name: name.to_owned(),
             base_folder: base_folder.to_owned(),
-            index_files: IndexFiles::default(),
+            files: NamedFiles::default(),
         }
     }
 
@@ -81,10 +89,10 @@ impl SceneText {
     ///
     /// If the text is not valid TOML, or says something a scene cannot say.
     pub fn scene(&self, overrides: &[Override]) -> Result<Loaded, SceneFileError> {
-        let Self { text, name, base_folder, index_files } = self;
+        let Self { text, name, base_folder, files } = self;
         let mut locations = Locations::new(name, text, overrides);
         let root = tree::parse(&mut locations)?;
-        let mut loaded = read_values(root, base_folder, locations, index_files)?;
+        let mut loaded = read_values(root, base_folder, locations, files)?;
         if overrides.is_empty() {
             loaded.scene.source.clone_from(text);
         }
@@ -139,7 +147,7 @@ pub fn assemble(
     overrides: &[Override],
 ) -> Result<Loaded, SceneFileError> {
     let locations = Locations::new(name, "", overrides);
-    read_values(tables, base_folder, locations, &IndexFiles::default())
+    read_values(tables, base_folder, locations, &NamedFiles::default())
 }
 
 /// The same without opening a file: the indices of devices are those of files that have been read
@@ -150,22 +158,27 @@ pub fn assemble(
 /// As [`assemble`].
 pub fn assemble_with(
     index_files: &[Arc<IndexFile>],
+    material_files: &[Arc<MaterialFile>],
     tables: Value,
     name: &str,
     base_folder: &Path,
 ) -> Result<Loaded, SceneFileError> {
     let locations = Locations::new(name, "", &[]);
-    read_values(tables, base_folder, locations, &IndexFiles::only(index_files))
+    let files = NamedFiles {
+        indices: IndexFiles::only(index_files),
+        materials: MaterialFiles::only(material_files),
+    };
+    read_values(tables, base_folder, locations, &files)
 }
 
 fn read_values(
     mut root: Value,
     base_folder: &Path,
     mut locations: Locations,
-    index_files: &IndexFiles,
+    files: &NamedFiles,
 ) -> Result<Loaded, SceneFileError> {
     overrides::apply(&mut root, &mut locations)?;
-    let mut scene = read::read(&root, &locations, base_folder, index_files)?;
+    let mut scene = read::read(&root, &locations, base_folder, files)?;
     scene.source = text(&root);
     Ok(Loaded { scene, locations })
 }

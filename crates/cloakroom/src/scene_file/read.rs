@@ -1,11 +1,12 @@
 //! From the values of a scene file to the scene.
 
 use std::path::Path;
+use std::sync::Arc;
 
+use super::NamedFiles;
 use super::error::SceneFileError;
 use super::locations::{Locations, join};
-use crate::device::{AnyDevice, CATALOGUE};
-use crate::index_file::IndexFiles;
+use crate::device::{AnyDevice, CATALOGUE, Request};
 use crate::keys::{Key, KeyKind, Table, Value, hint, quoted, unknown};
 use crate::scene::{Camera, CameraSettings, DeviceSettings, Placement, Scene, TABLES};
 
@@ -22,9 +23,9 @@ pub(super) fn read(
     root: &Value,
     locations: &Locations,
     base_folder: &Path,
-    index_files: &IndexFiles,
+    files: &NamedFiles,
 ) -> Result<Scene, SceneFileError> {
-    let reader = Reader { locations, base_folder, index_files };
+    let reader = Reader { locations, base_folder, files };
     let mut scene = Scene::default();
     for (name, value) in root.as_table().unwrap_or_default() {
         if name == DEVICES {
@@ -48,7 +49,7 @@ pub(super) fn read(
             return Err(locations.error_at_key(&path, message));
         };
         let held = reader.held(&[table.keys()], entries, &[], name, &format!(" in [{name}]"))?;
-        reader.fill(&mut [table], &held, name);
+        reader.fill(&mut [table], &held, name)?;
         let checked = match name.as_str() {
             "camera" => Camera::new(camera).map(|camera| scene.camera = camera),
             "photograph" => scene.photograph.pose().map(drop),
@@ -58,6 +59,10 @@ pub(super) fn read(
         };
         checked.map_err(|error| locations.key_error(name, &error))?;
     }
+    for device in &mut scene.devices {
+        device.wavelength_nm = scene.light.wavelength_nm;
+    }
+    scene.material_files = files.materials.read();
     Ok(scene)
 }
 
@@ -65,7 +70,7 @@ pub(super) fn read(
 struct Reader<'a> {
     locations: &'a Locations,
     base_folder: &'a Path,
-    index_files: &'a IndexFiles,
+    files: &'a NamedFiles,
 }
 
 impl Reader<'_> {
@@ -88,9 +93,10 @@ impl Reader<'_> {
         let lists = [device.table().keys(), Placement::KEYS];
         let place = format!(" in a {}", device.kind());
         let held = self.held(&lists, entries, &[KIND], path, &place)?;
-        self.fill(&mut [device.table_mut(), &mut placement], &held, path);
-        let index_file = self.index_files.of(&device);
-        let settings = DeviceSettings { device, placement, draw: 0, index_file };
+        self.fill(&mut [device.table_mut(), &mut placement], &held, path)?;
+        let index_file = self.files.indices.of(&device);
+        let wavelength_nm = Request::DESIGN_WAVELENGTH_NM;
+        let settings = DeviceSettings { device, placement, draw: 0, index_file, wavelength_nm };
         settings.pose().map_err(|error| self.locations.key_error(path, &error))?;
         Ok(settings)
     }
@@ -158,9 +164,11 @@ impl Reader<'_> {
             _ => Err(self.locations.error_at(path, key.wrong_type(value))),
         };
         match (key.kind, value) {
-            (KeyKind::Table { keys }, _) | (KeyKind::FlagOrTable { keys }, Value::Table(_)) => {
-                inner(keys, value, path)
-            }
+            (KeyKind::Table { keys }, _)
+            | (
+                KeyKind::FlagOrTable { keys } | KeyKind::MaterialOrTable { keys },
+                Value::Table(_),
+            ) => inner(keys, value, path),
             (KeyKind::Tables { keys }, Value::List(items)) => {
                 let items = items.iter().enumerate();
                 let held = items.map(|(i, item)| inner(keys, item, &join(path, &i.to_string())));
@@ -170,20 +178,33 @@ impl Reader<'_> {
         }
     }
 
-    /// Gives each value to the table that has its key, and makes names of files relative to the
-    /// scene file; those in overrides are relative to the current folder.
-    fn fill(&self, tables: &mut [&mut dyn Table], held: &Entries, path: &str) {
+    /// Gives each value to the table that has its key, makes names of files relative to the scene
+    /// file (those in overrides are relative to the current folder), and reads materials.
+    fn fill(
+        &self,
+        tables: &mut [&mut dyn Table],
+        held: &Entries,
+        path: &str,
+    ) -> Result<(), SceneFileError> {
         for (name, value) in held {
             // One of them has the key, for the value has been held against it.
             tables.iter_mut().any(|table| table.put(name, value));
         }
+        let mut fault = None;
         for table in tables {
             table.visit_files(path, &mut |path, file| {
                 if !self.locations.is_overridden(path) {
-                    *file = self.base_folder.join(&*file);
+                    *file.path = self.base_folder.join(&*file.path);
+                }
+                if let Some(material) = file.material {
+                    match self.files.materials.at(file.path) {
+                        Ok(read) => *material = Some(Arc::clone(&read.material)),
+                        Err(message) => fault = fault.take().or(Some((path.to_owned(), message))),
+                    }
                 }
             });
         }
+        fault.map_or(Ok(()), |(path, message)| Err(self.locations.error_at(&path, message)))
     }
 }
 

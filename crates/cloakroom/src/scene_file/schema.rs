@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use crate::device::{CATALOGUE, Entry};
 use crate::keys::{Key, KeyKind, ValueRange};
 use crate::scene::{Placement, TABLES};
+use optics::material::Material;
 
 /// The JSON Schema (draft 2020-12) of a scene file, made from the lists of keys and the catalogue
 /// of devices.
@@ -95,6 +96,12 @@ fn property(key: &Key) -> Value {
         KeyKind::ChoiceOrNumber { options } => json!({ "anyOf": [{ "enum": options }, number] }),
         KeyKind::Tensor => tensor(number),
         KeyKind::Complex => json!({ "anyOf": [number, list(number.clone(), 2)] }),
+        KeyKind::Direction => json!({ "anyOf": [number, list(json!({ "type": "number" }), 3)] }),
+        KeyKind::Axes => list(list(json!({ "type": "number" }), 3), 3),
+        KeyKind::Material => material_name(),
+        KeyKind::MaterialOrTable { keys } => {
+            json!({ "anyOf": [material_name(), inner_table(keys)] })
+        }
         KeyKind::Polygon => json!({ "type": "array", "items": list(number, 2), "minItems": 3 }),
         KeyKind::Samples => {
             let row = json!({ "type": "array", "items": number, "minItems": 1 });
@@ -116,6 +123,12 @@ fn property(key: &Key) -> Value {
         property["default"] = crate::json::json(default);
     }
     property
+}
+
+/// The name of a material that comes with the program, or of a file.
+fn material_name() -> Value {
+    let file = json!({ "type": "string", "pattern": "\\.[yY][aA]?[mM][lL]$" });
+    json!({ "anyOf": [{ "enum": Material::NAMES }, file] })
 }
 
 /// A number, [re, im], or 3 x 3 of either.

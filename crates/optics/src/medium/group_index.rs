@@ -1,9 +1,10 @@
 //! How late a pulse comes at least.
 
 use super::principal_axes::principal_axes;
-use super::{Medium, RayWave};
+use super::{Medium, RayWave, Tensor};
 use crate::wave::{ComplexVector, poynting};
 use glam::{DMat3, DVec3};
+use num_complex::Complex64;
 
 impl Medium {
     /// The speed of light over that of a pulse along its ray, of a wave with the wave vector `p`
@@ -46,6 +47,56 @@ impl Medium {
         let energy =
             energy(&self.real.permittivity, electric) + energy(&self.real.permeability, magnetic);
         energy / (2.0 * poynting(electric, magnetic).length())
+    }
+
+    /// The same by the medium's own law, given as d(ωε)/dω and d(ωµ)/dω. Where it absorbs there is
+    /// no velocity of energy: of isotropic media the group index is then d(ω Re N)/dω, by which the
+    /// phase of a pulse changes; NaN of others.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use optics::material::Material;
+    /// use optics::medium::Medium;
+    ///
+    /// let glass = Material::named("bk7").expect("it comes with the program").ordinary.at(0.55)?;
+    /// let medium = Medium::new(glass.permittivity(), 1.0)?;
+    /// let law = [&glass.dispersive_permittivity().into(), &1.0.into()];
+    /// let group = medium.group_index(DVec3::X * glass.index.re, DVec3::Y.into(), law);
+    /// assert!((group - glass.group_index.re).abs() < 1e-14);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn group_index(
+        &self,
+        wave_vector: DVec3,
+        electric: ComplexVector,
+        [permittivity, permeability]: [&Tensor; 2],
+    ) -> f64 {
+        if self.absorbs() {
+            return match (self.complex_scalars(), permittivity.scalar(), permeability.scalar()) {
+                (Some([e, m]), Some(de), Some(dm)) => {
+                    // N² = εµ, and d(ωN)/dω = ((d(ωε)/dω) µ + ε d(ωµ)/dω)/2N.
+                    let root = (e * m).sqrt();
+                    let index = if root.im < 0.0 { -root } else { root };
+                    ((de * m + e * dm) / (2.0 * index)).re
+                }
+                _ => f64::NAN,
+            };
+        }
+        let energy = |tensor: &DMat3, field: ComplexVector| {
+            field.re.dot(*tensor * field.re) + field.im.dot(*tensor * field.im)
+        };
+        let magnetic = self.magnetic_field(wave_vector, electric);
+        let energy = energy(&permittivity.re, electric) + energy(&permeability.re, magnetic);
+        energy / (2.0 * poynting(electric, magnetic).length())
+    }
+
+    /// ε and µ, if they are scalars.
+    fn complex_scalars(&self) -> Option<[Complex64; 2]> {
+        let (permittivity, permeability) = self.tensors();
+        Some([permittivity.scalar()?, permeability.scalar()?])
     }
 
     /// That of a wave whose ray is given, over what the phase takes along the ray.

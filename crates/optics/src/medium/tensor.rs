@@ -21,7 +21,7 @@ pub struct Tensor {
 }
 
 impl Tensor {
-    /// value (1 - a aᵀ) + along a aᵀ: `along` in the direction of the unit vector a, `across`
+    /// across (1 - a aᵀ) + along a aᵀ: `along` in the direction of the unit vector a, `across`
     /// perpendicular to it.
     #[must_use]
     pub fn uniaxial(across: Complex64, along: Complex64, axis: DVec3) -> Self {
@@ -99,6 +99,12 @@ impl Tensor {
         std::array::from_fn(|i| {
             std::array::from_fn(|j| Complex64::new(self.re.col(j)[i], self.im.col(j)[i]))
         })
+    }
+
+    /// The number that it is a multiple of unity by, if it is one.
+    pub(super) fn scalar(&self) -> Option<Complex64> {
+        let value = Complex64::new(self.re.x_axis.x, self.im.x_axis.x);
+        (*self == value.into()).then_some(value)
     }
 
     fn trace(&self) -> Complex64 {

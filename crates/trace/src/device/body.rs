@@ -5,8 +5,8 @@
 //! air between.
 
 use super::{
-    Body, Coating, Convex, Device, Fact, FarSide, HomogeneousRegion, Hull, Region, RegionBorder,
-    Request, Shape, Structure, Surface,
+    Body, Coating, Convex, Device, DispersiveMedium, Fact, FarSide, HomogeneousRegion, Hull,
+    MediumWords, Region, RegionBorder, Request, Shape, Structure, Surface,
 };
 use crate::key;
 use crate::keys::{Given, KeyError, ValueRange};

@@ -35,7 +35,9 @@ impl CoatingLayer {
             Some(found) => found.medium,
             None => {
                 let missing = || {
-                    KeyError::general("this layer has no medium: give it an `index`, a `material` or a `permittivity`")
+                    KeyError::general(
+                        "this layer has no medium: give it an `index`, a `material` or a `permittivity`",
+                    )
                 };
                 let permittivity = self.permittivity.ok_or_else(missing)?;
                 Medium::new(permittivity, 1.0)

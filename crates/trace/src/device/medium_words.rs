@@ -2,7 +2,7 @@
 
 use crate::key;
 use crate::keys::{
-    Direction, Field, KeyError, KeyKind, MaterialName, Table, Value, ValueRange, VisitFile,
+    Direction, Field, KeyError, KeyKind, MaterialName, Value, ValueRange, VisitFile,
 };
 use glam::{DMat3, DVec3};
 use num_complex::Complex64;
@@ -262,9 +262,11 @@ impl UniaxialWords {
     fn medium(&self) -> Result<Medium, KeyError> {
         let key = key!(MediumWords.uniaxial);
         let index = |name: &'static str, index: Option<Complex64>| {
-            let missing = || KeyError::at(key, format!("{key} has no `{name}`: its index of refraction"));
+            let missing =
+                || KeyError::at(key, format!("{key} has no `{name}`: its index of refraction"));
             let index = index.ok_or_else(missing)?;
-            permittivity(name, index).map_err(|error| KeyError::at(key, format!("in {key}: {error}")))
+            permittivity(name, index)
+                .map_err(|error| KeyError::at(key, format!("in {key}: {error}")))
         };
         let ordinary = index(key!(Self.ordinary), self.ordinary)?;
         let extraordinary = index(key!(Self.extraordinary), self.extraordinary)?;
@@ -385,7 +387,8 @@ impl MaterialLaw {
             ));
         }
         let stray = self.permittivity_infinity.is_some() && !resonances;
-        let message = "permittivity_infinity goes with drude and lorentz; this law has no use for it";
+        let message =
+            "permittivity_infinity goes with drude and lorentz; this law has no use for it";
         KeyError::refuse_if(stray, key!(MediumWords.material), message)?;
         if waves {
             return self.crystal();

@@ -55,8 +55,8 @@ pub use imperfection::Imperfection;
 pub use invisible_sphere::SphereMaterial;
 pub use material_at::MaterialAt;
 pub use medium_words::{
-    BiaxialWords, DispersiveMedium, DispersiveTensors, DrudeTerm, LorentzTerm, MaterialLaw, MaterialWord,
-    MediumWords, SellmeierTerm, UniaxialWords,
+    BiaxialWords, DispersiveMedium, DispersiveTensors, DrudeTerm, LorentzTerm, MaterialLaw,
+    MaterialWord, MediumWords, SellmeierTerm, UniaxialWords,
 };
 pub use optics::geometry::REACH;
 pub use prisms::PrismOfMedium;

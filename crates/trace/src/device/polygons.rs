@@ -4,7 +4,10 @@
 //! Concave cross-sections are cut into convex regions; the cuts are no interfaces.
 
 use super::coating::reversed;
-use super::{Coating, Face, FarSide, HomogeneousRegion, Hull, Region, Shape, Structure, Surface};
+use super::{
+    Coating, DispersiveMedium, Face, FarSide, HomogeneousRegion, Hull, Region, Shape, Structure,
+    Surface,
+};
 use glam::DVec2;
 use optics::geometry::{Cap, ConvexPart, Extent, Outline, Plane, Polygon, SAME_POINT, Solid, Wall};
 use optics::interface::FilmLayer;
@@ -15,7 +18,7 @@ use std::collections::HashMap;
 pub(super) struct PolygonPart {
     pub polygon: Polygon,
     /// What fills it; `None` for metal.
-    pub medium: Option<Medium>,
+    pub medium: Option<DispersiveMedium>,
     /// What its metal is of; `None` for a perfect conductor.
     pub metal: Option<Medium>,
     /// The layers on all of its surfaces, from the outside inwards.
@@ -25,6 +28,7 @@ pub(super) struct PolygonPart {
 impl PolygonPart {
     /// A bare part of a medium, or of a perfect conductor.
     pub fn new(polygon: Polygon, medium: Option<Medium>) -> Self {
+        let medium = medium.map(DispersiveMedium::from);
         Self { polygon, medium, metal: None, film: Vec::new() }
     }
 }
@@ -119,8 +123,9 @@ pub(super) fn polygonal(
             let cap = Surface::new(Shape::Cap(cap), piece.itself);
             surfaces.push(Surface { coating: entering, ..cap });
         }
-        if let Some(medium) = parts[piece.part].medium {
-            regions.push(Region::Homogeneous(HomogeneousRegion::between(medium, faces)));
+        if let Some(DispersiveMedium { medium, law }) = parts[piece.part].medium {
+            let region = HomogeneousRegion { law, ..HomogeneousRegion::between(medium, faces) };
+            regions.push(Region::Homogeneous(region));
         }
     }
     let solids =

@@ -3,7 +3,7 @@
 //! Prisms that share a side, whole or in part, meet there without a gap.
 
 use super::polygons::{PolygonPart, polygonal};
-use super::{CoatingLayer, Device, Fact, Metal, Request, Show, Structure, coating};
+use super::{CoatingLayer, Device, Fact, MediumWords, Metal, Request, Show, Structure, coating};
 use crate::key;
 use crate::keys::{Given, KeyError, ValueRange};
 use glam::DVec2;
@@ -90,7 +90,8 @@ impl Prisms {
         }
         let mut known: Vec<DVec2> = Vec::new();
         let prisms = self.prism.iter().enumerate().map(|(number, prism)| {
-            part(prism, &mut known, wavelength_nm).map_err(|error| error.within(key!(Self.prism), number))
+            part(prism, &mut known, wavelength_nm)
+                .map_err(|error| error.within(key!(Self.prism), number))
         });
         prisms.collect()
     }

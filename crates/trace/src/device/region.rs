@@ -213,6 +213,11 @@ impl Region {
         if let Self::Homogeneous(HomogeneousRegion { group_index: Some(index), .. }) = self {
             return index * straight;
         }
+        if let Self::Homogeneous(HomogeneousRegion { law: Some(law), medium, .. }) = self {
+            let DispersiveTensors { permittivity, permeability } = law;
+            let derivatives = [permittivity, permeability];
+            return straight * medium.group_index(ray.wave_vector, electric, derivatives);
+        }
         if dispersion == Dispersion::None {
             // Where the phase runs backwards a pulse does not.
             let backwards = straight.max(-end.optical_path);

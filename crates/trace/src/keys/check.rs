@@ -61,7 +61,10 @@ impl Key {
             KeyKind::Axes => "three directions at right angles, [x, y, z] each".to_owned(),
             KeyKind::Material => "the name of a material or of a .yml file".to_owned(),
             KeyKind::MaterialOrTable { keys } => {
-                format!("the name of a material or of a .yml file, or a table with {}", key_names(keys))
+                format!(
+                    "the name of a material or of a .yml file, or a table with {}",
+                    key_names(keys)
+                )
             }
             KeyKind::Polygon => format!("three or more corners [x, y]{unit}"),
             KeyKind::Samples => "rows of numbers, or the name of a file".to_owned(),
@@ -157,8 +160,8 @@ impl Key {
                 None => self.direction(self.name, value)?.into(),
             },
             KeyKind::Axes => {
-                let items: &[Value; 3] = self
-                    .of_type(value, value.as_list().and_then(|items| items.try_into().ok()))?;
+                let items: &[Value; 3] =
+                    self.of_type(value, value.as_list().and_then(|items| items.try_into().ok()))?;
                 let name = format!("an axis of {}", self.name);
                 let axes = [0, 1, 2].map(|i| self.direction(&name, &items[i]));
                 let [x, y, z] = axes;

@@ -180,13 +180,18 @@ impl Direction {
     }
 }
 
-field!(Direction, Direction, |value| match value.as_number() {
-    Some(degrees) => Some(Self::Angle(degrees)),
-    None => numbers(value).map(|vector| Self::Along(DVec3::from_array(vector))),
-}, |direction| match direction {
-    Direction::Along(vector) => vector.to_array().into(),
-    Direction::Angle(degrees) => (*degrees).into(),
-});
+field!(
+    Direction,
+    Direction,
+    |value| match value.as_number() {
+        Some(degrees) => Some(Self::Angle(degrees)),
+        None => numbers(value).map(|vector| Self::Along(DVec3::from_array(vector))),
+    },
+    |direction| match direction {
+        Direction::Along(vector) => vector.to_array().into(),
+        Direction::Angle(degrees) => (*degrees).into(),
+    }
+);
 field!(
     [DVec3; 3],
     Axes,
