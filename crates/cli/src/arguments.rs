@@ -72,6 +72,9 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// List the materials that come with the program, or the indices of one: n, k and the group
+    /// index.
+    Materials(MaterialsArguments),
     /// List the example scenes, or copy them.
     Scenes(ScenesArguments),
     /// Print the JSON Schema of scene files, for editors, or the same as a page to read.
@@ -87,6 +90,22 @@ pub enum Command {
     },
     /// Print a manual page, as in `cloakroom manual render | man -l -`, or write them all.
     Manual(ManualArguments),
+}
+
+/// Which material, and where.
+#[derive(Args, Debug)]
+pub struct MaterialsArguments {
+    /// A material, or a file of the refractiveindex.info database (.yml).
+    pub name: Option<String>,
+    /// Wavelengths in nm, as in 400..700:50 or 488,590.
+    #[arg(long = "at", value_name = "NM", requires = "name")]
+    pub wavelengths: Option<String>,
+    /// Plot the indices into a file: SVG, PDF or PNG by its ending; may be repeated.
+    #[arg(long = "plot", value_name = "FILE", requires = "name")]
+    pub plots: Vec<PathBuf>,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// A scene and what is changed in it.

@@ -16,6 +16,7 @@ mod flux;
 mod gallery;
 mod interruption;
 mod manual;
+mod materials;
 mod merge;
 mod panels;
 mod panic_report;
@@ -81,6 +82,7 @@ fn run(command: &Command) -> Result<()> {
         Command::Verify(arguments) => verify::run(arguments),
         Command::View(arguments) => view::run(arguments),
         Command::Devices { json } => devices::run(*json),
+        Command::Materials(arguments) => materials::run(arguments),
         Command::Scenes(arguments) => scenes::run(arguments),
         Command::Completions { shell } => manual::completions(*shell),
         Command::Manual(arguments) => manual::run(arguments),

@@ -42,6 +42,12 @@ impl MaterialFile {
         Ok(Self { path: path.to_owned(), material: Arc::new(material), digest })
     }
 
+    /// What it holds.
+    #[must_use]
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+
     /// Whether that is its path, from the current folder or in full.
     pub(crate) fn is_at(&self, path: &Path) -> bool {
         let full = |path: &Path| std::path::absolute(path).ok();

@@ -5,7 +5,7 @@
 use crate::long::count;
 use crate::rays::{launches_around, strongest, try_bench};
 use cloakroom::assembly::{Assembly, MOST_DEVICES};
-use cloakroom::device::{CATALOGUE, FactValue, entry};
+use cloakroom::device::{CATALOGUE, FactValue, Request, entry};
 use cloakroom::keys::{KeyKind, Value};
 use cloakroom::render::{PreparedSceneError, assembly};
 use cloakroom::scene::{DeviceSettings, Scene};
@@ -244,7 +244,7 @@ fn more_devices_than_can_be_numbered_are_refused() {
 #[test]
 fn facts_are_finite_and_named_with_units() {
     for entry in CATALOGUE {
-        let facts = (entry.device)().facts();
+        let facts = (entry.device)().facts(Request::default());
         assert!(!facts.is_empty(), "{}", entry.kind);
         for fact in facts {
             let finite = match &fact.value {

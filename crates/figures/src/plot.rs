@@ -47,6 +47,10 @@ pub struct CurvePoint {
     pub error: f64,
 }
 
+/// Points of a curve each of which has a mark, at most; of more only so many have.
+const MOST_MARKS: usize = 100;
+const FEW_MARKS: usize = 12;
+
 /// Units of the sheet in a millimetre.
 const MM: f64 = 20.0;
 
@@ -164,7 +168,8 @@ impl PlotPanel {
             let whole = |point: &CurvePoint| point.x.is_finite() && point.y.is_finite();
             for run in curve.points.split(|point| !whole(point)) {
                 let line: Vec<DVec2> = run.iter().map(|point| place(point.x, point.y)).collect();
-                marks.extend(line.iter().map(|at| (i, *at)));
+                let step = if line.len() > MOST_MARKS { line.len() / FEW_MARKS } else { 1 };
+                marks.extend(line.iter().step_by(step).map(|at| (i, *at)));
                 drawing.add_line("curve", line, stroke(i));
                 for CurvePoint { x, y, error } in run.iter().filter(|point| point.error > 0.0) {
                     let bar = [place(*x, y - error), place(*x, y + error)];

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may panic, and say why")]
 
 use cloakroom_trace::assembly::{Assembly, Placed, Screen};
-use cloakroom_trace::device::{AnyDevice, CATALOGUE, Core, Entry, Request, Show, Structure, entry};
+use cloakroom_trace::device::{AnyDevice, CATALOGUE, Entry, Request, Show, Structure, entry};
 use cloakroom_trace::keys::Value;
 use cloakroom_trace::split_mix::mix;
 use cloakroom_trace::walk::{Launch, Leaf, LeafEnd, Limits, Outcome, Tracer};
@@ -82,7 +82,7 @@ fn structures() -> Vec<(String, Structure)> {
         .iter()
         .flat_map(|entry| requests.iter().map(move |request| (*entry, *request)))
         .filter_map(|(entry, (show, length))| {
-            let request = Request { show, length, core: Core::Metal };
+            let request = Request { show, length, ..Request::default() };
             let structure = device(entry).build(request).ok()?;
             Some((format!("{} {show:?} {length:?}", entry.kind), structure))
         })

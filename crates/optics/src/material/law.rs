@@ -106,7 +106,7 @@ pub enum IndexLawError {
 
 /// A wavelength in nm, without the rounding of the unit.
 fn nm(um: f64) -> f64 {
-    (um * 1e9).round() * 1e-6
+    (um * 1e6).round() / 1e3
 }
 
 /// How far beyond the ends of its range, relatively, a law still holds: for rounding.

@@ -19,7 +19,7 @@ pub use error::KeyError;
 pub use field::{Direction, Field, Given, Item, MaterialName, NamedFile, Sampled, VisitFile};
 pub use nearest::{hint, nearest, unknown};
 pub use samples::Samples;
-pub use table::{Table, find, joined};
+pub use table::{Table, find, has, joined};
 pub use value::{Value, number_text, quoted, vector_text};
 
 /// What the name of an image begins with that comes with the program.

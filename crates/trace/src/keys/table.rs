@@ -56,6 +56,12 @@ pub fn find(keys: &'static [Key], name: &str) -> Result<&'static Key, KeyError> 
     })
 }
 
+/// Whether one of the keys has that name.
+#[must_use]
+pub fn has(keys: &[Key], name: &str) -> bool {
+    keys.iter().any(|key| key.name == name)
+}
+
 /// The keys of two tables, one after the other.
 ///
 /// # Panics
@@ -155,12 +161,6 @@ macro_rules! table {
             /// What it is, in a sentence or two.
             pub const SUMMARY: &'static str = concat!($($about),+).trim_ascii_start();
 
-            /// Whether it has a key of that name.
-            #[must_use]
-            pub fn has(name: &str) -> bool {
-                Self::KEYS.iter().any(|key| key.name == name)
-            }
-
             /// Its keys.
             pub const KEYS: &'static [$crate::keys::Key] = {
                 const OWN: &[$crate::keys::Key] = &[$($crate::keys::Key {
@@ -183,7 +183,7 @@ macro_rules! table {
             fn get(&self, name: &str) -> Option<$crate::keys::Value> {
                 match name {
                     $(stringify!($name) => $crate::keys::Field::value(&self.$name),)*
-                    $(_ if <$more_type>::has(name) => $crate::keys::Table::get(&self.$more, name),)?
+                    $(_ if $crate::keys::has(<$more_type>::KEYS, name) => $crate::keys::Table::get(&self.$more, name),)?
                     _ => None,
                 }
             }
@@ -199,7 +199,7 @@ macro_rules! table {
                     $(stringify!($name) => {
                         $crate::keys::Field::from_value(value).map(|field| self.$name = field).is_some()
                     })*
-                    $(_ if <$more_type>::has(name) => $crate::keys::Table::put(&mut self.$more, name, value),)?
+                    $(_ if $crate::keys::has(<$more_type>::KEYS, name) => $crate::keys::Table::put(&mut self.$more, name, value),)?
                     _ => false,
                 }
             }

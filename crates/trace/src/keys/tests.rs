@@ -186,7 +186,7 @@ fn files_are_shown_with_their_keys() {
     let mut shown = Vec::new();
     table.visit_files("t", &mut |path, file| {
         shown.push(path.to_owned());
-        *file = Path::new("folder").join(&*file);
+        *file.path = Path::new("folder").join(&*file.path);
     });
     assert_eq!(shown, ["t.sky", "t.index", "t.inner.picture", "t.list.0.picture"]);
     assert_eq!(table.list[0].picture.as_deref(), Some(Path::new("folder/a.png")));

@@ -1,8 +1,8 @@
-use super::super::{Core, Request, Show};
+use super::super::{Request, Show};
 use super::*;
 
 fn built(kind: &str, show: Show, length: Option<f64>) -> Structure {
-    super::super::built(kind, &[], Request { show, length, core: Core::Metal })
+    super::super::built(kind, &[], Request { show, length, ..Request::default() })
 }
 
 fn area(contour: &Contour) -> f64 {
