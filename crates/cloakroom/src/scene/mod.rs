@@ -20,7 +20,9 @@ pub use tables::{
     TABLES, TraceSettings,
 };
 
-use crate::device::{self, AnyDevice, Entry, Fact, Metal, Request, Structure};
+use crate::device::{
+    self, AnyDevice, Dispersion, DispersionLaw, Entry, Fact, Metal, Request, Structure,
+};
 pub use crate::device::{Core, Show};
 use crate::index_file::{self, IndexFile};
 use crate::keys::{Field, KeyError, KeyKind, NamedFile, Table, Value, VisitFile, vector_text};
@@ -225,7 +227,28 @@ impl DeviceSettings {
             Some(imperfection) => imperfection.apply(structure, (number, self.draw))?,
             None => structure,
         };
+        let structure = self.dispersion_law()?.apply(structure)?;
         structure.coated(key!(Placement.coating), layers)
+    }
+
+    /// The law of its media, for the light of the scene.
+    fn dispersion_law(&self) -> Result<DispersionLaw, KeyError> {
+        let Placement { dispersion, design_wavelength_nm, resonance_nm, .. } = self.placement;
+        let key = key!(Placement.resonance_nm);
+        let word = dispersion.word();
+        let stray = resonance_nm.is_some() && dispersion != Dispersion::Lorentz;
+        let message =
+            format!("resonance_nm is that of dispersion = \"lorentz\"; \"{word}\" has none");
+        KeyError::refuse_if(stray, key, message)?;
+        let resonance_nm = resonance_nm.unwrap_or(0.5 * design_wavelength_nm);
+        let message = format!(
+            "resonance_nm is {resonance_nm} nm; it must be below the wavelength of the design, \
+             {design_wavelength_nm} nm"
+        );
+        KeyError::refuse_if(resonance_nm >= design_wavelength_nm, key, message)?;
+        let wavelength_nm = self.wavelength_nm;
+        let (kind, design_nm) = (dispersion, design_wavelength_nm);
+        Ok(DispersionLaw { kind, design_nm, resonance_nm, wavelength_nm })
     }
 
     /// The structure of one view of the device as it is designed.

@@ -1,7 +1,7 @@
 //! The tables of a scene file but a device's own.
 
 use super::Polarizer;
-use crate::device::{CoatingLayer, Core, Dispersion, Imperfection, Metal, Show};
+use crate::device::{CoatingLayer, Core, Dispersion, Imperfection, Metal, Request, Show};
 use crate::keys::{Given, Key, ValueRange};
 use crate::photograph::ImageSource;
 use cloakroom_trace::{choice, table};
@@ -202,8 +202,15 @@ table! {
         length: Option<f64>, "cm", in ValueRange::LENGTH,
         /// How its media depend on the frequency: what a pulse takes, in `group_delay` and where
         /// the phase runs backwards. `causal`: as little as causality allows, a bound for every
-        /// real device; `none`: as the phase.
+        /// real device; `none`: as the phase. `drude` and `lorentz` say what light of other
+        /// wavelengths meets, too, through what the design says at `design_wavelength_nm`. Materials
+        /// have their own laws.
         dispersion: Dispersion,
+        /// The wavelength in vacuum for which the device is designed.
+        design_wavelength_nm: f64 = Request::DESIGN_WAVELENGTH_NM, "nm", in ValueRange::Within(1e-3, 1e12),
+        /// The wavelength of the resonance of `lorentz`, below that of the design: half of it by
+        /// default.
+        resonance_nm: Option<f64>, "nm", in ValueRange::Within(1e-3, 1e12),
         /// Thin layers on all of its surfaces that face the outside, from the outside inwards; each
         /// a table with its thickness and its index or permittivity.
         coating: Vec<CoatingLayer>,
@@ -243,7 +250,7 @@ pub static TABLES: &[(&str, &[Key])] = &[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::{CATALOGUE, Request};
+    use crate::device::CATALOGUE;
     use cloakroom_trace::key;
 
     #[test]

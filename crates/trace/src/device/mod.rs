@@ -21,6 +21,7 @@ mod coating;
 mod convex;
 mod cross_section;
 mod cylinder_cloak;
+mod dispersion;
 mod double_gaussian_cloak;
 mod fisheye_hemisphere;
 mod gaussian_carpet;
@@ -50,6 +51,7 @@ pub use coating::{CoatingLayer, Metal, MetalOfIndex, layers};
 pub use convex::Convex;
 pub use cross_section::{Contour, CrossSection, Section};
 pub use cylinder_cloak::ShellMaterial;
+pub use dispersion::{Dispersion, DispersionLaw};
 pub use graded::GradedShape;
 pub use imperfection::Imperfection;
 pub use invisible_sphere::SphereMaterial;
@@ -93,16 +95,6 @@ crate::choice! {
         Metal = "metal",
         /// Air, in which bodies may stand.
         Open = "open",
-    }
-}
-
-crate::choice! {
-    /// How the medium of a device depends on the frequency: what a pulse takes.
-    pub enum Dispersion {
-        /// As little as causality allows: no device can be faster.
-        Causal = "causal",
-        /// Not at all: a pulse takes what its phase takes.
-        None = "none",
     }
 }
 
