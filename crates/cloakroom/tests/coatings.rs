@@ -424,15 +424,15 @@ fn what_is_wrong_with_a_coating_is_told() {
         |layer: &str| body(&format!("coating = [{{ index = 1.4, thickness_nm = 5 }}, {layer}]"));
     for (layer, message) in [
         ("{ index = 1.4 }", "this layer has no `thickness_nm`"),
-        ("{ thickness_nm = 4 }", "this layer has neither `index` nor `permittivity`"),
+        ("{ thickness_nm = 4 }", "this layer has no medium"),
         (
             "{ index = 1.4, thickness_nm = -4 }",
             "thickness_nm is -4 nm; it must be from 0 to 1000000",
         ),
         ("{ index = [1.4, -0.1], thickness_nm = 4 }", "n and k of n + ik must be 0 or above"),
-        ("{ index = -1.4, thickness_nm = 4 }", "n and k of n + ik must be 0 or above"),
+        ("{ index = -1.4, thickness_nm = 4 }", "has none below 0"),
         ("{ index = 0, thickness_nm = 4 }", "not both 0"),
-        ("{ index = 1.4, permittivity = 2, thickness_nm = 4 }", "a layer takes one of them"),
+        ("{ index = 1.4, permittivity = 2, thickness_nm = 4 }", "take one of them"),
         ("{ index = [1, 2, 3], thickness_nm = 4 }", "it must be a number or [re, im]"),
         ("{ permittivity = [2, -0.1], thickness_nm = 4 }", "media with gain are not supported"),
         ("{ indx = 2, thickness_nm = 4 }", "did you mean `index`?"),
@@ -462,7 +462,7 @@ fn what_is_wrong_with_a_coating_is_told() {
             "has no metal of its own",
         ),
         ("kind = \"square-cloak\"\nmetal = false".to_owned(), "core = \"open\""),
-        ("kind = \"square-cloak\"\nmetal = {}".to_owned(), "this metal has no `index`"),
+        ("kind = \"square-cloak\"\nmetal = {}".to_owned(), "this metal has neither `index` nor `material`"),
         (
             "kind = \"square-cloak\"\nmetal = 3".to_owned(),
             "it must be true, false or a table with the key index",

@@ -23,6 +23,7 @@ mod imperfection;
 #[path = "../../optics/tests/long.rs"]
 mod long;
 mod material;
+mod materials;
 mod mirror_detour;
 mod open_core;
 mod pictured_bodies;

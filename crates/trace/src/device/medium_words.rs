@@ -213,7 +213,7 @@ impl MediumWords {
             let message = match word {
                 "index" => format!(
                     "index and {tensor} are both given; the permittivity is the square of the index of a \
-                     medium that is not magnetic: take index alone, or permittivity and permeability"
+                     medium that is not magnetic: take one of them"
                 ),
                 word => format!("{word} and {tensor} are both given; a medium takes one of them"),
             };
