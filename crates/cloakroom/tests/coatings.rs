@@ -465,7 +465,7 @@ fn what_is_wrong_with_a_coating_is_told() {
         ("kind = \"square-cloak\"\nmetal = {}".to_owned(), "this metal has neither `index` nor `material`"),
         (
             "kind = \"square-cloak\"\nmetal = 3".to_owned(),
-            "it must be true, false or a table with the key index",
+            "it must be true, false or a table with the keys index, material",
         ),
         (
             "kind = \"square-cloak\"\nmetal = { index = [-1, 2] }".to_owned(),
