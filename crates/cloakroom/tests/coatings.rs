@@ -462,7 +462,10 @@ fn what_is_wrong_with_a_coating_is_told() {
             "has no metal of its own",
         ),
         ("kind = \"square-cloak\"\nmetal = false".to_owned(), "core = \"open\""),
-        ("kind = \"square-cloak\"\nmetal = {}".to_owned(), "this metal has neither `index` nor `material`"),
+        (
+            "kind = \"square-cloak\"\nmetal = {}".to_owned(),
+            "this metal has neither `index` nor `material`",
+        ),
         (
             "kind = \"square-cloak\"\nmetal = 3".to_owned(),
             "it must be true, false or a table with the keys index, material",

@@ -181,7 +181,8 @@ fn designs_have_laws_through_what_they_are() {
         assert!(if law == "drude" { more.abs() < 1e-9 } else { more > 1.0 }, "{law}: {more}");
     }
     // Pulses in the middle of (iii) are late by 43.5118 cm at least.
-    let axis = leaf(&scene("dispersion = \"drude\"", 550.0), DVec3::new(-60.0, 1e-5, 0.0), DVec3::X);
+    let axis =
+        leaf(&scene("dispersion = \"drude\"", 550.0), DVec3::new(-60.0, 1e-5, 0.0), DVec3::X);
     let late = axis.group_path.unwrap() - axis.optical_path;
     assert!((late - 43.5118).abs() < 1e-3, "{late}");
     // It is a cloak there alone; other laws leave it one at every wavelength.

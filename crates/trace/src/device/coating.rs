@@ -81,7 +81,7 @@ pub enum Metal {
     /// A perfect conductor.
     Perfect,
     /// A metal of a complex index of refraction n + ik, which keeps what it does not reflect.
-    OfIndex(MetalOfIndex),
+    OfIndex(Box<MetalOfIndex>),
 }
 
 crate::table! {
@@ -123,7 +123,7 @@ impl Field for Metal {
         match value.as_flag() {
             Some(true) => Some(Self::Perfect),
             Some(false) => Some(Self::None),
-            None => MetalOfIndex::from_value(value).map(Self::OfIndex),
+            None => MetalOfIndex::from_value(value).map(Box::new).map(Self::OfIndex),
         }
     }
 
