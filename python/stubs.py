@@ -53,7 +53,7 @@ def annotation(name: str, description: Mapping[str, Any], *, given: bool) -> str
     kind = description.get("type")
     if "anyOf" in description:
         options = dict.fromkeys(annotation(name, option, given=given) for option in description["anyOf"])
-        if name == "index":
+        if name == "index" and "str" in options:
             return "_Index" if given else "str | list[list[float]]"
         numeric = all(option in ("float", "ArrayLike", "list[Any]") for option in options)
         return ("ArrayLike" if given else "Any") if numeric else " | ".join(options)

@@ -36,13 +36,15 @@ class SquareCloak(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         kappa: float | None = ...,
         length: float | None = ...,
         material: Literal["impedance-matched", "positive-uniaxial", "negative-uniaxial"] | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         rounded: bool | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
@@ -55,7 +57,9 @@ class SquareCloak(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -68,6 +72,8 @@ class SquareCloak(Device):
     def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
@@ -84,7 +90,8 @@ class DoubleGaussianCloak(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         fresnel: bool | None = ...,
         h: float | None = ...,
         height: float | None = ...,
@@ -93,6 +100,7 @@ class DoubleGaussianCloak(Device):
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         referenced: bool | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
         w: float | None = ...,
@@ -105,7 +113,9 @@ class DoubleGaussianCloak(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def fresnel(self) -> bool: ...
     @property
@@ -123,6 +133,8 @@ class DoubleGaussianCloak(Device):
     @property
     def referenced(self) -> bool: ...
     @property
+    def resonance_nm(self) -> float | None: ...
+    @property
     def rotation(self) -> float: ...
     @property
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
@@ -138,7 +150,8 @@ class CylinderCloak(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
@@ -146,6 +159,7 @@ class CylinderCloak(Device):
         metal: bool | Mapping[str, Any] | None = ...,
         outer: float | None = ...,
         position: ArrayLike | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
@@ -156,7 +170,9 @@ class CylinderCloak(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -172,6 +188,8 @@ class CylinderCloak(Device):
     @property
     def position(self) -> list[Any]: ...
     @property
+    def resonance_nm(self) -> float | None: ...
+    @property
     def rotation(self) -> float: ...
     @property
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
@@ -183,13 +201,15 @@ class SphereCloak(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         inner: float | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         outer: float | None = ...,
         position: ArrayLike | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
@@ -200,7 +220,9 @@ class SphereCloak(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -214,6 +236,8 @@ class SphereCloak(Device):
     @property
     def position(self) -> list[Any]: ...
     @property
+    def resonance_nm(self) -> float | None: ...
+    @property
     def rotation(self) -> float: ...
     @property
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
@@ -225,13 +249,15 @@ class InvisibleSphere(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         material: Literal["graded", "regularized"] | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
@@ -242,7 +268,9 @@ class InvisibleSphere(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -256,6 +284,8 @@ class InvisibleSphere(Device):
     @property
     def radius(self) -> float: ...
     @property
+    def resonance_nm(self) -> float | None: ...
+    @property
     def rotation(self) -> float: ...
     @property
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
@@ -268,12 +298,14 @@ class BendingSphere(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
@@ -286,7 +318,9 @@ class BendingSphere(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -297,6 +331,8 @@ class BendingSphere(Device):
     def position(self) -> list[Any]: ...
     @property
     def radius(self) -> float: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
@@ -309,12 +345,14 @@ class EatonLens(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
@@ -325,7 +363,9 @@ class EatonLens(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -336,6 +376,8 @@ class EatonLens(Device):
     def position(self) -> list[Any]: ...
     @property
     def radius(self) -> float: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
@@ -348,12 +390,14 @@ class LuneburgLens(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
@@ -364,7 +408,9 @@ class LuneburgLens(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -375,6 +421,8 @@ class LuneburgLens(Device):
     def position(self) -> list[Any]: ...
     @property
     def radius(self) -> float: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
@@ -387,12 +435,14 @@ class FisheyeLens(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
@@ -403,7 +453,9 @@ class FisheyeLens(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -414,6 +466,8 @@ class FisheyeLens(Device):
     def position(self) -> list[Any]: ...
     @property
     def radius(self) -> float: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
@@ -428,13 +482,15 @@ class FisheyeHemisphere(Device):
         core: Literal["metal", "open"] | None = ...,
         cut_distance: float | None = ...,
         cut_normal: ArrayLike | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         index: float | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         radius: float | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
@@ -449,7 +505,9 @@ class FisheyeHemisphere(Device):
     @property
     def cut_normal(self) -> list[Any]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -463,6 +521,8 @@ class FisheyeHemisphere(Device):
     @property
     def radius(self) -> float: ...
     @property
+    def resonance_nm(self) -> float | None: ...
+    @property
     def rotation(self) -> float: ...
     @property
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
@@ -474,13 +534,15 @@ class MirrorDetour(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         half_length: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         offset: float | None = ...,
         position: ArrayLike | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
@@ -491,7 +553,9 @@ class MirrorDetour(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def half_length(self) -> float: ...
     @property
@@ -505,6 +569,8 @@ class MirrorDetour(Device):
     @property
     def position(self) -> list[Any]: ...
     @property
+    def resonance_nm(self) -> float | None: ...
+    @property
     def rotation(self) -> float: ...
     @property
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
@@ -516,12 +582,14 @@ class Prisms(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
         prism: Sequence[Mapping[str, Any]] | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
     ) -> None: ...
@@ -532,7 +600,9 @@ class Prisms(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -543,6 +613,8 @@ class Prisms(Device):
     def position(self) -> list[Any]: ...
     @property
     def prism(self) -> list[dict[str, Any]]: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
@@ -555,7 +627,8 @@ class Graded(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         height: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         index: _Index | None = ...,
@@ -563,6 +636,7 @@ class Graded(Device):
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         shape: Literal["rectangle", "circle"] | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
@@ -576,7 +650,9 @@ class Graded(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def height(self) -> float: ...
     @property
@@ -591,6 +667,8 @@ class Graded(Device):
     def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
@@ -607,13 +685,15 @@ class GradedBox(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         gradient: ArrayLike | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         index: float | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
         sides: ArrayLike | None = ...,
@@ -625,7 +705,9 @@ class GradedBox(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def gradient(self) -> list[Any]: ...
     @property
@@ -639,6 +721,8 @@ class GradedBox(Device):
     @property
     def position(self) -> list[Any]: ...
     @property
+    def resonance_nm(self) -> float | None: ...
+    @property
     def rotation(self) -> float: ...
     @property
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
@@ -650,41 +734,58 @@ class Body(Device):
         self,
         *,
         axis: ArrayLike | None = ...,
+        biaxial: Mapping[str, Any] | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         group_index: float | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
+        index: ArrayLike | None = ...,
         length: float | None = ...,
+        material: Literal["calcite", "quartz", "sapphire", "magnesium-fluoride", "rutile", "lithium-niobate", "bk7", "sf11", "fused-silica", "pmma", "water", "air", "silver", "gold", "aluminium"] | str | Mapping[str, Any] | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
+        optic_axis: ArrayLike | None = ...,
         permeability: ArrayLike | None = ...,
         permittivity: ArrayLike | None = ...,
         position: ArrayLike | None = ...,
         priority: int | None = ...,
         radius: float | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         shape: Literal["slab", "box", "sphere", "cylinder"] | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
         size: ArrayLike | None = ...,
         surface: Mapping[str, Any] | None = ...,
         thickness: float | None = ...,
+        uniaxial: Mapping[str, Any] | None = ...,
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
+    @property
+    def biaxial(self) -> dict[str, Any] | None: ...
     @property
     def coating(self) -> list[dict[str, Any]]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def group_index(self) -> float | None: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
+    def index(self) -> Any | None: ...
+    @property
     def length(self) -> float | None: ...
     @property
+    def material(self) -> Literal["calcite", "quartz", "sapphire", "magnesium-fluoride", "rutile", "lithium-niobate", "bk7", "sf11", "fused-silica", "pmma", "water", "air", "silver", "gold", "aluminium"] | str | dict[str, Any] | None: ...
+    @property
     def metal(self) -> bool | dict[str, Any] | None: ...
+    @property
+    def optic_axis(self) -> Any | None: ...
     @property
     def permeability(self) -> Any: ...
     @property
@@ -695,6 +796,8 @@ class Body(Device):
     def priority(self) -> int: ...
     @property
     def radius(self) -> float: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
@@ -707,6 +810,8 @@ class Body(Device):
     def surface(self) -> dict[str, Any] | None: ...
     @property
     def thickness(self) -> float: ...
+    @property
+    def uniaxial(self) -> dict[str, Any] | None: ...
 
 class Polarizer(Device):
     def __init__(
@@ -716,11 +821,13 @@ class Polarizer(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
         width: float | None = ...,
@@ -734,7 +841,9 @@ class Polarizer(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -743,6 +852,8 @@ class Polarizer(Device):
     def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
@@ -757,7 +868,8 @@ class GaussianCarpet(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
@@ -765,6 +877,7 @@ class GaussianCarpet(Device):
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
         w: float | None = ...,
@@ -777,7 +890,9 @@ class GaussianCarpet(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def floor(self) -> float: ...
     @property
@@ -792,6 +907,8 @@ class GaussianCarpet(Device):
     def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
@@ -808,7 +925,8 @@ class GratingCarpet(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
@@ -817,6 +935,7 @@ class GratingCarpet(Device):
         metal: bool | Mapping[str, Any] | None = ...,
         period: float | None = ...,
         position: ArrayLike | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
         width: float | None = ...,
@@ -828,7 +947,9 @@ class GratingCarpet(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def floor(self) -> float: ...
     @property
@@ -846,6 +967,8 @@ class GratingCarpet(Device):
     @property
     def position(self) -> list[Any]: ...
     @property
+    def resonance_nm(self) -> float | None: ...
+    @property
     def rotation(self) -> float: ...
     @property
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
@@ -859,7 +982,8 @@ class QuasiConformalCarpet(Device):
         axis: ArrayLike | None = ...,
         coating: Sequence[Mapping[str, Any]] | None = ...,
         core: Literal["metal", "open"] | None = ...,
-        dispersion: Literal["causal", "none"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
         floor: float | None = ...,
         h: float | None = ...,
         height: float | None = ...,
@@ -867,6 +991,7 @@ class QuasiConformalCarpet(Device):
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         position: ArrayLike | None = ...,
+        resonance_nm: float | None = ...,
         rotation: float | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
         w: float | None = ...,
@@ -879,7 +1004,9 @@ class QuasiConformalCarpet(Device):
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
-    def dispersion(self) -> Literal["causal", "none"]: ...
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
     @property
     def floor(self) -> float: ...
     @property
@@ -894,6 +1021,8 @@ class QuasiConformalCarpet(Device):
     def metal(self) -> bool | dict[str, Any] | None: ...
     @property
     def position(self) -> list[Any]: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
