@@ -151,6 +151,13 @@ fn formula(entry: &Yaml, number: &str) -> Result<(Dispersion, [f64; 2]), String>
     let number = number.ok_or("its formula is none of 1 to 9")?;
     let coefficients =
         numbers(&entry["coefficients"]).ok_or("the coefficients of its formula are no numbers")?;
+    // c1, and pairs; where one of a pair is missing, which is it?
+    if matches!(number, 1 | 2 | 3 | 5 | 6) && coefficients.len() % 2 == 0 {
+        return Err(format!(
+            "formula {number} has the coefficients c1 and pairs of others, and there are {}",
+            coefficients.len()
+        ));
+    }
     let range = [&entry["wavelength_range"], &entry["range"]].into_iter().find_map(numbers);
     let range_um = range.and_then(|range| <[f64; 2]>::try_from(range).ok());
     let range_um = range_um.filter(|[least, most]| *least > 0.0 && least <= most);
@@ -252,6 +259,10 @@ mod tests {
             (
                 "  - type: formula 1\n    wavelength_range: 1 2\n    coefficients: 0 x\n",
                 "no numbers",
+            ),
+            (
+                "  - type: formula 2\n    wavelength_range: 1 2\n    coefficients: 3 2 0.1 1.8\n",
+                "pairs of others, and there are 4",
             ),
             (
                 "  - type: tabulated n\n    data: |\n        0.4 1.5\n        0.3 1.5\n",
