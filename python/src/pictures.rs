@@ -4,6 +4,7 @@ use crate::errors::{Failure, unreadable, value_error};
 use crate::memory::check_copy;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
+use cloakroom::color::BINS;
 use cloakroom::output::{self, Channel, Picture, Samples};
 use cloakroom::render as rendering;
 use cloakroom::render::{ChannelSet, Tile};
@@ -62,6 +63,11 @@ fn arrays(py: Python<'_>, picture: Picture) -> Result<Arrays<'_>, Failure> {
             Samples::Rgb(values) => {
                 let colors = Array3::from_shape_vec((shape.0, shape.1, 3), values.into_flattened());
                 channels.set_item(name, colors?.into_pyarray(py))?;
+            }
+            Samples::Bins(values) => {
+                let shape = (shape.0, shape.1, BINS);
+                let bins = Array3::from_shape_vec(shape, values.into_flattened());
+                channels.set_item(name, bins?.into_pyarray(py))?;
             }
         }
     }
@@ -168,10 +174,16 @@ pub fn picture_of(
             let values: Vec<f32> = colors.as_array().iter().copied().collect();
             let (texels, _) = values.as_chunks::<3>();
             (colors.shape().to_vec(), Samples::Rgb(texels.to_vec()))
+        } else if let Ok(spectra) = array.extract::<PyReadonlyArray3<'_, f32>>()
+            && spectra.shape()[2] == BINS
+        {
+            let values: Vec<f32> = spectra.as_array().iter().copied().collect();
+            let (texels, _) = values.as_chunks::<BINS>();
+            (spectra.shape().to_vec(), Samples::Bins(texels.to_vec()))
         } else {
             let message = format!(
                 "channel `{name}` must be an array of float32 or float64, (height, width), or of float32, \
-                 (height, width, 3)"
+                 (height, width, 3) or (height, width, 16)"
             );
             return Err(PyTypeError::new_err(message).into());
         };

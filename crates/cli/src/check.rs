@@ -49,7 +49,8 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
     }
     for (index, thickness) in prepared.assembly.devices().iter().map(Placed::thickness).enumerate()
     {
-        let waves = thickness.map(|thickness| thickness / (scene.light.wavelength_nm * CM_PER_NM));
+        let waves =
+            thickness.map(|thickness| thickness / (scene.light.wavelength_nm() * CM_PER_NM));
         if let Some(waves) = waves.filter(|waves| *waves < THIN) {
             writeln!(
                 text,

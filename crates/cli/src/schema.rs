@@ -60,6 +60,11 @@ fn allowed(key: &Key) -> String {
         (KeyKind::MaterialOrTable { .. }, _) => {
             "the name of a material or of a .yml file, or a table".to_owned()
         }
+        (KeyKind::ChoiceNumberOrTable { options, .. }, limits) => {
+            let words: Vec<_> = options.iter().map(|word| format!("\"{word}\"")).collect();
+            let unit = if key.unit.is_empty() { String::new() } else { format!(" ({})", key.unit) };
+            format!("{}, a number{unit} {}, or a table", words.join(", "), limits.describe())
+        }
         (KeyKind::FlagOrTable { .. }, _) => "true, false or a table".to_owned(),
         (KeyKind::Tables { .. }, _) => "a list of tables".to_owned(),
         (_, ValueRange::Finite) => key.describe(),

@@ -10,6 +10,7 @@
 //! Lengths are in cm, angles in degrees, times in ns, unless a name says otherwise; axes and signs
 //! are those of [`optics::wave`].
 
+pub mod color;
 pub mod flux;
 pub mod index_file;
 pub mod input;

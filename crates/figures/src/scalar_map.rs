@@ -50,7 +50,7 @@ impl ScalarMap {
         let height = u32::try_from(picture.height).map_err(|_| wrong_size())?;
         // A few units in the last place.
         let rounding = match samples {
-            Samples::F32(_) | Samples::Rgb(_) => 8.0 * f64::from(f32::EPSILON),
+            Samples::F32(_) | Samples::Rgb(_) | Samples::Bins(_) => 8.0 * f64::from(f32::EPSILON),
             Samples::F64(_) => 8.0 * f64::EPSILON,
         };
         let of_all = || ColorScale::new((0..samples.len()).map(|i| samples.get(i)), rounding);

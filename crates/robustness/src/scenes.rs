@@ -130,6 +130,11 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
             0 => (*draws.pick(options)).into(),
             _ => draws.number(30.0, ValueRange::Finite).into(),
         },
+        KeyKind::ChoiceNumberOrTable { options, keys } => match draws.below(4) {
+            0 | 1 => (*draws.pick(options)).into(),
+            2 => draws.number(550.0, limits).into(),
+            _ => Value::Table(table(draws, keys, 120)),
+        },
         KeyKind::Tensor => tensor(draws),
         KeyKind::Complex => match draws.below(2) {
             0 => draws.number(1.5, limits).into(),

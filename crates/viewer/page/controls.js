@@ -76,6 +76,7 @@ function control(name, schema, value, set) {
 function rowsOf(name, schema, value, set) {
   if (schema.type === "object") return [group(name, schema, value, set)];
   if (schema.type === "array" && schema.maxItems === 3 && schema.items.type === "number") {
+    if (!(value ?? schema.default)) return [row(name, schema, parts(name, ["1", "2", "3"], [], (all) => set(all, false)))];
     const components = name === "color" ? ["red", "green", "blue"] : ["x", "y", "z"];
     const all = [...(value ?? schema.default)];
     const limits = { color: { maximum: 1 }, axis: { minimum: -1, maximum: 1 } }[name];
@@ -90,14 +91,52 @@ function rowsOf(name, schema, value, set) {
     });
   }
   if (schema.type === "array" && schema.items.type === "object") return [layers(name, schema, value, set)];
-  const table = schema.anyOf?.find((one) => one.type === "object");
-  if (table) {
+  const forms = formsOf(schema);
+  const table = forms.find((one) => one.type === "object");
+  const named = forms.find((one) => one.enum);
+  if (table && !named) {
     const given = typeof value === "object" ? value : undefined;
     return [group(name, { ...table, description: schema.description }, given, set)];
+  }
+  // A material: a table or a file is for the scene file to say.
+  if (named && !forms.some((one) => one.type === "number")) {
+    const own = value === undefined || named.enum.includes(value) ? [] : [OWN];
+    const shown = own.length > 0 ? OWN : (value ?? "");
+    const select = choice(["", ...own, ...named.enum], shown, (chosen) => {
+      set(chosen === OWN ? value : chosen === "" ? undefined : chosen, false);
+    });
+    select[0].setAttribute("aria-label", words(name));
+    return [row(name, schema, select)];
   }
   if (isComplex(schema)) return [row(name, schema, complex(name, value, set))];
   const controls = control(name, schema, value, set);
   return controls ? [row(name, schema, controls)] : [];
+}
+
+// A material of the scene file's own.
+const OWN = "as written";
+
+// The forms that a key may have, those of its forms, too.
+function formsOf(schema) {
+  return (schema.anyOf ?? []).flatMap((one) => (one.anyOf ? formsOf(one) : [one]));
+}
+
+// Numbers that are given together or not at all.
+function parts(name, labels, given, set) {
+  const all = [...given];
+  return labels.map((label, i) => {
+    const field = document.createElement("input");
+    field.type = "number";
+    field.step = "any";
+    field.value = all[i] ?? "";
+    field.placeholder = label;
+    field.setAttribute("aria-label", `${words(name)}, ${label}`);
+    field.addEventListener("change", () => {
+      all[i] = field.value === "" ? undefined : field.valueAsNumber;
+      set(labels.every((_, j) => Number.isFinite(all[j])) ? [...all] : undefined);
+    });
+    return field;
+  });
 }
 
 // Whether a key is a number or a pair of them and nothing else: an index n or [n, k].
@@ -108,21 +147,12 @@ function isComplex(schema) {
 
 // The parts of an index; without a first one there is none.
 function complex(name, value, set) {
-  const parts = typeof value === "number" ? [value, 0] : [...(value ?? [])];
-  return ["n", "k"].map((part, i) => {
-    const field = document.createElement("input");
-    field.type = "number";
-    field.step = "any";
-    field.value = parts[i] ?? "";
-    field.placeholder = part;
-    field.setAttribute("aria-label", `${words(name)}, ${part}`);
-    field.addEventListener("change", () => {
-      parts[i] = field.value === "" ? undefined : field.valueAsNumber;
-      const [n, k] = parts;
-      set(n === undefined ? undefined : k ? [n, k] : n, false);
-    });
-    return field;
+  const given = typeof value === "number" ? [value, 0] : [...(value ?? [])];
+  const fields = parts(name, ["n", "k"], given, () => {
+    const [n, k] = fields.map((field) => (field.value === "" ? undefined : field.valueAsNumber));
+    set(n === undefined ? undefined : k ? [n, k] : n, false);
   });
+  return fields;
 }
 
 // A layer that is added to a coating: a quarter of a green wave of magnesium fluoride.
@@ -225,13 +255,20 @@ function row(name, schema, controls) {
   return line;
 }
 
+// Ways to say what a medium is.
+const MEDIUM = ["permittivity", "index", "uniaxial", "biaxial", "material"];
+
 // Builds the controls of a device; `changed` is told whether more changes will follow.
 export function buildControls(device, kind, changed) {
   const rows = [];
   if (device && kind) {
     const setter = (name) => (value, moving) => {
       if (value === undefined) delete device[name];
-      else device[name] = value;
+      else {
+        // A medium is said in one way.
+        if (MEDIUM.includes(name)) for (const other of MEDIUM) delete device[other];
+        device[name] = value;
+      }
       changed(moving);
     };
     const core = kind.core_can_be_open ? ["core"] : [];

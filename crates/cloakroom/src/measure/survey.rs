@@ -101,14 +101,17 @@ fn surveyed<const N: usize>(
             || {
                 let limits = ideal.limits;
                 let ideal = Tracer::new(&ideal.assembly, limits).with_screen(ideal.screen);
-                (BlockTracer::new(prepared, &detection, 1), ideal)
+                ([BlockTracer::new(prepared, &detection, 1)], ideal)
             },
-            |(tracer, ideal), (band, sights)| {
+            |(tracers, ideal), (band, sights)| {
                 let first = band * BAND_ROWS as usize;
                 let size = [width, sights.len() / width];
                 let stop = supervision.stop;
-                tracer.for_blocks([0, first], size, stop, |tracer, [left, top], traced| {
-                    let block = sights_of_block(tracer, ideal, &detection, [left, top], traced);
+                let corner = [0, first];
+                BlockTracer::for_blocks(tracers, corner, size, stop, |tracers, corner, traced| {
+                    let [left, top] = corner;
+                    let tracer = &mut tracers[0];
+                    let block = sights_of_block(tracer, ideal, &detection, corner, traced[0]);
                     for (sight, [x, y]) in block.into_iter().zip(PIXELS) {
                         let (column, row) = (left + x, top + y - first);
                         if column < width && row < size[1] {

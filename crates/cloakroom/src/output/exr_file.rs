@@ -1,6 +1,7 @@
 //! EXR: every channel in single precision.
 
 use super::{Channel, OutputError, Picture, Samples, write_whole};
+use crate::color::BIN_EDGES_NM;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes, Layer,
     LayerAttributes, Text, Vec2, WritableImage,
@@ -8,8 +9,8 @@ use exr::prelude::{
 use std::io;
 use std::path::Path;
 
-/// Writes every channel as 32-bit floats under its name, colors as `.R`, `.G` and `.B` of it, and
-/// the metadata as text attributes.
+/// Writes every channel as 32-bit floats under its name, colors as `.R`, `.G` and `.B` of it, bins of
+/// a spectrum by their edges as `.430-450nm`, and the metadata as text attributes.
 ///
 /// # Errors
 ///
@@ -26,6 +27,13 @@ pub(super) fn write_exr(picture: &Picture, path: &Path) -> Result<(), OutputErro
             let color = |i: usize| values.iter().map(|rgb| rgb[i]).collect();
             let colors = ["R", "G", "B"].into_iter().enumerate();
             colors.map(|(i, word)| plane(&format!("{name}.{word}"), color(i))).collect()
+        }
+        Samples::Bins(values) => {
+            let bin = |i: usize| values.iter().map(|bins| bins[i]).collect();
+            let edges = BIN_EDGES_NM.windows(2).enumerate();
+            edges
+                .map(|(i, edges)| plane(&format!("{name}.{}-{}nm", edges[0], edges[1]), bin(i)))
+                .collect()
         }
     };
     let channels = picture.channels.iter().flat_map(planes).collect();

@@ -2,6 +2,7 @@
 //! (height, width, 3).
 
 use super::{OutputError, Picture, Samples, WriteSeek, write_whole};
+use crate::color::BINS;
 use ndarray::{ArrayView, ArrayView1, Dimension, StrideShape};
 use ndarray_npy::{NpzWriter, WritableElement};
 use serde_json::{Map, Value};
@@ -111,7 +112,8 @@ fn write_archive(
     npz.writer.finish().map(drop).map_err(io::Error::other)
 }
 
-/// Writes every channel as an array (height, width) under its name, and the metadata.
+/// Writes every channel as an array (height, width) under its name, a
+/// spectrum as (height, width, 16), and the metadata.
 ///
 /// # Errors
 ///
@@ -124,6 +126,9 @@ pub(super) fn write_picture(picture: &Picture, path: &Path) -> Result<(), Output
             Samples::F64(values) => npz.add(&channel.name, (height, width), values),
             Samples::Rgb(values) => {
                 npz.add(&channel.name, (height, width, 3), values.as_flattened())
+            }
+            Samples::Bins(values) => {
+                npz.add(&channel.name, (height, width, BINS), values.as_flattened())
             }
         })
     })

@@ -1,5 +1,7 @@
 //! A finished picture: named channels, and what goes into the metadata of its files.
 
+use crate::color::BINS;
+
 /// A picture of named channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
@@ -29,6 +31,8 @@ pub enum Samples {
     F32(Vec<f32>),
     /// Red, green and blue in single precision: the picture of one quantity in linear light.
     Rgb(Vec<[f32; 3]>),
+    /// The light in each bin of wavelengths in single precision.
+    Bins(Vec<[f32; BINS]>),
     /// In double precision: times, whose differences go down to yoctoseconds.
     F64(Vec<f64>),
 }
@@ -56,12 +60,13 @@ impl Picture {
 }
 
 impl Samples {
-    /// How many numbers there are: three for a color.
+    /// How many numbers there are: three for a color, one for each bin of a spectrum.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
             Self::F32(values) => values.len(),
             Self::Rgb(values) => 3 * values.len(),
+            Self::Bins(values) => BINS * values.len(),
             Self::F64(values) => values.len(),
         }
     }
@@ -70,7 +75,7 @@ impl Samples {
     #[must_use]
     pub fn bytes(&self) -> usize {
         match self {
-            Self::F32(_) | Self::Rgb(_) => 4 * self.len(),
+            Self::F32(_) | Self::Rgb(_) | Self::Bins(_) => 4 * self.len(),
             Self::F64(_) => 8 * self.len(),
         }
     }
@@ -88,6 +93,7 @@ impl Samples {
         match self {
             Self::F32(values) => f64::from(values[index]),
             Self::Rgb(values) => f64::from(values[index / 3][index % 3]),
+            Self::Bins(values) => f64::from(values[index / BINS][index % BINS]),
             Self::F64(values) => values[index],
         }
     }

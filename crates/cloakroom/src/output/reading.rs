@@ -1,6 +1,7 @@
 //! Pictures read back from files.
 
 use super::{Channel, Picture, RgbImage, Samples, png_texts};
+use crate::color::BINS;
 use crate::memory;
 use ndarray::{ArrayView, Dimension, Ix1, Ix2, Ix3};
 use ndarray_npy::{ViewElement, ViewNpyError, ViewNpyExt};
@@ -139,6 +140,10 @@ impl Npy {
         }
         if let Ok(array) = self.array::<f32, Ix3>() {
             let (height, width, colors) = array.dim();
+            if colors == BINS {
+                let (bins, _) = array.as_slice().unwrap_or_default().as_chunks::<BINS>();
+                return Ok(Some(([height, width], Samples::Bins(bins.to_vec()))));
+            }
             if colors != 3 {
                 return Ok(None);
             }

@@ -13,6 +13,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Rows of a band of a picture: those of a row of patches.
 pub(crate) const BAND_ROWS: u32 = patch::SIDE as u32;
 
+/// The most wavelengths at which a picture is traced, and once more for what is not a color.
+pub(super) const MOST_TRACERS: usize = 32;
+
+/// Of each tracer the share of a patch that it is to trace, if that is known.
+type Shares = [Option<f64>; MOST_TRACERS];
+
 /// One thread's tracers.
 pub(crate) struct BlockTracer<'a, const N: usize> {
     pub prepared: &'a PreparedScene<'a>,
@@ -51,62 +57,79 @@ impl<'a, const N: usize> BlockTracer<'a, N> {
     }
 
     /// Goes through the blocks of a rectangle of the picture, patch by patch, with the share of each
-    /// block that is to be traced. A block may reach beyond the rectangle.
+    /// block that each of the tracers is to trace. A block may reach beyond the rectangle.
     ///
     /// # Errors
     ///
     /// If the work was stopped.
     pub fn for_blocks(
-        &mut self,
+        tracers: &mut [Self],
         corner: [usize; 2],
         size: [usize; 2],
         stop: &AtomicBool,
-        mut take: impl FnMut(&mut Self, [usize; 2], f64) -> Result<(), Stopped>,
+        mut take: impl FnMut(&mut [Self], [usize; 2], &[f64]) -> Result<(), Stopped>,
     ) -> Result<(), Stopped> {
         // Patches are those of the whole picture, and may reach beyond the rectangle.
-        let side = self.side();
+        let side = Self::common_side(tracers);
         let [left, top] = corner.map(|corner| corner / side * side);
         let is_seen = |patch: Patch| !patch.part_of(corner, size).iter().any(Range::is_empty);
         let is_stopped = || stop.load(Ordering::Relaxed);
-        let mut take = |this: &mut Self, patch: Patch, traced: f64| {
+        let mut take = |tracers: &mut [Self], patch: Patch, traced: &[f64]| {
             let [columns, rows] = patch.part_of(corner, size);
             rows.step_by(2).try_for_each(|top| {
-                columns.clone().step_by(2).try_for_each(|left| take(this, [left, top], traced))
+                columns.clone().step_by(2).try_for_each(|left| take(tracers, [left, top], traced))
             })
         };
         for top in (top..corner[1] + size[1]).step_by(side) {
             for left in (left..corner[0] + size[0]).step_by(side) {
                 let patch = Patch { corner: [left, top], size: [side; 2] };
                 let is_wanted = |patch| is_seen(patch) && !is_stopped();
-                self.divide((patch, 0), &is_wanted, &mut take)?;
+                Self::divide(tracers, (patch, 0), &[None; MOST_TRACERS], &is_wanted, &mut take)?;
             }
         }
         if is_stopped() { Err(Stopped) } else { Ok(()) }
     }
 
-    /// Divides a patch as far as is worthwhile, and does to each part, of which some share is to be
-    /// traced, what is to be done; parts that are not wanted are left out.
+    /// Width and height of the largest patches of all the tracers.
+    pub(super) fn common_side(tracers: &[Self]) -> usize {
+        tracers.iter().map(Self::side).min().unwrap_or(patch::SIDE)
+    }
+
+    /// Divides a patch as far as is worthwhile, and does to each part, of which the tracers are to trace
+    /// some share each, what is to be done; parts that are not wanted are left out. `known` are the shares of
+    /// the tracers for which no part of the patch is to be looked at again.
     pub(super) fn divide(
-        &mut self,
+        tracers: &mut [Self],
         (patch, level): (Patch, usize),
+        known: &Shares,
         is_wanted: &impl Fn(Patch) -> bool,
-        take: &mut impl FnMut(&mut Self, Patch, f64) -> Result<(), Stopped>,
+        take: &mut impl FnMut(&mut [Self], Patch, &[f64]) -> Result<(), Stopped>,
     ) -> Result<(), Stopped> {
         if !is_wanted(patch) {
             return Ok(());
         }
-        let mut traced = 1.0;
-        if let Some(patches) = &mut self.patches
-            && patches.fit(patch, level) == Fit::Shared
-        {
-            if let Some(halves) = patches.division() {
-                return halves
-                    .into_iter()
-                    .try_for_each(|half| self.divide((half, level + 1), is_wanted, take));
+        let (mut shares, mut division) = (*known, None);
+        for (tracer, share) in tracers.iter_mut().zip(&mut shares) {
+            if share.is_some() {
+                continue;
             }
-            traced = patches.traced();
+            *share = Some(1.0);
+            if let Some(patches) = &mut tracer.patches
+                && patches.fit(patch, level) == Fit::Shared
+            {
+                let halves = patches.division();
+                division = division.or(halves);
+                *share = halves.is_none().then(|| patches.traced());
+            }
         }
-        take(self, patch, traced)
+        if let Some(halves) = division {
+            return halves.into_iter().try_for_each(|half| {
+                Self::divide(tracers, (half, level + 1), &shares, is_wanted, take)
+            });
+        }
+        let traced = shares.map(|share| share.unwrap_or(1.0));
+        let count = tracers.len();
+        take(tracers, patch, &traced[..count])
     }
 
     /// Interpolates the leaves of the rays through four points of the picture, a block of a patch of

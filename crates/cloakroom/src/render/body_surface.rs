@@ -76,6 +76,18 @@ impl BodySurface {
         Ok(Some(Self { pose: placed.pose, texture }))
     }
 
+    /// The outward unit normal at a point of the surface, where that matters for what it shows.
+    pub fn normal(&self, point: DVec3) -> Option<DVec3> {
+        let local = self.pose.to_local(point);
+        let normal = match &self.texture {
+            Texture::Color(_) => return None,
+            Texture::Ball(_) => local.normalize_or_zero(),
+            Texture::Box(half, _) => on_box(local, *half).normal,
+            Texture::Cylinder(cylinder, _) => on_cylinder(local, cylinder).normal,
+        };
+        Some(self.pose.vector_to_world(normal))
+    }
+
     /// Linear light from a point of the surface. `steps` says, for the normal of the tangent plane
     /// there, how far away (cm) rays one sample further along the axes of the camera's picture come
     /// to that plane.

@@ -1,5 +1,6 @@
 //! The named channels of a picture.
 
+use crate::color::BINS;
 use crate::output::Samples;
 use crate::scene::PictureSettings;
 
@@ -63,6 +64,9 @@ pub enum ChannelKind {
     /// Stokes parameter S0 to S3 of the light that arrives at the camera's polarizer, in color
     /// ([`optics::wave::arriving_stokes`] says with which signs).
     Stokes(usize),
+    /// The light of each of [`color::BINS`](crate::color::BINS) bins of wavelengths, as a share of the
+    /// power of the lamp that is seen.
+    Spectrum,
     /// Of the power that enters a uniaxial medium through the first surface met, the share in the
     /// extraordinary wave; NaN where none does.
     ExtraordinaryShare,
@@ -73,7 +77,7 @@ pub enum ChannelKind {
 impl ChannelKind {
     /// All channels in the order of files, with their names there: those that every file of data
     /// holds, then those that a scene must ask for.
-    const NAMES: [(Self, &str); 25] = [
+    const NAMES: [(Self, &str); 26] = [
         (Self::Image(0), "R"),
         (Self::Image(1), "G"),
         (Self::Image(2), "B"),
@@ -99,12 +103,26 @@ impl ChannelKind {
         (Self::GroupDelay, "group_delay"),
         (Self::GroupDelaySpread, "group_delay_spread"),
         (Self::GroupDelayDifference, "group_delay_difference"),
+        (Self::Spectrum, "spectrum"),
     ];
 
     /// Its name in files.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(channel, _)| *channel == self).map_or("", |(_, name)| name)
+    }
+
+    /// Whether it is of colors, which may be traced each by itself.
+    #[must_use]
+    pub fn is_color(self) -> bool {
+        matches!(
+            self,
+            Self::Image(_)
+                | Self::Horizontal(_)
+                | Self::Vertical(_)
+                | Self::Stokes(_)
+                | Self::Spectrum
+        )
     }
 
     /// Its samples before anything is seen.
@@ -119,6 +137,7 @@ impl ChannelKind {
             | Self::GroupDelaySpread
             | Self::GroupDelayDifference => Samples::F64(vec![0.0; pixels]),
             Self::Stokes(_) => Samples::Rgb(vec![[0.0; 3]; pixels]),
+            Self::Spectrum => Samples::Bins(vec![[0.0; BINS]; pixels]),
             _ => Samples::F32(vec![0.0; pixels]),
         }
     }
@@ -147,6 +166,7 @@ impl ChannelKind {
         // The word with which a scene asks for a channel, where it must.
         let asked = |channel: &Self| match channel {
             Self::Stokes(_) => picture.asks_for("stokes"),
+            Self::Spectrum => picture.asks_for("spectrum"),
             Self::GroupDelay | Self::GroupDelaySpread | Self::GroupDelayDifference => {
                 picture.asks_for_group_delay()
             }

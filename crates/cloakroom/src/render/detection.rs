@@ -27,6 +27,10 @@ pub(crate) struct Detection<const N: usize> {
     pub stokes: bool,
     /// Whether the first surface is looked at on its own.
     pub first_face: bool,
+    /// Whether the light of each bin of wavelengths is wanted.
+    pub spectrum: bool,
+    /// Whether shares of the power are wanted.
+    shares: bool,
 }
 
 const HORIZONTAL: [f64; 2] = [1.0, 0.0];
@@ -64,6 +68,8 @@ impl<const N: usize> Detection<N> {
             group_delays: false,
             stokes: false,
             first_face: false,
+            spectrum: false,
+            shares: true,
         }
     }
 
@@ -79,9 +85,22 @@ impl<const N: usize> Detection<N> {
             group_delays: everything && picture.asks_for_group_delay(),
             alone: wanted == ChannelSet::Polarizers,
             stokes: self.separate && asked("stokes"),
+            spectrum: asked("spectrum"),
+            shares: everything || wanted == ChannelSet::Measures,
             first_face: asked("extraordinary_share") || asked("first_face_reflectance"),
             ..self
         }
+    }
+
+    /// Whether anything is wanted that is no color.
+    pub fn has_numbers(&self) -> bool {
+        self.shares || self.times || self.group_delays || self.first_face
+    }
+
+    /// The same for colors alone.
+    pub fn of_colors(&self) -> Self {
+        let (times, exact_times, shares) = (false, false, false);
+        Self { times, exact_times, shares, group_delays: false, first_face: false, ..*self }
     }
 
     /// The ray to launch for a camera ray.

@@ -1,8 +1,8 @@
 //! How long a picture will take.
 
+use super::block_tracer::MOST_TRACERS;
 use super::detection::Detection;
 use super::patch::Patch;
-use super::pixel::Pixel;
 use super::{BlockTracer, ChannelSet, Exposer, PreparedScene};
 use std::time::{Duration, Instant};
 
@@ -28,6 +28,11 @@ const BLOCKS: usize = 12;
 /// A prime above the number of patches: its multiples visit them all, here and there in the picture.
 const STRIDE: usize = 1_000_003;
 
+/// How many rays of samples tracers have followed.
+fn walks_of(tracers: &[BlockTracer<'_, 2>]) -> f64 {
+    tracers.iter().map(|tracer| tracer.walks).sum()
+}
+
 /// Estimates what rendering the image will take: patches here and there in the picture are rendered
 /// in part and timed, as many as two seconds take.
 #[must_use]
@@ -35,8 +40,8 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
     let camera = &prepared.scene.camera;
     let size = camera.resolution.map(|side| side as usize);
     let detection = Detection::UNPOLARIZED.with_options(ChannelSet::Image, &prepared.scene.picture);
-    let (mut exposer, mut tracer) = Exposer::new(prepared, &detection);
-    let side = tracer.side();
+    let (mut exposer, mut tracers) = Exposer::new(prepared, [&detection, &detection]);
+    let side = BlockTracer::common_side(&tracers);
     let [columns, rows] = size.map(|pixels| pixels.div_ceil(side));
     let start = Instant::now();
     let (mut looked_at, mut seconds, mut walks) = (0.0, 0.0, 0.0);
@@ -50,8 +55,8 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
         let began = Instant::now();
         // What exposing the blocks took, and would take of all.
         let (mut exposing, mut all) = (0.0, 0.0);
-        let mut expose = |tracer: &mut BlockTracer<'_, 2>, patch: Patch, traced: f64| {
-            let (began, walked) = (Instant::now(), tracer.walks);
+        let mut expose = |tracers: &mut [BlockTracer<'_, 2>], patch: Patch, traced: &[f64]| {
+            let (began, walked) = (Instant::now(), walks_of(tracers));
             let [across, down] =
                 patch.part_of([0; 2], size).map(|range| (range.start, range.len().div_ceil(2)));
             let blocks = across.1 * down.1;
@@ -61,22 +66,23 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
             let count = taken.len() as f64;
             for block in taken {
                 let corner = [across.0 + block % across.1 * 2, down.0 + block / across.1 * 2];
-                exposer.expose_block(tracer, corner, 0, traced, &mut [Pixel::default(); 4]);
+                exposer.expose_block(tracers, corner, 0, traced, &mut Default::default());
             }
             let took = began.elapsed().as_secs_f64();
             let scale = blocks as f64 / count * f64::from(camera.samples);
             exposing += took;
             all += took * scale;
-            walks += (tracer.walks - walked) * scale;
+            walks += (walks_of(tracers) - walked) * scale;
             Ok(())
         };
         let patch = Patch { corner, size: [side; 2] };
-        let looked = tracer.divide((patch, 0), &is_seen, &mut expose);
+        let unknown = &[None; MOST_TRACERS];
+        let looked = BlockTracer::divide(&mut tracers, (patch, 0), unknown, &is_seen, &mut expose);
         debug_assert!(looked.is_ok(), "nothing stops it");
         seconds += began.elapsed().as_secs_f64() - exposing + all;
         looked_at += 1.0;
     }
-    walks += tracer.walks_at_nodes();
+    walks += tracers.iter().map(BlockTracer::walks_at_nodes).sum::<f64>();
     let scale = (columns * rows) as f64 / looked_at;
     Estimate {
         seconds: seconds * scale / rayon::current_num_threads() as f64,

@@ -3,7 +3,7 @@
 use super::detection::Detection;
 use super::interference::Interference;
 use super::pixel::{Pixel, Pulses};
-use super::prepared_scene::PreparedScene;
+use super::prepared_scene::{PreparedScene, Surroundings};
 use crate::scene::CameraRay;
 use crate::trace::{FirstFace, Leaf, Outcome};
 use glam::{DQuat, DVec3};
@@ -109,6 +109,119 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
         pixel.times.add(pulses, empty);
         pixel.group_delays.add(group_pulses, empty);
     }
+}
+
+/// What a leaf sees something of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Look {
+    /// The photograph.
+    Photograph,
+    /// The opaque body of that number among the devices.
+    Body(u16),
+    /// What is around.
+    Surroundings,
+}
+
+/// Where a leaf looks: a place (u, v) on the photograph, a point of a body's surface, or a direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight {
+    pub at: DVec3,
+    /// What that changes by from a pixel to the next, across the picture and down.
+    pub steps: [DVec3; 2],
+}
+
+/// Where a leaf of a ray looks, given the ray and its neighbours across and down.
+pub(super) fn look<const N: usize>(
+    prepared: &PreparedScene<'_>,
+    [here, across, down]: [&Traced<'_, N>; 3],
+    number: usize,
+) -> (Look, Sight) {
+    let leaf = &here.leaves[number];
+    let beside =
+        [across, down].map(|neighbour| Neighbour { here, number, leaf, neighbour, alone: None });
+    let lines =
+        || beside.each_ref().map(|beside| beside.twin_line().unwrap_or_else(|| beside.moved()));
+    match (leaf.body(), leaf.distance_to(&prepared.screen)) {
+        (Some(body), _) => {
+            let normal = prepared.body_surface(body).and_then(|body| body.normal(leaf.position));
+            let steps = normal.map_or([DVec3::ZERO; 2], |normal| {
+                lines().map(|line| step_on_plane(line, leaf.position, normal))
+            });
+            (Look::Body(body), Sight { at: leaf.position, steps })
+        }
+        (None, Some(distance)) => {
+            let screen = &prepared.screen;
+            let place = screen.image_position(leaf.direction);
+            let here = place(leaf.position + leaf.direction * distance);
+            let on_screen = |line: &Line| {
+                let t = screen.distance_along(line.origin, line.direction);
+                t.is_finite().then(|| place(line.origin + line.direction * t))
+            };
+            let vector = |[u, v]: [f64; 2]| DVec3::new(u, v, 0.0);
+            let steps = footprint(on_screen, here, &beside).map(vector);
+            (Look::Photograph, Sight { at: vector(here), steps })
+        }
+        (None, None) => {
+            let steps = match prepared.surroundings {
+                Surroundings::Color(_) => [DVec3::ZERO; 2],
+                Surroundings::Image(_) => lines().map(|line| line.direction - leaf.direction),
+            };
+            (Look::Surroundings, Sight { at: leaf.direction, steps })
+        }
+    }
+}
+
+/// The light that is seen there, through a filter as wide as these steps.
+pub(super) fn seen(
+    prepared: &PreparedScene<'_>,
+    look: Look,
+    at: DVec3,
+    steps: impl Fn() -> [DVec3; 2],
+) -> [f64; 3] {
+    match look {
+        Look::Photograph => {
+            let [dx, dy] = steps().map(|step| [step.x, step.y]);
+            prepared.image.sample([at.x, at.y], dx, dy).map(f64::from)
+        }
+        Look::Body(body) => {
+            let surface = prepared.body_surface(body);
+            surface.map_or([0.0; 3], |surface| surface.light(at, |_| steps()))
+        }
+        Look::Surroundings => prepared.surroundings.light(at, steps),
+    }
+}
+
+/// Adds to the images of a pixel what a leaf of that power brings of some light.
+pub(super) fn add_leaf<const N: usize>(
+    detection: &Detection<N>,
+    leaf: &Leaf<N>,
+    power: f64,
+    light: [f64; 3],
+    pixel: &mut Pixel,
+) {
+    add(&mut pixel.image, power, light);
+    if detection.separate {
+        for (i, sum) in [&mut pixel.horizontal, &mut pixel.vertical].into_iter().enumerate() {
+            if leaf.survives_alone[i] || !detection.alone {
+                add(sum, leaf.power[i], light);
+            }
+        }
+    }
+    if detection.stokes {
+        let stokes = arriving_stokes(leaf.electric[0], leaf.electric[1]);
+        for (sum, stokes) in pixel.stokes.iter_mut().zip(stokes) {
+            add(sum, stokes, light);
+        }
+    }
+}
+
+/// From a point to where a line comes to the plane through it; nothing where it does not, for a patch without size
+/// does no harm.
+fn step_on_plane(line: Line, point: DVec3, normal: DVec3) -> DVec3 {
+    let Line { origin, direction } = line;
+    let distance = normal.dot(point - origin) / normal.dot(direction);
+    let step = origin + direction * distance - point;
+    if step.is_finite() { step } else { DVec3::ZERO }
 }
 
 /// Adds to a pixel what leaves that interfere see more or less than each alone.
@@ -326,13 +439,7 @@ fn light<const N: usize>(
         (Some(body), _) => {
             let Some(surface) = prepared.body_surface(body) else { return [0.0; 3] };
             surface.light(leaf.position, |normal| {
-                lines().map(|Line { origin, direction }| {
-                    let distance = normal.dot(leaf.position - origin) / normal.dot(direction);
-                    let step = (origin + direction * distance - leaf.position) * spacing;
-                    // A neighbour that does not come to the plane leaves a patch without size,
-                    // which does no harm.
-                    if step.is_finite() { step } else { DVec3::ZERO }
-                })
+                lines().map(|line| step_on_plane(line, leaf.position, normal) * spacing)
             })
         }
         (None, Some(distance)) => {

@@ -1,6 +1,7 @@
 //! The film: the channels of a picture while it is being exposed, band by band.
 
 use super::{ChannelKind, Tile};
+use crate::color::BINS;
 use crate::output::{Channel, Samples};
 
 /// The planes of a picture, row by row.
@@ -23,6 +24,7 @@ pub(super) struct Band<'f> {
 enum BandPlane<'f> {
     F32(&'f mut [f32]),
     Rgb(&'f mut [[f32; 3]]),
+    Bins(&'f mut [[f32; BINS]]),
     F64(&'f mut [f64]),
 }
 
@@ -50,6 +52,7 @@ impl Film {
             let pieces: Vec<BandPlane<'_>> = match plane {
                 Samples::F32(values) => values.chunks_mut(size).map(BandPlane::F32).collect(),
                 Samples::Rgb(values) => values.chunks_mut(size).map(BandPlane::Rgb).collect(),
+                Samples::Bins(values) => values.chunks_mut(size).map(BandPlane::Bins).collect(),
                 Samples::F64(values) => values.chunks_mut(size).map(BandPlane::F64).collect(),
             };
             for (band, piece) in bands.iter_mut().zip(pieces) {
@@ -70,7 +73,8 @@ impl Film {
 
 impl Band<'_> {
     /// Sets the pixel at `index`, counted row by row from the start of the band, from a function
-    /// that gives the value of each channel; red 0, green 1 and blue 2 of it where it holds colors.
+    /// that gives the value of each channel; red 0, green 1 and blue 2 of it where it holds colors, the
+    /// bins of a spectrum by their numbers.
     pub fn set(&mut self, index: usize, value: impl Fn(ChannelKind, usize) -> f64) {
         for (channel, plane) in &mut self.planes {
             match plane {
@@ -78,6 +82,9 @@ impl Band<'_> {
                 BandPlane::F64(values) => values[index] = value(*channel, 0),
                 BandPlane::Rgb(values) => {
                     values[index] = std::array::from_fn(|color| value(*channel, color) as f32);
+                }
+                BandPlane::Bins(values) => {
+                    values[index] = std::array::from_fn(|bin| value(*channel, bin) as f32);
                 }
             }
         }

@@ -18,6 +18,7 @@ mod pixel;
 mod prepared_scene;
 mod pulses;
 mod sampling;
+mod spectral;
 mod tile;
 
 pub use channels::{ChannelKind, ChannelSet};
@@ -29,10 +30,13 @@ pub use prepared_scene::{
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
 pub use tile::{MergeError, Tile, TileError, merge, merge_images};
 
+use crate::color::BINS;
 use crate::output::Picture;
-use crate::scene::Scene;
+use crate::scene::{CameraRay, Scene};
 use crate::split_mix::mix;
 use crate::trace::{Stopped, TraceStats};
+use arrayvec::ArrayVec;
+use block_tracer::MOST_TRACERS;
 pub(crate) use block_tracer::{BAND_ROWS, BlockTracer};
 use contrast::{Contrast, first_look};
 pub(crate) use detection::Detection;
@@ -41,6 +45,7 @@ use exposure::{Working, expose, expose_unhindered};
 use film::{Band, Film};
 use pixel::Pixel;
 use rayon::prelude::*;
+use spectral::{Colors, Spectral};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How a long work is watched and stopped.
@@ -189,6 +194,7 @@ fn expose_film<const N: usize>(
     check_memory(prepared, wanted, tile)?;
     let settings = &prepared.scene.picture;
     let detection = detection.with_options(wanted, settings);
+    let colors = detection.of_colors();
     let channels = ChannelKind::of(wanted, settings);
     let mut film = Film::new(tile, &channels);
     let mut bands = film.bands(BAND_ROWS as usize);
@@ -197,9 +203,9 @@ fn expose_film<const N: usize>(
     let stats = bands
         .into_par_iter()
         .map_init(
-            || Exposer::new(prepared, &detection),
-            |(exposer, tracer), mut band| {
-                let stats = exposer.expose_band(tracer, &mut band, supervision.stop)?;
+            || Exposer::new(prepared, [&detection, &colors]),
+            |(exposer, tracers), mut band| {
+                let stats = exposer.expose_band(tracers, &mut band, supervision.stop)?;
                 (supervision.rows_done)(band.rows as u64);
                 Ok::<_, Stopped>(stats)
             },
@@ -247,44 +253,71 @@ pub fn metadata(scene: &Scene) -> Vec<(String, String)> {
     .to_vec()
 }
 
+/// The pixels of a block of 2 x 2.
+#[derive(Clone, Copy, Debug, Default)]
+struct Block {
+    pixels: [Pixel; 4],
+    /// All that is no color, where colors are traced each by itself.
+    numbers: Option<[Pixel; 4]>,
+}
+
 /// One thread's tracers and memory.
 struct Exposer<'a, const N: usize> {
     prepared: &'a PreparedScene<'a>,
     detection: &'a Detection<N>,
+    /// What is wanted of colors that are traced each by itself.
+    colors: &'a Detection<N>,
     working: Working,
+    spectral: spectral::Working<N>,
+    /// The light of the pixels of a block in each bin, where it is wanted.
+    spectra: Option<[[f64; BINS]; 4]>,
 }
 
 impl<'a, const N: usize> Exposer<'a, N> {
+    /// With a tracer for each wavelength at which colors are traced, and one more for the rest; else with
+    /// one for all.
     fn new(
         prepared: &'a PreparedScene<'a>,
-        detection: &'a Detection<N>,
-    ) -> (Self, BlockTracer<'a, N>) {
-        let tracer = BlockTracer::new(prepared, detection, prepared.scene.camera.samples);
-        (Self { prepared, detection, working: Working::default() }, tracer)
+        [detection, colors]: [&'a Detection<N>; 2],
+    ) -> (Self, Vec<BlockTracer<'a, N>>) {
+        let samples = prepared.scene.camera.samples;
+        let tracers = match prepared.spectral.as_deref() {
+            None => vec![BlockTracer::new(prepared, detection, samples)],
+            Some(spectral) => {
+                let nodes = spectral.nodes.iter().map(|node| (node, colors));
+                let rest = detection.has_numbers().then_some((prepared, detection));
+                let all = nodes.chain(rest);
+                all.map(|(scene, wanted)| BlockTracer::new(scene, wanted, samples)).collect()
+            }
+        };
+        let spectral = spectral::Working::default();
+        let spectra = detection.spectrum.then(Default::default);
+        let working = Working::default();
+        (Self { prepared, detection, colors, working, spectral, spectra }, tracers)
     }
 
     /// Exposes a band, patch by patch.
     fn expose_band(
         &mut self,
-        tracer: &mut BlockTracer<'_, N>,
+        tracers: &mut [BlockTracer<'_, N>],
         band: &mut Band<'_>,
         stop: &AtomicBool,
     ) -> Result<TraceStats, Stopped> {
         let mut stats = TraceStats::default();
         let (corner, size) = (band.corner, [band.width, band.rows]);
-        tracer.for_blocks(corner, size, stop, |tracer, corner, traced| {
-            stats += self.expose_pixels(tracer, corner, traced, band, stop)?;
+        BlockTracer::for_blocks(tracers, corner, size, stop, |tracers, corner, traced| {
+            stats += self.expose_pixels(tracers, corner, traced, band, stop)?;
             Ok(())
         })?;
         Ok(stats)
     }
 
-    /// Exposes the pixels of a block, in a patch of which so much is traced.
+    /// Exposes the pixels of a block, in a patch of which so much is traced by each tracer.
     fn expose_pixels(
         &mut self,
-        tracer: &mut BlockTracer<'_, N>,
+        tracers: &mut [BlockTracer<'_, N>],
         [left, top]: [usize; 2],
-        traced: f64,
+        traced: &[f64],
         band: &mut Band<'_>,
         stop: &AtomicBool,
     ) -> Result<TraceStats, Stopped> {
@@ -292,33 +325,38 @@ impl<'a, const N: usize> Exposer<'a, N> {
         let samples = camera.samples;
         let look = if camera.adaptive > 0.0 { first_look(samples) } else { 0 };
         let mut stats = TraceStats::default();
-        let mut pixels = [Pixel::default(); 4];
+        let mut block = Block::default();
+        self.spectra = self.detection.spectrum.then(Default::default);
         let mut contrast = Contrast::new();
         let mut taken = 0;
         while taken < samples {
             if stop.load(Ordering::Relaxed) {
                 return Err(Stopped);
             }
-            let before = (taken < look).then_some(pixels);
-            stats += self.expose_block(tracer, [left, top], taken, traced, &mut pixels);
+            let before = (taken < look).then_some(block.pixels);
+            stats += self.expose_block(tracers, [left, top], taken, traced, &mut block);
             taken += 1;
             if let Some(before) = before {
-                contrast.add(&before, &pixels);
+                contrast.add(&before, &block.pixels);
             }
             if taken == look && contrast.is_within(camera.adaptive) {
                 break;
             }
         }
         let Band { width, rows, corner: [first_column, first_row], .. } = *band;
-        for (i, pixel) in pixels.iter().enumerate() {
+        let samples = f64::from(taken);
+        for (i, pixel) in block.pixels.iter().enumerate() {
             let column = (left + i % 2).checked_sub(first_column);
             let row = (top + i / 2).checked_sub(first_row);
             if let (Some(x), Some(y)) = (column, row)
                 && x < width
                 && y < rows
             {
-                band.set(y * width + x, |channel, color| {
-                    pixel.value(channel, color, f64::from(taken))
+                let numbers = block.numbers.as_ref().map_or(pixel, |numbers| &numbers[i]);
+                band.set(y * width + x, |channel, part| match (channel, &self.spectra) {
+                    (ChannelKind::Spectrum, Some(spectra)) => spectra[i][part] / samples,
+                    _ if channel.is_color() => pixel.value(channel, part, samples),
+                    _ => numbers.value(channel, part, samples),
                 });
             }
         }
@@ -328,38 +366,94 @@ impl<'a, const N: usize> Exposer<'a, N> {
     /// Traces one sample of each pixel of a block and adds what they see.
     fn expose_block(
         &mut self,
-        tracer: &mut BlockTracer<'_, N>,
+        tracers: &mut [BlockTracer<'_, N>],
         [column, row]: [usize; 2],
         sample: u32,
-        traced: f64,
-        pixels: &mut [Pixel; 4],
+        traced: &[f64],
+        block: &mut Block,
     ) -> TraceStats {
         let (prepared, detection) = (self.prepared, self.detection);
         let camera = &prepared.scene.camera;
         let samples = camera.samples;
-        let block = [column as u32 / 2, row as u32 / 2];
-        let offset = sampling::offset(sample, samples, block, camera.seed);
+        let place = [column as u32 / 2, row as u32 / 2];
+        let offset = sampling::offset(sample, samples, place, camera.seed);
         let points = std::array::from_fn(|i| {
             [(column + i % 2) as f64 + offset[0], (row + i / 2) as f64 + offset[1]]
         });
         let rays = points.map(|[x, y]| camera.ray(x, y));
         let spacing = 1.0 / f64::from(samples).sqrt();
-        if !tracer.interpolate(&points, &rays, traced) {
+        if let Some(spectral) = prepared.spectral.as_deref() {
+            return self.expose_colors(spectral, tracers, (&points, &rays), spacing, traced, block);
+        }
+        let tracer = &mut tracers[0];
+        if !tracer.interpolate(&points, &rays, traced[0]) {
             if !(detection.group_delays || detection.stokes || detection.first_face)
                 && tracer.meet_nothing(&rays)
-                && expose_unhindered(prepared, detection, &rays, spacing, pixels)
+                && expose_unhindered(prepared, detection, &rays, spacing, &mut block.pixels)
             {
                 return TraceStats::default();
             }
             tracer.trace(&rays);
         }
-        let block = tracer.traced(&rays);
+        self.expose_rays(tracer, &rays, spacing, &mut block.pixels);
+        tracer.stats()
+    }
+
+    /// Adds what the rays of a block see that have been traced.
+    fn expose_rays(
+        &mut self,
+        tracer: &BlockTracer<'_, N>,
+        rays: &[CameraRay; 4],
+        spacing: f64,
+        pixels: &mut [Pixel; 4],
+    ) {
+        let (prepared, detection) = (self.prepared, self.detection);
+        let block = tracer.traced(rays);
         let coherent = prepared.coherence.is_some();
         let expose = if coherent { expose::<N, true> } else { expose::<N, false> };
         for (i, pixel) in pixels.iter_mut().enumerate() {
             let rays = [&block[i], &block[i ^ 1], &block[i ^ 2]];
             expose(prepared, detection, rays, spacing, pixel, &mut self.working);
         }
-        tracer.stats()
+    }
+
+    /// The same for colors that are traced each by itself.
+    fn expose_colors(
+        &mut self,
+        spectral: &Spectral<'_>,
+        tracers: &mut [BlockTracer<'_, N>],
+        (points, rays): (&[[f64; 2]; 4], &[CameraRay; 4]),
+        spacing: f64,
+        traced: &[f64],
+        block: &mut Block,
+    ) -> TraceStats {
+        let mut stats = TraceStats::default();
+        for (tracer, traced) in tracers.iter_mut().zip(traced) {
+            if !tracer.interpolate(points, rays, *traced) {
+                tracer.trace(rays);
+            }
+            stats += tracer.stats();
+        }
+        let (nodes, rest) = tracers.split_at(spectral.nodes.len());
+        if let [rest] = rest {
+            self.expose_rays(rest, rays, spacing, block.numbers.get_or_insert_default());
+        }
+        let blocks: ArrayVec<_, MOST_TRACERS> =
+            nodes.iter().map(|tracer| tracer.traced(rays)).collect();
+        for (i, pixel) in block.pixels.iter_mut().enumerate() {
+            let nodes: ArrayVec<_, MOST_TRACERS> =
+                blocks.iter().map(|block| [block[i], block[i ^ 1], block[i ^ 2]]).collect();
+            let spectrum = self.spectra.as_mut().map(|spectra| &mut spectra[i]);
+            let mut colors = Colors { pixel, spectrum };
+            spectral::expose(
+                spectral,
+                self.colors,
+                &nodes,
+                spacing,
+                &mut colors,
+                &mut self.spectral,
+            );
+        }
+        stats
     }
 }

@@ -1,6 +1,7 @@
 //! What one pixel gathers from its samples.
 
 use super::ChannelKind;
+use glam::{DMat3, DVec3};
 
 /// Running sums over the samples of one pixel.
 #[derive(Clone, Copy, Debug, Default)]
@@ -72,6 +73,23 @@ impl Times {
 }
 
 impl Pixel {
+    /// Adds the images of another, of things whose red, green and blue light have these colors.
+    pub fn add_colors(&mut self, other: &Self, color: DMat3) {
+        let images = |pixel: &Self| {
+            let [s0, s1, s2, s3] = pixel.stokes;
+            [pixel.image, pixel.horizontal, pixel.vertical, s0, s1, s2, s3]
+        };
+        let added = images(other).map(|image| color * DVec3::from_array(image));
+        let [image, horizontal, vertical, stokes @ ..] = added;
+        let sum = |sum: &mut [f64; 3], added: DVec3| {
+            sum.iter_mut().zip(added.to_array()).for_each(|(sum, added)| *sum += added);
+        };
+        sum(&mut self.image, image);
+        sum(&mut self.horizontal, horizontal);
+        sum(&mut self.vertical, vertical);
+        self.stokes.iter_mut().zip(stokes).for_each(|(of, added)| sum(of, added));
+    }
+
     /// The value of a channel, the pixel having had `samples` samples; `color` says which of red 0,
     /// green 1 and blue 2 where the channel holds all three.
     pub fn value(&self, channel: ChannelKind, color: usize, samples: f64) -> f64 {
@@ -94,6 +112,8 @@ impl Pixel {
             ChannelKind::ExtraordinaryShare => {
                 self.extraordinary / (self.ordinary + self.extraordinary)
             }
+            // It is kept elsewhere, and in pictures without a lamp nothing is known of it.
+            ChannelKind::Spectrum => f64::NAN,
             ChannelKind::Stokes(k) => self.stokes[k][color] / samples,
         }
     }

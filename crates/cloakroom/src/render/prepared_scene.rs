@@ -1,12 +1,13 @@
 //! The prepared: a scene made ready to be looked at, images read and devices built.
 
 use super::body_surface::BodySurface;
+use super::spectral::Spectral;
 use super::{Images, metadata};
 use crate::assembly::{Assembly, MOST_DEVICES, Placed, Screen};
 use crate::input::Digest;
 use crate::keys::KeyError;
 use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
-use crate::scene::{Camera, Projection, Scene};
+use crate::scene::{Camera, DeviceSettings, Projection, Scene};
 use crate::trace::{Coherence, Limits, RaySettings};
 use glam::DVec3;
 use std::path::PathBuf;
@@ -21,6 +22,9 @@ const BUILTIN_WIDTH: f64 = 110.0;
 /// Why a scene cannot be looked at.
 #[derive(Debug, thiserror::Error)]
 pub enum PreparedSceneError {
+    /// The light is that of no lamp.
+    #[error("{0}")]
+    Light(#[source] KeyError),
     /// A device cannot be built.
     #[error("{error}")]
     Device {
@@ -103,6 +107,7 @@ impl PreparedSceneError {
     #[must_use]
     pub fn key(&self) -> String {
         match self {
+            Self::Light(error) => error.path_in("light"),
             Self::Device { device, error } => error.path_in(&format!("device.{device}")),
             Self::PhotographInside { device, .. } => format!("device.{device}"),
             Self::Overlap { second, .. } => format!("device.{second}"),
@@ -123,6 +128,14 @@ impl PreparedSceneError {
 ///
 /// If a device is impossible or two overlap.
 pub fn assembly(scene: &Scene) -> Result<Assembly, PreparedSceneError> {
+    assembly_at(scene, scene.light.wavelength_nm())
+}
+
+/// The same in light of a wavelength in vacuum (nm).
+pub(super) fn assembly_at(
+    scene: &Scene,
+    wavelength_nm: f64,
+) -> Result<Assembly, PreparedSceneError> {
     let count = scene.devices.len();
     if count > MOST_DEVICES {
         return Err(PreparedSceneError::TooManyDevices { count });
@@ -130,12 +143,13 @@ pub fn assembly(scene: &Scene) -> Result<Assembly, PreparedSceneError> {
     let mut placed = Vec::new();
     for (index, device) in scene.devices.iter().enumerate() {
         let wrong = |error| PreparedSceneError::Device { device: index, error };
+        let device = DeviceSettings { wavelength_nm, ..device.clone() };
         let pose = device.pose().map_err(wrong)?;
         let structure = device.structure(index).map_err(wrong)?;
         let dispersion = device.placement.dispersion;
         placed.push(Placed { pose, structure, dispersion });
     }
-    let assembly = Assembly::new(placed).with_wavelength(scene.light.wavelength_nm);
+    let assembly = Assembly::new(placed).with_wavelength(wavelength_nm);
     let is_body = |index: usize| assembly.devices()[index].structure.hull.body.is_some();
     match assembly.overlap() {
         Some((first, second)) if is_body(first) && is_body(second) => {
@@ -195,7 +209,7 @@ fn interference_limits(scene: &Scene) -> Limits {
     let limits = limits(scene);
     let given = scene.trace.min_power.given;
     let min_power = if given { limits.min_power } else { INTERFERENCE_MIN_POWER };
-    let paths = INTERFERENCE_TOLERANCE * scene.light.wavelength_nm * CM_PER_NM;
+    let paths = INTERFERENCE_TOLERANCE * scene.light.wavelength_nm() * CM_PER_NM;
     Limits { min_power, tolerance: limits.tolerance.min(paths) }
 }
 
@@ -208,7 +222,7 @@ const COHERENT_MIN_POWER: f64 = 1e-24;
 /// The light of a scene.
 #[must_use]
 pub fn coherence(scene: &Scene) -> Coherence {
-    Coherence::new(scene.light.wavelength_nm, scene.light.bandwidth_nm.value)
+    Coherence::new(scene.light.wavelength_nm(), scene.light.bandwidth_nm.value)
 }
 
 /// How given rays are traced: the threshold is the given one, else that which the scene writes,
@@ -272,6 +286,8 @@ pub struct PreparedScene<'s> {
     body_surfaces: Vec<Option<BodySurface>>,
     /// The files it was made from: the keys that name them, and their contents.
     files: Vec<(String, Digest)>,
+    /// The wavelengths of its colors, where they are traced each by itself.
+    pub(super) spectral: Option<Arc<Spectral<'s>>>,
 }
 
 impl<'s> PreparedScene<'s> {
@@ -334,7 +350,7 @@ impl<'s> PreparedScene<'s> {
         let files = scene.files().into_iter().filter_map(digest).collect();
         images.keep(&scene.body_images().collect::<Vec<_>>());
         let pixel = PixelWidth::of(&scene.camera);
-        Ok(Self {
+        let mut prepared = Self {
             scene,
             assembly,
             limits,
@@ -345,7 +361,23 @@ impl<'s> PreparedScene<'s> {
             surroundings,
             body_surfaces,
             files,
-        })
+            spectral: None,
+        };
+        prepared.spectral = Spectral::of(&prepared)?.map(Arc::new);
+        Ok(prepared)
+    }
+
+    /// The same scene in light of another wavelength (nm).
+    pub(super) fn at(&self, wavelength_nm: f64) -> Result<Self, PreparedSceneError> {
+        let assembly = assembly_at(self.scene, wavelength_nm)?;
+        let bandwidth_nm = self.scene.light.bandwidth_nm.value;
+        let coherence = self.coherence.map(|_| Coherence::new(wavelength_nm, bandwidth_nm));
+        Ok(Self { assembly, coherence, spectral: None, ..self.clone() })
+    }
+
+    /// The same scene with leaves that interfere as that light does.
+    pub(super) fn with_coherence(&self, coherence: Option<Coherence>) -> Self {
+        Self { coherence, spectral: None, ..self.clone() }
     }
 
     /// What every file carries: program, scene, version and seed, and where the scene names files,

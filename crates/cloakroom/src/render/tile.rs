@@ -1,6 +1,7 @@
 //! Tiles: rectangles of a picture that are rendered apart, by other processes or machines, and put
 //! together again.
 
+use crate::color::BINS;
 use crate::memory::{self, Shortage};
 use crate::output::{Channel, Picture, RgbImage, Samples};
 use std::fmt;
@@ -218,6 +219,7 @@ pub fn merge(pieces: &[Piece<Picture>]) -> Result<Picture, MergeError> {
         samples: match channel.samples {
             Samples::F32(_) => Samples::F32(vec![0.0; size]),
             Samples::Rgb(_) => Samples::Rgb(vec![[0.0; 3]; size]),
+            Samples::Bins(_) => Samples::Bins(vec![[0.0; BINS]; size]),
             Samples::F64(_) => Samples::F64(vec![0.0; size]),
         },
     };
@@ -234,6 +236,7 @@ pub fn merge(pieces: &[Piece<Picture>]) -> Result<Picture, MergeError> {
                 _ if channel.name != part.name => return Err(differ()),
                 (Samples::F32(whole), Samples::F32(part)) => tile.place(whole, width, part),
                 (Samples::Rgb(whole), Samples::Rgb(part)) => tile.place(whole, width, part),
+                (Samples::Bins(whole), Samples::Bins(part)) => tile.place(whole, width, part),
                 (Samples::F64(whole), Samples::F64(part)) => tile.place(whole, width, part),
                 _ => return Err(differ()),
             }

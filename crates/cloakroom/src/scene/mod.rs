@@ -6,6 +6,7 @@
 mod camera;
 mod polarizer;
 mod receiver;
+mod spectrum;
 mod tables;
 
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
@@ -14,6 +15,7 @@ use optics::wave::unit;
 
 pub use camera::{Camera, CameraRay};
 pub use polarizer::Polarizer;
+pub use spectrum::{LampSpectrum, SpectralLine, Spectrum, SpectrumWord};
 pub use tables::{
     CameraSettings, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel, PhotographSettings,
     PictureSettings, Placement, Projection, Receiver, SCALAR_CHANNELS, SurroundingsSettings,
@@ -25,7 +27,7 @@ use crate::device::{
 };
 pub use crate::device::{Core, Show};
 use crate::index_file::{self, IndexFile};
-use crate::keys::{Field, KeyError, KeyKind, NamedFile, Table, Value, VisitFile, vector_text};
+use crate::keys::{Field, Key, KeyError, KeyKind, NamedFile, Table, Value, VisitFile, vector_text};
 use crate::material_file::MaterialFile;
 use crate::photograph::ImageSource;
 use cloakroom_trace::key;
@@ -98,6 +100,24 @@ impl Scene {
         }
         files
     }
+}
+
+/// Whether a table or one within it names a material.
+fn has_material(keys: &[Key], entries: &[(String, Value)]) -> bool {
+    let of_key = |key: &Key, value: &Value| match (key.kind, value) {
+        (KeyKind::Material | KeyKind::MaterialOrTable { .. }, _) => true,
+        (kind, Value::Table(entries)) => {
+            kind.inner_keys().is_some_and(|keys| has_material(keys, entries))
+        }
+        (kind, Value::List(items)) => kind.inner_keys().is_some_and(|keys| {
+            let tables = items.iter().filter_map(Value::as_table);
+            tables.into_iter().any(|entries| has_material(keys, entries))
+        }),
+        _ => false,
+    };
+    entries.iter().any(|(name, value)| {
+        keys.iter().find(|key| key.name == name).is_some_and(|key| of_key(key, value))
+    })
 }
 
 /// What an opaque body shows.
@@ -229,6 +249,16 @@ impl DeviceSettings {
         };
         let structure = self.dispersion_law()?.apply(structure)?;
         structure.coated(key!(Placement.coating), layers)
+    }
+
+    /// Whether a medium of it is of a law, so that light of other wavelengths meets another medium.
+    #[must_use]
+    pub fn is_dispersive(&self) -> bool {
+        let table = self.device.table();
+        let of_law = matches!(self.placement.dispersion, Dispersion::Drude | Dispersion::Lorentz);
+        of_law || has_material(table.keys(), &table.written()) || {
+            has_material(Placement::KEYS, &self.placement.written())
+        }
     }
 
     /// The law of its media, for the light of the scene.

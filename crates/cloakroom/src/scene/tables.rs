@@ -1,6 +1,6 @@
 //! The tables of a scene file but a device's own.
 
-use super::Polarizer;
+use super::{Polarizer, Spectrum};
 use crate::device::{CoatingLayer, Core, Dispersion, Imperfection, Metal, Request, Show};
 use crate::keys::{Given, Key, ValueRange};
 use crate::photograph::ImageSource;
@@ -61,12 +61,29 @@ table! {
 table! {
     /// The light that fills the scene.
     pub struct Light {
-        /// Wavelength in vacuum: the mean of the line; used by absorption and interference.
+        /// Wavelength in vacuum: the mean of the line; used by absorption, interference and materials
+        /// wherever colors are not traced by themselves.
         wavelength_nm: f64 = 550.0, "nm", in ValueRange::Within(1e-3, 1e12),
         /// Full width at half maximum of the line, a Gaussian: light whose paths differ by less
         /// than about the square of the wavelength over it interferes; 0 is light of one
         /// wavelength.
         bandwidth_nm: Given<f64> = Given::by_default(100.0), "nm", in ValueRange::Within(0.0, 1e12),
+        /// What makes the colors of pictures: `rgb`, light of `wavelength_nm` for red, green and blue;
+        /// daylight, `D65`; equal power, `E`; one wavelength, which is then `wavelength_nm`, too; or a
+        /// lamp, such as { black_body_k = 2856 } or { lines = [{ wavelength_nm = 546.1 }] }. `auto`:
+        /// `D65` where a medium has a law, else `rgb`.
+        spectrum: Spectrum, "nm", in ValueRange::Within(380.0, 780.0),
+    }
+}
+
+impl Light {
+    /// The wavelength in vacuum of what is not traced for each color: that of a spectrum of one.
+    #[must_use]
+    pub fn wavelength_nm(&self) -> f64 {
+        match self.spectrum {
+            Spectrum::Wavelength(wavelength_nm) => wavelength_nm,
+            _ => self.wavelength_nm,
+        }
     }
 }
 
@@ -126,6 +143,8 @@ choice! {
         FirstFaceReflectance = "first_face_reflectance",
         /// What a pulse takes, its spread and its difference to the empty scene.
         GroupDelay = "group_delay",
+        /// The light in bins of wavelengths.
+        Spectrum = "spectrum",
     }
 }
 
@@ -173,7 +192,8 @@ table! {
     /// What a picture shows and holds.
     pub struct PictureSettings {
         /// Channels that EXR and NPZ files hold beside those they always do; `stokes` stands for
-        /// `stokes.S0` to `stokes.S3`, `group_delay` for that, its spread and its difference.
+        /// `stokes.S0` to `stokes.S3`, `group_delay` for that, its spread and its difference,
+        /// `spectrum` for the light in 16 bins of wavelengths, where the scene has a spectrum.
         channels: Vec<OptionalChannel>,
         /// A channel that a PNG shows in false colors instead of what the camera sees.
         map: MapChannel,

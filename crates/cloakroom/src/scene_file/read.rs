@@ -52,6 +52,7 @@ pub(super) fn read(
         reader.fill(&mut [table], &held, name)?;
         let checked = match name.as_str() {
             "camera" => Camera::new(camera).map(|camera| scene.camera = camera),
+            "light" => scene.light.spectrum.lamp(false).map(drop),
             "photograph" => scene.photograph.pose().map(drop),
             "surroundings" => scene.surroundings.check_one(),
             "receiver" => scene.receiver.normalize(),
@@ -60,7 +61,7 @@ pub(super) fn read(
         checked.map_err(|error| locations.key_error(name, &error))?;
     }
     for device in &mut scene.devices {
-        device.wavelength_nm = scene.light.wavelength_nm;
+        device.wavelength_nm = scene.light.wavelength_nm();
     }
     scene.material_files = files.materials.read();
     Ok(scene)
@@ -166,7 +167,9 @@ impl Reader<'_> {
         match (key.kind, value) {
             (KeyKind::Table { keys }, _)
             | (
-                KeyKind::FlagOrTable { keys } | KeyKind::MaterialOrTable { keys },
+                KeyKind::FlagOrTable { keys }
+                | KeyKind::MaterialOrTable { keys }
+                | KeyKind::ChoiceNumberOrTable { keys, .. },
                 Value::Table(_),
             ) => inner(keys, value, path),
             (KeyKind::Tables { keys }, Value::List(items)) => {

@@ -94,6 +94,9 @@ fn property(key: &Key) -> Value {
         KeyKind::IntegerPair => list(number, 2),
         KeyKind::Image => json!({ "type": "string", "minLength": 1 }),
         KeyKind::ChoiceOrNumber { options } => json!({ "anyOf": [{ "enum": options }, number] }),
+        KeyKind::ChoiceNumberOrTable { options, keys } => {
+            json!({ "anyOf": [{ "enum": options }, number, inner_table(keys)] })
+        }
         KeyKind::Tensor => tensor(number),
         KeyKind::Complex => json!({ "anyOf": [number, list(number.clone(), 2)] }),
         KeyKind::Direction => json!({ "anyOf": [number, list(json!({ "type": "number" }), 3)] }),

@@ -242,6 +242,16 @@ impl Structure {
         media
     }
 
+    /// Its homogeneous media: those of regions, of films and of metals.
+    pub fn homogeneous_media(&self) -> impl Iterator<Item = &Medium> {
+        let of_region = |region| match region {
+            &Region::Homogeneous(ref region) => Some(&region.medium),
+            _ => None,
+        };
+        let films = self.films.iter().flatten().map(|layer| &layer.medium);
+        self.regions.iter().filter_map(of_region).chain(films).chain(&self.metals)
+    }
+
     /// Whether it is an opaque body.
     #[must_use]
     pub fn is_opaque(&self) -> bool {

@@ -55,6 +55,11 @@ impl Key {
                 let options = options.iter().map(|option| quoted(option, '"'));
                 format!("{} or a number{unit}", options.collect::<Vec<_>>().join(", "))
             }
+            KeyKind::ChoiceNumberOrTable { options, keys } => {
+                let options = options.iter().map(|option| quoted(option, '"'));
+                let options = options.collect::<Vec<_>>().join(", ");
+                format!("{options}, a number{unit}, or a table with {}", key_names(keys))
+            }
             KeyKind::Tensor => "a number, [re, im], or 3 x 3 of either".to_owned(),
             KeyKind::Complex => "a number or [re, im]".to_owned(),
             KeyKind::Direction => format!("three numbers, or an angle in the x, y plane{unit}"),
@@ -131,13 +136,18 @@ impl Key {
                 }
                 value.clone()
             }
-            KeyKind::ChoiceOrNumber { options } => match value.as_number() {
-                Some(number) => {
-                    self.limit(self.name, number)?;
-                    number.into()
+            KeyKind::ChoiceNumberOrTable { keys, .. } if value.as_table().is_some() => {
+                self.table(value, keys)?
+            }
+            KeyKind::ChoiceOrNumber { options } | KeyKind::ChoiceNumberOrTable { options, .. } => {
+                match value.as_number() {
+                    Some(number) => {
+                        self.limit(self.name, number)?;
+                        number.into()
+                    }
+                    None => self.choose(value, options)?,
                 }
-                None => self.choose(value, options)?,
-            },
+            }
             KeyKind::Tensor => {
                 let tensor = self.of_type(value, tensor::from_value(value))?;
                 for number in tensor::parts(&tensor) {

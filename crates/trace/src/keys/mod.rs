@@ -76,6 +76,13 @@ pub enum KeyKind {
         /// The words; the first is the default.
         options: &'static [&'static str],
     },
+    /// The same, or a table with keys of its own: a spectrum is `"D65"`, a wavelength or lines.
+    ChoiceNumberOrTable {
+        /// The words; the first is the default.
+        options: &'static [&'static str],
+        /// The keys of the table.
+        keys: &'static [Key],
+    },
     /// A relative permittivity or permeability: a number, [re, im], or 3 x 3 of either.
     Tensor,
     /// A complex number: a number, or [re, im].
@@ -123,6 +130,7 @@ impl KeyKind {
             Self::Table { keys }
             | Self::FlagOrTable { keys }
             | Self::MaterialOrTable { keys }
+            | Self::ChoiceNumberOrTable { keys, .. }
             | Self::Tables { keys } => Some(keys),
             _ => None,
         }

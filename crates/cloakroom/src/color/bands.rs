@@ -1,0 +1,188 @@
+//! The wavelengths at which rays are traced, and the color that what they bring has.
+
+use super::{Lamp, SEEN_NM, Sample};
+use glam::DMat3;
+
+/// In how many bins of wavelengths light of all wavelengths is looked at.
+pub const BINS: usize = 16;
+
+/// Their edges, nm: narrow where people see colors well.
+pub const BIN_EDGES_NM: [f64; BINS + 1] = [
+    380.0, 430.0, 450.0, 470.0, 490.0, 510.0, 530.0, 550.0, 570.0, 590.0, 610.0, 630.0, 650.0,
+    670.0, 690.0, 720.0, 780.0,
+];
+
+/// The width of bins within which light interferes, nm.
+const FRINGE_BIN_NM: f64 = 10.0;
+
+/// A lamp's light in groups of wavelengths, and the wavelengths at which rays are traced: what these bring is
+/// interpolated between them by a polynomial of the wave number.
+#[derive(Clone, Debug)]
+pub(crate) struct Bands {
+    /// The wavelengths, nm: the nodes.
+    pub nodes_nm: Vec<f64>,
+    /// From coarse to fine, what is seen of all wavelengths together, in two groups, and so on.
+    pub levels: Vec<Vec<Group>>,
+    /// The bins within which light interferes.
+    pub fringes: Vec<Group>,
+    /// The light that is nearest to each node.
+    pub cells: Vec<Light>,
+}
+
+/// The light of some wavelengths: how things of linear red, green and blue look, and what share of the lamp's
+/// power each of them sends back in each of the bins.
+#[derive(Clone, Debug)]
+pub(crate) struct Light {
+    /// The color of a thing.
+    pub color: DMat3,
+    /// The shares in each bin, where the light is in any.
+    pub bins: Vec<(usize, [f64; 3])>,
+}
+
+/// The light of a range of wavelengths.
+#[derive(Clone, Debug)]
+pub(crate) struct Group {
+    /// Its wavelength, nm.
+    pub nm: f64,
+    /// How wide it is, nm; 0 for a line.
+    pub width_nm: f64,
+    /// The weights of the nodes at its wavelength.
+    pub middle: Vec<f64>,
+    /// Those of the difference from its one end to the other.
+    pub spread: Vec<f64>,
+    /// Its light, weighted as what the nodes bring is.
+    pub lights: Vec<Light>,
+}
+
+impl Bands {
+    /// Of a lamp, by rays of `count` wavelengths within a range (nm): what is beyond it goes as light of its ends
+    /// does. Of a lamp with no more lines than that, each line is traced.
+    pub fn new(lamp: &Lamp, count: usize, range_nm: [f64; 2]) -> Self {
+        let samples = lamp.samples();
+        let lines = matches!(lamp, Lamp::Lines(_));
+        let nodes_nm = if lines && samples.len() <= count {
+            samples.iter().map(|sample| sample.nm).collect()
+        } else {
+            chebyshev_nodes(count, range_nm)
+        };
+        let weights = |nm: f64| weights(&nodes_nm, nm.clamp(range_nm[0], range_nm[1]));
+        let group = |[low, high]: [f64; 2], held: &[(f64, Sample)]| {
+            let total: f64 = held.iter().map(|(share, sample)| share * loudness(sample)).sum();
+            let nm = if total > 0.0 {
+                let sum = held.iter().map(|(share, sample)| share * loudness(sample) * sample.nm);
+                sum.sum::<f64>() / total
+            } else {
+                0.5 * (low + high)
+            };
+            let ends = [weights(low), weights(high)];
+            let lights = (0..nodes_nm.len()).map(|node| {
+                let held =
+                    held.iter().map(|(share, sample)| (share * weights(sample.nm)[node], *sample));
+                light(held)
+            });
+            Group {
+                nm,
+                width_nm: high - low,
+                middle: weights(nm),
+                spread: ends[1].iter().zip(&ends[0]).map(|(high, low)| high - low).collect(),
+                lights: lights.collect(),
+            }
+        };
+        let of_edges = |edges: &[f64]| -> Vec<Group> {
+            let groups = edges.windows(2).map(|edges| {
+                let [low, high] = [edges[0], edges[1]];
+                let held: Vec<_> =
+                    samples.iter().filter_map(|sample| within(sample, [low, high])).collect();
+                group([low, high], &held)
+            });
+            groups.collect()
+        };
+        let of_lines = || -> Vec<Group> {
+            samples.iter().map(|line| group([line.nm; 2], &[(1.0, *line)])).collect()
+        };
+        let levels = if lines {
+            let [low, high] = samples.iter().fold([f64::INFINITY, 0.0_f64], |[low, high], line| {
+                [low.min(line.nm), high.max(line.nm)]
+            });
+            let all: Vec<_> = samples.iter().map(|line| (1.0, *line)).collect();
+            let mut levels = vec![vec![group([low, high], &all)]];
+            if samples.len() > 1 {
+                levels.push(of_lines());
+            }
+            levels
+        } else {
+            let steps = std::iter::successors(Some(BINS), |step| (*step > 1).then_some(step / 2));
+            let edges =
+                |step: usize| -> Vec<f64> { BIN_EDGES_NM.iter().copied().step_by(step).collect() };
+            steps.map(|step| of_edges(&edges(step))).collect()
+        };
+        let fringes = if lines {
+            of_lines()
+        } else {
+            let count = ((SEEN_NM[1] - SEEN_NM[0]) / FRINGE_BIN_NM) as usize;
+            let edges: Vec<f64> =
+                (0..=count).map(|i| SEEN_NM[0] + FRINGE_BIN_NM * i as f64).collect();
+            of_edges(&edges)
+        };
+        let nearest = |nm: f64| {
+            let off = |node: usize| (1.0 / nodes_nm[node] - 1.0 / nm).abs();
+            (0..nodes_nm.len()).min_by(|one, other| off(*one).total_cmp(&off(*other)))
+        };
+        let cell = |node: usize| {
+            let held = samples.iter().filter(|sample| nearest(sample.nm) == Some(node));
+            light(held.map(|sample| (1.0, *sample)))
+        };
+        let cells = (0..nodes_nm.len()).map(cell).collect();
+        Self { levels, fringes, cells, nodes_nm }
+    }
+}
+
+/// How much a part of the light counts for what is seen.
+fn loudness(sample: &Sample) -> f64 {
+    sample.color.abs().element_sum()
+}
+
+/// A sample in a range of wavelengths, half of it if it is at an edge that others share.
+fn within(sample: &Sample, [low, high]: [f64; 2]) -> Option<(f64, Sample)> {
+    let is_edge = |nm: f64| sample.nm == nm && nm != SEEN_NM[0] && nm != SEEN_NM[1];
+    let share = if is_edge(low) || is_edge(high) { 0.5 } else { 1.0 };
+    (low <= sample.nm && sample.nm <= high).then_some((share, *sample))
+}
+
+/// The sum of samples, each with a weight.
+fn light(held: impl Iterator<Item = (f64, Sample)>) -> Light {
+    let (mut color, mut bins) = (DMat3::ZERO, Vec::<(usize, [f64; 3])>::new());
+    for (weight, sample) in held {
+        color += sample.color_of_things() * weight;
+        let edges = BIN_EDGES_NM.windows(2).map(|edges| [edges[0], edges[1]]);
+        for (bin, edges) in edges.enumerate() {
+            let Some((share, sample)) = within(&sample, edges) else { continue };
+            let shares = (sample.shares * (weight * share * sample.power)).to_array();
+            match bins.iter_mut().find(|(known, _)| *known == bin) {
+                Some((_, sum)) => sum.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share),
+                None => bins.push((bin, shares)),
+            }
+        }
+    }
+    Light { color, bins }
+}
+
+/// Chebyshev's nodes in the wave number over a range of wavelengths (nm), the longest first.
+pub(crate) fn chebyshev_nodes(count: usize, [shortest, longest]: [f64; 2]) -> Vec<f64> {
+    let [low, high] = [1.0 / longest, 1.0 / shortest];
+    let node = |i: usize| {
+        let angle = std::f64::consts::PI * (i as f64 + 0.5) / count as f64;
+        1.0 / (0.5 * (low + high) - 0.5 * (high - low) * angle.cos())
+    };
+    (0..count).map(node).collect()
+}
+
+/// The weights of nodes (wavelengths, nm) in the polynomial of the wave number through them, at a
+/// wavelength.
+pub(crate) fn weights(nodes_nm: &[f64], nm: f64) -> Vec<f64> {
+    let x = 1.0 / nm;
+    let at = |i: usize| 1.0 / nodes_nm[i];
+    let others = |i: usize| (0..nodes_nm.len()).filter(move |j| *j != i);
+    let weight = |i: usize| others(i).map(|j| (x - at(j)) / (at(i) - at(j))).product();
+    (0..nodes_nm.len()).map(weight).collect()
+}

@@ -1,0 +1,469 @@
+//! Pictures whose colors are traced each by itself: rays of a few wavelengths, and what they bring
+//! interpolated between them.
+//!
+//! Leaves of one ray at all wavelengths belong together where they have taken the same way. What such a leaf brings
+//! is a polynomial of the wave number, and the place that it sees as well: where the places of two
+//! neighbouring groups of wavelengths are more than a pixel apart, the photograph is looked at for smaller
+//! groups, each through a filter as long as the group's light is drawn out. So there is no noise of
+//! colors, and no edge where a group ends. A way that light of some wavelengths does not take counts
+//! for those that are nearest to one that does.
+
+use super::block_tracer::MOST_TRACERS;
+use super::detection::Detection;
+use super::exposure::{self, Look, Sight, Traced};
+use super::pixel::Pixel;
+use super::prepared_scene::{PreparedScene, PreparedSceneError};
+use crate::color::{BINS, Bands, Group, Lamp, Light, chebyshev_nodes, weights};
+use crate::scene::{DeviceSettings, Scene};
+use crate::trace::{Coherence, Leaf};
+use glam::DVec3;
+use optics::interface::FilmLayer;
+use optics::medium::Medium;
+
+/// The wavelengths that are traced at all: beyond, less than a thousandth of daylight is seen.
+const TRACED_NM: [f64; 2] = [390.0, 730.0];
+
+/// Where a law holds in less than the range that is traced, these ends are tried.
+const SHORTEST_NM: [f64; 5] = [TRACED_NM[0], 400.0, 410.0, 420.0, 430.0];
+const LONGEST_NM: [f64; 5] = [TRACED_NM[1], 720.0, 710.0, 700.0, 690.0];
+
+/// The fewest and the most wavelengths at which rays through media of laws are traced.
+const FEWEST: usize = 3;
+const MOST_OF_MEDIA: usize = 10;
+
+/// How exactly media are to be known between these wavelengths, of the largest entry of their tensors:
+/// over a meter that is 0.1 mm.
+const MEDIA_TOLERANCE: f64 = 1e-4;
+
+/// Lamps of so many lines have each of them traced.
+const MOST_LINES: usize = 8;
+
+/// A box of light has the coherence of a Gaussian line of this share of its width.
+const BOX_TO_GAUSSIAN: f64 = 0.68;
+
+/// The wavelengths of a picture whose colors are traced each by itself.
+#[derive(Clone, Debug)]
+pub(super) struct Spectral<'s> {
+    pub bands: Bands,
+    /// The scene in the light of each node.
+    pub nodes: Vec<PreparedScene<'s>>,
+    /// Where leaves interfere, the scene in the light of each bin of fringes.
+    fringes: Vec<PreparedScene<'s>>,
+}
+
+impl<'s> Spectral<'s> {
+    /// Of a scene, if its light is that of a lamp.
+    ///
+    /// # Errors
+    ///
+    /// If it is that of no lamp, or a device cannot be built for one of its wavelengths.
+    pub fn of(prepared: &PreparedScene<'s>) -> Result<Option<Self>, PreparedSceneError> {
+        let scene = prepared.scene;
+        let is_dispersive = scene.devices.iter().any(DeviceSettings::is_dispersive);
+        let lamp = scene.light.spectrum.lamp(is_dispersive).map_err(PreparedSceneError::Light)?;
+        let Some(lamp) = lamp else { return Ok(None) };
+        let assembly = &prepared.assembly;
+        let films =
+            || assembly.devices().iter().flat_map(|device| &device.structure.films).flatten();
+        let changes = is_dispersive || assembly.absorbs() || films().next().is_some();
+        let range = range_of(scene, &lamp)?;
+        let count = match &lamp {
+            Lamp::Lines(lines) if lines.len() <= MOST_LINES => lines.len(),
+            _ if changes => nodes_for(prepared, range)?,
+            _ => 1,
+        };
+        let bands = Bands::new(&lamp, count, range);
+        let nodes = if changes {
+            bands.nodes_nm.iter().map(|nm| prepared.at(*nm)).collect::<Result<_, _>>()?
+        } else {
+            vec![prepared.clone(); bands.nodes_nm.len()]
+        };
+        let fringe = |bin: &Group| {
+            let bandwidth_nm = match bin.width_nm {
+                0.0 => scene.light.bandwidth_nm.value,
+                width => BOX_TO_GAUSSIAN * width,
+            };
+            let coherence = Some(Coherence::new(bin.nm, bandwidth_nm));
+            prepared.with_coherence(coherence)
+        };
+        let is_coherent = prepared.coherence.is_some();
+        let fringes = bands.fringes.iter().filter(|_| is_coherent).map(fringe).collect();
+        Ok(Some(Self { bands, nodes, fringes }))
+    }
+}
+
+/// The wavelengths (nm) that are traced: all that are seen, but for the ends where a law does not hold.
+fn range_of(scene: &Scene, lamp: &Lamp) -> Result<[f64; 2], PreparedSceneError> {
+    if let Lamp::Lines(lines) = lamp {
+        let all = lines.iter().map(|[nm, _]| *nm);
+        return Ok([all.clone().fold(f64::INFINITY, f64::min), all.fold(0.0, f64::max)]);
+    }
+    let end = |ends: [f64; 5]| {
+        let holds = |nm: &f64| media_at(scene, *nm).is_ok();
+        // What is wrong is told of the end.
+        let found = ends.into_iter().find(holds);
+        found.map_or_else(|| media_at(scene, ends[0]).map(|_| ends[0]), Ok)
+    };
+    Ok([end(SHORTEST_NM)?, end(LONGEST_NM)?])
+}
+
+/// The entries of both tensors of a medium, real and imaginary.
+type Entries = [f64; 36];
+
+/// All entries of the tensors of media that are of a law, in light of a wavelength (nm).
+fn media_at(scene: &Scene, nm: f64) -> Result<Vec<Entries>, PreparedSceneError> {
+    let devices = scene.devices.iter().filter(|device| device.is_dispersive());
+    let devices = devices.cloned().collect();
+    let scene = Scene { devices, ..Scene::default() };
+    let entries = |medium: &Medium| -> Entries {
+        let (permittivity, permeability) = medium.tensors();
+        let parts = [permittivity.re, permittivity.im, permeability.re, permeability.im];
+        std::array::from_fn(|i| parts[i / 9].to_cols_array()[i % 9])
+    };
+    let mut media = Vec::new();
+    for (device, settings) in scene.devices.iter().enumerate() {
+        let settings = DeviceSettings { wavelength_nm: nm, ..settings.clone() };
+        let structure = settings.structure(device);
+        let structure = structure.map_err(|error| PreparedSceneError::Device { device, error })?;
+        media.extend(structure.homogeneous_media().map(entries));
+    }
+    Ok(media)
+}
+
+/// At how many wavelengths rays are traced, so that what they meet is known between them.
+fn nodes_for(prepared: &PreparedScene<'_>, range: [f64; 2]) -> Result<usize, PreparedSceneError> {
+    let scene = prepared.scene;
+    // Films are seen by the phase over their thickness.
+    let phase = |film: &Vec<FilmLayer>| -> f64 {
+        let turns = film.iter().map(|layer| {
+            const NM_PER_CM: f64 = 1e7;
+            let path = 2.0 * layer.medium.mean_index() * layer.thickness * NM_PER_CM;
+            path * (1.0 / range[0] - 1.0 / range[1])
+        });
+        std::f64::consts::PI * turns.sum::<f64>()
+    };
+    let films = prepared.assembly.devices().iter().flat_map(|device| &device.structure.films);
+    let phase = films.map(phase).fold(0.0, f64::max);
+    let of_films = FEWEST + phase.ceil() as usize;
+    let between: Vec<f64> = chebyshev_nodes(2 * MOST_OF_MEDIA, range);
+    let wanted: Vec<_> = between.iter().map(|nm| media_at(scene, *nm)).collect::<Result<_, _>>()?;
+    let mut of_media = FEWEST;
+    while of_media < MOST_OF_MEDIA {
+        let nodes = chebyshev_nodes(of_media, range);
+        let known: Vec<_> =
+            nodes.iter().map(|nm| media_at(scene, *nm)).collect::<Result<_, _>>()?;
+        let error = |(nm, wanted): (&f64, &Vec<Entries>)| {
+            let weights = weights(&nodes, *nm);
+            let of_medium = |(medium, wanted): (usize, &Entries)| {
+                let largest = wanted.iter().map(|entry| entry.abs()).fold(0.0, f64::max);
+                let off = |i: usize| {
+                    let terms = weights
+                        .iter()
+                        .zip(&known)
+                        .map(|(weight, media)| media[medium][i] * *weight);
+                    (terms.sum::<f64>() - wanted[i]).abs()
+                };
+                (0..wanted.len()).map(off).fold(0.0, f64::max) / largest
+            };
+            wanted.iter().enumerate().map(of_medium).fold(0.0, f64::max)
+        };
+        if between.iter().zip(&wanted).map(error).fold(0.0, f64::max) <= MEDIA_TOLERANCE {
+            break;
+        }
+        of_media += 1;
+    }
+    Ok(of_media.max(of_films).min(MOST_TRACERS - 1))
+}
+
+/// Memory to work in, kept from ray to ray.
+#[derive(Debug)]
+pub(super) struct Working<const N: usize> {
+    /// The number of a way's leaf at each node; those of the next way follow.
+    ways: Vec<Option<usize>>,
+    lights: Vec<DVec3>,
+    looks: Vec<(Look, Sight)>,
+    /// The leaves of three rays in the light of a bin.
+    leaves: [Vec<Leaf<N>>; 3],
+    exposure: exposure::Working,
+}
+
+impl<const N: usize> Default for Working<N> {
+    fn default() -> Self {
+        Self {
+            ways: Vec::new(),
+            lights: Vec::new(),
+            looks: Vec::new(),
+            leaves: std::array::from_fn(|_| Vec::new()),
+            exposure: exposure::Working::default(),
+        }
+    }
+}
+
+/// What a pixel sees in colors.
+#[derive(Debug)]
+pub(super) struct Colors<'a> {
+    pub pixel: &'a mut Pixel,
+    /// The light in each bin, where it is wanted.
+    pub spectrum: Option<&'a mut [f64; BINS]>,
+}
+
+/// Adds to a pixel the colors of one camera ray, as [`exposure::expose`] does what it sees: `nodes` are the
+/// ray and its neighbours in the light of each node.
+pub(super) fn expose<const N: usize>(
+    spectral: &Spectral<'_>,
+    detection: &Detection<N>,
+    nodes: &[[Traced<'_, N>; 3]],
+    spacing: f64,
+    colors: &mut Colors<'_>,
+    working: &mut Working<N>,
+) {
+    if !spectral.fringes.is_empty() {
+        expose_fringes(spectral, detection, nodes, spacing, colors, working);
+        return;
+    }
+    find_ways(nodes, 0, &mut working.ways);
+    let count = nodes.len();
+    for way in 0..working.ways.len() / count {
+        let numbers = way * count..(way + 1) * count;
+        working.looks.clear();
+        for (node, number) in numbers.clone().enumerate() {
+            let Some(number) = working.ways[number] else { continue };
+            let beside = [&nodes[node][0], &nodes[node][1], &nodes[node][2]];
+            working.looks.push(exposure::look(&spectral.nodes[node], beside, number));
+        }
+        let powers = |node: usize| &nodes[node][0].leaves;
+        let is_whole = working.looks.len() == count
+            && working.looks.windows(2).all(|pair| pair[0].0 == pair[1].0);
+        if is_whole {
+            let prepared = &spectral.nodes[0];
+            let level = level(&spectral.bands, &working.looks);
+            working.lights.clear();
+            for group in level {
+                let light = light_of(prepared, group, &working.looks, spacing);
+                working.lights.push(DVec3::from_array(light));
+            }
+            for (node, number) in numbers.enumerate() {
+                let Some(number) = working.ways[number] else { continue };
+                let leaf = &powers(node)[number];
+                let lights = level.iter().zip(&working.lights);
+                add(
+                    detection,
+                    leaf,
+                    lights.map(|(group, light)| (&group.lights[node], *light)),
+                    colors,
+                );
+            }
+        } else {
+            let mut looks = working.looks.iter();
+            for (node, number) in numbers.enumerate() {
+                let (Some(number), Some((look, sight))) =
+                    (working.ways[number], working.ways[number].and_then(|_| looks.next()))
+                else {
+                    continue;
+                };
+                let light = exposure::seen(&spectral.nodes[node], *look, sight.at, || {
+                    sight.steps.map(|step| step * spacing)
+                });
+                let cell = &spectral.bands.cells[node];
+                let leaf = &powers(node)[number];
+                add(detection, leaf, std::iter::once((cell, DVec3::from_array(light))), colors);
+            }
+        }
+    }
+}
+
+/// Finds the ways of a ray, one of three: for each the number of its leaf at every node.
+fn find_ways<const N: usize>(
+    nodes: &[[Traced<'_, N>; 3]],
+    ray: usize,
+    ways: &mut Vec<Option<usize>>,
+) {
+    ways.clear();
+    let count = nodes.len();
+    for (node, traced) in nodes.iter().enumerate() {
+        for (number, leaf) in traced[ray].leaves.iter().enumerate() {
+            let path = |way: usize| {
+                let first = ways[way * count..(way + 1) * count].iter().enumerate();
+                let known = first.filter_map(|(node, number)| Some((node, (*number)?))).next();
+                known.map(|(node, number)| nodes[node][ray].leaves[number].path)
+            };
+            let is_this =
+                |way: &usize| path(*way) == Some(leaf.path) && ways[way * count + node].is_none();
+            let all = ways.len() / count;
+            // As a rule it is in the same place.
+            let way = Some(number).filter(|way| *way < all && is_this(way));
+            let way = way.or_else(|| (0..all).find(is_this)).unwrap_or(all);
+            if way == all {
+                ways.extend(std::iter::repeat_n(None, count));
+            }
+            ways[way * count + node] = Some(number);
+        }
+    }
+}
+
+/// The groups of wavelengths in which a way's light is looked at: so small that each is drawn out by no
+/// more than a pixel, if there are such.
+fn level<'b>(bands: &'b Bands, looks: &[(Look, Sight)]) -> &'b [Group] {
+    let [coarsest, ..] = bands.levels.as_slice() else { return &[] };
+    let spread = sum(&coarsest[0].spread, looks, |sight| sight.at);
+    let [across, down] = sum_of_steps(&coarsest[0].middle, looks);
+    // As wide as a pixel is in the direction in which light is drawn out.
+    let length = spread.length_squared();
+    let pixel = (across.dot(spread).powi(2) + down.dot(spread).powi(2)).sqrt();
+    let groups = if length == 0.0 { 1.0 } else { length / pixel };
+    let level = bands.levels.iter().find(|level| level.len() as f64 >= groups);
+    level.or(bands.levels.last()).map_or(&[], Vec::as_slice)
+}
+
+fn sum(weights: &[f64], looks: &[(Look, Sight)], of: impl Fn(&Sight) -> DVec3) -> DVec3 {
+    weights.iter().zip(looks).map(|(weight, (_, sight))| of(sight) * *weight).sum()
+}
+
+fn sum_of_steps(weights: &[f64], looks: &[(Look, Sight)]) -> [DVec3; 2] {
+    [0, 1].map(|i| sum(weights, looks, |sight| sight.steps[i]))
+}
+
+/// What a way sees in the light of a group.
+fn light_of(
+    prepared: &PreparedScene<'_>,
+    group: &Group,
+    looks: &[(Look, Sight)],
+    spacing: f64,
+) -> [f64; 3] {
+    let look = looks[0].0;
+    let at = sum(&group.middle, looks, |sight| sight.at);
+    let at = if look == Look::Surroundings { at.normalize_or_zero() } else { at };
+    exposure::seen(prepared, look, at, || {
+        let steps = sum_of_steps(&group.middle, looks).map(|step| step * spacing);
+        drawn_out(steps, sum(&group.spread, looks, |sight| sight.at))
+    })
+}
+
+/// The two steps of an ellipse drawn out in a direction: its second moments are those of both.
+fn drawn_out([across, down]: [DVec3; 2], spread: DVec3) -> [DVec3; 2] {
+    let scale = across.length_squared().max(down.length_squared());
+    if spread.length_squared() <= 1e-6 * scale {
+        return [across, down];
+    }
+    // Axes of the plane in which all three are: along the spread, and across it.
+    let along = spread.normalize_or_zero();
+    let rest = [across, down].map(|step| step - along * along.dot(step));
+    let longest =
+        if rest[0].length_squared() > rest[1].length_squared() { rest[0] } else { rest[1] };
+    let beside = longest.normalize_or_zero();
+    let all = [across, down, spread].map(|step| [along.dot(step), beside.dot(step)]);
+    let moment = |i: usize, j: usize| all.iter().map(|step| step[i] * step[j]).sum::<f64>();
+    let (a, b, c) = (moment(0, 0), moment(0, 1), moment(1, 1));
+    // The axes of the ellipse.
+    let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
+    let off = half.hypot(b);
+    let angle = 0.5 * b.atan2(half);
+    let axis = along * angle.cos() + beside * angle.sin();
+    let other = beside * angle.cos() - along * angle.sin();
+    [axis * (mean + off).max(0.0).sqrt(), other * (mean - off).max(0.0).sqrt()]
+}
+
+/// Adds to a pixel what a leaf brings, which counts for some light each with what is seen in it.
+fn add<'b, const N: usize>(
+    detection: &Detection<N>,
+    leaf: &Leaf<N>,
+    lights: impl Iterator<Item = (&'b Light, DVec3)>,
+    colors: &mut Colors<'_>,
+) {
+    let power = detection.detected(&leaf.power);
+    let mut color = DVec3::ZERO;
+    for (light, seen) in lights {
+        color += light.color * seen;
+        if let Some(spectrum) = &mut colors.spectrum {
+            for (bin, shares) in &light.bins {
+                spectrum[*bin] += power * DVec3::from_array(*shares).dot(seen);
+            }
+        }
+    }
+    exposure::add_leaf(detection, leaf, power, color.to_array(), colors.pixel);
+}
+
+/// The same where leaves interfere: bin by bin of fringes, each as light of one wavelength and the width of the bin.
+fn expose_fringes<const N: usize>(
+    spectral: &Spectral<'_>,
+    detection: &Detection<N>,
+    nodes: &[[Traced<'_, N>; 3]],
+    spacing: f64,
+    colors: &mut Colors<'_>,
+    working: &mut Working<N>,
+) {
+    for (bin, prepared) in spectral.bands.fringes.iter().zip(&spectral.fringes) {
+        let weights = &bin.middle;
+        let nearest =
+            (0..weights.len()).max_by(|a, b| weights[*a].total_cmp(&weights[*b])).unwrap_or(0);
+        for ray in 0..3 {
+            find_ways(nodes, ray, &mut working.ways);
+            let leaves = &mut working.leaves[ray];
+            leaves.clear();
+            for way in working.ways.chunks(nodes.len()) {
+                let all = || {
+                    let numbers = way.iter().zip(nodes);
+                    numbers.filter_map(|(number, traced)| Some(&traced[ray].leaves[(*number)?]))
+                };
+                let Some(number) = way[nearest] else { continue };
+                let leaf = &nodes[nearest][ray].leaves[number];
+                let is_whole =
+                    all().count() == nodes.len() && all().all(|other| other.end == leaf.end);
+                leaves.push(if is_whole { interpolated(leaf, all(), weights) } else { *leaf });
+            }
+        }
+        let traced = [0, 1, 2].map(|ray| {
+            let Traced { ray: line, outcome, .. } = nodes[nearest][ray];
+            Traced { ray: line, leaves: &working.leaves[ray], outcome, first_face: None }
+        });
+        let mut seen = Pixel::default();
+        let traced = traced.each_ref();
+        exposure::expose::<N, true>(
+            prepared,
+            detection,
+            traced,
+            spacing,
+            &mut seen,
+            &mut working.exposure,
+        );
+        let color =
+            bin.lights.iter().map(|light| light.color).fold(glam::DMat3::ZERO, |sum, c| sum + c);
+        colors.pixel.add_colors(&seen, color);
+        if let Some(spectrum) = &mut colors.spectrum {
+            for (number, shares) in bin.lights.iter().flat_map(|light| &light.bins) {
+                spectrum[*number] += DVec3::from_array(*shares).dot(DVec3::from_array(seen.image));
+            }
+        }
+    }
+}
+
+/// A leaf between the nodes: `leaf` is that of the nearest.
+fn interpolated<'l, const N: usize>(
+    leaf: &Leaf<N>,
+    all: impl Iterator<Item = &'l Leaf<N>> + Clone,
+    weights: &[f64],
+) -> Leaf<N> {
+    let sum = |of: &dyn Fn(&Leaf<N>) -> f64| -> f64 {
+        all.clone().zip(weights).map(|(leaf, weight)| of(leaf) * weight).sum()
+    };
+    let vector = |of: &dyn Fn(&Leaf<N>) -> DVec3| -> DVec3 {
+        all.clone().zip(weights).map(|(leaf, weight)| of(leaf) * *weight).sum()
+    };
+    let mut found = *leaf;
+    found.position = vector(&|leaf| leaf.position);
+    found.direction = vector(&|leaf| leaf.direction).normalize_or_zero();
+    found.optical_path = sum(&|leaf| leaf.optical_path);
+    found.delay_path = sum(&|leaf| leaf.delay_path);
+    for i in 0..N {
+        found.power[i] = sum(&|leaf| leaf.power[i]).max(0.0);
+        let fields = all.clone().zip(weights);
+        let field = fields.fold(optics::wave::ComplexVector::ZERO, |field, (leaf, weight)| {
+            field + leaf.electric[i].scaled((*weight).into())
+        });
+        let norm = field.norm_squared();
+        // As strong as its power says.
+        let scale = if norm > 0.0 { (found.power[i] / norm).sqrt() } else { 0.0 };
+        found.electric[i] = field.scaled(scale.into());
+    }
+    found
+}
