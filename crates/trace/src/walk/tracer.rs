@@ -40,6 +40,13 @@ const EVENTS_DESERVED: f64 = 10.0;
 /// No tree meets more than so many then for each factor of ten between that power and the least.
 const MOST_EVENTS: f64 = 10_000.0;
 
+/// As often, in surfaces met, it is looked whether a branch runs in place: into a corner of media in
+/// which rays and wave vectors go different ways, say, where it never arrives.
+const EVENTS_PER_LOOK: u32 = 64;
+
+/// A branch runs in place that has as much of its power left after that.
+const LEFT_IN_PLACE: f64 = 0.99;
+
 /// A branch that carries more than so many times what was launched is not followed. In absorbing
 /// media beams carry what their interference takes back; where light starts in a film of such a
 /// medium that is thinner than a wavelength, more of it at each total reflection.
@@ -71,6 +78,10 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     /// Surfaces met, and how many may be.
     events: u32,
     most_events: u32,
+    /// When the branch of that time is looked at.
+    next_look: u32,
+    /// What it was like the last time, and how many others waited.
+    looked_at: Option<(Branch<N>, usize)>,
     /// Of the branches that wait, how many are in a heap, the strongest first; `None` where the last
     /// is taken.
     heaped: Option<usize>,
@@ -121,6 +132,8 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             outcome: Outcome::default(),
             events: 0,
             most_events: MANY_EVENTS,
+            next_look: EVENTS_PER_LOOK,
+            looked_at: None,
             heaped: None,
             started: (DVec3::NAN, None),
             recorder,
@@ -230,6 +243,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.outcome = Outcome::default();
         self.waiting.clear();
         (self.events, self.most_events, self.heaped) = (0, MANY_EVENTS, None);
+        (self.next_look, self.looked_at) = (EVENTS_PER_LOOK, None);
     }
 
     /// As [`Self::begin`], from where the branch has been taken through a region.
@@ -261,7 +275,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     fn walk(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {
         loop {
             let power = largest(&branch.power);
-            let goes_on = if self.events >= self.most_events && !self.may_go_on(branch) {
+            let goes_on = if self.events >= self.next_look && self.runs_in_place(branch) {
+                self.cut(branch.power)
+            } else if self.events >= self.most_events && !self.may_go_on(branch) {
                 self.cut_all(branch)
             } else if power < self.limits.min_power {
                 self.cut(branch.power)
@@ -294,6 +310,20 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 self.take_next(branch)?;
             }
         }
+    }
+
+    /// Whether a branch is where the one was that was looked at before, with as much power.
+    #[cold]
+    fn runs_in_place(&mut self, branch: &Branch<N>) -> bool {
+        self.next_look = self.events + EVENTS_PER_LOOK;
+        let waiting = self.waiting.len();
+        let before = self.looked_at.replace((*branch, waiting));
+        before.is_some_and(|(before, others)| {
+            others == waiting
+                && before.place == branch.place
+                && before.position.distance(branch.position) <= self.limits.tolerance
+                && largest(&branch.power) >= LEFT_IN_PLACE * largest(&before.power)
+        })
     }
 
     /// Whether a tree that has met many surfaces is to be followed further: for as long as the power
