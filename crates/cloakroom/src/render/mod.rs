@@ -45,7 +45,7 @@ use exposure::{Working, expose, expose_unhindered};
 use film::{Band, Film};
 use pixel::Pixel;
 use rayon::prelude::*;
-use spectral::{Colors, Spectral};
+use spectral::{Colors, Nodes, Spectral};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How a long work is watched and stopped.
@@ -427,6 +427,20 @@ impl<'a, const N: usize> Exposer<'a, N> {
         traced: &[f64],
         block: &mut Block,
     ) -> TraceStats {
+        // What light of all colors goes past.
+        if tracers.len() == spectral.nodes.len()
+            && !(self.colors.stokes || self.colors.spectrum)
+            && tracers[0].meet_nothing(rays)
+        {
+            let mut seen = [Pixel::default(); 4];
+            if expose_unhindered(self.prepared, self.colors, rays, spacing, &mut seen) {
+                let color = spectral.color();
+                for (pixel, seen) in block.pixels.iter_mut().zip(&seen) {
+                    pixel.add_colors(seen, color);
+                }
+                return TraceStats::default();
+            }
+        }
         let mut stats = TraceStats::default();
         for (tracer, traced) in tracers.iter_mut().zip(traced) {
             if !tracer.interpolate(points, rays, *traced) {
@@ -441,14 +455,13 @@ impl<'a, const N: usize> Exposer<'a, N> {
         let blocks: ArrayVec<_, MOST_TRACERS> =
             nodes.iter().map(|tracer| tracer.traced(rays)).collect();
         for (i, pixel) in block.pixels.iter_mut().enumerate() {
-            let nodes: ArrayVec<_, MOST_TRACERS> =
-                blocks.iter().map(|block| [block[i], block[i ^ 1], block[i ^ 2]]).collect();
+            let nodes = Nodes { blocks: &blocks, pixel: i };
             let spectrum = self.spectra.as_mut().map(|spectra| &mut spectra[i]);
             let mut colors = Colors { pixel, spectrum };
             spectral::expose(
                 spectral,
                 self.colors,
-                &nodes,
+                nodes,
                 spacing,
                 &mut colors,
                 &mut self.spectral,

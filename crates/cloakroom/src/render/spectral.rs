@@ -3,7 +3,7 @@
 //!
 //! Leaves of one ray at all wavelengths belong together where they have taken the same way. What such a leaf brings
 //! is a polynomial of the wave number, and the place that it sees as well: where the places of two
-//! neighbouring groups of wavelengths are more than a pixel apart, the photograph is looked at for smaller
+//! neighbouring groups of wavelengths are more than two pixels apart, the photograph is looked at for smaller
 //! groups, each through a filter as long as the group's light is drawn out. So there is no noise of
 //! colors, and no edge where a group ends. A way that light of some wavelengths does not take counts
 //! for those that are nearest to one that does.
@@ -16,7 +16,7 @@ use super::prepared_scene::{PreparedScene, PreparedSceneError};
 use crate::color::{BINS, Bands, Group, Lamp, Light, chebyshev_nodes, weights};
 use crate::scene::{DeviceSettings, Scene};
 use crate::trace::{Coherence, Leaf};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use optics::interface::FilmLayer;
 use optics::medium::Medium;
 
@@ -38,6 +38,9 @@ const MEDIA_TOLERANCE: f64 = 1e-4;
 /// Lamps of so many lines have each of them traced.
 const MOST_LINES: usize = 8;
 
+/// How far the light of a group of wavelengths may be drawn out, in pixels.
+const MOST_DRAWN_OUT: f64 = 2.0;
+
 /// A box of light has the coherence of a Gaussian line of this share of its width.
 const BOX_TO_GAUSSIAN: f64 = 0.68;
 
@@ -52,6 +55,12 @@ pub(super) struct Spectral<'s> {
 }
 
 impl<'s> Spectral<'s> {
+    /// The colors of red, green and blue things in all of the light.
+    pub fn color(&self) -> DMat3 {
+        let all = self.bands.levels.first().into_iter().flatten();
+        all.flat_map(|group| &group.lights).map(|light| light.color).sum()
+    }
+
     /// Of a scene, if its light is that of a lamp.
     ///
     /// # Errors
@@ -199,6 +208,26 @@ impl<const N: usize> Default for Working<N> {
     }
 }
 
+/// The rays of a block in the light of each node, of which one pixel is looked at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nodes<'a, const N: usize> {
+    pub blocks: &'a [[Traced<'a, N>; 4]],
+    /// Which pixel of the block.
+    pub pixel: usize,
+}
+
+impl<'a, const N: usize> Nodes<'a, N> {
+    /// How many nodes there are.
+    fn count(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// The ray of the pixel (0) or its neighbour across (1) or down (2) at a node.
+    fn ray(&self, node: usize, ray: usize) -> &'a Traced<'a, N> {
+        &self.blocks[node][self.pixel ^ ray]
+    }
+}
+
 /// What a pixel sees in colors.
 #[derive(Debug)]
 pub(super) struct Colors<'a> {
@@ -212,7 +241,7 @@ pub(super) struct Colors<'a> {
 pub(super) fn expose<const N: usize>(
     spectral: &Spectral<'_>,
     detection: &Detection<N>,
-    nodes: &[[Traced<'_, N>; 3]],
+    nodes: Nodes<'_, N>,
     spacing: f64,
     colors: &mut Colors<'_>,
     working: &mut Working<N>,
@@ -222,30 +251,31 @@ pub(super) fn expose<const N: usize>(
         return;
     }
     find_ways(nodes, 0, &mut working.ways);
-    let count = nodes.len();
+    let count = nodes.count();
     for way in 0..working.ways.len() / count {
         let numbers = way * count..(way + 1) * count;
         working.looks.clear();
         for (node, number) in numbers.clone().enumerate() {
             let Some(number) = working.ways[number] else { continue };
-            let beside = [&nodes[node][0], &nodes[node][1], &nodes[node][2]];
-            working.looks.push(exposure::look(&spectral.nodes[node], beside, number));
+            let rays = [0, 1, 2].map(|ray| nodes.ray(node, ray));
+            working.looks.push(exposure::look(&spectral.nodes[node], rays, number));
         }
-        let powers = |node: usize| &nodes[node][0].leaves;
+        let leaves = |node: usize| nodes.ray(node, 0).leaves;
         let is_whole = working.looks.len() == count
             && working.looks.windows(2).all(|pair| pair[0].0 == pair[1].0);
         if is_whole {
             let prepared = &spectral.nodes[0];
-            let level = level(&spectral.bands, &working.looks);
+            let Some(view) = View::of(&spectral.bands, &working.looks) else { continue };
+            let steps = view.steps.map(|step| step * spacing);
             working.lights.clear();
-            for group in level {
-                let light = light_of(prepared, group, &working.looks, spacing);
+            for group in view.groups {
+                let light = light_of(prepared, group, &working.looks, steps);
                 working.lights.push(DVec3::from_array(light));
             }
             for (node, number) in numbers.enumerate() {
                 let Some(number) = working.ways[number] else { continue };
-                let leaf = &powers(node)[number];
-                let lights = level.iter().zip(&working.lights);
+                let leaf = &leaves(node)[number];
+                let lights = view.groups.iter().zip(&working.lights);
                 add(
                     detection,
                     leaf,
@@ -265,7 +295,7 @@ pub(super) fn expose<const N: usize>(
                     sight.steps.map(|step| step * spacing)
                 });
                 let cell = &spectral.bands.cells[node];
-                let leaf = &powers(node)[number];
+                let leaf = &leaves(node)[number];
                 add(detection, leaf, std::iter::once((cell, DVec3::from_array(light))), colors);
             }
         }
@@ -273,19 +303,15 @@ pub(super) fn expose<const N: usize>(
 }
 
 /// Finds the ways of a ray, one of three: for each the number of its leaf at every node.
-fn find_ways<const N: usize>(
-    nodes: &[[Traced<'_, N>; 3]],
-    ray: usize,
-    ways: &mut Vec<Option<usize>>,
-) {
+fn find_ways<const N: usize>(nodes: Nodes<'_, N>, ray: usize, ways: &mut Vec<Option<usize>>) {
     ways.clear();
-    let count = nodes.len();
-    for (node, traced) in nodes.iter().enumerate() {
-        for (number, leaf) in traced[ray].leaves.iter().enumerate() {
+    let count = nodes.count();
+    for node in 0..count {
+        for (number, leaf) in nodes.ray(node, ray).leaves.iter().enumerate() {
             let path = |way: usize| {
                 let first = ways[way * count..(way + 1) * count].iter().enumerate();
                 let known = first.filter_map(|(node, number)| Some((node, (*number)?))).next();
-                known.map(|(node, number)| nodes[node][ray].leaves[number].path)
+                known.map(|(node, number)| nodes.ray(node, ray).leaves[number].path)
             };
             let is_this =
                 |way: &usize| path(*way) == Some(leaf.path) && ways[way * count + node].is_none();
@@ -301,26 +327,31 @@ fn find_ways<const N: usize>(
     }
 }
 
-/// The groups of wavelengths in which a way's light is looked at: so small that each is drawn out by no
-/// more than a pixel, if there are such.
-fn level<'b>(bands: &'b Bands, looks: &[(Look, Sight)]) -> &'b [Group] {
-    let [coarsest, ..] = bands.levels.as_slice() else { return &[] };
-    let spread = sum(&coarsest[0].spread, looks, |sight| sight.at);
-    let [across, down] = sum_of_steps(&coarsest[0].middle, looks);
-    // As wide as a pixel is in the direction in which light is drawn out.
-    let length = spread.length_squared();
-    let pixel = (across.dot(spread).powi(2) + down.dot(spread).powi(2)).sqrt();
-    let groups = if length == 0.0 { 1.0 } else { length / pixel };
-    let level = bands.levels.iter().find(|level| level.len() as f64 >= groups);
-    level.or(bands.levels.last()).map_or(&[], Vec::as_slice)
+/// How a way of light looks at things.
+struct View<'b> {
+    /// The groups of wavelengths in which it does: so small that none is drawn out by more than
+    /// [`MOST_DRAWN_OUT`], if there are such.
+    groups: &'b [Group],
+    /// What the place changes by from a pixel to the next, in the middle of the light.
+    steps: [DVec3; 2],
+}
+
+impl<'b> View<'b> {
+    fn of(bands: &'b Bands, looks: &[(Look, Sight)]) -> Option<Self> {
+        let all = bands.levels.first()?.first()?;
+        let spread = sum(&all.spread, looks, |sight| sight.at);
+        let steps = [0, 1].map(|i| sum(&all.middle, looks, |sight| sight.steps[i]));
+        // As wide as a pixel is in the direction in which light is drawn out.
+        let length = spread.length_squared();
+        let pixel = steps.iter().map(|step| step.dot(spread).powi(2)).sum::<f64>().sqrt();
+        let count = if length == 0.0 { 1.0 } else { length / (MOST_DRAWN_OUT * pixel) };
+        let level = bands.levels.iter().find(|level| level.len() as f64 >= count);
+        Some(Self { groups: level.or(bands.levels.last())?, steps })
+    }
 }
 
 fn sum(weights: &[f64], looks: &[(Look, Sight)], of: impl Fn(&Sight) -> DVec3) -> DVec3 {
     weights.iter().zip(looks).map(|(weight, (_, sight))| of(sight) * *weight).sum()
-}
-
-fn sum_of_steps(weights: &[f64], looks: &[(Look, Sight)]) -> [DVec3; 2] {
-    [0, 1].map(|i| sum(weights, looks, |sight| sight.steps[i]))
 }
 
 /// What a way sees in the light of a group.
@@ -328,13 +359,12 @@ fn light_of(
     prepared: &PreparedScene<'_>,
     group: &Group,
     looks: &[(Look, Sight)],
-    spacing: f64,
+    steps: [DVec3; 2],
 ) -> [f64; 3] {
     let look = looks[0].0;
     let at = sum(&group.middle, looks, |sight| sight.at);
     let at = if look == Look::Surroundings { at.normalize_or_zero() } else { at };
     exposure::seen(prepared, look, at, || {
-        let steps = sum_of_steps(&group.middle, looks).map(|step| step * spacing);
         drawn_out(steps, sum(&group.spread, looks, |sight| sight.at))
     })
 }
@@ -354,13 +384,15 @@ fn drawn_out([across, down]: [DVec3; 2], spread: DVec3) -> [DVec3; 2] {
     let all = [across, down, spread].map(|step| [along.dot(step), beside.dot(step)]);
     let moment = |i: usize, j: usize| all.iter().map(|step| step[i] * step[j]).sum::<f64>();
     let (a, b, c) = (moment(0, 0), moment(0, 1), moment(1, 1));
-    // The axes of the ellipse.
+    // The axes of the ellipse: (off + half, b) is along the longer one.
     let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
     let off = half.hypot(b);
-    let angle = 0.5 * b.atan2(half);
-    let axis = along * angle.cos() + beside * angle.sin();
-    let other = beside * angle.cos() - along * angle.sin();
-    [axis * (mean + off).max(0.0).sqrt(), other * (mean - off).max(0.0).sqrt()]
+    let (x, y) = if half >= 0.0 { (off + half, b) } else { (b, off - half) };
+    let length = x.hypot(y);
+    let (cos, sin) = if length > 0.0 { (x / length, y / length) } else { (1.0, 0.0) };
+    let axis = along * cos + beside * sin;
+    let other = beside * cos - along * sin;
+    [axis * (mean + off).sqrt(), other * (mean - off).max(0.0).sqrt()]
 }
 
 /// Adds to a pixel what a leaf brings, which counts for some light each with what is seen in it.
@@ -387,7 +419,7 @@ fn add<'b, const N: usize>(
 fn expose_fringes<const N: usize>(
     spectral: &Spectral<'_>,
     detection: &Detection<N>,
-    nodes: &[[Traced<'_, N>; 3]],
+    nodes: Nodes<'_, N>,
     spacing: f64,
     colors: &mut Colors<'_>,
     working: &mut Working<N>,
@@ -400,20 +432,21 @@ fn expose_fringes<const N: usize>(
             find_ways(nodes, ray, &mut working.ways);
             let leaves = &mut working.leaves[ray];
             leaves.clear();
-            for way in working.ways.chunks(nodes.len()) {
+            for way in working.ways.chunks(nodes.count()) {
                 let all = || {
-                    let numbers = way.iter().zip(nodes);
-                    numbers.filter_map(|(number, traced)| Some(&traced[ray].leaves[(*number)?]))
+                    let numbers = way.iter().enumerate();
+                    numbers
+                        .filter_map(|(node, number)| Some(&nodes.ray(node, ray).leaves[(*number)?]))
                 };
                 let Some(number) = way[nearest] else { continue };
-                let leaf = &nodes[nearest][ray].leaves[number];
+                let leaf = &nodes.ray(nearest, ray).leaves[number];
                 let is_whole =
-                    all().count() == nodes.len() && all().all(|other| other.end == leaf.end);
+                    all().count() == nodes.count() && all().all(|other| other.end == leaf.end);
                 leaves.push(if is_whole { interpolated(leaf, all(), weights) } else { *leaf });
             }
         }
         let traced = [0, 1, 2].map(|ray| {
-            let Traced { ray: line, outcome, .. } = nodes[nearest][ray];
+            let Traced { ray: line, outcome, .. } = *nodes.ray(nearest, ray);
             Traced { ray: line, leaves: &working.leaves[ray], outcome, first_face: None }
         });
         let mut seen = Pixel::default();
@@ -426,8 +459,7 @@ fn expose_fringes<const N: usize>(
             &mut seen,
             &mut working.exposure,
         );
-        let color =
-            bin.lights.iter().map(|light| light.color).fold(glam::DMat3::ZERO, |sum, c| sum + c);
+        let color = bin.lights.iter().map(|light| light.color).sum::<DMat3>();
         colors.pixel.add_colors(&seen, color);
         if let Some(spectrum) = &mut colors.spectrum {
             for (number, shares) in bin.lights.iter().flat_map(|light| &light.bins) {
