@@ -21,7 +21,7 @@ const FRINGE_BIN_NM: f64 = 10.0;
 pub(crate) struct Bands {
     /// The wavelengths, nm: the nodes.
     pub nodes_nm: Vec<f64>,
-    /// From coarse to fine, what is seen of all wavelengths together, in two groups, and so on.
+    /// From coarse to fine, all wavelengths together, in two groups, and so on; lines each by itself.
     pub levels: Vec<Vec<Group>>,
     /// The bins within which light interferes.
     pub fringes: Vec<Group>,
@@ -101,15 +101,7 @@ impl Bands {
             samples.iter().map(|line| group([line.nm; 2], &[(1.0, *line)])).collect()
         };
         let levels = if lines {
-            let [low, high] = samples.iter().fold([f64::INFINITY, 0.0_f64], |[low, high], line| {
-                [low.min(line.nm), high.max(line.nm)]
-            });
-            let all: Vec<_> = samples.iter().map(|line| (1.0, *line)).collect();
-            let mut levels = vec![vec![group([low, high], &all)]];
-            if samples.len() > 1 {
-                levels.push(of_lines());
-            }
-            levels
+            vec![of_lines()]
         } else {
             let steps = std::iter::successors(Some(BINS), |step| (*step > 1).then_some(step / 2));
             let edges =

@@ -36,11 +36,11 @@ pub enum Lamp {
 
 /// A part of a lamp's light, so narrow that it is of one wavelength.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
+pub(crate) struct Sample {
     /// Its wavelength, nm.
-    nm: f64,
+    pub nm: f64,
     /// Its color in the camera where a thing sends all of it back.
-    color: DVec3,
+    pub color: DVec3,
     /// Shares of it that come back from a red, a green and a blue thing.
     shares: DVec3,
     /// Its power.
@@ -49,7 +49,7 @@ struct Sample {
 
 impl Sample {
     /// The color of a thing of linear red, green and blue in this light.
-    fn color_of_things(&self) -> DMat3 {
+    pub fn color_of_things(&self) -> DMat3 {
         let outer = |share: f64| self.color * share;
         DMat3::from_cols(outer(self.shares.x), outer(self.shares.y), outer(self.shares.z))
     }
@@ -64,7 +64,7 @@ impl Lamp {
     }
 
     /// Its light, as bright as a picture shows it.
-    fn samples(&self) -> Vec<Sample> {
+    pub(crate) fn samples(&self) -> Vec<Sample> {
         let mut samples = self.unscaled();
         let white: DVec3 = samples.iter().map(|sample| sample.color).sum();
         let largest = white.max_element();

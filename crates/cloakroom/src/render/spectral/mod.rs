@@ -3,7 +3,7 @@
 //!
 //! Leaves of one ray at all wavelengths belong together where they have taken the same way. What such a leaf brings
 //! is a polynomial of the wave number, and the place that it sees as well: where the places of two
-//! neighbouring groups of wavelengths are more than two pixels apart, the photograph is looked at for smaller
+//! neighbouring groups of wavelengths are more than a pixel apart, the photograph is looked at for smaller
 //! groups, each through a filter as long as the group's light is drawn out. So there is no noise of
 //! colors, and no edge where a group ends. A way that light of some wavelengths does not take counts
 //! for those that are nearest to one that does.
@@ -39,7 +39,7 @@ const MEDIA_TOLERANCE: f64 = 1e-4;
 const MOST_LINES: usize = 8;
 
 /// How far the light of a group of wavelengths may be drawn out, in pixels.
-const MOST_DRAWN_OUT: f64 = 2.0;
+const MOST_DRAWN_OUT: f64 = 1.0;
 
 /// A box of light has the coherence of a Gaussian line of this share of its width.
 const BOX_TO_GAUSSIAN: f64 = 0.68;
@@ -139,21 +139,28 @@ fn media_at(scene: &Scene, nm: f64) -> Result<Vec<Entries>, PreparedSceneError> 
     Ok(media)
 }
 
+/// At how many wavelengths a film is to be known: what it lets through is a sum of harmonics of the phase over
+/// its thickness, each weaker than the last by the reflection at both its sides.
+fn nodes_for_film(film: &[FilmLayer], range: [f64; 2]) -> usize {
+    const NM_PER_CM: f64 = 1e7;
+    /// Harmonics that are weaker do not count.
+    const WEAKEST: f64 = 1e-3;
+    let phase = |layer: &FilmLayer| {
+        let path = 2.0 * layer.medium.mean_index() * layer.thickness * NM_PER_CM;
+        std::f64::consts::PI * path * (1.0 / range[0] - 1.0 / range[1])
+    };
+    let phase: f64 = film.iter().map(phase).sum();
+    let highest = film.iter().map(|layer| layer.medium.mean_index()).fold(1.0, f64::max);
+    let both_sides = 0.5 * ((highest - 1.0) / (highest + 1.0)).powi(2);
+    let harmonics = (WEAKEST.ln() / both_sides.max(WEAKEST).ln()).clamp(1.0, 4.0);
+    FEWEST + (phase * harmonics).ceil() as usize
+}
+
 /// At how many wavelengths rays are traced, so that what they meet is known between them.
 fn nodes_for(prepared: &PreparedScene<'_>, range: [f64; 2]) -> Result<usize, PreparedSceneError> {
     let scene = prepared.scene;
-    // Films are seen by the phase over their thickness.
-    let phase = |film: &Vec<FilmLayer>| -> f64 {
-        let turns = film.iter().map(|layer| {
-            const NM_PER_CM: f64 = 1e7;
-            let path = 2.0 * layer.medium.mean_index() * layer.thickness * NM_PER_CM;
-            path * (1.0 / range[0] - 1.0 / range[1])
-        });
-        std::f64::consts::PI * turns.sum::<f64>()
-    };
     let films = prepared.assembly.devices().iter().flat_map(|device| &device.structure.films);
-    let phase = films.map(phase).fold(0.0, f64::max);
-    let of_films = FEWEST + phase.ceil() as usize;
+    let of_films = films.map(|film| nodes_for_film(film, range)).max().unwrap_or(FEWEST);
     let between: Vec<f64> = chebyshev_nodes(2 * MOST_OF_MEDIA, range);
     let wanted: Vec<_> = between.iter().map(|nm| media_at(scene, *nm)).collect::<Result<_, _>>()?;
     let mut of_media = FEWEST;
@@ -265,7 +272,9 @@ pub(super) fn expose<const N: usize>(
             && working.looks.windows(2).all(|pair| pair[0].0 == pair[1].0);
         if is_whole {
             let prepared = &spectral.nodes[0];
-            let Some(view) = View::of(&spectral.bands, &working.looks) else { continue };
+            let power =
+                working.ways[way * count].map_or(0.0, |number| leaves(0)[number].largest_power());
+            let Some(view) = View::of(&spectral.bands, &working.looks, power) else { continue };
             let steps = view.steps.map(|step| step * spacing);
             working.lights.clear();
             for group in view.groups {
@@ -329,22 +338,26 @@ fn find_ways<const N: usize>(nodes: Nodes<'_, N>, ray: usize, ways: &mut Vec<Opt
 
 /// How a way of light looks at things.
 struct View<'b> {
-    /// The groups of wavelengths in which it does: so small that none is drawn out by more than
-    /// [`MOST_DRAWN_OUT`], if there are such.
+    /// The groups of wavelengths in which it does: so small that none of a strong one is drawn out by
+    /// more than [`MOST_DRAWN_OUT`], if there are such.
     groups: &'b [Group],
     /// What the place changes by from a pixel to the next, in the middle of the light.
     steps: [DVec3; 2],
 }
 
 impl<'b> View<'b> {
-    fn of(bands: &'b Bands, looks: &[(Look, Sight)]) -> Option<Self> {
-        let all = bands.levels.first()?.first()?;
-        let spread = sum(&all.spread, looks, |sight| sight.at);
-        let steps = [0, 1].map(|i| sum(&all.middle, looks, |sight| sight.steps[i]));
+    /// Of a way with so much power: a weak one is looked at less closely.
+    fn of(bands: &'b Bands, looks: &[(Look, Sight)], power: f64) -> Option<Self> {
+        let coarsest = bands.levels.first()?;
+        let [first, last] = [coarsest.first()?, coarsest.last()?];
+        let spread = sum(&first.spread, looks, |sight| sight.at);
+        let middle = if coarsest.len() > 1 { last } else { first };
+        let steps = [0, 1].map(|i| sum(&middle.middle, looks, |sight| sight.steps[i]));
         // As wide as a pixel is in the direction in which light is drawn out.
         let length = spread.length_squared();
         let pixel = steps.iter().map(|step| step.dot(spread).powi(2)).sum::<f64>().sqrt();
         let count = if length == 0.0 { 1.0 } else { length / (MOST_DRAWN_OUT * pixel) };
+        let count = count * power.min(1.0).sqrt();
         let level = bands.levels.iter().find(|level| level.len() as f64 >= count);
         Some(Self { groups: level.or(bands.levels.last())?, steps })
     }
@@ -386,9 +399,9 @@ fn drawn_out([across, down]: [DVec3; 2], spread: DVec3) -> [DVec3; 2] {
     let (a, b, c) = (moment(0, 0), moment(0, 1), moment(1, 1));
     // The axes of the ellipse: (off + half, b) is along the longer one.
     let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
-    let off = half.hypot(b);
+    let off = (half * half + b * b).sqrt();
     let (x, y) = if half >= 0.0 { (off + half, b) } else { (b, off - half) };
-    let length = x.hypot(y);
+    let length = (x * x + y * y).sqrt();
     let (cos, sin) = if length > 0.0 { (x / length, y / length) } else { (1.0, 0.0) };
     let axis = along * cos + beside * sin;
     let other = beside * cos - along * sin;
@@ -499,3 +512,6 @@ fn interpolated<'l, const N: usize>(
     }
     found
 }
+
+#[cfg(test)]
+mod tests;
