@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _cloakroom
+from .materials import Material
 
 _Self = TypeVar("_Self", bound="Table")
 _Image = str | os.PathLike[str] | ArrayLike
@@ -52,7 +53,10 @@ def annotation(name: str, description: Mapping[str, Any], *, given: bool) -> str
         return f"Literal[{', '.join(json.dumps(word) for word in description['enum'])}]"
     kind = description.get("type")
     if "anyOf" in description:
-        options = dict.fromkeys(annotation(name, option, given=given) for option in description["anyOf"])
+        each = (annotation(name, option, given=given) for option in description["anyOf"])
+        options = dict.fromkeys(part for option in each for part in option.split(" | "))
+        if given and name == "material":
+            options["Material"] = None
         if name == "index" and "str" in options:
             return "_Index" if given else "str | list[list[float]]"
         numeric = all(option in ("float", "ArrayLike", "list[Any]") for option in options)

@@ -17,7 +17,7 @@ cloaks", Opt. Express 21, 9457 (2013), and more; `cloakroom.tables.DEVICES` has 
 from . import tables
 from ._cloakroom import __version__, set_threads, threads
 from .interfaces import Interface, Medium, Modes, interface
-from .materials import export
+from .materials import Material, export
 from .measuring import Finding, flux, quality, sweep, verify
 from .pictures import Picture
 from .rays import Traced, trace
@@ -27,6 +27,7 @@ from .tables import *  # noqa: F403
 __all__ = [
     "Finding",
     "Interface",
+    "Material",
     "Medium",
     "Modes",
     "Picture",

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 __all__ = [
     "__version__",
     "Image",
+    "Material",
     "Scene",
     "check_memory",
     "export_grid",
@@ -44,6 +45,22 @@ class Image:
     @property
     def name(self) -> str: ...
 
+@final
+class Material:
+    def __new__(cls, what: Any) -> Material: ...
+    @property
+    def value(self) -> Any: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def source(self) -> str: ...
+    @property
+    def is_uniaxial(self) -> bool: ...
+    @property
+    def range_nm(self) -> tuple[float, float]: ...
+    def indices(
+        self, wavelengths_nm: NDArray[np.float64], extraordinary: bool
+    ) -> list[NDArray[np.complex128]]: ...
 @final
 class Scene:
     def __new__(

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _cloakroom
+from .materials import Material
 
 _Self = TypeVar("_Self", bound="Table")
 _Image = str | os.PathLike[str] | ArrayLike
@@ -743,7 +744,7 @@ class Body(Device):
         imperfection: Mapping[str, Any] | None = ...,
         index: ArrayLike | None = ...,
         length: float | None = ...,
-        material: Literal["calcite", "quartz", "sapphire", "magnesium-fluoride", "rutile", "lithium-niobate", "bk7", "sf11", "fused-silica", "pmma", "water", "air", "silver", "gold", "aluminium"] | str | Mapping[str, Any] | None = ...,
+        material: Literal["calcite", "quartz", "sapphire", "magnesium-fluoride", "rutile", "lithium-niobate", "bk7", "sf11", "fused-silica", "pmma", "water", "air", "silver", "gold", "aluminium"] | str | Material | Mapping[str, Any] | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
         optic_axis: ArrayLike | None = ...,
         permeability: ArrayLike | None = ...,
@@ -1076,10 +1077,13 @@ class Light(Table):
         self,
         *,
         bandwidth_nm: float | None = ...,
+        spectrum: Literal["auto", "rgb", "D65", "E"] | float | Mapping[str, Any] | None = ...,
         wavelength_nm: float | None = ...,
     ) -> None: ...
     @property
     def bandwidth_nm(self) -> float: ...
+    @property
+    def spectrum(self) -> Literal["auto", "rgb", "D65", "E"] | float | dict[str, Any]: ...
     @property
     def wavelength_nm(self) -> float: ...
 
@@ -1111,12 +1115,12 @@ class PictureSettings(Table):
     def __init__(
         self,
         *,
-        channels: Sequence[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay"]] | None = ...,
+        channels: Sequence[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay", "spectrum"]] | None = ...,
         color_bar: bool | None = ...,
         map: Literal["none", "time_of_flight", "time_of_flight_spread", "time_of_flight_difference", "group_delay", "group_delay_spread", "group_delay_difference", "delivered", "escaped", "absorbed", "pruned", "extraordinary_share", "first_face_reflectance"] | None = ...,
     ) -> None: ...
     @property
-    def channels(self) -> list[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay"]]: ...
+    def channels(self) -> list[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay", "spectrum"]]: ...
     @property
     def color_bar(self) -> bool: ...
     @property

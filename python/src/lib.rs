@@ -23,7 +23,7 @@ mod _cloakroom {
     #[pymodule_export]
     use super::interfaces::interface;
     #[pymodule_export]
-    use super::materials::{export_grid, export_table};
+    use super::materials::{Material, export_grid, export_table};
     #[pymodule_export]
     use super::measuring::{flux, quality, sweep, verify};
     #[pymodule_export]

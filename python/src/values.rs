@@ -1,5 +1,6 @@
 //! Python objects as the values of keys, and back.
 
+use crate::materials::Material;
 use cloakroom::keys::Value;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -13,7 +14,7 @@ const MOST_ENTRIES: usize = 1_000_000;
 
 /// The value that a Python object is; `name` is the key that it is meant for.
 ///
-/// Complex numbers become `[re, im]`, paths texts, and numpy's arrays and numbers what their
+/// Complex numbers become `[re, im]`, paths texts, materials what was said of them, and numpy's arrays and numbers what their
 /// `tolist` gives.
 ///
 /// # Errors
@@ -66,6 +67,11 @@ fn convert(
     }
     if object.is_instance_of::<PyList>() || object.is_instance_of::<PyTuple>() {
         return list(name, object, depth, left);
+    }
+    if let Ok(native) = object.getattr("_native")
+        && let Ok(material) = native.cast::<Material>()
+    {
+        return Ok(material.get().value.clone());
     }
     if let Ok(path) = object.call_method0("__fspath__") {
         return convert(name, &path, depth + 1, left);

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -138,3 +139,66 @@ def test_a_prism_deviates_least_by_the_law_of_its_glass() -> None:
         out = leaves.direction[np.argmax(leaves.power.sum(axis=-1))]
         deviation = np.degrees(np.arctan2(np.cross(direction, out)[2], direction @ out))
         assert abs(abs(deviation) - np.degrees(2 * incidence - 2 * half)) < 1e-9
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_objects_are_the_materials_of_the_command(command: Run, name: str) -> None:
+    material = cloakroom.Material(name)
+    least, most = material.range_nm
+    nm = np.linspace(least, most, 12).reshape(3, 4)
+    waves = of_command(command, name, nm.ravel())
+    assert material.is_uniaxial == ("extraordinary" in waves)
+    for wave, found in waves.items():
+        wave = "extraordinary" if wave == "extraordinary" else "ordinary"
+        index = material.index(nm, wave)
+        assert index.shape == nm.shape
+        np.testing.assert_array_equal(index.ravel().real, found["n"])
+        np.testing.assert_array_equal(index.ravel().imag, found["k"])
+        np.testing.assert_array_equal(material.group_index(nm, wave).ravel(), found["n_g"])
+        np.testing.assert_array_equal(material.permittivity(nm, wave), index**2)
+
+
+def test_objects_go_into_scenes(tmp_path: Path) -> None:
+    law = cloakroom.Material({"cauchy": [1.5, 0.004, 0]})
+    np.testing.assert_allclose(law.index(500.0), 1.516)
+    np.testing.assert_allclose(law.group_index(500.0), 1.548)
+    for material in (cloakroom.Material("bk7"), law):
+        assert pickle.loads(pickle.dumps(material)) == material
+        body = cloakroom.Body(material=material)
+        assert body == cloakroom.Body(material=material.value)
+    file = tmp_path / "glass.yml"
+    file.write_text("DATA:\n  - type: formula 5\n    wavelength_range: 0.4 0.7\n    coefficients: 1.5 0.004 -2\n")
+    glass = cloakroom.Material(file)
+    assert glass.index(500.0) == law.index(500.0) and glass.range_nm == (400.0, 700.0)
+    cloakroom.Scene(devices=cloakroom.Body(material=glass)).check()
+
+
+@pytest.mark.parametrize(
+    ("what", "message"),
+    [
+        ("calcit", "calcite"),
+        ("missing.yml", "missing.yml"),
+        ({"cauchy": [1.5, 0.004]}, "cauchy"),
+        ({}, "needs one law"),
+        ({"sellmeier": [{"strength": 1.0}]}, "pole_um2"),
+        (3, "str"),
+    ],
+)
+def test_bad_materials_are_told(what: object, message: str) -> None:
+    with pytest.raises((TypeError, ValueError)) as raised:
+        cloakroom.Material(what)  # type: ignore[arg-type]
+    assert message in str(raised.value)
+
+
+def test_bad_wavelengths_are_told() -> None:
+    calcite, water = cloakroom.Material("calcite"), cloakroom.Material("water")
+    for call, message in [
+        (lambda: calcite.index(100.0), "204"),
+        (lambda: calcite.index(float("nan")), "NaN"),
+        (lambda: calcite.index("red"), "wavelength"),
+        (lambda: water.index(500.0, "extraordinary"), "isotropic"),
+        (lambda: water.index(500.0, "odd"), "wave is"),  # type: ignore[arg-type]
+    ]:
+        with pytest.raises((TypeError, ValueError)) as raised:
+            call()
+        assert message in str(raised.value)

@@ -4,7 +4,9 @@
 //! entries: a dispersion formula with its coefficients, or a table of n, of k or of both, by the
 //! wavelength in µm.
 
+use crate::device::{MaterialWord, MediumWords};
 use crate::input::{Digest, read_file};
+use crate::keys::{Field, KeyKind, Value};
 use optics::material::{Dispersion, IndexLaw, Material, Table};
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -87,6 +89,26 @@ impl MaterialFiles {
         files.push(Arc::clone(&file));
         Ok(file)
     }
+}
+
+/// The material that a value of the key `material` says: a name, the path of a file, or the table of a law.
+///
+/// # Errors
+///
+/// A message that says what is wrong with the value, or why its file cannot be used.
+pub fn material_of(value: &Value) -> Result<Arc<Material>, String> {
+    let key =
+        MediumWords::KEYS.iter().find(|key| matches!(key.kind, KeyKind::MaterialOrTable { .. }));
+    let value = key.map_or_else(|| Ok(value.clone()), |key| key.check(value))?;
+    let mut word = MaterialWord::from_value(&value)
+        .ok_or_else(|| format!("{value} is no material: it is a name, a file or a law"))?;
+    let (files, mut failed) = (MaterialFiles::default(), None);
+    word.show_files("", &mut |_, file| match (files.at(file.path), file.material) {
+        (Ok(read), Some(material)) => *material = Some(Arc::clone(&read.material)),
+        (Err(message), _) => failed = failed.take().or(Some(message)),
+        (Ok(_), None) => {}
+    });
+    failed.map_or_else(|| word.material().map_err(|error| error.message), Err)
 }
 
 /// The material that a document describes.

@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 
 /// What coarse pictures may leave out: branches weaker than this, and places less exact than this,
 /// cm.
-const COARSE_POWER: f64 = 1e-2;
+const COARSE_POWER: f64 = 3e-2;
 const COARSE_TOLERANCE: f64 = 1e-2;
 
 /// How long a page may take to show the first coarse picture before finer ones are begun.

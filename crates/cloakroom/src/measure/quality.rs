@@ -65,6 +65,7 @@ fn draws_at_once(scene: &Scene) -> usize {
 /// Whether the empty views of two scenes are the same.
 fn same_view(one: &Scene, other: &Scene) -> bool {
     one.camera == other.camera
+        && one.light.spectrum == other.light.spectrum
         && one.photograph == other.photograph
         && one.surroundings == other.surroundings
 }
