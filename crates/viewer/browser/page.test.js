@@ -148,6 +148,44 @@ test("the bandwidth of the light has a control, and a link keeps it", async () =
   await page.close();
 });
 
+test("the light has a control, and one wavelength a slider", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  const spectrum = () =>
+    page.evaluate(() => {
+      const text = location.hash.slice(1).replaceAll("-", "+").replaceAll("_", "/");
+      return JSON.parse(atob(text)).scene.light?.spectrum;
+    });
+  const choose = async (word) => {
+    await page.selectOption("#spectrum", word);
+    await finished(page);
+    return spectrum();
+  };
+  const white = await pixels(page);
+  assert.ok(await page.locator("#wavelength").isHidden());
+  assert.equal(await choose("wavelength"), 550);
+  const green = await pixels(page);
+  assert.ok(difference(white, green).most > 50);
+  // The arrow keys move it by a nanometer.
+  await page.focus("#wavelength");
+  await page.keyboard.press("ArrowRight");
+  await finished(page);
+  assert.equal(await spectrum(), 551);
+  assert.equal(await page.textContent("#wavelength-words"), "551 nm");
+  await page.fill("#wavelength", "650");
+  await finished(page);
+  assert.equal(await spectrum(), 650);
+  assert.ok(difference(green, await pixels(page)).most > 50);
+  assert.deepEqual(await choose("lamp"), { black_body_k: 2856 });
+  assert.ok(await page.locator("#wavelength").isHidden());
+  // Daylight is the white of the page: nothing here disperses.
+  assert.equal(await choose("D65"), "D65");
+  assert.ok(difference(white, await pixels(page)).most <= 1);
+  assert.equal(await choose("auto"), undefined);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
 test("rays may be traced one by one", async () => {
   const { page, complaints } = await open();
   await small(page);

@@ -45,6 +45,7 @@ export function showState(state, hello, { changed, setShow }) {
   $("angle-label").hidden = typeof polarizer !== "number";
   if (typeof polarizer === "number") $("angle").value = polarizer;
   $("bandwidth").value = state.scene.light?.bandwidth_nm ?? "";
+  showSpectrum(state.scene.light?.spectrum);
   $("map").value = state.scene.picture?.map ?? "none";
   $("beside").value = state.beside;
   $("width").value = String(state.width);
@@ -55,6 +56,22 @@ export function showState(state, hello, { changed, setShow }) {
   showShows(state, hello, setShow);
   showRotation(state);
   showSplit(state, hello);
+}
+
+// The lamps of the page that a scene has no word for.
+export const LAMPS = { lamp: { black_body_k: 2856 } };
+
+// What makes the colors: a word, a lamp or one wavelength.
+export function showSpectrum(spectrum = "auto") {
+  const isOne = typeof spectrum === "number";
+  const isLamp = JSON.stringify(spectrum) === JSON.stringify(LAMPS.lamp);
+  const shown = isOne ? "wavelength" : isLamp ? "lamp" : typeof spectrum === "string" ? spectrum : "own";
+  $("spectrum").value = shown;
+  $("spectrum").querySelector('[value="own"]').hidden = shown !== "own";
+  $("wavelength-label").hidden = !isOne;
+  if (!isOne) return;
+  $("wavelength").value = String(spectrum);
+  $("wavelength-words").textContent = `${spectrum} nm`;
 }
 
 // The ways in which the scene's devices can be shown: each those that can.

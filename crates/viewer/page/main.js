@@ -1,6 +1,6 @@
 // The page: what is done with it becomes a look, and what comes back is shown.
 
-import { fillLists, showRotation, showSplit, showState } from "./choices.js";
+import { LAMPS, fillLists, showRotation, showSpectrum, showSplit, showState } from "./choices.js";
 import { Connection } from "./connection.js";
 import { watchDrops, watchKeys, watchPointer } from "./gestures.js";
 import { ageNumbers, percent, showNumbers } from "./numbers.js";
@@ -284,6 +284,19 @@ $("bandwidth").addEventListener("change", () => {
   state.set("light", "bandwidth_nm", given ? $("bandwidth").valueAsNumber : undefined);
   changed();
 });
+function setSpectrum(spectrum, moving) {
+  state.set("light", "spectrum", spectrum);
+  showSpectrum(spectrum);
+  changed(moving);
+}
+$("spectrum").addEventListener("change", () => {
+  const word = $("spectrum").value;
+  if (word === "own") return showSpectrum(state.scene.light?.spectrum);
+  const lit = word === "wavelength" ? $("wavelength").valueAsNumber : (LAMPS[word] ?? word);
+  return setSpectrum(lit === "auto" ? undefined : copy(lit), false);
+});
+$("wavelength").addEventListener("input", () => setSpectrum($("wavelength").valueAsNumber, true));
+$("wavelength").addEventListener("change", () => setSpectrum($("wavelength").valueAsNumber, false));
 $("map").addEventListener("change", () => {
   const map = $("map").value;
   state.set("picture", "map", map === "none" ? undefined : map);

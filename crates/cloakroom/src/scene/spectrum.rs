@@ -159,3 +159,63 @@ impl LampSpectrum {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::color::Lamp;
+    use crate::scene_file;
+    use std::path::Path;
+
+    /// What a spectrum comes to, or the message.
+    fn lamp(spectrum: &str) -> Result<Option<Lamp>, String> {
+        let text = format!("[light]\nspectrum = {spectrum}\n");
+        let loaded = scene_file::parse(&text, "test", Path::new(""), &[])
+            .map_err(|error| error.to_string())?;
+        loaded.scene.light.spectrum.lamp(false).map_err(|error| format!("{error:?}"))
+    }
+
+    #[test]
+    fn spectra_are_lamps() {
+        let lines = "{ lines = [{ wavelength_nm = 546.1 }, { wavelength_nm = 578, power = 2 }] }";
+        for (spectrum, wanted) in [
+            ("\"auto\"", None),
+            ("\"rgb\"", None),
+            ("\"D65\"", Some(Lamp::D65)),
+            ("\"E\"", Some(Lamp::EqualPower)),
+            ("532", Some(Lamp::Lines(vec![[532.0, 1.0]]))),
+            ("{ black_body_k = 2856 }", Some(Lamp::BlackBody(2856.0))),
+            (lines, Some(Lamp::Lines(vec![[546.1, 1.0], [578.0, 2.0]]))),
+            (
+                "{ table = [[400, 0.2], [700, 1]] }",
+                Some(Lamp::Table(vec![[400.0, 0.2], [700.0, 1.0]])),
+            ),
+        ] {
+            assert_eq!(lamp(spectrum), Ok(wanted), "{spectrum}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_lamp_is_told() {
+        for (spectrum, word) in [
+            ("\"d65\"", "D65"),
+            ("0.55", "380"),
+            ("[400, 700]", "spectrum"),
+            ("{}", "sends out nothing"),
+            ("{ black_body = 2856 }", "black_body_k"),
+            ("{ black_body_k = 20 }", "500"),
+            ("{ black_body_k = nan }", "finite"),
+            ("{ lines = [{ power = 1 }] }", "wavelength_nm"),
+            ("{ lines = [{ wavelength_nm = 900 }] }", "780"),
+            ("{ lines = [{ wavelength_nm = 500, power = 0 }] }", "no line has any power"),
+            ("{ black_body_k = 3000, lines = [{ wavelength_nm = 500 }] }", "takes one of them"),
+            ("{ table = [[400, 1]] }", "two rows"),
+            ("{ table = [[400, 1, 2], [500, 1, 2]] }", "two rows"),
+            ("{ table = [[500, 1], [400, 1]] }", "do not rise"),
+            ("{ table = [[800, 1], [900, 1]] }", "no power that is seen"),
+            ("{ table = \"lamp.csv\" }", "write its rows here"),
+        ] {
+            let message = lamp(spectrum).expect_err(spectrum);
+            assert!(message.contains(word), "{spectrum}: {message}");
+        }
+    }
+}
