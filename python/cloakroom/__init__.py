@@ -16,8 +16,9 @@ cloaks", Opt. Express 21, 9457 (2013), and more; `cloakroom.tables.DEVICES` has 
 
 from . import tables
 from ._cloakroom import __version__, set_threads, threads
+from .exporting import export
 from .interfaces import Interface, Medium, Modes, interface
-from .materials import Material, export
+from .materials import Material
 from .measuring import Finding, flux, quality, sweep, verify
 from .pictures import Picture
 from .rays import Traced, trace
