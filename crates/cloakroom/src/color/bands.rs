@@ -12,8 +12,8 @@ pub const BIN_EDGES_NM: [f64; BINS + 1] = [
     670.0, 690.0, 720.0, 780.0,
 ];
 
-/// The width of bins within which light interferes, nm.
-const FRINGE_BIN_NM: f64 = 10.0;
+/// The widths of bins within which light interferes, nm: for ways of nearly one length, and for others.
+const FRINGE_BINS_NM: [f64; 2] = [20.0, 10.0];
 
 /// A lamp's light in groups of wavelengths, and the wavelengths at which rays are traced: what these bring is
 /// interpolated between them by a polynomial of the wave number.
@@ -23,8 +23,8 @@ pub(crate) struct Bands {
     pub nodes_nm: Vec<f64>,
     /// From coarse to fine, all wavelengths together, in two groups, and so on; lines each by itself.
     pub levels: Vec<Vec<Group>>,
-    /// The bins within which light interferes.
-    pub fringes: Vec<Group>,
+    /// The bins within which light interferes, wide and narrow ones.
+    pub fringes: [Vec<Fringe>; 2],
     /// The light that is nearest to each node.
     pub cells: Vec<Light>,
 }
@@ -44,14 +44,25 @@ pub(crate) struct Light {
 pub(crate) struct Group {
     /// Its wavelength, nm.
     pub nm: f64,
-    /// How wide it is, nm; 0 for a line.
-    pub width_nm: f64,
+    /// From where to where it is, nm; a line is at both.
+    pub edges_nm: [f64; 2],
     /// The weights of the nodes at its wavelength.
     pub middle: Vec<f64>,
     /// Those of the difference from its one end to the other.
     pub spread: Vec<f64>,
     /// Its light, weighted as what the nodes bring is.
     pub lights: Vec<Light>,
+}
+
+/// A bin within which light interferes.
+#[derive(Clone, Debug)]
+pub(crate) struct Fringe {
+    /// Its light.
+    pub group: Group,
+    /// Its color, where things are of red, green and blue.
+    pub color: DMat3,
+    /// The number of the group of each level in which it is.
+    pub groups: Vec<usize>,
 }
 
 impl Bands {
@@ -82,7 +93,7 @@ impl Bands {
             });
             Group {
                 nm,
-                width_nm: high - low,
+                edges_nm: [low, high],
                 middle: weights(nm),
                 spread: ends[1].iter().zip(&ends[0]).map(|(high, low)| high - low).collect(),
                 lights: lights.collect(),
@@ -108,14 +119,21 @@ impl Bands {
                 |step: usize| -> Vec<f64> { BIN_EDGES_NM.iter().copied().step_by(step).collect() };
             steps.map(|step| of_edges(&edges(step))).collect()
         };
-        let fringes = if lines {
-            of_lines()
-        } else {
-            let count = ((SEEN_NM[1] - SEEN_NM[0]) / FRINGE_BIN_NM) as usize;
-            let edges: Vec<f64> =
-                (0..=count).map(|i| SEEN_NM[0] + FRINGE_BIN_NM * i as f64).collect();
-            of_edges(&edges)
+        let fringe = |group: Group| Fringe {
+            color: group.lights.iter().map(|light| light.color).sum(),
+            groups: levels.iter().map(|groups| group_at(groups, group.nm)).collect(),
+            group,
         };
+        let fringes = FRINGE_BINS_NM.map(|width| {
+            let groups = if lines {
+                of_lines()
+            } else {
+                let count = ((SEEN_NM[1] - SEEN_NM[0]) / width) as usize;
+                let edges: Vec<f64> = (0..=count).map(|i| SEEN_NM[0] + width * i as f64).collect();
+                of_edges(&edges)
+            };
+            groups.into_iter().map(fringe).collect()
+        });
         let nearest = |nm: f64| {
             let off = |node: usize| (1.0 / nodes_nm[node] - 1.0 / nm).abs();
             (0..nodes_nm.len()).min_by(|one, other| off(*one).total_cmp(&off(*other)))
@@ -127,6 +145,12 @@ impl Bands {
         let cells = (0..nodes_nm.len()).map(cell).collect();
         Self { levels, fringes, cells, nodes_nm }
     }
+}
+
+/// The group in which a wavelength (nm) is.
+fn group_at(groups: &[Group], nm: f64) -> usize {
+    let holds = |group: &Group| group.edges_nm[0] <= nm && nm <= group.edges_nm[1];
+    groups.iter().position(holds).unwrap_or(0)
 }
 
 /// How much a part of the light counts for what is seen.

@@ -25,7 +25,7 @@ pub(super) struct Working {
     pulses: Pulses,
     /// The same, with what each takes as a pulse.
     group_pulses: Pulses,
-    interference: Interference,
+    pub interference: Interference,
 }
 
 /// Adds to a pixel what one camera ray sees. `across` and `down` are its neighbours one pixel away
@@ -225,7 +225,7 @@ fn step_on_plane(line: Line, point: DVec3, normal: DVec3) -> DVec3 {
 }
 
 /// Adds to a pixel what leaves that interfere see more or less than each alone.
-fn interfere<const N: usize>(
+pub(super) fn interfere<const N: usize>(
     detection: &Detection<N>,
     leaves: &[Leaf<N>],
     interference: &Interference,

@@ -103,7 +103,8 @@ impl Interference {
         leaf.body().is_none() && self.screens[number].is_some()
     }
 
-    fn pair_up<const N: usize>(
+    /// Finds the pairs alone.
+    pub fn pair_up<const N: usize>(
         &mut self,
         prepared: &PreparedScene<'_>,
         detection: &Detection<N>,

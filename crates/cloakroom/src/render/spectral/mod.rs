@@ -13,12 +13,13 @@ use super::detection::Detection;
 use super::exposure::{self, Look, Sight, Traced};
 use super::pixel::Pixel;
 use super::prepared_scene::{PreparedScene, PreparedSceneError};
-use crate::color::{BINS, Bands, Group, Lamp, Light, chebyshev_nodes, weights};
+use crate::color::{BINS, Bands, Fringe, Group, Lamp, Light, chebyshev_nodes, weights};
 use crate::scene::{DeviceSettings, Scene};
 use crate::trace::{Coherence, Leaf};
 use glam::{DMat3, DVec3};
 use optics::interface::FilmLayer;
 use optics::medium::Medium;
+use optics::wave::ComplexVector;
 
 /// The wavelengths that are traced at all: beyond, less than a thousandth of daylight is seen.
 const TRACED_NM: [f64; 2] = [390.0, 730.0];
@@ -50,8 +51,8 @@ pub(super) struct Spectral<'s> {
     pub bands: Bands,
     /// The scene in the light of each node.
     pub nodes: Vec<PreparedScene<'s>>,
-    /// Where leaves interfere, the scene in the light of each bin of fringes.
-    fringes: Vec<PreparedScene<'s>>,
+    /// Where leaves interfere, the scene in the light of each wide and each narrow bin of fringes.
+    fringes: [Vec<PreparedScene<'s>>; 2],
 }
 
 impl<'s> Spectral<'s> {
@@ -87,16 +88,19 @@ impl<'s> Spectral<'s> {
         } else {
             vec![prepared.clone(); bands.nodes_nm.len()]
         };
-        let fringe = |bin: &Group| {
-            let bandwidth_nm = match bin.width_nm {
-                0.0 => scene.light.bandwidth_nm.value,
-                width => BOX_TO_GAUSSIAN * width,
+        let fringe = |bin: &Fringe| {
+            let bandwidth_nm = match bin.group.edges_nm {
+                [low, high] if low == high => scene.light.bandwidth_nm.value,
+                [low, high] => BOX_TO_GAUSSIAN * (high - low),
             };
-            let coherence = Some(Coherence::new(bin.nm, bandwidth_nm));
+            let coherence = Some(Coherence::new(bin.group.nm, bandwidth_nm));
             prepared.with_coherence(coherence)
         };
         let is_coherent = prepared.coherence.is_some();
-        let fringes = bands.fringes.iter().filter(|_| is_coherent).map(fringe).collect();
+        let fringes = bands.fringes.each_ref().map(|bins| {
+            let bins = bins.iter().filter(|_| is_coherent);
+            bins.map(fringe).collect()
+        });
         Ok(Some(Self { bands, nodes, fringes }))
     }
 }
@@ -197,6 +201,8 @@ pub(super) struct Working<const N: usize> {
     /// The number of a way's leaf at each node; those of the next way follow.
     ways: Vec<Option<usize>>,
     lights: Vec<DVec3>,
+    /// For each way, the level at which it looks, and where its lights begin.
+    views: Vec<(usize, usize)>,
     looks: Vec<(Look, Sight)>,
     /// The leaves of three rays in the light of a bin.
     leaves: [Vec<Leaf<N>>; 3],
@@ -208,6 +214,7 @@ impl<const N: usize> Default for Working<N> {
         Self {
             ways: Vec::new(),
             lights: Vec::new(),
+            views: Vec::new(),
             looks: Vec::new(),
             leaves: std::array::from_fn(|_| Vec::new()),
             exposure: exposure::Working::default(),
@@ -253,12 +260,15 @@ pub(super) fn expose<const N: usize>(
     colors: &mut Colors<'_>,
     working: &mut Working<N>,
 ) {
-    if !spectral.fringes.is_empty() {
+    let is_coherent = spectral.fringes.iter().any(|bins| !bins.is_empty());
+    find_ways(nodes, 0, &mut working.ways);
+    let count = nodes.count();
+    if is_coherent && !all_are_whole(&spectral.nodes[0], nodes, &working.ways) {
         expose_fringes(spectral, detection, nodes, spacing, colors, working);
         return;
     }
-    find_ways(nodes, 0, &mut working.ways);
-    let count = nodes.count();
+    working.views.clear();
+    working.lights.clear();
     for way in 0..working.ways.len() / count {
         let numbers = way * count..(way + 1) * count;
         working.looks.clear();
@@ -276,15 +286,17 @@ pub(super) fn expose<const N: usize>(
                 working.ways[way * count].map_or(0.0, |number| leaves(0)[number].largest_power());
             let Some(view) = View::of(&spectral.bands, &working.looks, power) else { continue };
             let steps = view.steps.map(|step| step * spacing);
-            working.lights.clear();
-            for group in view.groups {
+            let groups = &spectral.bands.levels[view.level];
+            let begin = working.lights.len();
+            working.views.push((view.level, begin));
+            for group in groups {
                 let light = light_of(prepared, group, &working.looks, steps);
                 working.lights.push(DVec3::from_array(light));
             }
             for (node, number) in numbers.enumerate() {
                 let Some(number) = working.ways[number] else { continue };
                 let leaf = &leaves(node)[number];
-                let lights = view.groups.iter().zip(&working.lights);
+                let lights = groups.iter().zip(&working.lights[begin..]);
                 add(
                     detection,
                     leaf,
@@ -309,6 +321,99 @@ pub(super) fn expose<const N: usize>(
             }
         }
     }
+    if is_coherent && working.ways.len() > count {
+        interfere(spectral, detection, nodes, colors, working);
+    }
+}
+
+/// Whether all ways are taken at every node, and see the same thing there.
+fn all_are_whole<const N: usize>(
+    prepared: &PreparedScene<'_>,
+    nodes: Nodes<'_, N>,
+    ways: &[Option<usize>],
+) -> bool {
+    let sees = |leaf: &Leaf<N>| {
+        (leaf.end, leaf.body().is_none() && leaf.distance_to(&prepared.screen).is_some())
+    };
+    ways.chunks(nodes.count()).all(|way| {
+        let numbers = way.iter().enumerate();
+        let mut all = numbers
+            .map(|(node, number)| number.map(|number| sees(&nodes.ray(node, 0).leaves[number])));
+        let first = all.next().flatten();
+        first.is_some() && all.all(|other| other == first)
+    })
+}
+
+/// Adds to a pixel what leaves that interfere see more or less than each alone, bin by bin of fringes. All
+/// ways are whole, and what they see is known.
+fn interfere<const N: usize>(
+    spectral: &Spectral<'_>,
+    detection: &Detection<N>,
+    nodes: Nodes<'_, N>,
+    colors: &mut Colors<'_>,
+    working: &mut Working<N>,
+) {
+    let (ways, count) = (&working.ways, nodes.count());
+    let leaf = |way: usize, node: usize| {
+        ways[way * count + node].map(|number| &nodes.ray(node, 0).leaves[number])
+    };
+    let is_narrow = usize::from(!have_nearly_one_length(
+        (0..working.views.len()).filter_map(|way| leaf(way, 0)),
+    ));
+    let bins = spectral.bands.fringes[is_narrow].iter().zip(&spectral.fringes[is_narrow]);
+    let camera = nodes.ray(0, 0).ray.origin;
+    let leaves = &mut working.leaves[0];
+    let interference = &mut working.exposure.interference;
+    for (bin, prepared) in bins {
+        leaves.clear();
+        for way in 0..working.views.len() {
+            let Some(first) = leaf(way, 0) else { continue };
+            let all = (0..count).filter_map(|node| leaf(way, node));
+            leaves.push(interpolated(first, all, &bin.group.middle));
+        }
+        interference.pair_up(prepared, detection, leaves, camera);
+        if interference.pairs.is_empty() {
+            continue;
+        }
+        interference.lights.clear();
+        for (level, begin) in &working.views {
+            let light = working.lights[begin + bin.groups[*level]];
+            interference.remember(light.to_array());
+        }
+        let mut seen = Pixel::default();
+        exposure::interfere(detection, leaves, interference, &mut seen);
+        add_fringe(bin, &seen, colors);
+    }
+}
+
+/// Adds to a pixel what is seen in a bin of fringes.
+fn add_fringe(bin: &Fringe, seen: &Pixel, colors: &mut Colors<'_>) {
+    colors.pixel.add_colors(seen, bin.color);
+    if let Some(spectrum) = &mut colors.spectrum {
+        for (number, shares) in bin.group.lights.iter().flat_map(|light| &light.bins) {
+            spectrum[*number] += DVec3::from_array(*shares).dot(DVec3::from_array(seen.image));
+        }
+    }
+}
+
+/// Whether those of the leaves that interfere in narrow bins differ by so little that wide ones tell as
+/// much.
+fn have_nearly_one_length<'l, const N: usize>(
+    leaves: impl Iterator<Item = &'l Leaf<N>> + Clone,
+) -> bool {
+    /// Longer differences are seen in no bin, cm.
+    const INTERFERING: f64 = 1e-2;
+    /// Over a wide bin of green light, half a radian.
+    const NEARLY_ONE: f64 = 1.2e-4;
+    let length = |leaf: &Leaf<N>| leaf.phase_length(leaf.direction, DVec3::ZERO);
+    let mut others = leaves.clone();
+    leaves.clone().all(|one| {
+        others.next();
+        others.clone().all(|other| {
+            let difference = (length(one) - length(other)).abs();
+            !(NEARLY_ONE..INTERFERING).contains(&difference)
+        })
+    })
 }
 
 /// Finds the ways of a ray, one of three: for each the number of its leaf at every node.
@@ -337,17 +442,17 @@ fn find_ways<const N: usize>(nodes: Nodes<'_, N>, ray: usize, ways: &mut Vec<Opt
 }
 
 /// How a way of light looks at things.
-struct View<'b> {
-    /// The groups of wavelengths in which it does: so small that none of a strong one is drawn out by
-    /// more than [`MOST_DRAWN_OUT`], if there are such.
-    groups: &'b [Group],
+struct View {
+    /// The level of the groups of wavelengths in which it does: so small that none of a strong one is
+    /// drawn out by more than [`MOST_DRAWN_OUT`], if there are such.
+    level: usize,
     /// What the place changes by from a pixel to the next, in the middle of the light.
     steps: [DVec3; 2],
 }
 
-impl<'b> View<'b> {
+impl View {
     /// Of a way with so much power: a weak one is looked at less closely.
-    fn of(bands: &'b Bands, looks: &[(Look, Sight)], power: f64) -> Option<Self> {
+    fn of(bands: &Bands, looks: &[(Look, Sight)], power: f64) -> Option<Self> {
         let coarsest = bands.levels.first()?;
         let [first, last] = [coarsest.first()?, coarsest.last()?];
         let spread = sum(&first.spread, looks, |sight| sight.at);
@@ -358,8 +463,8 @@ impl<'b> View<'b> {
         let pixel = steps.iter().map(|step| step.dot(spread).powi(2)).sum::<f64>().sqrt();
         let count = if length == 0.0 { 1.0 } else { length / (MOST_DRAWN_OUT * pixel) };
         let count = count * power.min(1.0).sqrt();
-        let level = bands.levels.iter().find(|level| level.len() as f64 >= count);
-        Some(Self { groups: level.or(bands.levels.last())?, steps })
+        let level = bands.levels.iter().position(|level| level.len() as f64 >= count);
+        Some(Self { level: level.unwrap_or(bands.levels.len() - 1), steps })
     }
 }
 
@@ -437,8 +542,8 @@ fn expose_fringes<const N: usize>(
     colors: &mut Colors<'_>,
     working: &mut Working<N>,
 ) {
-    for (bin, prepared) in spectral.bands.fringes.iter().zip(&spectral.fringes) {
-        let weights = &bin.middle;
+    for (bin, prepared) in spectral.bands.fringes[1].iter().zip(&spectral.fringes[1]) {
+        let weights = &bin.group.middle;
         let nearest =
             (0..weights.len()).max_by(|a, b| weights[*a].total_cmp(&weights[*b])).unwrap_or(0);
         for ray in 0..3 {
@@ -472,13 +577,7 @@ fn expose_fringes<const N: usize>(
             &mut seen,
             &mut working.exposure,
         );
-        let color = bin.lights.iter().map(|light| light.color).sum::<DMat3>();
-        colors.pixel.add_colors(&seen, color);
-        if let Some(spectrum) = &mut colors.spectrum {
-            for (number, shares) in bin.lights.iter().flat_map(|light| &light.bins) {
-                spectrum[*number] += DVec3::from_array(*shares).dot(DVec3::from_array(seen.image));
-            }
-        }
+        add_fringe(bin, &seen, colors);
     }
 }
 
@@ -488,27 +587,27 @@ fn interpolated<'l, const N: usize>(
     all: impl Iterator<Item = &'l Leaf<N>> + Clone,
     weights: &[f64],
 ) -> Leaf<N> {
-    let sum = |of: &dyn Fn(&Leaf<N>) -> f64| -> f64 {
-        all.clone().zip(weights).map(|(leaf, weight)| of(leaf) * weight).sum()
-    };
-    let vector = |of: &dyn Fn(&Leaf<N>) -> DVec3| -> DVec3 {
-        all.clone().zip(weights).map(|(leaf, weight)| of(leaf) * *weight).sum()
-    };
     let mut found = *leaf;
-    found.position = vector(&|leaf| leaf.position);
-    found.direction = vector(&|leaf| leaf.direction).normalize_or_zero();
-    found.optical_path = sum(&|leaf| leaf.optical_path);
-    found.delay_path = sum(&|leaf| leaf.delay_path);
+    (found.position, found.direction) = (DVec3::ZERO, DVec3::ZERO);
+    (found.optical_path, found.delay_path) = (0.0, 0.0);
+    (found.power, found.electric) = ([0.0; N], [ComplexVector::ZERO; N]);
+    for (leaf, weight) in all.zip(weights) {
+        found.position += leaf.position * *weight;
+        found.direction += leaf.direction * *weight;
+        found.optical_path += leaf.optical_path * weight;
+        found.delay_path += leaf.delay_path * weight;
+        for i in 0..N {
+            found.power[i] += leaf.power[i] * weight;
+            found.electric[i] = found.electric[i] + leaf.electric[i].scaled((*weight).into());
+        }
+    }
+    found.direction = found.direction.normalize_or_zero();
     for i in 0..N {
-        found.power[i] = sum(&|leaf| leaf.power[i]).max(0.0);
-        let fields = all.clone().zip(weights);
-        let field = fields.fold(optics::wave::ComplexVector::ZERO, |field, (leaf, weight)| {
-            field + leaf.electric[i].scaled((*weight).into())
-        });
-        let norm = field.norm_squared();
+        found.power[i] = found.power[i].max(0.0);
+        let norm = found.electric[i].norm_squared();
         // As strong as its power says.
         let scale = if norm > 0.0 { (found.power[i] / norm).sqrt() } else { 0.0 };
-        found.electric[i] = field.scaled(scale.into());
+        found.electric[i] = found.electric[i].scaled(scale.into());
     }
     found
 }
