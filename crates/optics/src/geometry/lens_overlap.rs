@@ -47,7 +47,7 @@ impl Lens {
 
 /// The frame of a lens seen from its back: turned by 180 degrees about z.
 fn turned() -> Pose {
-    Pose::new(DVec3::ZERO, 180.0)
+    Pose::from_rotation(DVec3::ZERO, DMat3::from_diagonal(DVec3::new(-1.0, -1.0, 1.0)))
 }
 
 /// A hollow face (c < 0) with the lens at larger x of its frame.
