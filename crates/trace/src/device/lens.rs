@@ -81,7 +81,7 @@ impl Device for GlassLens {
             let vertices = [lens.front.apex, lens.back.apex];
             facts.extend([
                 Fact::number("focal_length_cm", power.recip()),
-                Fact::number("front_focal_distance_cm", power.recip() + front),
+                Fact::number("front_focal_distance_cm", power.recip() - front),
                 Fact::number("back_focal_distance_cm", power.recip() + back),
                 Fact::numbers("principal_planes_cm", [vertices[0] + front, vertices[1] + back]),
             ]);

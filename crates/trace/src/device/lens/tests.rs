@@ -82,6 +82,8 @@ fn facts_are_those_of_the_lensmaker() {
     assert!((fact("focal_length_cm") * power - 1.0).abs() < 1e-14);
     let back = (1.0 - (n - 1.0) * 6.0 / (n * 10.0)) / power;
     assert!((fact("back_focal_distance_cm") - back).abs() < 1e-13);
+    let front = (1.0 - (n - 1.0) * 6.0 / (n * 25.0)) / power;
+    assert!((fact("front_focal_distance_cm") - front).abs() < 1e-13);
     assert!((fact("principal_planes_cm") - (3.0 + back - 1.0 / power)).abs() < 1e-13);
     assert!((fact("index") - n).abs() < 1e-15);
     let sags = [10.0f64, 25.0].map(|radius| radius - (radius * radius - 16.0).sqrt());
