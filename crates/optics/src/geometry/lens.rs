@@ -1,6 +1,6 @@
 //! Lenses: what lies between two conic sections turned about an axis, within a round edge.
 
-use super::{Extent, Pose, Solid};
+use super::{Extent, Pose, Solid, TOUCHING, first_along};
 use glam::DVec3;
 
 /// A conic section turned about the x axis, of which the half about its apex counts: a plane, a
@@ -265,20 +265,16 @@ impl Lens {
             self.back.crossings(origin, direction).forward,
             self.through_edge(origin, direction)[1],
         ];
-        let met = Self::PARTS.into_iter().zip(ways).filter(|(part, distance)| {
+        let met = Self::PARTS.into_iter().zip(ways).map(|(part, distance)| (distance, part));
+        let met = met.filter(|(distance, part)| {
             distance.is_finite() && self.is_of(*part, origin + direction * *distance)
         });
-        let (mut ahead, mut behind): (Option<(LensPart, f64)>, Option<(LensPart, f64)>) =
-            (None, None);
-        for (part, distance) in met {
-            if distance >= -BEHIND {
-                ahead = ahead.filter(|least| least.1 <= distance).or(Some((part, distance)));
-            } else {
-                behind = behind.filter(|most| most.1 >= distance).or(Some((part, distance)));
-            }
-        }
-        let (part, distance) =
-            ahead.or(behind.filter(|(_, distance)| *distance > -super::TOUCHING))?;
+        let ahead = first_along(met.clone().filter(|(distance, _)| *distance >= -BEHIND));
+        let behind = || {
+            let near = met.filter(|(distance, _)| *distance > -TOUCHING);
+            near.max_by(|one, other| one.0.total_cmp(&other.0))
+        };
+        let (distance, part) = ahead.or_else(behind)?;
         let distance = distance.max(0.0);
         Some((distance, part, self.outward(part, origin + direction * distance)))
     }
