@@ -20,6 +20,7 @@ mod graded;
 mod group_delay;
 mod immersed;
 mod imperfection;
+mod lens;
 #[path = "../../optics/tests/long.rs"]
 mod long;
 mod material;

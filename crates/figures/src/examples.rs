@@ -23,9 +23,11 @@ macro_rules! other {
 }
 
 /// Scenes that are neither a panel of the paper nor an exhibit: path, words, text.
-const OTHERS: [(&str, &str, &str); 3] = [
+const OTHERS: [(&str, &str, &str); 5] = [
     other!("flux/solar-cell" => "For `cloakroom flux`: a contact on a solar cell, under a cloak"),
     other!("flux/window" => "For `cloakroom flux`: an advertising column before a window"),
+    other!("real/rochester-cloak" => "Four achromatic lenses that are empty space near their axis"),
+    other!("real/rochester-cloak-singlets" => "The same of single lenses of BK7: its colors"),
     other!("shop-window" =>
         "For `cloakroom animate`: a cloak with an open core that turns in a shop window"),
 ];

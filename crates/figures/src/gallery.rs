@@ -107,6 +107,8 @@ pub static EXHIBITS: &[Exhibit] = &[
         "independent", "omni", "Dolling et al., Opt. Express 14, 1842 (2006)"),
     exhibit!("bodies" => "Negative-index materials", "Homogeneous balls of n = 1.5, -1.3 and -1, and a box that absorbs",
         "independent", "omni", "Danner, Opt. Express 18, 3332 (2010)"),
+    exhibit!("lens" => "Lenses", "Two conic faces of glass: one that magnifies, one that makes small, a doublet",
+        "independent", "omni", "textbooks"),
     exhibit!("mirror-detour-orthographic" => "Cloak of plane mirrors", "A detour in air; seen along parallel rays",
         "independent", "uni", "Halimeh & Wegener, Opt. Express 21, 9457 (2013)"),
     exhibit!("mirror-detour-perspective" => "Cloak of plane mirrors", "A detour in air; seen in perspective",

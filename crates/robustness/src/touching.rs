@@ -173,6 +173,23 @@ fn all_sorts() -> Vec<Sort> {
             Metal::None,
         ),
         (
+            "lens",
+            "front_radius = 9\nback_radius = -7\nthickness = 4\ndiameter = 9".into(),
+            Metal::None,
+        ),
+        (
+            "lens",
+            format!("front_radius = -9\nback_radius = 12\nthickness = 2\ndiameter = 10\n{lossy}"),
+            Metal::None,
+        ),
+        (
+            "lens",
+            format!(
+                "front_radius = 6\nback_radius = 8\nback_conic = -2\nthickness = 2\ndiameter = 9\n{tensor}"
+            ),
+            Metal::None,
+        ),
+        (
             "gaussian-carpet",
             format!("w = 4\nh = 1.7\n{carpet} = 0"),
             Metal::Triangle(DVec2::new(2.5, 1.7), 0.0),

@@ -8,7 +8,7 @@ use cloakroom::assembly::{Assembly, Placed};
 use cloakroom::device::Contour;
 use cloakroom::trace::Line;
 use glam::{DVec2, DVec3};
-use optics::geometry::{Pose, Solid};
+use optics::geometry::{Lens, Pose, Solid};
 use std::f64::consts::TAU;
 
 /// Pieces around a ball.
@@ -88,6 +88,12 @@ impl Solids<'_> {
 
     fn add_device(&mut self, placed: &Placed) {
         let structure = &placed.structure;
+        for solid in &structure.hull.solids {
+            if let Solid::Lens { lens, pose } = solid {
+                self.add_lens(lens, &placed.pose.after(pose));
+                return;
+            }
+        }
         let section = structure.cross_section();
         let is_ball = structure.hull.solids.iter().all(|solid| {
             let whole = match solid {
@@ -150,6 +156,29 @@ impl Solids<'_> {
         for corner in corners {
             let upright: Vec<DVec3> = (0..=LAYERS).map(|k| at(corner, level(k))).collect();
             self.add_line(&upright, "edge", edge);
+        }
+    }
+
+    /// A lens at its place: its two rims, and its outline in two planes through its axis.
+    fn add_lens(&mut self, lens: &Lens, pose: &Pose) {
+        let edge = (INK.faint(0.7), THIN);
+        let [low, high] = lens.between(lens.radius);
+        for x in [low, high] {
+            let at = |k: u32| {
+                let (sin, cos) = (TAU * f64::from(k) / f64::from(AROUND)).sin_cos();
+                pose.to_world(DVec3::new(x, lens.radius * cos, lens.radius * sin))
+            };
+            self.add_line(&(0..=AROUND).map(at).collect::<Vec<_>>(), "edge", edge);
+        }
+        for up in [DVec3::Y, DVec3::Z] {
+            let place = |[x, r]: [f64; 2]| pose.to_world(DVec3::X * x + up * r);
+            for face in [&lens.front, &lens.back] {
+                let line: Vec<DVec3> = lens.face_line(face, 64).into_iter().map(place).collect();
+                self.add_line(&line, "edge", (INK.faint(0.4), THIN));
+            }
+            for r in [lens.radius, -lens.radius] {
+                self.add_line(&[place([low, r]), place([high, r])], "edge", edge);
+            }
         }
     }
 

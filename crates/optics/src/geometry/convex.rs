@@ -1,6 +1,6 @@
 //! Prisms and round cylinders in any pose: whether they are in each other's way.
 
-use super::{CutBall, Extent, Outline, Pose, Solid};
+use super::{ConicFace, CutBall, Extent, Outline, Pose, Solid};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -24,13 +24,17 @@ enum Section<'s> {
 
 /// A bound on how deep a point lies in a convex body: positive inside, at most its distance to the
 /// border.
-enum Bound {
+#[derive(Clone, Copy)]
+pub(super) enum Bound {
     /// `offset` - `normal`·p.
     Plane { normal: DVec3, offset: f64 },
     /// `radius` less the distance from the line through `point` along the unit vector `axis`.
     Tube { point: DVec3, axis: DVec3, radius: f64 },
     /// `radius` less the distance from `centre`.
     Ball { centre: DVec3, radius: f64 },
+    /// What lies behind a face of a lens that is not hollow, about the x axis of a frame, and within
+    /// `radius` of that: see [`ConicFace::depth`].
+    Behind { face: ConicFace, radius: f64, pose: Pose },
 }
 
 impl Bound {
@@ -38,6 +42,10 @@ impl Bound {
     fn depth(&self, at: DVec3) -> (f64, DVec3) {
         let (aside, radius) = match *self {
             Self::Plane { normal, offset } => return (offset - normal.dot(at), -normal),
+            Self::Behind { face, radius, pose } => {
+                let (depth, gradient) = face.depth(pose.to_local(at), radius);
+                return (depth, pose.vector_to_world(gradient));
+            }
             Self::Tube { point, axis, radius } => {
                 ((at - point).reject_from_normalized(axis), radius)
             }
@@ -159,7 +167,7 @@ impl<'s> Convex<'s> {
         let edges = |sheet: &Self, normal: DVec3| {
             let planes = sheet.bounds(0.0).into_iter().filter_map(|bound| match bound {
                 Bound::Plane { normal, offset } => Some((normal, offset)),
-                Bound::Tube { .. } | Bound::Ball { .. } => None,
+                Bound::Tube { .. } | Bound::Ball { .. } | Bound::Behind { .. } => None,
             });
             planes.filter(|(edge, _)| edge.dot(normal).abs() < 0.5).collect::<Vec<_>>()
         };
@@ -267,9 +275,7 @@ impl<'s> Convex<'s> {
     ) -> bool {
         self.bounds(0.0).iter().all(|bound| match bound {
             Bound::Plane { normal, offset } => support(*normal) <= offset + slack,
-            round @ (Bound::Tube { .. } | Bound::Ball { .. }) => {
-                greatest(&|at| -round.depth(at).0) <= slack
-            }
+            round => greatest(&|at| -round.depth(at).0) <= slack,
         })
     }
 
@@ -293,25 +299,48 @@ impl<'s> Convex<'s> {
     }
 }
 
+/// Bounds of a convex body, and an ellipsoid around it; of a lens with hollow faces those of its
+/// convex hull. `None` for what has neither.
+pub(super) fn bounded(solid: &Solid, slack: f64) -> Option<Bounded> {
+    let (mut bounds, centre, radius) = match solid {
+        Solid::Ball { centre, radius } => (Vec::new(), *centre, *radius),
+        Solid::CutBall { centre, ball: CutBall { sphere, plane } } => {
+            let offset = plane.offset + plane.normal.dot(*centre);
+            (vec![Bound::Plane { normal: plane.normal, offset }], *centre, sphere.radius)
+        }
+        Solid::Lens { lens, pose } => return Some(lens.bounded(pose)),
+        _ => {
+            let own = Convex::of(solid)?;
+            return Some(Bounded { bounds: own.bounds(slack), ellipsoid: own.ellipsoid() });
+        }
+    };
+    bounds.push(Bound::Ball { centre, radius });
+    let ellipsoid = (centre, DMat3::from_diagonal(DVec3::splat(radius)));
+    Some(Bounded { bounds, ellipsoid })
+}
+
+/// Bounds of a convex body, and an ellipsoid around it: its middle, and a matrix that makes it of the
+/// unit ball.
+#[derive(Clone)]
+pub(super) struct Bounded {
+    pub bounds: Vec<Bound>,
+    pub ellipsoid: (DVec3, DMat3),
+}
+
+impl Bounded {
+    /// Whether it and another press into each other by more than `slack`, within bounds of both.
+    pub fn presses(&self, other: &Self, more: &[Bound], slack: f64) -> bool {
+        let first = self.ellipsoid.1.determinant() < other.ellipsoid.1.determinant();
+        let smaller = if first { self } else { other };
+        let bounds = self.bounds.iter().chain(&other.bounds).chain(more);
+        meet_deep(&bounds.copied().collect::<Vec<_>>(), smaller.ellipsoid, slack)
+    }
+}
+
 /// Whether two bodies, one of them a cut ball, press into each other by more than `slack`.
 pub(super) fn press(one: &Solid, other: &Solid, slack: f64) -> bool {
-    let bounded = |solid: &Solid| {
-        let (mut bounds, centre, radius) = match solid {
-            Solid::Ball { centre, radius } => (Vec::new(), *centre, *radius),
-            Solid::CutBall { centre, ball: CutBall { sphere, plane } } => {
-                let offset = plane.offset + plane.normal.dot(*centre);
-                (vec![Bound::Plane { normal: plane.normal, offset }], *centre, sphere.radius)
-            }
-            _ => return Convex::of(solid).map(|own| (own.bounds(slack), own.ellipsoid())),
-        };
-        bounds.push(Bound::Ball { centre, radius });
-        Some((bounds, (centre, DMat3::from_diagonal(DVec3::splat(radius)))))
-    };
-    let (Some(one), Some(other)) = (bounded(one), bounded(other)) else { return false };
-    let first = one.1.1.determinant() < other.1.1.determinant();
-    let (smaller, larger) = if first { (one, other) } else { (other, one) };
-    let bounds: Vec<Bound> = smaller.0.into_iter().chain(larger.0).collect();
-    meet_deep(&bounds, smaller.1, slack)
+    let both = bounded(one, slack).zip(bounded(other, slack));
+    both.is_some_and(|(one, other)| one.presses(&other, &[], slack))
 }
 
 /// Whether there is a point in an ellipsoid that lies deeper than half of `slack` in all of some
@@ -370,7 +399,7 @@ struct Extremes<'c> {
 }
 
 /// The greatest value over all angles of a function that is smooth between samples.
-fn greatest_around(value: &dyn Fn(f64) -> f64) -> f64 {
+pub(super) fn greatest_around(value: &dyn Fn(f64) -> f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let step = TAU / f64::from(SAMPLES);
     let samples = (0..SAMPLES).map(|k| step * f64::from(k)).map(|angle| (angle, value(angle)));

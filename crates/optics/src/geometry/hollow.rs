@@ -47,6 +47,13 @@ impl Hole {
         match (self, body) {
             (_, Solid::Nothing) => true,
             (_, Solid::Hollow { whole, .. }) => self.encloses(whole, slack),
+            // To other holes than a ball a lens is the cylinder around it.
+            (Self::Round(Solid::Ball { centre, radius }), Solid::Lens { .. }) => {
+                farthest(body, *centre) <= radius + slack
+            }
+            (_, Solid::Lens { lens, pose }) => {
+                self.encloses(&lens.cylinder_around().placed(pose), slack)
+            }
             (Self::Round(Solid::Tilted { solid, pose }), _) => {
                 Self::Round(solid.as_ref().clone()).encloses(&body.placed(&pose.inverse()), slack)
             }
@@ -108,7 +115,8 @@ fn section(body: &Solid, extent: Extent) -> WidestSection<'_> {
             )
         }
         Solid::Hollow { whole, .. } => section(whole, extent),
-        Solid::Nothing => WidestSection::Disc(DVec2::ZERO, 0.0),
+        // Lenses are asked for by the cylinder around them.
+        Solid::Nothing | Solid::Lens { .. } => WidestSection::Disc(DVec2::ZERO, 0.0),
         Solid::Tilted { .. } => {
             Convex::of(body).map_or(WidestSection::Disc(DVec2::ZERO, 0.0), WidestSection::Tilted)
         }
@@ -130,6 +138,7 @@ pub(super) fn farthest(body: &Solid, point: DVec3) -> f64 {
         }
         Solid::Ball { centre, radius } => centre.distance(point) + radius,
         Solid::CutBall { centre, ball } => ball.farthest_from(point - centre),
+        Solid::Lens { lens, pose } => lens.farthest_from(pose.to_local(point)),
         Solid::Hollow { whole, .. } => farthest(whole, point),
         Solid::Tilted { solid, pose } => farthest(solid, pose.to_local(point)),
     }

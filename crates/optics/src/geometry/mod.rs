@@ -2,7 +2,7 @@
 //!
 //! Devices that extend along z are made of upright [`Wall`]s over a line in the xy-plane and of
 //! flat [`Cap`]s at their ends, round ones of a [`Cylinder`] and of [`Disc`]s; a [`Sphere`] is
-//! whole. Inside a convex cell a ray leaves through the first [`Plane`] ahead. A [`Solid`] is the
+//! whole, and a [`Lens`] has conic faces. Inside a convex cell a ray leaves through the first [`Plane`] ahead. A [`Solid`] is the
 //! space that something takes up.
 
 mod convex;
@@ -11,6 +11,8 @@ mod cylinder;
 mod flat_or_round;
 mod floor_curve;
 mod hollow;
+mod lens;
+mod lens_overlap;
 mod outline;
 mod plane;
 mod polygon;
@@ -25,6 +27,7 @@ pub use cylinder::{Border, Cylinder, Disc};
 pub use flat_or_round::FlatOrRound;
 pub use floor_curve::{CurvedSide, FloorCurve, FloorHit, MetalBack};
 pub use hollow::Hole;
+pub use lens::{ConicFace, Lens, LensPart};
 pub use outline::{Cap, Outline};
 pub use plane::Plane;
 pub use polygon::{ConvexPart, Polygon, PolygonError, SAME_POINT};

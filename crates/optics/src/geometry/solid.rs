@@ -2,7 +2,7 @@
 
 use super::convex::{Convex, REACH, SAME_AXIS, press};
 use super::hollow::farthest;
-use super::{CutBall, Extent, Hole, Outline, Plane, Pose};
+use super::{CutBall, Extent, Hole, Lens, Outline, Plane, Pose, lens_overlap};
 use glam::{DVec2, DVec3};
 
 /// How deep two things may press into each other by rounding before they count as overlapping, cm.
@@ -50,6 +50,13 @@ pub enum Solid {
         whole: Box<Solid>,
         /// The hole.
         hole: Box<Hole>,
+    },
+    /// A lens.
+    Lens {
+        /// The lens about the x axis of its own frame.
+        lens: Lens,
+        /// Where that frame is.
+        pose: Pose,
     },
     /// A prism or a cylinder whose axis is not along z.
     Tilted {
@@ -107,6 +114,7 @@ impl Solid {
                 below(point.distance_squared(*centre), radius * radius)
             }
             Self::Hollow { whole, hole } => whole.has(point, below) && !hole.holds(point),
+            Self::Lens { lens, pose } => lens.has(pose.to_local(point), below),
             Self::Tilted { solid, pose } => solid.has(pose.to_local(point), below),
         }
     }
@@ -134,6 +142,11 @@ impl Solid {
                 Some([*centre + ends(-1.0), *centre + ends(1.0)])
             }
             Self::Hollow { whole, .. } => whole.bounds(),
+            Self::Lens { lens, pose } => {
+                let end = |axis: DVec3| lens.support(pose.vector_to_local(axis));
+                let ends = |sign: f64| DVec3::AXES.map(|axis| sign * end(sign * axis));
+                Some([-1.0, 1.0].map(|sign| pose.origin + DVec3::from_array(ends(sign))))
+            }
             Self::Tilted { .. } => {
                 let convex = Convex::of(self)?;
                 let ends = |sign: f64| DVec3::AXES.map(|axis| sign * convex.support(sign * axis));
@@ -160,6 +173,7 @@ impl Solid {
                 whole: Box::new(whole.placed(pose)),
                 hole: Box::new(hole.placed(pose)),
             },
+            Self::Lens { lens, pose: own } => Self::Lens { lens: *lens, pose: pose.after(own) },
             Self::Tilted { solid, pose: own } => solid.placed(&pose.after(own)),
             Self::Prism { .. } | Self::Cylinder { .. } if aside > SAME_AXIS => {
                 Self::Tilted { solid: Box::new(self.clone()), pose: *pose }
@@ -184,11 +198,14 @@ impl Solid {
     /// other by rounding.
     #[must_use]
     pub fn overlaps(&self, other: &Self, slack: f64) -> bool {
-        use Solid::{Ball, CutBall, Cylinder, Hollow, Nothing, Prism, Tilted};
+        use Solid::{Ball, CutBall, Cylinder, Hollow, Lens, Nothing, Prism, Tilted};
         match (self, other) {
             (Nothing, _) | (_, Nothing) => false,
             (Hollow { whole, hole }, other) | (other, Hollow { whole, hole }) => {
                 whole.overlaps(other, slack) && !hole.encloses(other, slack)
+            }
+            (Lens { lens, pose }, other) | (other, Lens { lens, pose }) => {
+                lens_overlap::overlaps(lens, pose, other, slack)
             }
             (CutBall { .. }, _) | (_, CutBall { .. }) => press(self, other, slack),
             (Tilted { solid, pose }, other) | (other, Tilted { solid, pose }) => {
@@ -236,8 +253,10 @@ impl Solid {
     pub fn is_within(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Nothing, _) => true,
-            // No body is a cut ball: nothing is asked to be within one.
-            (_, Self::Nothing | Self::Hollow { .. } | Self::CutBall { .. }) => false,
+            // No body is a cut ball or a lens: nothing is asked to be within one.
+            (_, Self::Nothing | Self::Hollow { .. } | Self::CutBall { .. } | Self::Lens { .. }) => {
+                false
+            }
             (Self::Hollow { whole, .. }, _) => whole.is_within(other),
             (_, Self::Ball { centre, radius }) => farthest(self, *centre) <= radius + TOUCHING,
             _ => Convex::of(other).is_some_and(|around| match (self, Convex::of(self)) {
@@ -246,6 +265,13 @@ impl Solid {
                     TOUCHING,
                     |direction| direction.dot(*centre + ball.farthest_along(direction)),
                     |distance| distance(*centre) + ball.sphere.radius,
+                ),
+                (Self::Lens { lens, pose }, _) => around.holds(
+                    TOUCHING,
+                    |direction| {
+                        direction.dot(pose.origin) + lens.support(pose.vector_to_local(direction))
+                    },
+                    |distance| lens.greatest(|at| distance(pose.to_world(at))),
                 ),
                 (Self::Ball { centre, radius }, _) => around.holds(
                     TOUCHING,
@@ -283,6 +309,10 @@ impl Solid {
                 (ball.sphere.radius + ball.plane.offset).min(2.0 * ball.sphere.radius)
             }
             Self::Hollow { whole, .. } => whole.thickness(),
+            Self::Lens { lens, .. } => {
+                let [low, high] = lens.ends();
+                (high - low).min(2.0 * lens.radius)
+            }
             Self::Tilted { solid, .. } => solid.thickness(),
         }
     }
@@ -332,6 +362,10 @@ impl Solid {
                 Outline::hull(tips.map(|tip| (*centre + tip).truncate()).collect())
             }
             Self::Hollow { whole, .. } => whole.shadow(),
+            Self::Lens { lens, pose } => {
+                let points = lens.rings().into_iter();
+                Outline::hull(points.map(|at| pose.to_world(at).truncate()).collect())
+            }
             Self::Tilted { .. } => {
                 let points = Convex::of(self).map(|convex| convex.extremes(Extent::ENDLESS));
                 Outline::hull(points.iter().flatten().map(|at| at.truncate()).collect())

@@ -173,7 +173,7 @@ impl Structure {
                         }
                         continue;
                     }
-                    RegionBorder::Convex(_) => &mut region.coating,
+                    RegionBorder::Convex(_) | RegionBorder::Lens(_) => &mut region.coating,
                 },
                 Region::Conformal(region) => &mut region.coating,
                 Region::Radial(region) => &mut region.coating,

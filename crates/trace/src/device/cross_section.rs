@@ -9,7 +9,7 @@ use super::{
     Structure, Surface,
 };
 use glam::DVec2;
-use optics::geometry::{Cylinder, Outline, Pose, REACH, Solid, Sphere};
+use optics::geometry::{Cylinder, Lens, LensPart, Outline, Pose, REACH, Solid, Sphere};
 use optics::medium::Medium;
 
 /// Straight pieces that a curve is drawn with.
@@ -66,7 +66,7 @@ impl Structure {
     /// The cross-section in the plane z = 0.
     #[must_use]
     pub fn cross_section(&self) -> CrossSection<'_> {
-        let outside: Vec<Edge> = self.surfaces.iter().filter_map(Surface::edge).collect();
+        let outside: Vec<Edge> = self.surfaces.iter().flat_map(Surface::edges).collect();
         let regions: Vec<Vec<Edge>> = self.regions.iter().map(Region::edges).collect();
         let metal = regions.iter().flatten().chain(&outside);
         let metal = metal.filter(|edge| edge.far.is_metal());
@@ -164,8 +164,9 @@ impl Region {
 }
 
 impl Surface {
-    /// The surface in the plane z = 0: nothing for the ends of a device.
-    fn edge(&self) -> Option<Edge> {
+    /// The surface in the plane z = 0: nothing for the ends of a device, two sides of the edge of a
+    /// lens.
+    fn edges(&self) -> Vec<Edge> {
         let points = match &self.shape {
             Shape::Wall(wall) | Shape::Sheet(wall) | Shape::Polarizer { wall, .. } => {
                 wall.ends().to_vec()
@@ -175,9 +176,10 @@ impl Surface {
             Shape::Round(cylinder) | Shape::RoundHole(cylinder) => circle(cylinder.radius),
             Shape::Curve { curve, side: Some(side), .. } => curve.side_line(*side, PIECES),
             Shape::Curve { curve, side: None, .. } => closed(curve.outline(PIECES)),
-            Shape::Cap(_) | Shape::Disc(_) => return None,
+            Shape::OfLens { lens, part } => return lens_edges(lens, *part, self.far),
+            Shape::Cap(_) | Shape::Disc(_) => return Vec::new(),
         };
-        Some(Edge { points, far: self.far })
+        vec![Edge { points, far: self.far }]
     }
 }
 
@@ -193,6 +195,23 @@ impl Convex {
                 let corner = half.truncate().min(DVec2::splat(REACH));
                 closed(Outline::rectangle(corner.x, corner.y).corners)
             }
+        }
+    }
+}
+
+/// A piece of the border of a lens in the plane z = 0.
+fn lens_edges(lens: &Lens, part: LensPart, far: FarSide) -> Vec<Edge> {
+    let line = |points: Vec<[f64; 2]>| Edge {
+        points: points.into_iter().map(DVec2::from_array).collect(),
+        far,
+    };
+    match part {
+        LensPart::Front => vec![line(lens.face_line(&lens.front, PIECES))],
+        LensPart::Back => vec![line(lens.face_line(&lens.back, PIECES))],
+        LensPart::Edge => {
+            let ends = lens.between(lens.radius);
+            let side = |y: f64| line(ends.map(|x| [x, y]).to_vec());
+            vec![side(lens.radius), side(-lens.radius)]
         }
     }
 }
@@ -217,6 +236,10 @@ impl HomogeneousRegion {
             RegionBorder::Convex(shape) => {
                 vec![Edge { points: shape.around(), far: FarSide::Outside }]
             }
+            RegionBorder::Lens(lens) => Lens::PARTS
+                .into_iter()
+                .flat_map(|part| lens_edges(lens, part, FarSide::Outside))
+                .collect(),
             RegionBorder::Faces(faces) => faces.iter().filter_map(side).collect(),
         }
     }

@@ -30,6 +30,7 @@ mod graded_box;
 mod grating_carpet;
 mod imperfection;
 mod invisible_sphere;
+mod lens;
 mod lenses;
 mod material_at;
 mod medium_words;
@@ -280,6 +281,7 @@ catalogue! {
     graded::Graded,
     graded_box::GradedBox,
     body::SolidBody,
+    lens::GlassLens,
     polarizer::Polarizer,
     gaussian_carpet::GaussianCarpet,
     grating_carpet::GratingCarpet,

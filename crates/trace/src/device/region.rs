@@ -2,7 +2,7 @@
 
 use super::{ClosedFormRegion, Coating, Convex, Dispersion, DispersiveTensors, FarSide};
 use glam::{DMat3, DVec2, DVec3};
-use optics::geometry::Plane;
+use optics::geometry::{Lens, Plane};
 use optics::medium::{Medium, ModeKind};
 use optics::propagation::{
     Border, Boundary, ConformalEnd, ConformalFlow, FlowError, Half, PathEnd, PathPoint, RadialFlow,
@@ -17,7 +17,7 @@ const PIECES: u32 = 96;
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "a device has few cells, and they are met often")]
 pub enum Region {
-    /// A convex region of a homogeneous medium, in which rays are straight.
+    /// A convex region or a lens of a homogeneous medium, in which rays are straight.
     Homogeneous(HomogeneousRegion),
     /// One half of a cut conformal map, of graded index.
     Conformal(ConformalRegion),
@@ -55,7 +55,7 @@ pub struct ConformalRegion {
     pub loss_tangent: f64,
 }
 
-/// A convex region filled with a homogeneous medium.
+/// A convex region or a lens filled with a homogeneous medium.
 #[derive(Clone, Debug)]
 pub struct HomogeneousRegion {
     /// What fills it.
@@ -66,7 +66,7 @@ pub struct HomogeneousRegion {
     pub group_index: Option<f64>,
     /// Where it ends.
     pub border: RegionBorder,
-    /// How the medium meets what is outside of a convex shape; faces say it each for itself.
+    /// How the medium meets what is outside of a convex shape or a lens; faces say it each for itself.
     pub coating: Coating,
 }
 
@@ -77,6 +77,8 @@ pub enum RegionBorder {
     Faces(Vec<Face>),
     /// At the border of a convex shape, with what is outside beyond it.
     Convex(Convex),
+    /// At the border of a lens, with what is outside beyond it.
+    Lens(Lens),
 }
 
 /// One bounding plane of a region.
@@ -350,8 +352,16 @@ impl HomogeneousRegion {
     pub fn faces(&self) -> &[Face] {
         match &self.border {
             RegionBorder::Faces(faces) => faces,
-            RegionBorder::Convex(_) => &[],
+            RegionBorder::Convex(_) | RegionBorder::Lens(_) => &[],
         }
+    }
+
+    /// The way of a ray out of the region, which ends at that distance.
+    #[inline]
+    fn out(&self, ray: &InnerRay, distance: f64, face: u16, outward: DVec3) -> Passage {
+        let end = ray.position + ray.direction * distance;
+        let passage = Passage::straight(ray, end, face, outward, FarSide::Outside);
+        Passage { coating: self.coating, ..passage }
     }
 
     fn advance(&self, ray: &InnerRay) -> Option<Passage> {
@@ -360,9 +370,11 @@ impl HomogeneousRegion {
             RegionBorder::Faces(faces) => faces,
             RegionBorder::Convex(shape) => {
                 let (distance, outward) = shape.exit(position, direction)?;
-                let end = position + direction * distance;
-                let passage = Passage::straight(ray, end, 0, outward, FarSide::Outside);
-                return Some(Passage { coating: self.coating, ..passage });
+                return Some(self.out(ray, distance, 0, outward));
+            }
+            RegionBorder::Lens(lens) => {
+                let (distance, part, outward) = lens.exit(position, direction)?;
+                return Some(self.out(ray, distance, part as u16, outward));
             }
         };
         // A loop: here it takes fewer instructions than `first_along`.

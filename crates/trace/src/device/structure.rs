@@ -107,6 +107,9 @@ impl Reach {
             Solid::Ball { centre, radius } => (Self::Ball, centre.length() + radius),
             Solid::CutBall { centre, ball } => (Self::Ball, centre.length() + ball.sphere.radius),
             Solid::Hollow { whole, .. } => return Self::of(whole),
+            Solid::Lens { lens, pose } => {
+                (Self::Ball, lens.farthest_from(pose.to_local(DVec3::ZERO)))
+            }
             Solid::Tilted { .. } => {
                 let Some([low, high]) = solid.bounds() else { return Self::Nothing };
                 (Self::Ball, low.abs().max(high.abs()).length())
@@ -162,7 +165,12 @@ impl Hull {
     /// Whether it is one convex body: light that has left it does not come back by itself.
     #[must_use]
     pub fn is_convex(&self) -> bool {
-        matches!(&self.solids[..], [solid] if !matches!(solid, Solid::Hollow { .. }))
+        let convex = |solid: &Solid| match solid {
+            Solid::Hollow { .. } => false,
+            Solid::Lens { lens, .. } => lens.is_convex(),
+            _ => true,
+        };
+        matches!(&self.solids[..], [solid] if convex(solid))
             && self.thin_mirror.is_none()
             && self.metal.is_none()
             && self.filled.is_none()

@@ -2,7 +2,9 @@
 
 use super::{Coating, Convex, FarSide};
 use glam::DVec3;
-use optics::geometry::{Border, Cap, CurvedSide, Cylinder, Disc, Extent, FloorCurve, Sphere, Wall};
+use optics::geometry::{
+    Border, Cap, CurvedSide, Cylinder, Disc, Extent, FloorCurve, Lens, LensPart, Sphere, Wall,
+};
 use optics::propagation::Half;
 use optics::transformation::ConformalMap;
 
@@ -45,6 +47,13 @@ pub enum Shape {
     Round(Cylinder),
     /// The round side of a hole that is a cylinder, met from within.
     RoundHole(Cylinder),
+    /// A piece of the border of a lens, met from outside.
+    OfLens {
+        /// The lens.
+        lens: Lens,
+        /// Which piece.
+        part: LensPart,
+    },
     /// The outline of the metal below the curved floor of a conformal map, met from outside, or one
     /// curved side of it, met from within; extended along z.
     Curve {
@@ -140,6 +149,8 @@ impl Surface {
                 let distance = cylinder.hit_side_within(origin, direction)?;
                 (distance, -cylinder.outward(Border::Outer, at(distance)))
             }
+            Shape::OfLens { lens, part } if departed && !lens.is_hollow(*part) => return None,
+            Shape::OfLens { lens, part } => lens.entry(*part, origin, direction)?,
             _ if departed => return None,
             Shape::Wall(wall) if direction.dot(wall.normal) >= 0.0 => return None,
             Shape::Wall(wall) => (wall.hit(origin, direction)?, wall.normal),
