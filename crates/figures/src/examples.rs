@@ -23,9 +23,17 @@ macro_rules! other {
 }
 
 /// Scenes that are neither a panel of the paper nor an exhibit: path, words, text.
-const OTHERS: [(&str, &str, &str); 3] = [
+const OTHERS: [(&str, &str, &str); 8] = [
     other!("flux/solar-cell" => "For `cloakroom flux`: a contact on a solar cell, under a cloak"),
     other!("flux/window" => "For `cloakroom flux`: an advertising column before a window"),
+    other!("real/calcite-carpet" =>
+        "Two glued prisms of calcite hide a bump of a mirror, after Zhang et al. and Chen et al. 2011"),
+    other!("real/prism-cloak" =>
+        "Glass prisms hide what stands in a hexagon from six directions, after Chen et al. 2013"),
+    other!("real/water-cloak" =>
+        "Tanks of water hide what stands in a square from four directions, after Zheng et al. 2014"),
+    other!("real/four-mirrors" => "Four mirrors lead light over what they hide"),
+    other!("real/mirror-box" => "A magician's cabinet: two mirrors hide what stands behind them"),
     other!("shop-window" =>
         "For `cloakroom animate`: a cloak with an open core that turns in a shop window"),
 ];
@@ -66,7 +74,7 @@ pub fn select(names: &[String]) -> Result<Vec<Example>, String> {
     let examples = all();
     if let Some(name) = names.iter().find(|name| !examples.iter().any(|e| named(e, name))) {
         let mut known: Vec<&str> = examples.iter().map(|example| example.path).collect();
-        known.extend(["paper", "gallery", "flux"]);
+        known.extend(["paper", "gallery", "flux", "real"]);
         let hint = hint(name, &known, "there are");
         return Err(format!("there is no example scene `{name}`{hint}"));
     }
