@@ -1,0 +1,6 @@
+#![allow(clippy::unwrap_used, dead_code)]
+#[path = "../../optics/tests/long.rs"]
+mod long;
+mod pictures;
+mod rays;
+mod real_cloaks;
