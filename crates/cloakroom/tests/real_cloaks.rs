@@ -22,6 +22,7 @@ const MIRRORS: &str = include_str!("../../../scenes/real/four-mirrors.toml");
 const BOX: &str = include_str!("../../../scenes/real/mirror-box.toml");
 
 const LIMITS: Limits = Limits { min_power: 1e-6, tolerance: 1e-9 };
+const STRONG: Limits = Limits { min_power: 1e-4, tolerance: 1e-9 };
 
 fn scene(text: &str, changes: &[&str]) -> Scene {
     let changes: Vec<Override> = changes.iter().map(|c| Override::Text((*c).to_owned())).collect();
@@ -141,8 +142,7 @@ fn the_calcite_carpet_is_a_glass_prism_on_a_mirror() {
             assert!(off < 1e-12, "{off:e} {launch:?} {leaf:?}");
         }
     }
-    assert!(compared > 2000, "{compared}");
-    eprintln!("compared {compared} {worst:e}");
+    assert!(compared > 2000, "{compared} {worst:e}");
 }
 
 /// Light polarized in the plane of a crystal: k·ε·k = det ε there, the wave vector k being that over
@@ -218,7 +218,9 @@ fn lasers_of_other_colors_see_the_carpet_a_little() {
                     worst = worst.max(found.angle_to(mirrored).to_degrees().abs());
                 }
             }
-            assert!(seen.iter().all(|count| *count > 30), "{nm} {degrees} {seen:?}");
+            // At 590 nm both ways are the mirror's.
+            let few = seen.iter().filter(|count| **count < 30).count();
+            assert!(few <= usize::from(nm == 590.0), "{nm} {degrees} {seen:?}");
             assert!((worst - published).abs() < 6e-4, "{nm} {degrees}: {worst}");
         }
     }
@@ -281,6 +283,8 @@ struct Guided<'a> {
     directions: u32,
     /// Half of the height that is led around, cm.
     window: f64,
+    /// How far from the axis and from the ends of the window rays are, cm.
+    rim: f64,
     /// The upper faces on the way to the middle.
     faces: Vec<(Line, f64)>,
     /// What of each polarization goes through (across the plane, in it).
@@ -292,13 +296,14 @@ struct Guided<'a> {
 impl Guided<'_> {
     /// Rays along the axes of the cloak come out on their own lines.
     fn assert_in_line(&self) {
-        let mut tracer = Tracer::<2>::new(self.bench, LIMITS);
+        let mut tracer = Tracer::<2>::new(self.bench, STRONG);
         let mut numbers = Numbers(9);
         for n in 0..count(300, 5000) {
             let turn = DMat3::from_rotation_z(
                 TAU * f64::from(n % self.directions) / f64::from(self.directions),
             );
-            let y = numbers.between(-0.999, 0.999) * self.window;
+            let side = if numbers.next() < 0.5 { 1.0 } else { -1.0 };
+            let y = side * numbers.between(self.rim, self.window - self.rim);
             let origin = DVec3::new(-150.0, y, numbers.between(-5.0, 5.0));
             let launch = launch(turn * origin, turn * DVec3::X);
             let (leaves, outcome) = tracer.trace(&launch);
@@ -319,7 +324,7 @@ impl Guided<'_> {
     /// Snell's law says; how many of them were.
     fn assert_slanted(&self, most_degrees: f64) -> u32 {
         let faces = and_back(&self.faces);
-        let mut tracer = Tracer::<2>::new(self.bench, LIMITS);
+        let mut tracer = Tracer::<2>::new(self.bench, STRONG);
         let mut numbers = Numbers(11);
         let (mut through, mut number) = (0, 0);
         while number < count(400, 5000) {
@@ -331,9 +336,11 @@ impl Guided<'_> {
             let launch = launch(DVec3::new(0.0, y, 0.0) - direction * 150.0, direction);
             let (point, out, path) = refracted(launch.origin, launch.direction, &faces);
             assert!(out.distance(launch.direction) < 1e-12);
-            let leaf = strongest(tracer.trace(&launch).0);
-            // Others meet another prism, or what is hidden.
-            if leaf.position.distance(point) < 1e-6 {
+            // Others meet a card, another prism, or what is hidden.
+            let leaves = tracer.trace(&launch).0.iter();
+            let there =
+                |leaf: &&Leaf<2>| leaf.position.distance(point) < 1e-6 && leaf.power[0] > 0.1;
+            if let Some(leaf) = leaves.copied().find(|leaf| there(&leaf)) {
                 through += 1;
                 assert!(leaf.position.distance(point) < 1e-11);
                 assert!(leaf.direction.distance(launch.direction) < 1e-12);
@@ -358,7 +365,7 @@ impl Guided<'_> {
     /// What is hidden is seen along the axes by reflections alone: the largest share of a ray's
     /// power, unpolarized, that is from there.
     fn seen(&self, body: u16) -> f64 {
-        let mut tracer = Tracer::<2>::new(self.bench, LIMITS);
+        let mut tracer = Tracer::<2>::new(self.bench, STRONG);
         let mut seen = 0.0_f64;
         for n in 1..200 {
             let y = self.window * (f64::from(n) / 100.0 - 1.0);
@@ -399,20 +406,33 @@ fn prisms_lead_light_of_six_directions_around_a_hexagon() {
         ];
         let (upright, oblique) = (reflectance(n, 0.0), reflectance(n, n * alpha.sin()));
         let transmitted = [0, 1].map(|i| ((1.0 - upright[i]) * (1.0 - oblique[i])).powi(4));
-        // Glass of two prisms is as thick as one at its end; the way between them is bent.
-        let longer = 2.0 * ((n - 1.0) * window * alpha.tan() + rise * (deviation / 2.0).tan());
-        let guided = Guided { bench: &bench, directions: 6, window, faces, transmitted, longer };
-        eprintln!(
-            "{nm} {n} rise {rise} T {transmitted:?} longer {longer} off {:?}",
-            [0.1, 0.5, 1.0, 2.0].map(|d| guided.off(d))
-        );
+        // What one prism is thicker by the other is thinner; the way between them is bent.
+        let glass = (2.0 * window - rise) * alpha.tan();
+        let longer = 2.0 * ((n - 1.0) * glass + rise * (deviation / 2.0).tan());
+        // Of other colors, the rims meet no second prism.
+        let rim = 0.001 + (rise - window).abs();
+        let guided =
+            Guided { bench: &bench, directions: 6, window, rim, faces, transmitted, longer };
+        guided.assert_in_line();
+        // The numbers of the page.
+        for (nm_there, published) in [(450.0, 3.063), (550.0, 3.0), (650.0, 2.963)] {
+            assert!(nm != nm_there || (rise - published).abs() < 6e-4, "{nm}: {rise}");
+        }
         if nm == 550.0 {
-            guided.assert_in_line();
+            assert_numbers(&transmitted, &[0.518, 0.826], 6e-4);
+            assert_numbers(&guided.off(1.0), &[0.241, 0.0027], 6e-4);
+            assert_numbers(&[longer, deviation.to_degrees()], &[2.82, 19.40], 6e-3);
             let seen = guided.seen(0);
+            assert!(seen < 5e-3, "{seen}");
             let through = guided.assert_slanted(2.0);
-            eprintln!("seen {seen} through {through}");
+            assert!(through > 200, "{through}");
         }
     }
+}
+
+fn assert_numbers(found: &[f64], expected: &[f64], tolerance: f64) {
+    let close = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < tolerance);
+    assert!(found.len() == expected.len() && close, "{found:?} {expected:?}");
 }
 
 /// What a slanted face rises by over the height between the corners of the two prisms, 3 cm.
@@ -434,15 +454,24 @@ fn tanks_of_water_lead_light_of_four_directions_around_a_square() {
     let faces = vec![([corner(cloak, 0, 0), slanted], n), ([corner(cloak, 0, 3), slanted], 1.0)];
     let transmitted = reflectance(n, sin).map(|r| (1.0 - r).powi(4));
     let longer = 2.0 * thickness * sin * (n * inside.cos() - sin);
-    let guided = Guided { bench: &bench, directions: 4, window: 5.0, faces, transmitted, longer };
-    eprintln!(
-        "T {transmitted:?} longer {longer} off {:?}",
-        [0.1, 0.5, 1.0, 2.0].map(|d| guided.off(d))
-    );
+    let guided = Guided {
+        bench: &bench,
+        directions: 4,
+        window: 5.0,
+        rim: 0.001,
+        faces,
+        transmitted,
+        longer,
+    };
     guided.assert_in_line();
+    // The numbers of the page.
+    assert_numbers(&transmitted, &[0.804, 0.989], 6e-4);
+    assert_numbers(&guided.off(1.0), &[0.352, 0.1746], 6e-4);
+    assert_numbers(&[longer, thickness], &[15.98, 26.72], 6e-3);
     let seen = guided.seen(0);
+    assert!(seen < 5e-3, "{seen}");
     let through = guided.assert_slanted(2.0);
-    eprintln!("seen {seen} through {through}");
+    assert!(through > 200, "{through}");
 }
 
 #[test]
@@ -504,8 +533,8 @@ fn the_mirror_box_shows_side_walls_where_the_back_wall_is() {
 
 #[test]
 fn the_mirror_box_reverses_the_back_wall() {
-    let small =
-        BOX.replace("field_of_view = 42", "field_of_view = 42\nresolution = [96, 72]\nsamples = 4");
+    let small = BOX
+        .replace("field_of_view = 42", "field_of_view = 42\nresolution = [96, 72]\nsamples = 16");
     let (cabinet, rest) = small.split_once("# What is hidden.").unwrap();
     let (ball, _) = rest.split_once("# The mirrors").unwrap();
     let (with, without) = (png(&small), png(cabinet));
@@ -526,7 +555,7 @@ fn the_mirror_box_reverses_the_back_wall() {
         sum / (8.0 * 10.0 * 3.0)
     };
     let [reversed, straight] = [true, false].map(|reversed| off(&with, &without, reversed));
-    eprintln!("{reversed} {straight} {}", off(&open, &without, false));
-    assert!(reversed < 1.0 && straight > 10.0, "{reversed} {straight}");
+    // In steps of 255; samples are at random.
+    assert!(reversed < 1.5 && straight > 20.0, "{reversed} {straight}");
     assert!(off(&open, &without, false) > 1.0);
 }
