@@ -2,5 +2,6 @@
 #[path = "../../optics/tests/long.rs"]
 mod long;
 mod pictures;
+mod prisms;
 mod rays;
 mod real_cloaks;
