@@ -15,6 +15,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 const CARPET: &str = include_str!("../../../scenes/real/calcite-carpet.toml");
+const LIQUID: &str = include_str!("../../../scenes/real/calcite-carpet-in-liquid.toml");
 const HEXAGON: &str = include_str!("../../../scenes/real/prism-cloak.toml");
 const WATER: &str = include_str!("../../../scenes/real/water-cloak.toml");
 const MIRRORS: &str = include_str!("../../../scenes/real/four-mirrors.toml");
@@ -100,6 +101,12 @@ fn the_carpet_is_designed_for_590_nm() {
     close(corners(&cloak.prism[2]), &[[d, 0.0], [0.0, apex], [0.0, bump]]);
     close(corners(&cloak.imitated[0]), &[[-d, 0.0], [d, 0.0], [0.0, apex]]);
     assert!((cloak.imitated[0].words.index.unwrap().re - index).abs() < 1e-14);
+    // It is the same in the liquid, which is of the index of the glass.
+    let liquid = self::scene(LIQUID, &[]);
+    let same = prisms(&liquid, 2);
+    assert_eq!((&same.prism, &same.imitated), (&cloak.prism, &cloak.imitated));
+    let AnyDevice::SolidBody(body) = &liquid.devices[0].device else { panic!("no body") };
+    assert_eq!(body.words.index, cloak.imitated[0].words.index);
 }
 
 /// Rays in the plane onto the carpet from above, from anywhere.
