@@ -23,11 +23,13 @@ macro_rules! other {
 }
 
 /// Scenes that are neither a panel of the paper nor an exhibit: path, words, text.
-const OTHERS: [(&str, &str, &str); 8] = [
+const OTHERS: [(&str, &str, &str); 9] = [
     other!("flux/solar-cell" => "For `cloakroom flux`: a contact on a solar cell, under a cloak"),
     other!("flux/window" => "For `cloakroom flux`: an advertising column before a window"),
     other!("real/calcite-carpet" =>
         "Two glued prisms of calcite hide a bump of a mirror, after Zhang et al. and Chen et al. 2011"),
+    other!("real/calcite-carpet-in-liquid" =>
+        "The same under a liquid of the index of the glass that it looks like"),
     other!("real/prism-cloak" =>
         "Glass prisms hide what stands in a hexagon from six directions, after Chen et al. 2013"),
     other!("real/water-cloak" =>
