@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the pictures of docs/devices: each device as it looks (JPEG), and rays through it (PNG).
+# Makes the pictures of docs/devices and docs/real: each device as it looks (JPEG), and rays through it (PNG).
 # Needs cloakroom on the path and Python with Pillow.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -35,12 +35,39 @@ rays gaussian-carpet gallery/gaussian-carpet --parallel=-40 --wavefronts 4
 rays grating-carpet gallery/grating-carpet --parallel=-40
 rays quasi-conformal-carpet gallery/quasi-conformal-carpet --parallel=-40 --wavefronts 4
 
+# real NAME SCENE [options of cloakroom render]
+mkdir "$work/real"
+real() {
+  local name=$1 scene=scenes/real/$2.toml
+  shift 2
+  cloakroom render "$scene" --set camera.resolution=[480,360] --set camera.samples=3 --set trace.min_power=0.005 "$@" \
+    -o "$work/real/$name.png"
+}
+real calcite-carpet calcite-carpet
+real calcite-carpet-in-liquid calcite-carpet-in-liquid
+real calcite-carpet-bare calcite-carpet-in-liquid --set device.2.show=bare
+real prism-cloak prism-cloak
+real water-cloak water-cloak
+real four-mirrors four-mirrors
+real mirror-box mirror-box
+real mirror-box-open mirror-box --set device.5.position=[0,1000,0]
+# real_rays SCENE [options of cloakroom diagram]
+real_rays() {
+  local name=$1
+  shift
+  cloakroom diagram "scenes/real/$name.toml" --size 480x360 "$@" -o "$work/real/$name-rays.png"
+}
+real_rays calcite-carpet --set light.spectrum=590 --parallel=-35 --width 4 --rays 14 --polarization vertical --min-power 0.1
+real_rays prism-cloak --width 6
+real_rays water-cloak --width 10
+real_rays four-mirrors --camera --rays 40
+
 # A photograph is far smaller as JPEG.
-python3 - "$work" "$out" <<'PYTHON'
+python3 - "$work" "$out" docs/real <<'PYTHON'
 import pathlib, sys
 from PIL import Image
 
-work, out = map(pathlib.Path, sys.argv[1:])
+work, out, real = map(pathlib.Path, sys.argv[1:])
 for path in sorted((work / "gallery").glob("*.png")):
     if path.stem == "gallery" or path.stem.endswith("-time-of-flight"):
         continue
@@ -48,4 +75,10 @@ for path in sorted((work / "gallery").glob("*.png")):
     image.save(out / f"{path.stem}.jpg", quality=82, optimize=True, progressive=True)
 for path in sorted(work.glob("*-rays.png")):
     Image.open(path).convert("RGB").quantize(128).save(out / path.name, optimize=True)
+for path in sorted((work / "real").glob("*.png")):
+    image = Image.open(path).convert("RGB")
+    if path.stem.endswith("-rays"):
+        image.quantize(128).save(real / path.name, optimize=True)
+    else:
+        image.save(real / f"{path.stem}.jpg", quality=84, optimize=True, progressive=True)
 PYTHON

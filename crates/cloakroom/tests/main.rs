@@ -36,6 +36,7 @@ mod pulses;
 mod quality;
 mod radial_devices;
 mod rays;
+mod real_cloaks;
 mod square_cloak;
 mod stokes;
 mod touching;

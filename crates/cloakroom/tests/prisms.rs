@@ -297,3 +297,36 @@ fn what_cannot_be_is_refused_at_its_place() {
         assert!(error.starts_with(place) && error.contains(words), "{text}\n{error}");
     }
 }
+
+#[test]
+fn prisms_are_shown_as_what_they_imitate() {
+    let glass = "corners = [[-8, 0], [8, 0], [0, 9]]\nindex = 1.5\n";
+    let metal = "corners = [[-9, -1], [9, -1], [9, 0], [-9, 0]]\nmetal = true\n";
+    let imitated = |show: &str| {
+        prisms(&format!(
+            "show = \"{show}\"\n[[device.prism]]\ncorners = [[-8, 0], [8, 0], [0, 5]]\nindex = 2\n\
+             [[device.imitated]]\n{glass}[[device.imitated]]\n{metal}"
+        ))
+    };
+    let plain = prisms(&format!("[[device.prism]]\n{glass}[[device.prism]]\n{metal}"));
+    let limits = Limits { min_power: 1e-6, tolerance: 1e-9 };
+    let [plain, shown, cloak] =
+        [plain, imitated("mirror"), imitated("cloak")].map(|text| assembly(&text));
+    let [mut plain, mut shown, mut cloak] =
+        [&plain, &shown, &cloak].map(|assembly| Tracer::new(assembly, limits));
+    let mut other = 0;
+    for launch in launches(count(100, 1000)) {
+        let (leaves, _) = plain.trace(&launch);
+        assert!(same_leaves(leaves, shown.trace(&launch).0), "{launch:?}");
+        other += u32::from(!same_leaves(leaves, cloak.trace(&launch).0));
+    }
+    assert!(other > 30, "{other}");
+    // What is imitated is checked where nobody looks at it, too.
+    let crossed = imitated("cloak").replace("[9, 0], [-9, 0]", "[9, 1], [-9, 1]");
+    let message = refusal(&crossed);
+    assert!(message.contains("prism 1 overlaps prism 0"), "{message}");
+    let alone = prisms(
+        "show = \"mirror\"\n[[device.prism]]\ncorners = [[0, 0], [1, 0], [0, 1]]\nindex = 2\n",
+    );
+    assert!(refusal(&alone).contains("[[device.imitated]]"), "{}", refusal(&alone));
+}

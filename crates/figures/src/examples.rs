@@ -23,11 +23,23 @@ macro_rules! other {
 }
 
 /// Scenes that are neither a panel of the paper nor an exhibit: path, words, text.
-const OTHERS: [(&str, &str, &str); 5] = [
+const OTHERS: [(&str, &str, &str); 13] = [
     other!("flux/solar-cell" => "For `cloakroom flux`: a contact on a solar cell, under a cloak"),
     other!("flux/window" => "For `cloakroom flux`: an advertising column before a window"),
+    other!("real/calcite-carpet" =>
+        "Two glued prisms of calcite hide a bump of a mirror, after Zhang et al. and Chen et al. 2011"),
+    other!("real/calcite-carpet-in-liquid" =>
+        "The same under a liquid of the index of the glass that it looks like"),
+    other!("real/prism-cloak" =>
+        "Glass prisms hide what stands in a hexagon from six directions, after Chen et al. 2013"),
+    other!("real/water-cloak" =>
+        "Tanks of water hide what stands in a square from four directions, after Zheng et al. 2014"),
+    other!("real/four-mirrors" => "Four mirrors lead light over what they hide"),
+    other!("real/mirror-box" => "A magician's cabinet: two mirrors hide what stands behind them"),
     other!("real/rochester-cloak" => "Four achromatic lenses that are empty space near their axis"),
     other!("real/rochester-cloak-singlets" => "The same of single lenses of BK7: its colors"),
+    other!("real/glass-prism" => "A prism of heavy flint glass in daylight"),
+    other!("real/newtons-colors" => "A wedge of quartz between crossed polarizers: Newton's colors"),
     other!("shop-window" =>
         "For `cloakroom animate`: a cloak with an open core that turns in a shop window"),
 ];
@@ -68,7 +80,7 @@ pub fn select(names: &[String]) -> Result<Vec<Example>, String> {
     let examples = all();
     if let Some(name) = names.iter().find(|name| !examples.iter().any(|e| named(e, name))) {
         let mut known: Vec<&str> = examples.iter().map(|example| example.path).collect();
-        known.extend(["paper", "gallery", "flux"]);
+        known.extend(["paper", "gallery", "flux", "real"]);
         let hint = hint(name, &known, "there are");
         return Err(format!("there is no example scene `{name}`{hint}"));
     }

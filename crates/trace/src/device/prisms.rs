@@ -17,6 +17,9 @@ crate::table! {
         /// The prisms, each a table [[device.prism]]; those that share a side, whole or in part,
         /// meet there without a gap.
         prism: Vec<PrismOfMedium>,
+        /// What it should look like, if not as nothing: prisms again, each a table
+        /// [[device.imitated]], shown with show = "mirror". A mirror, or glass on a mirror.
+        imitated: Vec<PrismOfMedium>,
     }
 }
 
@@ -46,7 +49,18 @@ impl Device for Prisms {
     const TITLE: &'static str = "Prisms of one's own";
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
-        let mut parts = self.parts(request.wavelength_nm)?;
+        if self.prism.is_empty() {
+            let message = "there is no prism; give each one a table [[device.prism]] with `corners` and \
+                           `permittivity` or `metal = true`";
+            return Err(KeyError::general(message));
+        }
+        let device = List { key: key!(Self.prism), prisms: &self.prism };
+        let imitated = List { key: key!(Self.imitated), prisms: &self.imitated };
+        let nm = request.wavelength_nm;
+        let mut parts = device.parts(nm)?;
+        // What cannot be shown is refused with the device, too.
+        let imitated_parts = imitated.parts(nm)?;
+        let of_imitated = imitated.structure(&imitated_parts, request)?;
         match request.show {
             Show::Cloak => {}
             Show::Bare => {
@@ -54,20 +68,18 @@ impl Device for Prisms {
                 let message = "no prism is metal, so nothing of it is bare";
                 KeyError::refuse_if(parts.is_empty(), key!(Request.show), message)?;
             }
-            Show::Mirror => super::refuse_other_views(request, "prisms imitate no mirror")?,
+            Show::Mirror if self.imitated.is_empty() => {
+                let reason = "prisms imitate no mirror without [[device.imitated]]";
+                super::refuse_other_views(request, reason)?;
+            }
+            Show::Mirror => return Ok(of_imitated),
         }
-        polygonal(&parts, Extent::centred(request.length), self.rounding()).map_err(
-            |[first, second]| {
-                let message = format!(
-                    "prism {second} overlaps prism {first} (counted from 0); cut one of them"
-                );
-                KeyError::at(key!(PrismOfMedium.corners), message).within(key!(Self.prism), second)
-            },
-        )
+        device.structure(&parts, request)
     }
 
     fn facts(&self, request: Request) -> Vec<Fact> {
-        let parts = self.parts(request.wavelength_nm).unwrap_or_default();
+        let device = List { key: key!(Self.prism), prisms: &self.prism };
+        let parts = device.parts(request.wavelength_nm).unwrap_or_default();
         let area = |metal: bool| {
             let chosen = parts.iter().filter(|part| part.medium.is_none() == metal);
             chosen.map(|part| part.polygon.area()).sum::<f64>()
@@ -80,27 +92,40 @@ impl Device for Prisms {
     }
 }
 
-impl Prisms {
+/// Prisms of a list of tables.
+struct List<'p> {
+    /// The key of the list.
+    key: &'static str,
+    prisms: &'p [PrismOfMedium],
+}
+
+impl List<'_> {
     /// The prisms, each sound in itself.
     fn parts(&self, wavelength_nm: f64) -> Result<Vec<PolygonPart>, KeyError> {
-        if self.prism.is_empty() {
-            let message = "there is no prism; give each one a table [[device.prism]] with `corners` and \
-                           `permittivity` or `metal = true`";
-            return Err(KeyError::general(message));
-        }
         let mut known: Vec<DVec2> = Vec::new();
-        let prisms = self.prism.iter().enumerate().map(|(number, prism)| {
-            part(prism, &mut known, wavelength_nm)
-                .map_err(|error| error.within(key!(Self.prism), number))
+        let prisms = self.prisms.iter().enumerate().map(|(number, prism)| {
+            part(prism, &mut known, wavelength_nm).map_err(|error| error.within(self.key, number))
         });
         prisms.collect()
+    }
+
+    /// What some of its parts are together.
+    fn structure(&self, parts: &[PolygonPart], request: Request) -> Result<Structure, KeyError> {
+        polygonal(parts, Extent::centred(request.length), self.rounding()).map_err(
+            |[first, second]| {
+                let message = format!(
+                    "prism {second} overlaps prism {first} (counted from 0); cut one of them"
+                );
+                KeyError::at(key!(PrismOfMedium.corners), message).within(self.key, second)
+            },
+        )
     }
 
     /// How far sides that are meant to lie along each other may be apart, cm, where corners are
     /// rounded to the decimals with which they are written: each of two sides by half a step along x
     /// and along y. It is less than any side by far.
     fn rounding(&self) -> f64 {
-        let polygons = || self.prism.iter().filter_map(|prism| prism.corners.as_ref());
+        let polygons = || self.prisms.iter().filter_map(|prism| prism.corners.as_ref());
         let numbers = polygons().flatten().flatten();
         let decimals =
             |number: &f64| number.to_string().split_once('.').map_or(0, |(_, d)| d.len());
