@@ -44,6 +44,20 @@ pub(super) fn step<const N: usize>(
     (end, (h * error).abs())
 }
 
+/// The end of a step of the classical method of order 4: for predictions.
+pub(super) fn predict<const N: usize>(
+    rates: &impl Fn(&[f64; N]) -> [f64; N],
+    (start, first): (&[f64; N], &[f64; N]),
+    h: f64,
+) -> [f64; N] {
+    let moved = |k: &[f64; N], h: f64| std::array::from_fn(|i| start[i] + h * k[i]);
+    let second = rates(&moved(first, 0.5 * h));
+    let third = rates(&moved(&second, 0.5 * h));
+    let fourth = rates(&moved(&third, h));
+    let mean = std::array::from_fn(|i| first[i] + 2.0 * (second[i] + third[i]) + fourth[i]);
+    moved(&mean, h / 6.0)
+}
+
 /// The start, moved by h Σ w k.
 fn moved<const N: usize>(
     start: &[f64; N],
@@ -190,6 +204,16 @@ mod tests {
             let order = (coarse / fine).log2();
             assert!(order > 7.5 && fine < 1e-10, "{coarse} {fine} {order}");
         }
+    }
+
+    #[test]
+    fn predictions_are_of_order_four() {
+        let [coarse, fine] = [0.2, 0.1].map(|h| {
+            let exact = step(&pull, (&START, &pull(&START)), h, &[1.0; 4]).0;
+            off(&predict(&pull, (&START, &pull(&START)), h), &exact)
+        });
+        let order = (coarse / fine).log2();
+        assert!(order > 4.5 && order < 5.5, "{order}");
     }
 
     #[test]

@@ -15,7 +15,7 @@
 //! media the field is carried parallel, de/ds = -(e·∇ln n) t (Rytov).
 
 use super::radial::uniaxial_wave::{UniaxialPoint, transport};
-use super::runge_kutta::{step, step_factor};
+use super::runge_kutta::{predict, step, step_factor};
 use super::space_spline::{Look, SpaceSpline};
 use super::{FlowError, PathEnd, PathPoint};
 use crate::geometry::FlatOrRound;
@@ -108,7 +108,7 @@ const SHARE: f64 = 0.02;
 
 /// Steps end within so many cells of the planes of the grid, where the third derivatives of the
 /// medium jump: beyond them by less the error is small of fourth order.
-const SLACK: f64 = 0.01;
+const SLACK: f64 = 1e-3;
 
 /// Of the size, the longest step, and the shortest.
 const STEPS: [f64; 2] = [1.0, 1e-13];
@@ -258,7 +258,7 @@ impl Local {
 
     /// The electric field of unit power of a wave.
     fn field(&self, p: DVec3, mode: ModeKind, sense: f64) -> DVec3 {
-        let across = self.across(p, sense).unwrap_or_else(|| p.any_orthonormal_vector());
+        let across = self.across(p, sense).unwrap_or_else(|| p.normalize().any_orthonormal_vector());
         self.point().field_across(p, across, mode)
     }
 }
@@ -311,7 +311,7 @@ impl SpatialFlow {
     pub fn advance(&self, ray: &SpatialRay, tolerance: f64) -> Result<PathEnd<u16>, FlowError> {
         let SpatialRay { position, wave_vector, mode } = *ray;
         let own_field = is_one_of_two(mode) && !self.medium.is_isotropic();
-        let across = wave_vector.any_orthonormal_vector();
+        let across = wave_vector.normalize().any_orthonormal_vector();
         let carried = if own_field { Carried::Nothing } else { Carried::Field(across) };
         let (end, surface) = self.march(ray, carried, tolerance, STEPS[0], |_| ())?;
         let extraordinary = mode == ModeKind::Extraordinary;
@@ -425,8 +425,17 @@ impl SpatialFlow {
                 return Ok((state, surface));
             }
             let speed = vector(&first, 0).length();
-            let most = (longest * self.size / speed).min(self.time_in_cell(&state, &first));
-            let mut h = wanted.min(most);
+            let mut h = wanted.min(longest * self.size / speed);
+            if let Some((time, axis, plane)) = self.way_to_plane(&state, &first)
+                && time < h
+            {
+                h = time;
+                let there = predict(&rates, (&state, &first), time);
+                let later = (plane - there[axis]) / rates(&there)[axis];
+                if later.abs() < 0.2 * time {
+                    h += later;
+                }
+            }
             let (mut end, mut error) = step(&rates, (&state, &first), h, &weight);
             while error.is_nan() || error > 1.0 {
                 h *= step_factor(error).min(0.9);
@@ -475,24 +484,27 @@ impl SpatialFlow {
         self.border.iter().position(out).map(|surface| surface as u16)
     }
 
-    /// About how long the ray stays in its cell of the grid.
-    fn time_in_cell(&self, state: &State, rates: &State) -> f64 {
-        let mut time = f64::INFINITY;
+    /// About when the ray comes to the end of its cell of the grid, and through which plane: the
+    /// axis across it, and where it is.
+    fn way_to_plane(&self, state: &State, rates: &State) -> Option<(f64, usize, f64)> {
+        let mut nearest: Option<(f64, usize, f64)> = None;
         for axis in 0..3 {
             let (at, speed, bend) = (state[axis], rates[axis], 0.5 * rates[3 + axis]);
             let cell = self.medium.square.cell_along(axis, at, speed, SLACK);
             let Some([low, high]) = cell else { continue };
-            for [c, b, a] in [[at - high, speed, bend], [low - at, -speed, -bend]] {
-                if c.is_finite()
-                    && let Some([over, under]) = super::first_way_out([c, b, a])
+            let ways = [(high, [at - high, speed, bend]), (low, [low - at, -speed, -bend])];
+            for (plane, way) in ways {
+                if way[0].is_finite()
+                    && let Some([over, under]) = super::first_way_out(way)
                     && under > 0.0
                     && over > 0.0
+                    && nearest.is_none_or(|(time, ..)| over / under < time)
                 {
-                    time = time.min(over / under);
+                    nearest = Some((over / under, axis, plane));
                 }
             }
         }
-        time
+        nearest
     }
 
     /// Where a step of length `h` comes out through the border, if it does: the surface and the
