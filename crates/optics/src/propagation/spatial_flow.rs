@@ -258,7 +258,8 @@ impl Local {
 
     /// The electric field of unit power of a wave.
     fn field(&self, p: DVec3, mode: ModeKind, sense: f64) -> DVec3 {
-        let across = self.across(p, sense).unwrap_or_else(|| p.normalize().any_orthonormal_vector());
+        let across =
+            self.across(p, sense).unwrap_or_else(|| p.normalize().any_orthonormal_vector());
         self.point().field_across(p, across, mode)
     }
 }
