@@ -163,6 +163,17 @@ fn all_sorts() -> Vec<Sort> {
         ),
         ("graded", format!("{index}\nlength = 12"), Metal::None),
         ("graded", format!("{index}\nlength = 12\nshape = \"circle\"\ninner = 2"), rod),
+        ("graded", format!("{index_in_space}\nlength = 12\nshape = \"ball\""), Metal::None),
+        (
+            "graded",
+            format!("{index}\nlength = 12\nratio = 1.1\noptic_axis = [1, 2, 0.5]"),
+            Metal::None,
+        ),
+        (
+            "graded",
+            format!("{index_in_space}\nlength = 12\nratio = 0.9\noptic_axis = {axes_in_space}"),
+            Metal::None,
+        ),
         ("graded-box", "sides = [8, 10, 12]".into(), Metal::None),
         ("body", format!("shape = \"sphere\"\n{glass}"), Metal::None),
         ("body", format!("shape = \"box\"\n{tensor}"), Metal::None),
