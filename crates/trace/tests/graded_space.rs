@@ -92,21 +92,21 @@ fn launches(count: u32, target: DVec3) -> impl Iterator<Item = Launch<2>> {
 /// Holds the leaves of two assemblies against each other; how many there were, and by how much they
 /// differ at most.
 fn compared(a: &Assembly, b: &Assembly, target: DVec3, count: u32) -> (u32, f64) {
-    let (mut one, mut other) = (Tracer::new(a, LIMITS), Tracer::new(b, LIMITS));
+    // Boxes can trap light.
+    let limits = Limits { min_power: 1e-2, ..LIMITS };
+    let (mut one, mut other) = (Tracer::new(a, limits), Tracer::new(b, limits));
     let (mut leaves, mut most) = (0, 0.0_f64);
     for launch in launches(count, target) {
         let (expected, outcome) = one.trace(&launch);
         outcome.assert_balanced(expected, 1e-9, &launch);
         let (found, outcome) = other.trace(&launch);
         outcome.assert_balanced(found, 1e-9, &launch);
-        let strong = |leaf: &&Leaf<2>| leaf.met_device && leaf.power[0] + leaf.power[1] > 1e-4;
+        let strong = |leaf: &&Leaf<2>| leaf.met_device && leaf.power[0] + leaf.power[1] > 3e-2;
         for leaf in expected.iter().filter(strong) {
             let off = |other: &Leaf<2>| {
                 let powers = (0..2).map(|i| (leaf.power[i] - other.power[i]).abs());
-                let fields = (0..2).map(|i| {
-                    let own = leaf.electric[i].dot(other.electric[i]).norm();
-                    (own - leaf.power[i]).abs()
-                });
+                let fields =
+                    (0..2).map(|i| (leaf.electric[i] - other.electric[i]).norm_squared().sqrt());
                 [
                     (leaf.position - other.position).length(),
                     (leaf.direction - other.direction).length(),
@@ -166,7 +166,7 @@ fn what_is_the_same_along_z_is_the_device_of_two_dimensions() {
     let plane = graded(size, &[("index", sampled(size, [9, 8, 1], index))]);
     let space = graded(size, &[("index", sampled(size, [9, 8, 6], index))]);
     let (leaves, off) = compared(&plane, &space, 0.5 * size, 60);
-    assert!(leaves > 150 && off < 1e-9, "{leaves} {off}");
+    assert!(leaves > 100 && off < 1e-9, "{leaves} {off}");
 }
 
 #[test]
@@ -191,7 +191,7 @@ fn one_crystal_on_a_grid_is_a_body_of_it() {
         &[("index", one.clone()), ("ratio", ratio.into()), ("optic_axis", axis.to_array().into())],
     );
     let (leaves, off) = compared(&body, &constant, 0.5 * size, 40);
-    assert!(leaves > 200 && off < 1e-10, "{leaves} {off}");
+    assert!(leaves > 100 && off < 1e-10, "{leaves} {off}");
     // Given at each sample, in either sense.
     let field = graded(
         size,
@@ -205,7 +205,7 @@ fn one_crystal_on_a_grid_is_a_body_of_it() {
         ],
     );
     let (leaves, off) = compared(&body, &field, 0.5 * size, 40);
-    assert!(leaves > 200 && off < 1e-10, "{leaves} {off}");
+    assert!(leaves > 100 && off < 1e-10, "{leaves} {off}");
 }
 
 #[test]
@@ -320,7 +320,7 @@ fn facts_say_what_the_grid_holds() {
         // Beyond the ball it does not count.
         (
             "index",
-            sampled(size, count, |p| [if p.length() > 6.0 { 9.0 } else { 1.5 + 0.02 * p.x }]),
+            sampled(size, count, |p| [if p.length() > 6.0 { 1.9 } else { 1.5 + 0.02 * p.x }]),
         ),
         ("ratio", 1.1.into()),
         ("optic_axis", 30.0.into()),
@@ -385,7 +385,7 @@ fn what_does_not_go_together_is_told() {
     });
     refused(Some(9.0), &[("index", steep)], "between the samples the index falls to 0");
     let uneven = Value::List(vec![Value::from([[1.0; 4]; 4]), Value::from([[1.0; 4]; 3])]);
-    refused(Some(9.0), &[("index", uneven)], "[1] has 3 numbers");
+    refused(Some(9.0), &[("index", uneven)], "[1] has 3 entries, [0] has 4");
     refused(Some(9.0), &[("index", 1.5.into())], "it must be rows of numbers");
     refused(Some(9.0), &[("index", sampled(size, [5; 3], |_| [-1.0]))], "index[0][0][0] is -1");
     refused(Some(9.0), &[index, ("ratio", (-1.0).into())], "ratio is -1");

@@ -19,7 +19,7 @@ impl Samples {
     pub fn new(rows: &[Vec<f64>]) -> Result<Self, String> {
         let first = rows.first().map_or(0, Vec::len);
         if let Some((row, odd)) = rows.iter().enumerate().find(|(_, row)| row.len() != first) {
-            return Err(uneven(&[row], odd.len(), first));
+            return Err(uneven(2, &[row], [odd.len(), first]));
         }
         Self::of(&[rows.len(), first], rows.concat())
     }
@@ -133,12 +133,13 @@ pub(super) fn place_text(place: &[usize]) -> String {
     place.iter().map(|at| format!("[{at}]")).collect()
 }
 
-fn uneven(at: &[usize], count: usize, first: usize) -> String {
-    if let [row] = at {
+/// That a list in a grid of so many dimensions is not as long as the first one.
+fn uneven(dimensions: usize, at: &[usize], [count, first]: [usize; 2]) -> String {
+    if let (2, [row]) = (dimensions, at) {
         return format!("row {row} has {count} numbers, row 0 has {first}; all must have as many");
     }
-    let origin = place_text(&vec![0; at.len()]);
-    format!("{} has {count} entries, {origin} has {first}; all must have as many", place_text(at))
+    let [at, origin] = [at, &vec![0; at.len()]].map(place_text);
+    format!("{at} has {count} entries, {origin} has {first}; all must have as many")
 }
 
 /// Goes through lists in lists of a shape; whether they are such.
@@ -154,7 +155,7 @@ fn fill(
     };
     let Some(items) = value.as_list() else { return Ok(false) };
     if items.len() != *side {
-        return Err(uneven(at, items.len(), *side));
+        return Err(uneven(shape.len(), at, [items.len(), *side]));
     }
     for (i, item) in items.iter().enumerate() {
         at.push(i);

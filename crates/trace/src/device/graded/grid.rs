@@ -111,7 +111,7 @@ impl Grid {
         let spline = self.spline(&squares.map(|square| [square]).collect::<Vec<_>>())?;
         let positive = spline.is_positive(|low, high| self.reaches(low, high), |_| [1.0]);
         let message = format!(
-            "between the samples {name} falls to 0; take a finer grid, or a larger least {name}"
+            "between the samples {name} falls to 0; take a finer grid, or larger least numbers"
         );
         KeyError::refuse_if(!positive, key, message)?;
         Ok(spline)
