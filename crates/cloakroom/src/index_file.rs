@@ -144,7 +144,13 @@ fn samples_of(key: &Key, path: &Path, known: &[Arc<IndexFile>]) -> Result<Sample
     let samples = samples.map_err(|message| KeyError::at(key.name, message))?;
     if let KeyKind::Samples { dimensions: [least, most] } = key.kind {
         let shape = samples.shape();
-        let words = ["one number", "one dimension", "two dimensions", "three dimensions", "four dimensions"];
+        let words = [
+            "one number",
+            "one dimension",
+            "two dimensions",
+            "three dimensions",
+            "four dimensions",
+        ];
         let word = |count: usize| words.get(count).copied().unwrap_or("more dimensions");
         let expected = (least..=most).map(word).collect::<Vec<_>>().join(", or ");
         let message = format!(

@@ -73,11 +73,10 @@ fn device(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
 fn table(draws: &mut Draws<'_>, keys: &'static [Key], share: u8) -> Table {
     let mut table = Table::new();
     for key in keys {
-        let needed =
-            matches!(key.kind, KeyKind::Tables { .. }
-                    | KeyKind::Polygon
-                    | KeyKind::Samples { dimensions: [2, _] })
-                && key.name != COATING;
+        let needed = matches!(
+            key.kind,
+            KeyKind::Tables { .. } | KeyKind::Polygon | KeyKind::Samples { dimensions: [2, _] }
+        ) && key.name != COATING;
         if needed || draws.chance(share) {
             table.insert(key.name.to_owned(), value(draws, key));
         }
@@ -201,9 +200,16 @@ fn vector(draws: &mut Draws<'_>) -> Value {
 /// Numbers on a grid, mostly near one another.
 fn samples(draws: &mut Draws<'_>, limits: ValueRange, [least, most]: [usize; 2]) -> Value {
     let dimensions = least + draws.below(most - least + 1);
-    let sides: Vec<usize> = (0..dimensions)
-        .map(|_| if draws.chance(8) { 3 } else { 4 + draws.below(if dimensions > 2 { 2 } else { 6 }) })
-        .collect();
+    let sides: Vec<usize> =
+        (0..dimensions)
+            .map(|_| {
+                if draws.chance(8) {
+                    3
+                } else {
+                    4 + draws.below(if dimensions > 2 { 2 } else { 6 })
+                }
+            })
+            .collect();
     grid(draws, limits, &sides)
 }
 

@@ -91,10 +91,10 @@ fn launches(count: u32, target: DVec3) -> impl Iterator<Item = Launch<2>> {
 
 /// Holds the leaves of two assemblies against each other; how many there were, and by how much they
 /// differ at most.
-fn compared(a: &Assembly, b: &Assembly, target: DVec3, count: u32) -> (u32, f64) {
+fn compared([a, b]: [&Assembly; 2], tolerances: [f64; 2], target: DVec3, count: u32) -> (u32, f64) {
     // Boxes can trap light.
-    let limits = Limits { min_power: 1e-2, ..LIMITS };
-    let (mut one, mut other) = (Tracer::new(a, limits), Tracer::new(b, limits));
+    let [of_a, of_b] = tolerances.map(|tolerance| Limits { min_power: 1e-2, tolerance });
+    let (mut one, mut other) = (Tracer::new(a, of_a), Tracer::new(b, of_b));
     let (mut leaves, mut most) = (0, 0.0_f64);
     for launch in launches(count, target) {
         let (expected, outcome) = one.trace(&launch);
@@ -165,7 +165,9 @@ fn what_is_the_same_along_z_is_the_device_of_two_dimensions() {
     let index = |p: DVec3| [1.4 + 0.1 * (0.4 * p.x).sin() * (0.5 * p.y + 0.2).cos()];
     let plane = graded(size, &[("index", sampled(size, [9, 8, 1], index))]);
     let space = graded(size, &[("index", sampled(size, [9, 8, 6], index))]);
-    let (leaves, off) = compared(&plane, &space, 0.5 * size, 60);
+    // Below 1e-8 the device of two dimensions is off by more, up to 2e-7 at 1e-12; at 1e-8 it agrees
+    // with that of three at 1e-10 and at 1e-12.
+    let (leaves, off) = compared([&plane, &space], [1e-8, 1e-10], 0.5 * size, 60);
     assert!(leaves > 100 && off < 1e-9, "{leaves} {off}");
 }
 
@@ -190,7 +192,7 @@ fn one_crystal_on_a_grid_is_a_body_of_it() {
         size,
         &[("index", one.clone()), ("ratio", ratio.into()), ("optic_axis", axis.to_array().into())],
     );
-    let (leaves, off) = compared(&body, &constant, 0.5 * size, 40);
+    let (leaves, off) = compared([&body, &constant], [1e-10; 2], 0.5 * size, 40);
     assert!(leaves > 100 && off < 1e-10, "{leaves} {off}");
     // Given at each sample, in either sense.
     let field = graded(
@@ -204,7 +206,7 @@ fn one_crystal_on_a_grid_is_a_body_of_it() {
             ),
         ],
     );
-    let (leaves, off) = compared(&body, &field, 0.5 * size, 40);
+    let (leaves, off) = compared([&body, &field], [1e-10; 2], 0.5 * size, 40);
     assert!(leaves > 100 && off < 1e-10, "{leaves} {off}");
 }
 
