@@ -28,6 +28,7 @@ rays luneburg-lens gallery/luneburg-lens --wavefronts 2 --width 24
 rays fisheye-lens gallery/fisheye-lens --point=-10,0,0
 rays fisheye-hemisphere gallery/fisheye-hemisphere --wavefronts 2 --width 24
 rays graded gallery/graded --width 24
+rays graded-3d gallery/graded-3d --width 24
 rays lens gallery/lens --width 12
 rays graded-box gallery/graded-box --width 24
 rays mirror-detour gallery/mirror-detour-orthographic --width 40

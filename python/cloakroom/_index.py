@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ._arrays import numbers
 
-__all__ = ["SPACING", "index_array"]
+__all__ = ["SPACING", "grid_array", "index_array"]
 
 #: What a function's grid is asked for beside the keys of the catalogue.
 SPACING: dict[str, Any] = {
@@ -37,13 +37,22 @@ def index_array(index: Any, size: tuple[float, float], inner: float, spacing: An
         return _sampled(index, size, inner, _step(spacing, size))
     if spacing is not None:
         raise ValueError("spacing is that of the samples of a function; an array is from border to border")
-    return _checked(index, "real numbers of the shape (samples along x, samples along y), a function or a path")
+    expected = "real numbers of the shape (samples along x, samples along y), a function or a path"
+    return _checked("index", index, expected, (2, 3))
 
 
-def _checked(index: Any, expected: str) -> NDArray[np.float64]:
-    array = numbers("index", index, expected)
-    if array.ndim != 2:
-        raise ValueError(f"index has the shape {array.shape}; expected {expected}")
+def grid_array(name: str, values: Any, most: int) -> Any:
+    """A ratio or optic axes as a scene file has them: one number, lists of numbers, or the name of a file."""
+    if isinstance(values, (str, os.PathLike)):
+        return os.path.abspath(values)
+    array = _checked(name, values, "one number, or real numbers of the shape of index, or a path", range(most + 1))
+    return float(array) if array.ndim == 0 else array
+
+
+def _checked(name: str, values: Any, expected: str, dimensions: Container[int] = (2,)) -> NDArray[np.float64]:
+    array = numbers(name, values, expected)
+    if array.ndim not in dimensions:
+        raise ValueError(f"{name} has the shape {array.shape}; expected {expected}")
     return array
 
 
@@ -80,4 +89,4 @@ def _sampled(
     expected = f"a real number for each of the {x.shape[0]} x {x.shape[1]} places x, y that it is given"
     if values.dtype.kind not in "iuf" or values.shape not in ((), x.shape):
         raise ValueError(f"index gives an array of {values.dtype} of the shape {values.shape}; expected {expected}")
-    return _checked(np.broadcast_to(values, x.shape), expected)
+    return _checked("index", np.broadcast_to(values, x.shape), expected)

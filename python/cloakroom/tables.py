@@ -13,9 +13,11 @@ import textwrap
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from . import _cloakroom
 from ._arrays import image_array, is_image_array
-from ._index import SPACING, index_array
+from ._index import SPACING, grid_array, index_array
 
 _SCHEMA: dict[str, Any] = json.loads(_cloakroom.schema())
 
@@ -96,13 +98,17 @@ class _Graded(Device):
                 kept.get(name, self._properties[name]["default"]) for name in ("width", "height", "inner")
             )
             keys["index"] = index_array(index, (width, height), inner, spacing)
+        for name, most in (("ratio", 3), ("optic_axis", 4)):
+            if keys.get(name) is not None:
+                keys[name] = grid_array(name, keys[name], most)
         super().__init__(**keys)
 
     def __repr__(self) -> str:
         words = {name: repr(value) for name, value in self._given.items()}
-        index = self._given.get("index")
-        if isinstance(index, list):
-            words["index"] = f"<{len(index)} x {len(index[0])} samples>"
+        for name in ("index", "ratio", "optic_axis"):
+            values = self._given.get(name)
+            if isinstance(values, list) and isinstance(values[0], list):
+                words[name] = f"<{' x '.join(map(str, np.shape(values)))} samples>"
         keys = ", ".join(f"{name}={word}" for name, word in words.items())
         return f"{type(self).__name__}({keys})"
 
@@ -152,8 +158,8 @@ def _key(name: str, description: Mapping[str, Any]) -> property:
 
 #: What `Graded` takes as its index, which is more than a scene file does.
 _INDEX = (
-    "The refractive index: an array (samples along x, samples along y) on a regular grid from border to border, of four "
-    "or more either way, copied; a function of arrays x and y (cm) that is asked for it at such a grid, at once; or a .npy "
+    "The refractive index: an array (samples along x, samples along y), or (along x, along y, along z) with a length, on "
+    "a regular grid from border to border, of four or more each way, copied; a function of arrays x and y (cm) that is asked for it at such a grid, at once; or a .npy "
     "file. Between the samples the square of the index is a bicubic spline. Within a core the function is asked for "
     "no more than 12 steps of the grid from its border."
 )

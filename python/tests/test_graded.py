@@ -94,11 +94,30 @@ def test_a_core_hides_the_pole_of_a_formula() -> None:
     assert np.abs(bare.position - [-4.4, 0, 0]).max() < 1e-12 and bare.direction[0, 0] == -1
 
 
+def test_a_crystal_in_space_is_a_body_of_it() -> None:
+    size, ratio = [12, 10, 8], 1.1
+    axis = np.broadcast_to([0.0, 0.6, 0.8], (4, 5, 6, 3))
+    grid = Graded(
+        index=np.full((4, 5, 6), 1.5), ratio=ratio, optic_axis=axis, width=size[0], height=size[1], length=size[2]
+    )
+    assert repr(grid).startswith("Graded(index=<4 x 5 x 6 samples>, ratio=1.1, optic_axis=<4 x 5 x 6 x 3 samples>")
+    words = {"ordinary": 1.5, "extraordinary": 1.5 * ratio, "optic_axis": [0, 0.6, 0.8]}
+    body = cloakroom.Body(shape="box", size=size, uniaxial=words)
+    found, expected = (
+        trace(Scene(devices=device, trace={"tolerance": 1e-10}), [-30, 1, 0.5], [1, 0.1, 0.05], min_power=1e-2)
+        for device in (grid, body)
+    )
+    assert found.position.shape == expected.position.shape
+    assert np.abs(np.sort(found.optical_path) - np.sort(expected.optical_path)).max() < 1e-8
+
+
 @pytest.mark.parametrize(
     ("keys", "error", "message"),
     [
         ({"index": np.ones(5)}, ValueError, "index has the shape (5,); expected real numbers of the shape"),
-        ({"index": np.ones((4, 4, 4))}, ValueError, "index has the shape (4, 4, 4)"),
+        ({"index": np.ones((4, 4, 4, 4))}, ValueError, "index has the shape (4, 4, 4, 4)"),
+        ({"ratio": np.ones((4, 4, 4, 4))}, ValueError, "ratio has the shape (4, 4, 4, 4)"),
+        ({"ratio": -1}, ValueError, "ratio is -1"),
         ({"index": np.ones((4, 4)) + 0j}, TypeError, "index is of the type complex128"),
         ({"index": [["a"]]}, TypeError, "index is of the type"),
         ({"index": [[1, 2], [3]]}, ValueError, "index is no array"),

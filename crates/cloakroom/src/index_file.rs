@@ -2,9 +2,9 @@
 
 use crate::device::{AnyDevice, Graded};
 use crate::input::{Digest, read_file};
-use crate::keys::{KeyError, Sampled, Samples, find};
+use crate::keys::{Key, KeyError, KeyKind, Sampled, Samples, find, shape_text};
 use cloakroom_trace::key;
-use ndarray::{ArrayView2, Axis};
+use ndarray::ArrayViewD;
 use ndarray_npy::{ViewElement, ViewNpyError, ViewNpyExt};
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -58,10 +58,13 @@ impl IndexFiles {
         Self { known: RefCell::new(known.to_vec()), are_all: true }
     }
 
-    /// That of a device, if it has one that can be read, or read once only; what is wrong with one is
-    /// told where the device is built.
-    pub(crate) fn of(&self, device: &AnyDevice) -> Option<Arc<IndexFile>> {
-        let path = path(device)?;
+    /// Those of a device that can be read, or read once only; what is wrong with one is told where
+    /// the device is built.
+    pub(crate) fn of(&self, device: &AnyDevice) -> Vec<Arc<IndexFile>> {
+        paths(device).into_iter().filter_map(|(_, path)| self.at(path)).collect()
+    }
+
+    fn at(&self, path: &Path) -> Option<Arc<IndexFile>> {
         let mut files = self.known.borrow_mut();
         if let Some(known) = files.iter().find(|file| file.is_at(path)) {
             return Some(Arc::clone(known));
@@ -82,51 +85,99 @@ impl IndexFiles {
     }
 }
 
-/// The file of a device's index.
-fn path(device: &AnyDevice) -> Option<&Path> {
-    let AnyDevice::Graded(graded) = device else { return None };
-    match &graded.index {
-        Some(Sampled::InFile(path)) => Some(path),
-        _ => None,
+/// The files of a device's index, ratio and axes, with the names of their keys.
+fn paths(device: &AnyDevice) -> Vec<(&'static str, &Path)> {
+    fn in_file<const LEAST: usize, const MOST: usize>(
+        sampled: Option<&Sampled<LEAST, MOST>>,
+    ) -> Option<&Path> {
+        match sampled {
+            Some(Sampled::InFile(path)) => Some(path),
+            _ => None,
+        }
     }
+    let AnyDevice::Graded(graded) = device else { return Vec::new() };
+    let files = [
+        (key!(Graded.index), in_file(graded.index.as_ref())),
+        (key!(Graded.ratio), in_file(graded.ratio.as_ref())),
+        (key!(Graded.optic_axis), in_file(graded.optic_axis.as_ref())),
+    ];
+    files.into_iter().filter_map(|(key, path)| Some((key, path?))).collect()
 }
 
-/// A device with the numbers in the place of the file that holds them; `known` may be that file.
+/// A device with the numbers in the place of the files that hold them, some of which may be known.
 ///
 /// # Errors
 ///
-/// If the file cannot be read, or a number in it is not allowed.
+/// If a file cannot be read, or a number in it is not allowed.
 pub(crate) fn with_files_read<'d>(
     device: &'d AnyDevice,
-    known: Option<&IndexFile>,
+    known: &[Arc<IndexFile>],
 ) -> Result<Cow<'d, AnyDevice>, KeyError> {
-    let (AnyDevice::Graded(graded), Some(path)) = (device, path(device)) else {
+    let paths = paths(device);
+    let AnyDevice::Graded(graded) = device else { return Ok(Cow::Borrowed(device)) };
+    if paths.is_empty() {
         return Ok(Cow::Borrowed(device));
-    };
-    let key = find(Graded::KEYS, key!(Graded.index))?;
+    }
+    let mut graded = graded.clone();
+    for (name, path) in paths {
+        let samples = samples_of(find(Graded::KEYS, name)?, path, known)?;
+        if name == key!(Graded.index) {
+            graded.index = Some(Sampled::Here(samples));
+        } else if name == key!(Graded.ratio) {
+            graded.ratio = Some(Sampled::Here(samples));
+        } else {
+            graded.optic_axis = Some(Sampled::Here(samples));
+        }
+    }
+    Ok(Cow::Owned(AnyDevice::Graded(graded)))
+}
+
+/// The numbers of a file, as its key allows them.
+fn samples_of(key: &Key, path: &Path, known: &[Arc<IndexFile>]) -> Result<Samples, KeyError> {
     let file = path.display();
-    let samples = match known.filter(|known| known.is_at(path)) {
+    let samples = match known.iter().find(|known| known.is_at(path)) {
         Some(known) => {
             known.content.as_ref().map(|known| known.samples.clone()).map_err(Clone::clone)
         }
         None => read(path).map(|content| content.samples),
     };
     let samples = samples.map_err(|message| KeyError::at(key.name, message))?;
-    if let Some(at) = samples.values().iter().position(|number| !key.limits.allow(*number)) {
-        let [row, column] = [at / samples.count()[1], at % samples.count()[1]];
+    if let KeyKind::Samples { dimensions: [least, most] } = key.kind {
+        let shape = samples.shape();
+        let words = [
+            "one number",
+            "one dimension",
+            "two dimensions",
+            "three dimensions",
+            "four dimensions",
+        ];
+        let word = |count: usize| words.get(count).copied().unwrap_or("more dimensions");
+        let expected = (least..=most).map(word).collect::<Vec<_>>().join(", or ");
         let message = format!(
-            "{}[{row}][{column}] is {} in {file}; it must be {}",
+            "the array in {file} is {}, of {}; {} must be of {expected}",
+            shape_text(shape),
+            word(shape.len()),
             key.name,
+        );
+        KeyError::refuse_if(!(least..=most).contains(&shape.len()), key.name, message)?;
+    }
+    if let Some(at) = samples.values().iter().position(|number| !key.limits.allow(*number)) {
+        let message = format!(
+            "{}{} is {} in {file}; it must be {}",
+            key.name,
+            samples.place(at),
             samples.values()[at],
             key.limits.describe()
         );
         return Err(KeyError::at(key.name, message));
     }
-    let index = Some(Sampled::Here(samples));
-    Ok(Cow::Owned(AnyDevice::Graded(Graded { index, ..graded.clone() })))
+    Ok(samples)
 }
 
-/// Reads a file of numpy with one array of two dimensions, of 64-bit or 32-bit floats.
+/// Most dimensions that the array of a file may have: vectors in space.
+const MOST_DIMENSIONS: usize = 4;
+
+/// Reads a file of numpy with one array of 64-bit or 32-bit floats.
 ///
 /// # Errors
 ///
@@ -134,22 +185,28 @@ pub(crate) fn with_files_read<'d>(
 fn read(path: &Path) -> Result<Content, String> {
     let failed = |reason: String| format!("cannot read {}: {reason}", path.display());
     let bytes = read_file(LONGEST, path).map_err(|error| failed(error.to_string()))?;
-    let rows = match rows::<f64>(&bytes) {
-        Err(ViewNpyError::WrongDescriptor(_)) => rows::<f32>(&bytes),
-        rows => rows,
+    let numbers = match numbers::<f64>(&bytes) {
+        Err(ViewNpyError::WrongDescriptor(_)) => numbers::<f32>(&bytes),
+        numbers => numbers,
     };
-    let rows = rows.map_err(|error| match error {
+    let (shape, values) = numbers.map_err(|error| match error {
         ViewNpyError::WrongDescriptor(_) => failed("its numbers are no floats".to_owned()),
-        error => failed(format!("it is no .npy file of an array of two dimensions: {error}")),
+        error => failed(format!("it is no .npy file of an array of numbers: {error}")),
     })?;
-    let samples = Samples::new(&rows).map_err(|error| failed(error.to_string()))?;
+    if shape.len() > MOST_DIMENSIONS {
+        let count = shape.len();
+        return Err(failed(format!("its array has {count} dimensions; it may have two to four")));
+    }
+    let samples = Samples::of(&shape, values).map_err(|error| failed(error.to_string()))?;
     Ok(Content { samples, digest: Digest::of(&bytes) })
 }
 
-fn rows<T: ViewElement + Copy + Into<f64>>(bytes: &[u8]) -> Result<Vec<Vec<f64>>, ViewNpyError> {
-    let array = ArrayView2::<T>::view_npy(bytes)?;
-    let row = |row: ndarray::ArrayView1<'_, T>| row.iter().map(|&number| number.into()).collect();
-    Ok(array.axis_iter(Axis(0)).map(row).collect())
+/// The shape and the numbers of an array, the last axis running fastest.
+fn numbers<T: ViewElement + Copy + Into<f64>>(
+    bytes: &[u8],
+) -> Result<(Vec<usize>, Vec<f64>), ViewNpyError> {
+    let array = ArrayViewD::<T>::view_npy(bytes)?;
+    Ok((array.shape().to_vec(), array.iter().map(|&number| number.into()).collect()))
 }
 
 #[cfg(test)]
@@ -192,7 +249,12 @@ mod tests {
         Array::from_elem(3, 1.0_f64)
             .write_npy(File::create(&path).expect("a file"))
             .expect("written");
-        refused("two dimensions");
+        let of_line = read(&path).expect("numbers").samples;
+        assert_eq!(of_line.shape(), [3]);
+        Array::from_elem((2, 1, 1, 1, 2), 1.0_f64)
+            .write_npy(File::create(&path).expect("a file"))
+            .expect("written");
+        refused("its array has 5 dimensions");
         // A header that promises more than memory holds.
         let header = format!(
             "{:<117}\n",
@@ -201,6 +263,6 @@ mod tests {
         let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
         bytes.extend(header.bytes());
         fs::write(&path, &bytes).expect("written");
-        refused("two dimensions");
+        refused("no .npy file of an array");
     }
 }

@@ -131,6 +131,8 @@ pub static EXHIBITS: &[Exhibit] = &[
         "any", "any", "this program"),
     exhibit!("graded" => "Device of one's own", "Any graded index: here a rod whose n² falls as a parabola",
         "independent", "any", "this program"),
+    exhibit!("graded-3d" => "Device of one's own", "Any graded index in space: here a ball whose n² falls as a parabola",
+        "independent", "omni", "this program"),
     exhibit!("graded-box" => "Graded box", "n² grows evenly along a direction: rays are parabolas",
         "independent", "any", "Born & Wolf, Principles of Optics, section 3.2"),
     exhibit!("crossed-cloaks" => "Free-space cloaks (iii) crosswise",

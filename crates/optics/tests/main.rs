@@ -14,5 +14,6 @@ mod long;
 mod paths;
 mod radial_flow;
 mod random_media;
+mod spatial_flow;
 mod square_cloak_faces;
 mod typed_tensors;

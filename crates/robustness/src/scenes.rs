@@ -73,9 +73,10 @@ fn device(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
 fn table(draws: &mut Draws<'_>, keys: &'static [Key], share: u8) -> Table {
     let mut table = Table::new();
     for key in keys {
-        let needed =
-            matches!(key.kind, KeyKind::Tables { .. } | KeyKind::Polygon | KeyKind::Samples)
-                && key.name != COATING;
+        let needed = matches!(
+            key.kind,
+            KeyKind::Tables { .. } | KeyKind::Polygon | KeyKind::Samples { dimensions: [2, _] }
+        ) && key.name != COATING;
         if needed || draws.chance(share) {
             table.insert(key.name.to_owned(), value(draws, key));
         }
@@ -151,7 +152,7 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
             _ => material(draws),
         },
         KeyKind::Polygon => polygon(draws),
-        KeyKind::Samples => samples(draws, limits),
+        KeyKind::Samples { dimensions } => samples(draws, limits, dimensions),
         KeyKind::Table { keys } => Value::Table(table(draws, keys, 128)),
         KeyKind::FlagOrTable { keys } => match draws.below(2) {
             0 => draws.chance(128).into(),
@@ -197,16 +198,30 @@ fn vector(draws: &mut Draws<'_>) -> Value {
 }
 
 /// Numbers on a grid, mostly near one another.
-fn samples(draws: &mut Draws<'_>, limits: ValueRange) -> Value {
-    let [rows, columns] = [0, 1].map(|_| if draws.chance(8) { 3 } else { 4 + draws.below(6) });
-    let mut row = || -> Value {
-        let number = |_| match draws.chance(1) {
+fn samples(draws: &mut Draws<'_>, limits: ValueRange, [least, most]: [usize; 2]) -> Value {
+    let dimensions = least + draws.below(most - least + 1);
+    let sides: Vec<usize> =
+        (0..dimensions)
+            .map(|_| {
+                if draws.chance(8) {
+                    3
+                } else {
+                    4 + draws.below(if dimensions > 2 { 2 } else { 6 })
+                }
+            })
+            .collect();
+    grid(draws, limits, &sides)
+}
+
+fn grid(draws: &mut Draws<'_>, limits: ValueRange, sides: &[usize]) -> Value {
+    let [side, rest @ ..] = sides else {
+        let number = match draws.chance(1) {
             true => draws.number(1.5, limits),
             false => draws.between(0.8, 1.6),
         };
-        (0..columns).map(number).map(Value::from).collect::<Vec<_>>().into()
+        return number.into();
     };
-    (0..rows).map(|_| row()).collect::<Vec<_>>().into()
+    (0..*side).map(|_| grid(draws, limits, rest)).collect::<Vec<_>>().into()
 }
 
 /// The devices of a scene that must be sound.

@@ -118,6 +118,14 @@ fn all_sorts() -> Vec<Sort> {
     });
     let index =
         format!("index = [{}]\nwidth = 10\nheight = 10", rows.collect::<Vec<_>>().join(", "));
+    let in_space = |number: &dyn Fn(i32, i32, i32) -> String| {
+        let list = |items: Vec<String>| format!("[{}]", items.join(", "));
+        let row = |i, j| list((0..4).map(|k| number(i, j, k)).collect());
+        list((0..4).map(|i| list((0..4).map(|j| row(i, j)).collect())).collect())
+    };
+    let numbers = in_space(&|i, j, k| format!("{:?}", 1.2 + 0.02 * f64::from(i * (3 - i) + j + k)));
+    let index_in_space = format!("index = {numbers}\nwidth = 10\nheight = 10");
+    let axes_in_space = in_space(&|i, j, k| format!("[1, {:?}, {j}]", 0.3 * f64::from(i - k)));
     let tensor = "permittivity = [[2.2, 0.1, 0], [0.1, 2.4, 0], [0, 0, 2.7]]";
     let lossy = "permittivity = [2.25, 1e-6]";
     let carpet = "width = 16\nheight = 8\nlength = 12\nfloor";
@@ -163,6 +171,17 @@ fn all_sorts() -> Vec<Sort> {
         ),
         ("graded", format!("{index}\nlength = 12"), Metal::None),
         ("graded", format!("{index}\nlength = 12\nshape = \"circle\"\ninner = 2"), rod),
+        ("graded", format!("{index_in_space}\nlength = 12\nshape = \"ball\""), Metal::None),
+        (
+            "graded",
+            format!("{index}\nlength = 12\nratio = 1.1\noptic_axis = [1, 2, 0.5]"),
+            Metal::None,
+        ),
+        (
+            "graded",
+            format!("{index_in_space}\nlength = 12\nratio = 0.9\noptic_axis = {axes_in_space}"),
+            Metal::None,
+        ),
         ("graded-box", "sides = [8, 10, 12]".into(), Metal::None),
         ("body", format!("shape = \"sphere\"\n{glass}"), Metal::None),
         ("body", format!("shape = \"box\"\n{tensor}"), Metal::None),

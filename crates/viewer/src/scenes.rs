@@ -58,7 +58,7 @@ impl Opened {
             known.extend([path, absolute]);
         }
         let devices = loaded.scene.devices.iter();
-        let index_files = devices.filter_map(|device| device.index_file.clone()).collect();
+        let index_files = devices.flat_map(|device| device.index_files.clone()).collect();
         let (name, folder) = (name.to_owned(), folder.to_owned());
         let material_files = loaded.scene.material_files.clone();
         Ok(Self { tables, name, folder, files: known, index_files, material_files })

@@ -341,7 +341,7 @@ impl<'s> PreparedScene<'s> {
         let coherence = interferes(scene, &assembly).then(|| coherence(scene));
         let limits = if coherence.is_some() { interference_limits(scene) } else { limits(scene) };
         let digest = |(key, path): (String, PathBuf)| {
-            let index_files = || scene.devices.iter().filter_map(|d| d.index_file.as_ref());
+            let index_files = || scene.devices.iter().flat_map(|device| &device.index_files);
             let of_index = || index_files().find_map(|file| file.digest_of(&path));
             let material = scene.material_files.iter().find(|file| file.is_at(&path));
             let of_material = || material.map(|file| file.digest);

@@ -69,9 +69,9 @@ pub struct DeviceSettings {
     pub placement: Placement,
     /// Which of many draws of its random imperfections it is: 0 in a scene.
     pub draw: u32,
-    /// The file of its index, where one has been read for it; another is read where the device is
-    /// built.
-    pub index_file: Option<Arc<IndexFile>>,
+    /// The files of its index, its ratio and its axes, where they have been read for it; others are
+    /// read where the device is built.
+    pub index_files: Vec<Arc<IndexFile>>,
     /// The wavelength of the scene's light in vacuum, nm.
     pub wavelength_nm: f64,
 }
@@ -313,7 +313,7 @@ impl DeviceSettings {
     pub fn new(entry: &Entry) -> Self {
         let (device, placement) = ((entry.device)(), Placement::default());
         let wavelength_nm = Request::DESIGN_WAVELENGTH_NM;
-        Self { device, placement, draw: 0, index_file: None, wavelength_nm }
+        Self { device, placement, draw: 0, index_files: Vec::new(), wavelength_nm }
     }
 
     fn request(&self, show: Show) -> Request {
@@ -322,7 +322,7 @@ impl DeviceSettings {
     }
 
     fn with_files_read(&self) -> Result<Cow<'_, AnyDevice>, KeyError> {
-        index_file::with_files_read(&self.device, self.index_file.as_deref())
+        index_file::with_files_read(&self.device, &self.index_files)
     }
 
     /// How it is turned, in words: "rotation 10 degrees".

@@ -127,8 +127,8 @@ impl LampSpectrum {
                 }
             }
             (None, [], Some(Sampled::Here(rows))) => {
-                let pairs: Vec<[f64; 2]> = match rows.count() {
-                    [count, 2] if count >= 2 => {
+                let pairs: Vec<[f64; 2]> = match rows.shape() {
+                    [count, 2] if *count >= 2 => {
                         rows.values().chunks_exact(2).map(|row| [row[0], row[1]]).collect()
                     }
                     _ => {

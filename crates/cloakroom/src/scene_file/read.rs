@@ -95,9 +95,9 @@ impl Reader<'_> {
         let place = format!(" in a {}", device.kind());
         let held = self.held(&lists, entries, &[KIND], path, &place)?;
         self.fill(&mut [device.table_mut(), &mut placement], &held, path)?;
-        let index_file = self.files.indices.of(&device);
+        let index_files = self.files.indices.of(&device);
         let wavelength_nm = Request::DESIGN_WAVELENGTH_NM;
-        let settings = DeviceSettings { device, placement, draw: 0, index_file, wavelength_nm };
+        let settings = DeviceSettings { device, placement, draw: 0, index_files, wavelength_nm };
         settings.pose().map_err(|error| self.locations.key_error(path, &error))?;
         Ok(settings)
     }

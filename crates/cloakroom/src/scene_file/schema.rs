@@ -106,10 +106,17 @@ fn property(key: &Key) -> Value {
             json!({ "anyOf": [material_name(), inner_table(keys)] })
         }
         KeyKind::Polygon => json!({ "type": "array", "items": list(number, 2), "minItems": 3 }),
-        KeyKind::Samples => {
-            let row = json!({ "type": "array", "items": number, "minItems": 1 });
-            let rows = json!({ "type": "array", "items": row, "minItems": 1 });
-            json!({ "anyOf": [{ "type": "string", "minLength": 1 }, rows] })
+        KeyKind::Samples { dimensions: [least, most] } => {
+            let list = |items: Value| json!({ "type": "array", "items": items, "minItems": 1 });
+            let mut forms = vec![json!({ "type": "string", "minLength": 1 })];
+            let mut nested = number;
+            for dimension in 0..=most {
+                if dimension >= least {
+                    forms.push(nested.clone());
+                }
+                nested = list(nested);
+            }
+            json!({ "anyOf": forms })
         }
         KeyKind::Table { keys } => inner_table(keys),
         KeyKind::FlagOrTable { keys } => {

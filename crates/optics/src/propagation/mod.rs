@@ -6,6 +6,9 @@ mod group_path;
 mod nystrom;
 mod radial;
 pub mod reference;
+mod runge_kutta;
+mod space_spline;
+mod spatial_flow;
 mod spline;
 
 pub use closed_form::{ClosedForm, CurvedRay, SquaredIndex, first_way_out, follow};
@@ -17,7 +20,10 @@ pub use radial::{
     Border, CentralLens, OpticAxis, RadialFlow, TransformedShell, TransmutedSphere,
     UniaxialCylinder,
 };
-
+pub use space_spline::{Look, SpaceSpline};
+pub use spatial_flow::{
+    Anisotropy, AxisField, Extraordinary, SpatialBorder, SpatialFlow, SpatialMedium, SpatialRay,
+};
 pub use spline::{GridSpline, GridSplineError};
 
 use glam::{DMat3, DVec3};

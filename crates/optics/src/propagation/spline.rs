@@ -25,6 +25,15 @@ pub enum GridSplineError {
         /// How many along x and y.
         count: [usize; 2],
     },
+    /// There are too few samples in space.
+    #[error(
+        "a grid of {} x {} x {} samples is too small; it must have {LEAST} along each side",
+        count[0], count[1], count[2]
+    )]
+    TooFewInSpace {
+        /// How many along x, y and z.
+        count: [usize; 3],
+    },
     /// Samples are missing, or too many.
     #[error("a grid of {} x {} has {samples} samples", count[0], count[1])]
     Count {
@@ -41,7 +50,7 @@ pub enum GridSplineError {
 }
 
 /// The least number of samples along a side.
-const LEAST: usize = 4;
+pub(super) const LEAST: usize = 4;
 
 impl GridSpline {
     /// The spline through `samples`, those along x side by side, `count` along x and y: the first
@@ -145,13 +154,13 @@ impl GridSpline {
 }
 
 /// Bernstein's coefficients of a piece of a cubic spline from those of its basis functions.
-fn bernstein([a, b, c, d]: [f64; 4]) -> [f64; 4] {
+pub(super) fn bernstein([a, b, c, d]: [f64; 4]) -> [f64; 4] {
     [(a + 4.0 * b + c) / 6.0, (2.0 * b + c) / 3.0, (b + 2.0 * c) / 3.0, (b + 4.0 * c + d) / 6.0]
 }
 
 /// The four basis functions of a cell at a place in it, 0 to 1, and their derivatives.
 #[inline]
-fn basis(t: f64) -> ([f64; 4], [f64; 4]) {
+pub(super) fn basis(t: f64) -> ([f64; 4], [f64; 4]) {
     let s = 1.0 - t;
     let (tt, ss) = (t * t, s * s);
     let values = [
@@ -167,7 +176,7 @@ fn basis(t: f64) -> ([f64; 4], [f64; 4]) {
 /// The coefficients of the spline in one dimension through samples, of which there are two fewer:
 /// with f the samples, (c[i] + 4 c[i+1] + c[i+2])/6 = f[i], and the fourth differences at both ends
 /// are zero, which gives the coefficients at the second samples from the ends at once.
-fn coefficients(samples: impl Iterator<Item = f64>, c: &mut [f64], factors: &mut [f64]) {
+pub(super) fn coefficients(samples: impl Iterator<Item = f64>, c: &mut [f64], factors: &mut [f64]) {
     let m = c.len();
     for (place, sample) in c[1..m - 1].iter_mut().zip(samples) {
         *place = sample;

@@ -52,7 +52,10 @@ impl Interfaces {
                 };
                 region.faces().iter().map(exit).collect()
             }
-            Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) => Vec::new(),
+            Region::Conformal(_)
+            | Region::Radial(_)
+            | Region::ClosedForm(_)
+            | Region::Spatial(_) => Vec::new(),
         };
         Self {
             surfaces: structure.surfaces.iter().map(entrance).collect(),

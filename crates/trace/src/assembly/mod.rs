@@ -129,7 +129,7 @@ impl Assembly {
         let absorbs = |region: &Region| match region {
             Region::Homogeneous(region) => region.medium.absorbs(),
             Region::Conformal(region) => region.loss_tangent > 0.0,
-            Region::Radial(_) | Region::ClosedForm(_) => false,
+            Region::Radial(_) | Region::ClosedForm(_) | Region::Spatial(_) => false,
         };
         self.devices.iter().any(|Placed { structure, .. }| {
             structure.regions.iter().any(absorbs)
@@ -142,7 +142,7 @@ impl Assembly {
     #[must_use]
     pub fn is_graded(&self) -> bool {
         let structures = self.devices.iter().map(|device| &device.structure);
-        structures.flat_map(|structure| &structure.regions).any(Region::takes_four)
+        structures.flat_map(|structure| &structure.regions).any(Region::is_integrated)
     }
 
     /// The devices, in the order of the scene.

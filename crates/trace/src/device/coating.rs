@@ -178,6 +178,7 @@ impl Structure {
                 Region::Conformal(region) => &mut region.coating,
                 Region::Radial(region) => &mut region.coating,
                 Region::ClosedForm(region) => &mut region.coating,
+                Region::Spatial(region) => &mut region.coating,
             };
             *coating = outward;
         }
@@ -218,7 +219,7 @@ impl Structure {
                 }
                 // A whole ball has no core that light could come to.
                 Region::Radial(region) if region.flow.radii()[0] > 0.0 => change(&mut region.inner),
-                Region::Radial(_) | Region::ClosedForm(_) => {}
+                Region::Radial(_) | Region::ClosedForm(_) | Region::Spatial(_) => {}
             }
         }
         (self, found)

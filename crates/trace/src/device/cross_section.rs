@@ -146,6 +146,9 @@ impl Region {
             Self::ClosedForm(region) => {
                 vec![Edge { points: region.border.convex().around(), far: FarSide::Outside }]
             }
+            Self::Spatial(region) => {
+                vec![Edge { points: region.shape.around(), far: FarSide::Outside }]
+            }
         }
     }
 

@@ -1,9 +1,11 @@
-//! A graded index of one's own: an isotropic index given on a grid over a rectangle or a disc,
-//! endless along z or cut, with or without a round metal core.
+//! A graded medium of one's own: an index given on a grid, in the plane or in space, isotropic or
+//! of two waves, the optic axis being given on the grid, too.
 //!
-//! Between the samples the square of the index is a bicubic spline, whose second derivatives are
-//! continuous; rays are followed through that, to the tolerance. At the border the index steps to
-//! that of air, with refraction and Fresnel reflection.
+//! Between the samples the square of the index is a bicubic or tricubic spline, whose second
+//! derivatives are continuous; rays are followed through that, to the tolerance. At the border the
+//! index steps to that of air, with refraction and Fresnel reflection.
+
+mod grid;
 
 use super::round::{self, metal_cylinder, pierced, upright};
 use super::{
@@ -20,23 +22,38 @@ use std::f64::consts::PI;
 crate::choice! {
     /// The border of a [`Graded`] device.
     pub enum GradedShape {
-        /// The rectangle of the grid.
+        /// The rectangle of the grid, or its box.
         Rectangle = "rectangle",
-        /// The largest circle about the middle of the grid.
+        /// The largest circle about the middle of the grid, across z.
         Circle = "circle",
+        /// The largest ball about the middle of a grid in space.
+        Ball = "ball",
     }
 }
 
 crate::table! {
-    /// A device of one's own: any isotropic graded index, given on a grid over a rectangle or a
-    /// disc and the same along z, around a metal cylinder or without one.
+    /// A device of one's own: any graded index, given on a grid over a rectangle or a disc and the
+    /// same along z, around a metal cylinder or without one; or on a grid in space, over a box, a
+    /// round cylinder or a ball. With a ratio of indices and optic axes the medium is uniaxial.
     pub struct Graded {
         /// The refractive index on a regular grid from border to border: rows of numbers, one row
         /// for each x from the least to the largest, in it one number for each y; four at least
-        /// either way. Or the name of a .npy file, relative to the scene file. Between them the
-        /// square of the index is a bicubic spline.
-        index: Option<Sampled>, in ValueRange::Between(0.0, 1000.0),
-        /// The border: the rectangle of the grid, or the largest circle about the middle of it.
+        /// either way. In space, in the place of each number a list of them, one for each z; the
+        /// device's length is that of the grid then. Or the name of a .npy file, relative to the
+        /// scene file. Between them the square of the index is a cubic spline along each axis. In
+        /// a uniaxial medium it is the index of the ordinary wave.
+        index: Option<Sampled<2, 3>>, in ValueRange::Between(0.0, 1000.0),
+        /// The index of fields along the optic axis over that of fields across it, which makes the
+        /// medium uniaxial: one number, or one for each of index, or the name of a .npy file. The
+        /// square of its product with the index is the spline then.
+        ratio: Option<Sampled<0, 3>>, in ValueRange::Within(0.01, 100.0),
+        /// The optic axis where there is a ratio, in the device's frame: one direction [x, y, z] or
+        /// one angle from x towards y, degrees; or a direction or an angle for each number of index;
+        /// or the name of a .npy file. Between them the vectors of length 1 are a cubic spline along
+        /// each axis, of which the direction counts, and not the sense.
+        optic_axis: Option<Sampled<0, 4>>, in ValueRange::Within(-1e6, 1e6),
+        /// The border: the rectangle or the box of the grid, the largest circle about the middle of
+        /// it, or the largest ball.
         shape: GradedShape,
         /// Size of the grid along x, from its first sample to its last.
         width: f64 = 40.0, "cm", in ValueRange::LENGTH,
@@ -70,6 +87,10 @@ impl Plan {
     fn new(device: &Graded) -> Result<Self, KeyError> {
         let half = 0.5 * DVec2::new(device.width, device.height);
         let nearest = half.min_element();
+        let ball = device.shape == GradedShape::Ball;
+        let message = "shape is \"ball\"; a ball takes an index of three dimensions, as does a list of \
+                       numbers in the place of each";
+        KeyError::refuse_if(ball, key!(Graded.shape), message)?;
         let rim = (device.shape == GradedShape::Circle).then_some(nearest);
         let inner = device.inner;
         let most = (1.0 - THINNEST) * nearest;
@@ -152,25 +173,47 @@ fn upright_box(
     outline.sides().map(wall).chain(ends).collect()
 }
 
+/// The numbers of a key, which a file has been put in the place of.
+fn here<'d, const LEAST: usize, const MOST: usize>(
+    sampled: Option<&'d Sampled<LEAST, MOST>>,
+    key: &'static str,
+) -> Result<Option<&'d Samples>, KeyError> {
+    match sampled {
+        None => Ok(None),
+        Some(Sampled::Here(samples)) => Ok(Some(samples)),
+        Some(Sampled::InFile(file)) => Err(KeyError::at(
+            key,
+            format!("{} has not been read; a device takes the numbers", file.display()),
+        )),
+    }
+}
+
 impl Graded {
     fn samples(&self) -> Result<&Samples, KeyError> {
-        match &self.index {
-            Some(Sampled::Here(samples)) => Ok(samples),
-            Some(Sampled::InFile(file)) => Err(KeyError::at(
-                key!(Self.index),
-                format!("{} has not been read; a device takes the numbers", file.display()),
-            )),
-            None => {
-                let message = "there is no `index`: rows of numbers, or the name of a .npy file";
-                Err(KeyError::general(message))
-            }
-        }
+        here(self.index.as_ref(), key!(Self.index))?.ok_or_else(|| {
+            let message = "there is no `index`: rows of numbers, or the name of a .npy file";
+            KeyError::general(message)
+        })
     }
+
+    /// Whether it is more than an isotropic index in the plane.
+    fn is_spatial(&self) -> bool {
+        let in_space =
+            matches!(&self.index, Some(Sampled::Here(samples)) if samples.shape().len() == 3);
+        in_space || self.ratio.is_some() || self.optic_axis.is_some()
+    }
+}
+
+/// How many samples there are along x and y.
+fn in_plane(samples: &Samples) -> [usize; 2] {
+    let [nx, ny] = samples.shape() else { return [0; 2] };
+    [*nx, *ny]
 }
 
 /// The square of the index.
 fn square(plan: &Plan, samples: &Samples) -> Result<GridSpline, KeyError> {
-    let [nx, ny] = samples.count();
+    let [nx, ny] = in_plane(samples);
+    grid::not_too_many(samples)?;
     let [corner, spacing] = plan.grid([nx, ny]);
     // Along x side by side.
     let along_x = (0..ny).flat_map(|j| (0..nx).map(move |i| samples.values()[i * ny + j].powi(2)));
@@ -183,6 +226,9 @@ impl Device for Graded {
     const TITLE: &'static str = "Graded index of one's own";
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
+        if self.is_spatial() {
+            return grid::structure(self, request);
+        }
         let plan = Plan::new(self)?;
         let extent = Extent::centred(request.length);
         let message = "there is no core to open; `inner` is its radius";
@@ -204,15 +250,18 @@ impl Device for Graded {
         }
     }
 
-    fn facts(&self, _: Request) -> Vec<Fact> {
+    fn facts(&self, request: Request) -> Vec<Fact> {
+        if self.is_spatial() {
+            return grid::facts(self, request);
+        }
         let Ok(plan) = Plan::new(self) else { return Vec::new() };
         let mut facts = vec![Fact::number("medium_area_cm2", plan.area())];
         if plan.core.is_some() {
             facts.push(Fact::number("cloaked_area_cm2", plan.core_area()));
         }
         if let Ok(samples) = self.samples() {
-            let [_, ny] = samples.count();
-            let [corner, spacing] = plan.grid(samples.count());
+            let count @ [_, ny] = in_plane(samples);
+            let [corner, spacing] = plan.grid(count);
             let place = |k: usize| corner + spacing * DVec2::new((k / ny) as f64, (k % ny) as f64);
             let within = samples.values().iter().enumerate().filter(|(k, _)| plan.holds(place(*k)));
             let start = (f64::INFINITY, 0.0_f64);

@@ -59,6 +59,7 @@ impl Region {
                 point.dot(outward) >= region.flow.radii()[0]
             }
             Self::ClosedForm(region) => region.holds(point),
+            Self::Spatial(region) => region.holds(point),
         };
         let mut graded = None;
         let (virtual_point, medium) = within.then(|| self.enter(point, &mut graded))??;

@@ -41,6 +41,7 @@ mod prisms;
 mod quasi_conformal_carpet;
 mod region;
 mod round;
+mod spatial;
 mod sphere_cloak;
 mod square_cloak;
 mod structure;
@@ -67,6 +68,7 @@ pub use region::{
     ConformalRegion, Face, HomogeneousRegion, InnerRay, NoPassage, Passage, RadialRegion, Region,
     RegionBorder,
 };
+pub use spatial::SpatialRegion;
 pub use square_cloak::SegmentMaterial;
 pub use structure::{Body, Coating, FarSide, Hull, Structure, SurfaceHit};
 pub use surface::{Part, Shape, Surface};

@@ -1,6 +1,8 @@
 //! Regions of a device, each filled with one medium.
 
-use super::{ClosedFormRegion, Coating, Convex, Dispersion, DispersiveTensors, FarSide};
+use super::{
+    ClosedFormRegion, Coating, Convex, Dispersion, DispersiveTensors, FarSide, SpatialRegion,
+};
 use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::{Lens, Plane};
 use optics::medium::{Medium, ModeKind};
@@ -25,6 +27,8 @@ pub enum Region {
     Radial(RadialRegion),
     /// A convex region of a graded medium whose rays are known in closed form.
     ClosedForm(ClosedFormRegion),
+    /// A convex region of a medium that is given on a grid in space.
+    Spatial(SpatialRegion),
 }
 
 /// A radially symmetric medium about the origin or the z axis.
@@ -170,7 +174,7 @@ impl Region {
         local: &'m mut Option<Medium>,
     ) -> Option<(Option<VirtualPoint>, &'m Medium)> {
         let virtual_point = match self {
-            Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) => None,
+            Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) | Self::Spatial(_) => None,
             Self::Conformal(region) => Some(region.flow.virtual_point(region.half, position).ok()?),
         };
         Some((virtual_point, self.medium(position, virtual_point.as_ref(), local)?))
@@ -195,6 +199,7 @@ impl Region {
             }
             Self::Radial(region) => region.flow.medium(position),
             Self::ClosedForm(region) => Some(region.medium(position)),
+            Self::Spatial(region) => region.flow.medium().at(position),
         };
         local.as_ref()
     }
@@ -244,16 +249,24 @@ impl Region {
                 region.flow.causal_group_path(position, wave_vector, mode, tolerance)
             }
             Self::ClosedForm(region) => region.causal_group_path(ray, tolerance),
+            Self::Spatial(region) => region.causal_group_path(ray, tolerance),
         }
     }
 
     /// Where the waves of the medium start as one and then part: their electric fields, of unit
-    /// power.
+    /// power. None where the ray is one of them already.
     #[must_use]
-    pub fn parted(&self, position: DVec3, wave_vector: DVec3) -> Option<[(ModeKind, DVec3); 2]> {
+    pub fn parted(&self, ray: &InnerRay) -> Option<[(ModeKind, DVec3); 2]> {
+        let InnerRay { position, wave_vector, mode, .. } = *ray;
         match self {
             Self::Homogeneous(_) | Self::Conformal(_) | Self::ClosedForm(_) => None,
-            Self::Radial(region) => region.flow.parted(position, wave_vector),
+            Self::Radial(region) => {
+                (mode == ModeKind::Shared).then(|| region.flow.parted(position, wave_vector))?
+            }
+            Self::Spatial(region) => {
+                let one_of_two = matches!(mode, ModeKind::Ordinary | ModeKind::Extraordinary);
+                (!one_of_two).then(|| region.flow.parted(position, wave_vector))?
+            }
         }
     }
 
@@ -273,6 +286,7 @@ impl Region {
             }
             Self::Radial(region) => region.advance(ray),
             Self::ClosedForm(region) => region.advance(ray),
+            Self::Spatial(region) => return region.advance(ray, tolerance),
         };
         passage.ok_or(NoPassage::Lost)
     }
@@ -286,7 +300,7 @@ impl Region {
         tolerance: f64,
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
         match self {
-            Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) => {
+            Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) | Self::Spatial(_) => {
                 rays.map(|ray| ray.map(|ray| self.advance(&ray, tolerance)))
             }
             Self::Conformal(region) => region.advance_four(rays, tolerance),
@@ -297,6 +311,12 @@ impl Region {
     #[must_use]
     pub fn takes_four(&self) -> bool {
         matches!(self, Self::Conformal(_))
+    }
+
+    /// Whether rays are followed step by step through it.
+    #[must_use]
+    pub fn is_integrated(&self) -> bool {
+        matches!(self, Self::Conformal(_) | Self::Spatial(_))
     }
 
     /// Whether rays run straight through it.
@@ -310,7 +330,9 @@ impl Region {
     pub fn medium_class(&self) -> &'static str {
         match self {
             Self::Homogeneous(region) => region.medium.class_name(),
-            Self::Conformal(_) | Self::Radial(_) | Self::ClosedForm(_) => "graded",
+            Self::Conformal(_) | Self::Radial(_) | Self::ClosedForm(_) | Self::Spatial(_) => {
+                "graded"
+            }
         }
     }
 
@@ -335,6 +357,7 @@ impl Region {
                 region.flow.path(ray.position, ray.wave_vector, ray.mode, PIECES)
             }
             Self::ClosedForm(region) => region.path(ray, PIECES),
+            Self::Spatial(region) => region.path(ray, tolerance).unwrap_or_else(ends),
         }
     }
 }

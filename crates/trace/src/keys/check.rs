@@ -2,6 +2,7 @@
 
 use super::field::is_material_file;
 use super::nearest::{hint, nearest};
+use super::samples::place_text;
 use super::value::{Value, items_of, number_text, quoted};
 use super::{BUILT_IN_IMAGES, BUILT_IN_PREFIX, Key, KeyKind, Samples, ValueRange, find, tensor};
 use glam::DVec3;
@@ -72,7 +73,13 @@ impl Key {
                 )
             }
             KeyKind::Polygon => format!("three or more corners [x, y]{unit}"),
-            KeyKind::Samples => "rows of numbers, or the name of a file".to_owned(),
+            KeyKind::Samples { dimensions } => match dimensions {
+                [2, 2] => "rows of numbers, or the name of a file",
+                [2, _] => "rows of numbers, a list of such rows for each x, or the name of a file",
+                [_, 3] => "a number, or as many as the grid has, or the name of a file",
+                _ => "an angle or [x, y, z], or as many of either as the grid has, or the name of a file",
+            }
+            .to_owned(),
             KeyKind::Table { keys } => format!("a table with {}", key_names(keys)),
             KeyKind::FlagOrTable { keys } => {
                 format!("true, false or a table with {}", key_names(keys))
@@ -123,16 +130,16 @@ impl Key {
                 }
                 integers.into()
             }
-            KeyKind::Image | KeyKind::Samples if *value == Value::from("") => {
+            KeyKind::Image | KeyKind::Samples { .. } if *value == Value::from("") => {
                 return Err(format!("{} is empty", self.name));
             }
             KeyKind::Image => {
                 check_image_name(self.of_type(value, value.as_text())?)?;
                 value.clone()
             }
-            KeyKind::Samples => {
+            KeyKind::Samples { dimensions } => {
                 if !matches!(value, Value::Text(_)) {
-                    self.samples(value)?;
+                    self.samples(value, dimensions)?;
                 }
                 value.clone()
             }
@@ -230,21 +237,21 @@ impl Key {
         items.iter().map(corner).collect::<Result<_, _>>().map(Value::List)
     }
 
-    fn samples(&self, value: &Value) -> Result<Samples, String> {
-        let rows = self.of_type(value, value.as_list())?;
-        let number = |at: [usize; 2], item: &Value| -> Result<f64, String> {
-            let name = format!("{}[{}][{}]", self.name, at[0], at[1]);
-            let number =
-                item.as_number().ok_or_else(|| format!("{name} is {item}; it must be a number"))?;
-            self.limit(&name, number)?;
-            Ok(number)
-        };
-        let row = |(i, row): (usize, &Value)| -> Result<Vec<f64>, String> {
-            let items = self.of_type(value, row.as_list())?;
-            items.iter().enumerate().map(|(j, item)| number([i, j], item)).collect()
-        };
-        let rows: Vec<Vec<f64>> = rows.iter().enumerate().map(row).collect::<Result<_, _>>()?;
-        Samples::new(&rows).map_err(|error| format!("{} is no grid: {error}", self.name))
+    fn samples(&self, value: &Value, dimensions: [usize; 2]) -> Result<Samples, String> {
+        let mut refused = None;
+        let gathered = Samples::gather(value, dimensions, |at, item| {
+            let name = format!("{}{}", self.name, place_text(at));
+            let number = match item.as_number() {
+                Some(number) => self.limit(&name, number).map(|()| number),
+                None => Err(format!("{name} is {item}; it must be a number")),
+            };
+            number.inspect_err(|message| refused = Some(message.clone()))
+        });
+        match (gathered, refused) {
+            (_, Some(message)) => Err(message),
+            (Err(error), None) => Err(format!("{} is no grid: {error}", self.name)),
+            (Ok(samples), None) => self.of_type(value, samples),
+        }
     }
 
     /// The entries that are given, in the order of the keys.

@@ -85,9 +85,9 @@ impl<T> From<T> for Given<T> {
     }
 }
 
-/// Numbers on a grid, or where they are.
+/// Numbers on a grid of so many dimensions at least and at most, or where they are.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Sampled {
+pub enum Sampled<const LEAST: usize = 2, const MOST: usize = 2> {
     /// The numbers.
     Here(Samples),
     /// The name of a file that holds them.
@@ -259,13 +259,16 @@ impl Field for MaterialName {
     }
 }
 
-impl Field for Sampled {
-    const KIND: KeyKind = KeyKind::Samples;
+impl<const LEAST: usize, const MOST: usize> Field for Sampled<LEAST, MOST> {
+    const KIND: KeyKind = KeyKind::Samples { dimensions: [LEAST, MOST] };
 
     fn from_value(value: &Value) -> Option<Self> {
         match value {
             Value::Text(file) => Some(Self::InFile(file.into())),
-            _ => Samples::from_value(value).map(Self::Here),
+            _ => {
+                let number = |_: &[usize], item: &Value| item.as_number().ok_or_else(String::new);
+                Samples::gather(value, [LEAST, MOST], number).ok()?.map(Self::Here)
+            }
         }
     }
 

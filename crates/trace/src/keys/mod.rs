@@ -18,7 +18,7 @@ mod value;
 pub use error::KeyError;
 pub use field::{Direction, Field, Given, Item, MaterialName, NamedFile, Sampled, VisitFile};
 pub use nearest::{hint, nearest, unknown};
-pub use samples::Samples;
+pub use samples::{Samples, shape_text};
 pub use table::{Table, find, has, joined};
 pub use value::{Value, number_text, quoted, vector_text};
 
@@ -104,7 +104,11 @@ pub enum KeyKind {
     Polygon,
     /// Numbers on a grid: rows of numbers, or the name of a file that holds them. A scene file's
     /// reader makes names of files relative to its folder.
-    Samples,
+    Samples {
+        /// The least and the largest dimension of the grid: 0 for one number, 2 for rows, 3 for lists
+        /// of rows.
+        dimensions: [usize; 2],
+    },
     /// A table with keys of its own.
     Table {
         /// Its keys.

@@ -11,7 +11,7 @@ use optics::interface::{
     Backing, Film, FilmLayer, OutgoingWave, OutgoingWaves, Reflectionless, Side,
     reflect_at_conductor, split_coated, split_down_to, transmit_antireflection,
 };
-use optics::medium::{Medium, ModeKind};
+use optics::medium::Medium;
 use optics::propagation::PathPoint;
 use optics::wave::ComplexVector;
 
@@ -187,10 +187,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
 
     /// Whether a branch in a region starts as several waves that then part: each goes on alone.
     pub(super) fn parts(&mut self, branch: &Branch<N>, region: &Region) -> bool {
-        if branch.mode != ModeKind::Shared {
-            return false;
-        }
-        let parted = region.parted(branch.position, branch.wave_vector);
+        let parted = region.parted(&branch.inner_ray());
         let Some([(a, in_a), (b, in_b)]) = parted else { return false };
         for part in [branch.part(a, in_a, in_b), branch.part(b, in_b, in_a)] {
             if self.recorder.went_on(branch.path, part.path, largest(&part.power)) {

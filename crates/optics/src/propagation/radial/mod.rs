@@ -10,7 +10,7 @@ mod lens;
 mod transformed_shell;
 mod transmuted_sphere;
 mod uniaxial_cylinder;
-mod uniaxial_wave;
+pub(super) mod uniaxial_wave;
 
 pub use lens::CentralLens;
 pub use transformed_shell::TransformedShell;

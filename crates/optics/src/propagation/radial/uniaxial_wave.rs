@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 
 /// A uniaxial dielectric at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct UniaxialPoint {
+pub(in crate::propagation) struct UniaxialPoint {
     pub ordinary: f64,
     pub extraordinary: f64,
     pub axis: DVec3,
@@ -46,7 +46,7 @@ impl UniaxialPoint {
 }
 
 /// What takes the field of a wave along its path, given its fields of unit power at both ends.
-pub(super) fn transport(before: DVec3, after: DVec3) -> DMat3 {
+pub(in crate::propagation) fn transport(before: DVec3, after: DVec3) -> DMat3 {
     let dual = before / before.length_squared();
     DMat3::from_cols(after * dual.x, after * dual.y, after * dual.z)
 }

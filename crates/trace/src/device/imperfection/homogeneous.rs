@@ -19,7 +19,9 @@ pub(super) fn apply(
     let regions = structure.regions.iter_mut().zip(groups);
     let media = regions.filter_map(|(region, group)| match region {
         Region::Homogeneous(region) => Some((group, &mut region.medium)),
-        Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) => None,
+        Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) | Region::Spatial(_) => {
+            None
+        }
     });
     let mut media: Vec<(u64, &mut Medium)> = media.collect();
     let values = media.iter().flat_map(|(_, medium)| {

@@ -76,6 +76,11 @@ impl Imperfection {
             match region {
                 Region::Homogeneous(_) => {}
                 Region::Conformal(region) => graded::apply(self, &deviates, region)?,
+                Region::Spatial(_) => {
+                    let message =
+                        "this medium is given on a grid; what is made of it is to be given so, too";
+                    return Err(KeyError::at(TABLE, message));
+                }
                 Region::Radial(_) | Region::ClosedForm(_) => {
                     let message = "this graded medium is followed in closed form, for its ideal index only; \
                                    homogeneous and conformal ones can be imperfect";
