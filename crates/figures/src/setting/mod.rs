@@ -150,14 +150,18 @@ impl<'s> Devices<'s> {
     }
 
     /// Draws devices from back to front, and where it says so in detail: with the axes of their
-    /// media and, before everything else so that they can be read, their dimensions.
+    /// media and, before everything else so that they can be read, their dimensions, where there is room
+    /// between them.
     fn draw_measured(&self, drawing: &mut Drawing, view: &View, shown: &[(&Subject<'_>, bool)]) {
         self.draw_shapes(drawing, view, shown);
         for (place, (subject, _)) in shown.iter().enumerate().filter(|(_, (_, detail))| *detail) {
             let is_inner = |(other, (around, _)): (usize, &(&Subject<'_>, bool))| {
                 other != place && subject.is_within(around, other > place)
             };
-            if !shown.iter().enumerate().any(is_inner) {
+            let crowds = |(other, _): &(&Subject<'_>, bool)| {
+                !std::ptr::eq(*other, *subject) && subject.is_crowded_by(other, view)
+            };
+            if !shown.iter().enumerate().any(is_inner) && !shown.iter().any(crowds) {
                 Sketch { drawing, view, subject }.draw_dimensions();
             }
         }

@@ -122,8 +122,10 @@ impl Stage {
             stations.push((subject.origin().x, centre.y));
         }
         stations.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Those that stand close together are one station.
+        let on_sheet = |x: f64| view.place(DVec2::new(x, 0.0)).x;
         stations.dedup_by(|a, b| {
-            let same = (a.0 - b.0).abs() < 1e-9;
+            let same = (on_sheet(a.0) - on_sheet(b.0)).abs() < 0.8 * TEXT;
             b.1 = if same { b.1.max(a.1) } else { b.1 };
             same
         });

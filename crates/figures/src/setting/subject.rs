@@ -1,5 +1,6 @@
 //! The devices of a scene, ready to be drawn.
 
+use super::TEXT;
 use super::view::View;
 use cloakroom::assembly::Assembly;
 use cloakroom::device::{Contour, CrossSection, REACH, Section};
@@ -79,6 +80,22 @@ impl<'s> Subject<'s> {
             && (or_alike || !alike)
             && from.cmple(low).all()
             && high.cmple(to).all()
+    }
+
+    /// Whether another device leaves no room on the sheet for its dimensions: it is beside it or reaches into it,
+    /// and is not within it or around it.
+    pub fn is_crowded_by(&self, other: &Self, view: &View) -> bool {
+        let (Some(own), Some(others)) = (self.bounds(), other.bounds()) else { return false };
+        let holds = |[low, high]: [DVec2; 2], [from, to]: [DVec2; 2]| {
+            low.cmple(from).all() && to.cmple(high).all()
+        };
+        let on_sheet = |ends: [DVec2; 2]| bounds(ends.map(|end| view.place(end)));
+        let (Some([low, high]), Some([from, to])) = (on_sheet(own), on_sheet(others)) else {
+            return false;
+        };
+        let room = DVec2::splat(1.5 * TEXT);
+        let is_near = (low - room).cmplt(to).all() && from.cmplt(high + room).all();
+        is_near && !holds(own, others) && !holds(others, own)
     }
 
     /// Whether a point of the scene's xy-plane lies within its outline.

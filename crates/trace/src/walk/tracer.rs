@@ -80,7 +80,7 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     most_events: u32,
     /// When the branch of that time is looked at.
     next_look: u32,
-    /// What it was like the last time, and how many others waited.
+    /// What it was like the last time, if it is the same branch, and how many others waited.
     looked_at: Option<(Branch<N>, usize)>,
     /// Of the branches that wait, how many are in a heap, the strongest first; `None` where the last
     /// is taken.
@@ -312,7 +312,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         }
     }
 
-    /// Whether a branch is where the one was that was looked at before, with as much power.
+    /// Whether a branch is where it was when it was looked at before, with as much power.
     #[cold]
     fn runs_in_place(&mut self, branch: &Branch<N>) -> bool {
         self.next_look = self.events + EVENTS_PER_LOOK;
@@ -386,6 +386,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// together with it. None if none waits.
     #[inline(always)]
     fn take_next(&mut self, branch: &mut Branch<N>) -> Option<()> {
+        self.looked_at = None;
         if let Some(coherence) = self.joining {
             return self.take_joined(branch, coherence);
         }

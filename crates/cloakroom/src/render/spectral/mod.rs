@@ -40,7 +40,7 @@ const MEDIA_TOLERANCE: f64 = 1e-4;
 const MOST_LINES: usize = 8;
 
 /// How far the light of a group of wavelengths may be drawn out, in pixels.
-const MOST_DRAWN_OUT: f64 = 1.0;
+const MOST_DRAWN_OUT: f64 = 1.25;
 
 /// A box of light has the coherence of a Gaussian line of this share of its width.
 const BOX_TO_GAUSSIAN: f64 = 0.68;

@@ -64,7 +64,7 @@ fn unknown_words_are_answered_with_known_ones() {
         ),
         (
             "[light]\ncolor = 5",
-            "2:1: unknown key `color` in [light]; known keys: wavelength_nm, bandwidth_nm",
+            "2:1: unknown key `color` in [light]; known keys: wavelength_nm, bandwidth_nm, spectrum",
         ),
         (
             "[picture]\nmap = 'time_of_fligth'",

@@ -53,7 +53,7 @@ fn rays_go_in_and_out_where_points_say() {
             let mut from = 0.0;
             for pair in changes.chunks_exact(2) {
                 let ahead = |part| lens.entry(part, origin + direction * from, direction);
-                let met = super::super::first_along(Lens::PARTS.into_iter().filter_map(ahead));
+                let met = first_along(Lens::PARTS.into_iter().filter_map(ahead));
                 let (distance, outward) = met.expect("a way in");
                 let enter = from + distance;
                 if pair[0] - enter > 1e-9 {
