@@ -585,6 +585,7 @@ class Prisms(Device):
         core: Literal["metal", "open"] | None = ...,
         design_wavelength_nm: float | None = ...,
         dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
+        imitated: Sequence[Mapping[str, Any]] | None = ...,
         imperfection: Mapping[str, Any] | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
@@ -604,6 +605,8 @@ class Prisms(Device):
     def design_wavelength_nm(self) -> float: ...
     @property
     def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
+    @property
+    def imitated(self) -> list[dict[str, Any]]: ...
     @property
     def imperfection(self) -> dict[str, Any] | None: ...
     @property
@@ -636,10 +639,12 @@ class Graded(Device):
         inner: float | None = ...,
         length: float | None = ...,
         metal: bool | Mapping[str, Any] | None = ...,
+        optic_axis: str | float | ArrayLike | None = ...,
         position: ArrayLike | None = ...,
+        ratio: str | float | ArrayLike | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        shape: Literal["rectangle", "circle"] | None = ...,
+        shape: Literal["rectangle", "circle", "ball"] | None = ...,
         show: Literal["cloak", "bare", "mirror"] | None = ...,
         width: float | None = ...,
         spacing: float | None = ...,
@@ -667,13 +672,17 @@ class Graded(Device):
     @property
     def metal(self) -> bool | dict[str, Any] | None: ...
     @property
+    def optic_axis(self) -> str | float | list[Any] | None: ...
+    @property
     def position(self) -> list[Any]: ...
+    @property
+    def ratio(self) -> str | float | list[Any] | None: ...
     @property
     def resonance_nm(self) -> float | None: ...
     @property
     def rotation(self) -> float: ...
     @property
-    def shape(self) -> Literal["rectangle", "circle"]: ...
+    def shape(self) -> Literal["rectangle", "circle", "ball"]: ...
     @property
     def show(self) -> Literal["cloak", "bare", "mirror"]: ...
     @property
@@ -809,6 +818,90 @@ class Body(Device):
     def size(self) -> list[Any]: ...
     @property
     def surface(self) -> dict[str, Any] | None: ...
+    @property
+    def thickness(self) -> float: ...
+    @property
+    def uniaxial(self) -> dict[str, Any] | None: ...
+
+class Lens(Device):
+    def __init__(
+        self,
+        *,
+        axis: ArrayLike | None = ...,
+        back_conic: float | None = ...,
+        back_radius: float | None = ...,
+        biaxial: Mapping[str, Any] | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
+        core: Literal["metal", "open"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        diameter: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
+        front_conic: float | None = ...,
+        front_radius: float | None = ...,
+        group_index: float | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
+        index: ArrayLike | None = ...,
+        length: float | None = ...,
+        material: Literal["calcite", "quartz", "sapphire", "magnesium-fluoride", "rutile", "lithium-niobate", "bk7", "sf11", "fused-silica", "pmma", "water", "air", "silver", "gold", "aluminium"] | str | Material | Mapping[str, Any] | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
+        optic_axis: ArrayLike | None = ...,
+        permeability: ArrayLike | None = ...,
+        permittivity: ArrayLike | None = ...,
+        position: ArrayLike | None = ...,
+        resonance_nm: float | None = ...,
+        rotation: float | None = ...,
+        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        thickness: float | None = ...,
+        uniaxial: Mapping[str, Any] | None = ...,
+    ) -> None: ...
+    @property
+    def axis(self) -> list[Any]: ...
+    @property
+    def back_conic(self) -> float: ...
+    @property
+    def back_radius(self) -> float: ...
+    @property
+    def biaxial(self) -> dict[str, Any] | None: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
+    def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def diameter(self) -> float: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
+    @property
+    def front_conic(self) -> float: ...
+    @property
+    def front_radius(self) -> float: ...
+    @property
+    def group_index(self) -> float | None: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
+    @property
+    def index(self) -> Any | None: ...
+    @property
+    def length(self) -> float | None: ...
+    @property
+    def material(self) -> Literal["calcite", "quartz", "sapphire", "magnesium-fluoride", "rutile", "lithium-niobate", "bk7", "sf11", "fused-silica", "pmma", "water", "air", "silver", "gold", "aluminium"] | str | dict[str, Any] | None: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
+    @property
+    def optic_axis(self) -> Any | None: ...
+    @property
+    def permeability(self) -> Any: ...
+    @property
+    def permittivity(self) -> Any: ...
+    @property
+    def position(self) -> list[Any]: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
+    @property
+    def rotation(self) -> float: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
     @property
     def thickness(self) -> float: ...
     @property
@@ -1171,4 +1264,4 @@ class TraceSettings(Table):
     @property
     def tolerance(self) -> float: ...
 
-__all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name", "SquareCloak", "DoubleGaussianCloak", "CylinderCloak", "SphereCloak", "InvisibleSphere", "BendingSphere", "EatonLens", "LuneburgLens", "FisheyeLens", "FisheyeHemisphere", "MirrorDetour", "Prisms", "Graded", "GradedBox", "Body", "Polarizer", "GaussianCarpet", "GratingCarpet", "QuasiConformalCarpet", "Camera", "Light", "Photograph", "PictureSettings", "Receiver", "Surroundings", "TraceSettings"]
+__all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name", "SquareCloak", "DoubleGaussianCloak", "CylinderCloak", "SphereCloak", "InvisibleSphere", "BendingSphere", "EatonLens", "LuneburgLens", "FisheyeLens", "FisheyeHemisphere", "MirrorDetour", "Prisms", "Graded", "GradedBox", "Body", "Lens", "Polarizer", "GaussianCarpet", "GratingCarpet", "QuasiConformalCarpet", "Camera", "Light", "Photograph", "PictureSettings", "Receiver", "Surroundings", "TraceSettings"]
