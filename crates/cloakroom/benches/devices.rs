@@ -61,9 +61,26 @@ fn scene(name: &str) -> Scene {
     for (key, word) in words.filter_map(|word| word.split_once('=')) {
         text += &format!("{key} = \"{word}\"\n");
     }
-    text.extend(NEEDED.iter().filter(|(needs, _)| *needs == kind).map(|(_, keys)| *keys));
+    if name == "graded shape=ball" {
+        text += &hilly_ball();
+    } else {
+        text.extend(NEEDED.iter().filter(|(needs, _)| *needs == kind).map(|(_, keys)| *keys));
+    }
     let loaded = scene_file::parse(&text, name, Path::new(""), &[]);
     loaded.expect("a sound scene").scene
+}
+
+/// Hills of the index in space.
+fn hilly_ball() -> String {
+    let five = 0..5_u32;
+    let line = |i: u32, j: u32| -> Vec<f64> {
+        five.clone().map(|k| 1.0 + 0.1 * f64::from((i + 2 * j + 3 * k) % 4)).collect()
+    };
+    let layer = |i: u32| -> Vec<Vec<f64>> { five.clone().map(|j| line(i, j)).collect() };
+    format!(
+        "width = 20\nheight = 20\nlength = 20\nindex = {:?}\n",
+        five.clone().map(layer).collect::<Vec<_>>()
+    )
 }
 
 fn assembly(scene: &Scene) -> Assembly {

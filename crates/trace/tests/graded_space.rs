@@ -353,7 +353,7 @@ fn what_does_not_go_together_is_told() {
     let index = ("index", one([5, 5, 5]));
     let flat = ("index", one([5, 5, 1]));
     let crystal = |axis: Value| [index.clone(), ("ratio", 1.1.into()), ("optic_axis", axis)];
-    refused(None, &[index.clone()], "say with `length` how long");
+    refused(None, std::slice::from_ref(&index), "say with `length` how long");
     refused(Some(9.0), &[("index", one([5, 5, 3]))], "5 x 5 x 3 samples is too small");
     refused(Some(9.0), &[index.clone(), ("inner", 2.0.into())], "leave inner out");
     refused(Some(9.0), &[flat.clone(), ("shape", "ball".into())], "index of three dimensions");

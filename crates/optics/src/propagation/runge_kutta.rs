@@ -156,7 +156,7 @@ const B: [f64; 12] = [
 ];
 
 /// Weights of order 3, of the first, the ninth and the last stage.
-const B3: [f64; 3] = [0.244_094_488_188_976_38, 0.733_846_688_281_611_9, 0.022_058_823_529_411_766];
+const B3: [f64; 3] = [0.244_094_488_188_976_4, 0.733_846_688_281_611_9, 0.022_058_823_529_411_766];
 
 /// Those of order 8 less weights of order 5.
 const E5: [f64; 12] = [

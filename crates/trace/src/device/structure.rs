@@ -252,12 +252,12 @@ impl Structure {
 
     /// Its homogeneous media: those of regions, of films and of metals.
     pub fn homogeneous_media(&self) -> impl Iterator<Item = &Medium> {
-        let of_region = |region| match region {
-            &Region::Homogeneous(ref region) => Some(&region.medium),
-            _ => None,
-        };
         let films = self.films.iter().flatten().map(|layer| &layer.medium);
-        self.regions.iter().filter_map(of_region).chain(films).chain(&self.metals)
+        let regions = self.regions.iter().filter_map(|region| match region {
+            Region::Homogeneous(region) => Some(&region.medium),
+            _ => None,
+        });
+        regions.chain(films).chain(&self.metals)
     }
 
     /// Whether it is an opaque body.

@@ -58,7 +58,8 @@ fn rays_go_in_and_out_where_points_say() {
                 let enter = from + distance;
                 if pair[0] - enter > 1e-9 {
                     // A way through a corner shorter than a step.
-                    let (short, ..) = lens.exit(origin + direction * enter, direction).unwrap();
+                    let (short, ..) =
+                        lens.exit(origin + direction * enter, direction).expect("it is met");
                     assert!(short < STEP, "{number} {k}: {short}");
                     from = enter + short + 1e-9;
                     continue;
@@ -79,7 +80,8 @@ fn rays_go_in_and_out_where_points_say() {
             let past = origin + direction * (from + 1e-9);
             let more = Lens::PARTS.into_iter().filter_map(|part| lens.entry(part, past, direction));
             for (distance, _) in more.collect::<Vec<_>>() {
-                let (short, ..) = lens.exit(past + direction * distance, direction).unwrap();
+                let (short, ..) =
+                    lens.exit(past + direction * distance, direction).expect("it is met");
                 assert!(short < STEP, "{number} {k}: {short}");
             }
         }
@@ -93,7 +95,8 @@ fn rays_from_far_away_lose_no_digits() {
     let direction = DVec3::new(3.0, 0.2, -0.1).normalize();
     let goal = DVec3::new(lens.front.x_at(0.5), 0.3, 0.4);
     for far in [10.0, 1e3, 1e6] {
-        let (distance, _) = lens.entry(LensPart::Front, goal - direction * far, direction).unwrap();
+        let (distance, _) =
+            lens.entry(LensPart::Front, goal - direction * far, direction).expect("it is met");
         assert!((distance - far).abs() < 1e-14 * far.max(10.0), "{}", distance - far);
     }
 }
@@ -114,10 +117,10 @@ fn what_a_ray_has_left_it_does_not_meet_by_rounding() {
             if direction.dot(outward) > 0.0 {
                 let again = lens.entry(part, at, direction);
                 assert!(again.is_none_or(|(distance, _)| distance > 1e-6), "{lens:?} {k}");
-                let (now, ..) = lens.exit(at, direction).unwrap();
+                let (now, ..) = lens.exit(at, direction).expect("it is met");
                 assert!(now < 1e-11, "{lens:?} {k}: {now}");
             } else if r < 0.99 * lens.radius {
-                let (distance, ..) = lens.exit(at, direction).unwrap();
+                let (distance, ..) = lens.exit(at, direction).expect("it is met");
                 assert!(distance > 1e-6, "{lens:?} {k}");
             }
         }

@@ -102,7 +102,7 @@ fn random_pairs_overlap_where_points_are_in_both() {
             3 => Solid::CutBall { centre: at, ball: cut },
             _ => placed(lenses[(k / 20) as usize % 4], at, turned),
         };
-        let [low, high] = solid.bounds().unwrap();
+        let [low, high] = solid.bounds().expect("it has ends");
         let lattice = (0..60u32.pow(3)).map(|i| {
             let share = DVec3::new(f64::from(i % 60), f64::from(i / 60 % 60), f64::from(i / 3600));
             low + (high - low) * (share + 0.5) / 60.0
@@ -122,7 +122,8 @@ fn random_pairs_overlap_where_points_are_in_both() {
 /// Whether two solids come so near to each other that a coarse lattice may miss what they share: a
 /// finer one finds it.
 fn grazes(one: &Solid, other: &Solid) -> bool {
-    let ([low, high], [from, to]) = (one.bounds().unwrap(), other.bounds().unwrap());
+    let ([low, high], [from, to]) =
+        (one.bounds().expect("it has ends"), other.bounds().expect("it has ends"));
     let (low, high) = (low.max(from), high.min(to));
     (0..200u32.pow(3)).any(|i| {
         let share = DVec3::new(f64::from(i % 200), f64::from(i / 200 % 200), f64::from(i / 40_000));
@@ -139,7 +140,7 @@ fn a_lens_is_within_what_holds_its_points() {
     let far = lens.farthest_from(DVec3::ZERO);
     for (room, within) in [(1e-8, true), (-1e-8, false)] {
         assert_eq!(solid.is_within(&Solid::ball(far + room)), within);
-        let [low, high] = solid.bounds().unwrap();
+        let [low, high] = solid.bounds().expect("it has ends");
         let outline = |room: f64| {
             let [a, b] = [low.truncate(), high.truncate() + room];
             Outline { corners: vec![a, a.with_x(b.x), b, a.with_y(b.y)] }
