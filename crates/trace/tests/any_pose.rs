@@ -1,37 +1,16 @@
 //! Devices in any pose: rays through a tilted device are the turned rays through the upright one.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may panic, and say why")]
 
+use crate::numbers::Numbers;
 use cloakroom_trace::assembly::{Assembly, Placed, Screen};
 use cloakroom_trace::device::{AnyDevice, CATALOGUE, Entry, Request, Show, Structure, entry};
 use cloakroom_trace::keys::Value;
-use cloakroom_trace::split_mix::mix;
 use cloakroom_trace::walk::{Launch, Leaf, LeafEnd, Limits, Outcome, Tracer};
 use glam::DVec3;
 use optics::geometry::Pose;
 use optics::wave::{ComplexVector, transverse_basis};
-use std::f64::consts::PI;
 
 const LIMITS: Limits = Limits { min_power: 1e-6, tolerance: 1e-12 };
-
-/// Numbers without a pattern, from -1 to 1.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 += 1;
-        (mix(self.0.wrapping_mul(0x9e37_79b9_7f4a_7c15)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-
-    fn pose(&mut self) -> Pose {
-        let origin = 20.0 * self.vector();
-        let rotation = PI * self.next();
-        Pose::with_axis(origin, rotation, self.vector())
-    }
-}
 
 /// What a kind needs to be something, its media of low index so that boxes cannot trap light.
 fn device(entry: &Entry) -> AnyDevice {

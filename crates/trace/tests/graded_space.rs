@@ -2,10 +2,10 @@
 //! two dimensions, and a homogeneous crystal.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::numbers::Numbers;
 use cloakroom_trace::assembly::{Assembly, Placed};
 use cloakroom_trace::device::{Fact, FactValue, Request, entry};
 use cloakroom_trace::keys::{KeyError, Samples, Value};
-use cloakroom_trace::split_mix::mix;
 use cloakroom_trace::walk::{Launch, Leaf, Limits, Tracer};
 use glam::{DMat3, DVec3};
 use optics::geometry::Pose;
@@ -13,20 +13,6 @@ use optics::wave::transverse_basis;
 use std::f64::consts::PI;
 
 const LIMITS: Limits = Limits { min_power: 1e-5, tolerance: 1e-10 };
-
-/// Numbers without a pattern, from -1 to 1.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 += 1;
-        (mix(self.0.wrapping_mul(0x9e37_79b9_7f4a_7c15)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-}
 
 /// What is at each sample of a grid over a box about the origin, flat where there is one layer.
 fn sampled<const C: usize>(
