@@ -35,7 +35,7 @@ __version__: str
 
 _Tell = Callable[[int, int], object] | None
 _Images = tuple[Image | None, Image | None]
-_Map = tuple[str | None, bool]
+_Map = dict[str, Any]
 _Tensors = tuple[NDArray[np.complex128], NDArray[np.complex128]]
 
 @final

@@ -223,14 +223,14 @@ class Scene:
         keys = {"camera.samples": samples, "camera.resolution": resolution}
         keys = {key: value for key, value in keys.items() if value is not None}
         scene = self.replace(keys) if keys else self
-        map, color_bar = scene._native.map
-        if image_only and map is not None:
-            raise ValueError(f"image_only leaves no channel `{map}` for picture.map to show")
+        shown = scene._native.map
+        if image_only and "map" in shown:
+            raise ValueError(f"image_only leaves no channel `{shown['map']}` for picture.map to show")
         place = None if tile is None else _tile(tile)
         with told(progress, "rendering") as tell:
             channels, metadata, (endless, lost) = _cloakroom.render(scene._native, image_only, place, tell)
         rarities = {"endless": endless, "lost": lost}
-        return Picture(channels, dict(metadata), map=map, color_bar=color_bar, rarities=rarities)
+        return Picture(channels, dict(metadata), **shown, rarities=rarities)
 
     def __repr__(self) -> str:
         width, height = self.resolution

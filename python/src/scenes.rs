@@ -3,9 +3,9 @@
 use crate::errors::{Failure, scene_error, unreadable, value_error};
 use crate::images::Image;
 use crate::supervision::supervised;
-use crate::values::value_of;
+use crate::values::{object_of, value_of};
 use cloakroom::assembly::Assembly;
-use cloakroom::keys::Value;
+use cloakroom::keys::{Table, Value};
 use cloakroom::photograph::ImageSource;
 use cloakroom::render::{PreparedScene, PreparedSceneError, assembly};
 use cloakroom::scene;
@@ -174,8 +174,15 @@ impl Scene {
 
     /// What a PNG shows instead of what the camera sees, and whether with a bar of its colors.
     #[getter]
-    fn map(&self) -> (Option<&'static str>, bool) {
-        (self.scene().picture.map.name(), self.scene().picture.color_bar)
+    fn map<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let keys = PyDict::new(py);
+        let picture = &self.scene().picture;
+        let is_of_map =
+            |name: &str| name != "channels" && (name != "map" || picture.map.name().is_some());
+        for (name, value) in picture.written().iter().filter(|(name, _)| is_of_map(name)) {
+            keys.set_item(name, object_of(py, value)?)?;
+        }
+        Ok(keys)
     }
 
     /// The files that it names, and the keys that name them.

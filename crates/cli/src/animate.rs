@@ -13,7 +13,7 @@ use cloakroom::scene_file::{Loaded, SceneText};
 use cloakroom::timeline::Timeline;
 use cloakroom::trace::TraceStats;
 use cloakroom_figures::film::{Film, FilmFormat, FrameFolder};
-use cloakroom_figures::{ColorScale, shown};
+use cloakroom_figures::{Dimension, ScalarMap, shown};
 use std::ffi::OsString;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -84,13 +84,16 @@ fn scenes(
     for frame in range {
         let further = timeline.overrides(frame);
         let loaded = text.scene(&[&arguments.scene.overrides[..], &further[..]].concat());
-        let loaded = loaded.map_err(|error| swept(error.into()))?;
+        let mut loaded = loaded.map_err(|error| swept(error.into()))?;
+        let settings = &mut loaded.scene.picture;
+        settings.map_range = arguments.map_range.or(settings.map_range);
+        let has_no_range = settings.map.name().is_some() && settings.map_range.is_none();
         scene::check_pipes(&arguments.scene, &loaded, None)?;
         scene::prepared(&loaded, images).map_err(swept)?;
-        if loaded.scene.picture.map.name().is_some() && arguments.map_range.is_none() {
+        if has_no_range {
             return Err(Failure::Failed(
-                "a film of a map needs one scale for all frames; give --map-range LOW,HIGH, in ns for times \
-                 and as shares for powers"
+                "a film of a map needs one scale for all frames; give picture.map_range or --map-range \
+                 LOW,HIGH, in ns for times and as shares for powers"
                     .to_owned(),
             ));
         }
@@ -123,10 +126,6 @@ fn render(
     frames: &FrameFolder,
     images: &mut Images,
 ) -> Result<()> {
-    // There may be numbers beyond the range.
-    let scale =
-        |range: [f64; 2]| ColorScale { range: Some(range.into()), is_clipped: (true, true) };
-    let scale = arguments.map_range.map(scale);
     let rows = scenes.first().map_or(0, |first| u64::from(first.scene.camera.resolution[1]));
     let (mut stats, mut skipped) = (TraceStats::default(), 0);
     supervised(rows * scenes.len() as u64, "rendering", |bar, supervision| {
@@ -142,8 +141,16 @@ fn render(
             let wanted = ChannelSet::for_image(&scene.picture);
             let rendered = render::render(&prepared, wanted, supervision)?;
             stats += rendered.stats;
-            let map = (scene.picture.map.name(), scene.picture.color_bar);
-            let image = shown(&rendered.picture, map, scale)?;
+            let image = match scene.picture.map.name() {
+                None => shown(&rendered.picture, &scene.picture)?,
+                Some(channel) => {
+                    let mut map = ScalarMap::new(&rendered.picture, channel, &scene.picture)?;
+                    // The same bar in every frame: there may be numbers beyond it, or none, in some.
+                    map.bar.scale.is_clipped = (true, true);
+                    map.bar.scale.has_gaps = map.bar.quantity.dimension == Dimension::Time;
+                    map.into_image(scene.picture.color_bar)?
+                }
+            };
             output::write_png(&image, &metadata, &frames.file(frame))?;
         }
         Ok::<_, Failure>(())

@@ -75,7 +75,7 @@ fn rendered(
         write_png(&image, &picture.metadata, &name.with_extension("png"))?;
         return Ok((image, None, picture.metadata));
     };
-    let map = ScalarMap::new(&picture, channel, None)?;
+    let map = ScalarMap::new(&picture, channel, &loaded.scene.picture)?;
     let drawing = map.draw(loaded.scene.picture.color_bar);
     let metadata = picture.metadata;
     let image = write_drawing(&drawing, panel.caption, &metadata, drawing.pixels(), &name)?;

@@ -52,7 +52,7 @@ fn make(
     let prepared = scene::prepared(&loaded, images)?;
     let picture = picture(&prepared, ChannelSet::Everything, exhibit.name)?;
     let image = rgb(&loaded.scene, &picture)?;
-    let map = ScalarMap::new(&picture, MAP, None)?;
+    let map = ScalarMap::new(&picture, MAP, &loaded.scene.picture)?;
     let file = |ending: &str| arguments.out.join(format!("{}{ending}", exhibit.name));
     write_png(&image, &picture.metadata, &file(".png"))?;
     let drawing = map.draw(true);

@@ -13,7 +13,8 @@ use cloakroom_figures::{TableFormat, write_table};
 use std::fmt::Write;
 
 /// The columns that are printed for people; files hold all.
-const PRINTED: [(&str, &str); 8] = [
+const PRINTED: [(&str, &str); 9] = [
+    ("in_place_share", "in place"),
     ("ideal_silhouette_correlation", "correlation"),
     ("ideal_silhouette_correlation_maximum", "best shift"),
     ("ideal_silhouette_structural_similarity", "SSIM"),
@@ -36,8 +37,20 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let holds =
         arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;
     let plan = SweepPlan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;
+    let reference = match &arguments.reference {
+        Some(path) => Some(SceneText::read(path)?.scene(&[])?),
+        None => None,
+    };
+    let plan = match &reference {
+        Some(reference) => {
+            scene::assembly(reference)?;
+            plan.with_reference(reference.scene.clone())
+        }
+        None => plan,
+    };
     plan.check_columns(&arguments.plot)?;
     let inputs = plan.scenes().flat_map(|loaded| scene::inputs(&arguments.scene, loaded));
+    let inputs = inputs.chain(arguments.reference.clone());
     check_outputs(&arguments.outputs, &inputs.collect::<Vec<_>>())?;
     let _busy = interruption::busy();
     let table =
@@ -48,16 +61,18 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let printed = if arguments.json {
         report::print_json(&table.to_json())
     } else {
-        report::print(&text(&table)?)
+        let wanted = match arguments.reference {
+            Some(_) => "the reference",
+            None => "what should be seen: a cloak's flat mirror, else the empty view",
+        };
+        report::print(&text(&table, wanted)?)
     };
     all([written, printed])
 }
 
-/// The table for people.
-fn text(table: &QualityTable) -> Result<String, std::fmt::Error> {
-    let mut text = String::from(
-        "Over the silhouette, against what should be seen: a cloak's flat mirror, else the empty view\n",
-    );
+/// The table for people; `wanted` is what the scenes were held against.
+fn text(table: &QualityTable, wanted: &str) -> Result<String, std::fmt::Error> {
+    let mut text = format!("Over the silhouette, against {wanted}\n");
     if table.has_errors() {
         let draws = table.draws;
         writeln!(

@@ -54,9 +54,7 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
             Some(strips) => merged(&prepared, wanted, strips)?,
             None => picture(&prepared, wanted, "rendering")?,
         };
-        write_each(formats, |path, format| {
-            Ok(write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)?)
-        })?;
+        write_each(formats, |path, format| Ok(write_picture(&picture, shown, format, path)?))?;
     }
     if let Some(strips) = strips {
         strips.remove();
@@ -164,7 +162,7 @@ fn told(rendered: Rendered) -> Picture {
 
 /// What a PNG of the scene shows: the image, or the map of one channel.
 pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage> {
-    Ok(shown(picture, (scene.picture.map.name(), scene.picture.color_bar), None)?)
+    Ok(shown(picture, &scene.picture)?)
 }
 
 /// Says what was rare, if anything was.

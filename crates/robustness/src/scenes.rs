@@ -226,6 +226,10 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
             };
             Value::Array(items.iter().map(number).collect())
         }
+        KeyKind::Interval => {
+            let low = draws.number(number, limits);
+            vec![low, low + draws.between(-0.2, 2.0)].into()
+        }
         KeyKind::Image => {
             (*draws.pick(&["builtin:bookshelf", "nowhere.png", "builtin:", "", "/"])).into()
         }

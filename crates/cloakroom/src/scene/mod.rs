@@ -17,9 +17,9 @@ pub use camera::{Camera, CameraRay};
 pub use polarizer::Polarizer;
 pub use spectrum::{LampSpectrum, SpectralLine, Spectrum, SpectrumWord};
 pub use tables::{
-    CameraSettings, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel, PhotographSettings,
-    PictureSettings, Placement, Projection, Receiver, SCALAR_CHANNELS, SurroundingsSettings,
-    TABLES, TraceSettings,
+    CameraSettings, Colormap, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel,
+    PhotographSettings, PictureSettings, Placement, Projection, Receiver, SCALAR_CHANNELS,
+    SurroundingsSettings, TABLES, TraceSettings,
 };
 
 use crate::device::{
@@ -188,6 +188,17 @@ impl SurroundingsSettings {
 }
 
 impl PictureSettings {
+    /// Refuses two ranges of a map.
+    ///
+    /// # Errors
+    ///
+    /// If both are given.
+    pub fn check_one_range(&self) -> Result<(), KeyError> {
+        let message = "map_range and map_percentile are both given; a map takes one of them";
+        let both = self.map_range.is_some() && self.map_percentile.is_some();
+        KeyError::refuse_if(both, key!(Self.map_percentile), message)
+    }
+
     /// Whether one of [`OPTIONAL_CHANNELS`] is asked for, to be held or to be shown.
     #[must_use]
     pub fn asks_for(&self, channel: &str) -> bool {

@@ -17,6 +17,22 @@ pub const SCALAR_CHANNELS: &[&str] = MapChannel::WORDS.split_at(1).1;
 pub const OPTIONAL_CHANNELS: &[&str] = OptionalChannel::WORDS;
 
 choice! {
+    /// The colors of a map.
+    pub enum Colormap {
+        /// Those that suit the numbers.
+        Auto = "auto",
+        /// From dark violet by green to yellow, evenly for the eye.
+        Viridis = "viridis",
+        /// From blue to yellow, alike for people with deficient color vision.
+        Cividis = "cividis",
+        /// From black by violet to pale yellow.
+        Magma = "magma",
+        /// Diverging: blue below 0, white at 0, red above.
+        BlueRed = "blue-red",
+    }
+}
+
+choice! {
     /// How rays leave the camera.
     pub enum Projection {
         /// From one point.
@@ -199,6 +215,15 @@ table! {
         map: MapChannel,
         /// Whether the scale of a map is drawn beside it.
         color_bar: bool = true,
+        /// The numbers of a map with its first and its last color, ns for times and shares for
+        /// powers; by default the least and the greatest, but for outliers.
+        map_range: Option<[f64; 2]>,
+        /// Instead of these, how much of the numbers lies in the range, as many being above it as
+        /// below.
+        map_percentile: Option<f64>, "%", in ValueRange::Within(1.0, 100.0),
+        /// The colors of a map. `auto`: viridis, or blue-red for differences of both signs.
+        /// `blue-red` has white at 0 and the same range to both sides of it.
+        colormap: Colormap,
     }
 }
 

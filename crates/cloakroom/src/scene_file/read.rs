@@ -55,6 +55,7 @@ pub(super) fn read(
             "light" => scene.light.spectrum.lamp(false).map(drop),
             "photograph" => scene.photograph.pose().map(drop),
             "surroundings" => scene.surroundings.check_one(),
+            "picture" => scene.picture.check_one_range(),
             "receiver" => scene.receiver.normalize(),
             _ => Ok(()),
         };

@@ -91,7 +91,7 @@ fn property(key: &Key) -> Value {
         KeyKind::Choice { options } => json!({ "enum": options }),
         KeyKind::Choices { options } => json!({ "type": "array", "items": { "enum": options } }),
         KeyKind::Vector => list(number, 3),
-        KeyKind::IntegerPair => list(number, 2),
+        KeyKind::IntegerPair | KeyKind::Interval => list(number, 2),
         KeyKind::Image => json!({ "type": "string", "minLength": 1 }),
         KeyKind::ChoiceOrNumber { options } => json!({ "anyOf": [{ "enum": options }, number] }),
         KeyKind::ChoiceNumberOrTable { options, keys } => {

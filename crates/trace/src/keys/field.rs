@@ -128,6 +128,7 @@ field!(u64, Integer, whole, |integer| Value::from(i64::try_from(*integer).unwrap
 field!(bool, Flag, Value::as_flag, |flag| Value::from(*flag));
 field!([f64; 3], Vector, numbers, |vector| Value::from(*vector));
 field!(DVec3, Vector, |value| numbers(value).map(DVec3::from_array), |v| v.to_array().into());
+field!([f64; 2], Interval, numbers, |ends| Value::from(*ends));
 field!([u32; 2], IntegerPair, |v| items_of(v, whole), |pair| pair.map(i64::from).into());
 field!(Tensor, Tensor, tensor::from_value, tensor::to_value);
 field!(Complex64, Complex, tensor::entry, |number| match number.im {
