@@ -12,7 +12,7 @@ use cloakroom::render::{self, ChannelSet, Images, PreparedScene, Rendered, Tile}
 use cloakroom::scene::Scene;
 use cloakroom::scene_file::Override;
 use cloakroom::trace::TraceStats;
-use cloakroom_figures::{IllustrationError, PictureFormat, shown, write_picture};
+use cloakroom_figures::{IllustrationError, PictureFormat, write_picture};
 use std::io;
 use std::path::Path;
 
@@ -160,11 +160,6 @@ pub fn picture(prepared: &PreparedScene<'_>, wanted: ChannelSet, what: &str) -> 
 fn told(rendered: Rendered) -> Picture {
     warn_of_cut_branches(&rendered.stats);
     rendered.picture
-}
-
-/// What a PNG of the scene shows: the image, or the map of one channel.
-pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage> {
-    Ok(shown(picture, (scene.picture.map.name(), scene.picture.color_bar), None)?)
 }
 
 /// Says what was rare, if anything was.
