@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _cloakroom
+from .labelled import dataset
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["Picture"]
 
@@ -187,6 +191,20 @@ class Picture(Mapping[str, NDArray[Any]]):
             If the file cannot be written; then there is none.
         """
         _cloakroom.save(os.fspath(path), self._channels, list(self.metadata.items()), self._map)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The channels as an `xarray.Dataset`; needs ``pip install './python[xarray]'``.
+
+        Axes are ``row`` and ``column``, counted from the top left, and ``color`` (red, green, blue) or ``bin`` of
+        channels that have more numbers a pixel; the metadata are its attributes.
+        """
+        more: dict[int, tuple[str, ...]] = {3: ("color",), 16: ("bin",)}
+        axes = {
+            name: ("row", "column", *(more.get(array.shape[2], (name,)) if array.ndim == 3 else ()))
+            for name, array in self._channels.items()
+        }
+        has_color = any("color" in of for of in axes.values())
+        return dataset(self._channels, axes, {"color": np.array(list("RGB"))} if has_color else {}, self.metadata)
 
     def _repr_png_(self) -> bytes | None:
         if "map" not in self._map and "R" not in self._channels:

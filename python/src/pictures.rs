@@ -54,6 +54,23 @@ pub fn render<'py>(
     Ok((channels, metadata, stats))
 }
 
+/// The pulses of a pixel, by its column and row. Gives JSON.
+#[pyfunction]
+pub fn pulses(py: Python<'_>, scene: &Scene, pixel: [u32; 2]) -> Result<String, Failure> {
+    let list = supervised(py, None, |_, _| Ok(rendering::pulses(&scene.prepared()?, pixel)?))?;
+    Ok(serde_json::to_string(&list)?)
+}
+
+/// What rendering the image of a scene takes: seconds, rays followed, camera rays, bytes, threads.
+#[pyfunction]
+pub fn estimate(py: Python<'_>, scene: &Scene) -> Result<(f64, f64, u64, u64, usize), Failure> {
+    supervised(py, None, |_, _| {
+        let prepared = scene.prepared()?;
+        let rendering::Estimate { seconds, walks, samples, bytes } = rendering::estimate(&prepared);
+        Ok((seconds, walks, samples, bytes, rayon::current_num_threads()))
+    })
+}
+
 /// The channels of a picture as arrays, and its metadata. The memory of each channel goes to numpy
 /// as it is.
 fn arrays(py: Python<'_>, picture: Picture) -> Result<Arrays<'_>, Failure> {

@@ -8,15 +8,11 @@ use crate::render::warn_of_cut_branches;
 use crate::report::{Failure, Result, say};
 use crate::scene;
 use cloakroom::output;
-use cloakroom::render::{self, ChannelSet, Images, PreparedScene};
+use cloakroom::render::Images;
 use cloakroom::scene_file::{Loaded, SceneText};
 use cloakroom::timeline::Timeline;
-use cloakroom::trace::TraceStats;
-use cloakroom_figures::film::{Film, FilmFormat, FrameFolder};
-use cloakroom_figures::{Dimension, ScalarMap, shown};
-use std::ffi::OsString;
+use cloakroom_figures::film::{self, Film, FilmFormat, FrameFolder, frame_metadata, frames_beside};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
 
 /// Renders the frames that are not there yet, and makes the film of them.
 pub fn run(arguments: &AnimateArguments) -> Result<()> {
@@ -61,7 +57,7 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
         return Ok(());
     }
     let first = scenes.first().map(|loaded| scene::prepared(loaded, &mut images)).transpose()?;
-    let metadata = first.map(|first| metadata(&first, arguments.map_range));
+    let metadata = first.map(|first| frame_metadata(&first, arguments.map_range));
     let (rate, metadata) = (arguments.fps, &metadata.unwrap_or_default());
     supervised(count as u64, "writing", |bar, _| {
         let frame_done = &|| bar.inc(1);
@@ -84,13 +80,11 @@ fn scenes(
     for frame in range {
         let further = timeline.overrides(frame);
         let loaded = text.scene(&[&arguments.scene.overrides[..], &further[..]].concat());
-        let mut loaded = loaded.map_err(|error| swept(error.into()))?;
-        let settings = &mut loaded.scene.picture;
-        settings.map_range = arguments.map_range.or(settings.map_range);
-        let has_no_range = settings.map.name().is_some() && settings.map_range.is_none();
+        let loaded = loaded.map_err(|error| swept(error.into()))?;
         scene::check_pipes(&arguments.scene, &loaded, None)?;
         scene::prepared(&loaded, images).map_err(swept)?;
-        if has_no_range {
+        let shown = &loaded.scene.picture;
+        if shown.map.name().is_some() && arguments.map_range.or(shown.map_range).is_none() {
             return Err(Failure::Failed(
                 "a film of a map needs one scale for all frames; give picture.map_range or --map-range \
                  LOW,HIGH, in ns for times and as shares for powers"
@@ -127,46 +121,16 @@ fn render(
     images: &mut Images,
 ) -> Result<()> {
     let rows = scenes.first().map_or(0, |first| u64::from(first.scene.camera.resolution[1]));
-    let (mut stats, mut skipped) = (TraceStats::default(), 0);
-    supervised(rows * scenes.len() as u64, "rendering", |bar, supervision| {
-        for (loaded, frame) in scenes.iter().zip(range) {
-            let scene = &loaded.scene;
-            let prepared = scene::prepared(loaded, images)?;
-            let metadata = metadata(&prepared, arguments.map_range);
-            if frames.is_finished(frame, &metadata) {
-                skipped += 1;
-                bar.inc(rows);
-                continue;
-            }
-            let wanted = ChannelSet::for_image(&scene.picture);
-            let rendered = render::render(&prepared, wanted, supervision)?;
-            stats += rendered.stats;
-            let image = match scene.picture.map.name() {
-                None => shown(&rendered.picture, &scene.picture)?,
-                Some(channel) => {
-                    let mut map = ScalarMap::new(&rendered.picture, channel, &scene.picture)?;
-                    // The same bar in every frame: there may be numbers beyond it, or none, in some.
-                    map.bar.scale.is_clipped = (true, true);
-                    map.bar.scale.has_gaps = map.bar.quantity.dimension == Dimension::Time;
-                    map.into_image(scene.picture.color_bar)?
-                }
-            };
-            output::write_png(&image, &metadata, &frames.file(frame))?;
-        }
-        Ok::<_, Failure>(())
+    let first = range.start;
+    let done = supervised(rows * scenes.len() as u64, "rendering", |_, supervision| {
+        let prepared = |frame: usize| scene::prepared(&scenes[frame - first], images);
+        film::render_frames(range, prepared, frames, arguments.map_range, supervision)
     })?;
-    warn_of_cut_branches(&stats);
-    if skipped > 0 {
-        say(&format!("{skipped} of {} frames were there already", scenes.len()));
+    warn_of_cut_branches(&done.stats);
+    if done.skipped > 0 {
+        say(&format!("{} of {} frames were there already", done.skipped, scenes.len()));
     }
     Ok(())
-}
-
-/// What the frame of a scene carries: what its picture does, and the range of a map.
-fn metadata(prepared: &PreparedScene<'_>, map_range: Option<[f64; 2]>) -> Vec<(String, String)> {
-    let range = map_range.filter(|_| prepared.scene.picture.map.name().is_some());
-    let range = range.map(|[low, high]| ("map_range".to_owned(), format!("{low} {high}")));
-    prepared.metadata().into_iter().chain(range).collect()
 }
 
 /// Which frames are to be rendered.
@@ -179,11 +143,4 @@ fn range(only: Option<[usize; 2]>, count: usize) -> Result<Range<usize>> {
             count - 1
         ))),
     }
-}
-
-/// The folder of the frames of a film: its name and `.frames`.
-fn frames_beside(path: &Path) -> PathBuf {
-    let mut name = OsString::from(path);
-    name.push(".frames");
-    name.into()
 }

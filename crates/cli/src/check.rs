@@ -59,15 +59,14 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
             )?;
         }
     }
-    let Estimate { seconds, walks } = estimate(prepared);
-    let samples = f64::from(width) * f64::from(height) * f64::from(camera.samples);
+    let Estimate { seconds, walks, samples, .. } = estimate(prepared);
     writeln!(
         text,
         "estimate     {seconds:.1} s to render on {} threads; {:.2} million of {:.2} million rays traced, \
          the others seen past every device or interpolated",
         threads::count(),
         1e-6 * walks,
-        1e-6 * samples,
+        1e-6 * samples as f64,
     )?;
     Ok(text)
 }

@@ -32,7 +32,6 @@ mod strips;
 mod trace;
 mod verify;
 mod view;
-mod views;
 
 use arguments::{Arguments, Command};
 use clap::Parser;

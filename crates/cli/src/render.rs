@@ -12,7 +12,7 @@ use cloakroom::render::{self, ChannelSet, Images, PreparedScene, Rendered, Tile}
 use cloakroom::scene::Scene;
 use cloakroom::scene_file::Override;
 use cloakroom::trace::TraceStats;
-use cloakroom_figures::{IllustrationError, PictureFormat, shown, write_picture};
+use cloakroom_figures::{IllustrationError, PictureFormat, write_picture};
 use std::io;
 use std::path::Path;
 
@@ -54,7 +54,9 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
             Some(strips) => merged(&prepared, wanted, strips)?,
             None => picture(&prepared, wanted, "rendering")?,
         };
-        write_each(formats, |path, format| Ok(write_picture(&picture, shown, format, path)?))?;
+        write_each(formats, |path, format| {
+            Ok(write_picture(&picture, shown, format, path)?)
+        })?;
     }
     if let Some(strips) = strips {
         strips.remove();
@@ -158,11 +160,6 @@ pub fn picture(prepared: &PreparedScene<'_>, wanted: ChannelSet, what: &str) -> 
 fn told(rendered: Rendered) -> Picture {
     warn_of_cut_branches(&rendered.stats);
     rendered.picture
-}
-
-/// What a PNG of the scene shows: the image, or the map of one channel.
-pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage> {
-    Ok(shown(picture, &scene.picture)?)
 }
 
 /// Says what was rare, if anything was.

@@ -240,7 +240,8 @@ pub fn ray_settings(
     let least = if coherent { COHERENT_MIN_POWER } else { RAY_MIN_POWER };
     let min_power = min_power.or(written).unwrap_or(least);
     let limits = Limits { min_power, tolerance: settings.tolerance };
-    RaySettings { limits, coherence: coherent.then(|| coherence(scene)), group_delays }
+    let coherence = coherent.then(|| coherence(scene));
+    RaySettings { coherence, group_delays, ..limits.into() }
 }
 
 /// What rays see that hit nothing.
