@@ -9,8 +9,8 @@ use crate::report::{Failure, Result, say};
 use crate::scene;
 use cloakroom::output;
 use cloakroom::render::{self, ChannelSet, Images, PreparedScene};
-use cloakroom::scene_file::{Loaded, SceneText};
-use cloakroom::timeline::Timeline;
+use cloakroom::scene_file::{self, Loaded, Override};
+use cloakroom::timeline::{Changes, Keyframes, Timeline};
 use cloakroom::trace::TraceStats;
 use cloakroom_figures::film::{Film, FilmFormat, FrameFolder};
 use cloakroom_figures::{ColorScale, shown};
@@ -22,7 +22,13 @@ use std::path::{Path, PathBuf};
 pub fn run(arguments: &AnimateArguments) -> Result<()> {
     let path = &arguments.output;
     let format = FilmFormat::of(path).map_err(Failure::Failed)?;
-    let timeline = Timeline::new(&arguments.sweeps, arguments.frames)?;
+    let keyframes = arguments.keyframes.as_deref().map(keyframes).transpose()?;
+    let timeline = Timeline::new(Changes {
+        sweeps: &arguments.sweeps,
+        keyframes: keyframes.as_ref(),
+        orbit: arguments.orbit.as_deref(),
+        frames: arguments.frames,
+    })?;
     let count = timeline.frames();
     let range = range(arguments.frames_only, count)?;
     let makes_film = arguments.frames_only.is_none() && format != FilmFormat::Frames;
@@ -73,6 +79,15 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
     Ok(())
 }
 
+/// Where the camera stands.
+const POSITION: &str = "camera.position";
+
+/// The keyframes of a file.
+fn keyframes(path: &Path) -> Result<Keyframes> {
+    let text = scene_file::read_text(path)?;
+    Ok(Keyframes::parse(&text, &path.display().to_string())?)
+}
+
 /// The scenes of a range of frames, each of which can be built.
 fn scenes(
     arguments: &AnimateArguments,
@@ -80,11 +95,19 @@ fn scenes(
     range: Range<usize>,
     images: &mut Images,
 ) -> Result<Vec<Loaded>> {
-    let (text, mut scenes) = (SceneText::read(&arguments.scene.scene)?, Vec::<Loaded>::new());
+    let (text, mut scenes) = (scene::text(&arguments.scene.scene)?, Vec::<Loaded>::new());
     for frame in range {
-        let further = timeline.overrides(frame);
-        let loaded = text.scene(&[&arguments.scene.overrides[..], &further[..]].concat());
-        let loaded = loaded.map_err(|error| swept(error.into()))?;
+        let mut overrides =
+            [scene::overrides(&arguments.scene, &arguments.picture), timeline.overrides(frame)]
+                .concat();
+        let load =
+            |overrides: &[Override]| text.scene(overrides).map_err(|error| swept(error.into()));
+        let mut loaded = load(&overrides)?;
+        if let Some(degrees) = timeline.azimuth(frame) {
+            let value = loaded.scene.camera.orbited(degrees).to_array().into();
+            overrides.push(Override::Value { key: POSITION.to_owned(), value });
+            loaded = load(&overrides)?;
+        }
         scene::check_pipes(&arguments.scene, &loaded, None)?;
         scene::prepared(&loaded, images).map_err(swept)?;
         if loaded.scene.picture.map.name().is_some() && arguments.map_range.is_none() {

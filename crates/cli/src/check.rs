@@ -1,6 +1,6 @@
 //! `cloakroom check`: is the scene sound, what does it hold, how long will it take.
 
-use crate::arguments::SceneArguments;
+use crate::arguments::CheckArguments;
 use crate::devices::{fact_lines, media_line};
 use crate::report::{self, Result};
 use crate::scene;
@@ -16,8 +16,9 @@ const THIN: f64 = 10.0;
 const CM_PER_NM: f64 = 1e-7;
 
 /// Validates a scene and prints facts about it.
-pub fn run(arguments: &SceneArguments) -> Result<()> {
-    let loaded = scene::load(arguments, &[])?;
+pub fn run(arguments: &CheckArguments) -> Result<()> {
+    let overrides = scene::overrides(&arguments.scene, &arguments.picture);
+    let loaded = scene::load_with(&arguments.scene, &overrides)?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;
     report::print(&described(&prepared, &loaded.scene)?)
 }

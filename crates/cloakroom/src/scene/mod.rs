@@ -237,7 +237,8 @@ impl DeviceSettings {
         let Placement { show, imperfection, coating, .. } = &self.placement;
         let structure = self.built(*show)?;
         let message = format!("{} with these keys has no core that could be open", self.kind());
-        let closed = self.has_open_core() && structure.hull.filled.is_none();
+        let is_there = *show != Show::Empty;
+        let closed = self.has_open_core() && is_there && structure.hull.filled.is_none();
         KeyError::refuse_if(closed, key!(Placement.core), message)?;
         let layers = device::layers(key!(Placement.coating), coating, self.wavelength_nm)?;
         if *show != Show::Cloak {

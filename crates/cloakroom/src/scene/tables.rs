@@ -205,7 +205,7 @@ table! {
 table! {
     /// What every device takes beside its `kind` and its kind's own keys.
     pub struct Placement {
-        /// The cloak, the bare metal alone, or the mirror it should look like.
+        /// The cloak, the bare metal alone, the mirror it should look like, or nothing in its place.
         show: Show,
         /// What fills the hidden region of a free-space cloak: metal, or air in which bodies may
         /// stand. A carpet needs its mirror.
