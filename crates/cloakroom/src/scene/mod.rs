@@ -17,9 +17,9 @@ pub use camera::{Camera, CameraRay};
 pub use polarizer::Polarizer;
 pub use spectrum::{LampSpectrum, SpectralLine, Spectrum, SpectrumWord};
 pub use tables::{
-    CameraSettings, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel, PhotographSettings,
-    PictureSettings, Placement, Projection, Receiver, SCALAR_CHANNELS, SurroundingsSettings,
-    TABLES, TraceSettings,
+    Border, CameraSettings, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel,
+    PhotographSettings, PictureSettings, Placement, Projection, Receiver, SCALAR_CHANNELS,
+    SurroundingsSettings, TABLES, TraceSettings,
 };
 
 use crate::device::{
