@@ -48,7 +48,7 @@ class SquareCloak(Device):
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
         rounded: bool | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         side: float | None = ...,
     ) -> None: ...
     @property
@@ -80,7 +80,7 @@ class SquareCloak(Device):
     @property
     def rounded(self) -> bool: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def side(self) -> float: ...
 
@@ -103,7 +103,7 @@ class DoubleGaussianCloak(Device):
         referenced: bool | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         w: float | None = ...,
         width: float | None = ...,
     ) -> None: ...
@@ -138,7 +138,7 @@ class DoubleGaussianCloak(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def w(self) -> float: ...
     @property
@@ -162,7 +162,7 @@ class CylinderCloak(Device):
         position: ArrayLike | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
@@ -193,7 +193,7 @@ class CylinderCloak(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
 
 class SphereCloak(Device):
     def __init__(
@@ -212,7 +212,7 @@ class SphereCloak(Device):
         position: ArrayLike | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
@@ -241,7 +241,7 @@ class SphereCloak(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
 
 class InvisibleSphere(Device):
     def __init__(
@@ -260,7 +260,7 @@ class InvisibleSphere(Device):
         radius: float | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
@@ -289,7 +289,7 @@ class InvisibleSphere(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
 
 class BendingSphere(Device):
     def __init__(
@@ -308,7 +308,7 @@ class BendingSphere(Device):
         radius: float | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
     ) -> None: ...
     @property
     def angle(self) -> float: ...
@@ -337,7 +337,7 @@ class BendingSphere(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
 
 class EatonLens(Device):
     def __init__(
@@ -355,7 +355,7 @@ class EatonLens(Device):
         radius: float | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
@@ -382,7 +382,7 @@ class EatonLens(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
 
 class LuneburgLens(Device):
     def __init__(
@@ -400,7 +400,7 @@ class LuneburgLens(Device):
         radius: float | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
@@ -427,7 +427,7 @@ class LuneburgLens(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
 
 class FisheyeLens(Device):
     def __init__(
@@ -445,7 +445,7 @@ class FisheyeLens(Device):
         radius: float | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
@@ -472,7 +472,7 @@ class FisheyeLens(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
 
 class FisheyeHemisphere(Device):
     def __init__(
@@ -493,7 +493,7 @@ class FisheyeHemisphere(Device):
         radius: float | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
@@ -526,7 +526,7 @@ class FisheyeHemisphere(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
 
 class MirrorDetour(Device):
     def __init__(
@@ -545,7 +545,7 @@ class MirrorDetour(Device):
         position: ArrayLike | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
@@ -574,7 +574,7 @@ class MirrorDetour(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
 
 class Prisms(Device):
     def __init__(
@@ -593,7 +593,7 @@ class Prisms(Device):
         prism: Sequence[Mapping[str, Any]] | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
     ) -> None: ...
     @property
     def axis(self) -> list[Any]: ...
@@ -622,7 +622,7 @@ class Prisms(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
 
 class Graded(Device):
     def __init__(
@@ -645,7 +645,7 @@ class Graded(Device):
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
         shape: Literal["rectangle", "circle", "ball"] | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         width: float | None = ...,
         spacing: float | None = ...,
     ) -> None: ...
@@ -684,7 +684,7 @@ class Graded(Device):
     @property
     def shape(self) -> Literal["rectangle", "circle", "ball"]: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def width(self) -> float: ...
 
@@ -705,7 +705,7 @@ class GradedBox(Device):
         position: ArrayLike | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         sides: ArrayLike | None = ...,
     ) -> None: ...
     @property
@@ -735,7 +735,7 @@ class GradedBox(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def sides(self) -> list[Any]: ...
 
@@ -764,7 +764,7 @@ class Body(Device):
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
         shape: Literal["slab", "box", "sphere", "cylinder"] | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         size: ArrayLike | None = ...,
         surface: Mapping[str, Any] | None = ...,
         thickness: float | None = ...,
@@ -813,7 +813,7 @@ class Body(Device):
     @property
     def shape(self) -> Literal["slab", "box", "sphere", "cylinder"]: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def size(self) -> list[Any]: ...
     @property
@@ -850,7 +850,7 @@ class Lens(Device):
         position: ArrayLike | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         thickness: float | None = ...,
         uniaxial: Mapping[str, Any] | None = ...,
     ) -> None: ...
@@ -901,7 +901,7 @@ class Lens(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def thickness(self) -> float: ...
     @property
@@ -923,7 +923,7 @@ class Polarizer(Device):
         position: ArrayLike | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         width: float | None = ...,
     ) -> None: ...
     @property
@@ -951,7 +951,7 @@ class Polarizer(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def width(self) -> float: ...
 
@@ -973,7 +973,7 @@ class GaussianCarpet(Device):
         position: ArrayLike | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         w: float | None = ...,
         width: float | None = ...,
     ) -> None: ...
@@ -1006,7 +1006,7 @@ class GaussianCarpet(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def w(self) -> float: ...
     @property
@@ -1031,7 +1031,7 @@ class GratingCarpet(Device):
         position: ArrayLike | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         width: float | None = ...,
     ) -> None: ...
     @property
@@ -1065,7 +1065,7 @@ class GratingCarpet(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def width(self) -> float: ...
 
@@ -1087,7 +1087,7 @@ class QuasiConformalCarpet(Device):
         position: ArrayLike | None = ...,
         resonance_nm: float | None = ...,
         rotation: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         w: float | None = ...,
         width: float | None = ...,
     ) -> None: ...
@@ -1120,7 +1120,7 @@ class QuasiConformalCarpet(Device):
     @property
     def rotation(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def w(self) -> float: ...
     @property
@@ -1184,6 +1184,7 @@ class Photograph(Table):
     def __init__(
         self,
         *,
+        border: Literal["none", "mirror", "repeat", "clamp"] | None = ...,
         image: _Image | None = ...,
         normal: ArrayLike | None = ...,
         position: ArrayLike | None = ...,
@@ -1191,6 +1192,8 @@ class Photograph(Table):
         width: float | None = ...,
         x: float | None = ...,
     ) -> None: ...
+    @property
+    def border(self) -> Literal["none", "mirror", "repeat", "clamp"]: ...
     @property
     def image(self) -> str: ...
     @property

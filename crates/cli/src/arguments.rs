@@ -9,7 +9,7 @@ use clap::{ArgGroup, Args, Parser, Subcommand};
 use cloakroom::render::Tile;
 use cloakroom::scene::OPTIONAL_CHANNELS;
 use cloakroom::scene_file::Override;
-pub use groups::listed;
+pub use groups::{listed, wrapped};
 pub use measuring::*;
 use std::path::PathBuf;
 use values::{frames_only, map_range, pixel, size};
@@ -147,6 +147,7 @@ pub struct MaterialsArguments {
 pub struct SceneArguments {
     /// The scene: a file (TOML), - for standard input, or an example (`cloakroom scenes`), as in
     /// gallery/prisms.
+    #[arg(help_heading = None::<&'static str>)]
     pub scene: PathBuf,
     /// Override a key of the scene, as in camera.samples=16, device.0.rotation=5 or, of every
     /// device, device.*.rotation=5.

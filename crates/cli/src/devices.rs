@@ -1,6 +1,6 @@
 //! `cloakroom devices`: the catalogue with computed facts.
 
-use crate::arguments::listed;
+use crate::arguments::{listed, wrapped};
 use crate::report::{self, Failure, Result, decimals};
 use cloakroom::device::{self, CATALOGUE, Entry, Fact, FactValue, Request, Structure};
 use cloakroom::json::json as value_json;
@@ -75,11 +75,12 @@ pub fn all_keys(keys: &'static [Key]) -> Vec<(String, &'static Key)> {
 /// Describes a kind: with `all` also the keys of tables within its keys.
 fn describe(entry: &Entry, all: bool, text: &mut String) -> std::fmt::Result {
     writeln!(text, "{}", entry.kind)?;
-    writeln!(text, "{}", indented(entry.summary))?;
+    writeln!(text, "{}\n", wrapped(entry.summary, "  ", "  "))?;
     let keys = all_keys(entry.keys);
     let shown = keys.iter().filter(|(name, _)| all || !name.contains('.'));
     for (name, key) in shown {
-        let default = default(key).map_or_else(String::new, |default| format!(" [{default}]"));
+        let default =
+            default(key).map_or_else(String::new, |default| format!(" [default: {default}]"));
         let words = format!("{} {}{default}", key.doc, sentence(&allowed(key)));
         text.push_str(&listed(name, 16, &words));
     }
@@ -89,7 +90,7 @@ fn describe(entry: &Entry, all: bool, text: &mut String) -> std::fmt::Result {
             "Every device takes these, too (`cloakroom schema --markdown`): {}.",
             common.join(", ")
         );
-        writeln!(text, "\n{}", indented(&words))?;
+        writeln!(text, "\n{}", wrapped(&words, "  ", "  "))?;
     }
     writeln!(text)?;
     let device = (entry.device)();
@@ -98,14 +99,6 @@ fn describe(entry: &Entry, all: bool, text: &mut String) -> std::fmt::Result {
         writeln!(text, "  {line}")?;
     }
     writeln!(text)
-}
-
-/// Words wrapped to the width of the terminal, two columns in.
-fn indented(words: &str) -> String {
-    textwrap::fill(
-        words,
-        textwrap::Options::with_termwidth().initial_indent("  ").subsequent_indent("  "),
-    )
 }
 
 /// With a capital letter and a full stop, unless it begins with a quoted word.

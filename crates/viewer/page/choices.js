@@ -47,6 +47,7 @@ export function showState(state, hello, { changed, setShow }) {
   $("bandwidth").value = state.scene.light?.bandwidth_nm ?? "";
   showSpectrum(state.scene.light?.spectrum);
   $("map").value = state.scene.picture?.map ?? "none";
+  $("border").value = state.scene.photograph?.border ?? "none";
   $("beside").value = state.beside;
   $("width").value = String(state.width);
   $("samples").value = String(state.samples);

@@ -3,7 +3,7 @@
 use super::Arguments;
 use clap::{Command, CommandFactory, FromArgMatches};
 use std::fmt::Write;
-use textwrap::{Options, termwidth};
+use textwrap::{Options, WordSplitter, termwidth};
 
 /// What the commands are for.
 const GROUPS: [(&str, &[&str]); 4] = [
@@ -55,14 +55,18 @@ fn in_groups(command: Command) -> Command {
 /// A name and words about it, wrapped to the width of the terminal: in two columns, the first of them
 /// `width` wide where the name has room in it.
 pub fn listed(name: &str, width: usize, words: &str) -> String {
-    let first = format!("  {name:<width$} ");
     let rest = " ".repeat(width + 3);
-    let options = Options::new(termwidth()).break_words(false).subsequent_indent(&rest);
     if name.chars().count() > width {
-        let options = options.initial_indent(&rest);
-        return format!("  {name}\n{}\n", textwrap::fill(words, options));
+        return format!("  {name}\n{}\n", wrapped(words, &rest, &rest));
     }
-    format!("{}\n", textwrap::fill(words, options.initial_indent(&first)))
+    format!("{}\n", wrapped(words, &format!("  {name:<width$} "), &rest))
+}
+
+/// Words wrapped to the width of the terminal, with what begins the first line and the others.
+pub fn wrapped(words: &str, first: &str, rest: &str) -> String {
+    let options = Options::new(termwidth()).initial_indent(first).subsequent_indent(rest);
+    let splitter = WordSplitter::NoHyphenation;
+    textwrap::fill(words, options.break_words(false).word_splitter(splitter))
 }
 
 #[cfg(test)]
