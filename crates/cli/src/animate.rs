@@ -9,16 +9,23 @@ use crate::report::{Failure, Result, say};
 use crate::scene;
 use cloakroom::output;
 use cloakroom::render::Images;
-use cloakroom::scene_file::{Loaded, SceneText};
-use cloakroom::timeline::Timeline;
+use cloakroom::scene_file::{self, Loaded, Override};
+use cloakroom::timeline::{Changes, Keyframes, Timeline};
 use cloakroom_figures::film::{self, Film, FilmFormat, FrameFolder, frame_metadata, frames_beside};
 use std::ops::Range;
+use std::path::Path;
 
 /// Renders the frames that are not there yet, and makes the film of them.
 pub fn run(arguments: &AnimateArguments) -> Result<()> {
     let path = &arguments.output;
     let format = FilmFormat::of(path).map_err(Failure::Failed)?;
-    let timeline = Timeline::new(&arguments.sweeps, arguments.frames)?;
+    let keyframes = arguments.keyframes.as_deref().map(keyframes).transpose()?;
+    let timeline = Timeline::new(Changes {
+        sweeps: &arguments.sweeps,
+        keyframes: keyframes.as_ref(),
+        orbit: arguments.orbit.as_deref(),
+        frames: arguments.frames,
+    })?;
     let count = timeline.frames();
     let range = range(arguments.frames_only, count)?;
     let makes_film = arguments.frames_only.is_none() && format != FilmFormat::Frames;
@@ -69,6 +76,15 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
     Ok(())
 }
 
+/// Where the camera stands.
+const POSITION: &str = "camera.position";
+
+/// The keyframes of a file.
+fn keyframes(path: &Path) -> Result<Keyframes> {
+    let text = scene_file::read_text(path)?;
+    Ok(Keyframes::parse(&text, &path.display().to_string())?)
+}
+
 /// The scenes of a range of frames, each of which can be built.
 fn scenes(
     arguments: &AnimateArguments,
@@ -76,11 +92,19 @@ fn scenes(
     range: Range<usize>,
     images: &mut Images,
 ) -> Result<Vec<Loaded>> {
-    let (text, mut scenes) = (SceneText::read(&arguments.scene.scene)?, Vec::<Loaded>::new());
+    let (text, mut scenes) = (scene::text(&arguments.scene.scene)?, Vec::<Loaded>::new());
     for frame in range {
-        let further = timeline.overrides(frame);
-        let loaded = text.scene(&[&arguments.scene.overrides[..], &further[..]].concat());
-        let loaded = loaded.map_err(|error| swept(error.into()))?;
+        let mut overrides =
+            [scene::overrides(&arguments.scene, &arguments.picture), timeline.overrides(frame)]
+                .concat();
+        let load =
+            |overrides: &[Override]| text.scene(overrides).map_err(|error| swept(error.into()));
+        let mut loaded = load(&overrides)?;
+        if let Some(degrees) = timeline.azimuth(frame) {
+            let value = loaded.scene.camera.orbited(degrees).to_array().into();
+            overrides.push(Override::Value { key: POSITION.to_owned(), value });
+            loaded = load(&overrides)?;
+        }
         scene::check_pipes(&arguments.scene, &loaded, None)?;
         scene::prepared(&loaded, images).map_err(swept)?;
         let shown = &loaded.scene.picture;

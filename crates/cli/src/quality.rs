@@ -5,10 +5,10 @@ use crate::files::{check_outputs, formats, write_each};
 use crate::interruption;
 use crate::progress::supervised;
 use crate::render::warn_of_cut_branches;
-use crate::report::{self, Result, all};
+use crate::report::{self, Result, all, decimals};
 use crate::scene;
 use cloakroom::measure::{Constraint, QualityTable, Sweep, SweepPlan, quality};
-use cloakroom::scene_file::{Override, SceneText};
+use cloakroom::scene_file::Override;
 use cloakroom_figures::{TableFormat, write_table};
 use std::fmt::Write;
 
@@ -31,14 +31,14 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
     let sweeps =
         arguments.sweeps.iter().map(|text| Sweep::parse(text)).collect::<Result<_, _>>()?;
-    let written = SceneText::read(&arguments.scene.scene)?;
+    let written = scene::text(&arguments.scene.scene)?;
     let load =
         |further: &[Override]| written.scene(&[&arguments.scene.overrides, further].concat());
     let holds =
         arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;
     let plan = SweepPlan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;
     let reference = match &arguments.reference {
-        Some(path) => Some(SceneText::read(path)?.scene(&[])?),
+        Some(path) => Some(scene::text(path)?.scene(&[])?),
         None => None,
     };
     let plan = match &reference {
@@ -119,12 +119,12 @@ fn number(mean: f64, error: f64) -> String {
         return "-".to_owned();
     }
     if error.is_nan() || error <= 0.0 {
-        return format!("{mean:.4}");
+        return decimals(mean, 4);
     }
-    let decimals = (1.0 - error.log10().floor()).clamp(0.0, 4.0);
-    let places = decimals as usize;
-    let last = (error * 10f64.powf(decimals)).round().max(1.0);
-    format!("{mean:.places$}({last})")
+    let digits = (1.0 - error.log10().floor()).clamp(0.0, 4.0);
+    let places = digits as usize;
+    let last = (error * 10f64.powf(digits)).round().max(1.0);
+    format!("{}({last})", decimals(mean, places))
 }
 
 #[cfg(test)]
@@ -138,6 +138,7 @@ mod tests {
         assert_eq!(number(-2.5, 0.4), "-2.50(40)");
         assert_eq!(number(12345.6, 123.0), "12346(123)");
         assert_eq!(number(0.5, 1e-7), "0.5000(1)");
+        assert_eq!((number(-1e-9, 0.0), number(-1e-9, 0.1)), ("0.0000".into(), "0.00(10)".into()));
         assert_eq!(number(f64::NAN, f64::NAN), "-");
     }
 }

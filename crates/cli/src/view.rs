@@ -16,7 +16,7 @@ pub fn run(arguments: &ViewArguments) -> Result<()> {
     let path = arguments.scene.as_deref().unwrap_or(Path::new(""));
     let folder = path.parent().unwrap_or(path);
     let scene = match &arguments.scene {
-        Some(path) => scene_file::load(path, overrides)?,
+        Some(path) => scene::text(path)?.scene(overrides)?,
         None => scene_file::parse(examples::FIRST, "the first scene", folder, overrides)?,
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();

@@ -27,6 +27,7 @@ mod material;
 mod materials;
 mod mirror_detour;
 mod open_core;
+mod photograph_border;
 mod pictured_bodies;
 mod pictures;
 mod plain_tree;

@@ -20,6 +20,7 @@ mod pulses;
 mod sampling;
 mod spectral;
 mod tile;
+mod warnings;
 
 pub use channels::{ChannelKind, ChannelSet};
 pub use estimate::{Estimate, estimate};
@@ -29,6 +30,7 @@ pub use prepared_scene::{
 };
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
 pub use tile::{MergeError, Tile, TileError, merge, merge_images};
+pub use warnings::{behind_photograph, share_past_edge};
 
 use crate::color::BINS;
 use crate::output::Picture;

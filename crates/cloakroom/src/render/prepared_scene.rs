@@ -7,7 +7,7 @@ use crate::assembly::{Assembly, MOST_DEVICES, Placed, Screen};
 use crate::input::Digest;
 use crate::keys::KeyError;
 use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
-use crate::scene::{Camera, DeviceSettings, Projection, Scene};
+use crate::scene::{Border, Camera, DeviceSettings, Projection, Scene};
 use crate::trace::{Coherence, Limits, RaySettings};
 use glam::DVec3;
 use std::path::PathBuf;
@@ -393,6 +393,14 @@ impl<'s> PreparedScene<'s> {
         metadata
     }
 
+    /// The light of the photograph at (u, v), on it or beyond its edge, through a filter as wide as
+    /// these steps.
+    #[inline]
+    pub(super) fn photograph_light(&self, at: [f64; 2], [dx, dy]: [[f64; 2]; 2]) -> [f64; 3] {
+        let edges = self.scene.photograph.border.edges();
+        self.image.sample_with(edges, at, dx, dy).map(f64::from)
+    }
+
     /// The surface of an opaque body.
     pub(super) fn body_surface(&self, device: u16) -> Option<&BodySurface> {
         self.body_surfaces[usize::from(device)].as_ref()
@@ -434,5 +442,6 @@ fn screen(scene: &Scene, aspect: f64) -> Result<Screen, PreparedSceneError> {
             .covering_width(&pose, aspect)
             .ok_or_else(|| PreparedSceneError::NoCoveringWidth { plane: settings.plane() })?,
     };
-    Ok(Screen::new(&pose, width / 2.0, width / aspect / 2.0))
+    let screen = Screen::new(&pose, width / 2.0, width / aspect / 2.0);
+    Ok(if settings.border == Border::None { screen } else { screen.endless() })
 }

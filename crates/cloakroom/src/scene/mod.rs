@@ -17,7 +17,7 @@ pub use camera::{Camera, CameraRay};
 pub use polarizer::Polarizer;
 pub use spectrum::{LampSpectrum, SpectralLine, Spectrum, SpectrumWord};
 pub use tables::{
-    CameraSettings, Colormap, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel,
+    Border, CameraSettings, Colormap, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel,
     PhotographSettings, PictureSettings, Placement, Projection, Receiver, SCALAR_CHANNELS,
     SurroundingsSettings, TABLES, TraceSettings,
 };
@@ -248,7 +248,8 @@ impl DeviceSettings {
         let Placement { show, imperfection, coating, .. } = &self.placement;
         let structure = self.built(*show)?;
         let message = format!("{} with these keys has no core that could be open", self.kind());
-        let closed = self.has_open_core() && structure.hull.filled.is_none();
+        let is_there = *show != Show::Empty;
+        let closed = self.has_open_core() && is_there && structure.hull.filled.is_none();
         KeyError::refuse_if(closed, key!(Placement.core), message)?;
         let layers = device::layers(key!(Placement.coating), coating, self.wavelength_nm)?;
         if *show != Show::Cloak {

@@ -3,7 +3,7 @@
 use super::{Polarizer, Spectrum};
 use crate::device::{CoatingLayer, Core, Dispersion, Imperfection, Metal, Request, Show};
 use crate::keys::{Given, Key, ValueRange};
-use crate::photograph::ImageSource;
+use crate::photograph::{Edges, ImageSource};
 use cloakroom_trace::{choice, table};
 use glam::DVec3;
 
@@ -103,6 +103,32 @@ impl Light {
     }
 }
 
+choice! {
+    /// What is seen beyond the edge of the photograph.
+    pub enum Border {
+        /// Nothing: light goes past it.
+        None = "none",
+        /// The photograph mirrored at its edge, again and again.
+        Mirror = "mirror",
+        /// The photograph again and again.
+        Repeat = "repeat",
+        /// The colors of its edge.
+        Clamp = "clamp",
+    }
+}
+
+impl Border {
+    /// What the filter finds beyond the edges of the image.
+    #[must_use]
+    pub fn edges(self) -> Edges {
+        match self {
+            Self::None | Self::Clamp => Edges::Clamp,
+            Self::Mirror => Edges::Mirror,
+            Self::Repeat => Edges::Repeat,
+        }
+    }
+}
+
 table! {
     /// The photograph: a rectangle with two sides.
     pub struct PhotographSettings {
@@ -121,6 +147,10 @@ table! {
         /// Its width; the height follows from the image. By default 110 cm for the builtin
         /// photograph, for others the smallest that covers the camera's view.
         width: Option<f64>, "cm", in ValueRange::LENGTH,
+        /// What is seen beyond its edge, on the rest of its plane: `none`, light goes past; or the
+        /// photograph goes on, mirrored at each edge, repeated, or in the colors of its edge (`clamp`).
+        /// Then no light gets past the plane.
+        border: Border,
     }
 }
 
@@ -230,7 +260,7 @@ table! {
 table! {
     /// What every device takes beside its `kind` and its kind's own keys.
     pub struct Placement {
-        /// The cloak, the bare metal alone, or the mirror it should look like.
+        /// The cloak, the bare metal alone, the mirror it should look like, or nothing in its place.
         show: Show,
         /// What fills the hidden region of a free-space cloak: metal, or air in which bodies may
         /// stand. A carpet needs its mirror.

@@ -13,7 +13,7 @@ use crate::scene::{Camera, CameraSettings, DeviceSettings, Placement, Scene, TAB
 /// The list of devices, the one list of tables a scene has.
 pub(super) const DEVICES: &str = "device";
 /// The key that says what a device is.
-const KIND: &str = "kind";
+pub(super) const KIND: &str = "kind";
 
 /// The entries of a table.
 type Entries = [(String, Value)];

@@ -242,7 +242,7 @@ impl Device for Graded {
                 plan.structure(square(&plan, self.samples()?)?, extent, request.has_open_core())
             }
             (Show::Bare, Some(core)) => Ok(metal_cylinder(core, extent)),
-            (Show::Mirror, Some(_)) => Ok(Structure::empty()),
+            (Show::Mirror | Show::Empty, Some(_)) => Ok(Structure::empty()),
             (_, None) => {
                 super::refuse_other_views(request, "a graded index without a core hides no metal")?;
                 Ok(Structure::empty())

@@ -9,6 +9,7 @@ mod error;
 mod field;
 mod nearest;
 mod samples;
+mod synonyms;
 mod table;
 mod tensor;
 #[cfg(test)]
