@@ -145,6 +145,7 @@ def diagram(
     counts: Sequence[int],
     z: float | None,
     width: float | None,
+    window: Sequence[float] | None,
     polarization: tuple[float, float],
     wavefronts: float | None,
     min_power: float,
@@ -207,6 +208,7 @@ def quality(
 def sweep(
     scene: Scene,
     sweeps: Sequence[tuple[str, Sequence[object]]],
+    reference: Scene | None,
     path: str | None,
     progress: _Tell,
 ) -> str: ...

@@ -95,6 +95,7 @@ def sweep(
     keys: Mapping[str, Sequence[Any] | NDArray[Any]],
     path: str | os.PathLike[str] | None = None,
     *,
+    reference: Scene | None = None,
     progress: Progress = False,
 ) -> Arrays:
     """Measures how well the devices of a scene work, for every combination of the values of some keys.
@@ -107,6 +108,9 @@ def sweep(
         The values that each key takes, as `Scene.replace` takes it: ``{"device.0.rotation": range(0, 91, 5)}``.
     path : path, optional
         A file for the table (``.csv``, ``.npz``) or a plot (``.svg``, ``.pdf``, ``.png``).
+    reference : Scene, optional
+        A scene whose devices show what should be seen, as a flat floor for a carpet of one's own; else a cloak's flat
+        mirror, or nothing.
     progress : bool or callable, default False
         ``True`` for a line on standard error, or a function that is called with the steps done and all steps.
 
@@ -128,10 +132,13 @@ def sweep(
         raise TypeError(f"scene is a {type(scene).__name__}; expected a Scene")
     if not isinstance(keys, Mapping):
         raise TypeError(f"keys is a {type(keys).__name__}; expected a mapping of keys to lists of values")
+    if reference is not None and not isinstance(reference, Scene):
+        raise TypeError(f"reference is a {type(reference).__name__}; expected a Scene")
     values = {key: _values(key, given) for key, given in keys.items()}
     file = None if path is None else os.fspath(path)
     with told(progress, "measuring") as tell:
-        table = json.loads(_cloakroom.sweep(scene._native, list(values.items()), file, tell))
+        wanted = None if reference is None else reference._native
+        table = json.loads(_cloakroom.sweep(scene._native, list(values.items()), wanted, file, tell))
     shape = tuple(len(given) for given in values.values())
     grids = np.meshgrid(*(np.asarray(given) for given in values.values()), indexing="ij") if values else []
     columns: dict[str, NDArray[Any]] = dict(zip(values, grids))

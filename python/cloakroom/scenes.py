@@ -332,6 +332,7 @@ class Scene:
         point: ArrayLike | None = None,
         camera: bool = False,
         width: float | None = None,
+        window: tuple[float, float, float, float] | None = None,
         z: float | None = None,
         polarization: Literal["none", "horizontal", "vertical"] = "none",
         wavefronts: float | None = None,
@@ -354,6 +355,9 @@ class Scene:
             A fan of rays from the scene's camera instead.
         width : float, optional
             The width of a bundle of parallel rays, cm; that of the devices if not given.
+        window : (float, float, float, float), optional
+            The part of the cross-section that is shown: least x and y, greatest x and y (cm); the devices and what is
+            around them if not given.
         z : float, optional
             The plane z = const that the rays start in, cm; that of the first device if not given.
         polarization : {"none", "horizontal", "vertical"}, default "none"
@@ -396,6 +400,7 @@ class Scene:
                 [_count("rays", rays), _count("layers", layers)],
                 None if z is None else _number("z", z),
                 None if width is None else _number("width", width),
+                None if window is None else _numbers("window", window, 4, "cm"),
                 shares[polarization],
                 None if wavefronts is None else _number("wavefronts", wavefronts),
                 _number("min_power", min_power),

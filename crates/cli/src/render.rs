@@ -54,9 +54,7 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
             Some(strips) => merged(&prepared, wanted, strips)?,
             None => picture(&prepared, wanted, "rendering")?,
         };
-        write_each(formats, |path, format| {
-            Ok(write_picture(&picture, shown, format, path)?)
-        })?;
+        write_each(formats, |path, format| Ok(write_picture(&picture, shown, format, path)?))?;
     }
     if let Some(strips) = strips {
         strips.remove();
