@@ -17,7 +17,7 @@ import numpy as np
 
 from . import _cloakroom
 from ._arrays import image_of, is_image_array
-from ._index import SPACING, grid_array, index_array
+from ._index import SPACING, check_shapes, grid_array, index_array
 
 _SCHEMA: dict[str, Any] = json.loads(_cloakroom.schema())
 
@@ -112,6 +112,7 @@ class _Graded(Device):
         for name, most in (("ratio", 3), ("optic_axis", 4)):
             if keys.get(name) is not None:
                 keys[name] = grid_array(name, keys[name], most)
+        check_shapes(*(keys.get(name) for name in ("index", "ratio", "optic_axis")))
         super().__init__(**keys)
 
     def __repr__(self) -> str:
