@@ -54,7 +54,7 @@ pub enum Command {
     /// Draw a ray diagram of a scene, or its setting, as SVG, PDF or PNG.
     Diagram(DiagramArguments),
     /// Write what a device is made of, for fabrication and full-wave solvers: its index and tensors
-    /// on a grid, or its segments as a table.
+    /// on a grid, or its segments as a table; or the outlines of devices as meshes, STL or glTF.
     Export(ExportArguments),
     /// Compare two pictures: correlation, structural similarity, FLIP, times of flight, power.
     Compare(CompareArguments),

@@ -5,6 +5,8 @@ use super::locations::{Locations, Origin, join};
 use super::read::DEVICES;
 use super::tree::{parse_value, to_toml};
 use crate::keys::{Value, quoted};
+use crate::scene::Placement;
+use cloakroom_trace::key;
 use std::fmt;
 use std::sync::Arc;
 
@@ -68,12 +70,15 @@ fn apply_one(
             .map(|(path, value)| (path, Err(value.trim())))
             .ok_or("an override is written KEY=VALUE, such as camera.samples=16")?,
     };
-    let path: Vec<&str> = path.split('.').map(str::trim).collect();
-    if path.iter().any(|key| key.is_empty()) {
+    let mut path: Vec<String> = path.split('.').map(|key| key.trim().to_owned()).collect();
+    if path.iter().any(String::is_empty) {
         return Err("a key is missing; write it as in camera.samples=16".to_owned());
     }
     if path.len() > DEEPEST {
         return Err("no key lies that deep".to_owned());
+    }
+    if let Some((parts, device)) = called(root, &path) {
+        path.splice(..parts, [DEVICES.to_owned(), device.to_string()]);
     }
     let value = written.map_or_else(parse_value, |value| Ok(value.clone()))?;
     let mut walked = String::new();
@@ -81,7 +86,7 @@ fn apply_one(
     // The first part of the path that was not there.
     let mut made = None;
     for (i, key) in path.iter().enumerate() {
-        let next = path.get(i + 1).copied();
+        let next = path.get(i + 1).map(String::as_str);
         let (inner, new) = match place {
             Value::Table(entries) => descend(entries, key, next, &mut walked)?,
             Value::List(items) => entry(items, key, &mut walked)?,
@@ -103,6 +108,19 @@ fn apply_one(
     }
     locations.tell_override(&parts(path.len()), place, number);
     Ok(())
+}
+
+/// The device that a path calls by its name, `left.rotation` or `device.left.rotation`: how many
+/// parts of the path say so, and the device's number.
+fn called(root: &Value, path: &[String]) -> Option<(usize, usize)> {
+    let parts = if path[0] == DEVICES { 2 } else { 1 };
+    let name = path.get(parts - 1)?;
+    let (_, devices) = root.as_table()?.iter().find(|(key, _)| key == DEVICES)?;
+    let is_called = |device: &Value| {
+        let mut entries = device.as_table().unwrap_or_default().iter();
+        entries.any(|(key, value)| key == key!(Placement.name) && value.as_text() == Some(name))
+    };
+    Some((parts, devices.as_list()?.iter().position(is_called)?))
 }
 
 /// The value of a key, made if it is not there, and whether it was; `next` is the key after it.
