@@ -112,12 +112,13 @@ fn document(meshes: &[OutlineMesh], length: usize, uri: Option<String>) -> Value
         "name": "cm", "scale": [0.01, 0.01, 0.01],
         "children": (1..=meshes.len()).collect::<Vec<_>>(),
     });
-    let nodes = of_each(&|number, mesh| json!({ "name": mesh.name, "mesh": number }));
+    let mut nodes = vec![root];
+    nodes.extend(of_each(&|number, mesh| json!({ "name": mesh.name, "mesh": number })));
     json!({
         "asset": { "version": "2.0", "generator": "cloakroom", "extras": { "unit": "cm below the node of that name" } },
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
-        "nodes": [vec![root], nodes].concat(),
+        "nodes": nodes,
         "meshes": of_each(&|number, mesh| json!({
             "name": mesh.name,
             "primitives": [{ "attributes": { "POSITION": number }, "material": number }],

@@ -173,17 +173,20 @@ impl Polyhedron {
     }
 
     fn crossing(&self, origin: DVec3, direction: DVec3, way: Way) -> Option<FaceHit> {
-        let (distance, triangle) = self.found(origin, direction, way).or_else(|| match way {
+        let [found, else_found] = self.found(origin, direction, way);
+        let grazed = || match way {
             Way::In => None,
             Way::Out => self.grazed(origin, direction),
-        })?;
+        };
+        let (distance, triangle) = found.or_else(grazed).or(else_found)?;
         let (face, outward) = (self.faces[triangle as usize], self.normals[triangle as usize]);
         Some(FaceHit { distance: distance.max(0.0), face, outward })
     }
 
-    /// How far along a ray which triangle is crossed that way.
+    /// How far along a ray which triangle is crossed that way, and which one is if none is where the
+    /// faces further on say that one must be.
     #[inline]
-    fn found(&self, origin: DVec3, direction: DVec3, way: Way) -> Option<(f64, u32)> {
+    fn found(&self, origin: DVec3, direction: DVec3, way: Way) -> [Option<(f64, u32)>; 2] {
         let ray = ShearedRay::new(origin, direction);
         let hidden = self.hidden;
         // The nearest face that is crossed the right way, the nearest that is crossed the wrong way,
@@ -211,7 +214,7 @@ impl Polyhedron {
             Some((distance, _)) => wrong < distance - hidden,
             None => way == Way::Out || wrong.is_finite(),
         };
-        if inside_out { passed.or(nearest) } else { nearest }
+        if inside_out { [passed, nearest] } else { [nearest, None] }
     }
 
     /// The face by which a ray leaves that rounding has put outside, at an edge, so that it crosses
@@ -240,7 +243,11 @@ impl Polyhedron {
         });
         match steepest {
             Some((_, triangle)) => Some((0.0, triangle)),
-            None => self.found(origin - outwards * (2.0 * self.hidden), direction, Way::Out),
+            None => {
+                let further_in = origin - outwards * (2.0 * self.hidden);
+                let [found, else_found] = self.found(further_in, direction, Way::Out);
+                found.or(else_found)
+            }
         }
     }
 
