@@ -74,7 +74,7 @@ pub enum Command {
     #[command(after_help = example!("diagram scene.toml -o rays.svg"))]
     Diagram(DiagramArguments),
     /// Write what a device is made of, for fabrication and full-wave solvers: its index and tensors
-    /// on a grid, or its segments as a table.
+    /// on a grid, or its segments as a table; or the outlines of devices as meshes, STL or glTF.
     #[command(after_help = example!("export scene.toml --grid 200x200x1 -o device.vti"))]
     Export(ExportArguments),
     /// Compare two pictures: correlation, structural similarity, FLIP, times of flight, power.

@@ -52,7 +52,8 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
     }
     for (index, device) in scene.devices.iter().enumerate() {
         let show = device.placement.show.word();
-        writeln!(text, "device {index}     {}, shown as {show}, {}", device.kind(), device.turn())?;
+        let name = scene.device_name(index).to_string();
+        writeln!(text, "{name:<12} {}, shown as {show}, {}", device.kind(), device.turn())?;
         let structure = &prepared.assembly.devices()[index].structure;
         for line in media_line(structure).into_iter().chain(fact_lines(device.facts())) {
             writeln!(text, "             {line}")?;
@@ -65,8 +66,9 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
         if let Some(waves) = waves.filter(|waves| *waves < THIN) {
             writeln!(
                 text,
-                "warning      device {index} is {waves:.2} wavelengths thick, under {THIN}: rays in it know no waves that \
-                 decay; make it a `coating` of the surface that it lies on"
+                "warning      {} is {waves:.2} wavelengths thick, under {THIN}: rays in it know no waves that \
+                 decay; make it a `coating` of the surface that it lies on",
+                scene.device_name(index)
             )?;
         }
     }

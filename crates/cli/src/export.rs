@@ -1,4 +1,4 @@
-//! `cloakroom export`: what a device is made of.
+//! `cloakroom export`: what a device is made of, or what devices look like as meshes.
 
 use crate::arguments::ExportArguments;
 use crate::files::check_writable;
@@ -6,6 +6,7 @@ use crate::progress::supervised;
 use crate::report::Result;
 use crate::{interruption, scene};
 use cloakroom::material::{self, Frame, Resolution};
+use cloakroom::outline_mesh::{MeshFormat, outlines, write_mesh};
 use cloakroom::output::{self, GridFormat};
 
 /// Writes the material of a device.
@@ -19,6 +20,10 @@ pub fn run(arguments: &ExportArguments) -> Result<()> {
         check_writable([path], &inputs)?;
         let segments = material::segments(scene, &assembly, device)?;
         return Ok(material::write_segments(&segments, path)?);
+    }
+    if MeshFormat::of(path).is_ok() {
+        check_writable([path], &inputs)?;
+        return Ok(write_mesh(&outlines(scene, &assembly, device)?, path)?);
     }
     GridFormat::of(path)?;
     check_writable([path], &inputs)?;

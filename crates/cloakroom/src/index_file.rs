@@ -1,18 +1,20 @@
-//! Files of numbers on a grid that a scene names: an index.
+//! Files that a scene names and a device is made of: numbers on a grid, and meshes of triangles.
 
-use crate::device::{AnyDevice, Graded};
+use crate::device::{AnyDevice, FacetedSolid, Graded};
 use crate::input::{Digest, read_file};
-use crate::keys::{Key, KeyError, KeyKind, Sampled, Samples, find, shape_text};
+use crate::keys::{Key, KeyError, KeyKind, MeshSource, Sampled, Samples, find, shape_text};
+use crate::mesh_file;
 use cloakroom_trace::key;
 use ndarray::ArrayViewD;
 use ndarray_npy::{ViewElement, ViewNpyError, ViewNpyExt};
+use optics::geometry::Polyhedron;
 use std::borrow::Cow;
 use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Longer files are no index of a device.
+/// Longer files are no index of a device and no mesh.
 const LONGEST: u64 = 256 << 20;
 
 /// A file that has been read, or a pipe of which it is known why it cannot be: its bytes are gone.
@@ -25,9 +27,16 @@ pub struct IndexFile {
 /// What was in a file.
 #[derive(Debug, PartialEq)]
 struct Content {
-    samples: Samples,
+    data: Data,
     /// Of its bytes.
     digest: Digest,
+}
+
+/// What a device is made of.
+#[derive(Clone, Debug, PartialEq)]
+enum Data {
+    Samples(Samples),
+    Solid(Arc<Polyhedron>),
 }
 
 impl IndexFile {
@@ -61,10 +70,12 @@ impl IndexFiles {
     /// Those of a device that can be read, or read once only; what is wrong with one is told where
     /// the device is built.
     pub(crate) fn of(&self, device: &AnyDevice) -> Vec<Arc<IndexFile>> {
-        paths(device).into_iter().filter_map(|(_, path)| self.at(path)).collect()
+        let numbers = paths(device).into_iter().map(|(_, path)| (path, false));
+        let all = numbers.chain(mesh_path(device).map(|path| (path, true)));
+        all.filter_map(|(path, is_mesh)| self.at(path, is_mesh)).collect()
     }
 
-    fn at(&self, path: &Path) -> Option<Arc<IndexFile>> {
+    fn at(&self, path: &Path, is_mesh: bool) -> Option<Arc<IndexFile>> {
         let mut files = self.known.borrow_mut();
         if let Some(known) = files.iter().find(|file| file.is_at(path)) {
             return Some(Arc::clone(known));
@@ -72,7 +83,7 @@ impl IndexFiles {
         if self.are_all {
             return None;
         }
-        let content = read(path);
+        let content = if is_mesh { read_mesh(path) } else { read(path) };
         // A file may be mended until the device is built.
         let gives_again =
             || fs::metadata(path).map_or(true, |found| found.is_file() || found.is_dir());
@@ -85,7 +96,18 @@ impl IndexFiles {
     }
 }
 
-/// The files of a device's index, ratio and axes, with the names of their keys.
+/// The file of a device's mesh.
+fn mesh_path(device: &AnyDevice) -> Option<&Path> {
+    match device {
+        AnyDevice::FacetedSolid(FacetedSolid { mesh: Some(MeshSource::InFile(path)), .. }) => {
+            Some(path)
+        }
+        _ => None,
+    }
+}
+
+/// The files of numbers of a device, with the names of their keys: of its index, ratio and axes, or
+/// of its corners or planes.
 fn paths(device: &AnyDevice) -> Vec<(&'static str, &Path)> {
     fn in_file<const LEAST: usize, const MOST: usize>(
         sampled: Option<&Sampled<LEAST, MOST>>,
@@ -95,12 +117,18 @@ fn paths(device: &AnyDevice) -> Vec<(&'static str, &Path)> {
             _ => None,
         }
     }
-    let AnyDevice::Graded(graded) = device else { return Vec::new() };
-    let files = [
-        (key!(Graded.index), in_file(graded.index.as_ref())),
-        (key!(Graded.ratio), in_file(graded.ratio.as_ref())),
-        (key!(Graded.optic_axis), in_file(graded.optic_axis.as_ref())),
-    ];
+    let files = match device {
+        AnyDevice::Graded(graded) => vec![
+            (key!(Graded.index), in_file(graded.index.as_ref())),
+            (key!(Graded.ratio), in_file(graded.ratio.as_ref())),
+            (key!(Graded.optic_axis), in_file(graded.optic_axis.as_ref())),
+        ],
+        AnyDevice::FacetedSolid(solid) => vec![
+            (key!(FacetedSolid.vertices), in_file(solid.vertices.as_ref())),
+            (key!(FacetedSolid.planes), in_file(solid.planes.as_ref())),
+        ],
+        _ => Vec::new(),
+    };
     files.into_iter().filter_map(|(key, path)| Some((key, path?))).collect()
 }
 
@@ -113,35 +141,57 @@ pub(crate) fn with_files_read<'d>(
     device: &'d AnyDevice,
     known: &[Arc<IndexFile>],
 ) -> Result<Cow<'d, AnyDevice>, KeyError> {
-    let paths = paths(device);
-    let AnyDevice::Graded(graded) = device else { return Ok(Cow::Borrowed(device)) };
-    if paths.is_empty() {
+    let (paths, mesh) = (paths(device), mesh_path(device));
+    if paths.is_empty() && mesh.is_none() {
         return Ok(Cow::Borrowed(device));
     }
-    let mut graded = graded.clone();
+    let mut read = device.clone();
     for (name, path) in paths {
-        let samples = samples_of(find(Graded::KEYS, name)?, path, known)?;
-        if name == key!(Graded.index) {
-            graded.index = Some(Sampled::Here(samples));
-        } else if name == key!(Graded.ratio) {
-            graded.ratio = Some(Sampled::Here(samples));
-        } else {
-            graded.optic_axis = Some(Sampled::Here(samples));
+        let samples = samples_of(find(device.table().keys(), name)?, path, known)?;
+        match &mut read {
+            AnyDevice::Graded(graded) if name == key!(Graded.index) => {
+                graded.index = Some(Sampled::Here(samples));
+            }
+            AnyDevice::Graded(graded) if name == key!(Graded.ratio) => {
+                graded.ratio = Some(Sampled::Here(samples));
+            }
+            AnyDevice::Graded(graded) => graded.optic_axis = Some(Sampled::Here(samples)),
+            AnyDevice::FacetedSolid(solid) if name == key!(FacetedSolid.vertices) => {
+                solid.vertices = Some(Sampled::Here(samples));
+            }
+            AnyDevice::FacetedSolid(solid) => solid.planes = Some(Sampled::Here(samples)),
+            _ => {}
         }
     }
-    Ok(Cow::Owned(AnyDevice::Graded(graded)))
+    if let (AnyDevice::FacetedSolid(own), Some(path)) = (&mut read, mesh) {
+        let data = data_of(key!(FacetedSolid.mesh), path, known, read_mesh)?;
+        if let Data::Solid(solid) = data {
+            own.mesh = Some(MeshSource::Here(solid));
+        }
+    }
+    Ok(Cow::Owned(read))
+}
+
+/// What is in a file, which may be known.
+fn data_of(
+    key: &'static str,
+    path: &Path,
+    known: &[Arc<IndexFile>],
+    read: fn(&Path) -> Result<Content, String>,
+) -> Result<Data, KeyError> {
+    let data = match known.iter().find(|known| known.is_at(path)) {
+        Some(known) => known.content.as_ref().map(|known| known.data.clone()).map_err(Clone::clone),
+        None => read(path).map(|content| content.data),
+    };
+    data.map_err(|message| KeyError::at(key, message))
 }
 
 /// The numbers of a file, as its key allows them.
 fn samples_of(key: &Key, path: &Path, known: &[Arc<IndexFile>]) -> Result<Samples, KeyError> {
     let file = path.display();
-    let samples = match known.iter().find(|known| known.is_at(path)) {
-        Some(known) => {
-            known.content.as_ref().map(|known| known.samples.clone()).map_err(Clone::clone)
-        }
-        None => read(path).map(|content| content.samples),
+    let Data::Samples(samples) = data_of(key.name, path, known, read)? else {
+        return Err(KeyError::at(key.name, format!("{file} holds a mesh, and no numbers")));
     };
-    let samples = samples.map_err(|message| KeyError::at(key.name, message))?;
     if let KeyKind::Samples { dimensions: [least, most] } = key.kind {
         let shape = samples.shape();
         let words = [
@@ -198,7 +248,20 @@ fn read(path: &Path) -> Result<Content, String> {
         return Err(failed(format!("its array has {count} dimensions; it may have two to four")));
     }
     let samples = Samples::of(&shape, values).map_err(|error| failed(error.to_string()))?;
-    Ok(Content { samples, digest: Digest::of(&bytes) })
+    Ok(Content { data: Data::Samples(samples), digest: Digest::of(&bytes) })
+}
+
+/// Reads a file of a mesh.
+///
+/// # Errors
+///
+/// A message that names the file and says why it cannot be used.
+fn read_mesh(path: &Path) -> Result<Content, String> {
+    let failed = |reason: String| format!("cannot read {}: {reason}", path.display());
+    let bytes = read_file(LONGEST, path).map_err(|error| failed(error.to_string()))?;
+    let solid = mesh_file::solid(path, &bytes);
+    let solid = solid.map_err(|reason| format!("{}: {reason}", path.display()))?;
+    Ok(Content { data: Data::Solid(solid), digest: Digest::of(&bytes) })
 }
 
 /// The shape and the numbers of an array, the last axis running fastest.
@@ -223,12 +286,12 @@ mod tests {
         let array = Array::from_shape_fn((2, 3), |(i, j)| 1.0 + i as f64 + 0.5 * j as f64);
         let expected = Samples::new(&[vec![1.0, 1.5, 2.0], vec![2.0, 2.5, 3.0]]).expect("a grid");
         array.write_npy(File::create(&path).expect("a file")).expect("written");
-        assert_eq!(read(&path).map(|file| file.samples), Ok(expected.clone()));
+        assert_eq!(read(&path).map(|file| file.data), Ok(Data::Samples(expected.clone())));
         array.mapv(|n| n as f32).write_npy(File::create(&path).expect("a file")).expect("written");
-        assert_eq!(read(&path).map(|file| file.samples), Ok(expected.clone()));
+        assert_eq!(read(&path).map(|file| file.data), Ok(Data::Samples(expected.clone())));
         let turned: Array2<f64> = array.t().as_standard_layout().into_owned();
         turned.t().write_npy(File::create(&path).expect("a file")).expect("written");
-        assert_eq!(read(&path).map(|file| file.samples), Ok(expected));
+        assert_eq!(read(&path).map(|file| file.data), Ok(Data::Samples(expected)));
     }
 
     #[test]
@@ -249,7 +312,7 @@ mod tests {
         Array::from_elem(3, 1.0_f64)
             .write_npy(File::create(&path).expect("a file"))
             .expect("written");
-        let of_line = read(&path).expect("numbers").samples;
+        let Data::Samples(of_line) = read(&path).expect("numbers").data else { panic!("a mesh") };
         assert_eq!(of_line.shape(), [3]);
         Array::from_elem((2, 1, 1, 1, 2), 1.0_f64)
             .write_npy(File::create(&path).expect("a file"))

@@ -20,6 +20,8 @@ pub mod material;
 pub mod material_file;
 pub mod measure;
 pub mod memory;
+mod mesh_file;
+pub mod outline_mesh;
 pub mod output;
 pub mod photograph;
 pub mod ray_json;

@@ -452,7 +452,7 @@ fn what_is_wrong_with_a_coating_is_told() {
             format!("kind = \"double-gaussian-cloak\"\nfresnel = false\n{film}"),
             "leave one of them out",
         ),
-        ("kind = \"body\"\nmetal = { index = [1, 2] }".to_owned(), "has no metal of its own"),
+        ("kind = \"lens\"\nmetal = { index = [1, 2] }".to_owned(), "has no metal of its own"),
         (
             "kind = \"luneburg-lens\"\nmetal = { index = [1, 2] }".to_owned(),
             "has no metal of its own",

@@ -6,6 +6,7 @@ use crate::pictures::{difference, png};
 use crate::rays::{self, Numbers, assembly, launch, launches_around, spread, strongest, try_bench};
 use cloakroom::assembly::Assembly;
 use cloakroom::render::PreparedSceneError;
+use cloakroom::scene::DeviceName;
 use cloakroom::trace::{Launch, Leaf, Limits, Outcome, TraceStats, Tracer};
 use glam::DVec3;
 
@@ -302,7 +303,7 @@ fn bodies_may_stand_in_the_core_and_nowhere_else() {
             assert!(try_bench(&scene(fits)).is_ok(), "{kind} {fits}");
             let error = try_bench(&scene(too_large)).unwrap_err();
             assert!(
-                matches!(error, PreparedSceneError::Overlap { first: 0, second: 1 }),
+                matches!(error, PreparedSceneError::Overlap { first: DeviceName { number: 0, .. }, second: DeviceName { number: 1, .. } }),
                 "{kind} {too_large} {error}"
             );
         }

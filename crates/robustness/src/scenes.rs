@@ -264,6 +264,8 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
             0 => Value::Table(table(draws, keys, 60)),
             _ => material(draws),
         },
+        KeyKind::Mesh => (*draws.pick(&["nowhere.stl", "/", "a.glb"])).into(),
+        KeyKind::Name => (*draws.pick(&["left", "right", "a_1", "", "1"])).into(),
         KeyKind::Polygon => polygon(draws),
         KeyKind::Samples { dimensions } => samples(draws, limits, dimensions),
         KeyKind::Table { keys } => Value::Table(table(draws, keys, 128)),

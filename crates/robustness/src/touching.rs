@@ -191,6 +191,19 @@ fn all_sorts() -> Vec<Sort> {
             "shape = \"box\"\nsize = [6, 8, 10]\npermittivity = -1.5\npermeability = -1".into(),
             Metal::None,
         ),
+        ("mirror", "width = 8\nheight = 10".into(), Metal::None),
+        (
+            "polyhedron",
+            format!(
+                "vertices = [[-4, -4, -3], [4, -4, -3], [0, 5, -3], [0, 0, 5], [3, 3, 0]]\n{glass}"
+            ),
+            Metal::None,
+        ),
+        (
+            "polyhedron",
+            format!("planes = [[1, 0, 0, 4], [-1, 0, 0, 4], [0, 1, 1, 4], [0, -1, 1, 4], [0, 0, -1, 3]]\n{tensor}"),
+            Metal::None,
+        ),
         (
             "lens",
             "front_radius = 9\nback_radius = -7\nthickness = 4\ndiameter = 9".into(),

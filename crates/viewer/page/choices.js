@@ -38,7 +38,7 @@ export function showState(state, hello, { changed, setShow }) {
   $("about").textContent = exhibit?.words ?? kind?.title ?? "";
   $("summary").textContent = kind?.summary ?? "There is no device in this scene.";
   $("which-label").hidden = state.devices.length < 2;
-  $("which").replaceChildren(...state.devices.map(({ kind }, i) => new Option(`${i + 1}: ${kind}`, i)));
+  $("which").replaceChildren(...state.devices.map(({ kind, name }, i) => new Option(`${i + 1}: ${name ? `${name}, ` : ""}${kind}`, i)));
   $("which").value = String(Math.min(state.which, state.devices.length - 1));
   const { polarizer = "none" } = state.scene.camera ?? {};
   $("polarizer").value = typeof polarizer === "number" ? "angle" : polarizer;

@@ -176,10 +176,10 @@ pub struct ExportArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
     /// The file to write; its ending decides: .npz, .vti (ParaView) or .csv; with --table .csv or
-    /// .json.
+    /// .json; the outlines of all devices as a mesh, in the world's frame, .stl (cm), .glb or .gltf.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Which device, counted from 0; the only one if absent.
+    /// Which device, counted from 0; the only one if absent, for meshes all of them.
     #[arg(long, value_name = "N")]
     pub device: Option<usize>,
     /// The cells of the grid: how many along x, y and z, as in 200x200x1, or the side of a cubic

@@ -24,7 +24,9 @@ pub(super) struct Launcher {
 impl Launcher {
     pub fn new(scene: &Scene, assembly: &Assembly, sampling: Sampling) -> Result<Self, FluxError> {
         let receiver = scene.receiver.clone();
-        let endless_along = |device, problem| Err(FluxError::Endless { device, problem });
+        let endless_along = |device: usize, problem| {
+            Err(FluxError::Endless { device: scene.device_name(device), problem })
+        };
         let mut corners = Vec::new();
         let mut endless = Vec::new();
         for (device, placed) in assembly.devices().iter().enumerate() {
@@ -57,6 +59,7 @@ impl Launcher {
             let deepest = own.iter().map(|at| (receiver.position - *at).dot(receiver.normal));
             let depth = deepest.fold(f64::NEG_INFINITY, f64::max);
             if depth > 0.0 {
+                let device = scene.device_name(device);
                 return Err(FluxError::BehindReceiver { device, depth });
             }
             corners.extend(own);

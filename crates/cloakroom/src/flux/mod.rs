@@ -16,7 +16,7 @@ pub use result::{Convergence, FluxReport, Gain, Incidence, STANDS, Stand, Total}
 use crate::assembly::Assembly;
 use crate::measure;
 use crate::render::{PreparedSceneError, Supervision, assembly, limits, metadata};
-use crate::scene::Scene;
+use crate::scene::{DeviceName, Scene};
 use crate::trace::{Stopped, Tracer};
 use launch::Launcher;
 use rayon::prelude::*;
@@ -45,20 +45,20 @@ pub enum FluxError {
     NoDevice,
     /// The receiver is not behind all devices.
     #[error(
-        "device {device} (counted from 0) reaches {depth:.4} cm through the plane of the receiver or behind it; \
+        "{device} (counted from 0) reaches {depth:.4} cm through the plane of the receiver or behind it; \
          all devices must stand in front of it, on the side of its normal: move `receiver.position`"
     )]
     BehindReceiver {
-        /// Which device, counted from 0.
-        device: usize,
+        /// Which device.
+        device: DeviceName,
         /// How far it reaches through, cm.
         depth: f64,
     },
     /// A device without an end is across the receiver, not upright, or beside one that has ends.
-    #[error("device {device} (counted from 0) is endless along {problem}")]
+    #[error("{device} (counted from 0) is endless along {problem}")]
     Endless {
-        /// Which device, counted from 0.
-        device: usize,
+        /// Which device.
+        device: DeviceName,
         /// Along what, what is wrong with that, and the mend.
         problem: &'static str,
     },

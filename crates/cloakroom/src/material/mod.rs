@@ -13,7 +13,7 @@ pub use segments::{Segment, segments, write_segments};
 use crate::assembly::{Assembly, Placed};
 use crate::device::Show;
 use crate::memory::Shortage;
-use crate::scene::Scene;
+use crate::scene::{DeviceName, Scene};
 use crate::trace::Stopped;
 
 /// Why the material of a device cannot be given.
@@ -31,10 +31,10 @@ pub enum MaterialError {
     #[error("the scene has {0} devices; say which one is meant, from 0 to {last}", last = .0 - 1)]
     WhichDevice(usize),
     /// The device has no medium in it, or no homogeneous segments.
-    #[error("device {device}, {kind}, {problem}")]
+    #[error("{device}, {kind}, {problem}")]
     Unsuitable {
-        /// Which device, counted from 0.
-        device: usize,
+        /// Which device.
+        device: DeviceName,
         /// Its kind.
         kind: &'static str,
         /// What it is instead, and hence has not.
@@ -91,5 +91,6 @@ fn chosen<'a>(
         }
         Show::Cloak => return Ok((device, placed)),
     };
-    Err(MaterialError::Unsuitable { device, kind: settings.kind(), problem })
+    let kind = settings.kind();
+    Err(MaterialError::Unsuitable { device: scene.device_name(device), kind, problem })
 }

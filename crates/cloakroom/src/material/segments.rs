@@ -90,7 +90,7 @@ pub fn segments(
     });
     let mut segments: Vec<Segment> = of_medium.collect();
     if segments.is_empty() {
-        let kind = scene.devices[device].kind();
+        let (device, kind) = (scene.device_name(device), scene.devices[device].kind());
         let problem =
             "has no homogeneous segments to list: it is a single body, or its medium is graded";
         return Err(MaterialError::Unsuitable { device, kind, problem });

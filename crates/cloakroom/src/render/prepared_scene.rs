@@ -7,7 +7,7 @@ use crate::assembly::{Assembly, MOST_DEVICES, Placed, Screen};
 use crate::input::Digest;
 use crate::keys::KeyError;
 use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
-use crate::scene::{Border, Camera, DeviceSettings, Projection, Scene};
+use crate::scene::{Border, Camera, DeviceName, DeviceSettings, Projection, Scene};
 use crate::trace::{Coherence, Limits, RaySettings};
 use glam::DVec3;
 use std::path::PathBuf;
@@ -35,24 +35,24 @@ pub enum PreparedSceneError {
     },
     /// Two devices are in each other's way.
     #[error(
-        "device {second} overlaps device {first}; move one of them (devices are counted from 0)"
+        "{second} overlaps {first}; move one of them (devices are counted from 0)"
     )]
     Overlap {
-        /// One of them, counted from 0.
-        first: usize,
+        /// One of them.
+        first: DeviceName,
         /// The other.
-        second: usize,
+        second: DeviceName,
     },
     /// Two bodies are in the same place with the same right.
     #[error(
-        "device {second} overlaps device {first}, and both bodies have the same priority; give the one \
+        "{second} overlaps {first}, and both bodies have the same priority; give the one \
          that is to be there the larger one (devices are counted from 0)"
     )]
     EqualPriority {
-        /// One of them, counted from 0.
-        first: usize,
+        /// One of them.
+        first: DeviceName,
         /// The other.
-        second: usize,
+        second: DeviceName,
     },
     /// There are too many devices.
     #[error("there are {count} devices; a scene may have {MOST_DEVICES}")]
@@ -62,21 +62,21 @@ pub enum PreparedSceneError {
     },
     /// The camera is where there is no light.
     #[error(
-        "the camera stands inside device {device} (counted from 0), in metal or an opaque body; \
+        "the camera stands inside {device} (counted from 0), in metal or an opaque body; \
          it must stand in air or in another medium"
     )]
     CameraInside {
-        /// Which device, counted from 0.
-        device: usize,
+        /// Which device.
+        device: DeviceName,
     },
     /// A device cuts through the photograph.
     #[error(
-        "device {device} (counted from 0) cuts through the photograph in the plane {plane}; \
+        "{device} (counted from 0) cuts through the photograph in the plane {plane}; \
          move one of them"
     )]
     PhotographInside {
-        /// Which device, counted from 0.
-        device: usize,
+        /// Which device.
+        device: DeviceName,
         /// The plane of the photograph in words.
         plane: String,
     },
@@ -109,9 +109,9 @@ impl PreparedSceneError {
         match self {
             Self::Light(error) => error.path_in("light"),
             Self::Device { device, error } => error.path_in(&format!("device.{device}")),
-            Self::PhotographInside { device, .. } => format!("device.{device}"),
-            Self::Overlap { second, .. } => format!("device.{second}"),
-            Self::EqualPriority { second, .. } => format!("device.{second}.priority"),
+            Self::PhotographInside { device, .. } => format!("device.{}", device.number),
+            Self::Overlap { second, .. } => format!("device.{}", second.number),
+            Self::EqualPriority { second, .. } => format!("device.{}.priority", second.number),
             Self::TooManyDevices { .. } => format!("device.{MOST_DEVICES}"),
             Self::CameraInside { .. } => "camera.position".to_owned(),
             Self::NoCoveringWidth { .. } => "photograph.x".to_owned(),
@@ -151,13 +151,13 @@ pub(super) fn assembly_at(
     }
     let assembly = Assembly::new(placed).with_wavelength(wavelength_nm);
     let is_body = |index: usize| assembly.devices()[index].structure.hull.body.is_some();
-    match assembly.overlap() {
-        Some((first, second)) if is_body(first) && is_body(second) => {
-            Err(PreparedSceneError::EqualPriority { first, second })
-        }
-        Some((first, second)) => Err(PreparedSceneError::Overlap { first, second }),
-        None => Ok(assembly),
-    }
+    let Some((one, other)) = assembly.overlap() else { return Ok(assembly) };
+    let (first, second) = (scene.device_name(one), scene.device_name(other));
+    Err(if is_body(one) && is_body(other) {
+        PreparedSceneError::EqualPriority { first, second }
+    } else {
+        PreparedSceneError::Overlap { first, second }
+    })
 }
 
 /// The limits that a scene's `[trace]` table sets.
@@ -310,6 +310,7 @@ impl<'s> PreparedScene<'s> {
     pub fn with_images(scene: &'s Scene, images: &mut Images) -> Result<Self, PreparedSceneError> {
         let assembly = assembly(scene)?;
         if let Some(device) = camera_inside(scene, &assembly) {
+            let device = scene.device_name(device);
             return Err(PreparedSceneError::CameraInside { device });
         }
         let unreadable = |key: &str| {
@@ -322,7 +323,7 @@ impl<'s> PreparedScene<'s> {
         let screen = screen(scene, aspect)?;
         if let Some(device) = screen.cut_by(&assembly) {
             return Err(PreparedSceneError::PhotographInside {
-                device,
+                device: scene.device_name(device),
                 plane: scene.photograph.plane(),
             });
         }

@@ -32,6 +32,7 @@ use crate::material_file::MaterialFile;
 use crate::photograph::ImageSource;
 use cloakroom_trace::key;
 use std::borrow::Cow;
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -85,6 +86,13 @@ impl Scene {
         })
     }
 
+    /// What messages call the device of that number.
+    #[must_use]
+    pub fn device_name(&self, number: usize) -> DeviceName {
+        let name = self.devices.get(number).and_then(|device| device.placement.name.clone());
+        DeviceName { number, name }
+    }
+
     /// Every file that the scene names, with the path of the key that names it.
     #[must_use]
     pub fn files(&self) -> Vec<(String, PathBuf)> {
@@ -99,6 +107,22 @@ impl Scene {
             device.placement.clone().visit_files(&path, &mut visit);
         }
         files
+    }
+}
+
+/// A device of a scene as messages call it: `device 1`, or `device 1 ("left")` if it has a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeviceName {
+    /// Which device, counted from 0.
+    pub number: usize,
+    /// The name that the scene gives to it.
+    pub name: Option<String>,
+}
+
+impl fmt::Display for DeviceName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "device {}", self.number)?;
+        self.name.as_ref().map_or(Ok(()), |name| write!(f, " (\"{name}\")"))
     }
 }
 
@@ -329,8 +353,9 @@ impl DeviceSettings {
     }
 
     fn request(&self, show: Show) -> Request {
-        let Placement { core, length, .. } = self.placement;
-        Request { show, core, length, wavelength_nm: self.wavelength_nm }
+        let Placement { core, length, ref metal, .. } = self.placement;
+        let metal = metal.as_ref().is_some_and(|metal| *metal != Metal::None);
+        Request { show, core, length, metal, wavelength_nm: self.wavelength_nm }
     }
 
     fn with_files_read(&self) -> Result<Cow<'_, AnyDevice>, KeyError> {

@@ -260,6 +260,9 @@ table! {
 table! {
     /// What every device takes beside its `kind` and its kind's own keys.
     pub struct Placement {
+        /// What it is called in messages, in lists, and in overrides: `left.rotation=5`. No two
+        /// devices have one name, and none that of a table.
+        name: Option<String>,
         /// The cloak, the bare metal alone, the mirror it should look like, or nothing in its place.
         show: Show,
         /// What fills the hidden region of a free-space cloak: metal, or air in which bodies may
@@ -289,7 +292,8 @@ table! {
         /// Thin layers on all of its surfaces that face the outside, from the outside inwards; each
         /// a table with its thickness and its index or permittivity.
         coating: Vec<CoatingLayer>,
-        /// What its metal is of: { index = [n, k] }; a perfect conductor by default.
+        /// What its metal is of: { index = [n, k] } or { material = "silver" }; a perfect conductor
+        /// by default. A body is of metal where this says so, true for a perfect conductor.
         metal: Option<Metal>,
         /// How what is made of it differs from its design: random errors, levels, a limited range,
         /// loss.

@@ -6,6 +6,8 @@ use super::locations::{Locations, Origin, join};
 use super::read::{DEVICES, KIND};
 use super::tree::{parse_value, to_toml};
 use crate::keys::{Key, KeyKind, Value, quoted};
+use crate::scene::Placement;
+use cloakroom_trace::key;
 use std::fmt;
 use std::sync::Arc;
 
@@ -52,7 +54,10 @@ pub(super) fn apply(root: &mut Value, locations: &mut Locations) -> Result<(), S
     let mut added = Vec::new();
     for (number, each) in Arc::clone(&locations.overrides).iter().enumerate() {
         let told = |message| locations.error(&Origin::Override(number), message);
-        let (path, value) = key_and_value(each).map_err(told)?;
+        let (mut path, value) = key_and_value(each).map_err(told)?;
+        if let Some((parts, device)) = called(root, &path) {
+            path.splice(..parts, [DEVICES.to_owned(), device.to_string()]);
+        }
         let mut paths = Vec::new();
         expand(Some(root), &path, &mut Vec::new(), &mut paths).map_err(told)?;
         for path in paths {
@@ -171,6 +176,16 @@ fn apply_one(
     locations.tell_override(&parts(path.len()), place, number);
     let device = made.filter(|made| *made <= 1 && path[0] == DEVICES).and(path.get(1));
     Ok(device.and_then(|device| device.parse().ok()))
+}
+
+/// The device that a path calls by its name, `left.rotation` or `device.left.rotation`: how many
+/// parts of the path say so, and the device's number.
+fn called(root: &Value, path: &[String]) -> Option<(usize, usize)> {
+    let parts = if path[0] == DEVICES { 2 } else { 1 };
+    let name = path.get(parts - 1)?;
+    let devices = root.entry(DEVICES).and_then(Value::as_list)?;
+    let called = |device: &Value| device.entry(key!(Placement.name)).and_then(Value::as_text) == Some(name);
+    Some((parts, devices.iter().position(called)?))
 }
 
 /// A value as people type it: a resolution may be 640x480.

@@ -8,6 +8,7 @@ use super::error::SceneFileError;
 use super::locations::{Locations, join};
 use crate::device::{AnyDevice, CATALOGUE, Request};
 use crate::keys::{Key, KeyKind, Table, Value, hint, quoted, unknown};
+use cloakroom_trace::key;
 use crate::scene::{Camera, CameraSettings, DeviceSettings, Placement, Scene, TABLES};
 
 /// The list of devices, the one list of tables a scene has.
@@ -87,7 +88,27 @@ impl Reader<'_> {
             let path = join(DEVICES, &number.to_string());
             self.device(item.as_table().ok_or_else(|| wrong(&path, item))?, &path)
         };
-        items.iter().enumerate().map(read).collect()
+        let devices: Vec<DeviceSettings> = items.iter().enumerate().map(read).collect::<Result<_, _>>()?;
+        self.check_names(&devices)?;
+        Ok(devices)
+    }
+
+    /// Refuses names that mean more than one thing.
+    fn check_names(&self, devices: &[DeviceSettings]) -> Result<(), SceneFileError> {
+        let names = || devices.iter().map(|device| device.placement.name.as_deref());
+        for (number, name) in names().enumerate() {
+            let Some(name) = name else { continue };
+            let message = if let Some(other) = names().take(number).position(|n| n == Some(name)) {
+                format!("device {other} is called {name:?}, too; give each device a name of its own")
+            } else if name == DEVICES || TABLES.iter().any(|(table, _)| *table == name) {
+                format!("{name:?} is the name of a table of the scene; give the device another one")
+            } else {
+                continue;
+            };
+            let path = join(&join(DEVICES, &number.to_string()), key!(Placement.name));
+            return Err(self.locations.error_at(&path, message));
+        }
+        Ok(())
     }
 
     fn device(&self, entries: &Entries, path: &str) -> Result<DeviceSettings, SceneFileError> {

@@ -2,6 +2,7 @@
 
 use super::try_bench;
 use cloakroom::render::PreparedSceneError;
+use cloakroom::scene::DeviceName;
 use glam::DVec3;
 
 const ROUND: [&str; 6] = [
@@ -30,7 +31,7 @@ fn points_inside_are_inside_and_devices_do_not_overlap() {
             };
             assert!(beside(20.0).is_ok(), "{kind} {other}");
             assert!(
-                matches!(beside(19.99), Err(PreparedSceneError::Overlap { first: 0, second: 1 })),
+                matches!(beside(19.99), Err(PreparedSceneError::Overlap { first: DeviceName { number: 0, .. }, second: DeviceName { number: 1, .. } })),
                 "{kind} {other}"
             );
         }

@@ -8,7 +8,7 @@ use cloakroom::assembly::{Assembly, Placed};
 use cloakroom::device::Contour;
 use cloakroom::trace::Line;
 use glam::{DVec2, DVec3};
-use optics::geometry::{Lens, Pose, Solid};
+use optics::geometry::{Lens, Polyhedron, Pose, Solid};
 use std::f64::consts::TAU;
 
 /// Pieces around a ball.
@@ -93,6 +93,10 @@ impl Solids<'_> {
                 self.add_lens(lens, &placed.pose.after(pose));
                 return;
             }
+            if let Solid::Polyhedron { solid, pose } = solid {
+                self.add_polyhedron(solid, &placed.pose.after(pose), structure.is_metal());
+                return;
+            }
         }
         let section = structure.cross_section();
         let is_ball = structure.hull.solids.iter().all(|solid| {
@@ -157,6 +161,17 @@ impl Solids<'_> {
             let upright: Vec<DVec3> = (0..=LAYERS).map(|k| at(corner, level(k))).collect();
             self.add_line(&upright, "edge", edge);
         }
+    }
+
+    /// A solid with flat faces at its place: its edges, and its faces if it is of metal.
+    fn add_polyhedron(&mut self, solid: &Polyhedron, pose: &Pose, metal: bool) {
+        for [a, b] in solid.edges() {
+            let at = |k: u32| pose.to_world(a.lerp(b, f64::from(k) / 8.0));
+            self.add_line(&(0..=8).map(at).collect::<Vec<_>>(), "edge", (INK.faint(0.7), THIN));
+        }
+        let faces = solid.pieces().filter(|_| metal);
+        let place = |piece: [DVec3; 3]| piece.map(|at| pose.to_world(at)).to_vec();
+        self.items.extend(faces.map(|piece| (place(piece), Paint::Face(METAL))));
     }
 
     /// A lens at its place: its two rims, and its outline in two planes through its axis.

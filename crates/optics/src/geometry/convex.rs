@@ -309,6 +309,7 @@ pub(super) fn bounded(solid: &Solid, slack: f64) -> Option<Bounded> {
             (vec![Bound::Plane { normal: plane.normal, offset }], *centre, sphere.radius)
         }
         Solid::Lens { lens, pose } => return Some(lens.bounded(pose)),
+        Solid::Polyhedron { solid, pose } => return solid.bounded(pose),
         _ => {
             let own = Convex::of(solid)?;
             return Some(Bounded { bounds: own.bounds(slack), ellipsoid: own.ellipsoid() });

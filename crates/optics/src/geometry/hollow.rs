@@ -57,6 +57,13 @@ impl Hole {
             (Self::Round(Solid::Tilted { solid, pose }), _) => {
                 Self::Round(solid.as_ref().clone()).encloses(&body.placed(&pose.inverse()), slack)
             }
+            (Self::Round(Solid::Cylinder { centre, radius, .. }), Solid::Polyhedron { .. }) => {
+                let beside = |at: DVec3| at.truncate().distance(*centre);
+                greatest(body, &beside) <= radius + slack
+            }
+            (Self::Lens { curve, pose, .. }, Solid::Polyhedron { .. }) => {
+                curve.encloses(&body.placed(&pose.inverse()).shadow())
+            }
             (Self::Round(Solid::Ball { centre, radius }), _) => {
                 farthest(body, *centre) <= radius + slack
             }
@@ -115,11 +122,19 @@ fn section(body: &Solid, extent: Extent) -> WidestSection<'_> {
             )
         }
         Solid::Hollow { whole, .. } => section(whole, extent),
-        // Lenses are asked for by the cylinder around them.
-        Solid::Nothing | Solid::Lens { .. } => WidestSection::Disc(DVec2::ZERO, 0.0),
+        // Lenses are asked for by the cylinder around them, polyhedra by their corners.
+        Solid::Nothing | Solid::Lens { .. } | Solid::Polyhedron { .. } => WidestSection::Disc(DVec2::ZERO, 0.0),
         Solid::Tilted { .. } => {
             Convex::of(body).map_or(WidestSection::Disc(DVec2::ZERO, 0.0), WidestSection::Tilted)
         }
+    }
+}
+
+/// The greatest value of a convex function over a polyhedron.
+fn greatest(body: &Solid, value: &dyn Fn(DVec3) -> f64) -> f64 {
+    match body {
+        Solid::Polyhedron { solid, pose } => solid.greatest(|at| value(pose.to_world(at))),
+        _ => f64::INFINITY,
     }
 }
 
@@ -139,6 +154,7 @@ pub(super) fn farthest(body: &Solid, point: DVec3) -> f64 {
         Solid::Ball { centre, radius } => centre.distance(point) + radius,
         Solid::CutBall { centre, ball } => ball.farthest_from(point - centre),
         Solid::Lens { lens, pose } => lens.farthest_from(pose.to_local(point)),
+        Solid::Polyhedron { .. } => greatest(body, &|at| at.distance(point)),
         Solid::Hollow { whole, .. } => farthest(whole, point),
         Solid::Tilted { solid, pose } => farthest(solid, pose.to_local(point)),
     }

@@ -2,7 +2,7 @@
 //!
 //! Devices that extend along z are made of upright [`Wall`]s over a line in the xy-plane and of
 //! flat [`Cap`]s at their ends, round ones of a [`Cylinder`] and of [`Disc`]s; a [`Sphere`] is
-//! whole, and a [`Lens`] has conic faces. Inside a convex cell a ray leaves through the first [`Plane`] ahead. A [`Solid`] is the
+//! whole, a [`Lens`] has conic faces, and a [`Polyhedron`] flat ones. Inside a convex cell a ray leaves through the first [`Plane`] ahead. A [`Solid`] is the
 //! space that something takes up.
 
 mod convex;
@@ -16,6 +16,7 @@ mod lens_overlap;
 mod outline;
 mod plane;
 mod polygon;
+mod polyhedron;
 mod pose;
 mod solid;
 mod sphere;
@@ -31,6 +32,7 @@ pub use lens::{ConicFace, Lens, LensPart};
 pub use outline::{Cap, Outline};
 pub use plane::Plane;
 pub use polygon::{ConvexPart, Polygon, PolygonError, SAME_POINT};
+pub use polyhedron::{FaceHit, MeshFault, PlanesFault, Polyhedron, Triangles, convex_hull, within_planes};
 pub use pose::Pose;
 pub use solid::{Solid, TOUCHING};
 pub use sphere::Sphere;

@@ -1,14 +1,15 @@
-//! Convex bodies, whole or with a hole, and whether they are in each other's way.
+//! Bodies, whole or with a hole, and whether they are in each other's way.
 
 use super::convex::{Convex, REACH, SAME_AXIS, press};
 use super::hollow::farthest;
-use super::{CutBall, Extent, Hole, Lens, Outline, Plane, Pose, lens_overlap};
+use super::{CutBall, Extent, Hole, Lens, Outline, Plane, Polyhedron, Pose, lens_overlap};
 use glam::{DVec2, DVec3};
+use std::sync::Arc;
 
 /// How deep two things may press into each other by rounding before they count as overlapping, cm.
 pub const TOUCHING: f64 = 1e-9;
 
-/// A convex body, or one with a hole.
+/// A convex body, a lens, a polyhedron, or a convex body with a hole.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub enum Solid {
@@ -55,6 +56,13 @@ pub enum Solid {
     Lens {
         /// The lens about the x axis of its own frame.
         lens: Lens,
+        /// Where that frame is.
+        pose: Pose,
+    },
+    /// A solid with flat faces.
+    Polyhedron {
+        /// The solid in its own frame.
+        solid: Arc<Polyhedron>,
         /// Where that frame is.
         pose: Pose,
     },
@@ -115,6 +123,7 @@ impl Solid {
             }
             Self::Hollow { whole, hole } => whole.has(point, below) && !hole.holds(point),
             Self::Lens { lens, pose } => lens.has(pose.to_local(point), below),
+            Self::Polyhedron { solid, pose } => solid.holds(pose.to_local(point)),
             Self::Tilted { solid, pose } => solid.has(pose.to_local(point), below),
         }
     }
@@ -147,6 +156,11 @@ impl Solid {
                 let ends = |sign: f64| DVec3::AXES.map(|axis| sign * end(sign * axis));
                 Some([-1.0, 1.0].map(|sign| pose.origin + DVec3::from_array(ends(sign))))
             }
+            Self::Polyhedron { solid, pose } => {
+                let end = |axis: DVec3| solid.support(pose.vector_to_local(axis));
+                let ends = |sign: f64| DVec3::AXES.map(|axis| sign * end(sign * axis));
+                Some([-1.0, 1.0].map(|sign| pose.origin + DVec3::from_array(ends(sign))))
+            }
             Self::Tilted { .. } => {
                 let convex = Convex::of(self)?;
                 let ends = |sign: f64| DVec3::AXES.map(|axis| sign * convex.support(sign * axis));
@@ -174,6 +188,9 @@ impl Solid {
                 hole: Box::new(hole.placed(pose)),
             },
             Self::Lens { lens, pose: own } => Self::Lens { lens: *lens, pose: pose.after(own) },
+            Self::Polyhedron { solid, pose: own } => {
+                Self::Polyhedron { solid: Arc::clone(solid), pose: pose.after(own) }
+            }
             Self::Tilted { solid, pose: own } => solid.placed(&pose.after(own)),
             Self::Prism { .. } | Self::Cylinder { .. } if aside > SAME_AXIS => {
                 Self::Tilted { solid: Box::new(self.clone()), pose: *pose }
@@ -203,6 +220,10 @@ impl Solid {
             (Nothing, _) | (_, Nothing) => false,
             (Hollow { whole, hole }, other) | (other, Hollow { whole, hole }) => {
                 whole.overlaps(other, slack) && !hole.encloses(other, slack)
+            }
+            (Self::Polyhedron { solid, pose }, other)
+            | (other, Self::Polyhedron { solid, pose }) => {
+                solid.overlaps(&other.placed(&pose.inverse()), slack)
             }
             (Lens { lens, pose }, other) | (other, Lens { lens, pose }) => {
                 lens_overlap::overlaps(lens, pose, other, slack)
@@ -253,10 +274,15 @@ impl Solid {
     pub fn is_within(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Nothing, _) => true,
-            // No body is a cut ball or a lens: nothing is asked to be within one.
-            (_, Self::Nothing | Self::Hollow { .. } | Self::CutBall { .. } | Self::Lens { .. }) => {
-                false
-            }
+            // No body is one of these: nothing is asked to be within one.
+            (
+                _,
+                Self::Nothing
+                | Self::Hollow { .. }
+                | Self::CutBall { .. }
+                | Self::Lens { .. }
+                | Self::Polyhedron { .. },
+            ) => false,
             (Self::Hollow { whole, .. }, _) => whole.is_within(other),
             (_, Self::Ball { centre, radius }) => farthest(self, *centre) <= radius + TOUCHING,
             _ => Convex::of(other).is_some_and(|around| match (self, Convex::of(self)) {
@@ -272,6 +298,13 @@ impl Solid {
                         direction.dot(pose.origin) + lens.support(pose.vector_to_local(direction))
                     },
                     |distance| lens.greatest(|at| distance(pose.to_world(at))),
+                ),
+                (Self::Polyhedron { solid, pose }, _) => around.holds(
+                    TOUCHING,
+                    |direction| {
+                        direction.dot(pose.origin) + solid.support(pose.vector_to_local(direction))
+                    },
+                    |distance| solid.greatest(|at| distance(pose.to_world(at))),
                 ),
                 (Self::Ball { centre, radius }, _) => around.holds(
                     TOUCHING,
@@ -313,6 +346,7 @@ impl Solid {
                 let [low, high] = lens.ends();
                 (high - low).min(2.0 * lens.radius)
             }
+            Self::Polyhedron { solid, .. } => solid.thickness(),
             Self::Tilted { solid, .. } => solid.thickness(),
         }
     }
@@ -334,7 +368,7 @@ impl Solid {
     }
 
     /// The corners of a sheet, around it; those of an endless one are far away.
-    fn sheet(&self) -> Option<[DVec3; 4]> {
+    pub(super) fn sheet(&self) -> Option<[DVec3; 4]> {
         match self {
             Self::Prism { outline, extent } => {
                 let [a, b] = &outline.corners[..] else { return None };
@@ -366,6 +400,7 @@ impl Solid {
                 let points = lens.rings().into_iter();
                 Outline::hull(points.map(|at| pose.to_world(at).truncate()).collect())
             }
+            Self::Polyhedron { solid, pose } => solid.shadow(|at| pose.to_world(at)),
             Self::Tilted { .. } => {
                 let points = Convex::of(self).map(|convex| convex.extremes(Extent::ENDLESS));
                 Outline::hull(points.iter().flatten().map(|at| at.truncate()).collect())

@@ -186,7 +186,7 @@ impl Assembly {
             let both_mirrors = mirrors[i].as_ref().zip(mirrors[j].as_ref());
             let solids_do = solids[i].iter().any(|a| solids[j].iter().any(|b| touch(a, b)));
             let host = |host: usize, guest: usize| {
-                let medium = !self.devices[host].structure.is_opaque()
+                let medium = !self.devices[host].structure.regions.is_empty()
                     && !self.devices[guest].structure.polarizes();
                 let within = |solid: &Solid| solids[host].iter().any(|host| solid.is_within(host));
                 medium && solids[guest].iter().all(within)

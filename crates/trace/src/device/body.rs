@@ -1,4 +1,5 @@
-//! Bodies: slabs, boxes, balls and round cylinders of any homogeneous medium, or opaque ones.
+//! Bodies: slabs, boxes, balls and round cylinders of any homogeneous medium, of metal, or opaque
+//! ones.
 //!
 //! Bodies may stand in one another: where some overlap, the one of the largest priority is there.
 //! So a rod in a glass of water is three bodies, and light goes from one into the other without any
@@ -31,8 +32,8 @@ crate::choice! {
 }
 
 crate::table! {
-    /// A slab, box, ball or round cylinder of any homogeneous medium, of negative index too, or an
-    /// opaque one. Where bodies overlap, the one of the larger priority is there: a rod in a glass
+    /// A slab, box, ball or round cylinder of any homogeneous medium, of negative index too, of
+    /// `metal`, or an opaque one. Where bodies overlap, the one of the larger priority is there: a rod in a glass
     /// of water is three bodies. After Dolling, Wegener, Linden & Hormann, Opt. Express 14, 1842
     /// (2006).
     pub struct SolidBody with words: MediumWords {
@@ -79,7 +80,7 @@ impl Device for SolidBody {
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
         super::refuse_other_views(request, "a body is no cloak")?;
         let shape = self.convex(request.length)?;
-        let medium = self.medium(request.wavelength_nm)?;
+        let (far, medium) = self.filling(request)?;
         let pictured = self.surface.as_ref().is_some_and(|surface| surface.image.is_some());
         let message = "an endless body has no place for an image; give a cylinder its `length`, and take a \
                        box instead of a slab";
@@ -87,7 +88,6 @@ impl Device for SolidBody {
             || (self.shape == BodyShape::Cylinder && request.length.is_none());
         KeyError::refuse_if(pictured && endless, key!(Self.surface), message)?;
         let body = Body { shape, priority: self.priority };
-        let far = if medium.is_some() { FarSide::Region(0) } else { FarSide::Opaque };
         let group_index = self.group_index;
         let region = |DispersiveMedium { medium, law }| {
             let border = RegionBorder::Convex(shape);
@@ -104,12 +104,9 @@ impl Device for SolidBody {
             let entry = Complex64::new(tensor.re.x_axis.x, tensor.im.x_axis.x);
             (tensor == entry.into()).then_some(entry)
         };
-        let medium = self.medium(request.wavelength_nm).ok().flatten();
-        let (permittivity, permeability) = match medium {
-            Some(found) => found.medium.tensors(),
-            None => (1.0.into(), 1.0.into()),
-        };
         let mut facts = vec![Fact::number("priority", self.priority as f64)];
+        let Ok((_, Some(found))) = self.filling(request) else { return facts };
+        let (permittivity, permeability) = found.medium.tensors();
         if let (Some(e), Some(m)) = (entry(permittivity), entry(permeability)) {
             // The product of the roots with positive imaginary parts is that of the wave that
             // decays.
@@ -155,14 +152,24 @@ impl SolidBody {
         }
     }
 
-    /// What fills it; nothing that light could enter if it has a surface of its own.
-    fn medium(&self, wavelength_nm: f64) -> Result<Option<DispersiveMedium>, KeyError> {
-        let Some(surface) = &self.surface else {
-            let tensors = [
-                (key!(Self.permittivity), self.permittivity),
-                (key!(Self.permeability), self.permeability),
-            ];
-            return super::medium(&self.words, tensors, wavelength_nm).map(Some);
+    /// What lies behind its surface, and the medium that fills it; none if it is of metal or has a
+    /// surface of its own.
+    fn filling(&self, request: Request) -> Result<(FarSide, Option<DispersiveMedium>), KeyError> {
+        let (far, what) = match (&self.surface, request.metal) {
+            (None, false) => {
+                let tensors = [
+                    (key!(Self.permittivity), self.permittivity),
+                    (key!(Self.permeability), self.permeability),
+                ];
+                let medium = super::medium(&self.words, tensors, request.wavelength_nm)?;
+                return Ok((FarSide::Region(0), Some(medium)));
+            }
+            (None, true) => (FarSide::Conductor, "a body of metal lets no light in"),
+            (Some(_), false) => (FarSide::Opaque, "a body with a surface of its own is opaque"),
+            (Some(_), true) => {
+                let message = "surface and metal are both given; a body of metal shows what it reflects";
+                return Err(KeyError::at(key!(Self.surface), message));
+            }
         };
         let of_media = [
             (key!(Self.permittivity), self.permittivity.given),
@@ -171,11 +178,10 @@ impl SolidBody {
         ];
         let of_media = of_media.into_iter().filter_map(|(key, given)| given.then_some(key));
         if let Some(key) = of_media.chain(self.words.word()).next() {
-            let message = format!("a body with a surface of its own is opaque; it has no {key}");
-            return Err(KeyError::at(key, message));
+            return Err(KeyError::at(key, format!("{what}; it has no {key}")));
         }
-        let both = surface.image.is_some() && surface.color.given;
+        let both = self.surface.as_ref().is_some_and(|s| s.image.is_some() && s.color.given);
         let message = "color and image are both given; a surface takes one of them";
-        KeyError::refuse_if(both, key!(Self.surface), message).map(|()| None)
+        KeyError::refuse_if(both, key!(Self.surface), message).map(|()| (far, None))
     }
 }

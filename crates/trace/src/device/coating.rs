@@ -173,7 +173,9 @@ impl Structure {
                         }
                         continue;
                     }
-                    RegionBorder::Convex(_) | RegionBorder::Lens(_) => &mut region.coating,
+                    RegionBorder::Convex(_)
+                    | RegionBorder::Lens(_)
+                    | RegionBorder::Polyhedron(_) => &mut region.coating,
                 },
                 Region::Conformal(region) => &mut region.coating,
                 Region::Radial(region) => &mut region.coating,
@@ -219,7 +221,8 @@ impl Structure {
                 }
                 // A whole ball has no core that light could come to.
                 Region::Radial(region) if region.flow.radii()[0] > 0.0 => change(&mut region.inner),
-                Region::Radial(_) | Region::ClosedForm(_) | Region::Spatial(_) => {}
+                Region::Spatial(region) => change(&mut region.floor),
+                Region::Radial(_) | Region::ClosedForm(_) => {}
             }
         }
         (self, found)

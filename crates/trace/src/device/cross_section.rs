@@ -9,7 +9,7 @@ use super::{
     Structure, Surface,
 };
 use glam::DVec2;
-use optics::geometry::{Cylinder, Lens, LensPart, Outline, Pose, REACH, Solid, Sphere};
+use optics::geometry::{Cylinder, Lens, LensPart, Outline, Polyhedron, Pose, REACH, Solid, Sphere};
 use optics::medium::Medium;
 
 /// Straight pieces that a curve is drawn with.
@@ -55,7 +55,7 @@ pub struct CrossSection<'s> {
     pub polarizers: Vec<Contour>,
     /// The medium that fills the outlines, if the device is a body of one.
     pub body_medium: Option<&'s Medium>,
-    /// The body that fills the outlines, if the device is one.
+    /// The body that fills the outlines, if the device is one that is not of metal.
     pub body: Option<Body>,
     /// Whether it is only seen from afar: its outlines are projections, and nothing is known of
     /// within.
@@ -73,7 +73,7 @@ impl Structure {
         let sections = self.regions.iter().zip(&regions).filter(|_| self.hull.body.is_none());
         CrossSection {
             body_medium: self.body_medium(),
-            body: self.hull.body,
+            body: self.drawn_body(),
             is_shadow: false,
             metal: joined(metal),
             polarizers: joined(outside.iter().filter(|edge| edge.far == FarSide::Polarizer)),
@@ -93,6 +93,11 @@ impl Structure {
         }
     }
 
+    /// The body that it is, unless that is of metal, which is drawn as other metal is.
+    fn drawn_body(&self) -> Option<Body> {
+        self.hull.body.filter(|_| !self.is_metal())
+    }
+
     /// What the device looks like at a place, drawn on the xy-plane of the world, and the place of
     /// that drawing: cut in its own plane z = 0 where its axis is along z, the outline of its
     /// projection where it is not.
@@ -109,9 +114,7 @@ impl Structure {
         let shadow = |solid: &Solid| solid.placed(pose).shadow().corners;
         let parts: Vec<Vec<DVec2>> = self.hull.solids.iter().map(shadow).collect();
         let whole = Outline::hull(parts.concat());
-        // What has neither regions nor is a body or a polarizer is metal.
-        let body = self.hull.body;
-        let is_metal = self.regions.is_empty() && body.is_none() && !self.polarizes();
+        let (body, is_metal) = (self.drawn_body(), self.is_metal());
         let mirror = self.hull.thin_mirror.as_ref().map(shadow);
         let metal = parts.iter().filter(|_| is_metal).chain(&mirror);
         let metal: Vec<Contour> = metal.map(|part| contour(part)).collect();
@@ -168,7 +171,7 @@ impl Region {
 
 impl Surface {
     /// The surface in the plane z = 0: nothing for the ends of a device, two sides of the edge of a
-    /// lens.
+    /// lens, a line for each triangle of a solid with flat faces.
     fn edges(&self) -> Vec<Edge> {
         let points = match &self.shape {
             Shape::Wall(wall) | Shape::Sheet(wall) | Shape::Polarizer { wall, .. } => {
@@ -180,6 +183,7 @@ impl Surface {
             Shape::Curve { curve, side: Some(side), .. } => curve.side_line(*side, PIECES),
             Shape::Curve { curve, side: None, .. } => closed(curve.outline(PIECES)),
             Shape::OfLens { lens, part } => return lens_edges(lens, *part, self.far),
+            Shape::OfPolyhedron(solid) => return section_edges(solid, self.far),
             Shape::Cap(_) | Shape::Disc(_) => return Vec::new(),
         };
         vec![Edge { points, far: self.far }]
@@ -219,6 +223,11 @@ fn lens_edges(lens: &Lens, part: LensPart, far: FarSide) -> Vec<Edge> {
     }
 }
 
+/// The border of a solid with flat faces in the plane z = 0.
+fn section_edges(solid: &Polyhedron, far: FarSide) -> Vec<Edge> {
+    solid.section().into_iter().map(|ends| Edge { points: ends.to_vec(), far }).collect()
+}
+
 /// Points around something, joined to their beginning.
 fn closed(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points.extend(points.first().copied());
@@ -243,6 +252,7 @@ impl HomogeneousRegion {
                 .into_iter()
                 .flat_map(|part| lens_edges(lens, part, FarSide::Outside))
                 .collect(),
+            RegionBorder::Polyhedron(solid) => section_edges(solid, FarSide::Outside),
             RegionBorder::Faces(faces) => faces.iter().filter_map(side).collect(),
         }
     }

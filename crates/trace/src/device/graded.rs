@@ -7,6 +7,7 @@
 
 mod grid;
 
+use super::floor::Floor;
 use super::round::{self, metal_cylinder, pierced, upright};
 use super::{
     ConformalRegion, Device, Fact, FarSide, Region, Request, Shape, Show, Structure, Surface,
@@ -63,8 +64,15 @@ crate::table! {
         /// none. The samples within go on smoothly for about ten steps of the grid; what they are
         /// beyond does not matter.
         inner: f64, "cm", in ValueRange::LENGTH_OR_ZERO,
+        /// Whole width along x of a flat mirror floor under a rectangle or box, at its lower border
+        /// y = -height / 2; at least that of the device, or 0 for none. It alone is what the device should
+        /// look like. It is perfect, or of the device's `metal`.
+        floor: f64, "cm", in ValueRange::LENGTH_OR_ZERO,
     }
 }
+
+/// What is said of a graded index of which there is no other view.
+const HIDES_NOTHING: &str = "a graded index without a core or a floor hides no metal";
 
 /// How near the core may come to the border, as a share of the way there.
 const THINNEST: f64 = 0.001;
@@ -174,7 +182,7 @@ fn upright_box(
 }
 
 /// The numbers of a key, which a file has been put in the place of.
-fn here<'d, const LEAST: usize, const MOST: usize>(
+pub(super) fn here<'d, const LEAST: usize, const MOST: usize>(
     sampled: Option<&'d Sampled<LEAST, MOST>>,
     key: &'static str,
 ) -> Result<Option<&'d Samples>, KeyError> {
@@ -194,6 +202,15 @@ impl Graded {
             let message = "there is no `index`: rows of numbers, or the name of a .npy file";
             KeyError::general(message)
         })
+    }
+
+    /// The floor that it stands on.
+    fn floor(&self, extent: Extent) -> Result<Floor, KeyError> {
+        let floor = Floor { width: self.floor, level: -0.5 * self.height, extent };
+        let round = floor.is_there() && self.shape != GradedShape::Rectangle;
+        let message = "a round border does not stand on a floor; take shape = \"rectangle\"";
+        KeyError::refuse_if(round, key!(Self.floor), message)?;
+        Ok(floor)
     }
 
     /// Whether it is more than an isotropic index in the plane.
@@ -237,17 +254,20 @@ impl Device for Graded {
             key!(Request.core),
             message,
         )?;
-        match (request.show, plan.core) {
+        let floor = self.floor(extent)?;
+        let standing = match (request.show, plan.core) {
             (Show::Cloak, _) => {
-                plan.structure(square(&plan, self.samples()?)?, extent, request.has_open_core())
+                plan.structure(square(&plan, self.samples()?)?, extent, request.has_open_core())?
             }
-            (Show::Bare, Some(core)) => Ok(metal_cylinder(core, extent)),
-            (Show::Mirror | Show::Empty, Some(_)) => Ok(Structure::empty()),
+            (Show::Bare, Some(core)) => metal_cylinder(core, extent),
+            (Show::Mirror | Show::Empty, Some(_)) => Structure::empty(),
+            (_, None) if floor.is_there() => Structure::empty(),
             (_, None) => {
-                super::refuse_other_views(request, "a graded index without a core hides no metal")?;
-                Ok(Structure::empty())
+                super::refuse_other_views(request, HIDES_NOTHING)?;
+                Structure::empty()
             }
-        }
+        };
+        floor.under(standing, 0.0)
     }
 
     fn facts(&self, request: Request) -> Vec<Fact> {

@@ -24,6 +24,7 @@ mod cylinder_cloak;
 mod dispersion;
 mod double_gaussian_cloak;
 mod fisheye_hemisphere;
+mod floor;
 mod gaussian_carpet;
 mod graded;
 mod graded_box;
@@ -34,9 +35,11 @@ mod lens;
 mod lenses;
 mod material_at;
 mod medium_words;
+mod mirror;
 mod mirror_detour;
 mod polarizer;
 mod polygons;
+mod polyhedron;
 mod prisms;
 mod quasi_conformal_carpet;
 mod region;
@@ -112,6 +115,9 @@ pub struct Request {
     pub core: Core,
     /// Its whole length along z, cm; endless if absent.
     pub length: Option<f64>,
+    /// Whether it is asked to be of metal, as bodies may be: a perfect conductor, until
+    /// [`Structure::of_metal`] says of which.
+    pub metal: bool,
     /// The wavelength of the light in vacuum, nm: media of materials depend on it.
     pub wavelength_nm: f64,
 }
@@ -119,7 +125,8 @@ pub struct Request {
 impl Default for Request {
     fn default() -> Self {
         let (show, core) = (Show::default(), Core::default());
-        Self { show, core, length: None, wavelength_nm: Self::DESIGN_WAVELENGTH_NM }
+        let wavelength_nm = Self::DESIGN_WAVELENGTH_NM;
+        Self { show, core, length: None, metal: false, wavelength_nm }
     }
 }
 
@@ -285,8 +292,10 @@ catalogue! {
     graded::Graded,
     graded_box::GradedBox,
     body::SolidBody,
+    polyhedron::FacetedSolid,
     lens::GlassLens,
     polarizer::Polarizer,
+    mirror::PlaneMirror,
     gaussian_carpet::GaussianCarpet,
     grating_carpet::GratingCarpet,
     quasi_conformal_carpet::QuasiConformalCarpet,

@@ -2,6 +2,7 @@
 //!
 //! Prisms that share a side, whole or in part, meet there without a gap.
 
+use super::floor::Floor;
 use super::polygons::{PolygonPart, polygonal};
 use super::{CoatingLayer, Device, Fact, MediumWords, Metal, Request, Show, Structure, coating};
 use crate::key;
@@ -20,6 +21,10 @@ crate::table! {
         /// What it should look like, if not as nothing: prisms again, each a table
         /// [[device.imitated]], shown with show = "mirror". A mirror, or glass on a mirror.
         imitated: Vec<PrismOfMedium>,
+        /// Whole width along x of a flat mirror floor on y = 0 that the prisms stand on; 0 for none.
+        /// Without [[device.imitated]] it alone is what the device should look like. It is perfect,
+        /// or of the device's `metal`.
+        floor: f64, "cm", in ValueRange::LENGTH_OR_ZERO,
     }
 }
 
@@ -54,8 +59,9 @@ impl Device for Prisms {
                            `permittivity` or `metal = true`";
             return Err(KeyError::general(message));
         }
-        let device = List { key: key!(Self.prism), prisms: &self.prism };
-        let imitated = List { key: key!(Self.imitated), prisms: &self.imitated };
+        let floor = self.floor;
+        let device = List { key: key!(Self.prism), prisms: &self.prism, floor };
+        let imitated = List { key: key!(Self.imitated), prisms: &self.imitated, floor };
         let nm = request.wavelength_nm;
         let mut parts = device.parts(nm)?;
         // What cannot be shown is refused with the device, too.
@@ -66,10 +72,10 @@ impl Device for Prisms {
             Show::Bare => {
                 parts.retain(|part| part.medium.is_none());
                 let message = "no prism is metal, so nothing of it is bare";
-                KeyError::refuse_if(parts.is_empty(), key!(Request.show), message)?;
+                KeyError::refuse_if(parts.is_empty() && floor == 0.0, key!(Request.show), message)?;
             }
-            Show::Mirror if self.imitated.is_empty() => {
-                let reason = "prisms imitate no mirror without [[device.imitated]]";
+            Show::Mirror if self.imitated.is_empty() && floor == 0.0 => {
+                let reason = "prisms imitate no mirror without [[device.imitated]] or a floor";
                 super::refuse_other_views(request, reason)?;
             }
             Show::Mirror => return Ok(of_imitated),
@@ -79,7 +85,7 @@ impl Device for Prisms {
     }
 
     fn facts(&self, request: Request) -> Vec<Fact> {
-        let device = List { key: key!(Self.prism), prisms: &self.prism };
+        let device = List { key: key!(Self.prism), prisms: &self.prism, floor: self.floor };
         let parts = device.parts(request.wavelength_nm).unwrap_or_default();
         let area = |metal: bool| {
             let chosen = parts.iter().filter(|part| part.medium.is_none() == metal);
@@ -98,6 +104,8 @@ struct List<'p> {
     /// The key of the list.
     key: &'static str,
     prisms: &'p [PrismOfMedium],
+    /// The width of the floor that they stand on, cm; 0 for none.
+    floor: f64,
 }
 
 impl List<'_> {
@@ -112,14 +120,29 @@ impl List<'_> {
 
     /// What some of its parts are together.
     fn structure(&self, parts: &[PolygonPart], request: Request) -> Result<Structure, KeyError> {
-        polygonal(parts, Extent::centred(request.length), self.rounding()).map_err(
-            |[first, second]| {
-                let message = format!(
-                    "prism {second} overlaps prism {first} (counted from 0); cut one of them"
-                );
-                KeyError::at(key!(PrismOfMedium.corners), message).within(self.key, second)
-            },
-        )
+        let (extent, rounding) = (Extent::centred(request.length), self.rounding());
+        let at = |message: String, number: usize| {
+            KeyError::at(key!(PrismOfMedium.corners), message).within(self.key, number)
+        };
+        let floor = Floor { width: self.floor, level: 0.0, extent };
+        let lowest = |part: &PolygonPart| {
+            part.polygon.corners().iter().fold(f64::INFINITY, |low, at| low.min(at.y))
+        };
+        let below = parts.iter().map(lowest).position(|low| floor.is_there() && low < -rounding);
+        if let Some(number) = below {
+            let message = format!(
+                "prism {number} (counted from 0) reaches to y = {} cm, below the floor on y = 0; move or cut \
+                 it",
+                lowest(&parts[number])
+            );
+            return Err(at(message, number));
+        }
+        let standing = polygonal(parts, extent, rounding).map_err(|[first, second]| {
+            let message =
+                format!("prism {second} overlaps prism {first} (counted from 0); cut one of them");
+            at(message, second)
+        })?;
+        floor.under(standing, rounding)
     }
 
     /// How far sides that are meant to lie along each other may be apart, cm, where corners are

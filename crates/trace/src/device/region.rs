@@ -4,7 +4,8 @@ use super::{
     ClosedFormRegion, Coating, Convex, Dispersion, DispersiveTensors, FarSide, SpatialRegion,
 };
 use glam::{DMat3, DVec2, DVec3};
-use optics::geometry::{Lens, Plane};
+use optics::geometry::{Lens, Plane, Polyhedron};
+use std::sync::Arc;
 use optics::medium::{Medium, ModeKind};
 use optics::propagation::{
     Border, Boundary, ConformalEnd, ConformalFlow, FlowError, Half, PathEnd, PathPoint, RadialFlow,
@@ -83,6 +84,8 @@ pub enum RegionBorder {
     Convex(Convex),
     /// At the border of a lens, with what is outside beyond it.
     Lens(Lens),
+    /// At the faces of a solid, with what is outside beyond them.
+    Polyhedron(Arc<Polyhedron>),
 }
 
 /// One bounding plane of a region.
@@ -375,7 +378,7 @@ impl HomogeneousRegion {
     pub fn faces(&self) -> &[Face] {
         match &self.border {
             RegionBorder::Faces(faces) => faces,
-            RegionBorder::Convex(_) | RegionBorder::Lens(_) => &[],
+            RegionBorder::Convex(_) | RegionBorder::Lens(_) | RegionBorder::Polyhedron(_) => &[],
         }
     }
 
@@ -398,6 +401,11 @@ impl HomogeneousRegion {
             RegionBorder::Lens(lens) => {
                 let (distance, part, outward) = lens.exit(position, direction)?;
                 return Some(self.out(ray, distance, part as u16, outward));
+            }
+            RegionBorder::Polyhedron(solid) => {
+                let hit = solid.exit(position, direction)?;
+                // Faces 65536 apart in number are no neighbours.
+                return Some(self.out(ray, hit.distance, hit.face as u16, hit.outward));
             }
         };
         // A loop: here it takes fewer instructions than `first_along`.

@@ -17,6 +17,8 @@ pub struct SpatialRegion {
     pub flow: Arc<SpatialFlow>,
     /// Where it ends.
     pub shape: Convex,
+    /// What lies beyond the lower border along y of a box.
+    pub floor: FarSide,
     /// How the medium meets what is outside.
     pub coating: Coating,
 }
@@ -24,10 +26,13 @@ pub struct SpatialRegion {
 /// A device that is one box, ball or round cylinder of a medium on a grid, of about that size, cm.
 pub(super) fn filled(shape: Convex, medium: SpatialMedium, size: f64) -> Structure {
     let flow = Arc::new(SpatialFlow::new(medium, bounds(&shape), size));
-    let region = SpatialRegion { flow, shape, coating: Coating::None };
+    let region = SpatialRegion { flow, shape, floor: FarSide::Outside, coating: Coating::None };
     let surfaces = vec![Surface::new(Shape::Convex(shape), FarSide::Region(0))];
     Structure::new(vec![Region::Spatial(region)], surfaces, Hull::new(shape.solid()))
 }
+
+/// The number of the lower border along y among those of a box.
+const FLOOR: u16 = 2;
 
 /// The surfaces between which a shape is.
 fn bounds(shape: &Convex) -> Vec<SpatialBorder> {
@@ -68,8 +73,9 @@ impl SpatialRegion {
     pub(super) fn advance(&self, ray: &InnerRay, tolerance: f64) -> Result<Passage, NoPassage> {
         match self.flow.advance(&spatial(ray), tolerance) {
             Ok(end) => {
-                let passage = Passage::graded(ray, &end, end.surface, FarSide::Outside);
-                Ok(Passage { coating: self.coating, ..passage })
+                let far = if end.surface == FLOOR { self.floor } else { FarSide::Outside };
+                let coating = if far.is_metal() { Coating::None } else { self.coating };
+                Ok(Passage { coating, ..Passage::graded(ray, &end, end.surface, far) })
             }
             Err(FlowError::StepLimit) => Err(NoPassage::Endless),
             Err(_) => Err(NoPassage::Lost),

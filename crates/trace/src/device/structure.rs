@@ -110,7 +110,7 @@ impl Reach {
             Solid::Lens { lens, pose } => {
                 (Self::Ball, lens.farthest_from(pose.to_local(DVec3::ZERO)))
             }
-            Solid::Tilted { .. } => {
+            Solid::Tilted { .. } | Solid::Polyhedron { .. } => {
                 let Some([low, high]) = solid.bounds() else { return Self::Nothing };
                 (Self::Ball, low.abs().max(high.abs()).length())
             }
@@ -168,6 +168,7 @@ impl Hull {
         let convex = |solid: &Solid| match solid {
             Solid::Hollow { .. } => false,
             Solid::Lens { lens, .. } => lens.is_convex(),
+            Solid::Polyhedron { solid, .. } => solid.is_convex(),
             _ => true,
         };
         matches!(&self.solids[..], [solid] if convex(solid))
@@ -263,7 +264,13 @@ impl Structure {
     /// Whether it is an opaque body.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
-        self.hull.body.is_some() && self.regions.is_empty()
+        self.surfaces.iter().any(|surface| surface.far == FarSide::Opaque)
+    }
+
+    /// Whether it is nothing but metal.
+    #[must_use]
+    pub fn is_metal(&self) -> bool {
+        self.regions.is_empty() && self.surfaces.iter().any(|surface| surface.far.is_metal())
     }
 
     /// Whether it is a polarizer, which stands in air.

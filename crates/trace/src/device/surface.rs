@@ -3,10 +3,11 @@
 use super::{Coating, Convex, FarSide};
 use glam::DVec3;
 use optics::geometry::{
-    Border, Cap, CurvedSide, Cylinder, Disc, Extent, FloorCurve, Lens, LensPart, Sphere, Wall,
+    Border, Cap, CurvedSide, Cylinder, Disc, Extent, FloorCurve, Lens, LensPart, Polyhedron, Sphere, Wall,
 };
 use optics::propagation::Half;
 use optics::transformation::ConformalMap;
+use std::sync::Arc;
 
 /// A surface, and what lies behind it.
 #[derive(Clone, Debug)]
@@ -54,6 +55,8 @@ pub enum Shape {
         /// Which piece.
         part: LensPart,
     },
+    /// The whole border of a solid with flat faces, met from outside.
+    OfPolyhedron(Arc<Polyhedron>),
     /// The outline of the metal below the curved floor of a conformal map, met from outside, or one
     /// curved side of it, met from within; extended along z.
     Curve {
@@ -151,6 +154,11 @@ impl Surface {
             }
             Shape::OfLens { lens, part } if departed && !lens.is_hollow(*part) => return None,
             Shape::OfLens { lens, part } => lens.entry(*part, origin, direction)?,
+            // Only faces that a ray comes to from in front are met, the one that it has left not.
+            Shape::OfPolyhedron(solid) => {
+                let hit = solid.entry(origin, direction)?;
+                (hit.distance, hit.outward)
+            }
             _ if departed => return None,
             Shape::Wall(wall) if direction.dot(wall.normal) >= 0.0 => return None,
             Shape::Wall(wall) => (wall.hit(origin, direction)?, wall.normal),

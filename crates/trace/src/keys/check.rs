@@ -1,6 +1,6 @@
 //! A value held against its key: type, limits, and the message if it does not fit.
 
-use super::field::is_material_file;
+use super::field::{MESH_ENDINGS, is_material_file};
 use super::nearest::{hint, nearest};
 use super::samples::place_text;
 use super::value::{Value, items_of, number_text, quoted};
@@ -8,6 +8,17 @@ use super::{BUILT_IN_IMAGES, BUILT_IN_PREFIX, Key, KeyKind, Samples, ValueRange,
 use glam::DVec3;
 use optics::material::Material;
 use optics::wave::unit;
+
+/// The longest name that a scene can give.
+const LONGEST_NAME: usize = 64;
+
+/// Whether a text can be a name.
+fn is_name(text: &str) -> bool {
+    let mut rest = text.chars();
+    rest.next().is_some_and(char::is_alphabetic)
+        && rest.all(|c| c.is_alphanumeric() || c == '-' || c == '_')
+        && text.chars().count() <= LONGEST_NAME
+}
 
 impl ValueRange {
     /// Whether a number is allowed; NaN and the infinities never are.
@@ -73,6 +84,8 @@ impl Key {
                     key_names(keys)
                 )
             }
+            KeyKind::Mesh => format!("the name of a file that ends with {}", MESH_ENDINGS.join(", ")),
+            KeyKind::Name => "a name: a letter, then letters, digits, - and _".to_owned(),
             KeyKind::Polygon => format!("three or more corners [x, y]{unit}"),
             KeyKind::Samples { dimensions } => match dimensions {
                 [2, 2] => "rows of numbers, or the name of a file",
@@ -205,6 +218,17 @@ impl Key {
                     value.clone()
                 }
             },
+            KeyKind::Mesh => {
+                let name = self.of_type(value, value.as_text())?.to_ascii_lowercase();
+                let known = MESH_ENDINGS.iter().any(|ending| name.ends_with(ending));
+                self.of_type(value, known.then_some(()))?;
+                value.clone()
+            }
+            KeyKind::Name => {
+                let name = self.of_type(value, value.as_text())?;
+                self.of_type(value, is_name(name).then_some(()))?;
+                value.clone()
+            }
             KeyKind::Polygon => self.polygon(value)?,
             KeyKind::Table { keys } => self.table(value, keys)?,
             KeyKind::FlagOrTable { keys } => match value {

@@ -5,6 +5,7 @@ use super::{BUILT_IN_PREFIX, Key, KeyKind, Samples, Value, tensor};
 use glam::DVec3;
 use num_complex::Complex64;
 use optics::material::Material;
+use optics::geometry::Polyhedron;
 use optics::medium::Tensor;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -121,6 +122,7 @@ fn whole<T: TryFrom<i64>>(value: &Value) -> Option<T> {
     value.as_integer().and_then(|integer| T::try_from(integer).ok())
 }
 
+field!(String, Name, |value| value.as_text().map(str::to_owned), |name| name.as_str().into());
 field!(f64, Number, Value::as_number, |number| Value::from(*number));
 field!(u32, Integer, whole, |integer| Value::from(i64::from(*integer)));
 field!(i64, Integer, whole, |integer| Value::from(*integer));
@@ -290,6 +292,39 @@ impl<const LEAST: usize, const MOST: usize> Field for Sampled<LEAST, MOST> {
         match self {
             Self::Here(samples) => samples.check(key),
             Self::InFile(_) => Ok(()),
+        }
+    }
+}
+
+/// What the names of files of meshes end with.
+pub const MESH_ENDINGS: [&str; 4] = [".stl", ".obj", ".glb", ".gltf"];
+
+/// A closed mesh of triangles, or where it is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeshSource {
+    /// The solid that it bounds.
+    Here(Arc<Polyhedron>),
+    /// The name of a file that holds it.
+    InFile(PathBuf),
+}
+
+impl Field for MeshSource {
+    const KIND: KeyKind = KeyKind::Mesh;
+
+    fn from_value(value: &Value) -> Option<Self> {
+        value.as_text().map(|file| Self::InFile(file.into()))
+    }
+
+    fn value(&self) -> Option<Value> {
+        match self {
+            Self::Here(_) => None,
+            Self::InFile(file) => Some(file.display().to_string().into()),
+        }
+    }
+
+    fn show_files(&mut self, path: &str, visit: &mut VisitFile<'_>) {
+        if let Self::InFile(file) = self {
+            visit(path, NamedFile::of(file));
         }
     }
 }

@@ -17,7 +17,10 @@ mod tests;
 mod value;
 
 pub use error::KeyError;
-pub use field::{Direction, Field, Given, Item, MaterialName, NamedFile, Sampled, VisitFile};
+pub use field::{
+    Direction, Field, Given, Item, MESH_ENDINGS, MaterialName, MeshSource, NamedFile, Sampled,
+    VisitFile,
+};
 pub use nearest::{hint, nearest, unknown};
 pub use samples::{Samples, shape_text};
 pub use table::{Table, find, has, joined};
@@ -103,6 +106,11 @@ pub enum KeyKind {
         /// Its keys.
         keys: &'static [Key],
     },
+    /// The name of a file of a mesh of triangles. A scene file's reader makes it relative to its
+    /// folder.
+    Mesh,
+    /// A name that the scene gives to something: a letter, then letters, digits, - and _.
+    Name,
     /// The corners of a polygon, [x, y] each, three at least.
     Polygon,
     /// Numbers on a grid: rows of numbers, or the name of a file that holds them. A scene file's

@@ -177,10 +177,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let (number, far) = match ahead {
             Ahead::Air => return Some(Destination::Air),
             Ahead::Surface(number, hit) => (number, hit.far),
-            Ahead::Body(number) if self.assembly.device(number).structure.is_opaque() => {
-                (number, FarSide::Opaque)
+            // A body has one surface, and what is behind that is in it.
+            Ahead::Body(number) => {
+                (number, self.assembly.device(number).structure.surfaces.first()?.far)
             }
-            Ahead::Body(number) => (number, FarSide::Region(0)),
         };
         Some(match far {
             // Between a medium and a polarizer there is a gap of air, however thin.

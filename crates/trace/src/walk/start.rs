@@ -28,7 +28,7 @@ impl Assembly {
             },
         };
         let device = &self.devices()[number];
-        let region = if device.body().is_some() && !device.structure.is_opaque() {
+        let region = if device.body().is_some() && !device.structure.regions.is_empty() {
             Some(0)
         } else {
             device.structure.region_at(device.pose.to_local(point)).map(|(region, _)| region)

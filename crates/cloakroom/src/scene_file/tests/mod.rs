@@ -2,6 +2,7 @@
 
 mod any_input;
 mod messages;
+mod names;
 
 use std::path::{Path, PathBuf};
 

@@ -1,11 +1,11 @@
 //! Media on a grid in space, and uniaxial ones.
 
-use super::{Graded, GradedShape, here};
-use crate::device::{Convex, Fact, Request, Structure, refuse_other_views, spatial};
+use super::{Graded, GradedShape, HIDES_NOTHING, here, upright_box};
+use crate::device::{Convex, FarSide, Fact, Request, Show, Structure, refuse_other_views, spatial};
 use crate::key;
 use crate::keys::{KeyError, Samples, shape_text};
 use glam::DVec3;
-use optics::geometry::{Cylinder, Extent, Sphere};
+use optics::geometry::{Cylinder, Extent, Outline, Sphere};
 use optics::propagation::{Anisotropy, AxisField, Extraordinary, SpaceSpline, SpatialMedium};
 
 /// The most samples of an index: 256 along each axis of a cube, with splines of 128 MiB each.
@@ -125,13 +125,26 @@ impl Grid {
 }
 
 pub(super) fn structure(device: &Graded, request: Request) -> Result<Structure, KeyError> {
-    refuse_other_views(request, "a graded index without a core hides no metal")?;
+    let extent = Extent::centred(request.length);
+    let floor = device.floor(extent)?;
+    if !floor.is_there() {
+        refuse_other_views(request, HIDES_NOTHING)?;
+    } else if request.show != Show::Cloak {
+        return floor.alone();
+    }
     let samples = device.samples()?;
     let grid = Grid::new(device, samples, request)?;
     let squares = samples.values().iter().map(|index| index * index);
     let square = grid.squares(squares, key!(Graded.index), "the index")?;
     let medium = SpatialMedium { square, anisotropy: anisotropy(device, samples, &grid)? };
-    Ok(spatial::filled(grid.shape, medium, grid.size()))
+    let mut filled = spatial::filled(grid.shape, medium, grid.size());
+    if floor.is_there() {
+        // Its sides one by one: the lowest is the floor's.
+        let outline = Outline::rectangle(grid.half.x, grid.half.y);
+        filled.surfaces =
+            upright_box((0.0, FarSide::Outside), &outline, extent, FarSide::Region(0));
+    }
+    floor.under(filled, 0.0)
 }
 
 /// What makes the medium uniaxial, if it is.
