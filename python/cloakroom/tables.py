@@ -112,8 +112,8 @@ class _Graded(Device):
         for name, most in (("ratio", 3), ("optic_axis", 4)):
             if keys.get(name) is not None:
                 keys[name] = grid_array(name, keys[name], most)
-        check_shapes(*(keys.get(name) for name in ("index", "ratio", "optic_axis")))
         super().__init__(**keys)
+        check_shapes(*(keys.get(name) for name in ("index", "ratio", "optic_axis")))
 
     def __repr__(self) -> str:
         words = {name: repr(value) for name, value in self._given.items()}
