@@ -16,28 +16,41 @@ cloaks", Opt. Express 21, 9457 (2013), and more; `cloakroom.tables.DEVICES` has 
 
 from . import tables
 from ._cloakroom import __version__, set_threads, threads
+from .drawings import Drawing
 from .exporting import export
 from .interfaces import Interface, Medium, Modes, interface
+from .labelled import Arrays
 from .materials import Material
 from .measuring import Finding, flux, quality, sweep, verify
+from .optimizing import Optimum, optimize
+from .pages import Page
+from .papers import figures
 from .pictures import Picture
-from .rays import Traced, trace
-from .scenes import Scene
+from .rays import Paths, Traced, trace
+from .scenes import Estimate, Scene
 from .tables import *  # noqa: F403
 
 __all__ = [
+    "Arrays",
+    "Drawing",
+    "Estimate",
     "Finding",
     "Interface",
     "Material",
     "Medium",
     "Modes",
+    "Optimum",
+    "Page",
+    "Paths",
     "Picture",
     "Scene",
     "Traced",
     "__version__",
     "export",
+    "figures",
     "flux",
     "interface",
+    "optimize",
     "quality",
     "set_threads",
     "sweep",

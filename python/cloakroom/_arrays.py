@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from . import _cloakroom
 
-__all__ = ["common_length", "image_array", "is_image_array", "numbers", "tensors", "vectors"]
+__all__ = ["common_length", "image_of", "is_image_array", "numbers", "tensors", "vectors"]
 
 
 def numbers(name: str, value: Any, expected: str, *, allow_complex: bool = False) -> NDArray[Any]:
@@ -74,20 +75,58 @@ def is_image_array(value: Any) -> bool:
     return isinstance(value, (list, tuple)) or hasattr(value, "__array__")
 
 
-def image_array(name: str, value: Any) -> NDArray[Any]:
-    """``value`` as pixels (height, width, 3), ``uint8`` or ``float32``; gray ones have three equal channels."""
-    expected = (
-        "an image of the shape (height, width, 3) or (height, width), of uint8 (sRGB) or floats (linear light)"
-    )
+_IMAGE = (
+    "an image of the shape (height, width), (height, width, 3) or (height, width, 4), of uint8 (sRGB) or floats (linear "
+    "light, or sRGB with encoding='srgb')"
+)
+
+
+def image_of(name: str, value: Any, encoding: Any = None) -> _cloakroom.Image:
+    """``value`` as an image: (height, width), (height, width, 3) or, over black, (height, width, 4).
+
+    ``encoding`` says what floats stand for; ``None`` is linear light, with a warning where it looks like sRGB.
+    """
+    if encoding not in (None, "srgb", "linear"):
+        raise ValueError(f'encoding is {encoding!r}; expected "srgb" or "linear"')
     try:
         array = np.asarray(value)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} is no array: {error}; expected {expected}") from None
+        raise ValueError(f"{name} is no array: {error}; expected {_IMAGE}") from None
     if array.dtype != np.uint8 and array.dtype.kind != "f":
-        raise TypeError(f"{name} is of the type {array.dtype}; expected {expected}")
+        raise TypeError(f"{name} is of the type {array.dtype}; expected {_IMAGE}")
     if array.ndim == 2:
         array = np.broadcast_to(array[:, :, None], (*array.shape, 3))
-    if array.ndim != 3 or array.shape[2] != 3 or array.size == 0:
-        raise ValueError(f"{name} has the shape {array.shape}; expected {expected}")
+    if array.ndim == 3 and array.shape[2] == 1 and array.size:
+        array = np.broadcast_to(array, (*array.shape[:2], 3))
+    if array.ndim != 3 or array.shape[2] not in (3, 4) or array.size == 0:
+        channels_first = array.ndim == 3 and array.shape[0] in (3, 4)
+        mend = f"; {name}.transpose(1, 2, 0) has the colors last" if channels_first else ""
+        raise ValueError(f"{name} has the shape {array.shape}; expected {_IMAGE}{mend}")
+    if array.dtype == np.uint8:
+        if encoding != "linear":
+            return _cloakroom.Image(_required(name, array, np.uint8), True)
+        array = np.asarray(array, np.float32) / np.float32(255)
+    elif encoding is None and _looks_like_srgb(array):
+        warnings.warn(
+            f"{name} has floats on the steps of 8-bit codes, as sRGB images divided by 255 have, but floats are taken as "
+            'linear light; say encoding="srgb", or encoding="linear" if they are',
+            stacklevel=4,
+        )
     with np.errstate(over="ignore"):
-        return _required(name, array, np.uint8 if array.dtype == np.uint8 else np.float32)
+        return _cloakroom.Image(_required(name, array, np.float32), encoding == "srgb")
+
+
+#: An image has more codes than this, a test pattern fewer.
+_FEWEST_CODES = 24
+
+
+def _looks_like_srgb(array: NDArray[Any]) -> bool:
+    """Whether all of its numbers are n/255, or whole numbers up to 255, of many different n."""
+    step = max(1, array.size // 65536)
+    sample = np.asarray(array.reshape(-1)[::step], np.float64)
+    largest = sample.max()
+    if not 0 < largest <= 255 or sample.min() < 0:
+        return False
+    codes = sample * 255 if largest <= 1 else sample
+    whole = np.round(codes)
+    return bool((np.abs(codes - whole) < 1e-3).all()) and len(np.unique(whole)) > _FEWEST_CODES

@@ -6,24 +6,34 @@ from numpy.typing import NDArray
 
 __all__ = [
     "__version__",
+    "Drawing",
     "Image",
     "Material",
+    "Page",
     "Scene",
+    "animate",
     "check_memory",
+    "diagram",
+    "estimate",
     "export_grid",
+    "export_paths",
     "export_table",
     "fail_on_purpose",
+    "figures",
     "fit",
     "flux",
     "interface",
+    "key_names",
     "merge",
     "png_bytes",
+    "pulses",
     "quality",
     "read",
     "render",
     "save",
     "schema",
     "set_threads",
+    "setting",
     "srgb",
     "sweep",
     "threads",
@@ -35,13 +45,20 @@ __version__: str
 
 _Tell = Callable[[int, int], object] | None
 _Images = tuple[Image | None, Image | None]
-_Map = tuple[str | None, bool]
+_Map = dict[str, Any]
 _Tensors = tuple[NDArray[np.complex128], NDArray[np.complex128]]
 
 @final
+class Drawing:
+    @property
+    def svg(self) -> str: ...
+    def save(self, path: str) -> None: ...
+
+@final
 class Image:
-    def __new__(cls, array: NDArray[Any]) -> Image: ...
+    def __new__(cls, array: NDArray[Any], is_srgb: bool) -> Image: ...
     def array(self) -> NDArray[Any]: ...
+    def __eq__(self, value: object, /) -> bool: ...
     @property
     def name(self) -> str: ...
 
@@ -61,6 +78,16 @@ class Material:
     def indices(
         self, wavelengths_nm: NDArray[np.float64], extraordinary: bool
     ) -> list[NDArray[np.complex128]]: ...
+
+@final
+class Page:
+    def __new__(cls, scene: Scene, name: str, port: int) -> Page: ...
+    @property
+    def address(self) -> str: ...
+    @property
+    def way_in(self) -> str | None: ...
+    def close(self) -> None: ...
+
 @final
 class Scene:
     def __new__(
@@ -96,14 +123,51 @@ class Scene:
     @property
     def kinds(self) -> list[str]: ...
     @property
+    def tables(self) -> dict[str, Any]: ...
+    @property
     def map(self) -> _Map: ...
+    def build(self) -> None: ...
     def check(self) -> None: ...
 
 def schema() -> str: ...
+def key_names(table: str) -> list[str]: ...
 def fit(table: str, entries: dict[str, Any]) -> dict[str, Any]: ...
 def render(
     scene: Scene, image_only: bool, tile: Sequence[int] | None, progress: _Tell
 ) -> tuple[dict[str, NDArray[Any]], list[tuple[str, str]], tuple[int, int]]: ...
+def estimate(scene: Scene) -> tuple[float, float, int, int, int]: ...
+def pulses(scene: Scene, pixel: Sequence[int]) -> str: ...
+def setting(scene: Scene) -> Drawing: ...
+def diagram(
+    scene: Scene,
+    parallel: float | None,
+    point: Sequence[float] | None,
+    counts: Sequence[int],
+    z: float | None,
+    width: float | None,
+    window: Sequence[float] | None,
+    polarization: tuple[float, float],
+    wavefronts: float | None,
+    min_power: float,
+    space: Sequence[float] | None,
+    size: Sequence[int],
+) -> Drawing: ...
+def animate(
+    scenes: Sequence[Scene],
+    path: str,
+    rate: int,
+    map_range: Sequence[float] | None,
+    keep_frames: bool,
+    progress: _Tell,
+) -> tuple[int, int, int]: ...
+def figures(
+    only: Sequence[str],
+    folder: str,
+    photo: str | None,
+    size: Sequence[int],
+    samples: int,
+    progress: _Tell,
+) -> list[str]: ...
 def read(path: str) -> tuple[dict[str, NDArray[Any]], list[tuple[str, str]]]: ...
 def merge(
     tiles: Sequence[tuple[str, dict[str, NDArray[Any]], Sequence[tuple[str, str]]]],
@@ -124,8 +188,10 @@ def trace(
     min_power: float | None,
     coherent: bool,
     group_delay: bool,
+    pick: int | None,
+    paths: float | None,
     progress: _Tell,
-) -> dict[str, NDArray[Any]]: ...
+) -> dict[str, Any]: ...
 def interface(
     incident: _Tensors,
     transmitted: _Tensors | None,
@@ -142,6 +208,7 @@ def quality(
 def sweep(
     scene: Scene,
     sweeps: Sequence[tuple[str, Sequence[object]]],
+    reference: Scene | None,
     path: str | None,
     progress: _Tell,
 ) -> str: ...
@@ -157,14 +224,24 @@ def flux(
 ) -> dict[str, NDArray[np.float64]]: ...
 def export_grid(
     scene: Scene,
-    path: str,
+    path: str | None,
     device: int | None,
     cells: Sequence[int] | None,
     spacing: float | None,
     world: bool,
     progress: _Tell,
+) -> dict[str, NDArray[Any]] | None: ...
+def export_paths(
+    path: str,
+    ray: NDArray[np.uint32],
+    power: NDArray[np.float64],
+    leaf: NDArray[np.int64],
+    parent: NDArray[np.int64],
+    start: NDArray[np.int64],
+    vertex: NDArray[np.float64],
+    optical_path: NDArray[np.float64],
 ) -> None: ...
-def export_table(scene: Scene, path: str, device: int | None) -> None: ...
+def export_table(scene: Scene, path: str | None, device: int | None) -> str | None: ...
 def set_threads(count: int) -> None: ...
 def threads() -> int: ...
 def check_memory(name: str, bytes: int) -> None: ...

@@ -108,8 +108,7 @@ def render_tiles(
         _Task(f"tile-{place[0]:05}-{place[1]:05}.npz", scene, _tile, (place, image_only), inputs) for place in places
     ]
     files = _run(tasks, Path(folder), client, progress, "rendering tiles")
-    map, color_bar = scene._native.map
-    return Picture.merge(files, map=map, color_bar=color_bar)
+    return Picture.merge(files, **scene._native.map)
 
 
 def render_frames(
@@ -231,8 +230,8 @@ def _tile(scene: Scene, place: tuple[int, int, int, int], image_only: bool) -> b
 
 
 def _frame(scene: Scene, ending: str) -> bytes:
-    map, _ = scene._native.map
-    return _saved(scene.render(image_only=ending == ".png" and map is None), ending)
+    image_only = ending == ".png" and "map" not in scene._native.map
+    return _saved(scene.render(image_only=image_only), ending)
 
 
 def _measured(scene: Scene, step: dict[str, Any]) -> bytes:

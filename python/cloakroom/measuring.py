@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _cloakroom
-from ._arrays import image_array, is_image_array, numbers
+from ._arrays import image_of, is_image_array, numbers
 from ._progress import Progress, told
+from .labelled import Arrays
 from .pictures import Picture
 from .scenes import Scene
 
@@ -29,7 +30,7 @@ def _viewed(name: str, picture: Any) -> Any:
     if isinstance(picture, (str, os.PathLike)):
         return os.fspath(picture)
     if is_image_array(picture):
-        return _cloakroom.Image(image_array(name, picture))
+        return image_of(name, picture)
     raise TypeError(f"{name} is a {type(picture).__name__}; expected a Picture, an array or a path")
 
 
@@ -94,8 +95,9 @@ def sweep(
     keys: Mapping[str, Sequence[Any] | NDArray[Any]],
     path: str | os.PathLike[str] | None = None,
     *,
+    reference: Scene | None = None,
     progress: Progress = False,
-) -> dict[str, NDArray[Any]]:
+) -> Arrays:
     """Measures how well the devices of a scene work, for every combination of the values of some keys.
 
     Parameters
@@ -106,14 +108,18 @@ def sweep(
         The values that each key takes, as `Scene.replace` takes it: ``{"device.0.rotation": range(0, 91, 5)}``.
     path : path, optional
         A file for the table (``.csv``, ``.npz``) or a plot (``.svg``, ``.pdf``, ``.png``).
+    reference : Scene, optional
+        A scene whose devices show what should be seen, as a flat floor for a carpet of one's own; else a cloak's flat
+        mirror, or nothing.
     progress : bool or callable, default False
         ``True`` for a line on standard error, or a function that is called with the steps done and all steps.
 
     Returns
     -------
-    dict of str to array
+    Arrays, a dict of str to array
         For every key its values, and for every figure its numbers, each of the shape of the grid of combinations:
         (len of the first key's values, ...). The figures are those of ``cloakroom quality``, NaN where there is none.
+        Its ``to_xarray()`` has the keys as coordinates.
 
     Raises
     ------
@@ -126,18 +132,23 @@ def sweep(
         raise TypeError(f"scene is a {type(scene).__name__}; expected a Scene")
     if not isinstance(keys, Mapping):
         raise TypeError(f"keys is a {type(keys).__name__}; expected a mapping of keys to lists of values")
+    if reference is not None and not isinstance(reference, Scene):
+        raise TypeError(f"reference is a {type(reference).__name__}; expected a Scene")
     values = {key: _values(key, given) for key, given in keys.items()}
     file = None if path is None else os.fspath(path)
     with told(progress, "measuring") as tell:
-        table = json.loads(_cloakroom.sweep(scene._native, list(values.items()), file, tell))
+        wanted = None if reference is None else reference._native
+        table = json.loads(_cloakroom.sweep(scene._native, list(values.items()), wanted, file, tell))
     shape = tuple(len(given) for given in values.values())
     grids = np.meshgrid(*(np.asarray(given) for given in values.values()), indexing="ij") if values else []
     columns: dict[str, NDArray[Any]] = dict(zip(values, grids))
+    along = {key: np.asarray(given) for key, given in values.items()}
     for column in table["columns"]:
         name = column["name"]
         figures = [row["figures"][name] for row in table["rows"]]
         columns[name] = np.array([np.nan if f is None else f for f in figures], dtype=np.float64).reshape(shape)
-    return columns
+    axes = {name: tuple(values) for name in columns}
+    return Arrays(columns, axes, {key: values for key, values in along.items() if values.ndim == 1})
 
 
 #: Nobody waits for more.
@@ -166,7 +177,7 @@ def flux(
     cells: int = 60,
     path: str | os.PathLike[str] | None = None,
     progress: Progress = False,
-) -> dict[str, NDArray[np.float64]]:
+) -> Arrays:
     """Measures how much light comes through to the scene's receiver: for no device, for the bare metal, for the cloak.
 
     Parameters
@@ -188,7 +199,7 @@ def flux(
 
     Returns
     -------
-    dict of str to array
+    Arrays, a dict of str to array
         ``label`` (angle or hour), ``incidence_deg`` and ``direction`` of each of D directions; ``total`` and
         ``total_error``, (D, 3, 3): irradiance for nothing, bare, cloaked, in horizontal, vertical, unpolarized light,
         that across the light being 1; ``given_back_percent`` and its error, (D, 3), NaN without a shadow; ``map``, (D,
@@ -227,7 +238,7 @@ def flux(
     if file is not None and not file.lower().endswith(".npz"):
         raise ValueError(f"path is {file!r}; expected the name of an .npz")
     with told(progress, "tracing") as tell:
-        return _cloakroom.flux(
+        arrays = _cloakroom.flux(
             scene._native,
             listed.tolist(),
             float(tilt),
@@ -236,6 +247,13 @@ def flux(
             file,
             tell,
         )
+    light = (("device", ["none", "bare", "cloaked"]), ("polarization", ["horizontal", "vertical", "unpolarized"]))
+    axes: dict[str, tuple[str, ...]] = {name: ("incidence", "step")[: array.ndim] for name, array in arrays.items()}
+    axes |= dict.fromkeys(("total", "total_error"), ("incidence", "device", "polarization"))
+    axes |= dict.fromkeys(("given_back_percent", "given_back_error"), ("incidence", "polarization"))
+    axes |= {"map": ("incidence", "device", "along", "across"), "along": ("along",), "across": ("across",)}
+    axes["direction"] = ("incidence", "coordinate")
+    return Arrays(arrays, axes, {name: np.array(words) for name, words in light})
 
 
 @dataclass(frozen=True)

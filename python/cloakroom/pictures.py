@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _cloakroom
+from .labelled import dataset
+
+if TYPE_CHECKING:
+    import xarray
 
 __all__ = ["Picture"]
 
@@ -34,6 +38,12 @@ class Picture(Mapping[str, NDArray[Any]]):
         The channel that ``image`` shows in false colors instead of what the camera sees.
     color_bar : bool, default True
         Whether the scale of a map is drawn beside it.
+    map_range : (float, float), optional
+        The numbers of a map with its first and its last color, ns for times and shares for powers.
+    map_percentile : float, optional
+        Instead of these, the percentage of the numbers, about the middle one, that lies in the range.
+    colormap : str, optional
+        ``"auto"``, ``"viridis"``, ``"cividis"``, ``"magma"``, or ``"blue-red"``, which is centred on 0.
     rarities : mapping of str to int, optional
         How many branches of ray trees were cut because there was no end to them (``"endless"``), or could not be
         followed (``"lost"``); their power is in ``pruned``.
@@ -46,6 +56,9 @@ class Picture(Mapping[str, NDArray[Any]]):
         *,
         map: str | None = None,
         color_bar: bool = True,
+        map_range: tuple[float, float] | None = None,
+        map_percentile: float | None = None,
+        colormap: str = "auto",
         rarities: Mapping[str, int] | None = None,
     ) -> None:
         self._channels = dict(channels)
@@ -53,7 +66,14 @@ class Picture(Mapping[str, NDArray[Any]]):
         self.metadata: dict[str, str] = dict(metadata or {})
         #: Branches of ray trees that were cut (``"endless"``) or lost (``"lost"``).
         self.rarities: dict[str, int] = dict(rarities or {})
-        self._map = (map, color_bar)
+        settings = {
+            "map": map,
+            "color_bar": color_bar,
+            "map_range": map_range,
+            "map_percentile": map_percentile,
+            "colormap": colormap,
+        }
+        self._map = _cloakroom.fit("picture", {key: value for key, value in settings.items() if value is not None})
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Picture:
@@ -71,7 +91,7 @@ class Picture(Mapping[str, NDArray[Any]]):
 
     @staticmethod
     def merge(
-        tiles: Iterable[str | os.PathLike[str] | Picture], *, map: str | None = None, color_bar: bool = True
+        tiles: Iterable[str | os.PathLike[str] | Picture], **shown: Any
     ) -> Picture:
         """Puts tiles together that ``Scene.render(tile=...)`` or ``cloakroom render --tile`` has made.
 
@@ -79,8 +99,8 @@ class Picture(Mapping[str, NDArray[Any]]):
         ----------
         tiles : iterable of Picture or path
             The tiles, or their ``.npz`` files; they must cover the picture and not overlap.
-        map, color_bar
-            As for a `Picture`.
+        **shown
+            ``map``, ``color_bar`` and the others that say what is shown, as for a `Picture`.
 
         Returns
         -------
@@ -100,7 +120,7 @@ class Picture(Mapping[str, NDArray[Any]]):
                 channels, metadata = _cloakroom.read(os.fspath(tile))
                 pieces.append((os.fspath(tile), channels, metadata))
         channels, metadata = _cloakroom.merge(pieces)
-        return Picture(channels, dict(metadata), map=map, color_bar=color_bar)
+        return Picture(channels, dict(metadata), **shown)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         try:
@@ -172,8 +192,22 @@ class Picture(Mapping[str, NDArray[Any]]):
         """
         _cloakroom.save(os.fspath(path), self._channels, list(self.metadata.items()), self._map)
 
+    def to_xarray(self) -> xarray.Dataset:
+        """The channels as an `xarray.Dataset`; needs ``pip install './python[xarray]'``.
+
+        Axes are ``row`` and ``column``, counted from the top left, and ``color`` (red, green, blue) or ``bin`` of
+        channels that have more numbers a pixel; the metadata are its attributes.
+        """
+        more: dict[int, tuple[str, ...]] = {3: ("color",), 16: ("bin",)}
+        axes = {
+            name: ("row", "column", *(more.get(array.shape[2], (name,)) if array.ndim == 3 else ()))
+            for name, array in self._channels.items()
+        }
+        has_color = any("color" in of for of in axes.values())
+        return dataset(self._channels, axes, {"color": np.array(list("RGB"))} if has_color else {}, self.metadata)
+
     def _repr_png_(self) -> bytes | None:
-        if self._map[0] is None and "R" not in self._channels:
+        if "map" not in self._map and "R" not in self._channels:
             return None
         return _cloakroom.png_bytes(self._channels, list(self.metadata.items()), self._map)
 
@@ -182,14 +216,13 @@ class Picture(Mapping[str, NDArray[Any]]):
         return f"<Picture of {width} x {height} pixels: {', '.join(self._channels)}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuild, (self._channels, self.metadata, *self._map, self.rarities)
+        return _rebuild, (self._channels, self.metadata, self._map, self.rarities)
 
 
 def _rebuild(
     channels: Mapping[str, NDArray[Any]],
     metadata: Mapping[str, str],
-    map: str | None,
-    color_bar: bool,
+    shown: Mapping[str, Any],
     rarities: Mapping[str, int],
 ) -> Picture:
-    return Picture(channels, metadata, map=map, color_bar=color_bar, rarities=rarities)
+    return Picture(channels, metadata, **shown, rarities=rarities)

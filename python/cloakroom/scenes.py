@@ -2,27 +2,67 @@
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _cloakroom
-from ._arrays import image_array, is_image_array
+from ._arrays import image_of, is_image_array, numbers
 from ._progress import Progress, told
+from .drawings import Drawing
+from .pages import Page
 from .pictures import Picture
-from .tables import DEVICES, TABLES, Device, Table
+from .tables import (
+    DEVICES,
+    TABLES,
+    Camera,
+    Device,
+    Light,
+    Photograph,
+    PictureSettings,
+    Receiver,
+    Surroundings,
+    Table,
+    TraceSettings,
+)
 
-__all__ = ["Scene"]
+__all__ = ["Estimate", "Scene"]
 
 #: A table of a scene: one of the classes, or a mapping of its keys.
 TableLike = Table | Mapping[str, Any]
 
 
+@dataclass(frozen=True)
+class Estimate:
+    """What rendering the image of a scene takes on this machine."""
+
+    #: Seconds, on that many threads.
+    seconds: float
+    #: How many rays are followed to their ends; the others go past every device, or are interpolated.
+    rays: float
+    #: How many rays the camera sends out.
+    samples: int
+    #: Memory for the picture and the file that it is written to, bytes.
+    memory: int
+    #: How many threads do the work.
+    threads: int
+
+    @property
+    def rays_per_sample(self) -> float:
+        """The share of the camera's rays that are followed."""
+        return self.rays / self.samples
+
+
 class Scene:
     """All that a picture depends on. A scene does not change; `replace` gives another one.
+
+    Its tables can be read as attributes, ``scene.camera.samples`` and ``scene.devices[0].rotation``, and given to
+    another scene. Scenes of equal tables and images are equal. In a notebook a scene shows its setting.
 
     Parameters
     ----------
@@ -30,8 +70,9 @@ class Scene:
         The tables of a scene: `Camera`, `Light`, `TraceSettings`, `PictureSettings`, `Receiver`, or their keys in
         a mapping.
     photograph : table, mapping, array or path, optional
-        What hangs behind the devices: a `Photograph`, or its image alone. An array is (height, width, 3) or (height,
-        width), ``uint8`` in sRGB or floats in linear light, its first row on top.
+        What hangs behind the devices: a `Photograph`, or its image alone. An array is (height, width), (height, width,
+        3), or (height, width, 4) with alpha, over black; ``uint8`` in sRGB or floats in linear light, its first row on
+        top. ``Photograph(image=array, encoding="srgb")`` says that floats are sRGB.
     surroundings : table, mapping, array or path, optional
         What rays see that hit nothing: a `Surroundings`, an equirectangular image, or three numbers, a color in
         linear light.
@@ -149,12 +190,86 @@ class Scene:
     def _placed_image(key: str, value: Any, images: list[_cloakroom.Image | None]) -> Any:
         places = ["photograph.image", "surroundings.image"]
         if key in places and is_image_array(value):
-            image = _cloakroom.Image(image_array(key, value))
+            image = image_of(key, value)
             images[places.index(key)] = image
             return image.name
         # The working folder may be another one when the scene is sent to another process.
         file = os.fspath(value) if isinstance(value, (str, os.PathLike)) else value
         return os.path.abspath(file) if isinstance(file, str) and file and ":" not in file else file
+
+    @property
+    def camera(self) -> Camera:
+        """The camera."""
+        return self._table("camera")  # type: ignore[return-value]
+
+    @property
+    def photograph(self) -> Photograph:
+        """What hangs behind the devices."""
+        return self._table("photograph")  # type: ignore[return-value]
+
+    @property
+    def surroundings(self) -> Surroundings:
+        """What rays see that hit nothing."""
+        return self._table("surroundings")  # type: ignore[return-value]
+
+    @property
+    def light(self) -> Light:
+        """The light."""
+        return self._table("light")  # type: ignore[return-value]
+
+    @property
+    def trace(self) -> TraceSettings:
+        """How far rays are followed."""
+        return self._table("trace")  # type: ignore[return-value]
+
+    @property
+    def picture(self) -> PictureSettings:
+        """What pictures show."""
+        return self._table("picture")  # type: ignore[return-value]
+
+    @property
+    def receiver(self) -> Receiver:
+        """The plane on which light is measured."""
+        return self._table("receiver")  # type: ignore[return-value]
+
+    @property
+    def devices(self) -> tuple[Device, ...]:
+        """The devices, in their order."""
+        devices = self._tables().get("device", [])
+        return tuple(DEVICES[keys["kind"]]._of({k: v for k, v in keys.items() if k != "kind"}) for keys in devices)
+
+    def _table(self, name: str) -> Table:
+        keys = self._tables().get(name, {})
+        table: Table = TABLES[name]._of(keys, self._shown(name, keys))
+        return table
+
+    def _tables(self) -> dict[str, Any]:
+        """What a scene file says, files by names that hold in any folder."""
+        tables: dict[str, Any] = self._native.tables
+        for key, path in self._native.files:
+            *places, last = key.split(".")
+            table: Any = tables
+            for place in places:
+                table = table[int(place) if place.isdigit() else place]
+            table[last] = os.path.abspath(path)
+        return {name: keys for name, keys in tables.items() if keys}
+
+    def _shown(self, name: str, keys: Mapping[str, Any]) -> _cloakroom.Image | None:
+        """The array that a table shows as its image."""
+        image = dict(zip(("photograph", "surroundings"), self._images)).get(name)
+        return image if image is not None and keys.get("image") == image.name else None
+
+    def _compared(self) -> tuple[Any, ...]:
+        tables = self._tables()
+        return tables, [self._shown(name, tables.get(name, {})) for name in ("photograph", "surroundings")]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self._native is other._native or self._compared() == other._compared()
+
+    def __hash__(self) -> int:
+        return hash((self.resolution, *self.kinds))
 
     @property
     def toml(self) -> str:
@@ -180,6 +295,151 @@ class Scene:
             If a device is impossible, something stands in something else, or an image cannot be read.
         """
         self._native.check()
+
+    def estimate(self) -> Estimate:
+        """Estimates what rendering the image takes, as ``cloakroom check`` does; parts of it are rendered for up to two
+        seconds.
+
+        Raises
+        ------
+        ValueError
+            As `check`.
+
+        Examples
+        --------
+        >>> from cloakroom import Camera, Scene, SquareCloak
+        >>> estimate = Scene(camera=Camera(resolution=[64, 48], samples=2), devices=SquareCloak()).estimate()
+        >>> estimate.samples, 0 < estimate.rays_per_sample < 1
+        (6144, True)
+        """
+        return Estimate(*_cloakroom.estimate(self._native))
+
+    def setting(self) -> Drawing:
+        """Draws camera, photograph and devices to scale, as ``cloakroom diagram --setting`` does.
+
+        Raises
+        ------
+        ValueError
+            As `check`.
+        """
+        return Drawing._of(_cloakroom.setting(self._native))
+
+    def diagram(
+        self,
+        rays: int = 20,
+        *,
+        parallel: float | None = None,
+        point: ArrayLike | None = None,
+        camera: bool = False,
+        width: float | None = None,
+        window: tuple[float, float, float, float] | None = None,
+        z: float | None = None,
+        polarization: Literal["none", "horizontal", "vertical"] = "none",
+        wavefronts: float | None = None,
+        min_power: float = 0.01,
+        space: tuple[float, float] | None = None,
+        layers: int = 1,
+        size: tuple[int, int] = (1024, 768),
+    ) -> Drawing:
+        """Draws rays through the devices, as ``cloakroom diagram`` does.
+
+        Parameters
+        ----------
+        rays : int, default 20
+            How many rays.
+        parallel : float, optional
+            Parallel rays in that direction, degrees from x in the xy-plane; along x if nothing else is asked for.
+        point : array_like, (3,), optional
+            A fan of rays from that point instead, cm.
+        camera : bool, default False
+            A fan of rays from the scene's camera instead.
+        width : float, optional
+            The width of a bundle of parallel rays, cm; that of the devices if not given.
+        window : (float, float, float, float), optional
+            The part of the cross-section that is shown: least x and y, greatest x and y (cm); the devices and what is
+            around them if not given.
+        z : float, optional
+            The plane z = const that the rays start in, cm; that of the first device if not given.
+        polarization : {"none", "horizontal", "vertical"}, default "none"
+            The polarization.
+        wavefronts : float, optional
+            Marks the points of equal optical path, as often as that (cm).
+        min_power : float, default 0.01
+            Branches below this share of a ray's power are left out.
+        space : (float, float), optional
+            Shows space in parallel projection, seen from that azimuth and elevation (degrees), instead of the
+            cross-section.
+        layers : int, default 1
+            With `space`, layers of rays one behind the other along z.
+        size : (int, int), default (1024, 768)
+            Width and height in pixels of a ``.png``; their ratio is that of the sheet.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If the scene cannot be or has no devices, or a number makes no sense.
+
+        Examples
+        --------
+        >>> from cloakroom import Scene, SquareCloak
+        >>> Scene(devices=SquareCloak()).diagram(10, wavefronts=4).svg.count('class="wavefront"') > 5
+        True
+        """
+        sources = {"parallel": parallel is not None, "point": point is not None, "camera": camera}
+        if sum(sources.values()) > 1:
+            given = " and ".join(name for name, is_given in sources.items() if is_given)
+            raise ValueError(f"{given} are given; rays come from one of them")
+        shares = {"none": (0.5, 0.5), "horizontal": (1.0, 0.0), "vertical": (0.0, 1.0)}
+        if polarization not in shares:
+            raise ValueError(f'polarization is {polarization!r}; expected "none", "horizontal" or "vertical"')
+        return Drawing._of(
+            _cloakroom.diagram(
+                self._native,
+                None if point is not None or camera else _number("parallel", parallel or 0.0),
+                None if point is None else _numbers("point", point, 3, "cm"),
+                [_count("rays", rays), _count("layers", layers)],
+                None if z is None else _number("z", z),
+                None if width is None else _number("width", width),
+                None if window is None else _numbers("window", window, 4, "cm"),
+                shares[polarization],
+                None if wavefronts is None else _number("wavefronts", wavefronts),
+                _number("min_power", min_power),
+                None if space is None else _numbers("space", space, 2, "degrees"),
+                [_count("size", side) for side in size],
+            )
+        )
+
+    def pulses(self, column: int, row: int) -> dict[str, Any]:
+        """Lists the pulses of a pixel, as ``cloakroom pulses --json`` does: what a short flash of the photograph looks
+        like there.
+
+        Parameters
+        ----------
+        column, row : int
+            The pixel, counted from 0 at the top left.
+
+        Returns
+        -------
+        dict
+            ``pulses``, a list of dicts with ``time_of_flight_ns``, ``delay_ns``, ``group_delay_ns``, ``power`` and
+            ``landings``; and ``mean_time_of_flight_ns``, ``delivered``, ``escaped`` and more of the pixel.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If there is no such pixel, or the scene cannot be.
+
+        Examples
+        --------
+        >>> from cloakroom import Camera, Scene, SquareCloak
+        >>> pulses = Scene(camera=Camera(resolution=[64, 48]), devices=SquareCloak()).pulses(32, 24)
+        >>> len(pulses["pulses"]), round(pulses["pulses"][0]["power"], 6)
+        (1, 1.0)
+        """
+        pulses: dict[str, Any] = json.loads(
+            _cloakroom.pulses(self._native, [_count("column", column), _count("row", row)])
+        )
+        return pulses
 
     def render(
         self,
@@ -223,14 +483,110 @@ class Scene:
         keys = {"camera.samples": samples, "camera.resolution": resolution}
         keys = {key: value for key, value in keys.items() if value is not None}
         scene = self.replace(keys) if keys else self
-        map, color_bar = scene._native.map
-        if image_only and map is not None:
-            raise ValueError(f"image_only leaves no channel `{map}` for picture.map to show")
+        shown = scene._native.map
+        if image_only and "map" in shown:
+            raise ValueError(f"image_only leaves no channel `{shown['map']}` for picture.map to show")
         place = None if tile is None else _tile(tile)
         with told(progress, "rendering") as tell:
             channels, metadata, (endless, lost) = _cloakroom.render(scene._native, image_only, place, tell)
         rarities = {"endless": endless, "lost": lost}
-        return Picture(channels, dict(metadata), map=map, color_bar=color_bar, rarities=rarities)
+        return Picture(channels, dict(metadata), **shown, rarities=rarities)
+
+    def animate(
+        self,
+        keys: Mapping[str, Sequence[Any] | NDArray[Any]],
+        path: str | os.PathLike[str],
+        *,
+        fps: int = 25,
+        map_range: tuple[float, float] | None = None,
+        keep_frames: bool = False,
+        progress: Progress = False,
+    ) -> None:
+        """Makes a film in which keys change from frame to frame, as ``cloakroom animate`` does.
+
+        Stopped work goes on where it was when the same call is made once more: finished frames are kept in a folder
+        beside the film.
+
+        Parameters
+        ----------
+        keys : mapping of str to sequence
+            The values that each key takes, one a frame, as `replace` takes it: ``{"device.0.rotation":
+            np.linspace(0, 90, 91)}``.
+        path : path
+            The film: ``.gif``, ``.apng``, ``.png``, ``.webp``, ``.mp4`` or ``.webm`` (by ffmpeg); a name without ending is
+            a folder of frames.
+        fps : int, default 25
+            Frames a second, 1 to 100.
+        map_range : (float, float), optional
+            With ``picture.map`` in the scene, the one scale of all frames: in ns for times, as shares for powers.
+        keep_frames : bool, default False
+            Keep the folder of the frames.
+        progress : bool or callable, default False
+            ``True`` for a line on standard error, or a function that is called with the steps done and all steps.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If a key does not exist or a value does not fit, the keys differ in the number of values, the frames would be
+            of different sizes, or the ending is another.
+        OSError
+            If a file cannot be written.
+        """
+        if not isinstance(keys, Mapping) or not keys:
+            raise TypeError(f"keys is {keys!r}; expected a mapping of keys to their values, one a frame")
+        counts = {key: len(values) for key, values in keys.items()}
+        if len(set(counts.values())) != 1:
+            listed = ", ".join(f"{key} {count}" for key, count in counts.items())
+            raise ValueError(f"the keys differ in their values: {listed}; expected one a frame in each")
+        if not 1 <= _count("fps", fps) <= 100:
+            raise ValueError(f"fps is {fps}; expected 1 to 100 frames a second")
+        rows = ([value.item() if isinstance(value, np.generic) else value for value in row] for row in zip(*keys.values()))
+        scenes = [self.replace(dict(zip(keys, row))) for row in rows]
+        if len({scene.resolution for scene in scenes}) > 1:
+            raise ValueError("camera.resolution changes from frame to frame; a film has one size")
+        if map_range is None and any(scene._native.map[0] is not None for scene in scenes):
+            raise ValueError("a film of a map needs one scale for all frames; give map_range=(low, high)")
+        scale = None if map_range is None else _numbers("map_range", map_range, 2, "ns, or shares")
+        natives = [scene._native for scene in scenes]
+        with told(progress, "animating") as tell:
+            _cloakroom.animate(natives, os.fspath(path), int(fps), scale, bool(keep_frames), tell)
+
+    def view(self, *, port: int = 0, open: bool = True) -> Page:
+        """Serves an interactive page with the scene on this machine, as ``cloakroom view`` does; it stays until it is
+        closed, or Python ends.
+
+        Parameters
+        ----------
+        port : int, default 0
+            The port; 0 stands for any that is free.
+        open : bool, default True
+            Open it in the browser.
+
+        Returns
+        -------
+        Page
+            The page: ``page.address``, ``page.close()``; in a script, ``page.wait()``.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If the port is none, or an image of the scene is an array.
+        OSError
+            If no port is free.
+        """
+        if not 0 <= _count("port", port) < 2**16:
+            raise ValueError(f"port is {port}; expected a number below 65536")
+        page = Page._of(_cloakroom.Page(self._native, "a scene in Python", int(port)))
+        if open:
+            page.open()
+        return page
+
+    def _repr_svg_(self) -> str | None:
+        try:
+            return self.setting().svg
+        except ValueError:
+            # One that cannot be built shows as a text.
+            return None
 
     def __repr__(self) -> str:
         width, height = self.resolution
@@ -255,7 +611,7 @@ def _rebuild(
     scene = object.__new__(Scene)
     # Arrays that have come through a network may lie anywhere in memory.
     images = [
-        None if array is None else _cloakroom.Image(np.require(array, requirements=["ALIGNED"]))
+        None if array is None else _cloakroom.Image(np.require(array, requirements=["ALIGNED"]), False)
         for array in (photograph, surroundings)
     ]
     scene._images = (images[0], images[1])
@@ -269,6 +625,28 @@ def _tile(tile: Any) -> list[int]:
     if array.shape != (4,) or array.dtype.kind not in "iu" or not ((array >= 0) & (array < 2**32)).all():
         raise ValueError(f"tile is {tile!r}; expected left, top, width and height in pixels")
     return [int(side) for side in array]
+
+
+def _number(name: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
+        raise TypeError(f"{name} is a {type(value).__name__}; expected a number")
+    return float(value)
+
+
+def _numbers(name: str, values: Any, count: int, unit: str) -> list[float]:
+    expected = f"{count} numbers ({unit})"
+    array = numbers(name, values, expected)
+    if array.shape != (count,) or not np.isfinite(array).all():
+        raise ValueError(f"{name} is {values!r}; expected {expected}")
+    return [float(value) for value in array]
+
+
+def _count(name: str, value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
+        raise TypeError(f"{name} is a {type(value).__name__}; expected a whole number")
+    if not 0 <= value < 2**32:
+        raise ValueError(f"{name} is {value}; expected a whole number from 0 on that fits into 32 bits")
+    return int(value)
 
 
 def _table(name: str, given: TableLike | None) -> Table:
@@ -299,7 +677,7 @@ def _pictured(name: str, given: Any) -> TableLike | None:
     if name == "surroundings" and is_image_array(given) and np.shape(given) == (3,):
         return {"color": given}
     if is_image_array(given):
-        return TABLES[name](image=image_array(name, given))
+        return TABLES[name](image=image_of(name, given))
     raise TypeError(
         f"{name} is a {type(given).__name__}; expected an array, a path, a {TABLES[name].__name__} or a mapping"
     )

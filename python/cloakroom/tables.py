@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from . import _cloakroom
-from ._arrays import image_array, is_image_array
+from ._arrays import image_of, is_image_array
 from ._index import SPACING, grid_array, index_array
 
 _SCHEMA: dict[str, Any] = json.loads(_cloakroom.schema())
@@ -46,11 +46,23 @@ class Table:
         if not self._table:
             raise TypeError(f"{type(self).__name__} is what tables have in common; take one of its subclasses")
         given = {name: value for name, value in keys.items() if value is not None}
-        image = given.get("image")
-        if "image" in self._properties and is_image_array(image):
-            self._image = _cloakroom.Image(image_array("image", image))
-            given["image"] = self._image.name
+        if "image" in self._properties:
+            image, encoding = given.get("image"), given.pop("encoding", None)
+            if is_image_array(image):
+                image = image_of("image", image, encoding)
+            elif encoding is not None:
+                raise ValueError("encoding is that of arrays; a file says by its format what its numbers are")
+            if isinstance(image, _cloakroom.Image):
+                self._image, given["image"] = image, image.name
         self._given = _cloakroom.fit(self._table, given)
+
+    @classmethod
+    def _of(cls, keys: Mapping[str, Any], image: _cloakroom.Image | None = None) -> Any:
+        """One of what a scene file says, and the array that is its image."""
+        table = object.__new__(cls)
+        table._given = _cloakroom.fit(cls._table, dict(keys))
+        table._image = image
+        return table
 
     def given(self) -> dict[str, Any]:
         """The keys that were given, with their values as a scene file writes them."""
@@ -58,7 +70,7 @@ class Table:
 
     def replace(self, **keys: Any) -> Any:
         """The same table with some keys changed; ``None`` takes a key back to its default."""
-        image = {} if self._image is None else {"image": self._image.array()}
+        image = {} if self._image is None else {"image": self._image}
         return type(self)(**{**self._given, **image, **keys})
 
     def __repr__(self) -> str:
@@ -69,13 +81,12 @@ class Table:
         if not isinstance(other, Table):
             return NotImplemented
         same = type(self) is type(other) and self._given == other._given
-        return same and self._image is other._image
+        return same and self._image == other._image
 
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        image = {} if self._image is None else {"image": self._image.array()}
-        return _rebuild, (type(self).__name__, {**self._given, **image})
+        return _rebuild, (type(self).__name__, self._given, None if self._image is None else self._image.array())
 
 
 class Device(Table):
@@ -113,8 +124,9 @@ class _Graded(Device):
         return f"{type(self).__name__}({keys})"
 
 
-def _rebuild(name: str, keys: Mapping[str, Any]) -> Table:
-    table: Table = globals()[name](**keys)
+def _rebuild(name: str, keys: Mapping[str, Any], array: Any) -> Table:
+    image = None if array is None else image_of("image", array, "linear" if array.dtype.kind == "f" else "srgb")
+    table: Table = globals()[name]._of(keys, image)
     return table
 
 
@@ -156,6 +168,19 @@ def _key(name: str, description: Mapping[str, Any]) -> property:
     return property(lambda table: table._given.get(name, default), doc=description["description"])
 
 
+#: What arrays are asked for beside the keys of the catalogue.
+_ENCODING = {
+    "enum": ["srgb", "linear"],
+    "description": "What the numbers of an array stand for: \"srgb\", as in image files, or \"linear\" light. If it is "
+    "not given, uint8 is sRGB and floats are linear light.",
+}
+
+#: What images may be.
+_IMAGE = (
+    " Or an array, its first row on top: (height, width), (height, width, 3), or (height, width, 4), whose last channel "
+    "is alpha over black."
+)
+
 #: What `Graded` takes as its index, which is more than a scene file does.
 _INDEX = (
     "The refractive index: an array (samples along x, samples along y), or (along x, along y, along z) with a length, on "
@@ -166,10 +191,14 @@ _INDEX = (
 
 
 def _make(name: str, base: type[Table], summary: str, properties: dict[str, Any], table: str) -> type[Table]:
-    properties = {key: description for key, description in properties.items() if key != "kind"}
+    properties = {key: properties[key] for key in _cloakroom.key_names(table)}
     if base is _Graded:
         properties["index"] = {**properties["index"], "description": _INDEX}
         properties["spacing"] = SPACING
+    if "image" in properties:
+        image = properties.pop("image")
+        first = {"image": {**image, "description": image["description"] + _IMAGE}, "encoding": _ENCODING}
+        properties = {**first, **properties}
     parts = [_key_doc(key, description) for key, description in properties.items()]
     doc = f"{summary}\n\nParameters\n----------\n" + "\n".join(parts) + "\n"
     parameters = [
@@ -184,6 +213,7 @@ def _make(name: str, base: type[Table], summary: str, properties: dict[str, Any]
         "_table": table,
         "_properties": properties,
     }
+    names.pop("encoding", None)
     if issubclass(base, Device):
         names["kind"] = table
         names.pop("spacing", None)

@@ -8,6 +8,7 @@ use cloakroom::render::{MergeError, RenderError};
 use cloakroom::scene_file::SceneFileError;
 use cloakroom::trace::Stopped;
 use cloakroom_figures::IllustrationError;
+use cloakroom_figures::film::FilmError;
 use pyo3::PyErr;
 use pyo3::exceptions::{
     PyFileNotFoundError, PyKeyboardInterrupt, PyMemoryError, PyOSError, PyValueError,
@@ -44,14 +45,19 @@ impl<E: Error + 'static> From<E> for Failure {
             || matches!(error.downcast_ref(), Some(MeasureError::TooLarge { .. }));
         let unwritten = match error.downcast_ref() {
             Some(IllustrationError::Output(error)) => Some(error),
-            _ => error.downcast_ref(),
+            _ => match error.downcast_ref() {
+                Some(FilmError::Output(error)) => Some(error),
+                _ => error.downcast_ref(),
+            },
         };
         let message = error.to_string();
         Self(if Stopped::is_in(error.as_ref()) {
             PyKeyboardInterrupt::new_err(())
         } else if too_large {
             PyMemoryError::new_err(message)
-        } else if matches!(unwritten, Some(OutputError::Write { .. })) {
+        } else if matches!(unwritten, Some(OutputError::Write { .. }))
+            || matches!(error.downcast_ref(), Some(FilmError::Failed { .. }))
+        {
             PyOSError::new_err(message)
         } else {
             PyValueError::new_err(message)

@@ -2,12 +2,15 @@
 //! turned into scenes, rays and pictures, and what comes out goes back as numpy arrays. The other
 //! half, in `cloakroom/`, is what people see: classes, names and docstrings. No physics is here.
 
+mod drawings;
 mod errors;
+mod films;
 mod images;
 mod interfaces;
 mod materials;
 mod measuring;
 mod memory;
+mod page;
 mod pictures;
 mod rays;
 mod scenes;
@@ -19,6 +22,10 @@ mod values;
 #[pyo3::pymodule]
 mod _cloakroom {
     #[pymodule_export]
+    use super::drawings::{Drawing, diagram, setting};
+    #[pymodule_export]
+    use super::films::{animate, figures};
+    #[pymodule_export]
     use super::images::Image;
     #[pymodule_export]
     use super::interfaces::interface;
@@ -29,15 +36,17 @@ mod _cloakroom {
     #[pymodule_export]
     use super::memory::check_memory;
     #[pymodule_export]
-    use super::pictures::{merge, png_bytes, read, render, save, srgb};
+    use super::page::Page;
     #[pymodule_export]
-    use super::rays::trace;
+    use super::pictures::{estimate, merge, png_bytes, pulses, read, render, save, srgb};
+    #[pymodule_export]
+    use super::rays::{export_paths, trace};
     #[pymodule_export]
     use super::scenes::Scene;
     #[pymodule_export]
     use super::supervision::{fail_on_purpose, set_threads, threads};
     #[pymodule_export]
-    use super::tables::{fit, schema};
+    use super::tables::{fit, key_names, schema};
 
     use pyo3::prelude::*;
 

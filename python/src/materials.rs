@@ -7,11 +7,12 @@ use crate::values::{object_of, value_of};
 use cloakroom::keys::Value;
 use cloakroom::material::{self, Frame, Resolution};
 use cloakroom::material_file::material_of;
-use cloakroom::output::{self, GridFormat};
+use cloakroom::output::{self, GridFormat, ShapedArray};
 use num_complex::Complex64;
-use numpy::{PyArray1, PyReadonlyArray1};
+use numpy::{PyArray1, PyReadonlyArray1, ToPyArray};
 use optics::material::IndexLaw;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -88,29 +89,31 @@ impl Material {
     }
 }
 
-/// Writes the index and the tensors of a device on a grid: `cells` along x, y and z, or cubes of
-/// the side `spacing`.
+/// The index and the tensors of a device on a grid, `cells` along x, y and z, or cubes of the side
+/// `spacing`: into a file, or as arrays by their names.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
-pub fn export_grid(
-    py: Python<'_>,
+pub fn export_grid<'py>(
+    py: Python<'py>,
     scene: &Scene,
-    path: PathBuf,
+    path: Option<PathBuf>,
     device: Option<usize>,
     cells: Option<[u32; 3]>,
     spacing: Option<f64>,
     world: bool,
     progress: Option<Py<PyAny>>,
-) -> Result<(), Failure> {
-    GridFormat::of(&path)?;
-    output::check_writable(&path)?;
+) -> Result<Option<Bound<'py, PyDict>>, Failure> {
+    if let Some(path) = &path {
+        GridFormat::of(path)?;
+        output::check_writable(path)?;
+    }
     let frame = if world { Frame::World } else { Frame::Device };
     let resolution = match (cells, spacing) {
         (Some(cells), _) => Resolution::Cells(cells),
         (None, Some(side)) => Resolution::Spacing(side),
         (None, None) => Resolution::Default,
     };
-    supervised(py, progress.as_ref(), |watch, supervision| {
+    let sampled = supervised(py, progress.as_ref(), |watch, supervision| {
         let (assembly, begun) = (scene.assembly()?, |rows| watch.begin(rows));
         let sampled = material::sample(
             scene.scene(),
@@ -121,20 +124,35 @@ pub fn export_grid(
             &begun,
             supervision,
         )?;
-        Ok(output::write_grid(&sampled, &path)?)
-    })
+        path.as_deref().map_or(Ok(()), |path| output::write_grid(&sampled, path))?;
+        Ok(sampled)
+    })?;
+    if path.is_some() {
+        return Ok(None);
+    }
+    let arrays = PyDict::new(py);
+    for (name, array) in sampled.shaped() {
+        match array {
+            ShapedArray::Codes(codes) => arrays.set_item(name, codes.to_pyarray(py))?,
+            ShapedArray::Numbers(numbers) => arrays.set_item(name, numbers.to_pyarray(py))?,
+        }
+    }
+    Ok(Some(arrays))
 }
 
-/// Writes the homogeneous segments of a device as a table.
+/// The homogeneous segments of a device: into a file, or as JSON.
 #[pyfunction]
 pub fn export_table(
     py: Python<'_>,
     scene: &Scene,
-    path: PathBuf,
+    path: Option<PathBuf>,
     device: Option<usize>,
-) -> Result<(), Failure> {
+) -> Result<Option<String>, Failure> {
     supervised(py, None, |_, _| {
         let segments = material::segments(scene.scene(), scene.assembly()?, device)?;
-        Ok(material::write_segments(&segments, &path)?)
+        Ok(match path {
+            Some(path) => material::write_segments(&segments, &path).map(|()| None)?,
+            None => Some(serde_json::to_string(&segments)?),
+        })
     })
 }

@@ -60,13 +60,14 @@ pub fn quality(
     Ok(serde_json::to_string(&supervised(py, None, |_, _| Ok(compare()?))?)?)
 }
 
-/// Measures a scene for every combination of the values of keys, by their keys; `path` may name a
-/// table or a plot to write. Gives JSON.
+/// Measures a scene for every combination of the values of keys, by their keys; `reference`
+/// has the devices that should be seen; `path` may name a table or a plot to write. Gives JSON.
 #[pyfunction]
 pub fn sweep(
     py: Python<'_>,
     scene: &Scene,
     sweeps: Vec<(String, Vec<Bound<'_, PyAny>>)>,
+    reference: Option<&Scene>,
     path: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
 ) -> Result<String, Failure> {
@@ -79,6 +80,13 @@ pub fn sweep(
     let sweeps = sweeps.into_iter().map(sweep).collect::<PyResult<Vec<Sweep>>>()?;
     let table = supervised(py, progress.as_ref(), |watch, supervision| {
         let plan = SweepPlan::new(sweeps, Vec::new(), |further| scene.reload(further))?;
+        let plan = match reference {
+            Some(reference) => {
+                reference.assembly()?;
+                plan.with_reference(reference.scene().clone())
+            }
+            None => plan,
+        };
         watch.begin(plan.steps());
         Ok(measure::quality(&plan, supervision)?)
     })?;

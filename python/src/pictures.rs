@@ -4,10 +4,13 @@ use crate::errors::{Failure, unreadable, value_error};
 use crate::memory::check_copy;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
+use crate::values::value_of;
 use cloakroom::color::BINS;
+use cloakroom::keys::Table;
 use cloakroom::output::{self, Channel, Picture, Samples};
 use cloakroom::render as rendering;
 use cloakroom::render::{ChannelSet, Tile};
+use cloakroom::scene::PictureSettings;
 use cloakroom_figures::{PictureFormat, shown, write_picture};
 use ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
@@ -49,6 +52,23 @@ pub fn render<'py>(
     let stats = (rendered.stats.endless, rendered.stats.lost);
     let (channels, metadata) = arrays(py, rendered.picture)?;
     Ok((channels, metadata, stats))
+}
+
+/// The pulses of a pixel, by its column and row. Gives JSON.
+#[pyfunction]
+pub fn pulses(py: Python<'_>, scene: &Scene, pixel: [u32; 2]) -> Result<String, Failure> {
+    let list = supervised(py, None, |_, _| Ok(rendering::pulses(&scene.prepared()?, pixel)?))?;
+    Ok(serde_json::to_string(&list)?)
+}
+
+/// What rendering the image of a scene takes: seconds, rays followed, camera rays, bytes, threads.
+#[pyfunction]
+pub fn estimate(py: Python<'_>, scene: &Scene) -> Result<(f64, f64, u64, u64, usize), Failure> {
+    supervised(py, None, |_, _| {
+        let prepared = scene.prepared()?;
+        let rendering::Estimate { seconds, walks, samples, bytes } = rendering::estimate(&prepared);
+        Ok((seconds, walks, samples, bytes, rayon::current_num_threads()))
+    })
 }
 
 /// The channels of a picture as arrays, and its metadata. The memory of each channel goes to numpy
@@ -110,12 +130,11 @@ pub fn save(
     path: PathBuf,
     channels: &Bound<'_, PyDict>,
     metadata: Vec<(String, String)>,
-    map: (Option<String>, bool),
+    map: &Bound<'_, PyDict>,
 ) -> Result<(), Failure> {
     let format = PictureFormat::of(&path)?;
-    let picture = picture_of(channels, metadata)?;
-    let map = (map.0.as_deref(), map.1);
-    supervised(py, None, |_, _| Ok(write_picture(&picture, map, format, &path)?))
+    let (picture, settings) = (picture_of(channels, metadata)?, settings_of(map)?);
+    supervised(py, None, |_, _| Ok(write_picture(&picture, &settings, format, &path)?))
 }
 
 /// What a PNG of the channels shows, as 8-bit sRGB (height, width, 3).
@@ -123,11 +142,10 @@ pub fn save(
 pub fn srgb<'py>(
     py: Python<'py>,
     channels: &Bound<'py, PyDict>,
-    map: (Option<String>, bool),
+    map: &Bound<'py, PyDict>,
 ) -> Result<Bound<'py, PyArray3<u8>>, Failure> {
-    let picture = picture_of(channels, Vec::new())?;
-    let map = (map.0.as_deref(), map.1);
-    let image = supervised(py, None, |_, _| Ok(shown(&picture, map, None)?))?;
+    let (picture, settings) = (picture_of(channels, Vec::new())?, settings_of(map)?);
+    let image = supervised(py, None, |_, _| Ok(shown(&picture, &settings)?))?;
     let (width, height) = image.dimensions();
     let shape = (height as usize, width as usize, 3);
     Ok(Array3::from_shape_vec(shape, image.into_raw())?.into_pyarray(py))
@@ -139,19 +157,27 @@ pub fn png_bytes<'py>(
     py: Python<'py>,
     channels: &Bound<'py, PyDict>,
     metadata: Vec<(String, String)>,
-    map: (Option<String>, bool),
+    map: &Bound<'py, PyDict>,
 ) -> Result<Bound<'py, PyBytes>, Failure> {
-    let picture = picture_of(channels, metadata)?;
+    let (picture, settings) = (picture_of(channels, metadata)?, settings_of(map)?);
     let bytes = supervised(py, None, |_, _| {
         let mut out = Cursor::new(Vec::new());
-        output::encode_png(
-            &shown(&picture, (map.0.as_deref(), map.1), None)?,
-            &picture.metadata,
-            &mut out,
-        )?;
+        output::encode_png(&shown(&picture, &settings)?, &picture.metadata, &mut out)?;
         Ok(out.into_inner())
     })?;
     Ok(PyBytes::new(py, &bytes))
+}
+
+/// What a picture shows, by keys of a scene's table `picture`.
+fn settings_of(keys: &Bound<'_, PyDict>) -> Result<PictureSettings, Failure> {
+    let mut settings = PictureSettings::default();
+    for (name, object) in keys {
+        let name: String = name.extract()?;
+        let value = value_of(&name, &object)?;
+        settings.set(&name, value).map_err(|error| value_error(error.message))?;
+    }
+    settings.check_one_range().map_err(|error| value_error(error.message))?;
+    Ok(settings)
 }
 
 /// The picture that channels are.

@@ -3,11 +3,11 @@
 use crate::errors::{Failure, scene_error, unreadable, value_error};
 use crate::images::Image;
 use crate::supervision::supervised;
-use crate::values::value_of;
+use crate::values::{object_of, value_of};
 use cloakroom::assembly::Assembly;
-use cloakroom::keys::Value;
+use cloakroom::keys::{Table, Value};
 use cloakroom::photograph::ImageSource;
-use cloakroom::render::{PreparedScene, PreparedSceneError, assembly};
+use cloakroom::render::{Images, PreparedScene, PreparedSceneError, assembly};
 use cloakroom::scene;
 use cloakroom::scene_file::{self, Loaded, Override, SceneFileError};
 use pyo3::prelude::*;
@@ -66,7 +66,7 @@ impl Written {
 type Arrays = [Option<ImageSource>; 2];
 
 /// The same as Python hands them over.
-type Images<'py> = [Option<PyRef<'py, Image>>; 2];
+type ImageArrays<'py> = [Option<PyRef<'py, Image>>; 2];
 
 /// Puts arrays where a scene names them; an override may name a file instead.
 fn hang(arrays: &Arrays, folder: &Path, scene: &mut scene::Scene) {
@@ -100,7 +100,7 @@ impl Scene {
         folder: PathBuf,
         is_file: bool,
         overrides: Vec<(String, Bound<'_, PyAny>)>,
-        images: Images<'_>,
+        images: ImageArrays<'_>,
     ) -> Result<Self, Failure> {
         let written = Written { content: Content::Text(text), name, folder, is_file };
         Self::read(Arc::new(written), settings(overrides)?, images)
@@ -111,7 +111,7 @@ impl Scene {
     fn of_tables(
         tables: &Bound<'_, PyDict>,
         folder: PathBuf,
-        images: Images<'_>,
+        images: ImageArrays<'_>,
     ) -> Result<Self, Failure> {
         let name = "scene".to_owned();
         let content = Content::Tables(value_of(&name, tables)?);
@@ -137,7 +137,7 @@ impl Scene {
     fn replaced(
         &self,
         overrides: Vec<(String, Bound<'_, PyAny>)>,
-        images: Images<'_>,
+        images: ImageArrays<'_>,
     ) -> Result<Self, Failure> {
         Self::read(Arc::clone(&self.written), settings(overrides)?, images)
     }
@@ -172,16 +172,38 @@ impl Scene {
         self.scene().devices.iter().map(|device| device.kind()).collect()
     }
 
+    /// Its tables as a scene file writes them.
+    #[getter]
+    fn tables<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>, Failure> {
+        let tables = match &self.written.content {
+            Content::Tables(tables) if self.overrides.is_empty() => tables.clone(),
+            _ => scene_file::tables(&self.scene().source, &self.written.name)?,
+        };
+        Ok(object_of(py, &tables)?)
+    }
+
     /// What a PNG shows instead of what the camera sees, and whether with a bar of its colors.
     #[getter]
-    fn map(&self) -> (Option<&'static str>, bool) {
-        (self.scene().picture.map.name(), self.scene().picture.color_bar)
+    fn map<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let keys = PyDict::new(py);
+        let picture = &self.scene().picture;
+        let is_of_map =
+            |name: &str| name != "channels" && (name != "map" || picture.map.name().is_some());
+        for (name, value) in picture.written().iter().filter(|(name, _)| is_of_map(name)) {
+            keys.set_item(name, object_of(py, value)?)?;
+        }
+        Ok(keys)
     }
 
     /// The files that it names, and the keys that name them.
     #[getter]
     fn files(&self) -> Vec<(String, PathBuf)> {
         self.scene().files()
+    }
+
+    /// Builds the devices and keeps them.
+    fn build(&self, py: Python<'_>) -> Result<(), Failure> {
+        supervised(py, None, |_, _| self.assembly().map(drop))
     }
 
     /// Builds the devices, and the rest of what a picture needs.
@@ -194,7 +216,7 @@ impl Scene {
     fn read(
         written: Arc<Written>,
         overrides: Vec<Override>,
-        images: Images<'_>,
+        images: ImageArrays<'_>,
     ) -> Result<Self, Failure> {
         let arrays = images.map(|image| image.map(|image| image.source.clone()));
         let loaded = written.read(&overrides, &arrays);
@@ -224,6 +246,28 @@ impl Scene {
     /// What a picture needs, built.
     pub fn prepared(&self) -> Result<PreparedScene<'_>, Failure> {
         PreparedScene::new(self.scene()).map_err(|error| self.located(&error))
+    }
+
+    /// The same with images that may have been read before.
+    pub fn prepared_with(&self, images: &mut Images) -> Result<PreparedScene<'_>, Failure> {
+        PreparedScene::with_images(self.scene(), images).map_err(|error| self.located(&error))
+    }
+
+    /// What has been read.
+    pub fn loaded(&self) -> &Loaded {
+        &self.loaded
+    }
+
+    /// The folder that its files are relative to.
+    pub fn folder(&self) -> &Path {
+        &self.written.folder
+    }
+
+    /// Whether it shows an image that is an array.
+    pub fn shows_array(&self) -> bool {
+        let is_array = |image: &ImageSource| matches!(image, ImageSource::Memory(_));
+        let scene = self.scene();
+        is_array(&scene.photograph.image) || scene.surroundings.image.as_ref().is_some_and(is_array)
     }
 
     /// Its devices, built.

@@ -33,6 +33,12 @@ impl Watch {
         self.total.store(steps, Ordering::Relaxed);
     }
 
+    /// How many of them are left.
+    pub fn left(&self) -> u64 {
+        let [done, total] = [&self.done, &self.total].map(|n| n.load(Ordering::Relaxed));
+        total.saturating_sub(done)
+    }
+
     fn tell(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
         if let Some(progress) = progress {
             let [done, total] = [&self.done, &self.total].map(|n| n.load(Ordering::Relaxed));

@@ -42,6 +42,12 @@ pub fn fit<'py>(
     Ok(values)
 }
 
+/// The names of the keys of a table or a kind of device, in the order in which they matter.
+#[pyfunction]
+pub fn key_names(table: &str) -> Result<Vec<&'static str>, Failure> {
+    Ok(lists(table)?.0.into_iter().flatten().map(|key| key.name).collect())
+}
+
 /// The lists of keys of a table or a kind of device, and how messages call it.
 fn lists(table: &str) -> Result<(Vec<&'static [Key]>, String), Failure> {
     if let Some((name, keys)) = TABLES.iter().find(|(name, _)| *name == table) {

@@ -111,6 +111,17 @@ def test_floats_are_linear_light() -> None:
     np.testing.assert_allclose(sky.linear, 0.5, rtol=1e-6)
 
 
+def test_beyond_the_photograph_and_without_the_device() -> None:
+    camera = Camera(resolution=[16, 12], samples=1)
+    small = Photograph(image=np.full((6, 8), 0.25), width=20)
+    dark = Scene(camera=camera, photograph=small).render()
+    assert dark.linear.min() == 0
+    gray = Scene(camera=camera, photograph=small.replace(border="mirror")).render()
+    np.testing.assert_allclose(gray.linear, 0.25, rtol=1e-6)
+    empty = Scene(camera=camera, devices=SquareCloak(rotation=20, show="empty")).render()
+    np.testing.assert_array_equal(empty.linear, Scene(camera=camera).render().linear)
+
+
 def test_devices_and_photographs_in_any_pose() -> None:
     camera = Camera(resolution=[24, 18], samples=1)
     upright = Scene(camera=camera, devices=SquareCloak(), photograph=Photograph(x=40)).render()

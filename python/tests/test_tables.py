@@ -91,7 +91,7 @@ def test_coatings_and_metals_are_tables_within_a_device() -> None:
         ("Body", {"surface": {1: 2}}, TypeError, "a key that is not a text"),
         ("Camera", {"resolution": [0, 10]}, ValueError, "the first number of resolution is 0"),
         ("Camera", {"samples": 1.5}, ValueError, "samples is 1.5; it must be a whole number"),
-        ("Photograph", {"image": np.zeros((2, 3, 4))}, ValueError, "image has the shape (2, 3, 4)"),
+        ("Photograph", {"image": np.zeros((2, 3, 5))}, ValueError, "image has the shape (2, 3, 5)"),
         ("Photograph", {"image": np.zeros((0, 3, 3))}, ValueError, "image has the shape (0, 3, 3)"),
         ("Photograph", {"image": np.zeros((2, 3), dtype=int)}, TypeError, "image is of the type int64"),
         ("Photograph", {"image": np.full((2, 3), np.inf)}, ValueError, "not a finite number, in column 0 and row 0"),

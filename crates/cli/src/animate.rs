@@ -8,21 +8,24 @@ use crate::render::warn_of_cut_branches;
 use crate::report::{Failure, Result, say};
 use crate::scene;
 use cloakroom::output;
-use cloakroom::render::{self, ChannelSet, Images, PreparedScene};
-use cloakroom::scene_file::{Loaded, SceneText};
-use cloakroom::timeline::Timeline;
-use cloakroom::trace::TraceStats;
-use cloakroom_figures::film::{Film, FilmFormat, FrameFolder};
-use cloakroom_figures::{ColorScale, shown};
-use std::ffi::OsString;
+use cloakroom::render::Images;
+use cloakroom::scene_file::{self, Loaded, Override};
+use cloakroom::timeline::{Changes, Keyframes, Timeline};
+use cloakroom_figures::film::{self, Film, FilmFormat, FrameFolder, frame_metadata, frames_beside};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Renders the frames that are not there yet, and makes the film of them.
 pub fn run(arguments: &AnimateArguments) -> Result<()> {
     let path = &arguments.output;
     let format = FilmFormat::of(path).map_err(Failure::Failed)?;
-    let timeline = Timeline::new(&arguments.sweeps, arguments.frames)?;
+    let keyframes = arguments.keyframes.as_deref().map(keyframes).transpose()?;
+    let timeline = Timeline::new(Changes {
+        sweeps: &arguments.sweeps,
+        keyframes: keyframes.as_ref(),
+        orbit: arguments.orbit.as_deref(),
+        frames: arguments.frames,
+    })?;
     let count = timeline.frames();
     let range = range(arguments.frames_only, count)?;
     let makes_film = arguments.frames_only.is_none() && format != FilmFormat::Frames;
@@ -61,7 +64,7 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
         return Ok(());
     }
     let first = scenes.first().map(|loaded| scene::prepared(loaded, &mut images)).transpose()?;
-    let metadata = first.map(|first| metadata(&first, arguments.map_range));
+    let metadata = first.map(|first| frame_metadata(&first, arguments.map_range));
     let (rate, metadata) = (arguments.fps, &metadata.unwrap_or_default());
     supervised(count as u64, "writing", |bar, _| {
         let frame_done = &|| bar.inc(1);
@@ -73,6 +76,15 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
     Ok(())
 }
 
+/// Where the camera stands.
+const POSITION: &str = "camera.position";
+
+/// The keyframes of a file.
+fn keyframes(path: &Path) -> Result<Keyframes> {
+    let text = scene_file::read_text(path)?;
+    Ok(Keyframes::parse(&text, &path.display().to_string())?)
+}
+
 /// The scenes of a range of frames, each of which can be built.
 fn scenes(
     arguments: &AnimateArguments,
@@ -80,17 +92,26 @@ fn scenes(
     range: Range<usize>,
     images: &mut Images,
 ) -> Result<Vec<Loaded>> {
-    let (text, mut scenes) = (SceneText::read(&arguments.scene.scene)?, Vec::<Loaded>::new());
+    let (text, mut scenes) = (scene::text(&arguments.scene.scene)?, Vec::<Loaded>::new());
     for frame in range {
-        let further = timeline.overrides(frame);
-        let loaded = text.scene(&[&arguments.scene.overrides[..], &further[..]].concat());
-        let loaded = loaded.map_err(|error| swept(error.into()))?;
+        let mut overrides =
+            [scene::overrides(&arguments.scene, &arguments.picture), timeline.overrides(frame)]
+                .concat();
+        let load =
+            |overrides: &[Override]| text.scene(overrides).map_err(|error| swept(error.into()));
+        let mut loaded = load(&overrides)?;
+        if let Some(degrees) = timeline.azimuth(frame) {
+            let value = loaded.scene.camera.orbited(degrees).to_array().into();
+            overrides.push(Override::Value { key: POSITION.to_owned(), value });
+            loaded = load(&overrides)?;
+        }
         scene::check_pipes(&arguments.scene, &loaded, None)?;
         scene::prepared(&loaded, images).map_err(swept)?;
-        if loaded.scene.picture.map.name().is_some() && arguments.map_range.is_none() {
+        let shown = &loaded.scene.picture;
+        if shown.map.name().is_some() && arguments.map_range.or(shown.map_range).is_none() {
             return Err(Failure::Failed(
-                "a film of a map needs one scale for all frames; give --map-range LOW,HIGH, in ns for times \
-                 and as shares for powers"
+                "a film of a map needs one scale for all frames; give picture.map_range or --map-range \
+                 LOW,HIGH, in ns for times and as shares for powers"
                     .to_owned(),
             ));
         }
@@ -123,43 +144,17 @@ fn render(
     frames: &FrameFolder,
     images: &mut Images,
 ) -> Result<()> {
-    // There may be numbers beyond the range.
-    let scale =
-        |range: [f64; 2]| ColorScale { range: Some(range.into()), is_clipped: (true, true) };
-    let scale = arguments.map_range.map(scale);
     let rows = scenes.first().map_or(0, |first| u64::from(first.scene.camera.resolution[1]));
-    let (mut stats, mut skipped) = (TraceStats::default(), 0);
-    supervised(rows * scenes.len() as u64, "rendering", |bar, supervision| {
-        for (loaded, frame) in scenes.iter().zip(range) {
-            let scene = &loaded.scene;
-            let prepared = scene::prepared(loaded, images)?;
-            let metadata = metadata(&prepared, arguments.map_range);
-            if frames.is_finished(frame, &metadata) {
-                skipped += 1;
-                bar.inc(rows);
-                continue;
-            }
-            let wanted = ChannelSet::for_image(&scene.picture);
-            let rendered = render::render(&prepared, wanted, supervision)?;
-            stats += rendered.stats;
-            let map = (scene.picture.map.name(), scene.picture.color_bar);
-            let image = shown(&rendered.picture, map, scale)?;
-            output::write_png(&image, &metadata, &frames.file(frame))?;
-        }
-        Ok::<_, Failure>(())
+    let first = range.start;
+    let done = supervised(rows * scenes.len() as u64, "rendering", |_, supervision| {
+        let prepared = |frame: usize| scene::prepared(&scenes[frame - first], images);
+        film::render_frames(range, prepared, frames, arguments.map_range, supervision)
     })?;
-    warn_of_cut_branches(&stats);
-    if skipped > 0 {
-        say(&format!("{skipped} of {} frames were there already", scenes.len()));
+    warn_of_cut_branches(&done.stats);
+    if done.skipped > 0 {
+        say(&format!("{} of {} frames were there already", done.skipped, scenes.len()));
     }
     Ok(())
-}
-
-/// What the frame of a scene carries: what its picture does, and the range of a map.
-fn metadata(prepared: &PreparedScene<'_>, map_range: Option<[f64; 2]>) -> Vec<(String, String)> {
-    let range = map_range.filter(|_| prepared.scene.picture.map.name().is_some());
-    let range = range.map(|[low, high]| ("map_range".to_owned(), format!("{low} {high}")));
-    prepared.metadata().into_iter().chain(range).collect()
 }
 
 /// Which frames are to be rendered.
@@ -172,11 +167,4 @@ fn range(only: Option<[usize; 2]>, count: usize) -> Result<Range<usize>> {
             count - 1
         ))),
     }
-}
-
-/// The folder of the frames of a film: its name and `.frames`.
-fn frames_beside(path: &Path) -> PathBuf {
-    let mut name = OsString::from(path);
-    name.push(".frames");
-    name.into()
 }

@@ -1,12 +1,14 @@
 //! `cloakroom check`: is the scene sound, what does it hold, how long will it take.
 
-use crate::arguments::SceneArguments;
+use crate::arguments::CheckArguments;
 use crate::devices::{fact_lines, media_line};
 use crate::report::{self, Result};
 use crate::scene;
 use cloakroom::assembly::Placed;
-use cloakroom::render::{Estimate, Images, PreparedScene, estimate};
-use cloakroom::scene::Scene;
+use cloakroom::render::{
+    Estimate, Images, PreparedScene, behind_photograph, estimate, share_past_edge,
+};
+use cloakroom::scene::{Border, Scene};
 use cloakroom::threads;
 use std::fmt::Write;
 
@@ -16,10 +18,16 @@ const THIN: f64 = 10.0;
 const CM_PER_NM: f64 = 1e-7;
 
 /// Validates a scene and prints facts about it.
-pub fn run(arguments: &SceneArguments) -> Result<()> {
-    let loaded = scene::load(arguments, &[])?;
+pub fn run(arguments: &CheckArguments) -> Result<()> {
+    let overrides = scene::overrides(&arguments.scene, &arguments.picture);
+    let loaded = scene::load_with(&arguments.scene, &overrides)?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;
     report::print(&described(&prepared, &loaded.scene)?)
+}
+
+/// A share in words.
+fn percent(share: f64) -> String {
+    if share < 0.001 { "less than 0.1 %".to_owned() } else { format!("{:.1} %", 100.0 * share) }
 }
 
 fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std::fmt::Error> {
@@ -39,6 +47,9 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
         scene.photograph.image,
         scene.photograph.place()
     )?;
+    if scene.photograph.border != Border::None {
+        writeln!(text, "             beyond its edge: {}", scene.photograph.border.word())?;
+    }
     for (index, device) in scene.devices.iter().enumerate() {
         let show = device.placement.show.word();
         let name = scene.device_name(index).to_string();
@@ -61,15 +72,30 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
             )?;
         }
     }
-    let Estimate { seconds, walks } = estimate(prepared);
-    let samples = f64::from(width) * f64::from(height) * f64::from(camera.samples);
+    for number in behind_photograph(prepared) {
+        writeln!(
+            text,
+            "warning      the photograph stands between the camera and device {number}, which it hides; move one of \
+             them (photograph.x or photograph.position)"
+        )?;
+    }
+    let past = share_past_edge(prepared);
+    if past > 0.0 {
+        writeln!(
+            text,
+            "hint         {} of the light comes from past the photograph's edge, where nothing is; \
+             photograph.border = \"mirror\" shows something there, and so does a larger photograph.width",
+            percent(past)
+        )?;
+    }
+    let Estimate { seconds, walks, samples, .. } = estimate(prepared);
     writeln!(
         text,
         "estimate     {seconds:.1} s to render on {} threads; {:.2} million of {:.2} million rays traced, \
          the others seen past every device or interpolated",
         threads::count(),
         1e-6 * walks,
-        1e-6 * samples,
+        1e-6 * samples as f64,
     )?;
     Ok(text)
 }

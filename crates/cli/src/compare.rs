@@ -1,7 +1,7 @@
 //! `cloakroom compare`: how alike two pictures are.
 
 use crate::arguments::CompareArguments;
-use crate::report::{self, Failure, Result};
+use crate::report::{self, Failure, Result, decimals};
 use crate::scene;
 use cloakroom::measure::{Comparison, Figures, MeasureError, PixelMask, View, compare};
 use std::fmt::Write;
@@ -79,6 +79,6 @@ fn triple(words: [String; 3]) -> String {
     words.join("  ")
 }
 
-fn number(value: Option<f64>, decimals: usize) -> String {
-    value.map_or("-".to_owned(), |value| format!("{value:.decimals$}"))
+fn number(value: Option<f64>, places: usize) -> String {
+    value.map_or("-".to_owned(), |value| decimals(value, places))
 }

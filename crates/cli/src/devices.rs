@@ -1,21 +1,31 @@
 //! `cloakroom devices`: the catalogue with computed facts.
 
-use crate::report::{self, Result};
-use cloakroom::device::{CATALOGUE, Entry, Fact, FactValue, Request, Structure};
+use crate::arguments::{listed, wrapped};
+use crate::report::{self, Failure, Result, decimals};
+use cloakroom::device::{self, CATALOGUE, Entry, Fact, FactValue, Request, Structure};
 use cloakroom::json::json as value_json;
-use cloakroom::keys::Key;
+use cloakroom::keys::{Key, KeyKind, ValueRange, hint, quoted};
+use cloakroom::scene::Placement;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// Prints the catalogue.
-pub fn run(json: bool) -> Result<()> {
+/// Prints the catalogue, or one kind of it.
+pub fn run(kind: Option<&str>, json: bool) -> Result<()> {
+    let chosen: Vec<&Entry> = match kind {
+        None => CATALOGUE.to_vec(),
+        Some(kind) => vec![device::entry(kind).ok_or_else(|| {
+            let known: Vec<&str> = CATALOGUE.iter().map(|entry| entry.kind).collect();
+            let hint = hint(kind, &known, "known kinds");
+            Failure::Usage(format!("there is no kind of device {}{hint}", quoted(kind, '`')))
+        })?],
+    };
     if json {
-        let list: Vec<Value> = CATALOGUE.iter().map(|entry| as_json(entry)).collect();
+        let list: Vec<Value> = chosen.iter().map(|entry| as_json(entry)).collect();
         return report::print_json(&json!({ "devices": list }));
     }
     let mut text = String::new();
-    for entry in CATALOGUE {
-        describe(entry, &mut text)?;
+    for entry in chosen {
+        describe(entry, kind.is_some(), &mut text)?;
     }
     report::print(&text)
 }
@@ -30,8 +40,9 @@ fn as_json(entry: &Entry) -> Value {
     });
     for fact in (entry.device)().facts(Request::default()) {
         object[fact.name] = match fact.value {
-            FactValue::Number(number) => json!(number),
-            FactValue::Numbers(numbers) => json!(numbers),
+            // No zero has a sign.
+            FactValue::Number(number) => json!(number + 0.0),
+            FactValue::Numbers(numbers) => numbers.iter().map(|number| number + 0.0).collect(),
         };
     }
     object
@@ -61,10 +72,25 @@ pub fn all_keys(keys: &'static [Key]) -> Vec<(String, &'static Key)> {
     all
 }
 
-fn describe(entry: &Entry, text: &mut String) -> std::fmt::Result {
-    writeln!(text, "{}\n  {}\n", entry.kind, entry.summary)?;
-    for (name, key) in all_keys(entry.keys) {
-        writeln!(text, "  {name:<12} {} ({})", key.doc, key.describe())?;
+/// Describes a kind: with `all` also the keys of tables within its keys.
+fn describe(entry: &Entry, all: bool, text: &mut String) -> std::fmt::Result {
+    writeln!(text, "{}", entry.kind)?;
+    writeln!(text, "{}\n", wrapped(entry.summary, "  ", "  "))?;
+    let keys = all_keys(entry.keys);
+    let shown = keys.iter().filter(|(name, _)| all || !name.contains('.'));
+    for (name, key) in shown {
+        let default =
+            default(key).map_or_else(String::new, |default| format!(" [default: {default}]"));
+        let words = format!("{} {}{default}", key.doc, sentence(&allowed(key)));
+        text.push_str(&listed(name, 16, &words));
+    }
+    if all {
+        let common: Vec<&str> = Placement::KEYS.iter().map(|key| key.name).collect();
+        let words = format!(
+            "Every device takes these, too (`cloakroom schema --markdown`): {}.",
+            common.join(", ")
+        );
+        writeln!(text, "\n{}", wrapped(&words, "  ", "  "))?;
     }
     writeln!(text)?;
     let device = (entry.device)();
@@ -73,6 +99,40 @@ fn describe(entry: &Entry, text: &mut String) -> std::fmt::Result {
         writeln!(text, "  {line}")?;
     }
     writeln!(text)
+}
+
+/// With a capital letter and a full stop, unless it begins with a quoted word.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
+}
+
+/// What values a key takes, with its limits; a table's keys are told elsewhere.
+pub fn allowed(key: &Key) -> String {
+    match (key.kind, key.limits) {
+        (KeyKind::Table { .. }, _) => "a table".to_owned(),
+        (KeyKind::MaterialOrTable { .. }, _) => {
+            "the name of a material or of a .yml file, or a table".to_owned()
+        }
+        (KeyKind::ChoiceNumberOrTable { options, .. }, limits) => {
+            let words: Vec<_> = options.iter().map(|word| format!("\"{word}\"")).collect();
+            let unit = if key.unit.is_empty() { String::new() } else { format!(" ({})", key.unit) };
+            format!("{}, a number{unit} {}, or a table", words.join(", "), limits.describe())
+        }
+        (KeyKind::FlagOrTable { .. }, _) => "true, false or a table".to_owned(),
+        (KeyKind::Tables { .. }, _) => "a list of tables".to_owned(),
+        (_, ValueRange::Finite) => key.describe(),
+        (_, limits) => format!("{}, {}", key.describe(), limits.describe()),
+    }
+}
+
+/// What a key is where it is absent; `None` if its absence means something.
+pub fn default(key: &Key) -> Option<String> {
+    match (key.kind, (key.default)()) {
+        (KeyKind::Choices { .. } | KeyKind::Tables { .. }, _) => None,
+        (_, value) => value.map(|value| value.to_string()),
+    }
 }
 
 /// How its media were classified, for that decides how long rays take; `None` without media.
@@ -90,7 +150,7 @@ pub fn fact_lines(facts: Vec<Fact>) -> Vec<String> {
             FactValue::Number(number) => vec![number],
             FactValue::Numbers(numbers) => numbers,
         };
-        let words: Vec<String> = numbers.iter().map(|n| format!("{n:.6}")).collect();
+        let words: Vec<String> = numbers.iter().map(|n| decimals(*n, 6)).collect();
         format!("{:<32} {}", fact.name, words.join(", "))
     };
     facts.into_iter().map(line).collect()

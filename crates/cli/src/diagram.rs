@@ -49,6 +49,7 @@ fn settings(arguments: &DiagramArguments) -> DiagramSettings {
         layers: arguments.layers,
         z: arguments.z,
         width: arguments.width,
+        window: arguments.window.map(|[x0, y0, x1, y1]| [[x0, y0].into(), [x1, y1].into()]),
         polarization: match arguments.polarization.as_str() {
             "horizontal" => [1.0, 0.0],
             "vertical" => [0.0, 1.0],

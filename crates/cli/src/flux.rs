@@ -3,7 +3,7 @@
 use crate::arguments::FluxArguments;
 use crate::files::{check_outputs, formats, write_each};
 use crate::progress::supervised;
-use crate::report::{Failure, Result, all, say};
+use crate::report::{Failure, Result, all, decimals, say};
 use crate::{interruption, render, report, scene};
 use cloakroom::flux::{self, Direction, FluxError, FluxReport, Gain, Sampling};
 use cloakroom::output;
@@ -96,7 +96,9 @@ fn table(measured: &FluxReport, axis: &str) -> String {
         "nothing", "bare", "cloaked", "shadow given back, %"
     );
     let given = |gain: Option<Gain>| {
-        gain.map_or("-".to_owned(), |gain| format!("{:.3} ± {:.3}", gain.percent, gain.error))
+        gain.map_or("-".to_owned(), |gain| {
+            format!("{} ± {:.3}", decimals(gain.percent, 3), gain.error)
+        })
     };
     // Writing to a string cannot fail.
     for incidence in &measured.incidences {
@@ -104,8 +106,12 @@ fn table(measured: &FluxReport, axis: &str) -> String {
         let given = given(incidence.gains[2]);
         let _ = writeln!(
             text,
-            "{:>22.4} {:>9.5} {:>9.5} {:>9.5} ± {:>7.5} {given:>23}",
-            incidence.direction.label, nothing.mean, bare.mean, cloaked.mean, cloaked.error
+            "{:>22} {:>9.5} {:>9.5} {:>9.5} ± {:>7.5} {given:>23}",
+            decimals(incidence.direction.label, 4),
+            nothing.mean,
+            bare.mean,
+            cloaked.mean,
+            cloaked.error
         );
     }
     if let Some(middle) = measured.incidences.get(measured.incidences.len() / 2) {

@@ -32,15 +32,13 @@ mod strips;
 mod trace;
 mod verify;
 mod view;
-mod views;
 
 use arguments::{Arguments, Command};
-use clap::Parser;
 use report::Result;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let arguments = match Arguments::read() {
         Ok(arguments) => arguments,
         Err(error) => return refuse(&error),
     };
@@ -81,7 +79,7 @@ fn run(command: &Command) -> Result<()> {
         Command::Quality(arguments) => quality::run(arguments),
         Command::Verify(arguments) => verify::run(arguments),
         Command::View(arguments) => view::run(arguments),
-        Command::Devices { json } => devices::run(*json),
+        Command::Devices { kind, json } => devices::run(kind.as_deref(), *json),
         Command::Materials(arguments) => materials::run(arguments),
         Command::Scenes(arguments) => scenes::run(arguments),
         Command::Completions { shell } => manual::completions(*shell),

@@ -32,7 +32,7 @@ pub fn run(arguments: &MergeArguments) -> Result<()> {
             let text = scene.map_or("", |(_, text)| text);
             let loaded = scene_file::parse(text, "the scene of the tiles", Path::new(""), &[])?;
             let shown = &loaded.scene.picture;
-            Ok(write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)?)
+            Ok(write_picture(&picture, shown, format, path)?)
         })
     } else if all(Format::Png) && outputs.iter().all(|(_, format)| *format == png) {
         let mut parts = Vec::new();

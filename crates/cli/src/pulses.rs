@@ -1,7 +1,7 @@
 //! `cloakroom pulses`: the pulses of one pixel.
 
 use crate::arguments::PulsesArguments;
-use crate::report::{self, Failure, Result};
+use crate::report::{self, Failure, Result, decimals};
 use crate::scene;
 use cloakroom::render::{self, Images, PulseList};
 use std::fmt::Write;
@@ -21,7 +21,7 @@ pub fn run(arguments: &PulsesArguments) -> Result<()> {
 fn described(list: &PulseList) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     let [column, row] = list.pixel;
-    let time = |time: Option<f64>| time.map_or("-".to_owned(), |time| format!("{time:.9}"));
+    let time = |time: Option<f64>| time.map_or("-".to_owned(), |time| decimals(time, 9));
     writeln!(text, "pixel {column},{row}")?;
     writeln!(
         text,
@@ -31,7 +31,8 @@ fn described(list: &PulseList) -> Result<String, std::fmt::Error> {
     for pulse in &list.pulses {
         let landings: Vec<String> = (pulse.landings.iter())
             .map(|landing| {
-                format!("({:.3}, {:.3})", landing.position_cm[1], landing.position_cm[2])
+                let [_, y, z] = landing.position_cm.map(|part| decimals(part, 3));
+                format!("({y}, {z})")
             })
             .collect();
         writeln!(

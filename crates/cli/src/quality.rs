@@ -5,15 +5,16 @@ use crate::files::{check_outputs, formats, write_each};
 use crate::interruption;
 use crate::progress::supervised;
 use crate::render::warn_of_cut_branches;
-use crate::report::{self, Result, all};
+use crate::report::{self, Result, all, decimals};
 use crate::scene;
 use cloakroom::measure::{Constraint, QualityTable, Sweep, SweepPlan, quality};
-use cloakroom::scene_file::{Override, SceneText};
+use cloakroom::scene_file::Override;
 use cloakroom_figures::{TableFormat, write_table};
 use std::fmt::Write;
 
 /// The columns that are printed for people; files hold all.
-const PRINTED: [(&str, &str); 8] = [
+const PRINTED: [(&str, &str); 9] = [
+    ("in_place_share", "in place"),
     ("ideal_silhouette_correlation", "correlation"),
     ("ideal_silhouette_correlation_maximum", "best shift"),
     ("ideal_silhouette_structural_similarity", "SSIM"),
@@ -30,14 +31,26 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
     let sweeps =
         arguments.sweeps.iter().map(|text| Sweep::parse(text)).collect::<Result<_, _>>()?;
-    let written = SceneText::read(&arguments.scene.scene)?;
+    let written = scene::text(&arguments.scene.scene)?;
     let load =
         |further: &[Override]| written.scene(&[&arguments.scene.overrides, further].concat());
     let holds =
         arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;
     let plan = SweepPlan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;
+    let reference = match &arguments.reference {
+        Some(path) => Some(scene::text(path)?.scene(&[])?),
+        None => None,
+    };
+    let plan = match &reference {
+        Some(reference) => {
+            scene::assembly(reference)?;
+            plan.with_reference(reference.scene.clone())
+        }
+        None => plan,
+    };
     plan.check_columns(&arguments.plot)?;
     let inputs = plan.scenes().flat_map(|loaded| scene::inputs(&arguments.scene, loaded));
+    let inputs = inputs.chain(arguments.reference.clone());
     check_outputs(&arguments.outputs, &inputs.collect::<Vec<_>>())?;
     let _busy = interruption::busy();
     let table =
@@ -48,16 +61,18 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let printed = if arguments.json {
         report::print_json(&table.to_json())
     } else {
-        report::print(&text(&table)?)
+        let wanted = match arguments.reference {
+            Some(_) => "the reference",
+            None => "what should be seen: a cloak's flat mirror, else the empty view",
+        };
+        report::print(&text(&table, wanted)?)
     };
     all([written, printed])
 }
 
-/// The table for people.
-fn text(table: &QualityTable) -> Result<String, std::fmt::Error> {
-    let mut text = String::from(
-        "Over the silhouette, against what should be seen: a cloak's flat mirror, else the empty view\n",
-    );
+/// The table for people; `wanted` is what the scenes were held against.
+fn text(table: &QualityTable, wanted: &str) -> Result<String, std::fmt::Error> {
+    let mut text = format!("Over the silhouette, against {wanted}\n");
     if table.has_errors() {
         let draws = table.draws;
         writeln!(
@@ -104,12 +119,12 @@ fn number(mean: f64, error: f64) -> String {
         return "-".to_owned();
     }
     if error.is_nan() || error <= 0.0 {
-        return format!("{mean:.4}");
+        return decimals(mean, 4);
     }
-    let decimals = (1.0 - error.log10().floor()).clamp(0.0, 4.0);
-    let places = decimals as usize;
-    let last = (error * 10f64.powf(decimals)).round().max(1.0);
-    format!("{mean:.places$}({last})")
+    let digits = (1.0 - error.log10().floor()).clamp(0.0, 4.0);
+    let places = digits as usize;
+    let last = (error * 10f64.powf(digits)).round().max(1.0);
+    format!("{}({last})", decimals(mean, places))
 }
 
 #[cfg(test)]
@@ -123,6 +138,7 @@ mod tests {
         assert_eq!(number(-2.5, 0.4), "-2.50(40)");
         assert_eq!(number(12345.6, 123.0), "12346(123)");
         assert_eq!(number(0.5, 1e-7), "0.5000(1)");
+        assert_eq!((number(-1e-9, 0.0), number(-1e-9, 0.1)), ("0.0000".into(), "0.00(10)".into()));
         assert_eq!(number(f64::NAN, f64::NAN), "-");
     }
 }

@@ -4,7 +4,7 @@ use crate::arguments::RenderArguments;
 use crate::files::{check_outputs, formats, write_each};
 use crate::interruption;
 use crate::progress::supervised;
-use crate::report::{Failure, Result, say};
+use crate::report::{Failure, Result, say, wrote};
 use crate::scene;
 use crate::strips::Strips;
 use cloakroom::output::{self, Format, Picture};
@@ -12,19 +12,19 @@ use cloakroom::render::{self, ChannelSet, Images, PreparedScene, Rendered, Tile}
 use cloakroom::scene::Scene;
 use cloakroom::scene_file::Override;
 use cloakroom::trace::TraceStats;
-use cloakroom_figures::{IllustrationError, PictureFormat, shown, write_picture};
+use cloakroom_figures::{IllustrationError, PictureFormat, write_picture};
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Renders a scene and writes every file asked for.
 pub fn run(arguments: &RenderArguments) -> Result<()> {
-    let formats = formats(&arguments.outputs, PictureFormat::of)?;
+    let outputs = outputs(arguments)?;
+    let formats = formats(&outputs, PictureFormat::of)?;
     scene::use_threads(&arguments.threads)?;
     let data = formats.iter().any(|(_, format)| !format.is_shown());
-    let loaded = scene::load(
-        &arguments.scene,
-        channels(&arguments.channels, data)?.map(Override::from).as_slice(),
-    )?;
+    let mut overrides = scene::overrides(&arguments.scene, &arguments.picture);
+    overrides.extend(channels(&arguments.channels, data)?.map(Override::from));
+    let loaded = scene::load_with(&arguments.scene, &overrides)?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;
     let shown = &loaded.scene.picture;
     let wanted = if data { ChannelSet::Everything } else { ChannelSet::for_image(shown) };
@@ -33,7 +33,7 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
             return Err(IllustrationError::NoMap { path: path.to_path_buf() }.into());
         }
     }
-    check_outputs(&arguments.outputs, &scene::inputs(&arguments.scene, &loaded))?;
+    check_outputs(&outputs, &scene::inputs(&arguments.scene, &loaded))?;
     let _busy = interruption::busy();
     if let Some(tile) = arguments.tile {
         let tile = check_tile(tile, &loaded.scene, &formats)?;
@@ -54,14 +54,31 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
             Some(strips) => merged(&prepared, wanted, strips)?,
             None => picture(&prepared, wanted, "rendering")?,
         };
-        write_each(formats, |path, format| {
-            Ok(write_picture(&picture, (shown.map.name(), shown.color_bar), format, path)?)
-        })?;
+        write_each(formats, |path, format| Ok(write_picture(&picture, shown, format, path)?))?;
     }
     if let Some(strips) = strips {
         strips.remove();
     }
+    if arguments.outputs.is_empty() {
+        outputs.iter().for_each(|path| wrote(path));
+    }
     Ok(())
+}
+
+/// The files asked for, or the picture that goes beside the scene and has its name: `cloak.png` for
+/// `cloak.toml`, in the working folder for an example that is no file.
+fn outputs(arguments: &RenderArguments) -> Result<Vec<PathBuf>> {
+    let scene = &arguments.scene.scene;
+    if !arguments.outputs.is_empty() {
+        return Ok(arguments.outputs.clone());
+    }
+    if scene == Path::new("-") {
+        let message = "a scene from standard input has no name for its picture; give one: -o FILE";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    let beside = scene.with_extension("png");
+    let name = beside.file_name().map(PathBuf::from);
+    Ok(vec![name.filter(|_| scene::example(scene).is_some()).unwrap_or(beside)])
 }
 
 /// The picture of its strips, those that are there and the others, rendered one after the other.
@@ -160,11 +177,6 @@ pub fn picture(prepared: &PreparedScene<'_>, wanted: ChannelSet, what: &str) -> 
 fn told(rendered: Rendered) -> Picture {
     warn_of_cut_branches(&rendered.stats);
     rendered.picture
-}
-
-/// What a PNG of the scene shows: the image, or the map of one channel.
-pub fn rgb(scene: &Scene, picture: &Picture) -> Result<output::RgbImage> {
-    Ok(shown(picture, (scene.picture.map.name(), scene.picture.color_bar), None)?)
 }
 
 /// Says what was rare, if anything was.

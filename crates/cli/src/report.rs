@@ -97,6 +97,17 @@ pub fn wrote(path: &Path) {
     say(&path.display().to_string());
 }
 
+/// A number with so many decimals; no zero has a sign.
+pub fn decimals(number: f64, places: usize) -> String {
+    let text = format!("{number:.places$}");
+    let is_zero =
+        |digits: &str| digits.starts_with('0') && !digits.contains(|c| ('1'..='9').contains(&c));
+    match text.strip_prefix('-') {
+        Some(digits) if is_zero(digits) => digits.to_owned(),
+        _ => text,
+    }
+}
+
 /// Prints text for people on standard output, with the escapes of [`printable`], for it may quote a
 /// scene. A reader that has gone away (as in `| head`) ends the printing without a fuss.
 pub fn print(text: &str) -> Result<()> {

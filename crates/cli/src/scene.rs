@@ -1,19 +1,59 @@
 //! Scenes from files, and errors that point back into them.
 
-use crate::arguments::{SceneArguments, ThreadsArguments};
+use crate::arguments::{PictureArguments, SceneArguments, ThreadsArguments};
 use crate::report::{Failure, Result};
 use cloakroom::assembly::Assembly;
+use cloakroom::keys::Value;
 use cloakroom::output;
 use cloakroom::render::{self, Images, PreparedScene, PreparedSceneError};
 use cloakroom::scene_file::{Loaded, Override, SceneText};
+use cloakroom_figures::examples::{self, Example};
 use std::path::{Path, PathBuf};
 
 /// Reads a scene with its overrides and further ones after them.
 pub fn load(arguments: &SceneArguments, further: &[Override]) -> Result<Loaded> {
-    let loaded =
-        SceneText::read(&arguments.scene)?.scene(&[&arguments.overrides, further].concat())?;
+    load_with(arguments, &[&arguments.overrides, further].concat())
+}
+
+/// Reads a scene with these overrides alone.
+pub fn load_with(arguments: &SceneArguments, overrides: &[Override]) -> Result<Loaded> {
+    let loaded = text(&arguments.scene)?.scene(overrides)?;
     check_pipes(arguments, &loaded, None)?;
     Ok(loaded)
+}
+
+/// The text of a scene: that of a file, or of the example of that name where there is no such file.
+pub fn text(path: &Path) -> Result<SceneText> {
+    match example(path) {
+        Some(example) => Ok(SceneText::new(example.text, example.path, Path::new(""))),
+        None => Ok(SceneText::read(path)?),
+    }
+}
+
+/// The example scene that a path names, as in `gallery/prisms`, if no file is there.
+pub fn example(path: &Path) -> Option<Example> {
+    let name = path.to_str().filter(|_| path != Path::new("-") && !path.exists())?;
+    // A folder holds several.
+    let named = |example: &Example| {
+        example.path == name || example.path.strip_suffix(".toml") == Some(name)
+    };
+    examples::all().into_iter().find(named)
+}
+
+/// The overrides of a scene whose picture is asked for: what has a name of its own, then `--set`,
+/// which knows better.
+pub fn overrides(scene: &SceneArguments, picture: &PictureArguments) -> Vec<Override> {
+    let PictureArguments { size, samples, photo, empty } = picture;
+    let resolution = size.map(|[width, height]| format!("camera.resolution={width}x{height}"));
+    let samples = samples.map(|samples| format!("camera.samples={samples}"));
+    let named = resolution.into_iter().chain(samples).map(Override::from);
+    let photo = photo.as_ref().map(|photo| Override::Value {
+        key: "photograph.image".to_owned(),
+        value: photo.display().to_string().into(),
+    });
+    let devices = Override::Value { key: "device".to_owned(), value: Value::List(Vec::new()) };
+    let empty = empty.then_some(devices);
+    named.chain(photo).chain(scene.overrides.iter().cloned()).chain(empty).collect()
 }
 
 /// Refuses a pipe that is to be read for two things: it gives its bytes once only. `rays` is what is

@@ -1,9 +1,9 @@
 //! `cloakroom schema`: all that a scene file can say, for editors or for people.
 
-use crate::devices::all_keys;
+use crate::devices::{self, all_keys, allowed};
 use crate::report::{self, Result};
 use cloakroom::device::CATALOGUE;
-use cloakroom::keys::{Key, KeyKind, ValueRange};
+use cloakroom::keys::{Key, KeyKind};
 use cloakroom::scene::{Placement, TABLES};
 use cloakroom::scene_file;
 use std::fmt::{self, Write};
@@ -52,30 +52,12 @@ fn write_table(keys: &'static [Key], text: &mut String) -> fmt::Result {
     writeln!(text)
 }
 
-/// What values a key takes, with its limits.
-fn allowed(key: &Key) -> String {
-    match (key.kind, key.limits) {
-        // The rows that follow name the keys.
-        (KeyKind::Table { .. }, _) => "a table".to_owned(),
-        (KeyKind::MaterialOrTable { .. }, _) => {
-            "the name of a material or of a .yml file, or a table".to_owned()
-        }
-        (KeyKind::ChoiceNumberOrTable { options, .. }, limits) => {
-            let words: Vec<_> = options.iter().map(|word| format!("\"{word}\"")).collect();
-            let unit = if key.unit.is_empty() { String::new() } else { format!(" ({})", key.unit) };
-            format!("{}, a number{unit} {}, or a table", words.join(", "), limits.describe())
-        }
-        (KeyKind::FlagOrTable { .. }, _) => "true, false or a table".to_owned(),
-        (KeyKind::Tables { .. }, _) => "a list of tables".to_owned(),
-        (_, ValueRange::Finite) => key.describe(),
-        (_, limits) => format!("{}, {}", key.describe(), limits.describe()),
-    }
-}
-
 fn default(key: &Key) -> String {
-    match (key.kind, (key.default)()) {
-        (KeyKind::Choices { .. } | KeyKind::Tables { .. }, _) => "none".to_owned(),
-        (_, Some(value)) => format!("`{value}`"),
-        (_, None) => String::new(),
+    match devices::default(key) {
+        Some(value) => format!("`{value}`"),
+        None if matches!(key.kind, KeyKind::Choices { .. } | KeyKind::Tables { .. }) => {
+            "none".to_owned()
+        }
+        None => String::new(),
     }
 }

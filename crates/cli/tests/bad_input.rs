@@ -268,7 +268,7 @@ fn swept_values_and_normals_are_pointed_at() {
 fn wrong_usage_is_another_status() {
     let desk = small("");
     for (arguments, part) in [
-        (&["render", "scene.toml"][..], "--output"),
+        (&["merge", "a.npz"][..], "--output"),
         (&["paint"], "paint"),
         (&["figures", "--only", "6x"], "6x"),
         (&["figures", "--size", "0x4"], "WIDTHxHEIGHT"),

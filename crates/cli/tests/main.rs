@@ -5,6 +5,7 @@ mod animating;
 mod bad_input;
 mod book;
 mod commands;
+mod everyday;
 mod faults;
 #[path = "../../optics/tests/long.rs"]
 mod long;

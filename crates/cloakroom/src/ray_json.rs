@@ -100,20 +100,36 @@ impl RayRequest {
     /// A sentence if a number is not finite, the direction or the field vanishes, or the field is
     /// not transverse.
     pub fn launch(&self) -> Result<Launch<1>, String> {
-        let origin = DVec3::from_array(self.origin);
-        let direction = DVec3::from_array(self.direction);
-        if !origin.is_finite() || !direction.is_finite() {
-            return Err("origin and direction must be finite numbers".to_owned());
-        }
-        let direction = unit(direction).ok_or("the direction is zero")?;
-        let (horizontal, vertical) = transverse_basis(direction, DVec3::Z, DVec3::X);
-        let electric = match self.polarization {
+        launch(self.origin, self.direction, [self.polarization])
+    }
+}
+
+/// The ray to launch from a place (cm) in a direction, of any length, with some polarizations at
+/// once.
+///
+/// # Errors
+///
+/// As [`RayRequest::launch`].
+pub fn launch<const N: usize>(
+    origin: [f64; 3],
+    direction: [f64; 3],
+    polarizations: [Polarization; N],
+) -> Result<Launch<N>, String> {
+    let [origin, direction] = [origin, direction].map(DVec3::from_array);
+    if !origin.is_finite() || !direction.is_finite() {
+        return Err("origin and direction must be finite numbers".to_owned());
+    }
+    let direction = unit(direction).ok_or("the direction is zero")?;
+    let (horizontal, vertical) = transverse_basis(direction, DVec3::Z, DVec3::X);
+    let mut electric = [ComplexVector::ZERO; N];
+    for (field, polarization) in electric.iter_mut().zip(polarizations) {
+        *field = match polarization {
             Polarization::Horizontal => horizontal.into(),
             Polarization::Vertical => vertical.into(),
             Polarization::ElectricField(components) => transverse(components, direction)?,
         };
-        Ok(Launch { origin, direction, electric: [electric] })
     }
+    Ok(Launch { origin, direction, electric })
 }
 
 /// A field of unit norm across the direction from one that is given nearly so.
@@ -158,31 +174,32 @@ pub fn read_rays(text: &str) -> serde_json::Result<Vec<RayRequest>> {
     Ok(rays)
 }
 
-/// Traces the rays `ray(0)` to `ray(count - 1)`: see [`LeafTable::trace`].
+/// Traces the rays that `launched(0)` to `launched(count - 1)` give, or say what is wrong with: see
+/// [`LeafTable::trace`].
 ///
 /// # Errors
 ///
 /// If a ray makes no sense or starts in metal or an opaque body (the first such one is named),
 /// there is not enough memory for the leaves, or the work was stopped.
-pub fn leaf_table(
+pub fn leaf_table<const N: usize>(
     assembly: &Assembly,
     settings: impl Into<RaySettings>,
     count: usize,
-    ray: &(impl Fn(usize) -> RayRequest + Sync),
+    launched: &(impl Fn(usize) -> Result<Launch<N>, String> + Sync),
     done: &(dyn Fn(u64) + Sync),
     stop: &AtomicBool,
-) -> Result<LeafTable, RayError> {
+) -> Result<LeafTable<N>, RayError> {
     let too_many = |shortage| RayError::TooMany { count, shortage };
     // Twice: while the table is put together.
-    let needed = count as u64 * 2 * LeafTable::BYTES_PER_RAY as u64;
+    let needed = count as u64 * 2 * LeafTable::<N>::BYTES_PER_RAY as u64;
     // Rays are numbered in 32 bits.
-    let most = u64::from(u32::MAX) * 2 * LeafTable::BYTES_PER_RAY as u64;
+    let most = u64::from(u32::MAX) * 2 * LeafTable::<N>::BYTES_PER_RAY as u64;
     memory::check(needed, most).map_err(too_many)?;
     // How many leaves a ray has is known when it has been traced.
     let room = memory::available().unwrap_or(u64::MAX);
     let [traced, taken] = [AtomicU64::new(0), AtomicU64::new(0)];
     let add = |sum: &AtomicU64, more: u64| sum.fetch_add(more, Ordering::Relaxed) + more;
-    let batch_done = |batch: &LeafTable| {
+    let batch_done = |batch: &LeafTable<N>| {
         add(&traced, batch.absorbed.len() as u64);
         add(&taken, 2 * batch.bytes() as u64);
         done(batch.absorbed.len() as u64);
@@ -195,7 +212,7 @@ pub fn leaf_table(
             return Err(too_many(Shortage::new((each * count as f64) as u64, room)));
         }
         let wrong = |problem| RayError::Ray { index, problem };
-        let launch = ray(index).launch().map_err(wrong)?;
+        let launch = launched(index).map_err(wrong)?;
         assembly.region_around(launch.origin, launch.direction).map_err(|device| {
             wrong(format!(
                 "it starts inside device {device} (counted from 0), in metal or an opaque \
@@ -222,18 +239,18 @@ impl RayReports {
         let leaf = |leaf: usize| LeafReport {
             position: Some(table.position[leaf]).filter(|position| !position[0].is_nan()),
             direction: table.direction[leaf],
-            power: table.power[leaf],
+            power: table.power[leaf][0],
             optical_path: table.optical_path[leaf],
             group_path: group_delays.then(|| table.group_path[leaf]),
-            electric_field: table.electric_field[leaf].map(|c| [c.re, c.im]),
+            electric_field: table.electric_field[leaf][0].map(|c| [c.re, c.im]),
         };
         let report = move |ray: usize| {
             let of_ray =
                 std::iter::from_fn(|| leaves.next_if(|leaf| table.ray[*leaf] as usize == ray));
             RayReport {
                 leaves: of_ray.map(leaf).collect(),
-                absorbed: table.absorbed[ray],
-                pruned: table.pruned[ray],
+                absorbed: table.absorbed[ray][0],
+                pruned: table.pruned[ray][0],
             }
         };
         (0..table.absorbed.len()).map(report)
@@ -259,7 +276,8 @@ pub fn trace_rays(
     stop: &AtomicBool,
 ) -> Result<RayReports, RayError> {
     let settings = settings.into();
-    let table = leaf_table(assembly, settings, rays.len(), &|i| rays[i].clone(), &|_| {}, stop)?;
+    let launched = |ray: usize| rays[ray].launch();
+    let table = leaf_table(assembly, settings, rays.len(), &launched, &|_| {}, stop)?;
     Ok(RayReports { table, group_delays: settings.group_delays })
 }
 
@@ -322,7 +340,8 @@ mod tests {
             polarization: Polarization::Horizontal,
         };
         let stop = AtomicBool::new(false);
-        let together = leaf_table(&assembly, limits, count, &ray, &|_| {}, &stop).unwrap();
+        let launched = |index: usize| ray(index).launch();
+        let together = leaf_table(&assembly, limits, count, &launched, &|_| {}, &stop).unwrap();
         let mut alone = LeafTable::default();
         let mut tracer = Tracer::<1>::new(&assembly, limits);
         for index in 0..count {

@@ -28,6 +28,7 @@ mod materials;
 mod mirror_detour;
 mod mirrors;
 mod open_core;
+mod photograph_border;
 mod pictured_bodies;
 mod pictures;
 mod plain_tree;

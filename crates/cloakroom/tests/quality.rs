@@ -14,7 +14,10 @@ fn plan(scene: &str, sweeps: &[&str]) -> Result<SweepPlan, QualityError> {
 }
 
 fn measured(scene: &str, sweeps: &[&str]) -> QualityTable {
-    let plan = plan(scene, sweeps).unwrap();
+    measured_of(plan(scene, sweeps).unwrap())
+}
+
+fn measured_of(plan: SweepPlan) -> QualityTable {
     let (done, stop) = (AtomicU64::new(0), AtomicBool::new(false));
     let count = |rows| {
         done.fetch_add(rows, Ordering::Relaxed);
@@ -35,6 +38,30 @@ impl Figure for QualityTable {
     fn figure(&self, row: usize, name: &str) -> f64 {
         self.rows[row].numbers[self.column(name).unwrap()]
     }
+}
+
+#[test]
+fn devices_are_held_against_a_reference() {
+    let scene =
+        "[camera]\nresolution = [40, 30]\nsamples = 1\n[[device]]\nkind = \"square-cloak\"\n";
+    let sweeps = ["device.0.show=cloak,bare"];
+    let against = |show: &str| {
+        let reference = format!("{scene}show = \"{show}\"\n");
+        let reference = scene_file::parse(&reference, "reference", Path::new(""), &[]).unwrap();
+        measured_of(plan(scene, &sweeps).unwrap().with_reference(reference.scene))
+    };
+    // Against itself all is in its place; the cloak's own mirror, edge-on, is nothing to be seen.
+    let bare = against("bare");
+    assert!((bare.figure(1, "ideal_picture_correlation") - 1.0).abs() < 1e-9);
+    assert_eq!(bare.figure(1, "in_place_share"), 1.0);
+    assert!(bare.figure(0, "ideal_picture_correlation") < 0.95);
+    let (mirror, ideal) = (against("mirror"), measured(scene, &sweeps));
+    let numbers = |table: &QualityTable| {
+        let numbers = table.rows.iter().flat_map(|row| &row.numbers);
+        numbers.map(|number| number.to_bits()).collect::<Vec<u64>>()
+    };
+    assert_eq!(numbers(&mirror), numbers(&ideal));
+    assert_eq!(ideal.columns[0].name, "in_place_share");
 }
 
 #[test]

@@ -1,16 +1,16 @@
 //! Colour bars: which colour stands for which number.
 
 use super::axes::Frame;
-use super::color_scale::ColorScale;
+use super::color_scale::{ColorScale, NOTHING};
 use super::drawing::{Drawing, Face, INK, Ink, LINE, Shape, Words};
-use super::quantity::Quantity;
+use super::quantity::{Dimension, Quantity};
 use super::ticks::{Axis, axis};
 use cloakroom::output::RgbImage;
 use glam::{DAffine2, DVec2};
 
 /// The key to a map of colours: a vertical bar with ticks, and what they count written upwards
 /// beside it. An end beyond which there are numbers ([`ColorScale::is_clipped`]) is drawn as a
-/// point.
+/// point; below it stands what is gray, if anything is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColorBar {
     /// The colours.
@@ -22,29 +22,45 @@ pub struct ColorBar {
 /// In type of size 1: the width of the colours, and where labels begin to their right.
 const COLORS: f64 = 0.8;
 const LABELS: f64 = COLORS + 0.5;
+/// The height of the sample of what has no number, and of the room between it and the colours.
+const GAP: f64 = 0.9;
+const ABOVE_GAP: f64 = 1.0;
 /// The steps of colour.
 const STEPS: u32 = 256;
 
 impl ColorBar {
-    /// In type of a size: the axis, the width of its widest label, and the lines of its title.
-    fn layout(&self, height: f64, text: f64) -> (Axis, f64, Vec<String>) {
+    /// What stands beside the sample of what has no number, if there is such.
+    fn gap_label(&self) -> Option<&'static str> {
+        let label = match self.quantity.dimension {
+            Dimension::Time => "no light",
+            Dimension::Share | Dimension::Number => "none",
+        };
+        (self.scale.has_gaps && self.scale.range.is_some()).then_some(label)
+    }
+
+    /// In type of a size: the height of the colours, the axis, the width of its widest label, and the
+    /// lines of its title.
+    fn layout(&self, height: f64, text: f64) -> (f64, Axis, f64, Vec<String>) {
+        let gap = self.gap_label();
+        let height = if gap.is_some() { height - (ABOVE_GAP + GAP) * text } else { height };
         let axis = axis(&self.quantity, self.scale.range, (height / (1.6 * text)) as usize);
-        let widths = axis.ticks.iter().map(|tick| Face::Regular.width(&tick.label, text));
-        let widest = widths.fold(0.0, f64::max);
+        let labels = axis.ticks.iter().map(|tick| &*tick.label).chain(gap);
+        let widest = labels.map(|label| Face::Regular.width(label, text)).fold(0.0, f64::max);
         let title = Face::Regular.wrap(&axis.title, text, height);
-        (axis, widest, title)
+        (height, axis, widest, title)
     }
 
     /// The width that it takes up if it is so high, with type of that size.
     pub(super) fn width(&self, height: f64, text: f64) -> f64 {
-        let (_, widest, title) = self.layout(height, text);
+        let (_, _, widest, title) = self.layout(height, text);
         widest + (LABELS + 0.2 + LINE * title.len() as f64) * text
     }
 
-    /// Draws it with the corner of the colours at a point. They are as high as told; labels, and
-    /// the points, reach beyond them by up to half the height of the type.
+    /// Draws it with the corner of the colours at a point. They are as high as told, with what is
+    /// gray; labels, and the points, reach beyond them by up to half the height of the type.
     pub(super) fn draw(&self, drawing: &mut Drawing, at: DVec2, height: f64, text: f64) {
-        let (axis, widest, title) = self.layout(height, text);
+        let bottom = at.y + height;
+        let (height, axis, widest, title) = self.layout(height, text);
         let width = COLORS * text;
         let frame = Frame { corner: at, size: DVec2::new(width, height), text };
         let image = RgbImage::from_fn(1, STEPS, |_, row| {
@@ -66,6 +82,16 @@ impl ColorBar {
         }
         // To the right, so that digits stand below each other.
         let right = at.x + LABELS * text + widest;
+        if let Some(label) = self.gap_label() {
+            let size = DVec2::new(width, GAP * text);
+            let sample = Frame { corner: DVec2::new(at.x, bottom - size.y), size, text };
+            let corners = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y].map(|at| sample.place(at));
+            drawing.add_area("color-bar-gap", corners).filled(Ink::new(NOTHING.0));
+            sample.draw(drawing);
+            let beside = DVec2::new(at.x + LABELS * text, bottom - 0.5 * size.y);
+            let words = Words::new(label.to_owned(), beside, text);
+            drawing.add_words("gap-label", words.anchored(0.0));
+        }
         for tick in &axis.ticks {
             let from = frame.place(DVec2::new(1.0, tick.place));
             frame.draw_tick(drawing, from, DVec2::X);
@@ -113,7 +139,13 @@ mod tests {
     #[test]
     fn it_keeps_to_its_room() {
         for height in [60.0, 240.0, 1000.0] {
-            for numbers in [vec![], vec![1.0], vec![-1.0, 1.0], vec![3.0, 3.000_000_1]] {
+            for numbers in [
+                vec![],
+                vec![1.0],
+                vec![-1.0, 1.0],
+                vec![3.0, 3.000_000_1],
+                vec![0.0, 1.0, f64::NAN],
+            ] {
                 let bar = bar(&numbers);
                 let drawing = drawn(&bar, height);
                 let words = drawing.elements.iter().filter_map(|element| match &element.shape {
@@ -129,6 +161,14 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn what_is_gray_is_said() {
+        let count = |numbers: &[f64]| drawn(&bar(numbers), 200.0).of_class("color-bar-gap").count();
+        assert_eq!((count(&[0.0, 1.0]), count(&[0.0, f64::NAN, 1.0])), (0, 1));
+        // Where nothing has a number, all of the bar is gray.
+        assert_eq!(count(&[f64::NAN]), 0);
     }
 
     #[test]

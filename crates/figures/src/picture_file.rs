@@ -1,10 +1,11 @@
 //! Pictures as files: data, images, and maps drawn with their colour bars.
 
 use super::drawing::DrawingFormat;
-use super::{ColorScale, IllustrationError, ScalarMap};
+use super::{IllustrationError, ScalarMap};
 use cloakroom::output::{
     Format, OutputError, Picture, RgbImage, format_of, to_srgb, write, write_png,
 };
+use cloakroom::scene::PictureSettings;
 use std::path::Path;
 
 /// A format of files of pictures.
@@ -37,25 +38,20 @@ impl PictureFormat {
     }
 }
 
-/// What an image of a picture shows: what the camera sees, or the map of a channel, if one is
-/// named, on a scale that may be given, and whether with its colour bar.
+/// What an image of a picture shows: what the camera sees, or the map of a channel, if the settings
+/// name one.
 ///
 /// # Errors
 ///
 /// If the picture has no image, the map is impossible, or does not fit into the memory.
-pub fn shown(
-    picture: &Picture,
-    (channel, color_bar): (Option<&str>, bool),
-    scale: Option<ColorScale>,
-) -> Result<RgbImage, IllustrationError> {
-    match channel {
+pub fn shown(picture: &Picture, settings: &PictureSettings) -> Result<RgbImage, IllustrationError> {
+    match settings.map.name() {
         None => Ok(to_srgb(picture)?),
-        Some(channel) => ScalarMap::new(picture, channel, scale)?.into_image(color_bar),
+        Some(channel) => ScalarMap::new(picture, channel, settings)?.into_image(settings.color_bar),
     }
 }
 
-/// Writes a picture; `map` is the channel that what is to be seen is a map of, if any, and whether
-/// it has a colour bar.
+/// Writes a picture; the settings say what is to be seen.
 ///
 /// # Errors
 ///
@@ -63,20 +59,20 @@ pub fn shown(
 /// be written.
 pub fn write_picture(
     picture: &Picture,
-    map: (Option<&str>, bool),
+    settings: &PictureSettings,
     format: PictureFormat,
     path: &Path,
 ) -> Result<(), IllustrationError> {
-    match (format, map) {
-        (PictureFormat::Map(format), (Some(channel), color_bar)) => {
-            let map = ScalarMap::new(picture, channel, None)?;
-            let drawing = map.draw(color_bar);
+    match (format, settings.map.name()) {
+        (PictureFormat::Map(format), Some(channel)) => {
+            let map = ScalarMap::new(picture, channel, settings)?;
+            let drawing = map.draw(settings.color_bar);
             let title = &map.bar.quantity.title;
             drawing.write(format, title, &picture.metadata, drawing.pixels(), path)
         }
         (PictureFormat::Map(_), _) => Err(IllustrationError::NoMap { path: path.to_owned() }),
         (PictureFormat::Pixels(Format::Png), _) => {
-            Ok(write_png(&shown(picture, map, None)?, &picture.metadata, path)?)
+            Ok(write_png(&shown(picture, settings)?, &picture.metadata, path)?)
         }
         (PictureFormat::Pixels(_), _) => Ok(write(picture, path)?),
     }
@@ -86,6 +82,7 @@ pub fn write_picture(
 mod tests {
     use super::*;
     use cloakroom::output::{Channel, Samples};
+    use cloakroom::scene::MapChannel;
 
     #[test]
     fn maps_are_drawn_and_images_are_not() {
@@ -97,21 +94,22 @@ mod tests {
         });
         let channels = channels.to_vec();
         let picture = Picture { width: 2, height: 2, channels, metadata: Vec::new() };
-        let written = |name: &str, map| {
+        let written = |name: &str, (map, color_bar)| {
+            let settings = PictureSettings { map, color_bar, ..PictureSettings::default() };
             let path = folder.path().join(name);
             let format = PictureFormat::of(&path).expect(name);
-            write_picture(&picture, map, format, &path)?;
+            write_picture(&picture, &settings, format, &path)?;
             Ok::<_, IllustrationError>(std::fs::read(path).expect(name))
         };
-        let map = (Some("delivered"), true);
+        let map = (MapChannel::Delivered, true);
         let svg = String::from_utf8(written("a.svg", map).expect("a file")).expect("text");
         assert!(svg.contains("aria-label=\"power delivered (%)\""), "{svg}");
         assert!(written("a.pdf", map).expect("a file").starts_with(b"%PDF"));
         let bare = String::from_utf8(written("b.svg", (map.0, false)).expect("a file"));
         assert!(!bare.expect("text").contains("aria-label"));
-        let error = written("c.pdf", (None, true)).expect_err("no map").to_string();
+        let error = written("c.pdf", (MapChannel::None, true)).expect_err("no map").to_string();
         assert!(error.contains("c.pdf would be a map") && !folder.path().join("c.pdf").exists());
-        for (name, map) in [("d.png", (None, true)), ("e.png", (map.0, false))] {
+        for (name, map) in [("d.png", (MapChannel::None, true)), ("e.png", (map.0, false))] {
             written(name, map).expect(name);
             let image = image::open(folder.path().join(name)).expect("an image");
             assert_eq!((image.width(), image.height()), (2, 2));

@@ -12,7 +12,8 @@ use std::ops::Range;
 pub struct Plot {
     /// What runs along the axis, with its unit.
     pub axis: String,
-    /// What the whole numbers from 0 on stand for along the axis, if they stand for anything.
+    /// What the whole numbers from 0 on stand for along the axis, if they stand for anything; there is
+    /// nothing between them, and no line then.
     pub categories: Vec<String>,
     /// The panels, from top to bottom, one at least.
     pub panels: Vec<PlotPanel>,
@@ -102,7 +103,7 @@ impl Plot {
             let frame = frame(i);
             let is_last = i + 1 == self.panels.len();
             frame.draw_across(&mut drawing, if is_last { &ticks } else { &bare });
-            panel.draw(&mut drawing, &frame, &across, &mut marks);
+            panel.draw(&mut drawing, &frame, (&across, self.is_connected()), &mut marks);
         }
         marks.sort_by_key(|(curve, _)| *curve);
         for (curve, at) in marks {
@@ -111,13 +112,20 @@ impl Plot {
         for (i, Curve { label, .. }) in keyed.iter().enumerate() {
             let at = DVec2::new(LEFT + 3.5, 2.6 + KEY_LINE * i as f64) * MM;
             let ends = [at - DVec2::X * 3.0 * MM, at + DVec2::X * 3.0 * MM];
-            drawing.add_line("key", ends, stroke(i));
+            if self.is_connected() {
+                drawing.add_line("key", ends, stroke(i));
+            }
             mark(&mut drawing, i, at);
             let words =
                 Words::new(label.as_str(), at + DVec2::X * 4.5 * MM, TYPE * MM).anchored(0.0);
             drawing.add_words("key-words", words);
         }
         drawing
+    }
+
+    /// Whether lines join the points.
+    fn is_connected(&self) -> bool {
+        self.categories.is_empty()
     }
 
     /// The range of the axis.
@@ -152,7 +160,7 @@ impl PlotPanel {
         &self,
         drawing: &mut Drawing,
         frame: &Frame,
-        across: &Range<f64>,
+        (across, connected): (&Range<f64>, bool),
         marks: &mut Vec<(usize, DVec2)>,
     ) {
         let points = self.curves.iter().flat_map(|curve| &curve.points);
@@ -170,7 +178,9 @@ impl PlotPanel {
                 let line: Vec<DVec2> = run.iter().map(|point| place(point.x, point.y)).collect();
                 let step = if line.len() > MOST_MARKS { line.len() / FEW_MARKS } else { 1 };
                 marks.extend(line.iter().step_by(step).map(|at| (i, *at)));
-                drawing.add_line("curve", line, stroke(i));
+                if connected {
+                    drawing.add_line("curve", line, stroke(i));
+                }
                 for CurvePoint { x, y, error } in run.iter().filter(|point| point.error > 0.0) {
                     let bar = [place(*x, y - error), place(*x, y + error)];
                     drawing.add_line("error", bar, stroke(i));
@@ -310,7 +320,10 @@ mod tests {
                 curve.points[1].x = 1.0;
             }
         }
-        let words = words(&Plot { categories, axis: String::new(), ..plot }.draw());
+        let drawing = Plot { categories, axis: String::new(), ..plot }.draw();
+        // Nothing is between words.
+        assert_eq!((drawing.of_class("curve").count(), drawing.of_class("key").count()), (0, 0));
+        let words = words(&drawing);
         assert_eq!(words.iter().filter(|word| *word == "vertical").count(), 2);
     }
 }

@@ -7,6 +7,7 @@ use super::drawing::{Drawing, Shape};
 use super::quantity::Quantity;
 use super::{IllustrationError, type_size};
 use cloakroom::output::{Picture, RgbImage, Samples};
+use cloakroom::scene::{Colormap, PictureSettings};
 use glam::{DAffine2, DVec2};
 
 /// A channel of a picture in colour, with the key to its colours.
@@ -19,8 +20,8 @@ pub struct ScalarMap {
 }
 
 impl ScalarMap {
-    /// The map of a channel on a scale that is given, so that pictures can be compared; `None`:
-    /// over the range of its numbers ([`ColorScale`] says which).
+    /// The map of a channel, in the range and the colours that the settings say, or in those that
+    /// suit its numbers ([`ColorScale`] says which): differences of both signs in blue and red.
     ///
     /// # Errors
     ///
@@ -28,7 +29,7 @@ impl ScalarMap {
     pub fn new(
         picture: &Picture,
         channel: &str,
-        scale: Option<ColorScale>,
+        settings: &PictureSettings,
     ) -> Result<Self, IllustrationError> {
         let samples = &picture
             .channel(channel)
@@ -53,8 +54,14 @@ impl ScalarMap {
             Samples::F32(_) | Samples::Rgb(_) | Samples::Bins(_) => 8.0 * f64::from(f32::EPSILON),
             Samples::F64(_) => 8.0 * f64::EPSILON,
         };
-        let of_all = || ColorScale::new((0..samples.len()).map(|i| samples.get(i)), rounding);
-        let scale = scale.unwrap_or_else(of_all);
+        let scale_of = |settings: &PictureSettings| {
+            ColorScale::of((0..samples.len()).map(|i| samples.get(i)), rounding, settings)
+        };
+        let mut scale = scale_of(settings);
+        let is_difference = channel.ends_with("_difference");
+        if settings.colormap == Colormap::Auto && is_difference && scale.has_both_signs() {
+            scale = scale_of(&PictureSettings { colormap: Colormap::BlueRed, ..settings.clone() });
+        }
         let colors = (0..samples.len()).flat_map(|i| scale.color(samples.get(i)).0).collect();
         let image = RgbImage::from_raw(width, height, colors).ok_or_else(wrong_size)?;
         Ok(Self { image, bar: ColorBar { scale, quantity: Quantity::of_channel(channel) } })
@@ -125,7 +132,7 @@ mod tests {
         channel: &str,
         color_bar: bool,
     ) -> Result<RgbImage, IllustrationError> {
-        ScalarMap::new(picture, channel, None)?.into_image(color_bar)
+        ScalarMap::new(picture, channel, &PictureSettings::default())?.into_image(color_bar)
     }
 
     #[test]
@@ -134,7 +141,8 @@ mod tests {
         let map = scalar_map(&picture, "time_of_flight_difference", false).expect("a map");
         assert_eq!(map.dimensions(), (5, 3));
         assert_ne!(map.get_pixel(0, 0), map.get_pixel(4, 2));
-        let range = ScalarMap::new(&picture, "time_of_flight_difference", None)
+        let settings = PictureSettings::default();
+        let range = ScalarMap::new(&picture, "time_of_flight_difference", &settings)
             .map(|map| map.bar.scale.range);
         assert_eq!(range, Ok(Some((0.0, 14.0 * 1e-15))));
     }
@@ -144,7 +152,8 @@ mod tests {
         for (width, height) in [(1, 1), (320, 240), (40, 2000), (2000, 40)] {
             let picture = picture(width, height);
             for channel in ["time_of_flight_difference", "delivered"] {
-                let map = ScalarMap::new(&picture, channel, None).expect("a map");
+                let map = ScalarMap::new(&picture, channel, &PictureSettings::default());
+                let map = map.expect("a map");
                 let image = scalar_map(&picture, channel, true).expect("a map");
                 let margin = type_size(width as u32, height as u32) as u32;
                 let top = (image.height() - height as u32) / 2;
@@ -155,6 +164,20 @@ mod tests {
                 assert_eq!(image.get_pixel(margin - 1, top).0, [24; 3]);
             }
         }
+    }
+
+    #[test]
+    fn differences_of_both_signs_are_blue_and_red() {
+        let colors = |numbers: [f64; 3], name: &str| {
+            let samples = Samples::F64(numbers.to_vec());
+            let channels = vec![Channel { name: name.to_owned(), samples }];
+            let picture = Picture { width: 3, height: 1, channels, metadata: Vec::new() };
+            let map = ScalarMap::new(&picture, name, &PictureSettings::default()).expect("a map");
+            map.bar.scale.colors
+        };
+        assert_eq!(colors([-1.0, 0.0, 2.0], "group_delay_difference"), Colormap::BlueRed);
+        assert_eq!(colors([-1e-6, 0.0, 2.0], "group_delay_difference"), Colormap::Viridis);
+        assert_eq!(colors([-1.0, 0.0, 2.0], "group_delay"), Colormap::Viridis);
     }
 
     #[test]

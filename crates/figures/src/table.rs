@@ -187,6 +187,7 @@ fn lines(row: &TableRow) -> Vec<(Vec<(Face, String)>, f64)> {
 mod tests {
     use super::*;
     use cloakroom::output::{Channel, Picture, Samples};
+    use cloakroom::scene::PictureSettings;
     use image::Rgb;
 
     fn table(title: &str, rows: &[TableRow]) -> RgbImage {
@@ -201,7 +202,7 @@ mod tests {
         let channels =
             vec![Channel { name: "delivered".to_owned(), samples: Samples::F64(numbers) }];
         let picture = Picture { width: 160, height: 120, channels, metadata: Vec::new() };
-        ScalarMap::new(&picture, "delivered", None).expect("a map")
+        ScalarMap::new(&picture, "delivered", &PictureSettings::default()).expect("a map")
     }
 
     fn row(title: &str, color: u8) -> TableRow {

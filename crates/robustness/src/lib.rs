@@ -20,7 +20,7 @@ pub use cuts::cut_glass;
 pub use draws::Draws;
 pub use interpolation::interpolate;
 pub use rays::{Fault, examine, launch, starts_in_air, timed};
-pub use scenes::scene_of;
+pub use scenes::{SoundScene, sound_scene};
 pub use stacks::stack;
 pub use touching::{touch, touch_any, touching_kinds};
 pub use trials::{TRIALS, Trial};

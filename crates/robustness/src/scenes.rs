@@ -4,8 +4,9 @@ use crate::draws::Draws;
 use cloakroom::assembly::Assembly;
 use cloakroom::device::{CATALOGUE, Entry};
 use cloakroom::keys::{Key, KeyKind, ValueRange};
-use cloakroom::scene::{Placement, TABLES};
-use cloakroom::{render, scene_file};
+use cloakroom::render;
+use cloakroom::scene::{Placement, Scene, TABLES};
+use cloakroom::scene_file::{self, Loaded};
 use glam::{DMat3, DVec3};
 use optics::geometry::Pose;
 use optics::material::Material;
@@ -16,6 +17,9 @@ use toml::{Table, Value};
 
 /// Imaginary parts around this dim light over centimetres at the default wavelength.
 const LOSS: f64 = 1e-6;
+
+/// The kind of devices whose media are given on grids.
+const GRADED: &str = "graded";
 
 /// The key of lists that need not be there.
 const COATING: &str = "coating";
@@ -38,8 +42,7 @@ pub(crate) fn scene(draws: &mut Draws<'_>) -> Table {
 
 /// A scene of one device of a kind, at the origin; some stand in a block of glass, which may be too
 /// small for them: such a scene is refused.
-#[must_use]
-pub fn scene_of(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
+pub(crate) fn scene_of(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
     let mut device = device(draws, entry);
     device.remove("position");
     let mut devices = vec![Value::Table(device)];
@@ -60,29 +63,128 @@ pub fn scene_of(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
     ])
 }
 
+/// A random scene that is not refused.
+#[derive(Debug)]
+pub struct SoundScene {
+    /// As a scene file.
+    pub text: String,
+    /// The scene.
+    pub scene: Scene,
+    /// Its devices.
+    pub assembly: Assembly,
+    /// How many were refused before it.
+    pub refused: u64,
+}
+
+/// How many scenes are drawn at most until one is not refused.
+const MOST_DRAWN: u64 = 256;
+
+/// The first random scene of one device of a kind that is not refused.
+///
+/// # Errors
+///
+/// Why the last one was refused, if all were.
+pub fn sound_scene(draws: &mut Draws<'_>, entry: &'static Entry) -> Result<SoundScene, String> {
+    let mut why = String::new();
+    for refused in 0..MOST_DRAWN {
+        let text = scene_of(draws, entry).to_string();
+        let loaded = scene_file::parse(&text, "scene", Path::new("/nowhere"), &[]);
+        let made =
+            loaded.map_err(|error| error.to_string()).and_then(|Loaded { scene, .. }| {
+                let assembly = render::assembly(&scene).map_err(|error| error.to_string())?;
+                Ok((scene, assembly))
+            });
+        match made {
+            Ok((scene, assembly)) => return Ok(SoundScene { text, scene, assembly, refused }),
+            Err(message) => why = message,
+        }
+    }
+    Err(why)
+}
+
 /// The table of a device of a kind.
 fn device(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
     let mut device = table(draws, entry.keys, 100);
     device.extend(table(draws, Placement::KEYS, 50));
+    if entry.kind == GRADED && !draws.chance(20) {
+        fields(draws, &mut device);
+    }
     device.insert("kind".to_owned(), entry.kind.into());
     device
 }
 
-/// Some of the keys of a table: each in `share` of 256 cases. Lists without which there is nothing
-/// are there.
+/// Some of the keys of a table: each in `share` of 256 cases. What there is nothing without is
+/// there, and as a rule nothing that contradicts the rest.
 fn table(draws: &mut Draws<'_>, keys: &'static [Key], share: u8) -> Table {
     let mut table = Table::new();
+    let ways = ways(keys);
+    let way = (!ways.is_empty() && !draws.chance(4)).then(|| *draws.pick(&ways));
     for key in keys {
-        let needed = matches!(
+        let is_of = |way: &[&str]| way.contains(&key.name);
+        if way.is_some_and(|way| !is_of(way)) && ways.iter().any(|way| is_of(way)) {
+            continue;
+        }
+        let is_list = matches!(
             key.kind,
             KeyKind::Tables { .. } | KeyKind::Polygon | KeyKind::Samples { dimensions: [2, _] }
-        ) && key.name != COATING;
-        if needed || draws.chance(share) {
+        ) && !matches!(key.name, COATING | "vertices" | "planes");
+        let is_first = way.is_some_and(|way| way.first() == Some(&key.name));
+        if is_list || is_first || NEEDED.contains(&key.name) || draws.chance(share) {
             table.insert(key.name.to_owned(), value(draws, key));
         }
     }
+    let is_crystal = |material: &Value| match material.as_str() {
+        Some(name) => Material::named(name).is_some_and(|found| found.extraordinary.is_some()),
+        None => material.get("extraordinary").is_some(),
+    };
+    if way == Some(MATERIAL) && !table.get("material").is_some_and(is_crystal) {
+        table.remove("optic_axis");
+    }
     table
 }
+
+const MATERIAL: &[&str] = &["material", "optic_axis"];
+
+/// What says all of a medium, of a metal or of a law, the first key of each being needed: a table
+/// takes one of these ways.
+fn ways(keys: &[Key]) -> Vec<&'static [&'static str]> {
+    const MEDIUM: [&[&str]; 5] =
+        [&["index"], &["uniaxial"], &["biaxial"], MATERIAL, &["permittivity", "permeability"]];
+    const METAL: [&[&str]; 2] = [&["index"], &["material"]];
+    const LAW: [&[&str]; 5] = [
+        &["ordinary", "extraordinary"],
+        &["sellmeier"],
+        &["cauchy"],
+        &["drude", "lorentz", "permittivity_infinity"],
+        &["lorentz", "permittivity_infinity"],
+    ];
+    let has = |name| keys.iter().any(|key| key.name == name);
+    let mut ways = if has("biaxial") {
+        MEDIUM.to_vec()
+    } else if has("cauchy") {
+        LAW.to_vec()
+    } else if has("index") && has("material") {
+        METAL.to_vec()
+    } else {
+        Vec::new()
+    };
+    if has("biaxial") && has("metal") {
+        ways.push(&["metal"]);
+    }
+    ways
+}
+
+/// Keys without which the others of their table mean nothing.
+const NEEDED: [&str; 8] = [
+    "ordinary",
+    "extraordinary",
+    "indices",
+    "strength",
+    "pole_um2",
+    "plasma_ev",
+    "resonance_ev",
+    "thickness_nm",
+];
 
 /// A value of a key, allowed as a rule.
 fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
@@ -114,8 +216,8 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
             (0..count).map(|_| Value::from(*draws.pick(options))).collect::<Vec<_>>().into()
         }
         KeyKind::Vector => {
-            let component = |item| Value::from(draws.number(usual(item), limits));
-            Value::Array(items.iter().map(component).collect())
+            let usual = |i: usize| items.get(i).map_or(1.5, usual);
+            (0..3).map(|i| draws.number(usual(i), limits).into()).collect::<Vec<Value>>().into()
         }
         KeyKind::IntegerPair => {
             let number = |item| {
@@ -123,6 +225,10 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
                 Value::from(if draws.chance(60) { draws.integer() } else { small })
             };
             Value::Array(items.iter().map(number).collect())
+        }
+        KeyKind::Interval => {
+            let low = draws.number(number, limits);
+            vec![low, low + draws.between(-0.2, 2.0)].into()
         }
         KeyKind::Image => {
             (*draws.pick(&["builtin:bookshelf", "nowhere.png", "builtin:", "", "/"])).into()
@@ -137,15 +243,22 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
             _ => Value::Table(table(draws, keys, 120)),
         },
         KeyKind::Tensor => tensor(draws),
-        KeyKind::Complex => match draws.below(2) {
-            0 => draws.number(1.5, limits).into(),
+        KeyKind::Complex => match draws.below(4) {
+            0 | 1 => draws.number(1.5, limits).into(),
+            2 => Value::from([1.5, LOSS].map(|usual| draws.number(usual, limits)).to_vec()),
             _ => Value::from([1.5, 2.0].map(|usual| draws.number(usual, limits)).to_vec()),
         },
         KeyKind::Direction => match draws.below(2) {
             0 => draws.number(30.0, limits).into(),
             _ => vector(draws),
         },
-        KeyKind::Axes => Value::Array(vec![vector(draws), vector(draws), vector(draws)]),
+        KeyKind::Axes if draws.chance(20) => {
+            (0..3).map(|_| vector(draws)).collect::<Vec<_>>().into()
+        }
+        KeyKind::Axes => {
+            let frame = draws.pose().rotation().to_cols_array_2d();
+            frame.map(|axis| axis.to_vec()).to_vec().into()
+        }
         KeyKind::Material => material(draws),
         KeyKind::MaterialOrTable { keys } => match draws.below(3) {
             0 => Value::Table(table(draws, keys, 60)),
@@ -197,6 +310,73 @@ fn material(draws: &mut Draws<'_>) -> Value {
 fn vector(draws: &mut Draws<'_>) -> Value {
     let number = |draws: &mut Draws<'_>| draws.number(1.0, ValueRange::Within(-1.0, 1.0));
     vec![number(draws), number(draws), number(draws)].into()
+}
+
+/// Gives a device of a graded medium what agrees with the dimensions of its index: in space a
+/// length and no core; often a ratio of indices, with optic axes that turn little from sample to
+/// sample.
+fn fields(draws: &mut Draws<'_>, device: &mut Table) {
+    let index = samples(draws, ValueRange::Between(0.5, 3.0), [2, 3]);
+    let sides = sides(&index);
+    let in_space = sides.len() == 3;
+    device.insert("index".to_owned(), index);
+    if in_space {
+        device.insert("length".to_owned(), draws.between(10.0, 60.0).into());
+    } else if device.get("shape").and_then(Value::as_str) == Some("ball") {
+        device.remove("shape");
+    }
+    let is_uniaxial = draws.chance(128);
+    if is_uniaxial || in_space {
+        device.remove("inner");
+    }
+    for (key, dimensions) in [("ratio", 0), ("optic_axis", 1)] {
+        device.remove(key);
+        if is_uniaxial {
+            let of_sides = if draws.chance(128) { &sides[..] } else { &[] };
+            let field = match dimensions {
+                0 => grid(draws, ValueRange::Between(0.5, 2.0), of_sides),
+                _ => turning(draws, of_sides),
+            };
+            device.insert(key.to_owned(), field);
+        }
+    }
+}
+
+/// The sides of a grid.
+fn sides(grid: &Value) -> Vec<usize> {
+    match grid.as_array() {
+        Some(items) => {
+            let rest = items.first().map(sides).unwrap_or_default();
+            [items.len()].into_iter().chain(rest).collect()
+        }
+        None => Vec::new(),
+    }
+}
+
+/// Directions or angles on a grid of these sides, that turn little from sample to sample.
+fn turning(draws: &mut Draws<'_>, sides: &[usize]) -> Value {
+    fn laid(sides: &[usize], at: &mut Vec<f64>, value: &dyn Fn(&[f64]) -> Value) -> Value {
+        let [side, rest @ ..] = sides else { return value(at) };
+        let row = (0..*side).map(|number| {
+            at.push(number as f64);
+            let item = laid(rest, at, value);
+            at.pop();
+            item
+        });
+        row.collect::<Vec<_>>().into()
+    }
+    let pose = draws.pose().rotation();
+    let (start, turns) = (draws.between(-180.0, 180.0), [0; 3].map(|_| draws.between(-15.0, 15.0)));
+    let angle =
+        move |at: &[f64]| start + at.iter().zip(turns).map(|(at, turn)| at * turn).sum::<f64>();
+    let direction = move |at: &[f64]| {
+        let (sin, cos) = angle(at).to_radians().sin_cos();
+        (pose * DVec3::new(cos, sin, 0.0)).to_array().to_vec().into()
+    };
+    match draws.chance(128) {
+        true => laid(sides, &mut Vec::new(), &direction),
+        false => laid(sides, &mut Vec::new(), &|at| angle(at).into()),
+    }
 }
 
 /// Numbers on a grid, mostly near one another.

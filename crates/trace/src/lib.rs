@@ -34,12 +34,12 @@
 //!     Ok(Launch { origin, direction: DVec3::X, electric: [DVec3::Y.into()] })
 //! };
 //! let limits = Limits { min_power: 1e-9, tolerance: 1e-6 };
-//! let leaves = LeafTable::trace(&assembly, limits, 10, &ray, &|_| {}, &AtomicBool::new(false))?;
+//! let leaves = LeafTable::<1>::trace(&assembly, limits, 10, &ray, &|_| {}, &AtomicBool::new(false))?;
 //!
 //! assert_eq!(leaves.ray.len(), 10);
 //! for (number, direction) in leaves.direction.iter().enumerate() {
 //!     assert!(DVec3::from_array(*direction).distance(DVec3::X) < 1e-12);
-//!     assert!((leaves.power[number] - 1.0).abs() < 1e-12);
+//!     assert!((leaves.power[number][0] - 1.0).abs() < 1e-12);
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

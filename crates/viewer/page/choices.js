@@ -47,6 +47,7 @@ export function showState(state, hello, { changed, setShow }) {
   $("bandwidth").value = state.scene.light?.bandwidth_nm ?? "";
   showSpectrum(state.scene.light?.spectrum);
   $("map").value = state.scene.picture?.map ?? "none";
+  $("border").value = state.scene.photograph?.border ?? "none";
   $("beside").value = state.beside;
   $("width").value = String(state.width);
   $("samples").value = String(state.samples);
@@ -77,7 +78,7 @@ export function showSpectrum(spectrum = "auto") {
 // The ways in which the scene's devices can be shown: each those that can.
 function showShows(state, hello, setShow) {
   const can = (show) => state.devices.some(({ kind }) => hello.kinds[kind]?.shows.includes(show));
-  const names = { cloak: "Cloak", bare: "Bare metal", mirror: "Mirror" };
+  const names = { cloak: "Cloak", bare: "Bare metal", mirror: "Mirror", empty: "Nothing" };
   const segments = document.createElement("div");
   segments.className = "segments";
   const shown = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1)?.show ?? "cloak";
@@ -112,6 +113,6 @@ export function showRotation(state) {
 
 export function showSplit(state, hello) {
   const cloak = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1);
-  const words = { bare: "bare metal", mirror: "mirror", cloak: "cloak" };
+  const words = { bare: "bare metal", mirror: "mirror", cloak: "cloak", empty: "nothing" };
   picture.layOut(state, cloak ? words[cloak.show ?? "cloak"] : "the scene");
 }

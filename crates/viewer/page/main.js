@@ -302,6 +302,11 @@ $("map").addEventListener("change", () => {
   state.set("picture", "map", map === "none" ? undefined : map);
   changed();
 });
+$("border").addEventListener("change", () => {
+  const border = $("border").value;
+  state.set("photograph", "border", border === "none" ? undefined : border);
+  changed();
+});
 $("width").addEventListener("change", () => {
   state.width = Number($("width").value);
   changed();

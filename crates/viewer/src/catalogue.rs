@@ -41,11 +41,16 @@ fn kind(entry: &Entry, schema: &Value) -> Value {
         let request = Request { show, core, ..Request::default() };
         (entry.device)().build(request).ok()
     };
-    let shows: Vec<&str> = [("cloak", Show::Cloak), ("bare", Show::Bare), ("mirror", Show::Mirror)]
-        .into_iter()
-        .filter(|(word, show)| *word == "cloak" || built(*show, Core::Metal).is_some())
-        .map(|(word, _)| word)
-        .collect();
+    let mut shows: Vec<&str> =
+        [("cloak", Show::Cloak), ("bare", Show::Bare), ("mirror", Show::Mirror)]
+            .into_iter()
+            .filter(|(word, show)| *word == "cloak" || built(*show, Core::Metal).is_some())
+            .map(|(word, _)| word)
+            .collect();
+    // What hides nothing is taken away by the page's view beside it.
+    if shows.len() > 1 {
+        shows.push("empty");
+    }
     let keys: Vec<&str> = entry.keys.iter().map(|key| key.name).collect();
     json!({
         "title": entry.title,
@@ -74,7 +79,10 @@ mod tests {
                 assert!(kind["keys"][key.name]["description"].is_string(), "{}", key.name);
             }
         }
-        assert_eq!(hello["kinds"]["square-cloak"]["shows"], json!(["cloak", "bare", "mirror"]));
+        assert_eq!(
+            hello["kinds"]["square-cloak"]["shows"],
+            json!(["cloak", "bare", "mirror", "empty"])
+        );
         assert_eq!(hello["kinds"]["square-cloak"]["core_can_be_open"], true);
         assert_eq!(hello["kinds"]["luneburg-lens"]["shows"], json!(["cloak"]));
         assert_eq!(hello["exhibits"].as_array().map(Vec::len), Some(EXHIBITS.len()));

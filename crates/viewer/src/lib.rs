@@ -23,5 +23,7 @@ mod scenes;
 mod seen;
 mod server;
 mod slot;
+mod way_in;
 
 pub use server::{Settings, ViewerError, serve};
+pub use way_in::WayIn;

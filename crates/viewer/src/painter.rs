@@ -220,7 +220,7 @@ impl Painter<'_> {
         let (image, scale) = match scene.picture.map.name() {
             None => (to_srgb(&picture)?, Value::Null),
             Some(channel) => {
-                let map = ScalarMap::new(&picture, channel, None)?;
+                let map = ScalarMap::new(&picture, channel, &scene.picture)?;
                 let scale = scale(channel, map.bar.scale.range);
                 (map.image, scale)
             }

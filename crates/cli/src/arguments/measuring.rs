@@ -1,6 +1,6 @@
 //! Arguments of the commands that measure, draw and export.
 
-use super::values::{angles, grid, point, rectangle, size, sun, tilt, view};
+use super::values::{angles, grid, point, rectangle, size, sun, tilt, view, window};
 use super::{SceneArguments, ThreadsArguments};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -93,6 +93,11 @@ pub struct QualityArguments {
     /// combination: the figures are means, with their standard errors.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub draws: u32,
+    /// A scene whose devices show what should be seen, as a flat floor for a carpet of one's own;
+    /// without it, a cloak's flat mirror, or nothing. Camera, light and photograph stay those of the
+    /// scene that is measured, and what is swept changes nothing in it.
+    #[arg(long, value_name = "SCENE")]
+    pub reference: Option<PathBuf>,
     /// A file to write; its ending decides: .csv, .npz, or .svg, .pdf and .png for a plot. May be
     /// given several times.
     #[arg(short, long = "output", value_name = "FILE")]
@@ -133,6 +138,10 @@ pub struct DiagramArguments {
     /// The width of a bundle of parallel rays, cm; that of the devices if absent.
     #[arg(long, value_name = "CM")]
     pub width: Option<f64>,
+    /// The part of the cross-section that is shown, cm, as in --window=-20,-10,20,10; the devices and
+    /// what is around them if absent.
+    #[arg(long, value_name = "X0,Y0,X1,Y1", allow_hyphen_values = true, value_parser = window, conflicts_with_all = ["space", "setting"])]
+    pub window: Option<[f64; 4]>,
     /// The plane z = const that the rays start in, cm; that of the first device if absent.
     #[arg(long, value_name = "CM", allow_hyphen_values = true)]
     pub z: Option<f64>,

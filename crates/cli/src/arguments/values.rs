@@ -51,6 +51,13 @@ pub(super) fn frames_only(text: &str) -> Result<[usize; 2], &'static str> {
         .ok_or("write FIRST..LAST, counted from 0, as in 0..29")
 }
 
+/// Reads a part of the xy-plane, such as -20,-10,20,10.
+pub(super) fn window(text: &str) -> Result<[f64; 4], &'static str> {
+    numbers(text)
+        .filter(|[x0, y0, x1, y1]| x0 < x1 && y0 < y1)
+        .ok_or("write X0,Y0,X1,Y1 in cm, the lower left corner first, as in -20,-10,20,10")
+}
+
 /// Reads the range of a map, such as -0.1,0.1.
 pub(super) fn map_range(text: &str) -> Result<[f64; 2], &'static str> {
     numbers(text)

@@ -83,6 +83,7 @@ fn chosen<'a>(
     let problem = match settings.placement.show {
         Show::Bare => "is shown as bare metal: it has no material",
         Show::Mirror => "is shown as the mirror it imitates: it has no material",
+        Show::Empty => "is not shown (show = \"empty\"): it has no material",
         Show::Cloak if placed.structure.is_opaque() => "is opaque: it has no material",
         Show::Cloak if placed.structure.polarizes() => "is an ideal sheet: it has no material",
         Show::Cloak if placed.structure.regions.is_empty() => {

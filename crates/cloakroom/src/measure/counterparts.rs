@@ -36,8 +36,12 @@ pub fn bare(scene: &Scene) -> Option<Scene> {
     changed.then_some(bare)
 }
 
-/// Shows a device otherwise, if it can be, and says whether anything is there to be seen then.
+/// Shows a device otherwise, if it can be, and says whether anything is there to be seen then. One
+/// that is not there stays away.
 fn show_as(device: &mut DeviceSettings, show: Show) -> Option<bool> {
+    if device.placement.show == Show::Empty {
+        return None;
+    }
     let mut filled = device.clone();
     (filled.placement.core, filled.placement.show) = (Core::Metal, show);
     let built = filled.built(show).ok()?;
@@ -89,5 +93,9 @@ mod tests {
         assert_eq!(shown, [("luneburg-lens", Show::Cloak), ("square-cloak", Show::Bare)]);
         assert!(assembly(&bare).is_ok());
         assert!(super::bare(&scene(&format!("{lens}{rod}"))).is_none());
+        // A cloak that is not there has no metal, and nothing should be seen in its place.
+        let away = scene("[[device]]\nkind = 'square-cloak'\nshow = 'empty'\ncore = 'open'\n");
+        assert!(super::bare(&away).is_none() && ideal(&away).devices.is_empty());
+        assert!(assembly(&away).is_ok());
     }
 }

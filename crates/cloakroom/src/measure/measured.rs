@@ -68,6 +68,8 @@ impl Measured {
     /// The numbers in the order of the columns.
     pub fn numbers(&self) -> Numbers {
         let mut list = Numbers::default();
+        let rays = |value: fn(&Survey) -> Option<f64>| self.rays.as_ref().and_then(value);
+        list.add("in_place_share", "Share in place", "", rays(Survey::in_place_share));
         list.add("silhouette_share", "Silhouette's share", "", self.silhouette_share);
         let words = [("ideal", "Ideal"), ("empty", "Empty view")];
         for ((name, word), likeness) in words.into_iter().zip(&self.likeness) {
@@ -76,12 +78,10 @@ impl Measured {
             let part = likeness.as_ref().and_then(|l| l.region.as_ref());
             list.likeness(&format!("{name}_silhouette"), word, part);
         }
-        let rays = |value: fn(&Survey) -> Option<f64>| self.rays.as_ref().and_then(value);
         let turned = rays(|rays| rays.direction_error_rms_deg);
         list.add("displacement_rms_cm", "RMS displacement", "cm", rays(|r| r.displacement_rms_cm));
         list.add("direction_error_rms_deg", "RMS direction error", "°", turned);
         list.add("uncloaked_share", "Uncloaked share", "", rays(|rays| rays.uncloaked_share));
-        list.add("in_place_share", "Share in place", "", rays(Survey::in_place_share));
         let area = rays(|rays| Some(rays.uncloaked_area_cm2));
         list.add("uncloaked_area_cm2", "Uncloaked area", "cm²", area);
         for ((name, title), power) in POWERS.into_iter().zip(self.powers) {

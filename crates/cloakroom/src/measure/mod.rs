@@ -25,6 +25,7 @@ mod structural_similarity;
 mod survey;
 mod sweep;
 mod view;
+mod waypoint;
 
 pub use column::{Column, UnknownColumn, name_and_unit};
 pub use comparison::{Comparison, Figures, FlightFigures, Shifted, compare};
@@ -41,6 +42,7 @@ pub use structural_similarity::structural_similarity;
 pub use survey::{CLOAKED_WITHIN_CM, IN_PLACE_WITHIN, Survey, survey};
 pub use sweep::{Sweep, SweepError, combinations};
 pub use view::View;
+pub(crate) use waypoint::{Waypoint, without_rounding};
 
 /// Why something cannot be measured.
 #[derive(Debug, thiserror::Error)]

@@ -2,12 +2,13 @@
 
 use super::column::{Column, UnknownColumn, find_column, name_and_unit};
 use super::constraint::Constraint;
+use super::counterparts::ideal;
 use super::measured::columns;
 use super::quality_error::{QualityError, located};
 use super::sweep::{Sweep, SweepError, combinations};
 use crate::device::Imperfection;
 use crate::render::assembly;
-use crate::scene::Scene;
+use crate::scene::{DeviceSettings, Scene};
 use crate::scene_file::{Loaded, Override, SceneFileError};
 
 /// A sweep with all its scenes read.
@@ -17,6 +18,8 @@ pub struct SweepPlan {
     pub(super) holds: Vec<Constraint>,
     pub(super) scenes: Vec<Combination>,
     pub(super) draws: u32,
+    /// What should be seen instead of the ideal, in place of the devices.
+    reference: Option<Vec<DeviceSettings>>,
 }
 
 /// One combination of settings.
@@ -80,7 +83,25 @@ impl SweepPlan {
         };
         let scenes = chosen.into_iter().map(scene);
         let scenes = scenes.collect::<Result<Vec<_>, QualityError>>()?;
-        Ok(Self { sweeps, holds, scenes, draws: 1 })
+        Ok(Self { sweeps, holds, scenes, draws: 1, reference: None })
+    }
+
+    /// The same plan, whose devices should look as those of another scene: an own carpet as its flat
+    /// floor. Camera, light and photograph are those of the scene that is measured; what is swept
+    /// changes nothing in the reference.
+    #[must_use]
+    pub fn with_reference(self, reference: Scene) -> Self {
+        Self { reference: Some(reference.devices), ..self }
+    }
+
+    /// What should be seen in the place of a scene.
+    pub(super) fn wanted(&self, scene: &Scene) -> Scene {
+        let Some(devices) = &self.reference else { return ideal(scene) };
+        let mut wanted = Scene { devices: devices.clone(), ..scene.clone() };
+        for device in &mut wanted.devices {
+            device.wavelength_nm = scene.light.wavelength_nm;
+        }
+        wanted
     }
 
     /// The same plan with that many draws of the devices' random errors for each combination, one

@@ -6,7 +6,7 @@ use super::plan::{Combination, SweepPlan, drawn};
 use super::quality_error::{QualityError, located};
 use super::statistics::Statistics;
 use super::sweep::Sweep;
-use super::{View, empty, ideal, survey};
+use super::{View, empty, survey};
 use crate::render::{ChannelSet, Images, PreparedScene, Supervision, render};
 use crate::scene::Scene;
 use crate::trace::TraceStats;
@@ -70,7 +70,7 @@ fn same_view(one: &Scene, other: &Scene) -> bool {
         && one.surroundings == other.surroundings
 }
 
-/// Renders the scene of every combination, its ideal and its empty view, and measures them; where
+/// Renders the scene of every combination, its ideal or the reference and its empty view, and measures them; where
 /// the scene is random, every draw of it.
 ///
 /// # Errors
@@ -102,7 +102,7 @@ pub fn quality(
                 &PreparedScene::with_images(&empty(scene), &mut images).map_err(failed)?,
             )?)?,
         };
-        let wanted_scene = ideal(scene);
+        let wanted_scene = plan.wanted(scene);
         let wanted_prepared =
             PreparedScene::with_images(&wanted_scene, &mut images).map_err(failed)?;
         let wanted = if wanted_scene.devices.is_empty() {

@@ -1,5 +1,6 @@
 //! Which values of which keys are gone through.
 
+use super::waypoint::Waypoint;
 use crate::keys::{Value, quoted};
 use crate::scene_file::{Override, text};
 
@@ -45,7 +46,8 @@ pub enum SweepError {
 
 impl Sweep {
     /// Reads `KEY=START..END:STEP`, the end included, or `KEY=VALUE,VALUE,...`; commas in brackets
-    /// and quotes belong to a value.
+    /// and quotes belong to a value. Start and end may be vectors, `[0,0,0]..[10,0,0]:5`: the step is
+    /// a length along the straight way between them.
     ///
     /// # Errors
     ///
@@ -58,13 +60,16 @@ impl Sweep {
         if key.is_empty() {
             return Err(refuse("there is no key before the =".to_owned()));
         }
-        let range = values.split_once("..").filter(|_| !values.contains(['"', '\'', '[']));
+        let range = values.split_once("..").filter(|_| !values.contains(['"', '\'']));
         let values = match range {
             Some((start, rest)) => {
                 let (end, step) = rest
                     .split_once(':')
                     .ok_or_else(|| refuse("a range needs a step".to_owned()))?;
-                steps(start.trim(), end.trim(), step.trim()).map_err(refuse)?
+                let [start, end, step] = [start, end, step].map(str::trim);
+                let is_vector = start.starts_with('[') || end.starts_with('[');
+                let steps = if is_vector { vector_steps } else { steps };
+                steps(start, end, step).map_err(refuse)?
             }
             None => split(values),
         };
@@ -113,24 +118,45 @@ fn steps(start: &str, end: &str, step: &str) -> Result<Vec<String>, String> {
         parsed.ok_or_else(|| format!("{} is not a finite number", quoted(text, '`')))
     };
     let (first, last, by) = (number(start)?, number(end)?, number(step)?);
-    let count = (last - first) / by + 1e-9;
-    if by == 0.0 || count.is_nan() || count < 0.0 {
-        return Err(
-            "the range is empty: its step does not lead from its start to its end".to_owned()
-        );
-    }
-    if count >= MOST as f64 {
-        return Err(format!("the range has more than {MOST} values"));
-    }
+    let count = count((last - first) / by, by)?;
     let decimals = |text: &str| text.split_once('.').map_or(0, |(_, digits)| digits.len());
     let decimals = decimals(start).max(decimals(step)).min(MOST_DECIMALS);
     let plain = ![start, step].iter().any(|text| text.contains(['e', 'E']));
-    Ok((0..=count as usize)
+    Ok((0..count)
         .map(|i| {
             let value = first + i as f64 * by;
             if plain { format!("{value:.decimals$}") } else { value.to_string() }
         })
         .collect())
+}
+
+/// The vectors on the straight way from the first to the last, a length of `step` apart.
+fn vector_steps(start: &str, end: &str, step: &str) -> Result<Vec<String>, String> {
+    let (points, by) = (Waypoint::way(&format!("{start}..{end}"))?, Waypoint::parse(step)?);
+    let [first, last] = points.as_slice() else {
+        return Err("a range has one start and one end".to_owned());
+    };
+    let by = by.number().ok_or("the step of a range of vectors is a length, a number")?;
+    let length = first.distance(last);
+    let count = count(length / by, by)?;
+    // The end is itself.
+    let share = |i: usize| if length > 0.0 { (i as f64 * by / length).min(1.0) } else { 0.0 };
+    Ok((0..count).map(|i| first.toward(last, share(i)).to_string()).collect())
+}
+
+/// How many values there are in so many steps of that size, both ends included.
+fn count(steps: f64, by: f64) -> Result<usize, String> {
+    // Rounding takes no end away.
+    let steps = steps + 1e-9;
+    if by == 0.0 || steps.is_nan() || steps < 0.0 {
+        return Err(
+            "the range is empty: its step does not lead from its start to its end".to_owned()
+        );
+    }
+    if steps >= MOST as f64 {
+        return Err(format!("the range has more than {MOST} values"));
+    }
+    Ok(steps as usize + 1)
 }
 
 /// The values between commas that lie in no brackets and no quotes.
@@ -203,6 +229,15 @@ mod tests {
     }
 
     #[test]
+    fn vectors_go_straight_by_lengths() {
+        let expected = ["[0, 0, 0]", "[5, 0, 0]", "[10, 0, 0]"];
+        assert_eq!(values("a=[0,0,0]..[10, 0, 0]:5"), expected);
+        assert_eq!(values("a=[1,2]..[4,6]:2.5"), ["[1, 2]", "[2.5, 4]", "[4, 6]"]);
+        assert_eq!(values("a=[0,0]..[0.3,0]:0.1").len(), 4);
+        assert_eq!(values("a=[7,7]..[7,7]:1"), ["[7, 7]"]);
+    }
+
+    #[test]
     fn lists_keep_brackets_and_quotes_whole() {
         assert_eq!(values("a=horizontal, vertical"), ["horizontal", "vertical"]);
         assert_eq!(values("a=[1,2],[3,[4,5]]"), ["[1,2]", "[3,[4,5]]"]);
@@ -225,6 +260,12 @@ mod tests {
             ("a=1,nan", "`nan` is not a finite"),
             ("a=0..1:1e-9", "more than"),
             ("a=x..1:1", "`x` is not"),
+            ("a=[0,0]..[1,0,0]:1", "not alike"),
+            ("a=0..[1,0,0]:1", "not alike"),
+            ("a=[0,0]..[1,0]:-1", "empty"),
+            ("a=[0,0]..[1,0]:[1,0]", "is a length"),
+            ("a=[0,y]..[1,0]:1", "`y` is not"),
+            ("a=[0,0]..[1,0]", "needs a step"),
         ] {
             let message = Sweep::parse(text).expect_err(text).to_string();
             assert!(message.contains(part) && message.contains(text), "{message}");

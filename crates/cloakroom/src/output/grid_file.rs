@@ -1,9 +1,9 @@
 //! Data on a regular grid of cells, into files: NPZ, VTK image data and CSV.
 
+use super::vtk_file::{self, Appended};
 use super::{OutputError, format_of, write_npz, write_whole};
-use base64::prelude::{BASE64_STANDARD, Engine};
 use glam::DVec3;
-use ndarray::ShapeBuilder;
+use ndarray::{Array, Array1, ArrayView, ArrayViewD, CowArray, IxDyn, ShapeBuilder};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -71,6 +71,15 @@ pub enum GridValues {
     SymmetricTensors(Vec<[f64; 6]>),
 }
 
+/// An array with the indices of numpy.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ShapedArray<'a> {
+    /// Codes.
+    Codes(ArrayViewD<'a, u8>),
+    /// Numbers.
+    Numbers(CowArray<'a, f64, IxDyn>),
+}
+
 /// A format of files for data on grids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GridFormat {
@@ -113,30 +122,46 @@ pub fn write_grid(grid: &GridFile, path: &Path) -> Result<(), OutputError> {
 }
 
 impl GridFile {
-    /// Arrays `x`, `y`, `z` of the middles of the cells, and each array with the indices of x, y
-    /// and z, and of row and column for a tensor; the metadata as the array of bytes `metadata`, a
-    /// JSON object.
+    /// Its arrays by their names, as numpy has them: `x`, `y`, `z` of the middles of the cells, and
+    /// each array with the indices of x, y and z, and of row and column for a tensor.
+    #[must_use]
+    pub fn shaped(&self) -> Vec<(&'static str, ShapedArray<'_>)> {
+        let mut arrays = Vec::new();
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let middles = (0..self.grid.cells[axis]).map(|i| self.grid.coordinate(axis, i));
+            let middles = Array1::from_iter(middles).into_dyn();
+            arrays.push((name, ShapedArray::Numbers(middles.into())));
+        }
+        let [nx, ny, nz] = self.grid.cells;
+        let shape = (nx, ny, nz).f();
+        for GridArray { name, values } in &self.arrays {
+            // There is a value for each cell.
+            let shaped = match values {
+                GridValues::Codes(codes, _) => ArrayView::from_shape(shape, codes)
+                    .map(|codes| ShapedArray::Codes(codes.into_dyn())),
+                GridValues::Numbers(numbers) => ArrayView::from_shape(shape, numbers)
+                    .map(|numbers| ShapedArray::Numbers(numbers.into_dyn().into())),
+                GridValues::SymmetricTensors(tensors) => {
+                    let entries = tensors.iter().flat_map(|six| ENTRIES.map(|entry| six[entry]));
+                    let steps = (9, 9 * nx, 9 * nx * ny, 3, 1);
+                    let shape = (nx, ny, nz, 3, 3).strides(steps);
+                    Array::from_shape_vec(shape, entries.collect())
+                        .map(|entries| ShapedArray::Numbers(entries.into_dyn().into()))
+                }
+            };
+            arrays.extend(shaped.map(|shaped| (*name, shaped)));
+        }
+        arrays
+    }
+
+    /// The arrays of [`GridFile::shaped`]; the metadata as the array of bytes `metadata`, a JSON
+    /// object.
     fn write_npz(&self, path: &Path) -> Result<(), OutputError> {
         write_npz(path, &self.metadata, |npz| {
-            for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-                let middles = (0..self.grid.cells[axis]).map(|i| self.grid.coordinate(axis, i));
-                npz.add(name, self.grid.cells[axis], &middles.collect::<Vec<f64>>())?;
-            }
-            let [nx, ny, nz] = self.grid.cells;
-            for GridArray { name, values } in &self.arrays {
-                match values {
-                    GridValues::Codes(codes, _) => npz.add(name, (nx, ny, nz).f(), codes)?,
-                    GridValues::Numbers(numbers) => npz.add(name, (nx, ny, nz).f(), numbers)?,
-                    GridValues::SymmetricTensors(tensors) => {
-                        let entries =
-                            tensors.iter().flat_map(|six| ENTRIES.map(|entry| six[entry]));
-                        let steps = (9, 9 * nx, 9 * nx * ny, 3, 1);
-                        let shape = (nx, ny, nz, 3, 3).strides(steps);
-                        npz.add(name, shape, &entries.collect::<Vec<f64>>())?;
-                    }
-                }
-            }
-            Ok(())
+            self.shaped().iter().try_for_each(|(name, array)| match array {
+                ShapedArray::Codes(codes) => npz.add_array(name, codes),
+                ShapedArray::Numbers(numbers) => npz.add_array(name, numbers),
+            })
         })
     }
 
@@ -146,57 +171,36 @@ impl GridFile {
         let [nx, ny, nz] = self.grid.cells;
         let extent = format!("0 {nx} 0 {ny} 0 {nz}");
         let (origin, spacing) = (three(self.grid.corner), three(self.grid.spacing));
-        writeln!(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>")?;
-        for (key, text) in &self.metadata {
-            // Two hyphens would end a comment.
-            writeln!(out, "<!-- {key}: {} -->", text.replace('-', "\u{2010}"))?;
-        }
-        writeln!(
-            out,
-            "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">"
-        )?;
+        vtk_file::begin(out, "ImageData", &self.metadata)?;
         writeln!(
             out,
             "<ImageData WholeExtent=\"{extent}\" Origin=\"{origin}\" Spacing=\"{spacing}\">\n\
              <Piece Extent=\"{extent}\">\n<CellData Scalars=\"index\" Tensors=\"permittivity\">"
         )?;
-        let mut offset = 0;
+        let mut arrays = Appended::default();
         for GridArray { name, values } in &self.arrays {
             let (kind, components) = match values {
                 GridValues::Codes(..) => ("UInt8", 1),
                 GridValues::Numbers(_) => ("Float64", 1),
                 GridValues::SymmetricTensors(_) => ("Float64", 9),
             };
-            writeln!(
-                out,
-                "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
-                 format=\"appended\" offset=\"{offset}\"/>"
-            )?;
-            // In base64 three bytes are four letters.
-            offset += (8 + values.bytes()).div_ceil(3) * 4;
+            arrays.tell(out, name, kind, components, values.bytes())?;
         }
-        write!(out, "</CellData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"base64\">\n_")?;
+        writeln!(out, "</CellData>\n</Piece>\n</ImageData>")?;
+        arrays.begin(out)?;
         for GridArray { values, .. } in &self.arrays {
-            let mut bytes = Vec::with_capacity(8 + values.bytes());
-            bytes.extend((values.bytes() as u64).to_le_bytes());
             match values {
-                GridValues::Codes(codes, _) => bytes.extend(codes),
+                GridValues::Codes(codes, _) => Appended::write(out, codes.clone())?,
                 GridValues::Numbers(numbers) => {
-                    bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+                    Appended::write(out, numbers.iter().flat_map(|n| n.to_le_bytes()).collect())?;
                 }
                 GridValues::SymmetricTensors(tensors) => {
-                    bytes.extend(tensors.iter().flat_map(|six| {
-                        ENTRIES.into_iter().flat_map(|entry| six[entry].to_le_bytes())
-                    }))
+                    let entries = tensors.iter().flat_map(|six| ENTRIES.map(|entry| six[entry]));
+                    Appended::write(out, entries.flat_map(f64::to_le_bytes).collect())?;
                 }
             }
-            // Whole groups of three bytes go together.
-            for piece in bytes.chunks(3 << 20) {
-                out.write_all(BASE64_STANDARD.encode(piece).as_bytes())?;
-            }
         }
-        writeln!(out, "\n</AppendedData>\n</VTKFile>")?;
-        out.flush()
+        arrays.end(out)
     }
 
     /// A line of names, then a line for each cell: `x_cm`, `y_cm`, `z_cm`, words for codes,

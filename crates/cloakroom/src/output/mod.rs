@@ -4,14 +4,17 @@
 mod exr_file;
 mod grid_file;
 mod npz_file;
+mod path_file;
 mod picture;
 mod png_file;
 mod reading;
+mod vtk_file;
 mod whole_file;
 
-pub use grid_file::{Grid, GridArray, GridFile, GridFormat, GridValues, write_grid};
+pub use grid_file::{Grid, GridArray, GridFile, GridFormat, GridValues, ShapedArray, write_grid};
 pub use image::RgbImage;
 pub(crate) use npz_file::write_npz;
+pub use path_file::write_paths;
 pub use picture::{Channel, Picture, Samples};
 pub use png_file::{encode_png, to_srgb, write_png, write_png_in_strips};
 pub use png_file::{encoder as png_encoder, texts as png_texts};
@@ -89,7 +92,10 @@ pub fn format_of<T: Copy>(path: &Path, known: &[(&str, T)]) -> Result<T, OutputE
     format.map(|(_, format)| *format).ok_or_else(|| {
         let names: Vec<String> = known.iter().map(|(name, _)| format!(".{name}")).collect();
         let (last, others) = names.split_last().expect("formats");
-        let known = format!("{} or {last}", others.join(", "));
+        let known = match others {
+            [] => last.clone(),
+            others => format!("{} or {last}", others.join(", ")),
+        };
         OutputError::UnknownFormat { path: path.to_owned(), known }
     })
 }

@@ -3,7 +3,7 @@
 
 use super::{OutputError, Picture, Samples, WriteSeek, write_whole};
 use crate::color::BINS;
-use ndarray::{ArrayView, ArrayView1, Dimension, StrideShape};
+use ndarray::{ArrayBase, ArrayView, ArrayView1, Data, Dimension, StrideShape};
 use ndarray_npy::{NpzWriter, WritableElement};
 use serde_json::{Map, Value};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -25,7 +25,19 @@ impl Npz<'_> {
         values: &[T],
     ) -> io::Result<()> {
         let array = ArrayView::from_shape(shape, values).map_err(io::Error::other)?;
-        self.writer.add_array(name, &array).map_err(io::Error::other)
+        self.add_array(name, &array)
+    }
+
+    /// Adds an array as it is.
+    pub fn add_array<S: Data, D: Dimension>(
+        &mut self,
+        name: &str,
+        array: &ArrayBase<S, D>,
+    ) -> io::Result<()>
+    where
+        S::Elem: WritableElement,
+    {
+        self.writer.add_array(name, array).map_err(io::Error::other)
     }
 }
 

@@ -240,29 +240,23 @@ fn linear(image: DynamicImage) -> LinearImage {
         }
         DynamicImage::ImageLumaA8(_) | DynamicImage::ImageRgba8(_) => {
             let table = srgb::decode_table();
-            over_black(&image.into_rgba8(), |code| table[usize::from(code)], 1.0 / 255.0)
+            over_black(image.into_rgba8().as_raw(), |code| table[usize::from(code)], 1.0 / 255.0)
         }
         deep => {
             let table: Vec<f32> =
                 (0..=u16::MAX).map(|code| srgb::decode(f64::from(code) / 65535.0) as f32).collect();
-            over_black(&deep.into_rgba16(), |code| table[usize::from(code)], 1.0 / 65535.0)
+            over_black(deep.into_rgba16().as_raw(), |code| table[usize::from(code)], 1.0 / 65535.0)
         }
     };
     LinearImage { width, height, texels }
 }
 
-/// Linear light of pixels with alpha over black; `unit` is one over the largest alpha.
-fn over_black<S>(
-    pixels: &image::ImageBuffer<image::Rgba<S>, Vec<S>>,
-    light: impl Fn(S) -> f32,
-    unit: f32,
-) -> Texels
-where
-    S: image::Primitive + Into<f32>,
-    image::Rgba<S>: image::Pixel<Subpixel = S>,
-{
-    let mut values = Vec::with_capacity(pixels.len() / 4 * 3);
-    for texel in pixels.as_raw().chunks_exact(4) {
+/// Linear light of pixels over black: of red, green, blue and alpha of each, row by row. `light` is
+/// that of one of the colors; `unit` is one over the largest alpha.
+#[must_use]
+pub fn over_black<S: Copy + Into<f32>>(rgba: &[S], light: impl Fn(S) -> f32, unit: f32) -> Texels {
+    let mut values = Vec::with_capacity(rgba.len() / 4 * 3);
+    for texel in rgba.chunks_exact(4) {
         let alpha = texel[3].into() * unit;
         values.extend(texel[..3].iter().map(|&value| light(value) * alpha));
     }

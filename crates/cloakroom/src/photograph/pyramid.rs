@@ -30,13 +30,47 @@ const FADE: f32 = 0.8;
 /// Smallest averaging width d, in texels: keeps the weights smooth.
 const MIN_WIDTH: f32 = 0.25;
 
-/// What lies beyond the left and right edge of an image. Beyond top and bottom, the edge goes on.
+/// What lies beyond the edges of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edges {
     /// The edge goes on.
     Clamp,
-    /// The image begins again.
+    /// The image begins again beyond left and right; beyond top and bottom, the edge goes on.
     WrapHorizontally,
+    /// The image begins again on all sides.
+    Repeat,
+    /// The image is mirrored at each edge, and so on.
+    Mirror,
+}
+
+impl Edges {
+    /// Which of so many texels is seen at a place before, among or beyond them, across or `down`.
+    fn texel(self, place: i64, count: i64, down: bool) -> usize {
+        let texel = match self {
+            Self::Repeat => place.rem_euclid(count),
+            Self::WrapHorizontally if !down => place.rem_euclid(count),
+            Self::Clamp | Self::WrapHorizontally => place.clamp(0, count - 1),
+            Self::Mirror => {
+                let place = place.rem_euclid(2 * count);
+                place.min(2 * count - 1 - place)
+            }
+        };
+        texel as usize
+    }
+
+    /// The place within the image, from 0 to 1, at which the same is seen, and -1 where what changes
+    /// with the place is seen the other way round there, else 1.
+    fn within(self, place: f64) -> [f64; 2] {
+        match self {
+            // Far outside there is nothing but the edge.
+            Self::Clamp | Self::WrapHorizontally => [place.clamp(-4.0, 5.0), 1.0],
+            Self::Repeat => [place.rem_euclid(1.0), 1.0],
+            Self::Mirror => match place.rem_euclid(2.0) {
+                back if back > 1.0 => [2.0 - back, -1.0],
+                forth => [forth, 1.0],
+            },
+        }
+    }
 }
 
 /// An image with its coarser copies, ready to be looked at through patches of any size.
@@ -135,19 +169,31 @@ impl Pyramid {
     /// the image is magnified, it is interpolated without overshoot. The result is continuous in
     /// all arguments.
     pub fn sample(&self, position: [f64; 2], dx: [f64; 2], dy: [f64; 2]) -> [f32; 3] {
+        self.sample_with(self.edges, position, dx, dy)
+    }
+
+    /// The same with something else beyond the edges.
+    pub fn sample_with(
+        &self,
+        edges: Edges,
+        position: [f64; 2],
+        dx: [f64; 2],
+        dy: [f64; 2],
+    ) -> [f32; 3] {
         let size = [self.width() as f64, self.height() as f64];
         let texels = |[u, v]: [f64; 2]| [u * size[0], v * size[1]];
-        let footprint = Footprint::new(texels(dx), texels(dy), self.max_ratio);
+        let within = position.map(|x| edges.within(x));
+        let [u, v] = texels(within.map(|[place, _]| if place.is_nan() { 0.5 } else { place }));
+        let turned = |[du, dv]: [f64; 2]| texels([du * within[0][1], dv * within[1][1]]);
+        let footprint = Footprint::new(turned(dx), turned(dy), self.max_ratio);
         let plan = self.plan(&footprint);
-        // Far outside there is nothing but the edge.
-        let [u, v] = texels(position.map(|x| if x.is_nan() { 0.5 } else { x.clamp(-4.0, 5.0) }));
         let mut sum = [0.0; 3];
         if footprint.row.is_none() {
-            self.add_probe(&mut sum, [u, v], 1.0, &plan);
+            self.add_probe(&mut sum, [u, v], 1.0, &plan, edges);
         } else {
             footprint.probes(|offset, weight| {
                 let at = [u + f64::from(offset[0]), v + f64::from(offset[1])];
-                self.add_probe(&mut sum, at, weight, &plan);
+                self.add_probe(&mut sum, at, weight, &plan, edges);
             });
         }
         sum
@@ -155,11 +201,18 @@ impl Pyramid {
 
     /// Adds what a probe in the middle of `at`, in texels of the image, sees.
     #[inline]
-    fn add_probe(&self, sum: &mut [f32; 3], at: [f64; 2], weight: f32, plan: &LevelMix) {
+    fn add_probe(
+        &self,
+        sum: &mut [f32; 3],
+        at: [f64; 2],
+        weight: f32,
+        plan: &LevelMix,
+        edges: Edges,
+    ) {
         let mut add = |level: usize, width: f32, weight: f32| {
             let level = self.level(level);
             let at = [at[0] * level.scale[0], at[1] * level.scale[1]];
-            let light = level.average(at, width, self.edges, self.table);
+            let light = level.average(at, width, edges, self.table);
             for (total, value) in sum.iter_mut().zip(light) {
                 *total += weight * value;
             }
@@ -252,12 +305,9 @@ impl Level {
         let (columns, rows) = (*width as i64, *height as i64);
         let mut sum = [0.0; 3];
         for (y, row_weight) in (down.first..).zip(down.weights()) {
-            let y = y.clamp(0, rows - 1) as usize;
+            let y = edges.texel(y, rows, true);
             for (x, weight) in (across.first..).zip(across.weights()) {
-                let x = match edges {
-                    Edges::Clamp => x.clamp(0, columns - 1),
-                    Edges::WrapHorizontally => x.rem_euclid(columns),
-                } as usize;
+                let x = edges.texel(x, columns, false);
                 let start = (y * width + x) * 3;
                 for (channel, total) in sum.iter_mut().enumerate() {
                     let light = match texels {

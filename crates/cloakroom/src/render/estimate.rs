@@ -3,7 +3,7 @@
 use super::block_tracer::MOST_TRACERS;
 use super::detection::Detection;
 use super::patch::Patch;
-use super::{BlockTracer, ChannelSet, Exposer, PreparedScene};
+use super::{BlockTracer, ChannelSet, Exposer, PreparedScene, Tile, bytes_of};
 use std::time::{Duration, Instant};
 
 /// What rendering an image will take.
@@ -14,6 +14,10 @@ pub struct Estimate {
     /// How many rays will be followed to their ends; one of which a part is interpolated counts by
     /// the rest.
     pub walks: f64,
+    /// How many rays the camera sends out.
+    pub samples: u64,
+    /// Bytes of memory that the picture takes while it is rendered and written.
+    pub bytes: u64,
 }
 
 /// How long the image of a scene is looked at.
@@ -84,8 +88,11 @@ pub fn estimate(prepared: &PreparedScene<'_>) -> Estimate {
     }
     walks += tracers.iter().map(BlockTracer::walks_at_nodes).sum::<f64>();
     let scale = (columns * rows) as f64 / looked_at;
+    let [width, height] = camera.resolution;
     Estimate {
         seconds: seconds * scale / rayon::current_num_threads() as f64,
         walks: walks * scale,
+        samples: u64::from(width) * u64::from(height) * u64::from(camera.samples),
+        bytes: bytes_of(prepared, ChannelSet::Image, Tile { left: 0, top: 0, width, height }),
     }
 }

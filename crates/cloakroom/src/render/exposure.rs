@@ -180,8 +180,7 @@ pub(super) fn seen(
 ) -> [f64; 3] {
     match look {
         Look::Photograph => {
-            let [dx, dy] = steps().map(|step| [step.x, step.y]);
-            prepared.image.sample([at.x, at.y], dx, dy).map(f64::from)
+            prepared.photograph_light([at.x, at.y], steps().map(|step| [step.x, step.y]))
         }
         Look::Body(body) => {
             let surface = prepared.body_surface(body);
@@ -281,14 +280,14 @@ pub(super) fn expose_unhindered<const N: usize>(
         let beside = [i ^ 1, i ^ 2];
         let light = if on_screen > 0 {
             let [u, v] = places[i];
-            let [dx, dy] =
+            let steps =
                 beside.map(|j| [(places[j][0] - u) * spacing, (places[j][1] - v) * spacing]);
             pixel.delivered += power;
             if detection.times {
                 let time = distances[i] / SPEED_OF_LIGHT;
                 pixel.times.add(&[(time, power)], Some(time));
             }
-            prepared.image.sample(places[i], dx, dy).map(f64::from)
+            prepared.photograph_light(places[i], steps)
         } else {
             pixel.escaped += power;
             let direction = rays[i].direction;
@@ -451,8 +450,7 @@ fn light<const N: usize>(
                 t.is_finite().then(|| at(line.origin + line.direction * t))
             };
             let steps = footprint(place, here, beside);
-            let [dx, dy] = steps.map(|step| step.map(|change| change * spacing));
-            prepared.image.sample(here, dx, dy).map(f64::from)
+            prepared.photograph_light(here, steps.map(|step| step.map(|change| change * spacing)))
         }
         (None, None) => prepared.surroundings.light(leaf.direction, || {
             lines().map(|line| (line.direction - leaf.direction) * spacing)

@@ -20,6 +20,7 @@ mod pulses;
 mod sampling;
 mod spectral;
 mod tile;
+mod warnings;
 
 pub use channels::{ChannelKind, ChannelSet};
 pub use estimate::{Estimate, estimate};
@@ -29,6 +30,7 @@ pub use prepared_scene::{
 };
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
 pub use tile::{MergeError, Tile, TileError, merge, merge_images};
+pub use warnings::{behind_photograph, share_past_edge};
 
 use crate::color::BINS;
 use crate::output::Picture;
@@ -219,6 +221,14 @@ fn expose_film<const N: usize>(
     Ok(Rendered { picture: Picture { width, height, channels, metadata }, stats })
 }
 
+/// Bytes of memory that a part of a picture takes.
+fn bytes_of(prepared: &PreparedScene<'_>, wanted: ChannelSet, tile: Tile) -> u64 {
+    let channels = ChannelKind::of(wanted, &prepared.scene.picture);
+    let bytes: usize = channels.iter().map(|channel| channel.blank(1).bytes()).sum();
+    // Files are made from copies of the finished planes.
+    u64::from(tile.width) * u64::from(tile.height) * 2 * bytes as u64
+}
+
 /// Refuses a part of a picture that would not fit into memory.
 ///
 /// # Errors
@@ -227,12 +237,10 @@ fn expose_film<const N: usize>(
 pub fn check_memory(
     prepared: &PreparedScene<'_>,
     wanted: ChannelSet,
-    Tile { width, height, .. }: Tile,
+    tile: Tile,
 ) -> Result<(), RenderError> {
-    let channels = ChannelKind::of(wanted, &prepared.scene.picture);
-    let bytes: usize = channels.iter().map(|channel| channel.blank(1).bytes()).sum();
-    // Files are made from copies of the finished planes.
-    let needed = u64::from(width) * u64::from(height) * 2 * bytes as u64;
+    let Tile { width, height, .. } = tile;
+    let needed = bytes_of(prepared, wanted, tile);
     crate::memory::check(needed, u64::MAX).map_err(|shortage| RenderError::TooLarge {
         width,
         height,

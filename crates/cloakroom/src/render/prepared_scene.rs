@@ -7,7 +7,7 @@ use crate::assembly::{Assembly, MOST_DEVICES, Placed, Screen};
 use crate::input::Digest;
 use crate::keys::KeyError;
 use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
-use crate::scene::{Camera, DeviceName, DeviceSettings, Projection, Scene};
+use crate::scene::{Border, Camera, DeviceName, DeviceSettings, Projection, Scene};
 use crate::trace::{Coherence, Limits, RaySettings};
 use glam::DVec3;
 use std::path::PathBuf;
@@ -34,9 +34,7 @@ pub enum PreparedSceneError {
         error: KeyError,
     },
     /// Two devices are in each other's way.
-    #[error(
-        "{second} overlaps {first}; move one of them (devices are counted from 0)"
-    )]
+    #[error("{second} overlaps {first}; move one of them (devices are counted from 0)")]
     Overlap {
         /// One of them.
         first: DeviceName,
@@ -240,7 +238,8 @@ pub fn ray_settings(
     let least = if coherent { COHERENT_MIN_POWER } else { RAY_MIN_POWER };
     let min_power = min_power.or(written).unwrap_or(least);
     let limits = Limits { min_power, tolerance: settings.tolerance };
-    RaySettings { limits, coherence: coherent.then(|| coherence(scene)), group_delays }
+    let coherence = coherent.then(|| coherence(scene));
+    RaySettings { coherence, group_delays, ..limits.into() }
 }
 
 /// What rays see that hit nothing.
@@ -393,6 +392,14 @@ impl<'s> PreparedScene<'s> {
         metadata
     }
 
+    /// The light of the photograph at (u, v), on it or beyond its edge, through a filter as wide as
+    /// these steps.
+    #[inline]
+    pub(super) fn photograph_light(&self, at: [f64; 2], [dx, dy]: [[f64; 2]; 2]) -> [f64; 3] {
+        let edges = self.scene.photograph.border.edges();
+        self.image.sample_with(edges, at, dx, dy).map(f64::from)
+    }
+
     /// The surface of an opaque body.
     pub(super) fn body_surface(&self, device: u16) -> Option<&BodySurface> {
         self.body_surfaces[usize::from(device)].as_ref()
@@ -434,5 +441,6 @@ fn screen(scene: &Scene, aspect: f64) -> Result<Screen, PreparedSceneError> {
             .covering_width(&pose, aspect)
             .ok_or_else(|| PreparedSceneError::NoCoveringWidth { plane: settings.plane() })?,
     };
-    Ok(Screen::new(&pose, width / 2.0, width / aspect / 2.0))
+    let screen = Screen::new(&pose, width / 2.0, width / aspect / 2.0);
+    Ok(if settings.border == Border::None { screen } else { screen.endless() })
 }

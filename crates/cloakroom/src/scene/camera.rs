@@ -1,6 +1,6 @@
 //! The camera: which ray belongs to which point of the picture.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use optics::wave::transverse_basis;
 
 use super::{CameraSettings, Projection, across, direction, key_of};
@@ -107,6 +107,19 @@ impl Camera {
             pixel: view_width / f64::from(width),
             settings,
         })
+    }
+
+    /// Where it stands once it has gone round its target, about the axis through it along `up`:
+    /// counterclockwise as seen from above.
+    #[must_use]
+    pub fn orbited(&self, degrees: f64) -> DVec3 {
+        let CameraSettings { position, target, up, .. } = self.settings;
+        let degrees = degrees.rem_euclid(360.0);
+        let Some(axis) = unit(up).filter(|_| degrees != 0.0) else { return position };
+        let there =
+            target + DQuat::from_axis_angle(axis, degrees.to_radians()) * (position - target);
+        // Without the digits of rounding, which a written scene need not carry; 0 has no sign.
+        (there * 1e10).round() / 1e10 + 0.0
     }
 
     /// The line of sight, a unit vector.

@@ -17,9 +17,9 @@ pub use camera::{Camera, CameraRay};
 pub use polarizer::Polarizer;
 pub use spectrum::{LampSpectrum, SpectralLine, Spectrum, SpectrumWord};
 pub use tables::{
-    CameraSettings, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel, PhotographSettings,
-    PictureSettings, Placement, Projection, Receiver, SCALAR_CHANNELS, SurroundingsSettings,
-    TABLES, TraceSettings,
+    Border, CameraSettings, Colormap, Light, MapChannel, OPTIONAL_CHANNELS, OptionalChannel,
+    PhotographSettings, PictureSettings, Placement, Projection, Receiver, SCALAR_CHANNELS,
+    SurroundingsSettings, TABLES, TraceSettings,
 };
 
 use crate::device::{
@@ -212,6 +212,17 @@ impl SurroundingsSettings {
 }
 
 impl PictureSettings {
+    /// Refuses two ranges of a map.
+    ///
+    /// # Errors
+    ///
+    /// If both are given.
+    pub fn check_one_range(&self) -> Result<(), KeyError> {
+        let message = "map_range and map_percentile are both given; a map takes one of them";
+        let both = self.map_range.is_some() && self.map_percentile.is_some();
+        KeyError::refuse_if(both, key!(Self.map_percentile), message)
+    }
+
     /// Whether one of [`OPTIONAL_CHANNELS`] is asked for, to be held or to be shown.
     #[must_use]
     pub fn asks_for(&self, channel: &str) -> bool {
@@ -261,7 +272,8 @@ impl DeviceSettings {
         let Placement { show, imperfection, coating, .. } = &self.placement;
         let structure = self.built(*show)?;
         let message = format!("{} with these keys has no core that could be open", self.kind());
-        let closed = self.has_open_core() && structure.hull.filled.is_none();
+        let is_there = *show != Show::Empty;
+        let closed = self.has_open_core() && is_there && structure.hull.filled.is_none();
         KeyError::refuse_if(closed, key!(Placement.core), message)?;
         let layers = device::layers(key!(Placement.coating), coating, self.wavelength_nm)?;
         if *show != Show::Cloak {

@@ -3,7 +3,7 @@
 use super::{Polarizer, Spectrum};
 use crate::device::{CoatingLayer, Core, Dispersion, Imperfection, Metal, Request, Show};
 use crate::keys::{Given, Key, ValueRange};
-use crate::photograph::ImageSource;
+use crate::photograph::{Edges, ImageSource};
 use cloakroom_trace::{choice, table};
 use glam::DVec3;
 
@@ -15,6 +15,22 @@ pub const SCALAR_CHANNELS: &[&str] = MapChannel::WORDS.split_at(1).1;
 
 /// The channels that files hold only if a scene lists them.
 pub const OPTIONAL_CHANNELS: &[&str] = OptionalChannel::WORDS;
+
+choice! {
+    /// The colors of a map.
+    pub enum Colormap {
+        /// Those that suit the numbers.
+        Auto = "auto",
+        /// From dark violet by green to yellow, evenly for the eye.
+        Viridis = "viridis",
+        /// From blue to yellow, alike for people with deficient color vision.
+        Cividis = "cividis",
+        /// From black by violet to pale yellow.
+        Magma = "magma",
+        /// Diverging: blue below 0, white at 0, red above.
+        BlueRed = "blue-red",
+    }
+}
 
 choice! {
     /// How rays leave the camera.
@@ -87,6 +103,32 @@ impl Light {
     }
 }
 
+choice! {
+    /// What is seen beyond the edge of the photograph.
+    pub enum Border {
+        /// Nothing: light goes past it.
+        None = "none",
+        /// The photograph mirrored at its edge, again and again.
+        Mirror = "mirror",
+        /// The photograph again and again.
+        Repeat = "repeat",
+        /// The colors of its edge.
+        Clamp = "clamp",
+    }
+}
+
+impl Border {
+    /// What the filter finds beyond the edges of the image.
+    #[must_use]
+    pub fn edges(self) -> Edges {
+        match self {
+            Self::None | Self::Clamp => Edges::Clamp,
+            Self::Mirror => Edges::Mirror,
+            Self::Repeat => Edges::Repeat,
+        }
+    }
+}
+
 table! {
     /// The photograph: a rectangle with two sides.
     pub struct PhotographSettings {
@@ -105,6 +147,10 @@ table! {
         /// Its width; the height follows from the image. By default 110 cm for the builtin
         /// photograph, for others the smallest that covers the camera's view.
         width: Option<f64>, "cm", in ValueRange::LENGTH,
+        /// What is seen beyond its edge, on the rest of its plane: `none`, light goes past; or the
+        /// photograph goes on, mirrored at each edge, repeated, or in the colors of its edge (`clamp`).
+        /// Then no light gets past the plane.
+        border: Border,
     }
 }
 
@@ -199,6 +245,15 @@ table! {
         map: MapChannel,
         /// Whether the scale of a map is drawn beside it.
         color_bar: bool = true,
+        /// The numbers of a map with its first and its last color, ns for times and shares for
+        /// powers; by default the least and the greatest, but for outliers.
+        map_range: Option<[f64; 2]>,
+        /// Instead of these, how much of the numbers lies in the range, as many being above it as
+        /// below.
+        map_percentile: Option<f64>, "%", in ValueRange::Within(1.0, 100.0),
+        /// The colors of a map. `auto`: viridis, or blue-red for differences of both signs.
+        /// `blue-red` has white at 0 and the same range to both sides of it.
+        colormap: Colormap,
     }
 }
 
@@ -208,7 +263,7 @@ table! {
         /// What it is called in messages, in lists, and in overrides: `left.rotation=5`. No two
         /// devices have one name, and none that of a table.
         name: Option<String>,
-        /// The cloak, the bare metal alone, or the mirror it should look like.
+        /// The cloak, the bare metal alone, the mirror it should look like, or nothing in its place.
         show: Show,
         /// What fills the hidden region of a free-space cloak: metal, or air in which bodies may
         /// stand. A carpet needs its mirror.

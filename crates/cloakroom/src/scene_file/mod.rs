@@ -5,6 +5,7 @@
 //! the JSON Schema of scene files ([`schema`]).
 
 mod error;
+mod key_at;
 mod locations;
 mod overrides;
 mod read;
@@ -76,11 +77,7 @@ impl SceneText {
     ///
     /// If it cannot be read.
     pub fn read(path: &Path) -> Result<Self, SceneFileError> {
-        let is_standard_input = path == Path::new("-");
-        let name = path.display().to_string();
-        let name = if is_standard_input { "standard input" } else { &name };
-        let text = read_text((!is_standard_input).then_some(path), name)?;
-        Ok(Self::new(&text, name, path.parent().unwrap_or(Path::new(""))))
+        Ok(Self::new(&read_text(path)?, &name_of(path), path.parent().unwrap_or(Path::new(""))))
     }
 
     /// The scene, with overrides such as `camera.samples=16`.
@@ -193,9 +190,24 @@ pub fn text(tables: &Value) -> String {
     }
 }
 
-/// The text of a file, or of standard input.
-fn read_text(path: Option<&Path>, name: &str) -> Result<String, SceneFileError> {
-    let fail = |message: String| SceneFileError::whole(name, message);
+/// Whether a path stands for standard input.
+fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// The name of a file in messages.
+fn name_of(path: &Path) -> String {
+    if is_standard_input(path) { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// The text of a file, or of standard input for `-`.
+///
+/// # Errors
+///
+/// If it cannot be read, or is no text.
+pub fn read_text(path: &Path) -> Result<String, SceneFileError> {
+    let fail = |message: String| SceneFileError::whole(name_of(path), message);
+    let path = (!is_standard_input(path)).then_some(path);
     let unreadable = |error: io::Error| {
         fail(match error.kind() {
             ErrorKind::NotFound => "there is no such file".to_owned(),

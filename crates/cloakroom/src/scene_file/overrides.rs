@@ -1,10 +1,11 @@
-//! Overrides: `camera.samples=16` sets one key of a scene.
+//! Overrides: `camera.samples=16` sets one key of a scene, `device.*.rotation=5` that of every device.
 
 use super::error::SceneFileError;
+use super::key_at::key_at;
 use super::locations::{Locations, Origin, join};
-use super::read::DEVICES;
+use super::read::{DEVICES, KIND};
 use super::tree::{parse_value, to_toml};
-use crate::keys::{Value, quoted};
+use crate::keys::{Key, KeyKind, Value, quoted};
 use crate::scene::Placement;
 use cloakroom_trace::key;
 use std::fmt;
@@ -50,45 +51,111 @@ impl fmt::Display for Override {
 
 /// Applies overrides to a scene, in order.
 pub(super) fn apply(root: &mut Value, locations: &mut Locations) -> Result<(), SceneFileError> {
+    let mut added = Vec::new();
     for (number, each) in Arc::clone(&locations.overrides).iter().enumerate() {
-        apply_one(root, each, number, locations)
-            .map_err(|message| locations.error(&Origin::Override(number), message))?;
+        let told = |message| locations.error(&Origin::Override(number), message);
+        let (mut path, value) = key_and_value(each).map_err(told)?;
+        if let Some((parts, device)) = called(root, &path) {
+            path.splice(..parts, [DEVICES.to_owned(), device.to_string()]);
+        }
+        let mut paths = Vec::new();
+        expand(Some(root), &path, &mut Vec::new(), &mut paths).map_err(told)?;
+        for path in paths {
+            let value = value.clone();
+            let device = apply_one(root, &path, value, number, locations)
+                .map_err(|message| locations.error(&Origin::Override(number), message))?;
+            added.extend(device.map(|device| (device, number)));
+        }
+    }
+    // Its kind may come after its other keys.
+    let devices = root.entry(DEVICES).and_then(Value::as_list).unwrap_or_default();
+    for (device, number) in added {
+        let is_table = devices.get(device).is_some_and(|device| device.as_table().is_some());
+        if is_table && devices[device].entry(KIND).is_none() {
+            let message = not_there(DEVICES, device, device, true);
+            return Err(locations.error(&Origin::Override(number), message));
+        }
     }
     Ok(())
 }
 
-fn apply_one(
-    root: &mut Value,
-    each: &Override,
-    number: usize,
-    locations: &mut Locations,
-) -> Result<(), String> {
-    let (path, written) = match each {
-        Override::Value { key, value } => (key.as_str(), Ok(value)),
-        Override::Text(text) => text
-            .split_once('=')
-            .map(|(path, value)| (path, Err(value.trim())))
-            .ok_or("an override is written KEY=VALUE, such as camera.samples=16")?,
+/// The parts of an override's key, and its value.
+fn key_and_value(each: &Override) -> Result<(Vec<String>, Value), String> {
+    let (path, value) = match each {
+        Override::Value { key, value } => (key.as_str(), Ok(value.clone())),
+        Override::Text(text) => {
+            let (path, value) = text
+                .split_once('=')
+                .ok_or("an override is written KEY=VALUE, such as camera.samples=16")?;
+            (path, parse_value(value.trim()))
+        }
     };
-    let mut path: Vec<String> = path.split('.').map(|key| key.trim().to_owned()).collect();
+    let path: Vec<String> = path.split('.').map(|key| key.trim().to_owned()).collect();
     if path.iter().any(String::is_empty) {
         return Err("a key is missing; write it as in camera.samples=16".to_owned());
     }
     if path.len() > DEEPEST {
         return Err("no key lies that deep".to_owned());
     }
-    if let Some((parts, device)) = called(root, &path) {
-        path.splice(..parts, [DEVICES.to_owned(), device.to_string()]);
+    Ok((path, value?))
+}
+
+/// The paths that one stands for in which `*` is every entry of a list; `place` is what is at `done`.
+fn expand(
+    place: Option<&Value>,
+    rest: &[String],
+    done: &mut Vec<String>,
+    paths: &mut Vec<Vec<String>>,
+) -> Result<(), String> {
+    let Some((key, rest)) = rest.split_first() else {
+        paths.push(done.clone());
+        return Ok(());
+    };
+    let items = place.and_then(Value::as_list);
+    if key == "*" {
+        let count = items.map_or(0, <[_]>::len);
+        if count == 0 {
+            let list = done.join(".");
+            return Err(format!("there is no {list}.*: {}", entries(&list, 0)));
+        }
+        for number in 0..count {
+            done.push(number.to_string());
+            expand(items.and_then(|items| items.get(number)), rest, done, paths)?;
+            done.pop();
+        }
+        return Ok(());
     }
-    let value = written.map_or_else(parse_value, |value| Ok(value.clone()))?;
+    let next = match items {
+        Some(items) => key.parse().ok().and_then(|number: usize| items.get(number)),
+        None => place.and_then(|place| place.entry(key)),
+    };
+    done.push(key.clone());
+    expand(next, rest, done, paths)?;
+    done.pop();
+    Ok(())
+}
+
+/// Sets the key at a path; the number of the device that is made for it, if one is.
+fn apply_one(
+    root: &mut Value,
+    path: &[String],
+    value: Value,
+    number: usize,
+    locations: &mut Locations,
+) -> Result<Option<usize>, String> {
+    let value = as_typed(key_at(root, path), value);
+    // What a list is that the scene does not write: an entry of it can be set alone.
+    let is_list = |end: usize| path.get(end).is_some_and(|next| next.parse::<usize>().is_ok());
+    let unwritten: Vec<Option<Value>> = (1..=path.len())
+        .map(|end| key_at(root, &path[..end]).filter(|_| is_list(end)).and_then(|k| (k.default)()))
+        .collect();
     let mut walked = String::new();
     let mut place = root;
     // The first part of the path that was not there.
     let mut made = None;
-    for (i, key) in path.iter().enumerate() {
-        let next = path.get(i + 1).map(String::as_str);
+    for (i, (key, unwritten)) in path.iter().zip(unwritten).enumerate() {
         let (inner, new) = match place {
-            Value::Table(entries) => descend(entries, key, next, &mut walked)?,
+            Value::Table(entries) => descend(entries, key, is_list(i + 1), unwritten, &mut walked)?,
             Value::List(items) => entry(items, key, &mut walked)?,
             scalar => {
                 let key = quoted(key, '`');
@@ -107,7 +174,8 @@ fn apply_one(
         locations.tell_override(&parts(count), &Value::Table(Vec::new()), number);
     }
     locations.tell_override(&parts(path.len()), place, number);
-    Ok(())
+    let device = made.filter(|made| *made <= 1 && path[0] == DEVICES).and(path.get(1));
+    Ok(device.and_then(|device| device.parse().ok()))
 }
 
 /// The device that a path calls by its name, `left.rotation` or `device.left.rotation`: how many
@@ -123,11 +191,22 @@ fn called(root: &Value, path: &[String]) -> Option<(usize, usize)> {
     Some((parts, devices.as_list()?.iter().position(is_called)?))
 }
 
-/// The value of a key, made if it is not there, and whether it was; `next` is the key after it.
+/// A value as people type it: a resolution may be 640x480.
+fn as_typed(key: Option<&Key>, value: Value) -> Value {
+    let is_pair = key.is_some_and(|key| matches!(key.kind, KeyKind::IntegerPair));
+    let sides = value.as_text().filter(|_| is_pair).and_then(|text| text.split_once('x'));
+    let side = |text: &str| text.trim().parse::<i64>().ok();
+    let pair = sides.and_then(|(width, height)| Some([side(width)?, side(height)?]));
+    pair.map_or(value, Value::from)
+}
+
+/// The value of a key, made if it is not there, and whether it was. One of which an entry is set is
+/// made what it is where it is not written.
 fn descend<'a>(
     entries: &'a mut Vec<(String, Value)>,
     key: &str,
-    next: Option<&str>,
+    is_list: bool,
+    unwritten: Option<Value>,
     walked: &mut String,
 ) -> Result<(&'a mut Value, bool), String> {
     let top = walked.is_empty();
@@ -135,18 +214,21 @@ fn descend<'a>(
         walked.push('.');
     }
     walked.push_str(key);
-    let counted = next.is_some_and(|next| next.parse::<usize>().is_ok());
     let devices = top && key == DEVICES;
     let known = entries.iter().position(|(name, _)| name == key);
-    if counted && !devices && known.is_none() {
-        return Err(format!(
-            "{walked} is not written in the scene, so an entry of it cannot be set alone; set \
-             all of it: {walked}=[...]"
-        ));
-    }
     let index = known.unwrap_or(entries.len());
     if known.is_none() {
-        let new = if devices { Value::List(Vec::new()) } else { Value::Table(Vec::new()) };
+        let new = match unwritten.filter(|value| value.as_list().is_some()) {
+            Some(value) => value,
+            None if devices => Value::List(Vec::new()),
+            None if is_list => {
+                return Err(format!(
+                    "{walked} is not written in the scene, so an entry of it cannot be set alone; \
+                     set all of it: {walked}=[...]"
+                ));
+            }
+            None => Value::Table(Vec::new()),
+        };
         entries.push((key.to_owned(), new));
     }
     Ok((&mut entries[index].1, known.is_none()))
@@ -168,13 +250,7 @@ fn entry<'a>(
         ));
     };
     if index > count || (index == count && !tables) {
-        let there = match count {
-            0 => format!("{walked} has no entries"),
-            1 => format!("{walked} has one entry, {walked}.0"),
-            _ => format!("{walked} has the entries 0 to {}", count - 1),
-        };
-        let add = if tables { format!("; {walked}.{count} would add one") } else { String::new() };
-        return Err(format!("there is no {walked}.{index}: {there}{add}"));
+        return Err(not_there(walked, index, count, tables));
     }
     if index == count {
         items.push(Value::Table(Vec::new()));
@@ -182,4 +258,27 @@ fn entry<'a>(
     walked.push('.');
     walked.push_str(&index.to_string());
     Ok((&mut items[index], index == count))
+}
+
+/// The message about an entry of a list that has so many others, to which one may be added if
+/// `grows`.
+fn not_there(list: &str, index: usize, count: usize, grows: bool) -> String {
+    let add = match list {
+        _ if !grows => String::new(),
+        DEVICES => format!("; {list}.{count}.{KIND}=... would add one"),
+        _ => format!("; {list}.{count} would add one"),
+    };
+    format!("there is no {list}.{index}: {}{add}", entries(list, count))
+}
+
+/// What entries a list has.
+fn entries(list: &str, count: usize) -> String {
+    match (list, count) {
+        (DEVICES, 0) => "the scene has no devices".to_owned(),
+        (DEVICES, 1) => format!("the scene has one device, {list}.0"),
+        (DEVICES, _) => format!("the scene has {count} devices, {list}.0 to {list}.{}", count - 1),
+        (_, 0) => format!("{list} has no entries"),
+        (_, 1) => format!("{list} has one entry, {list}.0"),
+        _ => format!("{list} has the entries 0 to {}", count - 1),
+    }
 }

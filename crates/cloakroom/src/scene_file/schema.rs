@@ -91,7 +91,7 @@ fn property(key: &Key) -> Value {
         KeyKind::Choice { options } => json!({ "enum": options }),
         KeyKind::Choices { options } => json!({ "type": "array", "items": { "enum": options } }),
         KeyKind::Vector => list(number, 3),
-        KeyKind::IntegerPair => list(number, 2),
+        KeyKind::IntegerPair | KeyKind::Interval => list(number, 2),
         KeyKind::Image => json!({ "type": "string", "minLength": 1 }),
         KeyKind::ChoiceOrNumber { options } => json!({ "anyOf": [{ "enum": options }, number] }),
         KeyKind::ChoiceNumberOrTable { options, keys } => {
@@ -105,7 +105,9 @@ fn property(key: &Key) -> Value {
         KeyKind::MaterialOrTable { keys } => {
             json!({ "anyOf": [material_name(), inner_table(keys)] })
         }
-        KeyKind::Mesh => json!({ "type": "string", "pattern": r"\.([sS][tT][lL]|[oO][bB][jJ]|[gG][lL][bB]|[gG][lL][tT][fF])$" }),
+        KeyKind::Mesh => {
+            json!({ "type": "string", "pattern": r"\.([sS][tT][lL]|[oO][bB][jJ]|[gG][lL][bB]|[gG][lL][tT][fF])$" })
+        }
         KeyKind::Name => json!({ "type": "string", "pattern": r"^\p{L}[\p{L}\p{N}_-]{0,63}$" }),
         KeyKind::Polygon => json!({ "type": "array", "items": list(number, 2), "minItems": 3 }),
         KeyKind::Samples { dimensions: [least, most] } => {

@@ -31,6 +31,9 @@ pub struct DiagramSettings {
     pub z: Option<f64>,
     /// The width of a bundle, cm; `None`: that of the devices.
     pub width: Option<f64>,
+    /// Least and greatest x and y of the part of the cross-section that is shown, cm; `None`: the
+    /// devices and what is around them.
+    pub window: Option<[DVec2; 2]>,
     /// The shares of horizontal and vertical polarization.
     pub polarization: [f64; 2],
     /// The distance of marks of equal optical path, cm, if there are any.
@@ -152,6 +155,12 @@ fn check(settings: &DiagramSettings) -> Result<(), DiagramError> {
     let rays = u64::from(settings.rays) * u64::from(settings.layers);
     if rays == 0 || rays > u64::from(MOST_RAYS) {
         return refuse("the number of rays", rays as f64, "from 1 to 2000");
+    }
+    if let Some([low, high]) = settings.window {
+        let size = (high - low).min_element();
+        if !(size > 0.0 && low.is_finite() && high.is_finite()) {
+            return refuse("the width or height of the window", size, "above 0");
+        }
     }
     for (name, value) in [
         ("the width of the bundle", settings.width),

@@ -15,6 +15,7 @@ impl Default for DiagramSettings {
             layers: 1,
             z: None,
             width: None,
+            window: None,
             polarization: [0.5, 0.5],
             wavefronts: None,
             min_power: 0.01,

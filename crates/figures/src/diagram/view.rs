@@ -57,6 +57,7 @@ impl Scenery {
             let point = point.truncate();
             shown = [shown[0].min(point - 0.05 * size), shown[1].max(point + 0.05 * size)];
         }
+        let shown = settings.window.unwrap_or(shown);
         Self { bounds: [low, high], shown, z }
     }
 
@@ -77,7 +78,10 @@ impl Scenery {
 
     /// How far before the middle a bundle starts: out of what is shown.
     pub fn start(&self) -> f64 {
-        self.shown[0].distance(self.shown[1])
+        let [low, high] = self.shown;
+        let [from, to] = [low.min(self.bounds[0]), high.max(self.bounds[1])];
+        let middle = self.middle();
+        2.0 * (middle - from).max(to - middle).length()
     }
 
     /// How far along z space is shown, where devices have no end.

@@ -1,6 +1,7 @@
 use super::*;
 use crate::{ScalarMap, SheetPanel, TablePicture, TableRow, sheet, table};
 use cloakroom::output::{Channel, Picture, Samples};
+use cloakroom::scene::PictureSettings;
 use image::Rgb;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
@@ -157,7 +158,8 @@ fn an_svg_shows_what_the_png_beside_it_does() {
     let samples = Samples::F64(numbers);
     let channels = vec![Channel { name: "time_of_flight_difference".to_owned(), samples }];
     let picture = Picture { width: 61, height: 43, channels, metadata: Vec::new() };
-    let map = ScalarMap::new(&picture, "time_of_flight_difference", None).expect("a map");
+    let map = ScalarMap::new(&picture, "time_of_flight_difference", &PictureSettings::default())
+        .expect("a map");
     let panel = SheetPanel {
         image: map.image.clone(),
         label: "(a)".to_owned(),

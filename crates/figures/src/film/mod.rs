@@ -4,12 +4,14 @@
 //! its scene, so that stopped work goes on where it was and many machines can share it; then they
 //! become one file ([`FilmFormat`]).
 
+mod animation;
 mod apng_file;
 mod frames;
 mod gif_file;
 mod video;
 mod webp_file;
 
+pub use animation::{RenderedFrames, frame_metadata, frames_beside, render_frames};
 pub use frames::FrameFolder;
 
 use cloakroom::output::{self, OutputError, RgbImage};

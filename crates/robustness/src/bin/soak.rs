@@ -15,10 +15,8 @@
 use clap::Parser;
 use cloakroom::assembly::Assembly;
 use cloakroom::device::{CATALOGUE, Entry};
-use cloakroom::render;
-use cloakroom::scene_file;
 use cloakroom::trace::{Limits, Tracer};
-use robustness::{Draws, Fault};
+use robustness::{Draws, Fault, SoundScene};
 use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::fs::{File, OpenOptions};
@@ -42,8 +40,9 @@ const STUCK: Duration = Duration::from_secs(60);
 const LEAST_POWER: f64 = 1e-4;
 
 /// What is counted of each parcel, by its name in the record.
-const COUNTS: [&str; 10] = [
+const COUNTS: [&str; 11] = [
     "devices",
+    "refused",
     "rays",
     "leaves",
     "unbalanced",
@@ -156,24 +155,23 @@ fn parcel(number: u64) -> Value {
     let ran = catch_unwind(AssertUnwindSafe(|| {
         let entry = match subject(number) {
             Ok(entry) => entry,
-            Err((_, trial)) => return Some(try_out(trial, &mut draws)),
+            Err((_, trial)) => return try_out(trial, &mut draws),
         };
-        let scene = robustness::scene_of(&mut draws, entry).to_string();
-        let loaded = scene_file::parse(&scene, "soak", Path::new("/nowhere"), &[]).ok()?;
-        let assembly = render::assembly(&loaded.scene).ok()?;
-        let tolerance = loaded.scene.trace.tolerance;
+        let SoundScene { text, scene, assembly, refused } =
+            match robustness::sound_scene(&mut draws, entry) {
+                Ok(sound) => sound,
+                Err(why) => return json!({ "why": why }),
+            };
+        let tolerance = scene.trace.tolerance;
         let limits = Limits { min_power: LEAST_POWER, tolerance };
-        let (line, fault) = trace(&assembly, limits, &mut draws);
+        let (mut line, fault) = trace(&assembly, limits, &mut draws);
+        line["refused"] = json!(refused);
         if let Some(fault) = fault {
-            eprintln!("parcel {number}: {fault}\n{scene}");
+            eprintln!("parcel {number}: {fault}\n{text}");
         }
-        Some(line)
+        line
     }));
-    let mut line = match ran {
-        Ok(None) => json!({ "refused": 1 }),
-        Ok(Some(counts)) => counts,
-        Err(_) => json!({ "panics": 1 }),
-    };
+    let mut line = ran.unwrap_or_else(|_| json!({ "panics": 1 }));
     line["parcel"] = json!(number);
     line["kind"] = json!(kind(number));
     line
@@ -298,5 +296,8 @@ fn print_table(lines: &[Value]) -> bool {
     let all: Vec<&Value> = lines.iter().collect();
     row("all", &all);
     let wrong = ["unbalanced", "not_finite", "unsound", "early", "panics", "stuck", "lost"];
-    wrong.iter().all(|name| count(&all, name) == 0)
+    // What is always refused is not tried.
+    let of_refused = all.iter().filter(|line| line["why"].is_string());
+    let untried = of_refused.inspect(|line| println!("{}: {}", line["kind"], line["why"])).count();
+    untried == 0 && wrong.iter().all(|name| count(&all, name) == 0)
 }

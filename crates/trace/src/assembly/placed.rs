@@ -73,7 +73,8 @@ impl Placed {
 
     /// The least and the greatest coordinates of the device and its thin mirror; `None` if it is
     /// nowhere.
-    pub(super) fn bounds(&self) -> Option<[DVec3; 2]> {
+    #[must_use]
+    pub fn bounds(&self) -> Option<[DVec3; 2]> {
         let mirror = self.thin_mirror().and_then(|mirror| mirror.bounds());
         [self.structure.hull.bounds(&self.pose), mirror]
             .into_iter()

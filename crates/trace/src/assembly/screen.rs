@@ -2,7 +2,7 @@
 
 use super::{Assembly, Placed};
 use glam::{DMat3, DVec2, DVec3};
-use optics::geometry::{Extent, Outline, Pose, Solid, TOUCHING};
+use optics::geometry::{Extent, Outline, Pose, REACH, Solid, TOUCHING};
 
 /// A rectangle where rays end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Screen {
     straight: bool,
     half_width: f64,
     half_height: f64,
+    /// How far up and across from its middle it ends rays.
+    reach: [f64; 2],
 }
 
 impl Screen {
@@ -24,7 +26,14 @@ impl Screen {
     pub fn new(pose: &Pose, half_width: f64, half_height: f64) -> Self {
         let axes = DVec3::AXES.map(|axis| pose.vector_to_world(axis));
         let straight = axes == DVec3::AXES;
-        Self { middle: pose.origin, axes, straight, half_width, half_height }
+        let reach = [half_height, half_width];
+        Self { middle: pose.origin, axes, straight, half_width, half_height, reach }
+    }
+
+    /// The same, but rays end on its whole plane: beyond its edges, too, something is to be seen.
+    #[must_use]
+    pub fn endless(self) -> Self {
+        Self { reach: [REACH; 2], ..self }
     }
 
     /// The parts of a vector along the axes.
@@ -62,13 +71,14 @@ impl Screen {
         self.ahead_of(origin) / self.parts(direction).x
     }
 
-    /// The distance at which a ray meets the rectangle, from `least` (cm) on.
+    /// The distance at which a ray meets the rectangle, or its plane if it is endless, from `least`
+    /// (cm) on.
     #[must_use]
     #[inline]
     pub fn hit(&self, origin: DVec3, direction: DVec3, least: f64) -> Option<f64> {
         let t = self.plane_distance(origin, direction, least)?;
         let DVec3 { y: up, z: across, .. } = self.parts(origin + direction * t - self.middle);
-        (up.abs() <= self.half_height && across.abs() <= self.half_width).then_some(t)
+        (up.abs() <= self.reach[0] && across.abs() <= self.reach[1]).then_some(t)
     }
 
     /// The point of the plane that is nearest.
@@ -77,7 +87,7 @@ impl Screen {
         point + self.axes[0] * self.ahead_of(point)
     }
 
-    /// Image coordinates (u, v) of points of the plane, from 0 to 1 to the right and down, for a
+    /// Image coordinates (u, v) of points of the plane, in the rectangle from 0 to 1 to the right and down, for a
     /// ray that looks along `direction`: upright and unmirrored from either side.
     #[inline]
     pub fn image_position(&self, direction: DVec3) -> impl Fn(DVec3) -> [f64; 2] {
@@ -123,11 +133,12 @@ impl Screen {
         assembly.devices().iter().filter_map(Placed::bounds).any(near)
     }
 
-    /// The first device but a body that the rectangle cuts.
+    /// The first device but a body that the rectangle cuts, or its plane if it is endless.
     #[must_use]
     pub fn cut_by(&self, assembly: &Assembly) -> Option<usize> {
-        let ends = [-self.half_height, self.half_height].map(|y| DVec2::new(0.0, y));
-        let extent = Extent { min: -self.half_width, max: self.half_width };
+        let [height, width] = self.reach;
+        let ends = [-height, height].map(|y| DVec2::new(0.0, y));
+        let extent = Extent { min: -width, max: width };
         let sheet = Solid::Prism { outline: Outline { corners: ends.to_vec() }, extent };
         let [forward, up, across] = self.axes;
         let rotation = DMat3::from_cols(forward, up, across);

@@ -57,6 +57,7 @@ pub(super) fn structure(
         Show::Bare => site.bare(map),
         // The flat mirror that the floor with the carpet should look like.
         Show::Mirror => super::flat_strip(site.half_floor.max(cut.x_max), extent),
+        Show::Empty => Structure::empty(),
     }
 }
 

@@ -77,7 +77,7 @@ impl Device for CylinderCloak {
                 tube(inner, outer, extent, flow, request.has_open_core())
             }
             Show::Bare => metal_cylinder(inner, extent),
-            Show::Mirror => Structure::empty(),
+            Show::Mirror | Show::Empty => Structure::empty(),
         })
     }
 

@@ -77,6 +77,7 @@ impl Device for DoubleGaussianCloak {
                 carpet::metal(curve, around, extent)
             }
             Show::Mirror => super::flat_strip(cut.x_max, extent),
+            Show::Empty => Structure::empty(),
         })
     }
 

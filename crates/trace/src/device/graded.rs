@@ -260,7 +260,7 @@ impl Device for Graded {
                 plan.structure(square(&plan, self.samples()?)?, extent, request.has_open_core())?
             }
             (Show::Bare, Some(core)) => metal_cylinder(core, extent),
-            (Show::Mirror, Some(_)) => Structure::empty(),
+            (Show::Mirror | Show::Empty, Some(_)) => Structure::empty(),
             (_, None) if floor.is_there() => Structure::empty(),
             (_, None) => {
                 super::refuse_other_views(request, HIDES_NOTHING)?;

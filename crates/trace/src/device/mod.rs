@@ -91,6 +91,8 @@ crate::choice! {
         Bare = "bare",
         /// What it should look like: the flat mirror it imitates, or nothing.
         Mirror = "mirror",
+        /// Nothing: the place that it would take.
+        Empty = "empty",
     }
 }
 
@@ -164,7 +166,7 @@ pub trait Device: Table {
     /// If a field is outside its limits, or values that are each allowed do not go together.
     fn build(&self, request: Request) -> Result<Structure, KeyError> {
         self.check()?;
-        self.structure(request)
+        if request.show == Show::Empty { Ok(Structure::empty()) } else { self.structure(request) }
     }
 }
 

@@ -79,6 +79,7 @@ impl Device for Prisms {
                 super::refuse_other_views(request, reason)?;
             }
             Show::Mirror => return Ok(of_imitated),
+            Show::Empty => return Ok(Structure::empty()),
         }
         device.structure(&parts, request)
     }

@@ -42,7 +42,7 @@ impl Device for SphereCloak {
                 ball(self.outer, flow, request.has_open_core().then_some(self.inner))
             }
             Show::Bare => metal_ball(self.inner),
-            Show::Mirror => Structure::empty(),
+            Show::Mirror | Show::Empty => Structure::empty(),
         })
     }
 

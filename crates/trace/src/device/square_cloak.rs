@@ -58,6 +58,7 @@ impl Device for SquareCloak {
             }
             Show::Bare => square(&map, None, extent, false),
             Show::Mirror => Ok(super::flat_strip(map.half_diagonal, extent)),
+            Show::Empty => Ok(Structure::empty()),
         }
     }
 

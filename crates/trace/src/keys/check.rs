@@ -62,6 +62,7 @@ impl Key {
             KeyKind::Choices { options } => format!("a list of words, each {}", words(options)),
             KeyKind::Vector => format!("three numbers{unit}"),
             KeyKind::IntegerPair => "two whole numbers".to_owned(),
+            KeyKind::Interval => format!("two numbers{unit}, the lower one first"),
             KeyKind::Image => "the name of an image".to_owned(),
             KeyKind::ChoiceOrNumber { options } => {
                 let options = options.iter().map(|option| quoted(option, '"'));
@@ -142,6 +143,13 @@ impl Key {
                     self.limit_integer(&format!("the {place} number of {}", self.name), *integer)?;
                 }
                 integers.into()
+            }
+            KeyKind::Interval => {
+                let ends: [f64; 2] = self.of_type(value, items_of(value, Value::as_number))?;
+                for (end, name) in ends.iter().zip(["lower", "upper"]) {
+                    self.limit(&format!("the {name} end of {}", self.name), *end)?;
+                }
+                self.of_type(value, (ends[0] < ends[1]).then(|| ends.into()))?
             }
             KeyKind::Image | KeyKind::Samples { .. } if *value == Value::from("") => {
                 return Err(format!("{} is empty", self.name));

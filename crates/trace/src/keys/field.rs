@@ -4,8 +4,8 @@ use super::value::items_of;
 use super::{BUILT_IN_PREFIX, Key, KeyKind, Samples, Value, tensor};
 use glam::DVec3;
 use num_complex::Complex64;
-use optics::material::Material;
 use optics::geometry::Polyhedron;
+use optics::material::Material;
 use optics::medium::Tensor;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -130,6 +130,7 @@ field!(u64, Integer, whole, |integer| Value::from(i64::try_from(*integer).unwrap
 field!(bool, Flag, Value::as_flag, |flag| Value::from(*flag));
 field!([f64; 3], Vector, numbers, |vector| Value::from(*vector));
 field!(DVec3, Vector, |value| numbers(value).map(DVec3::from_array), |v| v.to_array().into());
+field!([f64; 2], Interval, numbers, |ends| Value::from(*ends));
 field!([u32; 2], IntegerPair, |v| items_of(v, whole), |pair| pair.map(i64::from).into());
 field!(Tensor, Tensor, tensor::from_value, tensor::to_value);
 field!(Complex64, Complex, tensor::entry, |number| match number.im {

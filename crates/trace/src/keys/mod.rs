@@ -9,6 +9,7 @@ mod error;
 mod field;
 mod nearest;
 mod samples;
+mod synonyms;
 mod table;
 mod tensor;
 #[cfg(test)]
@@ -71,6 +72,8 @@ pub enum KeyKind {
     Vector,
     /// Two whole numbers, such as a resolution.
     IntegerPair,
+    /// Two numbers, the lower one first.
+    Interval,
     /// An image: the name of a file, or of one that comes with the program. A scene file's reader
     /// takes names of files relative to its folder.
     Image,

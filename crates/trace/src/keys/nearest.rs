@@ -1,5 +1,6 @@
 //! The nearest known word to a mistyped one.
 
+use super::synonyms::synonym;
 use super::value::quoted;
 
 /// Longer words are not compared: nobody meant a key by them, and the comparison is quadratic.
@@ -34,10 +35,14 @@ pub fn hint(word: &str, known: &[&str], known_as: &str) -> String {
     }
 }
 
-/// "unknown key `positon`" with the hint of [`hint`]; `place` is empty or such as ` in [camera]`.
+/// "unknown key `positon`" with the hint of [`hint`], or with the word here for what is called so
+/// elsewhere; `place` is empty or such as ` in [camera]`.
 pub fn unknown(what: &str, word: &str, place: &str, known: &[&str]) -> String {
-    let known_as = format!("known {what}s");
-    format!("unknown {what} {}{place}{}", quoted(word, '`'), hint(word, known, &known_as))
+    let hint = match synonym(word, known) {
+        Some(meant) => format!("; here it is called `{meant}`"),
+        None => hint(word, known, &format!("known {what}s")),
+    };
+    format!("unknown {what} {}{place}{hint}", quoted(word, '`'))
 }
 
 /// How far apart two folded words are; `None` if too far for one to stand for the other.
@@ -52,7 +57,7 @@ fn distance(word: &str, candidate: &str) -> Option<usize> {
     abbreviation.then_some(3)
 }
 
-fn fold(word: &str) -> String {
+pub(super) fn fold(word: &str) -> String {
     word.chars().map(|c| if c == '-' || c == ' ' { '_' } else { c.to_ascii_lowercase() }).collect()
 }
 

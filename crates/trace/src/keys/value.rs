@@ -61,6 +61,11 @@ impl Value {
         if let Value::List(items) = self { Some(items) } else { None }
     }
 
+    /// The value of that name, if it is a table that has it.
+    pub fn entry(&self, name: &str) -> Option<&Value> {
+        self.as_table()?.iter().find(|(known, _)| known == name).map(|(_, value)| value)
+    }
+
     /// The names and values of a table.
     pub fn as_table(&self) -> Option<&[(String, Value)]> {
         if let Value::Table(entries) = self { Some(entries) } else { None }

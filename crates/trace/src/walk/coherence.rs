@@ -119,9 +119,9 @@ impl Coherence {
     /// one leaf each, at the place of the strongest. Its electric field is that of the mean
     /// wavelength, scaled to its power.
     #[must_use]
-    pub fn gather(&self, leaves: &[Leaf<1>]) -> Vec<Leaf<1>> {
+    pub fn gather<const N: usize>(&self, leaves: &[Leaf<N>]) -> Vec<Leaf<N>> {
         let mut order: Vec<usize> = (0..leaves.len()).collect();
-        order.sort_by(|a, b| leaves[*b].power[0].total_cmp(&leaves[*a].power[0]));
+        order.sort_by(|a, b| leaves[*b].total_power().total_cmp(&leaves[*a].total_power()));
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for number in order {
             let leaf = &leaves[number];
@@ -136,23 +136,27 @@ impl Coherence {
             }
         }
         let gathered = groups.into_iter().map(|group| {
-            let first = leaves[group[0]];
+            let mut first = leaves[group[0]];
             if group.len() == 1 {
                 return first;
             }
-            let mut waves: Vec<(f64, ComplexVector)> = (group.iter())
-                .map(|number| &leaves[*number])
-                .map(|leaf| (leaf.phase_length(first.direction, first.position), leaf))
-                .map(|(length, leaf)| (length - first.optical_path, leaf.electric[0]))
-                .collect();
-            waves.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let power = self.power(&mut waves);
-            let field = waves.iter().fold(ComplexVector::ZERO, |sum, (length, field)| {
-                sum + field.scaled(Complex64::cis(self.wave_number * length))
-            });
-            let size = field.norm_squared();
-            let electric = if size > 0.0 { field * (power / size).sqrt() } else { field };
-            Leaf { power: [power], electric: [electric], ..first }
+            let (direction, position) = (first.direction, first.position);
+            for i in 0..N {
+                let mut waves: Vec<(f64, ComplexVector)> = (group.iter())
+                    .map(|number| &leaves[*number])
+                    .map(|leaf| (leaf.phase_length(direction, position), leaf))
+                    .map(|(length, leaf)| (length - first.optical_path, leaf.electric[i]))
+                    .collect();
+                waves.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let power = self.power(&mut waves);
+                let field = waves.iter().fold(ComplexVector::ZERO, |sum, (length, field)| {
+                    sum + field.scaled(Complex64::cis(self.wave_number * length))
+                });
+                let size = field.norm_squared();
+                first.electric[i] = if size > 0.0 { field * (power / size).sqrt() } else { field };
+                first.power[i] = power;
+            }
+            first
         });
         gathered.collect()
     }

@@ -67,6 +67,12 @@ impl<const N: usize> Leaf<N> {
         largest(&self.power)
     }
 
+    /// Its power in all the polarizations launched, together.
+    #[must_use]
+    pub fn total_power(&self) -> f64 {
+        self.power.iter().sum()
+    }
+
     /// How far it goes on from its position to a screen, cm; `None` where it does not meet it.
     #[must_use]
     pub fn distance_to(&self, screen: &Screen) -> Option<f64> {

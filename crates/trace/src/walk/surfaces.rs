@@ -89,6 +89,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let from = branch.position;
         branch.position += branch.direction * hit.distance;
         self.recorder.record(|| PathSegment {
+            branch: branch.path,
             power: branch.power,
             optical_path: branch.optical_path,
             inside: None,
@@ -247,6 +248,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let region = self.assembly.device(number).region(region_number);
         let way = passage.position - branch.position;
         self.recorder.record(|| PathSegment {
+            branch: branch.path,
             power: branch.power,
             optical_path: branch.optical_path,
             inside: Some((number, region_number)),

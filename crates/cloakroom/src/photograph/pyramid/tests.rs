@@ -260,3 +260,34 @@ fn codes_and_floats_look_the_same() {
     }
     assert!(a.memory() < b.memory());
 }
+
+#[test]
+fn beyond_its_edges_an_image_is_seen_as_a_larger_one() {
+    const SIDE: usize = 32;
+    let light = |x: usize, y: usize| ((x * 37 + y * 91 + x * y) % 101) as f32 / 101.0;
+    let small = pyramid(SIDE, SIDE, light);
+    for edges in [Edges::Repeat, Edges::Mirror] {
+        let there = |i: usize| match (edges, i / SIDE) {
+            (Edges::Mirror, 0 | 2) => SIDE - 1 - i % SIDE,
+            _ => i % SIDE,
+        };
+        let large = pyramid(3 * SIDE, 3 * SIDE, |x, y| light(there(x), there(y)));
+        let mut random = noise(11);
+        for _ in 0..2000 {
+            let at = [3.0 * random() - 1.0, 3.0 * random() - 1.0];
+            let [dx, dy] = [0, 1].map(|_| [0.1 * (random() - 0.5), 0.1 * (random() - 0.5)]);
+            let third = |pair: [f64; 2]| pair.map(|x| x / 3.0);
+            let seen = small.sample_with(edges, at, dx, dy)[0];
+            let expected =
+                large.sample_with(Edges::Clamp, third(at.map(|x| x + 1.0)), third(dx), third(dy))
+                    [0];
+            // At the outer edge the larger image ends.
+            if at.iter().all(|x| (-0.7..1.7).contains(x)) {
+                assert!((seen - expected).abs() < 1e-4, "{edges:?} {at:?}: {seen} {expected}");
+            }
+        }
+        for at in [[1e9, -1e9], [f64::INFINITY, 0.3], [f64::NAN, 1e300]] {
+            assert!((0.0..=1.0).contains(&small.sample_with(edges, at, [1e9, 0.0], [0.0, 3.0])[0]));
+        }
+    }
+}

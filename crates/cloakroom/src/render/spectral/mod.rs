@@ -45,6 +45,10 @@ const MOST_DRAWN_OUT: f64 = 1.25;
 /// A box of light has the coherence of a Gaussian line of this share of its width.
 const BOX_TO_GAUSSIAN: f64 = 0.68;
 
+/// The two widths of the bins of fringes.
+const WIDE: usize = 0;
+const NARROW: usize = 1;
+
 /// The wavelengths of a picture whose colors are traced each by itself.
 #[derive(Clone, Debug)]
 pub(super) struct Spectral<'s> {
@@ -198,8 +202,9 @@ fn nodes_for(prepared: &PreparedScene<'_>, range: [f64; 2]) -> Result<usize, Pre
 /// Memory to work in, kept from ray to ray.
 #[derive(Debug)]
 pub(super) struct Working<const N: usize> {
-    /// The number of a way's leaf at each node; those of the next way follow.
-    ways: Vec<Option<usize>>,
+    /// The ways of the ray, and of its neighbours where they are looked for: the number of a way's leaf
+    /// at each node; those of the next way follow.
+    ways: [Vec<Option<usize>>; 3],
     lights: Vec<DVec3>,
     /// For each way, the level at which it looks, and where its lights begin.
     views: Vec<(usize, usize)>,
@@ -212,7 +217,7 @@ pub(super) struct Working<const N: usize> {
 impl<const N: usize> Default for Working<N> {
     fn default() -> Self {
         Self {
-            ways: Vec::new(),
+            ways: std::array::from_fn(|_| Vec::new()),
             lights: Vec::new(),
             views: Vec::new(),
             looks: Vec::new(),
@@ -261,42 +266,42 @@ pub(super) fn expose<const N: usize>(
     working: &mut Working<N>,
 ) {
     let is_coherent = spectral.fringes.iter().any(|bins| !bins.is_empty());
-    find_ways(nodes, 0, &mut working.ways);
+    let [ways, ..] = &mut working.ways;
+    find_ways(nodes, 0, ways);
     let count = nodes.count();
-    if is_coherent && !all_are_whole(&spectral.nodes[0], nodes, &working.ways) {
+    if is_coherent && !all_are_whole(&spectral.nodes[0], nodes, ways) {
         expose_fringes(spectral, detection, nodes, spacing, colors, working);
         return;
     }
-    working.views.clear();
-    working.lights.clear();
-    for way in 0..working.ways.len() / count {
+    let Working { ways: [ways, ..], lights, views, looks, .. } = &mut *working;
+    views.clear();
+    lights.clear();
+    for way in 0..ways.len() / count {
         let numbers = way * count..(way + 1) * count;
-        working.looks.clear();
+        looks.clear();
         for (node, number) in numbers.clone().enumerate() {
-            let Some(number) = working.ways[number] else { continue };
+            let Some(number) = ways[number] else { continue };
             let rays = [0, 1, 2].map(|ray| nodes.ray(node, ray));
-            working.looks.push(exposure::look(&spectral.nodes[node], rays, number));
+            looks.push(exposure::look(&spectral.nodes[node], rays, number));
         }
         let leaves = |node: usize| nodes.ray(node, 0).leaves;
-        let is_whole = working.looks.len() == count
-            && working.looks.windows(2).all(|pair| pair[0].0 == pair[1].0);
+        let is_whole = looks.len() == count && looks.windows(2).all(|pair| pair[0].0 == pair[1].0);
         if is_whole {
             let prepared = &spectral.nodes[0];
-            let power =
-                working.ways[way * count].map_or(0.0, |number| leaves(0)[number].largest_power());
-            let Some(view) = View::of(&spectral.bands, &working.looks, power) else { continue };
+            let power = ways[way * count].map_or(0.0, |number| leaves(0)[number].largest_power());
+            let Some(view) = View::of(&spectral.bands, looks, power) else { continue };
             let steps = view.steps.map(|step| step * spacing);
             let groups = &spectral.bands.levels[view.level];
-            let begin = working.lights.len();
-            working.views.push((view.level, begin));
+            let begin = lights.len();
+            views.push((view.level, begin));
             for group in groups {
-                let light = light_of(prepared, group, &working.looks, steps);
-                working.lights.push(DVec3::from_array(light));
+                let light = light_of(prepared, group, looks, steps);
+                lights.push(DVec3::from_array(light));
             }
             for (node, number) in numbers.enumerate() {
-                let Some(number) = working.ways[number] else { continue };
+                let Some(number) = ways[number] else { continue };
                 let leaf = &leaves(node)[number];
-                let lights = groups.iter().zip(&working.lights[begin..]);
+                let lights = groups.iter().zip(&lights[begin..]);
                 add(
                     detection,
                     leaf,
@@ -305,10 +310,10 @@ pub(super) fn expose<const N: usize>(
                 );
             }
         } else {
-            let mut looks = working.looks.iter();
+            let mut looks = looks.iter();
             for (node, number) in numbers.enumerate() {
                 let (Some(number), Some((look, sight))) =
-                    (working.ways[number], working.ways[number].and_then(|_| looks.next()))
+                    (ways[number], ways[number].and_then(|_| looks.next()))
                 else {
                     continue;
                 };
@@ -321,7 +326,7 @@ pub(super) fn expose<const N: usize>(
             }
         }
     }
-    if is_coherent && working.ways.len() > count {
+    if is_coherent && ways.len() > count {
         interfere(spectral, detection, nodes, colors, working);
     }
 }
@@ -353,14 +358,13 @@ fn interfere<const N: usize>(
     colors: &mut Colors<'_>,
     working: &mut Working<N>,
 ) {
-    let (ways, count) = (&working.ways, nodes.count());
+    let (ways, count) = (&working.ways[0], nodes.count());
     let leaf = |way: usize, node: usize| {
         ways[way * count + node].map(|number| &nodes.ray(node, 0).leaves[number])
     };
-    let is_narrow = usize::from(!have_nearly_one_length(
-        (0..working.views.len()).filter_map(|way| leaf(way, 0)),
-    ));
-    let bins = spectral.bands.fringes[is_narrow].iter().zip(&spectral.fringes[is_narrow]);
+    let first_leaves = (0..working.views.len()).filter_map(|way| leaf(way, 0));
+    let width = if have_nearly_one_length(first_leaves) { WIDE } else { NARROW };
+    let bins = spectral.bands.fringes[width].iter().zip(&spectral.fringes[width]);
     let camera = nodes.ray(0, 0).ray.origin;
     let leaves = &mut working.leaves[0];
     let interference = &mut working.exposure.interference;
@@ -542,15 +546,16 @@ fn expose_fringes<const N: usize>(
     colors: &mut Colors<'_>,
     working: &mut Working<N>,
 ) {
-    for (bin, prepared) in spectral.bands.fringes[1].iter().zip(&spectral.fringes[1]) {
+    for (ray, ways) in working.ways.iter_mut().enumerate().skip(1) {
+        find_ways(nodes, ray, ways);
+    }
+    for (bin, prepared) in spectral.bands.fringes[NARROW].iter().zip(&spectral.fringes[NARROW]) {
         let weights = &bin.group.middle;
         let nearest =
             (0..weights.len()).max_by(|a, b| weights[*a].total_cmp(&weights[*b])).unwrap_or(0);
-        for ray in 0..3 {
-            find_ways(nodes, ray, &mut working.ways);
-            let leaves = &mut working.leaves[ray];
+        for (ray, (leaves, ways)) in working.leaves.iter_mut().zip(&working.ways).enumerate() {
             leaves.clear();
-            for way in working.ways.chunks(nodes.count()) {
+            for way in ways.chunks(nodes.count()) {
                 let all = || {
                     let numbers = way.iter().enumerate();
                     numbers

@@ -172,12 +172,13 @@ fn overrides_point_at_themselves() {
         (
             two,
             "device.3.rotation=5",
-            "there is no device.3: device has the entries 0 to 1; device.2 would add one",
+            "there is no device.3: the scene has 2 devices, device.0 to device.1; device.2.kind=... would \
+             add one",
         ),
         (
             "",
             "device.1.kind=square-cloak",
-            "there is no device.1: device has no entries; device.0 would add one",
+            "there is no device.1: the scene has no devices; device.0.kind=... would add one",
         ),
         (
             two,
@@ -192,10 +193,10 @@ fn overrides_point_at_themselves() {
             "camera.samples is 4; there is no `x` in it",
         ),
         (
-            "",
-            "camera.position.1=5",
-            "camera.position is not written in the scene, so an entry of it cannot be set alone; \
-             set all of it: camera.position=[...]",
+            two,
+            "device.0.coating.0.uniaxial.optic_axis.1=5",
+            "device.0.coating.0.uniaxial.optic_axis is not written in the scene, so an entry of it \
+             cannot be set alone; set all of it: device.0.coating.0.uniaxial.optic_axis=[...]",
         ),
         (
             "[camera]\nposition = [1, 2, 3]",
@@ -205,7 +206,26 @@ fn overrides_point_at_themselves() {
     ] {
         assert_eq!(override_message(text, override_text), expected, "{override_text}");
     }
-    assert!(override_message("", "device.0.rotation=5").starts_with("this device has no `kind`"));
+    let one = "[[device]]\nkind = 'square-cloak'\n";
+    for (text, override_text, expected) in [
+        (one, "device.1.rotation=5", "there is no device.1: the scene has one device, device.0;"),
+        ("", "device.0.rotation=5", "there is no device.0: the scene has no devices;"),
+        ("", "device.*.rotation=5", "there is no device.*: the scene has no devices"),
+        (
+            two,
+            "device.*.tilt=5",
+            "unknown key `tilt` in a square-cloak; here it is called `rotation`",
+        ),
+        ("", "camera.fov=5", "unknown key `fov` in [camera]; here it is called `field_of_view`"),
+        (
+            "",
+            "camera.position.3=5",
+            "there is no camera.position.3: camera.position has the entries",
+        ),
+    ] {
+        let message = override_message(text, override_text);
+        assert!(message.starts_with(expected), "{message}");
+    }
     let deep = format!("{}=5", ["a"; 100_000].join("."));
     assert_eq!(override_message("", &deep), "no key lies that deep");
 }

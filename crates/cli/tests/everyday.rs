@@ -1,0 +1,249 @@
+//! The command line for every day: short ways to say what is common, and words that help.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use crate::running::{cloakroom, stdout};
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+const SCENE: &str =
+    "[camera]\nresolution = [40, 30]\nsamples = 1\n[[device]]\nkind = \"square-cloak\"\n";
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+    folder
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    cloakroom().current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn succeeds(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {words}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The message of a command that fails with that status.
+fn fails(folder: &Path, arguments: &[&str], status: i32) -> String {
+    let output = run(folder, arguments);
+    assert_eq!(output.status.code(), Some(status), "{arguments:?} {output:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+#[test]
+fn a_picture_without_a_name_has_that_of_its_scene() {
+    let folder = folder();
+    let at = folder.path();
+    fs::create_dir(at.join("deep")).unwrap();
+    fs::copy(at.join("scene.toml"), at.join("deep/cloak.toml")).unwrap();
+    let said = run(at, &["render", "deep/cloak.toml"]);
+    assert_eq!(String::from_utf8(said.stderr).unwrap().trim(), "deep/cloak.png");
+    assert!(at.join("deep/cloak.png").exists());
+    // An example is no file: its picture goes where one is.
+    succeeds(at, &["render", "gallery/luneburg-lens", "--size", "16x12", "--samples", "1"]);
+    assert_eq!(image::image_dimensions(at.join("luneburg-lens.png")).unwrap(), (16, 12));
+    assert!(fails(at, &["render", "-"], 2).contains("-o FILE"));
+    assert!(fails(at, &["render", "gallery"], 1).contains("there is no such file"));
+    assert!(fails(at, &["render", "scene.toml", "--tile", "0,0,4,4"], 2).contains("--output"));
+}
+
+#[test]
+fn what_is_common_has_names_of_its_own() {
+    let folder = folder();
+    let at = folder.path();
+    image::RgbImage::from_pixel(8, 6, image::Rgb([0, 255, 0])).save(at.join("green.png")).unwrap();
+    let short = ["--size", "24x18", "--samples", "2", "--photo", "green.png", "-o", "short.png"];
+    succeeds(at, &[&["render", "scene.toml"][..], &short].concat());
+    let sets = ["camera.resolution=24x18", "camera.samples=2", "photograph.image=green.png"];
+    let sets = sets.iter().flat_map(|set| ["--set", set]).collect::<Vec<_>>();
+    succeeds(at, &[&["render", "scene.toml"][..], &sets, &["-o", "long.png"]].concat());
+    let open = |name: &str| image::open(at.join(name)).unwrap().into_rgb8();
+    assert_eq!(open("short.png"), open("long.png"));
+    assert_eq!(open("short.png").dimensions(), (24, 18));
+    // What is said by --set goes before.
+    succeeds(
+        at,
+        &[
+            "render",
+            "scene.toml",
+            "--size",
+            "8x6",
+            "--set",
+            "camera.resolution=12x9",
+            "-o",
+            "a.png",
+        ],
+    );
+    assert_eq!(open("a.png").dimensions(), (12, 9));
+    assert!(fails(at, &["render", "scene.toml", "--size", "8"], 2).contains("WIDTHxHEIGHT"));
+}
+
+#[test]
+fn the_empty_view_is_that_of_no_devices() {
+    let folder = folder();
+    let at = folder.path();
+    fs::write(at.join("nothing.toml"), SCENE.split("[[device]]").next().unwrap()).unwrap();
+    succeeds(at, &["render", "scene.toml", "--set", "device.0.rotation=20", "-o", "turned.png"]);
+    succeeds(at, &["render", "scene.toml", "--empty", "-o", "flag.png"]);
+    succeeds(at, &["render", "scene.toml", "--set", "device.0.show=empty", "-o", "key.png"]);
+    succeeds(at, &["render", "nothing.toml", "-o", "nothing.png"]);
+    let open = |name: &str| image::open(at.join(name)).unwrap().into_rgb8();
+    assert_eq!(open("flag.png"), open("nothing.png"));
+    assert_eq!(open("key.png"), open("nothing.png"));
+    assert_ne!(open("turned.png"), open("nothing.png"));
+    // A body and a lens can be taken away, too, and core = "open" is no hindrance.
+    for device in ["body", "luneburg-lens", "cylinder-cloak\"\ncore = \"open"] {
+        let text = format!("[[device]]\nkind = \"{device}\"\nshow = \"empty\"\n");
+        fs::write(at.join("away.toml"), text).unwrap();
+        assert!(succeeds(at, &["check", "away.toml"]).contains("shown as empty"));
+    }
+    let message = fails(at, &["export", "away.toml", "-o", "a.csv"], 1);
+    assert!(message.contains("is not shown"), "{message}");
+}
+
+#[test]
+fn every_device_and_unwritten_entries_can_be_set() {
+    let folder = folder();
+    let at = folder.path();
+    let two = format!("{SCENE}[[device]]\nkind = \"cylinder-cloak\"\nposition = [0, 40, 0]\n");
+    fs::write(at.join("two.toml"), two).unwrap();
+    let text = succeeds(at, &["check", "two.toml", "--set", "device.*.rotation=5"]);
+    assert_eq!(text.matches("rotation 5 degrees").count(), 2, "{text}");
+    let set = ["--set", "camera.position.1=20", "--set", "device.0.position.2=3"];
+    succeeds(at, &[&["check", "scene.toml"][..], &set].concat());
+    let message = fails(at, &["check", "scene.toml", "--set", "device.1.rotation=5"], 1);
+    assert!(
+        message.contains("there is no device.1: the scene has one device, device.0"),
+        "{message}"
+    );
+    for (set, word) in [
+        ("camera.fov=30", "`field_of_view`"),
+        ("device.0.tilt=3", "`rotation`"),
+        ("device.0.size=3", "`side`"),
+        ("trace.epsilon=1e-7", "`tolerance`"),
+        ("background.color=[1,1,1]", "`surroundings`"),
+    ] {
+        let message = fails(at, &["check", "scene.toml", "--set", set], 1);
+        assert!(message.contains(&format!("here it is called {word}")), "{message}");
+    }
+}
+
+#[test]
+fn sweeps_go_along_vectors_and_entries() {
+    let folder = folder();
+    let quality = |sweep: &str| {
+        let arguments = [
+            "quality",
+            "scene.toml",
+            "--set",
+            "camera.resolution=12x9",
+            "--sweep",
+            sweep,
+            "--json",
+        ];
+        let table: serde_json::Value =
+            serde_json::from_str(&succeeds(folder.path(), &arguments)).unwrap();
+        table["rows"].as_array().unwrap().len()
+    };
+    assert_eq!(quality("camera.position.1=-5..5:5"), 3);
+    assert_eq!(quality("camera.position=[-100,0,0]..[-100,3,4]:2.5"), 3);
+    assert_eq!(quality("device.*.rotation=0..10:5"), 3);
+}
+
+#[test]
+fn cameras_go_round_and_along_keyframes() {
+    let folder = folder();
+    let at = folder.path();
+    let position = |name: &str| {
+        let decoder = png_text(&at.join(name));
+        let line = decoder.lines().find(|line| line.starts_with("position")).unwrap();
+        line.split_once('=').unwrap().1.trim().to_owned()
+    };
+    let small = ["--size", "12x9"];
+    let orbit = ["animate", "scene.toml", "--orbit", "0..360", "--frames", "4", "-o", "round"];
+    let narrow = ["--set", "photograph.x=-300"];
+    succeeds(at, &[&orbit[..], &small, &narrow].concat());
+    // About y through x = 50, counterclockwise from above: from -x first to +z.
+    assert_eq!(position("round/frame-000001.png"), "[50.0, 0.0, 150.0]");
+    assert_eq!(position("round/frame-000002.png"), "[200.0, 0.0, 0.0]");
+    let path = "way = 'linear'\n[[keyframe]]\nframe = 0\ncamera.position = [-100, 0, 0]\n\
+                [[keyframe]]\nframe = 2\ncamera.position = [-80, 10, 0]\n";
+    fs::write(at.join("path.toml"), path).unwrap();
+    let along = ["animate", "scene.toml", "--keyframes", "path.toml", "-o", "along"];
+    succeeds(at, &[&along[..], &small].concat());
+    assert_eq!(position("along/frame-000001.png"), "[-90.0, 5.0, 0.0]");
+    let vectors = ["--sweep", "camera.position=[-100,0,0]..[-80,10,0]", "--frames", "3"];
+    let swept = ["animate", "scene.toml", "-o", "swept"];
+    succeeds(at, &[&swept[..], &vectors, &small].concat());
+    let open = |name: &str| image::open(at.join(name)).unwrap().into_rgb8();
+    assert_eq!(open("swept/frame-000001.png"), open("along/frame-000001.png"));
+    assert!(fails(at, &["animate", "scene.toml", "-o", "a.gif"], 2).contains("--orbit"));
+    let message = fails(at, &["animate", "scene.toml", "--keyframes", "none.toml", "-o", "b"], 1);
+    assert!(message.contains("none.toml: there is no such file"), "{message}");
+}
+
+/// The scene that a PNG carries.
+fn png_text(path: &Path) -> String {
+    let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(path).unwrap()));
+    let reader = decoder.read_info().unwrap();
+    let info = reader.info();
+    info.utf8_text.iter().find(|text| text.keyword == "scene").unwrap().get_text().unwrap()
+}
+
+#[test]
+fn help_is_in_groups_and_begins_with_an_example() {
+    let help = String::from_utf8(stdout(cloakroom().arg("--help"))).unwrap();
+    for part in ["Make pictures:\n  render", "Measure:\n  quality", "Look things up:", "Example:"] {
+        assert!(help.contains(part), "{part:?} is not in {help}");
+    }
+    let help = String::from_utf8(stdout(cloakroom().args(["render", "--help"]))).unwrap();
+    for part in ["Scene:", "Picture:", "Files:", "Work:", "Example:\n  cloakroom render"] {
+        assert!(help.contains(part), "{part:?} is not in {help}");
+    }
+}
+
+#[test]
+fn devices_are_listed_with_limits_and_defaults() {
+    let text = String::from_utf8(stdout(cloakroom().arg("devices"))).unwrap();
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    assert!(!text.contains("-0.000000"), "{text}");
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words(&text).contains(
+            "side Side of the square. A number (cm), from 1e-6 to 1000000. [default: 14.1]"
+        ),
+        "{text}"
+    );
+    let one = String::from_utf8(stdout(cloakroom().args(["devices", "body"]))).unwrap();
+    assert!(one.starts_with("body\n") && !one.contains("square-cloak"), "{one}");
+    assert!(one.contains("\n  surface.color") && one.contains("rotation"), "{one}");
+    let json = String::from_utf8(stdout(cloakroom().args(["devices", "--json"]))).unwrap();
+    assert!(!json.contains("-0.0,") && !json.contains("-0.0\n"), "{json}");
+    let message = fails(Path::new("."), &["devices", "square-cloack"], 2);
+    assert!(message.contains("did you mean `square-cloak`?"), "{message}");
+}
+
+#[test]
+fn check_tells_of_the_photograph() {
+    let folder = folder();
+    let check = |sets: &[&str]| {
+        let sets = sets.iter().flat_map(|set| ["--set", set]).collect::<Vec<_>>();
+        succeeds(folder.path(), &[&["check", "scene.toml"][..], &sets].concat())
+    };
+    let plain = check(&[]);
+    assert!(!plain.contains("hint") && !plain.contains("warning"), "{plain}");
+    let turned = check(&["device.0.rotation=20"]);
+    assert!(turned.contains("past the photograph's edge"), "{turned}");
+    let bordered = check(&["device.0.rotation=20", "photograph.border=mirror"]);
+    assert!(
+        !bordered.contains("hint") && bordered.contains("beyond its edge: mirror"),
+        "{bordered}"
+    );
+    let before = check(&["photograph.x=-50"]);
+    assert!(before.contains("between the camera and device 0"), "{before}");
+    let views = ["camera.projection=orthographic", "camera.width=40", "photograph.x=-50"];
+    assert!(check(&views).contains("between the camera and device 0"));
+}
