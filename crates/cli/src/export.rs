@@ -7,7 +7,7 @@ use crate::report::Result;
 use crate::{interruption, scene};
 use cloakroom::material::{self, Frame, Resolution};
 use cloakroom::outline_mesh::{MeshFormat, outlines, write_mesh};
-use cloakroom::output::{self, GridFormat};
+use cloakroom::output;
 
 /// Writes the material of a device.
 pub fn run(arguments: &ExportArguments) -> Result<()> {
@@ -21,11 +21,12 @@ pub fn run(arguments: &ExportArguments) -> Result<()> {
         let segments = material::segments(scene, &assembly, device)?;
         return Ok(material::write_segments(&segments, path)?);
     }
-    if MeshFormat::of(path).is_ok() {
+    let meshes = MeshFormat::ENDINGS.map(|(ending, _)| (ending, true));
+    let grids = ["npz", "vti", "csv"].map(|ending| (ending, false));
+    if output::format_of(path, &[&grids[..], &meshes].concat())? {
         check_writable([path], &inputs)?;
         return Ok(write_mesh(&outlines(scene, &assembly, device)?, path)?);
     }
-    GridFormat::of(path)?;
     check_writable([path], &inputs)?;
     let frame = if arguments.frame == "world" { Frame::World } else { Frame::Device };
     let resolution = arguments.grid.unwrap_or(Resolution::Default);

@@ -474,3 +474,30 @@ fn interfaces_are_solved() {
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8(output.stderr).unwrap().contains("transmitted.permittivity"));
 }
+
+/// What is exported as a mesh is a solid that can be read again.
+#[test]
+fn outlines_of_devices_are_solids_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    let solids = "[[device]]\nkind = \"body\"\nname = \"crate\"\nshape = \"box\"\nsize = [4, 6, 8]\nrotation = 30\n\
+                  index = 1.5\n[[device]]\nkind = \"lens\"\nposition = [20, 0, 0]\n";
+    fs::write(&scene, solids).unwrap();
+    for (name, device) in [("a.stl", "0"), ("a.glb", "0"), ("a.gltf", "1")] {
+        let mesh = folder.path().join(name);
+        let mut export = cloakroom();
+        export.arg("export").arg(&scene).args(["--device", device, "-o"]).arg(&mesh);
+        export.assert().success().stdout("").stderr("");
+        let again = folder.path().join("again.toml");
+        fs::write(&again, format!("[[device]]\nkind = \"polyhedron\"\nmesh = {mesh:?}\n")).unwrap();
+        let text = String::from_utf8(stdout(cloakroom().arg("check").arg(&again))).unwrap();
+        let volume = text.lines().find_map(|line| line.trim().strip_prefix("volume_cm3"));
+        let volume: f64 = volume.unwrap().trim().parse().unwrap();
+        assert!(device == "1" || (volume - 192.0).abs() < 1e-3, "{name} {volume}");
+    }
+    let both = folder.path().join("both.stl");
+    cloakroom().arg("export").arg(&scene).arg("-o").arg(&both).assert().success();
+    let bytes = fs::read(&both).unwrap();
+    let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;
+    assert!(count > 100 && bytes.len() == 84 + 50 * count);
+}

@@ -37,9 +37,9 @@ pub(crate) fn solid(path: &Path, bytes: &[u8]) -> Result<Arc<Polyhedron>, String
         _ => of_gltf(bytes),
     };
     let solid = Polyhedron::new(&triangles?);
-    solid.map(Arc::new).map_err(|fault| {
-        format!("{} bounds no solid: {fault}", key!(FacetedSolid.mesh))
-    })
+    solid
+        .map(Arc::new)
+        .map_err(|fault| format!("{} bounds no solid: {fault}", key!(FacetedSolid.mesh)))
 }
 
 fn stl(bytes: &[u8]) -> Result<Triangles, String> {
@@ -145,7 +145,10 @@ fn add_primitive(
         Mode::Triangles => {}
         Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => return Ok(()),
         Mode::TriangleStrip | Mode::TriangleFan => {
-            return Err("it has strips or fans of triangles; write it with each triangle by itself".to_owned());
+            return Err(
+                "it has strips or fans of triangles; write it with each triangle by itself"
+                    .to_owned(),
+            );
         }
     }
     let positions = primitive.get(&Semantic::Positions);
@@ -163,7 +166,8 @@ fn add_primitive(
     };
     let mirrored = place.determinant() < 0.0;
     for corners in numbered.chunks_exact(3) {
-        let [a, b, c] = numbers([corners[0], corners[1], corners[2]].map(|i| i.saturating_add(first)))?;
+        let [a, b, c] =
+            numbers([corners[0], corners[1], corners[2]].map(|i| i.saturating_add(first)))?;
         all.triangles.push(if mirrored { [a, c, b] } else { [a, b, c] });
     }
     Ok(())
@@ -188,7 +192,8 @@ fn check_accessor(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<(), St
     let view_end = view.offset().checked_add(view.length());
     let stride = view.stride().unwrap_or(accessor.size());
     let last = accessor.count().saturating_sub(1).checked_mul(stride);
-    let end = last.and_then(|last| last.checked_add(accessor.offset())?.checked_add(accessor.size()));
+    let end =
+        last.and_then(|last| last.checked_add(accessor.offset())?.checked_add(accessor.size()));
     let fits = view_end.is_some_and(|end| end <= data.len())
         && end.is_some_and(|end| end <= view.length());
     if fits { Ok(()) } else { Err(beyond()) }

@@ -61,8 +61,8 @@ fn plane_mirrors_of_any_pose_reflect_on_both_sides() {
                 assert!((leaf.direction - turned(direction, normal)).length() < 1e-12);
                 let cos = direction.dot(normal).abs();
                 let expected = if metal.is_empty() { [1.0; 2] } else { fresnel(cos) };
-                for i in 0..2 {
-                    assert!((leaf.power[i] - expected[i]).abs() < 1e-9, "{cos} {leaf:?}");
+                for (power, expected) in leaf.power.iter().zip(expected) {
+                    assert!((power - expected).abs() < 1e-9, "{cos} {leaf:?}");
                 }
             }
         }
@@ -71,7 +71,8 @@ fn plane_mirrors_of_any_pose_reflect_on_both_sides() {
 
 #[test]
 fn layers_lie_on_both_sides_of_a_mirror() {
-    let text = "[[device]]\nkind = \"mirror\"\ncoating = [{ thickness_nm = 80, index = [1.4, 0.02] }]\n";
+    let text =
+        "[[device]]\nkind = \"mirror\"\ncoating = [{ thickness_nm = 80, index = [1.4, 0.02] }]\n";
     let assembly = assembly(text);
     let mut tracer = Tracer::new(&assembly, LIMITS);
     let mut reflected = |side: f64| {
@@ -105,8 +106,8 @@ fn a_metal_ball_reflects_at_each_of_its_points() {
             let [leaf] = leaves else { panic!("{leaves:?}") };
             assert!((leaf.direction - turned(direction, normal)).length() < 1e-9);
             let expected = if ideal { [1.0; 2] } else { fresnel(-direction.dot(normal)) };
-            for i in 0..2 {
-                assert!((leaf.power[i] - expected[i]).abs() < 1e-9, "{leaf:?}");
+            for (power, expected) in leaf.power.iter().zip(expected) {
+                assert!((power - expected).abs() < 1e-9, "{leaf:?}");
             }
         }
     }
@@ -161,7 +162,11 @@ fn what_metal_cannot_be_is_refused() {
         (body("metal = true\nindex = 1.5"), "test:4:9", "lets no light in; it has no index"),
         (body("metal = true\nsurface = {}"), "test:4:11", "both given"),
         (body("metal = false"), "test:3:9", "metal is false"),
-        ("[[device]]\nkind = \"mirror\"\nlength = 3\n".to_owned(), "test:3:10", "`width` and `height`"),
+        (
+            "[[device]]\nkind = \"mirror\"\nlength = 3\n".to_owned(),
+            "test:3:10",
+            "`width` and `height`",
+        ),
         ("[[device]]\nkind = \"mirror\"\nshow = \"bare\"\n".to_owned(), "test:3:8", "no cloak"),
     ] {
         let error = refusal(&text);
@@ -261,7 +266,11 @@ fn graded_media_on_a_floor_are_graded_media_and_their_images() {
         );
         for x in 0..6 {
             let index = 1.2 + 0.05 * f64::from(x * x % 7);
-            let number = if deep { format!("[{index}, {index}, {index}, {index}]") } else { index.to_string() };
+            let number = if deep {
+                format!("[{index}, {index}, {index}, {index}]")
+            } else {
+                index.to_string()
+            };
             write!(text, "[{}],", vec![number; 5].join(",")).unwrap();
         }
         text + "]\n"
@@ -278,7 +287,9 @@ fn the_floor_alone_is_what_a_device_on_it_should_look_like() {
     let glass = "[[device.prism]]\ncorners = [[-6, 0], [6, 0], [0, 4]]\nindex = 1.5\n";
     let graded = "[[device]]\nkind = \"graded\"\nwidth = 12\nheight = 8\nfloor = 60\n\
                   index = [[1,1,1,1],[1,1,1,1],[1,1,1,1],[1,1,1,1]]\nposition = [0, 4, 0]\n";
-    for text in [format!("{prism}show = \"mirror\"\n{glass}"), format!("{graded}show = \"mirror\"\n")] {
+    for text in
+        [format!("{prism}show = \"mirror\"\n{glass}"), format!("{graded}show = \"mirror\"\n")]
+    {
         let assembly = assembly(&text);
         let mut tracer = Tracer::new(&assembly, LIMITS);
         let launch = launch(DVec3::new(-20.0, 21.0, 0.0), DVec3::new(1.0, -1.0, 0.1));
@@ -306,7 +317,8 @@ fn a_carpet_of_ones_own_looks_like_the_flat_floor() {
     let mut tracer = Tracer::new(&assembly, Limits { min_power: 1e-6, tolerance: 1e-9 });
     let floor = -41.5;
     for launch in launches_around(400, [60.0, 30.0], DVec3::new(30.0, 8.0, 20.0)) {
-        let launch = Launch { origin: launch.origin.with_y(launch.origin.y.abs() + 25.0 + floor), ..launch };
+        let launch =
+            Launch { origin: launch.origin.with_y(launch.origin.y.abs() + 25.0 + floor), ..launch };
         let target = DVec3::new(launch.direction.x * 12.0, floor, launch.direction.z * 9.0);
         let launch = s_and_p(launch.origin, (target - launch.origin).normalize(), DVec3::Y);
         let (leaves, outcome) = tracer.trace(&launch);
@@ -315,6 +327,9 @@ fn a_carpet_of_ones_own_looks_like_the_flat_floor() {
         let expected = turned(launch.direction, DVec3::Y);
         assert!((leaf.direction - expected).length() < 1e-9, "{launch:?} {leaf:?}");
         let off = (leaf.position - target).reject_from(expected).length();
-        assert!(off < 1e-9 && leaf.power.iter().all(|power| (power - 1.0).abs() < 1e-9), "{launch:?} {leaf:?}");
+        assert!(
+            off < 1e-9 && leaf.power.iter().all(|power| (power - 1.0).abs() < 1e-9),
+            "{launch:?} {leaf:?}"
+        );
     }
 }

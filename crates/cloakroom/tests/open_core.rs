@@ -303,7 +303,13 @@ fn bodies_may_stand_in_the_core_and_nowhere_else() {
             assert!(try_bench(&scene(fits)).is_ok(), "{kind} {fits}");
             let error = try_bench(&scene(too_large)).unwrap_err();
             assert!(
-                matches!(error, PreparedSceneError::Overlap { first: DeviceName { number: 0, .. }, second: DeviceName { number: 1, .. } }),
+                matches!(
+                    error,
+                    PreparedSceneError::Overlap {
+                        first: DeviceName { number: 0, .. },
+                        second: DeviceName { number: 1, .. }
+                    }
+                ),
                 "{kind} {too_large} {error}"
             );
         }

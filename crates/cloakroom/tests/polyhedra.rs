@@ -39,8 +39,7 @@ fn rows(points: impl IntoIterator<Item = DVec3>) -> String {
     format!("[{}]", rows.join(", "))
 }
 
-const BOX_CORNERS: &str =
-    "[[-3,-4,-3.5],[3,-4,-3.5],[-3,4,-3.5],[3,4,-3.5],[-3,-4,3.5],[3,-4,3.5],[-3,4,3.5],[3,4,3.5],[0,0,0]]";
+const BOX_CORNERS: &str = "[[-3,-4,-3.5],[3,-4,-3.5],[-3,4,-3.5],[3,4,-3.5],[-3,-4,3.5],[3,-4,3.5],[-3,4,3.5],[3,4,3.5],[0,0,0]]";
 const BOX_PLANES: &str =
     "[[2,0,0,3],[-1,0,0,3],[0,1,0,4],[0,-5,0,4],[0,0,1,3.5],[0,0,-1,3.5],[1,1,1,40]]";
 const PLACE: &str = "rotation = 23\nposition = [1, -2, 0.5]\naxis = [0.3, -0.2, 1]\n";
@@ -52,18 +51,22 @@ fn polyhedron(keys: &str) -> String {
 
 #[test]
 fn a_box_by_its_corners_or_planes_is_the_box() {
-    for (medium, layers) in
-        [(CRYSTAL, ""), ("index = 1.3\n", "coating = [{ thickness_nm = 100, index = 1.38 }]\n"), ("metal = true\n", "")]
-    {
+    for (medium, layers) in [
+        (CRYSTAL, ""),
+        ("index = 1.3\n", "coating = [{ thickness_nm = 100, index = 1.38 }]\n"),
+        ("metal = true\n", ""),
+    ] {
         let common = format!("{PLACE}{medium}{layers}");
-        let boxed = format!("[[device]]\nkind = \"body\"\nshape = \"box\"\nsize = [6, 8, 7]\n{common}");
+        let boxed =
+            format!("[[device]]\nkind = \"body\"\nshape = \"box\"\nsize = [6, 8, 7]\n{common}");
         assert_alike(&polyhedron(&format!("vertices = {BOX_CORNERS}\n{common}")), &boxed, 150);
         assert_alike(&polyhedron(&format!("planes = {BOX_PLANES}\n{common}")), &boxed, 150);
     }
 }
 
 /// A prism of an L, which is not convex, as a mesh of an OBJ file and as polygons.
-const L: [[f64; 2]; 6] = [[-4.0, -3.0], [4.0, -3.0], [4.0, 0.0], [0.0, 0.0], [0.0, 4.0], [-4.0, 4.0]];
+const L: [[f64; 2]; 6] =
+    [[-4.0, -3.0], [4.0, -3.0], [4.0, 0.0], [0.0, 0.0], [0.0, 4.0], [-4.0, 4.0]];
 
 fn l_shaped_obj() -> String {
     let mut text = String::new();
@@ -163,7 +166,12 @@ fn light_is_accounted_for_also_at_edges_and_corners() {
     let path = folder.path().join("l.obj");
     fs::write(&path, l_shaped_obj()).unwrap();
     let mut numbers = Numbers(17);
-    for medium in ["index = 1.5", "permittivity = -1\npermeability = -1", "metal = true", "index = [1.4, 3e-6]"] {
+    for medium in [
+        "index = 1.5",
+        "permittivity = -1\npermeability = -1",
+        "metal = true",
+        "index = [1.4, 3e-6]",
+    ] {
         let pose = numbers.pose();
         let place = placed(pose.origin, &pose.rotation());
         let text = polyhedron(&format!("mesh = {path:?}\n{medium}\n{place}"));
@@ -178,7 +186,8 @@ fn light_is_accounted_for_also_at_edges_and_corners() {
                 _ => a.lerp(b, numbers.next()).lerp(DVec3::ZERO, 1e-13),
             };
             let direction = if k % 5 == 0 { DVec3::AXES[k % 3] } else { numbers.direction() };
-            let launch = launch(pose.to_world(target - 30.0 * direction), pose.vector_to_world(direction));
+            let launch =
+                launch(pose.to_world(target - 30.0 * direction), pose.vector_to_world(direction));
             let (leaves, outcome) = tracer.trace(&launch);
             outcome.assert_balanced(leaves, 1e-12, &launch);
         }
@@ -216,7 +225,10 @@ fn a_prism_of_glass_deviates_each_colour_as_its_index_says() {
         let across = DVec3::Z.cross(axis);
         let tilt = incidence - apex / 2.0;
         let direction = (across * tilt.cos() + axis * tilt.sin()).normalize();
-        let entry = apex_at.lerp(if (corners[1] - corners[2]).dot(across) < 0.0 { corners[1] } else { corners[2] }, 0.5);
+        let entry = apex_at.lerp(
+            if (corners[1] - corners[2]).dot(across) < 0.0 { corners[1] } else { corners[2] },
+            0.5,
+        );
         let (leaves, _) = tracer.trace(&launch(entry - 20.0 * direction, direction));
         let leaf = leaves.iter().max_by(|a, b| a.power[1].total_cmp(&b.power[1])).unwrap();
         let deviation = leaf.direction.angle_between(direction);
@@ -261,13 +273,18 @@ fn a_gltf_file_is_read_in_metres_with_its_nodes() {
     let [solid] = &assembly(&mesh).devices()[0].solids()[..] else { panic!() };
     let size = solid.thickness();
     assert!((size - 6.0).abs() < 1e-5, "{size}");
-    let boxed = format!("[[device]]\nkind = \"body\"\nshape = \"box\"\nsize = [6, 8, 7]\nindex = 1.3\n{PLACE}");
+    let boxed = format!(
+        "[[device]]\nkind = \"body\"\nshape = \"box\"\nsize = [6, 8, 7]\nindex = 1.3\n{PLACE}"
+    );
     let (one, other) = (assembly(&mesh), assembly(&boxed));
     let (mut one, mut other) = (Tracer::new(&one, LIMITS), Tracer::new(&other, LIMITS));
     let launch = launch(DVec3::new(-40.0, 3.0, 2.0), DVec3::new(1.0, -0.1, -0.05));
     let (a, b) = (leaves_of(&mut one, &launch), leaves_of(&mut other, &launch));
     // Its numbers are of 32 bits.
-    assert!((a[0].position - b[0].position).length() < 1e-5 && (a[0].power[0] - b[0].power[0]).abs() < 1e-5);
+    assert!(
+        (a[0].position - b[0].position).length() < 1e-5
+            && (a[0].power[0] - b[0].power[0]).abs() < 1e-5
+    );
 }
 
 #[test]
@@ -282,7 +299,10 @@ fn what_is_no_solid_is_refused_with_its_fault() {
     let cut = gltf_box().replace("\"count\": 36", "\"count\": 360");
     let elsewhere = gltf_box().replace("data:application", "other/file");
     for (error, words) in [
-        (of("a.obj", open.as_bytes()), "is not closed: 4 edges are of one triangle only, as the one from ("),
+        (
+            of("a.obj", open.as_bytes()),
+            "is not closed: 4 edges are of one triangle only, as the one from (",
+        ),
         (of("b.stl", b"nothing"), "no STL file"),
         (of("c.obj", b"v 1 2 x\nf 1 2 3"), "no OBJ file"),
         (of("d.glb", b"glTF"), "no glTF file"),
@@ -298,7 +318,11 @@ fn what_is_no_solid_is_refused_with_its_fault() {
         ("vertices = [[0,0,0],[1,0,0],[0,1,0],[1,1,0]]", "test:3:12", "in one plane"),
         ("vertices = [[0,0],[1,0],[0,1],[1,1]]", "test:3:12", "rows of 3 numbers"),
         ("planes = [[1,0,0,1],[-1,0,0,1],[0,1,0,1],[0,-1,0,1]]", "test:3:10", "has no end"),
-        ("planes = [[0,0,0,1],[-1,0,0,1],[0,1,0,1],[0,-1,0,1]]", "test:3:10", "planes[0] has the normal"),
+        (
+            "planes = [[0,0,0,1],[-1,0,0,1],[0,1,0,1],[0,-1,0,1]]",
+            "test:3:10",
+            "planes[0] has the normal",
+        ),
         ("planes = [[0,0,1,1]]\nvertices = [[0,0,0]]", "test:3:10", "both given"),
         ("scale = 2", "test:3:9", "no mesh"),
         ("length = 2", "test:3:10", "as long as its faces"),
@@ -327,7 +351,10 @@ fn polyhedra_stand_in_water_and_in_nobodys_way() {
     let (mut one, mut other) = (Tracer::new(&same, LIMITS), Tracer::new(&alone, LIMITS));
     for launch in launches_around(100, [60.0, 40.0], DVec3::splat(14.0)) {
         let (a, b) = (leaves_of(&mut one, &launch), leaves_of(&mut other, &launch));
-        assert!((a[0].position - b[0].position).length() < 1e-9 && a.len() == b.len(), "{launch:?}");
+        assert!(
+            (a[0].position - b[0].position).length() < 1e-9 && a.len() == b.len(),
+            "{launch:?}"
+        );
     }
     for (x, free) in [(15.9, false), (16.1, true)] {
         let two = format!("{glass}{}", polyhedron(&format!("position = [{}, 1, 0]", 2.0 + x)));

@@ -127,7 +127,7 @@ fn table(draws: &mut Draws<'_>, keys: &'static [Key], share: u8) -> Table {
         let is_list = matches!(
             key.kind,
             KeyKind::Tables { .. } | KeyKind::Polygon | KeyKind::Samples { dimensions: [2, _] }
-        ) && key.name != COATING;
+        ) && !matches!(key.name, COATING | "vertices" | "planes");
         let is_first = way.is_some_and(|way| way.first() == Some(&key.name));
         if is_list || is_first || NEEDED.contains(&key.name) || draws.chance(share) {
             table.insert(key.name.to_owned(), value(draws, key));

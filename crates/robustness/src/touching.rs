@@ -201,7 +201,9 @@ fn all_sorts() -> Vec<Sort> {
         ),
         (
             "polyhedron",
-            format!("planes = [[1, 0, 0, 4], [-1, 0, 0, 4], [0, 1, 1, 4], [0, -1, 1, 4], [0, 0, -1, 3]]\n{tensor}"),
+            format!(
+                "planes = [[1, 0, 0, 4], [-1, 0, 0, 4], [0, 1, 1, 4], [0, -1, 1, 4], [0, 0, -1, 3]]\n{tensor}"
+            ),
             Metal::None,
         ),
         (

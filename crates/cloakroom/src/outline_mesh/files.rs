@@ -92,7 +92,9 @@ fn document(meshes: &[OutlineMesh], length: usize, uri: Option<String>) -> Value
     for (number, mesh) in meshes.iter().enumerate() {
         let count = 3 * mesh.triangles.len();
         let bytes = BYTES_PER_CORNER * count;
-        views.push(json!({ "buffer": 0, "byteOffset": offset, "byteLength": bytes, "target": 34962 }));
+        views.push(
+            json!({ "buffer": 0, "byteOffset": offset, "byteLength": bytes, "target": 34962 }),
+        );
         let corners = || mesh.triangles.iter().flatten().copied();
         let end = |all: Option<DVec3>| single(all.unwrap_or_default());
         accessors.push(json!({

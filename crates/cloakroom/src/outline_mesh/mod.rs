@@ -100,7 +100,9 @@ fn parts(placed: &Placed, settings: &DeviceSettings) -> Option<Vec<Part>> {
     let structure = &placed.structure;
     let hull = &structure.hull;
     let has_ends = |solid: &Solid| {
-        solid.bounds().is_none_or(|[low, high]| low.min_element() > -REACH && high.max_element() < REACH)
+        solid
+            .bounds()
+            .is_none_or(|[low, high]| low.min_element() > -REACH && high.max_element() < REACH)
     };
     if !hull.solids.iter().chain(&hull.thin_mirror).all(has_ends) {
         return None;

@@ -61,7 +61,9 @@ fn moved(pieces: Pieces, place: impl Fn(DVec3) -> DVec3) -> Pieces {
 }
 
 fn circle(radius: f64) -> Vec<DVec2> {
-    (0..AROUND).map(|k| radius * DVec2::from_angle(TAU * f64::from(k) / f64::from(AROUND))).collect()
+    (0..AROUND)
+        .map(|k| radius * DVec2::from_angle(TAU * f64::from(k) / f64::from(AROUND)))
+        .collect()
 }
 
 /// The sides of a polygon, counterclockwise; of two corners both sides of a sheet.
@@ -78,7 +80,10 @@ fn sides(corners: &[DVec2], [low, high]: [f64; 2]) -> Pieces {
 fn caps(corners: &[DVec2], [low, high]: [f64; 2]) -> Pieces {
     let fan = (1..corners.len().saturating_sub(1)).flat_map(|i| {
         let [a, b, c] = [corners[0], corners[i], corners[i + 1]];
-        [[a.extend(low), c.extend(low), b.extend(low)], [a.extend(high), b.extend(high), c.extend(high)]]
+        [
+            [a.extend(low), c.extend(low), b.extend(low)],
+            [a.extend(high), b.extend(high), c.extend(high)],
+        ]
     });
     fan.collect()
 }
@@ -115,8 +120,8 @@ fn cut_ball(ball: &CutBall) -> Pieces {
     let rim = (ball.plane.offset / radius).clamp(-1.0, 1.0).acos();
     let rings = AROUND / 2;
     let profile = (0..=rings).map(|k| {
-        let angle = std::f64::consts::PI
-            - (std::f64::consts::PI - rim) * f64::from(k) / f64::from(rings);
+        let angle =
+            std::f64::consts::PI - (std::f64::consts::PI - rim) * f64::from(k) / f64::from(rings);
         [radius * angle.cos(), radius * angle.sin()]
     });
     let profile: Vec<[f64; 2]> = profile.chain([[ball.plane.offset, 0.0]]).collect();
@@ -190,7 +195,8 @@ mod tests {
             let corners: Vec<DVec3> = pieces.concat();
             // Corners that rounding has parted are one.
             let corners = corners.iter().map(|at| (*at * 1e9).round() / 1e9).collect();
-            let triangles = (0..pieces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+            let triangles =
+                (0..pieces.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
             let mesh = Polyhedron::new(&Triangles { corners, triangles });
             let mesh = mesh.unwrap_or_else(|fault| panic!("{solid:?}: {fault}"));
             // Seen from outside.

@@ -34,9 +34,7 @@ pub enum PreparedSceneError {
         error: KeyError,
     },
     /// Two devices are in each other's way.
-    #[error(
-        "{second} overlaps {first}; move one of them (devices are counted from 0)"
-    )]
+    #[error("{second} overlaps {first}; move one of them (devices are counted from 0)")]
     Overlap {
         /// One of them.
         first: DeviceName,

@@ -8,8 +8,8 @@ use super::error::SceneFileError;
 use super::locations::{Locations, join};
 use crate::device::{AnyDevice, CATALOGUE, Request};
 use crate::keys::{Key, KeyKind, Table, Value, hint, quoted, unknown};
-use cloakroom_trace::key;
 use crate::scene::{Camera, CameraSettings, DeviceSettings, Placement, Scene, TABLES};
+use cloakroom_trace::key;
 
 /// The list of devices, the one list of tables a scene has.
 pub(super) const DEVICES: &str = "device";
@@ -88,7 +88,8 @@ impl Reader<'_> {
             let path = join(DEVICES, &number.to_string());
             self.device(item.as_table().ok_or_else(|| wrong(&path, item))?, &path)
         };
-        let devices: Vec<DeviceSettings> = items.iter().enumerate().map(read).collect::<Result<_, _>>()?;
+        let devices: Vec<DeviceSettings> =
+            items.iter().enumerate().map(read).collect::<Result<_, _>>()?;
         self.check_names(&devices)?;
         Ok(devices)
     }
@@ -99,7 +100,9 @@ impl Reader<'_> {
         for (number, name) in names().enumerate() {
             let Some(name) = name else { continue };
             let message = if let Some(other) = names().take(number).position(|n| n == Some(name)) {
-                format!("device {other} is called {name:?}, too; give each device a name of its own")
+                format!(
+                    "device {other} is called {name:?}, too; give each device a name of its own"
+                )
             } else if name == DEVICES || TABLES.iter().any(|(table, _)| *table == name) {
                 format!("{name:?} is the name of a table of the scene; give the device another one")
             } else {

@@ -105,7 +105,9 @@ fn property(key: &Key) -> Value {
         KeyKind::MaterialOrTable { keys } => {
             json!({ "anyOf": [material_name(), inner_table(keys)] })
         }
-        KeyKind::Mesh => json!({ "type": "string", "pattern": r"\.([sS][tT][lL]|[oO][bB][jJ]|[gG][lL][bB]|[gG][lL][tT][fF])$" }),
+        KeyKind::Mesh => {
+            json!({ "type": "string", "pattern": r"\.([sS][tT][lL]|[oO][bB][jJ]|[gG][lL][bB]|[gG][lL][tT][fF])$" })
+        }
         KeyKind::Name => json!({ "type": "string", "pattern": r"^\p{L}[\p{L}\p{N}_-]{0,63}$" }),
         KeyKind::Polygon => json!({ "type": "array", "items": list(number, 2), "minItems": 3 }),
         KeyKind::Samples { dimensions: [least, most] } => {

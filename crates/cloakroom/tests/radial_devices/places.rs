@@ -31,7 +31,13 @@ fn points_inside_are_inside_and_devices_do_not_overlap() {
             };
             assert!(beside(20.0).is_ok(), "{kind} {other}");
             assert!(
-                matches!(beside(19.99), Err(PreparedSceneError::Overlap { first: DeviceName { number: 0, .. }, second: DeviceName { number: 1, .. } })),
+                matches!(
+                    beside(19.99),
+                    Err(PreparedSceneError::Overlap {
+                        first: DeviceName { number: 0, .. },
+                        second: DeviceName { number: 1, .. }
+                    })
+                ),
                 "{kind} {other}"
             );
         }

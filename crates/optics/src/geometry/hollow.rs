@@ -123,7 +123,9 @@ fn section(body: &Solid, extent: Extent) -> WidestSection<'_> {
         }
         Solid::Hollow { whole, .. } => section(whole, extent),
         // Lenses are asked for by the cylinder around them, polyhedra by their corners.
-        Solid::Nothing | Solid::Lens { .. } | Solid::Polyhedron { .. } => WidestSection::Disc(DVec2::ZERO, 0.0),
+        Solid::Nothing | Solid::Lens { .. } | Solid::Polyhedron { .. } => {
+            WidestSection::Disc(DVec2::ZERO, 0.0)
+        }
         Solid::Tilted { .. } => {
             Convex::of(body).map_or(WidestSection::Disc(DVec2::ZERO, 0.0), WidestSection::Tilted)
         }

@@ -32,7 +32,9 @@ pub use lens::{ConicFace, Lens, LensPart};
 pub use outline::{Cap, Outline};
 pub use plane::Plane;
 pub use polygon::{ConvexPart, Polygon, PolygonError, SAME_POINT};
-pub use polyhedron::{FaceHit, MeshFault, PlanesFault, Polyhedron, Triangles, convex_hull, within_planes};
+pub use polyhedron::{
+    FaceHit, MeshFault, PlanesFault, Polyhedron, Triangles, convex_hull, within_planes,
+};
 pub use pose::Pose;
 pub use solid::{Solid, TOUCHING};
 pub use sphere::Sphere;

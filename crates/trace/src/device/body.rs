@@ -167,7 +167,8 @@ impl SolidBody {
             (None, true) => (FarSide::Conductor, "a body of metal lets no light in"),
             (Some(_), false) => (FarSide::Opaque, "a body with a surface of its own is opaque"),
             (Some(_), true) => {
-                let message = "surface and metal are both given; a body of metal shows what it reflects";
+                let message =
+                    "surface and metal are both given; a body of metal shows what it reflects";
                 return Err(KeyError::at(key!(Self.surface), message));
             }
         };

@@ -140,7 +140,11 @@ impl FacetedSolid {
             let key = key!(Self.vertices);
             let points = match here(self.vertices.as_ref(), key)? {
                 Some(vertices) => rows::<3>(key, vertices, MOST_VERTICES)?,
-                None => DVec3::AXES.into_iter().flat_map(|a| [a, -a]).map(|a| (RADIUS * a).to_array()).collect(),
+                None => DVec3::AXES
+                    .into_iter()
+                    .flat_map(|a| [a, -a])
+                    .map(|a| (RADIUS * a).to_array())
+                    .collect(),
             };
             let points: Vec<DVec3> = points.into_iter().map(DVec3::from_array).collect();
             let message = "all vertices lie in one plane; a solid needs one beside it";
@@ -173,7 +177,8 @@ fn behind_planes(samples: &Samples) -> Result<Triangles, KeyError> {
     let key = key!(FacetedSolid.planes);
     let plane = |(number, [x, y, z, offset]): (usize, [f64; 4])| {
         let missing = || {
-            let message = format!("planes[{number}] has the normal [0, 0, 0], which has no direction");
+            let message =
+                format!("planes[{number}] has the normal [0, 0, 0], which has no direction");
             KeyError::at(key, message)
         };
         let normal = optics::wave::unit(DVec3::new(x, y, z)).ok_or_else(missing)?;

@@ -5,13 +5,13 @@ use super::{
 };
 use glam::{DMat3, DVec2, DVec3};
 use optics::geometry::{Lens, Plane, Polyhedron};
-use std::sync::Arc;
 use optics::medium::{Medium, ModeKind};
 use optics::propagation::{
     Border, Boundary, ConformalEnd, ConformalFlow, FlowError, Half, PathEnd, PathPoint, RadialFlow,
     VirtualPoint,
 };
 use optics::wave::ComplexVector;
+use std::sync::Arc;
 
 /// Straight pieces that a closed form's path is drawn with.
 const PIECES: u32 = 96;

@@ -3,7 +3,8 @@
 use super::{Coating, Convex, FarSide};
 use glam::DVec3;
 use optics::geometry::{
-    Border, Cap, CurvedSide, Cylinder, Disc, Extent, FloorCurve, Lens, LensPart, Polyhedron, Sphere, Wall,
+    Border, Cap, CurvedSide, Cylinder, Disc, Extent, FloorCurve, Lens, LensPart, Polyhedron,
+    Sphere, Wall,
 };
 use optics::propagation::Half;
 use optics::transformation::ConformalMap;

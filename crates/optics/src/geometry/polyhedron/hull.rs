@@ -59,7 +59,9 @@ pub enum PlanesFault {
     #[error("the space behind the planes has no end; add planes that close it")]
     Endless,
     /// There is no such space.
-    #[error("there is no space behind all of the planes; their distances go the way of their normals")]
+    #[error(
+        "there is no space behind all of the planes; their distances go the way of their normals"
+    )]
     Empty,
 }
 
@@ -91,8 +93,7 @@ pub fn within_planes(planes: &[Plane]) -> Result<Triangles, PlanesFault> {
                     continue;
                 }
                 let point = matrix.inverse() * DVec3::from_array(three.map(|plane| plane.offset));
-                let outside =
-                    |plane: &Plane| plane.normal.dot(point) - plane.offset > slack;
+                let outside = |plane: &Plane| plane.normal.dot(point) - plane.offset > slack;
                 if !planes.iter().any(outside)
                     && !points.iter().any(|known| known.distance(point) <= 10.0 * slack)
                 {

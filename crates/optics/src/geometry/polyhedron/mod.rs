@@ -93,7 +93,8 @@ impl Polyhedron {
             (b - a).cross(c - a).normalize_or_zero()
         };
         let normals: Vec<DVec3> = triangles.iter().map(normal).collect();
-        let boxes: Vec<Aabb> = triangles.iter().map(|triangle| Aabb::around(at(*triangle))).collect();
+        let boxes: Vec<Aabb> =
+            triangles.iter().map(|triangle| Aabb::around(at(*triangle))).collect();
         let tree = Tree::new(&boxes);
         let neighbours = closed::neighbours(&triangles);
         let opposite = |own: [u32; 3], other: u32| {
@@ -105,14 +106,13 @@ impl Polyhedron {
             apexes.all(|apex| behind(at(*triangle), apex) >= 0.0)
         };
         let shells = closed::shells(&neighbours);
-        let is_convex = shells.iter().all(|shell| *shell == 0)
-            && triangles.iter().zip(&neighbours).all(bulges);
+        let is_convex =
+            shells.iter().all(|shell| *shell == 0) && triangles.iter().zip(&neighbours).all(bulges);
         let faces = faces(&normals, &neighbours);
         let volume = triangles.iter().map(|triangle| closed::volume(at(*triangle))).sum();
         let Aabb { low, high } = tree.around();
         let hidden = TOUCHING.max(1e-14 * low.abs().max(high.abs()).max_element());
-        let solid =
-            Self { corners, triangles, normals, faces, tree, volume, is_convex, hidden };
+        let solid = Self { corners, triangles, normals, faces, tree, volume, is_convex, hidden };
         solid.check_shells(&shells)?;
         solid.check_crossings()?;
         Ok(solid)
@@ -432,10 +432,8 @@ impl ShearedRay {
     fn crosses(&self, corners: [DVec3; 3]) -> Option<(f64, Way)> {
         let [x, y, z] = self.axes;
         let [a, b, c] = corners.map(|corner| corner - self.origin);
-        let seen = |v: DVec3| Coord {
-            x: v[x] - self.shear.x * v[z],
-            y: v[y] - self.shear.y * v[z],
-        };
+        let seen =
+            |v: DVec3| Coord { x: v[x] - self.shear.x * v[z], y: v[y] - self.shear.y * v[z] };
         let (at_a, at_b, at_c) = (seen(a), seen(b), seen(c));
         let side = |one: Coord<f64>, other: Coord<f64>| {
             // The sign of one × other, exactly.

@@ -1,8 +1,8 @@
 //! Whether a polyhedron and something else are in each other's way.
 
+use super::Polyhedron;
 use super::closed::pierces;
 use super::tree::Aabb;
-use super::Polyhedron;
 use crate::geometry::convex::{Bound, Bounded, bounded};
 use crate::geometry::{Plane, Pose, Solid};
 use glam::{DMat3, DVec3};
@@ -29,9 +29,9 @@ impl Polyhedron {
     /// convex.
     pub(in crate::geometry) fn overlaps(&self, other: &Solid, slack: f64) -> bool {
         let own = self.bounded(&Pose::IDENTITY);
-        let near = other.bounds().is_some_and(|[low, high]| {
-            self.tree.around().meets(&Aabb { low, high }, -slack)
-        });
+        let near = other
+            .bounds()
+            .is_some_and(|[low, high]| self.tree.around().meets(&Aabb { low, high }, -slack));
         if !near {
             return false;
         }
@@ -58,7 +58,8 @@ impl Polyhedron {
             None => {
                 let around = other.bounds().map(|[low, high]| Aabb { low, high });
                 let presses = |piece: [DVec3; 3]| {
-                    let near = around.is_none_or(|around| around.meets(&Aabb::around(piece), slack));
+                    let near =
+                        around.is_none_or(|around| around.meets(&Aabb::around(piece), slack));
                     near && thin(piece, slack).is_some_and(|it| it.presses(&second, &[], slack))
                 };
                 self.pieces().any(presses) || self.holds(second.ellipsoid.0)
@@ -120,4 +121,3 @@ fn thin([a, b, c]: [DVec3; 3], thickness: f64) -> Option<Bounded> {
     let matrix = DMat3::from_cols(x * half, y * half, normal * (4.0 * thickness));
     Some(Bounded { bounds, ellipsoid: (middle, matrix) })
 }
-

@@ -8,7 +8,8 @@ struct Numbers(u64);
 
 impl Numbers {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
@@ -145,7 +146,11 @@ fn rays_that_start_on_the_border_know_where_they_are() {
                 assert!(there.distance >= 0.9e-6, "{k} {there:?}");
             }
             let entry = solid.entry(start, direction).map_or(f64::INFINITY, |hit| hit.distance);
-            assert_eq!(inside, entry < 1e-6 && there.distance > 1e-6 || inside && entry > 1e-6, "{k}");
+            assert_eq!(
+                inside,
+                entry < 1e-6 && there.distance > 1e-6 || inside && entry > 1e-6,
+                "{k}"
+            );
         }
     }
 }
@@ -190,9 +195,10 @@ fn hulls_hold_their_points_and_planes_bound_what_they_say() {
         for plane in hull.planes() {
             assert!(points.iter().all(|at| plane.normal.dot(*at) <= plane.offset + 1e-14));
         }
-        let again = solid(&within_planes(&hull.planes()[..hull.face_count().min(100)]).unwrap_or_else(
-            |_| convex_hull(&points).expect("a hull"),
-        ));
+        let again = solid(
+            &within_planes(&hull.planes()[..hull.face_count().min(100)])
+                .unwrap_or_else(|_| convex_hull(&points).expect("a hull")),
+        );
         if hull.face_count() <= 100 {
             assert!((again.volume() - hull.volume()).abs() < 1e-9 * hull.volume(), "{count}");
         }
@@ -262,7 +268,8 @@ fn what_bounds_no_solid_is_told() {
 
 #[test]
 fn polyhedra_are_in_the_way_as_what_they_are_made_of_is() {
-    let of = |mesh: &Triangles, pose: Pose| Solid::Polyhedron { solid: Arc::new(solid(mesh)), pose };
+    let of =
+        |mesh: &Triangles, pose: Pose| Solid::Polyhedron { solid: Arc::new(solid(mesh)), pose };
     let at = |x: f64, y: f64, z: f64| Pose::new(DVec3::new(x, y, z), 0.3);
     let slack = 1e-9;
     let cube = cuboid(DVec3::ZERO, DVec3::splat(2.0));
@@ -306,7 +313,9 @@ fn polyhedra_are_in_the_way_as_what_they_are_made_of_is() {
     let mut hollow = cube.clone();
     hollow.corners.extend(small.corners.iter().map(|at| *at * 2.0));
     let first = cube.corners.len() as u32;
-    hollow.triangles.extend(small.triangles.iter().map(|[a, b, c]| [*a + first, *c + first, *b + first]));
+    hollow
+        .triangles
+        .extend(small.triangles.iter().map(|[a, b, c]| [*a + first, *c + first, *b + first]));
     assert!(!of(&hollow, Pose::IDENTITY).overlaps(&of(&small, at(0.1, 0.0, 0.0)), slack));
     assert!(of(&hollow, Pose::IDENTITY).overlaps(&of(&small, at(0.4, 0.0, 0.0)), slack));
     assert!(of(&cube, Pose::IDENTITY).overlaps(&of(&small, at(0.1, 0.0, 0.0)), slack));

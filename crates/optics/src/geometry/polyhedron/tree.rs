@@ -200,7 +200,8 @@ impl Tree {
                 };
                 next = match [entry(node.first), entry(node.first + 1)] {
                     [Some(one), Some(other)] => {
-                        let (near, far) = if one.1 <= other.1 { (one, other) } else { (other, one) };
+                        let (near, far) =
+                            if one.1 <= other.1 { (one, other) } else { (other, one) };
                         stack[depth] = far;
                         depth += 1;
                         Some(near)

@@ -1,7 +1,7 @@
 //! Media on a grid in space, and uniaxial ones.
 
 use super::{Graded, GradedShape, HIDES_NOTHING, here, upright_box};
-use crate::device::{Convex, FarSide, Fact, Request, Show, Structure, refuse_other_views, spatial};
+use crate::device::{Convex, Fact, FarSide, Request, Show, Structure, refuse_other_views, spatial};
 use crate::key;
 use crate::keys::{KeyError, Samples, shape_text};
 use glam::DVec3;
