@@ -4,6 +4,7 @@
 //! A new kind of [`Region`] or [`Shape`] says here, and nowhere else, what it looks like: its sides
 //! as lines, and for a region whether its medium is graded. The rest follows.
 
+use super::structure::segments;
 use super::{
     Body, ConformalRegion, Convex, Face, FarSide, HomogeneousRegion, Region, RegionBorder, Shape,
     Structure, Surface,
@@ -33,12 +34,12 @@ pub struct Contour {
     pub closed: bool,
 }
 
-/// The cross-section of one region.
+/// The cross-section of one region, or of all pieces of a concave one.
 #[derive(Clone, Debug)]
 pub struct Section<'s> {
     /// Its border; what is inside an odd number of contours is inside.
     pub border: Vec<Contour>,
-    /// The region.
+    /// The region; of a concave one its first piece.
     pub region: &'s Region,
 }
 
@@ -70,7 +71,18 @@ impl Structure {
         let regions: Vec<Vec<Edge>> = self.regions.iter().map(Region::edges).collect();
         let metal = regions.iter().flatten().chain(&outside);
         let metal = metal.filter(|edge| edge.far.is_metal());
-        let sections = self.regions.iter().zip(&regions).filter(|_| self.hull.body.is_none());
+        // What is cut into convex pieces is whole again: cuts are no borders.
+        let segments = segments(&self.regions);
+        let border = |segment: usize| {
+            let pieces = regions.iter().zip(&segments).filter(|(_, of)| **of == segment);
+            let edges = pieces.flat_map(|(edges, _)| edges);
+            joined(edges.filter(|edge| !matches!(edge.far, FarSide::Seam(_))))
+        };
+        let sections = self
+            .regions
+            .iter()
+            .enumerate()
+            .filter(|(number, _)| segments[*number] == *number && self.hull.body.is_none());
         CrossSection {
             body_medium: self.body_medium(),
             body: self.drawn_body(),
@@ -78,7 +90,7 @@ impl Structure {
             metal: joined(metal),
             polarizers: joined(outside.iter().filter(|edge| edge.far == FarSide::Polarizer)),
             regions: sections
-                .map(|(region, edges)| Section { border: joined(edges), region })
+                .map(|(number, region)| Section { border: border(number), region })
                 .collect(),
             outlines: joined(&outside),
         }

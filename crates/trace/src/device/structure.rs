@@ -241,12 +241,14 @@ impl Structure {
         Self::new(Vec::new(), Vec::new(), Hull::of_parts(Vec::new()))
     }
 
-    /// How many of its regions are of which class of media: see [`Region::medium_class`].
+    /// How many of its segments are of which class of media: see [`Region::medium_class`].
     #[must_use]
     pub fn media(&self) -> BTreeMap<&'static str, usize> {
         let mut media = BTreeMap::new();
-        for region in &self.regions {
-            *media.entry(region.medium_class()).or_default() += 1;
+        for (number, first) in segments(&self.regions).into_iter().enumerate() {
+            if number == first {
+                *media.entry(self.regions[number].medium_class()).or_default() += 1;
+            }
         }
         media
     }
@@ -331,4 +333,28 @@ pub struct SurfaceHit {
     pub far: FarSide,
     /// How the media meet.
     pub coating: Coating,
+}
+
+/// For each region the number of the first of those that are one segment, cut into convex pieces.
+pub(super) fn segments(regions: &[Region]) -> Vec<usize> {
+    let mut segment: Vec<usize> = (0..regions.len()).collect();
+    let seams: Vec<(usize, usize)> = (regions.iter().enumerate())
+        .flat_map(|(index, region)| {
+            let faces = if let Region::Homogeneous(region) = region { region.faces() } else { &[] };
+            faces.iter().filter_map(move |face| match face.far {
+                FarSide::Seam(next) => Some((index, usize::from(next))),
+                _ => None,
+            })
+        })
+        .collect();
+    loop {
+        let before = segment.clone();
+        for &(a, b) in &seams {
+            let least = segment[a].min(segment[b]);
+            (segment[a], segment[b]) = (least, least);
+        }
+        if segment == before {
+            return segment;
+        }
+    }
 }

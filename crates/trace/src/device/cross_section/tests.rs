@@ -1,4 +1,4 @@
-use super::super::{Request, Show};
+use super::super::{Device, MediumWords, PrismOfMedium, Prisms, Request, Show};
 use super::*;
 
 fn built(kind: &str, show: Show, length: Option<f64>) -> Structure {
@@ -58,6 +58,31 @@ fn the_double_gaussian_cloak_has_two_halves_around_a_lens() {
         assert_eq!(index(upper, 10.0), index(lower, -10.0));
         assert_eq!(index(upper, -10.0), None);
     }
+}
+
+#[test]
+fn concave_prisms_are_whole() {
+    // An L beside a square that fills its corner.
+    let prism = |corners: &[[f64; 2]], index: f64| PrismOfMedium {
+        corners: Some(corners.to_vec()),
+        words: MediumWords { index: Some(index.into()), ..MediumWords::default() },
+        ..PrismOfMedium::default()
+    };
+    let l = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 4.0], [0.0, 4.0]];
+    let square = [[1.0, 1.0], [4.0, 1.0], [4.0, 4.0], [1.0, 4.0]];
+    let prism = vec![prism(&l, 1.5), prism(&square, 1.5)];
+    let prisms = Prisms { prism, ..Prisms::default() };
+    let structure = prisms.build(Request::default()).expect("a device");
+    assert!(structure.regions.len() > 2, "the L is cut");
+    let section = structure.cross_section();
+    let corners = |region: &Section<'_>| {
+        assert_eq!(region.border.len(), 1);
+        (region.border[0].corners().len(), area(&region.border[0]))
+    };
+    let [l, square] = &section.regions[..] else { panic!("{:?}", section.regions) };
+    assert_eq!((corners(l), corners(square)), ((6, 7.0), (4, 9.0)));
+    assert_eq!(structure.media().values().sum::<usize>(), 2);
+    assert!(l.holds(DVec2::new(0.5, 3.0)) && !l.holds(DVec2::new(2.0, 2.0)));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Homogeneous segments and bodies: the principal values of their tensors.
 
-use super::super::{FarSide, Region, Structure};
+use super::super::structure::segments;
+use super::super::{Region, Structure};
 use super::{Deviates, Imperfection, Process, TABLE};
 use crate::keys::KeyError;
 use glam::{DMat3, DVec3};
@@ -15,8 +16,8 @@ pub(super) fn apply(
     deviates: &Deviates,
     structure: &mut Structure,
 ) -> Result<(), KeyError> {
-    let groups = groups(&structure.regions);
-    let regions = structure.regions.iter_mut().zip(groups);
+    let groups = segments(&structure.regions);
+    let regions = structure.regions.iter_mut().zip(groups.into_iter().map(|first| first as u64));
     let media = regions.filter_map(|(region, group)| match region {
         Region::Homogeneous(region) => Some((group, &mut region.medium)),
         Region::Conformal(_) | Region::Radial(_) | Region::ClosedForm(_) | Region::Spatial(_) => {
@@ -48,30 +49,6 @@ pub(super) fn apply(
         })?;
     }
     Ok(())
-}
-
-/// For each region the number of the first of those that are one segment, cut into convex pieces.
-fn groups(regions: &[Region]) -> Vec<u64> {
-    let mut group: Vec<u64> = (0u64..).take(regions.len()).collect();
-    let seams: Vec<(usize, usize)> = (regions.iter().enumerate())
-        .flat_map(|(index, region)| {
-            let faces = if let Region::Homogeneous(region) = region { region.faces() } else { &[] };
-            faces.iter().filter_map(move |face| match face.far {
-                FarSide::Seam(next) => Some((index, usize::from(next))),
-                _ => None,
-            })
-        })
-        .collect();
-    loop {
-        let before = group.clone();
-        for &(a, b) in &seams {
-            let least = group[a].min(group[b]);
-            (group[a], group[b]) = (least, least);
-        }
-        if group == before {
-            return group;
-        }
-    }
 }
 
 fn is_vacuum(tensor: &Tensor) -> bool {
