@@ -297,7 +297,10 @@ fn exports_that_cannot_be_made() {
     for large in ["4000000000x4000000000x4000000000", "1e-9", "1e-300"] {
         square.refuses_with(&export(large), &["so fine a grid is too large"]);
     }
-    square.refuses_with(&["export", "scene.toml", "-o", "out.png"], &[".npz, .vti, .csv, .stl, .glb or .gltf"]);
+    square.refuses_with(
+        &["export", "scene.toml", "-o", "out.png"],
+        &[".npz, .vti, .csv, .stl, .glb or .gltf"],
+    );
     square.refuses_with(&["export", "scene.toml", "--table", "-o", "out.npz"], &[".csv or .json"]);
     square.refuses_with(&["export", "scene.toml", "--device", "3", "-o", "out.npz"], &["device 3"]);
     square.refuses_with(
@@ -306,7 +309,10 @@ fn exports_that_cannot_be_made() {
     );
     small("").refuses_with(&["export", "scene.toml", "-o", "out.npz"], &["no device"]);
     small("").refuses_with(&["export", "scene.toml", "-o", "out.stl"], &["no device"]);
-    square.refuses_with(&["export", "scene.toml", "-o", "out.glb"], &["device 0", "endless", "`length`"]);
+    square.refuses_with(
+        &["export", "scene.toml", "-o", "out.glb"],
+        &["device 0", "endless", "`length`"],
+    );
 }
 
 #[test]
