@@ -13,8 +13,8 @@ from typing import Any
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "notebooks"
 
-#: Pictures have so many colors: notebooks are kept for their lines, not for their shades.
-COLORS = 96
+#: Pictures have so many colors, and are so wide at most (pixels): what they show is to be seen, not measured.
+COLORS, WIDEST = 64, 760
 
 
 def small(png: str) -> str:
@@ -22,6 +22,7 @@ def small(png: str) -> str:
     from PIL import Image
 
     image = Image.open(io.BytesIO(base64.b64decode(png))).convert("RGB")
+    image.thumbnail((WIDEST, 10 * WIDEST))
     out = io.BytesIO()
     image.quantize(COLORS).save(out, "PNG", optimize=True)
     return base64.b64encode(out.getvalue()).decode() + "\n"

@@ -41,7 +41,7 @@ class Table:
 
 class Device(Table):
     kind: str
-
+PLACEMENT
 def class_name(kind: str) -> str: ...
 
 DEVICES: dict[str, type[Device]]
@@ -78,9 +78,24 @@ def annotation(name: str, description: Mapping[str, Any], *, given: bool) -> str
     return {"number": "float", "integer": "int", "boolean": "bool"}[str(kind)]
 
 
+def reading(name: str, description: Mapping[str, Any]) -> list[str]:
+    """The property that gives a key."""
+    optional = "" if "default" in description else " | None"
+    returned = annotation(name, description, given=False)
+    return ["    @property", f"    def {name}(self) -> {returned}{optional}: ..."]
+
+
+def placement() -> list[str]:
+    """The properties that all devices have."""
+    first, *others = tables.DEVICES.values()
+    same = (name for name in first._properties if all(name in other._properties for other in others))
+    lines = [reading(name, first._properties[name]) for name in same]
+    return [line for two in lines for line in two]
+
+
 def stub() -> str:
     """The text of the stub."""
-    parts = [HEADER]
+    parts = [HEADER.replace("PLACEMENT", "\n".join(placement()) + "\n")]
     for base, classes in (("Device", tables.DEVICES), ("Table", tables.TABLES)):
         for cls in classes.values():
             lines = [f"\nclass {cls.__name__}({base}):", "    def __init__(", "        self,", "        *,"]
@@ -88,11 +103,8 @@ def stub() -> str:
                 lines.append(f"        {name}: {annotation(name, description, given=True)} | None = ...,")
             lines.append("    ) -> None: ...")
             for name, description in cls._properties.items():
-                if not hasattr(cls, name):
-                    continue
-                optional = "" if "default" in description else " | None"
-                returned = annotation(name, description, given=False)
-                lines += ["    @property", f"    def {name}(self) -> {returned}{optional}: ..."]
+                if hasattr(cls, name):
+                    lines += reading(name, description)
             parts.append("\n".join(lines) + "\n")
     names = ", ".join(f'"{name}"' for name in tables.__all__)
     return "".join(parts) + f"\n__all__ = [{names}]\n"

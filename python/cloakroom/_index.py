@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ._arrays import numbers
 
-__all__ = ["SPACING", "grid_array", "index_array"]
+__all__ = ["SPACING", "check_shapes", "grid_array", "index_array"]
 
 #: What a function's grid is asked for beside the keys of the catalogue.
 SPACING: dict[str, Any] = {
@@ -47,6 +47,20 @@ def grid_array(name: str, values: Any, most: int) -> Any:
         return os.path.abspath(values)
     array = _checked(name, values, "one number, or real numbers of the shape of index, or a path", range(most + 1))
     return float(array) if array.ndim == 0 else array
+
+
+def check_shapes(index: Any, ratio: Any, optic_axis: Any) -> None:
+    """Refuses arrays of ratios and optic axes that are not on the grid of the index."""
+    if not isinstance(index, np.ndarray):
+        return
+    shape = index.shape
+    if min(shape) < _LEAST:
+        raise ValueError(f"index has the shape {shape}; expected {_LEAST} samples at least each way")
+    known = {"ratio": (ratio, [shape]), "optic_axis": (optic_axis, [(3,), shape, (*shape, 3)])}
+    for name, (values, shapes) in known.items():
+        if isinstance(values, np.ndarray) and values.shape not in shapes:
+            listed = " or ".join(map(str, shapes))
+            raise ValueError(f"{name} has the shape {values.shape}; expected {listed}, as index has the shape {shape}")
 
 
 def _checked(name: str, values: Any, expected: str, dimensions: Container[int] = (2,)) -> NDArray[np.float64]:

@@ -36,6 +36,10 @@ class Optimum:
     history: Arrays
 
 
+#: A search that has come to so much of what it has begun with is near the bottom.
+_NEAR = 1e-4
+
+
 class _Enough(Exception):
     """As many evaluations as are allowed."""
 
@@ -102,6 +106,11 @@ class _Search:
         # Worse than all that is there, so that no step goes there.
         worst = max((cost for cost in self.costs if cost < np.inf), default=1.0)
         return found if found is not None else np.full(self.residuals or 1, 1e3 * np.sqrt(worst + 1e-300))
+
+    def is_near(self) -> bool:
+        """Whether going down by residuals, which needs few steps, may take over."""
+        finite = [cost for cost in self.costs if cost < np.inf]
+        return self.residuals is not None and min(finite, default=np.inf) < _NEAR * float(np.median(finite[:100]))
 
     def best(self) -> NDArray[np.float64]:
         return self.points[int(np.argmin(self.costs))]
@@ -215,8 +224,9 @@ def _run(solvers: Any, search: _Search, begin: NDArray[np.float64] | None, toler
     count = len(search.bounds)
     if begin is None:
         solvers.differential_evolution(
-            search.cost, [(0.0, 1.0)] * count, rng=search.seed, polish=False, tol=1e-3, atol=1e-12, init="sobol"
-        )
+            search.cost, [(0.0, 1.0)] * count, seed=search.seed, polish=False, tol=1e-3, atol=1e-12, init="sobol",
+            callback=lambda point, convergence: search.is_near(),
+        )  # fmt: skip
         begin = search.best()
     elif not np.isfinite(search.cost(begin)):
         search.build(search.values(begin))._native.build()

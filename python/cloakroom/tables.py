@@ -17,7 +17,7 @@ import numpy as np
 
 from . import _cloakroom
 from ._arrays import image_of, is_image_array
-from ._index import SPACING, grid_array, index_array
+from ._index import SPACING, check_shapes, grid_array, index_array
 
 _SCHEMA: dict[str, Any] = json.loads(_cloakroom.schema())
 
@@ -113,6 +113,7 @@ class _Graded(Device):
             if keys.get(name) is not None:
                 keys[name] = grid_array(name, keys[name], most)
         super().__init__(**keys)
+        check_shapes(*(keys.get(name) for name in ("index", "ratio", "optic_axis")))
 
     def __repr__(self) -> str:
         words = {name: repr(value) for name, value in self._given.items()}

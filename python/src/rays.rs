@@ -2,10 +2,10 @@
 
 use crate::errors::{Failure, value_error};
 use crate::scenes::Scene;
-use crate::supervision::supervised;
+use crate::supervision::{at_once, supervised};
 use cloakroom::output;
 use cloakroom::ray_json::{Polarization, launch, leaf_table};
-use cloakroom::render::ray_settings;
+use cloakroom::render::{Supervision, ray_settings};
 use cloakroom::trace::{LeafTable, PathTable, RaySettings};
 use ndarray::{Array, Array2, Array3, ArrayView2, Axis, ShapeError};
 use num_complex::Complex64;
@@ -54,6 +54,9 @@ pub fn trace<'py>(
     arrays(py, leaves(py, scene, &rays, [word], settings, progress)?, group_delay)
 }
 
+/// So many rays take less time than threads.
+const FEW: usize = 16;
+
 /// The rays as they are handed over.
 #[derive(Clone, Copy)]
 struct Rays<'a> {
@@ -83,11 +86,17 @@ fn leaves<const N: usize>(
         };
         launch(row(&origins), row(&directions), polarizations)
     };
-    supervised(py, progress.as_ref(), |watch, supervision| {
-        let assembly = scene.assembly()?;
-        watch.begin(count as u64);
+    let traced = |supervision: &Supervision<'_>| -> Result<_, Failure> {
         let (done, stop) = (supervision.rows_done, supervision.stop);
-        Ok(leaf_table(assembly, settings, count, &launched, done, stop)?)
+        Ok(leaf_table(scene.assembly()?, settings, count, &launched, done, stop)?)
+    };
+    if count <= FEW && scene.is_built() && progress.is_none() {
+        return at_once(py, traced);
+    }
+    supervised(py, progress.as_ref(), |watch, supervision| {
+        scene.assembly()?;
+        watch.begin(count as u64);
+        traced(supervision)
     })
 }
 
@@ -191,10 +200,11 @@ pub fn export_paths(
     let polarizations = power.len_of(Axis(1));
     let powers: Vec<f64> = power.iter().copied().collect();
     supervised(py, None, |_, _| {
-        Ok(match polarizations {
-            1 => output::write_paths(&with_power::<1>(table, &powers), &[], &path)?,
-            _ => output::write_paths(&with_power::<2>(table, &powers), &[], &path)?,
-        })
+        let written = match polarizations {
+            1 => output::write_paths(&with_power::<1>(table, &powers), &[], &path),
+            _ => output::write_paths(&with_power::<2>(table, &powers), &[], &path),
+        };
+        Ok(written?)
     })
 }
 

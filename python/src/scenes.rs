@@ -203,6 +203,9 @@ impl Scene {
 
     /// Builds the devices and keeps them.
     fn build(&self, py: Python<'_>) -> Result<(), Failure> {
+        if self.is_built() {
+            return Ok(());
+        }
         supervised(py, None, |_, _| self.assembly().map(drop))
     }
 
@@ -268,6 +271,11 @@ impl Scene {
         let is_array = |image: &ImageSource| matches!(image, ImageSource::Memory(_));
         let scene = self.scene();
         is_array(&scene.photograph.image) || scene.surroundings.image.as_ref().is_some_and(is_array)
+    }
+
+    /// Whether its devices have been built.
+    pub fn is_built(&self) -> bool {
+        self.assembly.get().is_some()
     }
 
     /// Its devices, built.

@@ -97,6 +97,23 @@ pub fn supervised<T: Send>(
     }
 }
 
+/// Runs work that takes no longer than it would take to tell other threads of it.
+///
+/// # Errors
+///
+/// That of the work; `RuntimeError` for a panic.
+pub fn at_once<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&Supervision<'_>) -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
+    let stop = AtomicBool::new(false);
+    let result = py.detach(|| {
+        // What a panic leaves behind is dropped with it.
+        catch_unwind(AssertUnwindSafe(|| work(&Supervision { rows_done: &|_| {}, stop: &stop })))
+    });
+    result.unwrap_or_else(|panic| Err(panicked(&*panic).into()))
+}
+
 /// A panic as an exception.
 fn panicked(panic: &(dyn Any + Send)) -> PyErr {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());

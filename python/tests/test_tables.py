@@ -109,6 +109,9 @@ def test_coatings_and_metals_are_tables_within_a_device() -> None:
         ("Photograph", {"image": np.zeros((2, 3), dtype=int)}, TypeError, "image is of the type int64"),
         ("Photograph", {"image": np.full((2, 3), np.inf)}, ValueError, "not a finite number, in column 0 and row 0"),
         ("Photograph", {"image": b"x.png"}, TypeError, "image is a bytes"),
+        ("Graded", {"index": np.ones((2, 9))}, ValueError, "index has the shape (2, 9); expected 4 samples at least"),
+        ("Graded", {"index": np.ones((9, 9)), "ratio": np.ones((5, 5))}, ValueError, "ratio has the shape (5, 5); expected (9, 9)"),
+        ("Graded", {"index": np.ones((9, 9)), "optic_axis": np.ones((9, 2))}, ValueError, "expected (3,) or (9, 9) or (9, 9, 3)"),
         ("Device", {}, TypeError, "take one of its subclasses"),
     ],
 )

@@ -4,3 +4,4 @@ mod any_pose;
 mod further_on;
 mod graded_space;
 mod numbers;
+mod paths;

@@ -183,12 +183,9 @@ fn apply_one(
 fn called(root: &Value, path: &[String]) -> Option<(usize, usize)> {
     let parts = if path[0] == DEVICES { 2 } else { 1 };
     let name = path.get(parts - 1)?;
-    let (_, devices) = root.as_table()?.iter().find(|(key, _)| key == DEVICES)?;
-    let is_called = |device: &Value| {
-        let mut entries = device.as_table().unwrap_or_default().iter();
-        entries.any(|(key, value)| key == key!(Placement.name) && value.as_text() == Some(name))
-    };
-    Some((parts, devices.as_list()?.iter().position(is_called)?))
+    let devices = root.entry(DEVICES).and_then(Value::as_list)?;
+    let called = |device: &Value| device.entry(key!(Placement.name)).and_then(Value::as_text) == Some(name);
+    Some((parts, devices.iter().position(called)?))
 }
 
 /// A value as people type it: a resolution may be 640x480.

@@ -194,9 +194,9 @@ fn overrides_point_at_themselves() {
         ),
         (
             two,
-            "device.0.coating.0.uniaxial.optic_axis.1=5",
-            "device.0.coating.0.uniaxial.optic_axis is not written in the scene, so an entry of it \
-             cannot be set alone; set all of it: device.0.coating.0.uniaxial.optic_axis=[...]",
+            "device.0.coating.0.optic_axis.1=5",
+            "device.0.coating.0.optic_axis is not written in the scene, so an entry of it \
+             cannot be set alone; set all of it: device.0.coating.0.optic_axis=[...]",
         ),
         (
             "[camera]\nposition = [1, 2, 3]",
