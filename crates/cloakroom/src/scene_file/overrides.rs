@@ -184,7 +184,8 @@ fn called(root: &Value, path: &[String]) -> Option<(usize, usize)> {
     let parts = if path[0] == DEVICES { 2 } else { 1 };
     let name = path.get(parts - 1)?;
     let devices = root.entry(DEVICES).and_then(Value::as_list)?;
-    let called = |device: &Value| device.entry(key!(Placement.name)).and_then(Value::as_text) == Some(name);
+    let called =
+        |device: &Value| device.entry(key!(Placement.name)).and_then(Value::as_text) == Some(name);
     Some((parts, devices.iter().position(called)?))
 }
 
