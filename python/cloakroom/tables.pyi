@@ -27,7 +27,9 @@ class Table:
 class Device(Table):
     kind: str
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -64,7 +66,8 @@ class SquareCloak(Device):
         side: float | None = ...,
         kappa: float | None = ...,
         rounded: bool | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -86,7 +89,9 @@ class SquareCloak(Device):
     @property
     def rounded(self) -> bool: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -120,7 +125,8 @@ class DoubleGaussianCloak(Device):
         height: float | None = ...,
         fresnel: bool | None = ...,
         referenced: bool | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -146,7 +152,9 @@ class DoubleGaussianCloak(Device):
     @property
     def referenced(self) -> bool: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -177,7 +185,8 @@ class CylinderCloak(Device):
         inner: float | None = ...,
         outer: float | None = ...,
         material: Literal["impedance-matched", "radial-uniaxial", "azimuthal-uniaxial"] | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -197,7 +206,9 @@ class CylinderCloak(Device):
     @property
     def material(self) -> Literal["impedance-matched", "radial-uniaxial", "azimuthal-uniaxial"]: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -227,7 +238,8 @@ class SphereCloak(Device):
         *,
         inner: float | None = ...,
         outer: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -245,7 +257,9 @@ class SphereCloak(Device):
     @property
     def outer(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -275,7 +289,8 @@ class InvisibleSphere(Device):
         *,
         radius: float | None = ...,
         material: Literal["graded", "regularized"] | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -293,7 +308,9 @@ class InvisibleSphere(Device):
     @property
     def material(self) -> Literal["graded", "regularized"]: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -323,7 +340,8 @@ class BendingSphere(Device):
         *,
         radius: float | None = ...,
         angle: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -341,7 +359,9 @@ class BendingSphere(Device):
     @property
     def angle(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -370,7 +390,8 @@ class EatonLens(Device):
         self,
         *,
         radius: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -386,7 +407,9 @@ class EatonLens(Device):
     @property
     def radius(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -415,7 +438,8 @@ class LuneburgLens(Device):
         self,
         *,
         radius: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -431,7 +455,9 @@ class LuneburgLens(Device):
     @property
     def radius(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -460,7 +486,8 @@ class FisheyeLens(Device):
         self,
         *,
         radius: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -476,7 +503,9 @@ class FisheyeLens(Device):
     @property
     def radius(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -508,7 +537,8 @@ class FisheyeHemisphere(Device):
         index: float | None = ...,
         cut_normal: ArrayLike | None = ...,
         cut_distance: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -530,7 +560,9 @@ class FisheyeHemisphere(Device):
     @property
     def cut_distance(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -560,7 +592,8 @@ class MirrorDetour(Device):
         *,
         offset: float | None = ...,
         half_length: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -578,7 +611,9 @@ class MirrorDetour(Device):
     @property
     def half_length(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -608,7 +643,9 @@ class Prisms(Device):
         *,
         prism: Sequence[Mapping[str, Any]] | None = ...,
         imitated: Sequence[Mapping[str, Any]] | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        floor: float | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -626,7 +663,11 @@ class Prisms(Device):
     @property
     def imitated(self) -> list[dict[str, Any]]: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def floor(self) -> float: ...
+    @property
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -661,7 +702,9 @@ class Graded(Device):
         width: float | None = ...,
         height: float | None = ...,
         inner: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        floor: float | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -690,7 +733,11 @@ class Graded(Device):
     @property
     def inner(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def floor(self) -> float: ...
+    @property
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -721,7 +768,8 @@ class GradedBox(Device):
         sides: ArrayLike | None = ...,
         index: float | None = ...,
         gradient: ArrayLike | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -741,7 +789,9 @@ class GradedBox(Device):
     @property
     def gradient(self) -> list[Any]: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -783,7 +833,8 @@ class Body(Device):
         biaxial: Mapping[str, Any] | None = ...,
         material: Literal["calcite", "quartz", "sapphire", "magnesium-fluoride", "rutile", "lithium-niobate", "bk7", "sf11", "fused-silica", "pmma", "water", "air", "silver", "gold", "aluminium"] | str | Material | Mapping[str, Any] | None = ...,
         optic_axis: ArrayLike | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -825,7 +876,90 @@ class Body(Device):
     @property
     def optic_axis(self) -> Any | None: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
+    @property
+    def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def rotation(self) -> float: ...
+    @property
+    def axis(self) -> list[Any]: ...
+    @property
+    def position(self) -> list[Any]: ...
+    @property
+    def length(self) -> float | None: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
+    @property
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
+
+class Polyhedron(Device):
+    def __init__(
+        self,
+        *,
+        vertices: str | ArrayLike | None = ...,
+        planes: str | ArrayLike | None = ...,
+        mesh: str | None = ...,
+        scale: float | None = ...,
+        permittivity: ArrayLike | None = ...,
+        permeability: ArrayLike | None = ...,
+        group_index: float | None = ...,
+        index: ArrayLike | None = ...,
+        uniaxial: Mapping[str, Any] | None = ...,
+        biaxial: Mapping[str, Any] | None = ...,
+        material: Literal["calcite", "quartz", "sapphire", "magnesium-fluoride", "rutile", "lithium-niobate", "bk7", "sf11", "fused-silica", "pmma", "water", "air", "silver", "gold", "aluminium"] | str | Material | Mapping[str, Any] | None = ...,
+        optic_axis: ArrayLike | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
+        core: Literal["metal", "open"] | None = ...,
+        rotation: float | None = ...,
+        axis: ArrayLike | None = ...,
+        position: ArrayLike | None = ...,
+        length: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        resonance_nm: float | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
+    ) -> None: ...
+    @property
+    def vertices(self) -> str | list[Any] | None: ...
+    @property
+    def planes(self) -> str | list[Any] | None: ...
+    @property
+    def mesh(self) -> str | None: ...
+    @property
+    def scale(self) -> float: ...
+    @property
+    def permittivity(self) -> Any: ...
+    @property
+    def permeability(self) -> Any: ...
+    @property
+    def group_index(self) -> float | None: ...
+    @property
+    def index(self) -> Any | None: ...
+    @property
+    def uniaxial(self) -> dict[str, Any] | None: ...
+    @property
+    def biaxial(self) -> dict[str, Any] | None: ...
+    @property
+    def material(self) -> Literal["calcite", "quartz", "sapphire", "magnesium-fluoride", "rutile", "lithium-niobate", "bk7", "sf11", "fused-silica", "pmma", "water", "air", "silver", "gold", "aluminium"] | str | dict[str, Any] | None: ...
+    @property
+    def optic_axis(self) -> Any | None: ...
+    @property
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -867,7 +1001,8 @@ class Lens(Device):
         biaxial: Mapping[str, Any] | None = ...,
         material: Literal["calcite", "quartz", "sapphire", "magnesium-fluoride", "rutile", "lithium-niobate", "bk7", "sf11", "fused-silica", "pmma", "water", "air", "silver", "gold", "aluminium"] | str | Material | Mapping[str, Any] | None = ...,
         optic_axis: ArrayLike | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -909,7 +1044,9 @@ class Lens(Device):
     @property
     def optic_axis(self) -> Any | None: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -939,7 +1076,8 @@ class Polarizer(Device):
         *,
         width: float | None = ...,
         angle: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -957,7 +1095,60 @@ class Polarizer(Device):
     @property
     def angle(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
+    @property
+    def core(self) -> Literal["metal", "open"]: ...
+    @property
+    def rotation(self) -> float: ...
+    @property
+    def axis(self) -> list[Any]: ...
+    @property
+    def position(self) -> list[Any]: ...
+    @property
+    def length(self) -> float | None: ...
+    @property
+    def dispersion(self) -> Literal["causal", "none", "drude", "lorentz"]: ...
+    @property
+    def design_wavelength_nm(self) -> float: ...
+    @property
+    def resonance_nm(self) -> float | None: ...
+    @property
+    def coating(self) -> list[dict[str, Any]]: ...
+    @property
+    def metal(self) -> bool | dict[str, Any] | None: ...
+    @property
+    def imperfection(self) -> dict[str, Any] | None: ...
+
+class Mirror(Device):
+    def __init__(
+        self,
+        *,
+        width: float | None = ...,
+        height: float | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
+        core: Literal["metal", "open"] | None = ...,
+        rotation: float | None = ...,
+        axis: ArrayLike | None = ...,
+        position: ArrayLike | None = ...,
+        length: float | None = ...,
+        dispersion: Literal["causal", "none", "drude", "lorentz"] | None = ...,
+        design_wavelength_nm: float | None = ...,
+        resonance_nm: float | None = ...,
+        coating: Sequence[Mapping[str, Any]] | None = ...,
+        metal: bool | Mapping[str, Any] | None = ...,
+        imperfection: Mapping[str, Any] | None = ...,
+    ) -> None: ...
+    @property
+    def width(self) -> float: ...
+    @property
+    def height(self) -> float: ...
+    @property
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -990,7 +1181,8 @@ class GaussianCarpet(Device):
         width: float | None = ...,
         height: float | None = ...,
         floor: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -1014,7 +1206,9 @@ class GaussianCarpet(Device):
     @property
     def floor(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -1047,7 +1241,8 @@ class GratingCarpet(Device):
         width: float | None = ...,
         height: float | None = ...,
         floor: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -1071,7 +1266,9 @@ class GratingCarpet(Device):
     @property
     def floor(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -1104,7 +1301,8 @@ class QuasiConformalCarpet(Device):
         width: float | None = ...,
         height: float | None = ...,
         floor: float | None = ...,
-        show: Literal["cloak", "bare", "mirror"] | None = ...,
+        name: str | None = ...,
+        show: Literal["cloak", "bare", "mirror", "empty"] | None = ...,
         core: Literal["metal", "open"] | None = ...,
         rotation: float | None = ...,
         axis: ArrayLike | None = ...,
@@ -1128,7 +1326,9 @@ class QuasiConformalCarpet(Device):
     @property
     def floor(self) -> float: ...
     @property
-    def show(self) -> Literal["cloak", "bare", "mirror"]: ...
+    def name(self) -> str | None: ...
+    @property
+    def show(self) -> Literal["cloak", "bare", "mirror", "empty"]: ...
     @property
     def core(self) -> Literal["metal", "open"]: ...
     @property
@@ -1217,6 +1417,7 @@ class Photograph(Table):
         normal: ArrayLike | None = ...,
         up: ArrayLike | None = ...,
         width: float | None = ...,
+        border: Literal["none", "mirror", "repeat", "clamp"] | None = ...,
     ) -> None: ...
     @property
     def image(self) -> str: ...
@@ -1230,6 +1431,8 @@ class Photograph(Table):
     def up(self) -> list[Any]: ...
     @property
     def width(self) -> float | None: ...
+    @property
+    def border(self) -> Literal["none", "mirror", "repeat", "clamp"]: ...
 
 class PictureSettings(Table):
     def __init__(
@@ -1238,6 +1441,9 @@ class PictureSettings(Table):
         channels: Sequence[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay", "spectrum"]] | None = ...,
         map: Literal["none", "time_of_flight", "time_of_flight_spread", "time_of_flight_difference", "group_delay", "group_delay_spread", "group_delay_difference", "delivered", "escaped", "absorbed", "pruned", "extraordinary_share", "first_face_reflectance"] | None = ...,
         color_bar: bool | None = ...,
+        map_range: ArrayLike | None = ...,
+        map_percentile: float | None = ...,
+        colormap: Literal["auto", "viridis", "cividis", "magma", "blue-red"] | None = ...,
     ) -> None: ...
     @property
     def channels(self) -> list[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay", "spectrum"]]: ...
@@ -1245,6 +1451,12 @@ class PictureSettings(Table):
     def map(self) -> Literal["none", "time_of_flight", "time_of_flight_spread", "time_of_flight_difference", "group_delay", "group_delay_spread", "group_delay_difference", "delivered", "escaped", "absorbed", "pruned", "extraordinary_share", "first_face_reflectance"]: ...
     @property
     def color_bar(self) -> bool: ...
+    @property
+    def map_range(self) -> list[Any] | None: ...
+    @property
+    def map_percentile(self) -> float | None: ...
+    @property
+    def colormap(self) -> Literal["auto", "viridis", "cividis", "magma", "blue-red"]: ...
 
 class Receiver(Table):
     def __init__(
@@ -1292,4 +1504,4 @@ class TraceSettings(Table):
     @property
     def exact(self) -> bool: ...
 
-__all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name", "SquareCloak", "DoubleGaussianCloak", "CylinderCloak", "SphereCloak", "InvisibleSphere", "BendingSphere", "EatonLens", "LuneburgLens", "FisheyeLens", "FisheyeHemisphere", "MirrorDetour", "Prisms", "Graded", "GradedBox", "Body", "Lens", "Polarizer", "GaussianCarpet", "GratingCarpet", "QuasiConformalCarpet", "Camera", "Light", "Photograph", "PictureSettings", "Receiver", "Surroundings", "TraceSettings"]
+__all__ = ["DEVICES", "TABLES", "Device", "Table", "class_name", "SquareCloak", "DoubleGaussianCloak", "CylinderCloak", "SphereCloak", "InvisibleSphere", "BendingSphere", "EatonLens", "LuneburgLens", "FisheyeLens", "FisheyeHemisphere", "MirrorDetour", "Prisms", "Graded", "GradedBox", "Body", "Polyhedron", "Lens", "Polarizer", "Mirror", "GaussianCarpet", "GratingCarpet", "QuasiConformalCarpet", "Camera", "Light", "Photograph", "PictureSettings", "Receiver", "Surroundings", "TraceSettings"]

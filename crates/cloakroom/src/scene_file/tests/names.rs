@@ -42,7 +42,9 @@ fn a_name_means_one_thing() {
 
 #[test]
 fn messages_call_a_device_by_its_name() {
-    let scene = scene_with(TWO, &["right-hand.position=[0, 0, 0]"]);
+    let both = "[[device]]\nkind = \"lens\"\nname = \"left\"\n\
+                [[device]]\nkind = \"lens\"\nname = \"right-hand\"\nposition = [30, 0, 0]\n";
+    let scene = scene_with(both, &["right-hand.position=[0, 0, 0]"]);
     let error = crate::render::assembly(&scene).expect_err("they overlap").to_string();
     let expected = "device 1 (\"right-hand\") overlaps device 0 (\"left\"); ";
     assert!(error.starts_with(expected), "{error}");
