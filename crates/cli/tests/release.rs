@@ -13,7 +13,7 @@ fn text(arguments: &[&str]) -> String {
 /// The subcommands as the help lists them.
 fn commands() -> Vec<String> {
     let help = text(&["--help"]);
-    let list = help.split_once("Commands:\n").unwrap().1.split_once("\nOptions:").unwrap().0;
+    let list = help.split_once("\n\n").unwrap().1.split_once("\nOptions:").unwrap().0;
     let names = list.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
     let names = names.map(|line| line.split_whitespace().next().unwrap().to_owned());
     names.filter(|name| name != "help").collect()

@@ -294,7 +294,7 @@ fn files_hold_the_table() {
     let text = std::fs::read_to_string(csv).unwrap();
     let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(lines.len(), 7);
-    assert_eq!(lines[0][..3], ["camera.polarizer", "device.0.rotation", "silhouette_share"]);
+    assert_eq!(lines[0][..3], ["camera.polarizer", "device.0.rotation", "in_place_share"]);
     assert_eq!((lines[0].len(), lines[0][2 + column]), (2 + table.columns.len(), "delivered"));
     assert_eq!(
         (&lines[3][..2], &lines[6][..2]),

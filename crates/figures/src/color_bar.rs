@@ -38,21 +38,22 @@ impl ColorBar {
         (self.scale.has_gaps && self.scale.range.is_some()).then_some(label)
     }
 
-    /// In type of a size: the height of the colours, the axis, the width of its widest label, and the
-    /// lines of its title.
-    fn layout(&self, height: f64, text: f64) -> (f64, Axis, f64, Vec<String>) {
+    /// In type of a size: the height of the colours, the axis, the width of its widest label without
+    /// and with that of what has no number, and the lines of its title.
+    fn layout(&self, height: f64, text: f64) -> (f64, Axis, [f64; 2], Vec<String>) {
         let gap = self.gap_label();
         let height = if gap.is_some() { height - (ABOVE_GAP + GAP) * text } else { height };
         let axis = axis(&self.quantity, self.scale.range, (height / (1.6 * text)) as usize);
-        let labels = axis.ticks.iter().map(|tick| &*tick.label).chain(gap);
-        let widest = labels.map(|label| Face::Regular.width(label, text)).fold(0.0, f64::max);
+        let width = |label: &str| Face::Regular.width(label, text);
+        let ticks = axis.ticks.iter().map(|tick| width(&tick.label)).fold(0.0, f64::max);
+        let all = gap.map_or(ticks, |gap| ticks.max(width(gap)));
         let title = Face::Regular.wrap(&axis.title, text, height);
-        (height, axis, widest, title)
+        (height, axis, [ticks, all], title)
     }
 
     /// The width that it takes up if it is so high, with type of that size.
     pub(super) fn width(&self, height: f64, text: f64) -> f64 {
-        let (_, _, widest, title) = self.layout(height, text);
+        let (_, _, [_, widest], title) = self.layout(height, text);
         widest + (LABELS + 0.2 + LINE * title.len() as f64) * text
     }
 
@@ -60,7 +61,7 @@ impl ColorBar {
     /// gray; labels, and the points, reach beyond them by up to half the height of the type.
     pub(super) fn draw(&self, drawing: &mut Drawing, at: DVec2, height: f64, text: f64) {
         let bottom = at.y + height;
-        let (height, axis, widest, title) = self.layout(height, text);
+        let (height, axis, [ticks, widest], title) = self.layout(height, text);
         let width = COLORS * text;
         let frame = Frame { corner: at, size: DVec2::new(width, height), text };
         let image = RgbImage::from_fn(1, STEPS, |_, row| {
@@ -81,7 +82,7 @@ impl ColorBar {
             }
         }
         // To the right, so that digits stand below each other.
-        let right = at.x + LABELS * text + widest;
+        let right = at.x + LABELS * text + ticks;
         if let Some(label) = self.gap_label() {
             let size = DVec2::new(width, GAP * text);
             let sample = Frame { corner: DVec2::new(at.x, bottom - size.y), size, text };
@@ -99,7 +100,7 @@ impl ColorBar {
             drawing.add_words("tick-label", words.anchored(1.0));
         }
         for (line, outwards) in title.iter().zip(0..) {
-            let x = right + (0.8 + LINE * f64::from(outwards)) * text;
+            let x = at.x + LABELS * text + widest + (0.8 + LINE * f64::from(outwards)) * text;
             let words = Words::new(line.clone(), DVec2::new(x, at.y + height / 2.0), text);
             drawing.add_words("color-bar-title", words.turned(90.0));
         }

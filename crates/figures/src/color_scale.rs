@@ -69,7 +69,7 @@ impl ColorScale {
         };
         let (low, high) = match (settings.map_range, settings.map_percentile) {
             (Some([low, high]), _) => (low, high),
-            (None, Some(percent)) => middle(0.5 - percent / 200.0),
+            (None, Some(percent)) => middle((100.0 - percent) / 200.0),
             (None, None) => {
                 let (from, to) = middle(OUTLIERS);
                 let most = to - from;

@@ -13,7 +13,7 @@ use cloakroom::output::{RgbImage, to_srgb};
 use cloakroom::render::{
     ChannelSet, Images, PreparedScene, PreparedSceneError, Supervision, render,
 };
-use cloakroom::scene::{DeviceSettings, Placement, Scene};
+use cloakroom::scene::{DeviceSettings, PictureSettings, Placement, Scene};
 use cloakroom::trace::Stopped;
 use cloakroom_figures::{Quantity, ScalarMap};
 use serde_json::{Value, json};
@@ -167,10 +167,10 @@ impl Painter<'_> {
         }
         self.devices.clone_from(&scene.devices);
         for pass in self.pace.passes(look) {
-            let mut time = Duration::ZERO;
+            let (mut time, mut range) = (Duration::ZERO, None);
             for (number, (name, scene)) in views.iter().enumerate() {
                 let last = number + 1 == views.len();
-                time += self.picture(wish, (name, last), scene, pass, images)?;
+                time += self.picture(wish, (name, last), scene, (pass, &mut range), images)?;
             }
             self.pace.add(pass, time);
             if pass.coarse && !look.moving {
@@ -185,14 +185,14 @@ impl Painter<'_> {
         Ok(())
     }
 
-    /// Renders and sends one picture: of a view, which may be the last of its pass. How long
-    /// rendering has taken.
+    /// Renders and sends one picture: of a view, which may be the last of its pass. Maps of one pass have
+    /// one range, that of the first. How long rendering has taken.
     fn picture(
         &self,
         wish: &Wish,
         (view, last): (&'static str, bool),
         scene: &Scene,
-        pass: Pass,
+        (pass, range): (Pass, &mut Option<[f64; 2]>),
         images: &mut Images,
     ) -> Result<Duration, PaintError> {
         let mut scene = resized(scene, pass.size, pass.samples);
@@ -220,7 +220,11 @@ impl Painter<'_> {
         let (image, scale) = match scene.picture.map.name() {
             None => (to_srgb(&picture)?, Value::Null),
             Some(channel) => {
-                let map = ScalarMap::new(&picture, channel, &scene.picture)?;
+                let map_range = scene.picture.map_range.or(*range);
+                let settings = PictureSettings { map_range, ..scene.picture.clone() };
+                let map = ScalarMap::new(&picture, channel, &settings)?;
+                let shown = map.bar.scale.range.filter(|(low, high)| low < high);
+                *range = range.or(shown.map(|(low, high)| [low, high]));
                 let scale = scale(channel, map.bar.scale.range);
                 (map.image, scale)
             }

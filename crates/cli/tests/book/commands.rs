@@ -55,6 +55,9 @@ const WHERE_THERE_IS: [(&str, &str); 4] = [
     ("man -l", "man --version"),
 ];
 
+/// A mesh that a scene in the pages names.
+const MESH: &str = "part.stl";
+
 /// What came of the commands of a page.
 #[derive(Default)]
 struct Tried {
@@ -122,6 +125,11 @@ fn every_scene_in_the_pages_is_sound() {
         for (_, text) in page.code.iter().filter(|(language, _)| language == "toml") {
             scenes += 1;
             let scene = folder.path().join("of-the-page.toml");
+            if text.contains(MESH) {
+                let mut solid = cloakroom();
+                solid.args(["export", "gallery/polyhedron", "--device", "0", "-o"]);
+                solid.arg(folder.path().join(MESH)).assert().success();
+            }
             fs::write(&scene, text).unwrap();
             let output = cloakroom().arg("check").arg(&scene).output().unwrap();
             let words = String::from_utf8_lossy(&output.stderr);

@@ -70,7 +70,7 @@ fn concave_prisms_are_whole() {
     };
     let l = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 4.0], [0.0, 4.0]];
     let square = [[1.0, 1.0], [4.0, 1.0], [4.0, 4.0], [1.0, 4.0]];
-    let prism = vec![prism(&l, 1.5), prism(&square, 1.5)];
+    let prism = vec![prism(&l, 1.5), prism(&square, 2.0)];
     let prisms = Prisms { prism, ..Prisms::default() };
     let structure = prisms.build(Request::default()).expect("a device");
     assert!(structure.regions.len() > 2, "the L is cut");
