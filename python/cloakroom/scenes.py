@@ -544,7 +544,8 @@ class Scene:
         scenes = [self.replace(dict(zip(keys, row))) for row in rows]
         if len({scene.resolution for scene in scenes}) > 1:
             raise ValueError("camera.resolution changes from frame to frame; a film has one size")
-        if map_range is None and any(scene._native.map[0] is not None for scene in scenes):
+        shown = [scene._native.map for scene in scenes]
+        if map_range is None and any("map" in keys and "map_range" not in keys for keys in shown):
             raise ValueError("a film of a map needs one scale for all frames; give map_range=(low, high)")
         scale = None if map_range is None else _numbers("map_range", map_range, 2, "ns, or shares")
         natives = [scene._native for scene in scenes]
