@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -190,7 +191,7 @@ def optimize(
     (0.5773503, 0.5773503)
     """
     try:
-        import scipy.optimize as solvers
+        solvers = import_module("scipy.optimize")
     except ImportError:
         raise ImportError("scipy is not installed; pip install './python[optimize]' brings it") from None
     if isinstance(scene, Scene):
