@@ -78,6 +78,10 @@ pub enum DiagramError {
     Render(#[from] RenderError),
 }
 
+/// What a window is called in messages, and its least side, as a share of the size of the devices.
+const WINDOW: &str = "the width or height of the window";
+const LEAST_WINDOW: f64 = 1e-3;
+
 /// More rays than this are no diagram.
 const MOST_RAYS: u32 = 2000;
 
@@ -96,6 +100,13 @@ pub fn diagram(
     let devices = Devices::new(&assembly);
     let bounds =
         view::bounds(&assembly).or_else(|| devices.bounds()).ok_or(DiagramError::NoDevice)?;
+    let least = LEAST_WINDOW * (bounds[1] - bounds[0]).max_element();
+    if let Some(side) = settings.window.map(|[low, high]| (high - low).min_element())
+        && side < least
+    {
+        let (name, allowed) = (WINDOW, "a thousandth of the size of the devices, at least");
+        return Err(DiagramError::Setting { name, value: side, allowed });
+    }
     let z = settings.z.unwrap_or_else(|| assembly.devices()[0].pose.origin.z);
     let scenery = Scenery::new(bounds, z, settings);
     let launches = settings.source.launches(scene, settings, &scenery);
@@ -137,6 +148,9 @@ pub fn diagram(
                 drawing.add_line("wavefront", front, rays::FRONT).within(vec![frame.to_vec()]);
             }
             rays::draw(&mut drawing, &place, &frame, &trees);
+            if settings.window.is_some() {
+                view::cover_margins(&mut drawing, &frame);
+            }
             devices.draw_bar(&mut drawing, view::bar(sheet));
             draw_axes(&mut drawing, sheet - AXES - DVec2::new(MARGIN, 4.0));
         }
@@ -159,7 +173,7 @@ fn check(settings: &DiagramSettings) -> Result<(), DiagramError> {
     if let Some([low, high]) = settings.window {
         let size = (high - low).min_element();
         if !(size > 0.0 && low.is_finite() && high.is_finite()) {
-            return refuse("the width or height of the window", size, "above 0");
+            return refuse(WINDOW, size, "above 0");
         }
     }
     for (name, value) in [

@@ -156,6 +156,10 @@ fn nonsense_is_refused() {
     refused(DiagramSettings { rays: 0, ..usual.clone() }, "number of rays is 0");
     refused(DiagramSettings { width: Some(-1.0), ..usual.clone() }, "width");
     refused(DiagramSettings { wavefronts: Some(f64::NAN), ..usual.clone() }, "wavefronts");
+    for side in [-1.0, 0.0, 1e-7, f64::NAN] {
+        let window = Some([DVec2::ZERO, DVec2::splat(side)]);
+        refused(DiagramSettings { window, ..usual.clone() }, "window");
+    }
     refused(DiagramSettings { source: Source::Point(DVec3::ZERO), ..usual.clone() }, "device 0");
     let empty = drawn("[camera]\nseed = 1", &usual).expect_err("refused");
     assert!(matches!(empty, DiagramError::NoDevice));

@@ -104,6 +104,23 @@ pub(super) fn bar(sheet: DVec2) -> (DVec2, f64) {
     (DVec2::new(sheet.x - MARGIN - BAR + 0.6 * TEXT, 0.5 * (sheet.y - KEY - height)), height)
 }
 
+/// Covers what is drawn beyond a window, given by its corners on the sheet: devices go on there.
+pub(super) fn cover_margins(drawing: &mut Drawing, frame: &[DVec2; 4]) {
+    let [low, high] = [
+        frame.iter().copied().fold(DVec2::INFINITY, DVec2::min),
+        frame.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max),
+    ];
+    let sheet = drawing.size;
+    for [from, to] in [
+        [DVec2::ZERO, DVec2::new(low.x, sheet.y)],
+        [DVec2::new(high.x, 0.0), sheet],
+        [DVec2::ZERO, DVec2::new(sheet.x, low.y)],
+        [DVec2::new(0.0, high.y), sheet],
+    ] {
+        drawing.add_area("margin", corners([from, to - from])).filled(PAPER);
+    }
+}
+
 /// Draws what the strokes stand for, in a row at the lower edge.
 pub(super) fn draw_key(drawing: &mut Drawing, settings: &DiagramSettings) {
     let mut x = MARGIN;

@@ -202,7 +202,8 @@ impl Polyhedron {
         for (shell, volume) in (0u32..).zip(volumes) {
             let at = first[shell as usize].map(|triangle| self.piece(triangle as u32)[0]);
             let Some(at) = at else { continue };
-            let inside = self.surrounds(at, |triangle| shells[triangle as usize] != shell);
+            // Hollows show their insides: only how often they are crossed tells on which side one is.
+            let inside = self.crossings(at, |triangle| shells[triangle as usize] != shell) % 2 == 1;
             if inside != (volume < 0.0) {
                 return Err(MeshFault::Shell { at, inside });
             }

@@ -21,7 +21,12 @@ use super::{Outline, Plane, TOUCHING};
 use glam::{DMat3, DVec2, DVec3};
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use std::collections::HashMap;
+use std::sync::LazyLock;
 use tree::{Aabb, Tree};
+
+/// A direction along no edge that anybody draws.
+static SOMEWHERE: LazyLock<DVec3> =
+    LazyLock::new(|| DVec3::new(0.518_273_645_1, 0.289_471_836_5, 0.804_718_236_4).normalize());
 
 /// Triangles as a file lists them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -254,22 +259,14 @@ impl Polyhedron {
     /// Whether a point lies inside; on the border either may be said.
     #[must_use]
     pub fn holds(&self, point: DVec3) -> bool {
-        self.surrounds(point, |_| true)
-    }
-
-    /// Whether a point lies within those triangles that are asked for.
-    fn surrounds(&self, point: DVec3, asked: impl Fn(u32) -> bool) -> bool {
         let Aabb { low, high } = self.tree.around();
         if point.cmplt(low).any() || point.cmpgt(high).any() {
             return false;
         }
-        // Along no edge that anybody draws.
-        let direction = DVec3::new(0.518_273_645_1, 0.289_471_836_5, 0.804_718_236_4).normalize();
-        let ray = ShearedRay::new(point, direction);
+        let ray = ShearedRay::new(point, *SOMEWHERE);
         let mut nearest = None;
-        self.tree.along(&self.tree.ray(point, direction, 0.0), |triangle, to| {
-            if asked(triangle)
-                && let Some((distance, crossed)) = ray.crosses(self.piece(triangle))
+        self.tree.along(&self.tree.ray(point, *SOMEWHERE, 0.0), |triangle, to| {
+            if let Some((distance, crossed)) = ray.crosses(self.piece(triangle))
                 && (0.0..*to).contains(&distance)
             {
                 *to = distance;
@@ -277,6 +274,17 @@ impl Polyhedron {
             }
         });
         nearest == Some(Way::Out)
+    }
+
+    /// How often one crosses those triangles that are asked for on the way from a point out of all.
+    fn crossings(&self, point: DVec3, asked: impl Fn(u32) -> bool) -> usize {
+        let ray = ShearedRay::new(point, *SOMEWHERE);
+        let mut count = 0;
+        self.tree.along(&self.tree.ray(point, *SOMEWHERE, 0.0), |triangle, _| {
+            let crossed = asked(triangle).then(|| ray.crosses(self.piece(triangle))).flatten();
+            count += usize::from(crossed.is_some_and(|(distance, _)| distance >= 0.0));
+        });
+        count
     }
 
     /// The least and the greatest coordinates.

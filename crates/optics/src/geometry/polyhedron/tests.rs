@@ -36,6 +36,19 @@ fn cuboid(middle: DVec3, size: DVec3) -> Triangles {
     convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).expect("a hull")
 }
 
+/// Adds the triangles of another mesh.
+fn add(mesh: &mut Triangles, other: &Triangles) {
+    let first = mesh.corners.len() as u32;
+    mesh.corners.extend(&other.corners);
+    mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|corner| corner + first)));
+}
+
+/// The same, seen from inside.
+fn turned(mesh: &Triangles) -> Triangles {
+    let triangles = mesh.triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    Triangles { triangles, ..mesh.clone() }
+}
+
 /// A star: a ring of points, far and near in turn, between two tips. It is not convex.
 fn star() -> Triangles {
     let ring = (0..10).map(|k| {
@@ -222,15 +235,6 @@ fn what_bounds_no_solid_is_told() {
         change(&mut mesh);
         Polyhedron::new(&mesh).err()
     };
-    let add = |mesh: &mut Triangles, other: &Triangles| {
-        let first = mesh.corners.len() as u32;
-        mesh.corners.extend(&other.corners);
-        mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|corner| corner + first)));
-    };
-    let turned = |mesh: &Triangles| {
-        let triangles = mesh.triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
-        Triangles { triangles, ..mesh.clone() }
-    };
     let small = cuboid(DVec3::splat(0.03), DVec3::splat(0.2));
     // All the wrong way round is no fault.
     assert_eq!(fault(&|mesh| *mesh = turned(mesh)), None);
@@ -263,6 +267,26 @@ fn what_bounds_no_solid_is_told() {
     assert!(flat.is_some(), "{flat:?}");
     for fault in [open, branching, twisted, crossing, nested, beside].into_iter().flatten() {
         assert!(fault.to_string().contains('('), "{fault}");
+    }
+}
+
+/// Whatever the order of the triangles, and wherever a hollow is.
+#[test]
+fn hollows_are_taken() {
+    let mut numbers = Numbers(11);
+    for _ in 0..60 {
+        let mut mesh = cuboid(DVec3::ZERO, DVec3::splat(2.0));
+        let turn = numbers.pose();
+        let (middle, size) = (numbers.point() * 0.4, 0.2 + 0.5 * numbers.next());
+        let inner = cuboid(DVec3::ZERO, DVec3::splat(size));
+        let inner = moved(&inner, |at| middle + turn.rotation() * at);
+        add(&mut mesh, &turned(&inner));
+        for last in (1..mesh.triangles.len()).rev() {
+            mesh.triangles.swap(last, (numbers.next() * (last as f64 + 1.0)) as usize);
+        }
+        let solid = Polyhedron::new(&mesh).expect("a hollow cube");
+        assert!((solid.volume() - (8.0 - size.powi(3))).abs() < 1e-9);
+        assert!(!solid.holds(middle) && solid.holds(DVec3::splat(0.99)));
     }
 }
 
