@@ -42,6 +42,9 @@ pub fn animate(
         let rows = u64::from(first.scene().camera.resolution[1]) * count as u64;
         watch.begin(if is_film { rows + count as u64 } else { rows });
         let frames = FrameFolder::new(&folder, count)?;
+        if !is_film {
+            frames.check_none_beyond()?;
+        }
         let mut images = Images::default();
         let mut prepared = |frame: usize| scenes[frame].prepared_with(&mut images);
         let done = render_frames(0..count, &mut prepared, &frames, map_range, supervision)?;

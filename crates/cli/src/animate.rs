@@ -43,6 +43,9 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
         check_writable([path], &inputs)?;
     }
     let frames = FrameFolder::new(&folder, count)?;
+    if format == FilmFormat::Frames {
+        frames.check_none_beyond()?;
+    }
     check_writable(
         (0..count).map(|frame| frames.file(frame)).filter(|file| file.exists()),
         &inputs,
@@ -93,10 +96,9 @@ fn scenes(
     images: &mut Images,
 ) -> Result<Vec<Loaded>> {
     let (text, mut scenes) = (scene::text(&arguments.scene.scene)?, Vec::<Loaded>::new());
+    let still = scene::overrides(&arguments.scene, &arguments.picture)?;
     for frame in range {
-        let mut overrides =
-            [scene::overrides(&arguments.scene, &arguments.picture), timeline.overrides(frame)]
-                .concat();
+        let mut overrides = [&still[..], &timeline.overrides(frame)].concat();
         let load =
             |overrides: &[Override]| text.scene(overrides).map_err(|error| swept(error.into()));
         let mut loaded = load(&overrides)?;

@@ -22,7 +22,7 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
     let formats = formats(&outputs, PictureFormat::of)?;
     scene::use_threads(&arguments.threads)?;
     let data = formats.iter().any(|(_, format)| !format.is_shown());
-    let mut overrides = scene::overrides(&arguments.scene, &arguments.picture);
+    let mut overrides = scene::overrides(&arguments.scene, &arguments.picture)?;
     overrides.extend(channels(&arguments.channels, data)?.map(Override::from));
     let loaded = scene::load_with(&arguments.scene, &overrides)?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;

@@ -41,8 +41,8 @@ pub fn example(path: &Path) -> Option<Example> {
 }
 
 /// The overrides of a scene whose picture is asked for: what has a name of its own, then `--set`,
-/// which knows better.
-pub fn overrides(scene: &SceneArguments, picture: &PictureArguments) -> Vec<Override> {
+/// which knows better. Devices that are taken away are looked at first.
+pub fn overrides(scene: &SceneArguments, picture: &PictureArguments) -> Result<Vec<Override>> {
     let PictureArguments { size, samples, photo, empty } = picture;
     let resolution = size.map(|[width, height]| format!("camera.resolution={width}x{height}"));
     let samples = samples.map(|samples| format!("camera.samples={samples}"));
@@ -52,8 +52,16 @@ pub fn overrides(scene: &SceneArguments, picture: &PictureArguments) -> Vec<Over
         value: photo.display().to_string().into(),
     });
     let devices = Override::Value { key: "device".to_owned(), value: Value::List(Vec::new()) };
-    let empty = empty.then_some(devices);
-    named.chain(photo).chain(scene.overrides.iter().cloned()).chain(empty).collect()
+    let mut all: Vec<Override> =
+        named.chain(photo).chain(scene.overrides.iter().cloned()).collect();
+    if *empty {
+        // Standard input is read once.
+        if scene.scene != Path::new("-") {
+            text(&scene.scene)?.scene(&all)?;
+        }
+        all.push(devices);
+    }
+    Ok(all)
 }
 
 /// Refuses a pipe that is to be read for two things: it gives its bytes once only. `rays` is what is

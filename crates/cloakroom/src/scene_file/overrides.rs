@@ -219,7 +219,8 @@ fn descend<'a>(
         let new = match unwritten.filter(|value| value.as_list().is_some()) {
             Some(value) => value,
             None if devices => Value::List(Vec::new()),
-            None if is_list => {
+            // What is no table at all is told where the scene is read.
+            None if is_list && !top => {
                 return Err(format!(
                     "{walked} is not written in the scene, so an entry of it cannot be set alone; \
                      set all of it: {walked}=[...]"
@@ -242,9 +243,19 @@ fn entry<'a>(
     let tables = items.iter().all(|item| item.as_table().is_some());
     let count = items.len();
     let Ok(index) = key.parse::<usize>() else {
+        let key = quoted(key, '`');
+        if walked.as_str() != DEVICES {
+            return Err(format!(
+                "{key} is not a number; the entries of {walked} are counted from 0: {walked}.0"
+            ));
+        }
+        let names = items.iter().filter_map(|item| item.entry(key!(Placement.name))?.as_text());
+        let names: Vec<String> = names.map(|name| quoted(name, '`')).collect();
+        let named =
+            if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) };
         return Err(format!(
-            "{} is not a number; the entries of {walked} are counted from 0: {walked}.0",
-            quoted(key, '`')
+            "no device is called {key}{named}; devices are counted from 0, as in {walked}.0, and \
+             {walked}.* is every one"
         ));
     };
     if index > count || (index == count && !tables) {

@@ -28,6 +28,24 @@ impl FrameFolder {
         Ok(Self { folder: folder.to_owned(), count })
     }
 
+    /// Refuses a folder that holds frames beyond its own, of a longer film.
+    ///
+    /// # Errors
+    ///
+    /// If there is one.
+    pub fn check_none_beyond(&self) -> Result<(), FilmError> {
+        let number = |name: &str| {
+            let digits = name.strip_prefix("frame-")?.strip_suffix(".png")?;
+            digits.parse::<usize>().ok().filter(|number| *number >= self.count)
+        };
+        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        let beyond = entries.filter(|entry| entry.file_name().to_str().and_then(number).is_some());
+        match beyond.map(|entry| entry.path()).min() {
+            Some(path) => Err(FilmError::Beyond { path, count: self.count }),
+            None => Ok(()),
+        }
+    }
+
     /// The file of a frame, counted from 0: `frame-000000.png` and so on.
     #[must_use]
     pub fn file(&self, frame: usize) -> PathBuf {

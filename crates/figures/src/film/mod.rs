@@ -36,6 +36,17 @@ pub enum FilmError {
         /// Why not.
         reason: String,
     },
+    /// The folder of a film has frames of a longer one.
+    #[error(
+        "{} is there, and the film has {count} frames; take another folder, or remove it",
+        path.display()
+    )]
+    Beyond {
+        /// The first frame that is too many.
+        path: PathBuf,
+        /// How many there are to be.
+        count: usize,
+    },
     /// The frames are not of one size.
     #[error(
         "the frame {} has {} x {} pixels, the first one {} x {}; a film has one size",

@@ -183,7 +183,8 @@ fn overrides_point_at_themselves() {
         (
             two,
             "device.first.rotation=5",
-            "`first` is not a number; the entries of device are counted from 0: device.0",
+            "no device is called `first`; devices are counted from 0, as in device.0, and device.* is every \
+             one",
         ),
         (two, "device.0.side=0", "side is 0 cm; it must be from 1e-6 to 1000000"),
         (two, "device.0=5", "device is 5; each device is a table of its own: [[device]]"),
