@@ -42,19 +42,6 @@ def test_solids_mirrors_and_names() -> None:
         cloakroom.Scene(devices=[mirror, mirror.replace(position=(30, 0, 0))]).check()
 
 
-def test_solids_mirrors_and_names() -> None:
-    corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]]
-    solid = cloakroom.Polyhedron(vertices=corners, name="wedge", material="bk7")
-    mirror = cloakroom.Mirror(name="left", position=(9, 0, 0), metal={"material": "silver"})
-    ball = cloakroom.Body(shape="sphere", position=(-20, 0, 0), metal=True)
-    assert solid.given()["vertices"][1] == [4, 0, 0]
-    cloakroom.Scene(devices=[solid, mirror, ball]).check()
-    with pytest.raises(ValueError, match="a letter"):
-        cloakroom.Mirror(name="2nd")
-    with pytest.raises(ValueError, match="too"):
-        cloakroom.Scene(devices=[mirror, mirror.replace(position=(30, 0, 0))]).check()
-
-
 def test_the_stub_is_that_of_the_catalogue() -> None:
     folder = Path(__file__).parents[1]
     spec = importlib.util.spec_from_file_location("stubs", folder / "stubs.py")

@@ -22,9 +22,10 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
     let formats = formats(&outputs, PictureFormat::of)?;
     scene::use_threads(&arguments.threads)?;
     let data = formats.iter().any(|(_, format)| !format.is_shown());
-    let mut overrides = scene::overrides(&arguments.scene, &arguments.picture)?;
+    let text = scene::text(&arguments.scene.scene)?;
+    let mut overrides = scene::overrides(&text, &arguments.scene, &arguments.picture)?;
     overrides.extend(channels(&arguments.channels, data)?.map(Override::from));
-    let loaded = scene::load_with(&arguments.scene, &overrides)?;
+    let loaded = scene::load_with(&arguments.scene, &text, &overrides)?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;
     let shown = &loaded.scene.picture;
     let wanted = if data { ChannelSet::Everything } else { ChannelSet::for_image(shown) };

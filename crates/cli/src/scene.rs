@@ -12,12 +12,16 @@ use std::path::{Path, PathBuf};
 
 /// Reads a scene with its overrides and further ones after them.
 pub fn load(arguments: &SceneArguments, further: &[Override]) -> Result<Loaded> {
-    load_with(arguments, &[&arguments.overrides, further].concat())
+    load_with(arguments, &text(&arguments.scene)?, &[&arguments.overrides, further].concat())
 }
 
-/// Reads a scene with these overrides alone.
-pub fn load_with(arguments: &SceneArguments, overrides: &[Override]) -> Result<Loaded> {
-    let loaded = text(&arguments.scene)?.scene(overrides)?;
+/// Reads a scene, whose text has been read, with these overrides alone.
+pub fn load_with(
+    arguments: &SceneArguments,
+    text: &SceneText,
+    overrides: &[Override],
+) -> Result<Loaded> {
+    let loaded = text.scene(overrides)?;
     check_pipes(arguments, &loaded, None)?;
     Ok(loaded)
 }
@@ -42,7 +46,11 @@ pub fn example(path: &Path) -> Option<Example> {
 
 /// The overrides of a scene whose picture is asked for: what has a name of its own, then `--set`,
 /// which knows better. Devices that are taken away are looked at first.
-pub fn overrides(scene: &SceneArguments, picture: &PictureArguments) -> Result<Vec<Override>> {
+pub fn overrides(
+    text: &SceneText,
+    scene: &SceneArguments,
+    picture: &PictureArguments,
+) -> Result<Vec<Override>> {
     let PictureArguments { size, samples, photo, empty } = picture;
     let resolution = size.map(|[width, height]| format!("camera.resolution={width}x{height}"));
     let samples = samples.map(|samples| format!("camera.samples={samples}"));
@@ -55,10 +63,7 @@ pub fn overrides(scene: &SceneArguments, picture: &PictureArguments) -> Result<V
     let mut all: Vec<Override> =
         named.chain(photo).chain(scene.overrides.iter().cloned()).collect();
     if *empty {
-        // Standard input is read once.
-        if scene.scene != Path::new("-") {
-            text(&scene.scene)?.scene(&all)?;
-        }
+        text.scene(&all)?;
         all.push(devices);
     }
     Ok(all)
