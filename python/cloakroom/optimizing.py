@@ -45,6 +45,14 @@ class _Enough(Exception):
     """As many evaluations as are allowed."""
 
 
+class _Failed(Exception):
+    """The objective has failed; scipy would take its error for one of its own."""
+
+    def __init__(self, error: Exception) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
 class _Search:
     """Evaluates an objective at points of the unit box that the bounds of the keys are."""
 
@@ -58,8 +66,7 @@ class _Search:
         tell: Callable[[int, int], object] | None,
     ) -> None:
         self.build, self.bounds, self.seed, self.most, self.tell = build, bounds, seed, most, tell
-        takes = inspect.signature(objective).parameters
-        self.objective, self.takes_random = objective, len(takes) > 1
+        self.objective, self.takes_random = objective, _parameters(objective) > 1
         self.points: list[NDArray[np.float64]] = []
         self.costs: list[float] = []
         #: How many residuals there are; none for an objective that is a number.
@@ -81,12 +88,10 @@ class _Search:
             pass
         else:
             random = (np.random.default_rng(self.seed),) if self.takes_random else ()
-            found = np.asarray(self.objective(scene, *random), np.float64)
-            if found.ndim > 1 or not np.isfinite(found).all():
-                raise ValueError(
-                    f"objective gives {'an array of the shape ' + str(found.shape) if found.ndim > 1 else found}; expected "
-                    "a finite number, or finite residuals (N,)"
-                )
+            try:
+                found = _numbers_of(self.objective(scene, *random))
+            except (TypeError, ValueError, RuntimeError) as error:
+                raise _Failed(error) from error
             if found.ndim == 1:
                 if self.residuals not in (None, len(found)):
                     raise ValueError(f"objective gives {len(found)} residuals, and gave {self.residuals} before")
@@ -208,6 +213,8 @@ def optimize(
         search = _Search(build, bounds, objective, seed, most_evaluations, tell)
         try:
             converged, message = _run(solvers, search, begin, tolerance)
+        except _Failed as failed:
+            raise failed.error from None
         except _Enough:
             converged, message = False, f"{most_evaluations} evaluations, which is most_evaluations, were not enough"
     if not np.isfinite(min(search.costs, default=np.inf)):
@@ -243,6 +250,37 @@ def _run(solvers: Any, search: _Search, begin: NDArray[np.float64] | None, toler
             options={"xatol": tolerance, "fatol": np.inf, "maxfev": search.most, "maxiter": search.most},
         )  # fmt: skip
     return bool(result.success), str(result.message)
+
+
+def _parameters(objective: Any) -> int:
+    """How many values a function takes."""
+    if not callable(objective):
+        raise TypeError(f"objective is a {type(objective).__name__}; expected a function of a scene")
+    try:
+        takes = inspect.signature(objective).parameters.values()
+    except ValueError:
+        return 1
+    count = sum(each.kind not in (each.KEYWORD_ONLY, each.VAR_KEYWORD) for each in takes)
+    if count == 0:
+        raise TypeError("objective takes nothing; expected a function of a scene, and of a numpy.random.Generator if it "
+                        "draws")  # fmt: skip
+    return count
+
+
+def _numbers_of(given: Any) -> NDArray[np.float64]:
+    """What an objective has given: a number, or residuals."""
+    expected = "expected a finite number, or finite residuals (N,)"
+    try:
+        found = np.asarray(given, np.float64) if given is not None else None
+    except (TypeError, ValueError):
+        found = None
+    if found is None:
+        raise ValueError(f"objective gives {given!r}; {expected}")
+    if found.ndim > 1 or found.size == 0:
+        raise ValueError(f"objective gives an array of the shape {found.shape}; {expected}")
+    if not np.isfinite(found).all():
+        raise ValueError(f"objective gives {found}; {expected}")
+    return found
 
 
 def _bounds(keys: Any) -> dict[str, tuple[float, float]]:

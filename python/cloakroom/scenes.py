@@ -62,7 +62,8 @@ class Scene:
     """All that a picture depends on. A scene does not change; `replace` gives another one.
 
     Its tables can be read as attributes, ``scene.camera.samples`` and ``scene.devices[0].rotation``, and given to
-    another scene. Scenes of equal tables and images are equal. In a notebook a scene shows its setting.
+    another scene. Scenes are equal whose tables say the same and whose images are equal: a key that is written with its
+    default is another scene than one without the key. In a notebook a scene shows its setting.
 
     Parameters
     ----------
@@ -126,12 +127,13 @@ class Scene:
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Scene:
-        """Reads a scene file.
+        """Reads a scene file, or one of the examples.
 
         Parameters
         ----------
         path : str or path
-            The file; files that it names are relative to it.
+            The file; files that it names are relative to it. Where there is no such file, an example of that name, as
+            `cloakroom scenes` lists them: ``"gallery/prisms"``.
 
         Raises
         ------
@@ -497,6 +499,7 @@ class Scene:
         keys: Mapping[str, Sequence[Any] | NDArray[Any]],
         path: str | os.PathLike[str],
         *,
+        orbit: ArrayLike | None = None,
         fps: int = 25,
         map_range: tuple[float, float] | None = None,
         keep_frames: bool = False,
@@ -511,10 +514,13 @@ class Scene:
         ----------
         keys : mapping of str to sequence
             The values that each key takes, one a frame, as `replace` takes it: ``{"device.0.rotation":
-            np.linspace(0, 90, 91)}``.
+            np.linspace(0, 90, 91)}``. Ways between a few frames are what `numpy.interp` gives.
         path : path
             The film: ``.gif``, ``.apng``, ``.png``, ``.webp``, ``.mp4`` or ``.webm`` (by ffmpeg); a name without ending is
             a folder of frames.
+        orbit : array_like (N,), optional
+            How far the camera has gone round its target, a value a frame, degrees about ``camera.up``, counterclockwise
+            from above; `keys` may then be empty.
         fps : int, default 25
             Frames a second, 1 to 100.
         map_range : (float, float), optional
@@ -532,16 +538,25 @@ class Scene:
         OSError
             If a file cannot be written.
         """
-        if not isinstance(keys, Mapping) or not keys:
+        if not isinstance(keys, Mapping) or not (keys or orbit is not None):
             raise TypeError(f"keys is {keys!r}; expected a mapping of keys to their values, one a frame")
         counts = {key: len(values) for key, values in keys.items()}
+        turns = None if orbit is None else numbers("orbit", orbit, "angles (N,) in degrees")
+        if turns is not None:
+            if turns.ndim != 1 or not len(turns) or not np.isfinite(turns).all():
+                raise ValueError(f"orbit has the shape {turns.shape}; expected finite angles (N,) in degrees, one a frame")
+            counts["orbit"] = len(turns)
         if len(set(counts.values())) != 1:
             listed = ", ".join(f"{key} {count}" for key, count in counts.items())
             raise ValueError(f"the keys differ in their values: {listed}; expected one a frame in each")
         if not 1 <= _count("fps", fps) <= 100:
             raise ValueError(f"fps is {fps}; expected 1 to 100 frames a second")
-        rows = ([value.item() if isinstance(value, np.generic) else value for value in row] for row in zip(*keys.values()))
+        plain = ([value.item() if isinstance(value, np.generic) else value for value in row] for row in zip(*keys.values()))
+        rows = plain if keys else ([] for _ in range(counts["orbit"]))
         scenes = [self.replace(dict(zip(keys, row))) for row in rows]
+        if turns is not None:
+            places = (scene._native.orbited(float(turn)) for scene, turn in zip(scenes, turns))
+            scenes = [scene.replace({"camera.position": place}) for scene, place in zip(scenes, places)]
         if len({scene.resolution for scene in scenes}) > 1:
             raise ValueError("camera.resolution changes from frame to frame; a film has one size")
         shown = [scene._native.map for scene in scenes]

@@ -42,7 +42,10 @@ class Table:
     _properties: dict[str, dict[str, Any]] = {}
     _image: _cloakroom.Image | None = None
 
-    def __init__(self, **keys: Any) -> None:
+    def __init__(self, *values: Any, **keys: Any) -> None:
+        if values:
+            name, first = type(self).__name__, next(iter(self._properties), "key")
+            raise TypeError(f"{name}({values[0]!r}): keys are given by name, as in {name}({first}=...)")
         if not self._table:
             raise TypeError(f"{type(self).__name__} is what tables have in common; take one of its subclasses")
         given = {name: value for name, value in keys.items() if value is not None}

@@ -82,8 +82,8 @@ pub fn unreadable(path: &Path, error: impl Error + 'static) -> Failure {
 /// An error of a scene. That of a file says where in the file; a scene made in Python has no lines,
 /// and an override is no argument of a command line.
 pub fn scene_error(error: &SceneFileError, is_file: bool) -> Failure {
-    match &error.override_text {
-        Some(text) => value_error(format!("{text}: {}", error.message)),
+    match &error.at_fault {
+        Some(at_fault) => value_error(format!("{}: {}", at_fault.text, error.message)),
         None if is_file => value_error(error),
         None => value_error(&error.message),
     }

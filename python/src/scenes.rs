@@ -10,6 +10,7 @@ use cloakroom::photograph::ImageSource;
 use cloakroom::render::{Images, PreparedScene, PreparedSceneError, assembly};
 use cloakroom::scene;
 use cloakroom::scene_file::{self, Loaded, Override, SceneFileError};
+use cloakroom_figures::examples;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
@@ -85,7 +86,7 @@ fn hang(arrays: &Arrays, folder: &Path, scene: &mut scene::Scene) {
 fn settings(overrides: Vec<(String, Bound<'_, PyAny>)>) -> PyResult<Vec<Override>> {
     let setting = |(key, value): (String, Bound<'_, PyAny>)| {
         let value = value_of(&key, &value)?;
-        Ok(Override::Value { key, value })
+        Ok(Override::value(key, value))
     };
     overrides.into_iter().map(setting).collect()
 }
@@ -119,10 +120,19 @@ impl Scene {
         Self::read(Arc::new(written), Vec::new(), images)
     }
 
-    /// Reads a scene file.
+    /// Reads a scene file, or an example where there is no such file.
     #[staticmethod]
     fn load(path: PathBuf) -> Result<Self, Failure> {
-        let loaded = scene_file::load(&path, &[]).map_err(|error| unreadable(&path, error))?;
+        let name = path.to_str().filter(|_| !path.exists()).unwrap_or_default();
+        if let Some(example) = examples::named(name) {
+            let (content, name) = (Content::Text(example.text.to_owned()), name.to_owned());
+            let written = Written { content, name, folder: PathBuf::new(), is_file: false };
+            return Self::read(Arc::new(written), Vec::new(), [None, None]);
+        }
+        let loaded = scene_file::load(&path, &[]).map_err(|mut error| {
+            error.message += &examples::meant_by(name);
+            unreadable(&path, error)
+        })?;
         let written = Written {
             content: Content::Text(loaded.scene.source.clone()),
             name: path.display().to_string(),
@@ -158,6 +168,11 @@ impl Scene {
     #[getter]
     fn toml(&self) -> &str {
         &self.scene().source
+    }
+
+    /// Where its camera is once it has gone round its target, degrees.
+    fn orbited(&self, degrees: f64) -> [f64; 3] {
+        self.scene().camera.orbited(degrees).to_array()
     }
 
     /// Width and height of its picture.

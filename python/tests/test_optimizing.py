@@ -136,3 +136,20 @@ def test_bad_objectives_are_told() -> None:
         optimize(scene, keys, lambda scene: np.zeros((2, 2)), start=start)
     with pytest.raises(TypeError, match="expected a Scene or a function"):
         optimize("a scene", keys, lambda scene: 0.0)
+
+
+@pytest.mark.parametrize(
+    ("objective", "error", "message"),
+    [
+        (lambda: 3, TypeError, "objective takes nothing"),
+        (5, TypeError, "objective is a int"),
+        (lambda scene: [], ValueError, r"the shape \(0,\)"),
+        (lambda scene: None, ValueError, "objective gives None"),
+        (lambda scene: "x", ValueError, "objective gives 'x'"),
+        (lambda scene: float("nan"), ValueError, "objective gives nan"),
+        (lambda scene: scene.nothing, AttributeError, "nothing"),
+    ],
+)
+def test_objectives_that_are_none_are_refused(objective, error, message) -> None:
+    with pytest.raises(error, match=message):
+        optimize(Scene(devices=cloakroom.SquareCloak()), {"device.0.kappa": (0.3, 0.8)}, objective)

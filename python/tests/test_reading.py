@@ -136,6 +136,11 @@ def test_films_are_those_of_the_command(command, cloak: Scene, tmp_path) -> None
             cloak.animate(wrong, tmp_path / "c.gif")
     with pytest.raises(ValueError, match="cannot tell the format"):
         cloak.animate(keys, tmp_path / "c.txt")
+    command("animate", tmp_path / "scene.toml", "--orbit", "0..10", "--frames", 3, "-o", tmp_path / "d.gif")
+    cloak.animate({}, tmp_path / "e.gif", orbit=[0, 5, 10])
+    assert (tmp_path / "d.gif").read_bytes() == (tmp_path / "e.gif").read_bytes()
+    with pytest.raises(ValueError, match="device.0.rotation 3, orbit 2"):
+        cloak.animate(keys, tmp_path / "c.gif", orbit=[0, 5])
 
 
 def test_figures_are_those_of_the_command(command, tmp_path) -> None:

@@ -389,3 +389,11 @@ def test_arrays_of_a_scene_from_elsewhere_may_lie_anywhere_in_memory() -> None:
     assert not shifted.flags.aligned
     moved = [shifted if isinstance(a, np.ndarray) else a for a in arguments]
     assert np.array_equal(function(*moved).render().linear, scene.render().linear)
+
+
+def test_examples_are_loaded_by_their_names(tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    prisms = Scene.load("gallery/prisms")
+    assert prisms.kinds == ["prisms"] and prisms.replace({"camera.samples": 1}).kinds == ["prisms"]
+    with pytest.raises(FileNotFoundError, match="did you mean `gallery/prisms`"):
+        Scene.load("gallery/prims")

@@ -96,19 +96,18 @@ fn scenes(
     images: &mut Images,
 ) -> Result<Vec<Loaded>> {
     let (text, mut scenes) = (scene::text(&arguments.scene.scene)?, Vec::<Loaded>::new());
-    let still = scene::overrides(&text, &arguments.scene, &arguments.picture)?;
+    let still = scene::overrides(&text, &arguments.scene, &arguments.picture, arguments.empty)?;
     for frame in range {
         let mut overrides = [&still[..], &timeline.overrides(frame)].concat();
-        let load =
-            |overrides: &[Override]| text.scene(overrides).map_err(|error| swept(error.into()));
-        let mut loaded = load(&overrides)?;
+        let mut loaded = text.scene(&overrides)?;
         if let Some(degrees) = timeline.azimuth(frame) {
-            let value = loaded.scene.camera.orbited(degrees).to_array().into();
-            overrides.push(Override::Value { key: POSITION.to_owned(), value });
-            loaded = load(&overrides)?;
+            let position = loaded.scene.camera.orbited(degrees).to_array();
+            let words = format!("--orbit, {degrees} degrees from where the camera stands");
+            overrides.push(Override::value(POSITION, position).by(words));
+            loaded = text.scene(&overrides)?;
         }
         scene::check_pipes(&arguments.scene, &loaded, None)?;
-        scene::prepared(&loaded, images).map_err(swept)?;
+        scene::prepared(&loaded, images)?;
         let shown = &loaded.scene.picture;
         if shown.map.name().is_some() && arguments.map_range.or(shown.map_range).is_none() {
             return Err(Failure::Failed(
@@ -126,16 +125,6 @@ fn scenes(
         scenes.push(loaded);
     }
     Ok(scenes)
-}
-
-/// A failure of a scene: what is said to be wrong with an override may be so with a swept value.
-fn swept(failure: Failure) -> Failure {
-    match failure {
-        Failure::Failed(message) => {
-            Failure::Failed(message.replacen("--set ", "--set or --sweep ", 1))
-        }
-        other => other,
-    }
 }
 
 /// Renders the frames of a range that are not finished.

@@ -168,9 +168,6 @@ pub struct PictureArguments {
     /// Another photograph, PNG, JPEG or EXR (photograph.image).
     #[arg(long, value_name = "FILE")]
     pub photo: Option<PathBuf>,
-    /// Take every device away: the empty view.
-    #[arg(long)]
-    pub empty: bool,
 }
 
 /// Arguments of `check`.
@@ -182,6 +179,9 @@ pub struct CheckArguments {
     /// Its picture.
     #[command(flatten)]
     pub picture: PictureArguments,
+    /// Take every device away: the empty view.
+    #[arg(long, help_heading = "Picture")]
+    pub empty: bool,
 }
 
 /// How many threads work.
@@ -202,6 +202,9 @@ pub struct RenderArguments {
     /// Its picture.
     #[command(flatten)]
     pub picture: PictureArguments,
+    /// Take every device away: the empty view.
+    #[arg(long, help_heading = "Picture")]
+    pub empty: bool,
     /// A file to write; its ending decides: .png, .exr or .npz, for a map (picture.map) also .svg
     /// or .pdf. May be given several times [default: the name of the scene with .png, beside it].
     #[arg(short, long = "output", value_name = "FILE", help_heading = "Files")]
@@ -249,6 +252,9 @@ pub struct AnimateArguments {
     /// Its pictures.
     #[command(flatten)]
     pub picture: PictureArguments,
+    /// Take every device away: the empty view.
+    #[arg(long, help_heading = "Picture")]
+    pub empty: bool,
     /// A key and its way, spread evenly over the frames, as in device.0.rotation=0..360, there and
     /// back, 0..25..0, or camera.position=[-100,0,0]..[-50,20,0]; or a value a frame, as in 0..90:5
     /// or 1,2,4. May be given several times: the keys change together.

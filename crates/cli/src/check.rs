@@ -8,7 +8,7 @@ use cloakroom::assembly::Placed;
 use cloakroom::render::{
     Estimate, Images, PreparedScene, behind_photograph, estimate, share_past_edge,
 };
-use cloakroom::scene::{Border, Scene};
+use cloakroom::scene::{Border, Scene, Show};
 use cloakroom::threads;
 use std::fmt::Write;
 
@@ -20,7 +20,7 @@ const CM_PER_NM: f64 = 1e-7;
 /// Validates a scene and prints facts about it.
 pub fn run(arguments: &CheckArguments) -> Result<()> {
     let text = scene::text(&arguments.scene.scene)?;
-    let overrides = scene::overrides(&text, &arguments.scene, &arguments.picture)?;
+    let overrides = scene::overrides(&text, &arguments.scene, &arguments.picture, arguments.empty)?;
     let loaded = scene::load_with(&arguments.scene, &text, &overrides)?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;
     report::print(&described(&prepared, &loaded.scene)?)
@@ -52,10 +52,20 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
         writeln!(text, "             beyond its edge: {}", scene.photograph.border.word())?;
     }
     for (index, device) in scene.devices.iter().enumerate() {
-        let show = device.placement.show.word();
+        let shown = match device.placement.show {
+            Show::Cloak => String::new(),
+            show => format!("shown as {}, ", show.word()),
+        };
         let name = scene.device_name(index).to_string();
-        writeln!(text, "{name:<12} {}, shown as {show}, {}", device.kind(), device.turn())?;
+        writeln!(text, "{name:<12} {}, {shown}{}", device.kind(), device.turn())?;
         let structure = &prepared.assembly.devices()[index].structure;
+        if device.has_lossless_metal() {
+            writeln!(
+                text,
+                "warning      the metal of {name} does not absorb (k = 0): what it does not reflect is \
+                 taken to be lost in it"
+            )?;
+        }
         for line in media_line(structure).into_iter().chain(fact_lines(device.facts())) {
             writeln!(text, "             {line}")?;
         }
@@ -78,6 +88,14 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
             text,
             "warning      the photograph stands between the camera and device {number}, which it hides; move one of \
              them (photograph.x or photograph.position)"
+        )?;
+    }
+    let shown = &scene.picture;
+    if shown.map.name().is_none() && (shown.map_range.is_some() || shown.map_percentile.is_some()) {
+        writeln!(
+            text,
+            "hint         map_range and map_percentile are of a map; picture.map says of which channel, as in \
+             picture.map = \"time_of_flight\""
         )?;
     }
     let past = share_past_edge(prepared);

@@ -5,7 +5,7 @@ use crate::report::{self, Failure, Result, decimals};
 use cloakroom::device::{self, CATALOGUE, Entry, Fact, FactValue, Request, Structure};
 use cloakroom::json::json as value_json;
 use cloakroom::keys::{Key, KeyKind, ValueRange, hint, quoted};
-use cloakroom::scene::Placement;
+use cloakroom::scene::{Core, Placement};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -85,9 +85,10 @@ fn describe(entry: &Entry, all: bool, text: &mut String) -> std::fmt::Result {
         text.push_str(&listed(name, 16, &words));
     }
     if all {
-        let common: Vec<&str> = Placement::KEYS.iter().map(|key| key.name).collect();
+        let common = Placement::KEYS.iter().map(|key| key.name);
+        let common: Vec<&str> = common.filter(|key| takes(entry, key)).collect();
         let words = format!(
-            "Every device takes these, too (`cloakroom schema --markdown`): {}.",
+            "It takes these keys of every device, too (`cloakroom schema --markdown`): {}.",
             common.join(", ")
         );
         writeln!(text, "\n{}", wrapped(&words, "  ", "  "))?;
@@ -99,6 +100,17 @@ fn describe(entry: &Entry, all: bool, text: &mut String) -> std::fmt::Result {
         writeln!(text, "  {line}")?;
     }
     writeln!(text)
+}
+
+/// Whether a kind takes a key that devices have in common: some have no `length` or `core`.
+fn takes(entry: &Entry, key: &str) -> bool {
+    let asked = match key {
+        "length" => Request { length: Some(10.0), ..Request::default() },
+        "core" => Request { core: Core::Open, ..Request::default() },
+        _ => return true,
+    };
+    // What is refused for another reason has keys without a default.
+    (entry.device)().build(asked).err().is_none_or(|error| error.key != Some(key))
 }
 
 /// With a capital letter and a full stop, unless it begins with a quoted word.
@@ -143,6 +155,16 @@ pub fn media_line(structure: &Structure) -> Option<String> {
     (!words.is_empty()).then(|| format!("{:<32} {}", "media", words.join(", ")))
 }
 
+/// A number to six decimals at most.
+fn shortest(number: f64) -> String {
+    let text = decimals(number, 6);
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
 /// The computed facts of a device, a line each.
 pub fn fact_lines(facts: Vec<Fact>) -> Vec<String> {
     let line = |fact: Fact| {
@@ -150,7 +172,7 @@ pub fn fact_lines(facts: Vec<Fact>) -> Vec<String> {
             FactValue::Number(number) => vec![number],
             FactValue::Numbers(numbers) => numbers,
         };
-        let words: Vec<String> = numbers.iter().map(|n| decimals(*n, 6)).collect();
+        let words: Vec<String> = numbers.iter().map(|n| shortest(*n)).collect();
         format!("{:<32} {}", fact.name, words.join(", "))
     };
     facts.into_iter().map(line).collect()

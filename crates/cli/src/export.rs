@@ -3,18 +3,21 @@
 use crate::arguments::ExportArguments;
 use crate::files::check_writable;
 use crate::progress::supervised;
-use crate::report::Result;
+use crate::report::{Failure, Result};
 use crate::{interruption, scene};
+use cloakroom::keys::quoted;
 use cloakroom::material::{self, Frame, Resolution};
 use cloakroom::outline_mesh::{MeshFormat, outlines, write_mesh};
 use cloakroom::output;
+use cloakroom::scene::Scene;
 
 /// Writes the material of a device.
 pub fn run(arguments: &ExportArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
     let loaded = scene::load(&arguments.scene, &[])?;
     let assembly = scene::assembly(&loaded)?;
-    let (scene, device, path) = (&loaded.scene, arguments.device, &arguments.output);
+    let (scene, path) = (&loaded.scene, &arguments.output);
+    let device = arguments.device.as_deref().map(|word| numbered(scene, word)).transpose()?;
     let inputs = scene::inputs(&arguments.scene, &loaded);
     if arguments.table {
         check_writable([path], &inputs)?;
@@ -24,6 +27,10 @@ pub fn run(arguments: &ExportArguments) -> Result<()> {
     let meshes = MeshFormat::ENDINGS.map(|(ending, _)| (ending, true));
     let grids = ["npz", "vti", "csv"].map(|ending| (ending, false));
     if output::format_of(path, &[&grids[..], &meshes].concat())? {
+        let message = "--grid: a mesh has no cells; .npz, .vti and .csv have";
+        if arguments.grid.is_some() {
+            return Err(Failure::Failed(message.to_owned()));
+        }
         check_writable([path], &inputs)?;
         return Ok(write_mesh(&outlines(scene, &assembly, device)?, path)?);
     }
@@ -36,4 +43,13 @@ pub fn run(arguments: &ExportArguments) -> Result<()> {
         material::sample(scene, &assembly, device, frame, resolution, &begun, supervision)
     })?;
     Ok(output::write_grid(&sampled, path)?)
+}
+
+/// The number of the device of a number or a name.
+fn numbered(scene: &Scene, word: &str) -> Result<usize> {
+    let name = |number: usize| scene.devices[number].placement.name.as_deref();
+    let named = (0..scene.devices.len()).find(|number| name(*number) == Some(word));
+    named.or_else(|| word.parse().ok()).ok_or_else(|| {
+        Failure::Failed(format!("--device: no device of the scene is called {}", quoted(word, '`')))
+    })
 }

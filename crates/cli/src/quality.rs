@@ -32,8 +32,8 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let sweeps =
         arguments.sweeps.iter().map(|text| Sweep::parse(text)).collect::<Result<_, _>>()?;
     let written = scene::text(&arguments.scene.scene)?;
-    let load =
-        |further: &[Override]| written.scene(&[&arguments.scene.overrides, further].concat());
+    let set = scene::overrides(&written, &arguments.scene, &arguments.picture, false)?;
+    let load = |further: &[Override]| written.scene(&[&set[..], further].concat());
     let holds =
         arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;
     let plan = SweepPlan::new(sweeps, holds, load)?.with_draws(arguments.draws)?;

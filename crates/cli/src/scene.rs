@@ -30,18 +30,19 @@ pub fn load_with(
 pub fn text(path: &Path) -> Result<SceneText> {
     match example(path) {
         Some(example) => Ok(SceneText::new(example.text, example.path, Path::new(""))),
-        None => Ok(SceneText::read(path)?),
+        None => SceneText::read(path).map_err(|mut error| {
+            if let Some(name) = path.to_str().filter(|_| !path.exists()) {
+                error.message += &examples::meant_by(name);
+            }
+            error.into()
+        }),
     }
 }
 
 /// The example scene that a path names, as in `gallery/prisms`, if no file is there.
 pub fn example(path: &Path) -> Option<Example> {
     let name = path.to_str().filter(|_| path != Path::new("-") && !path.exists())?;
-    // A folder holds several.
-    let named = |example: &Example| {
-        example.path == name || example.path.strip_suffix(".toml") == Some(name)
-    };
-    examples::all().into_iter().find(named)
+    examples::named(name)
 }
 
 /// The overrides of a scene whose picture is asked for: what has a name of its own, then `--set`,
@@ -50,21 +51,27 @@ pub fn overrides(
     text: &SceneText,
     scene: &SceneArguments,
     picture: &PictureArguments,
+    is_empty: bool,
 ) -> Result<Vec<Override>> {
-    let PictureArguments { size, samples, photo, empty } = picture;
-    let resolution = size.map(|[width, height]| format!("camera.resolution={width}x{height}"));
-    let samples = samples.map(|samples| format!("camera.samples={samples}"));
-    let named = resolution.into_iter().chain(samples).map(Override::from);
-    let photo = photo.as_ref().map(|photo| Override::Value {
-        key: "photograph.image".to_owned(),
-        value: photo.display().to_string().into(),
+    let PictureArguments { size, samples, photo } = picture;
+    let size = size.map(|[width, height]| {
+        let sides = [width, height].map(i64::from);
+        Override::value("camera.resolution", sides).by(format!("--size {width}x{height}"))
     });
-    let devices = Override::Value { key: "device".to_owned(), value: Value::List(Vec::new()) };
-    let mut all: Vec<Override> =
-        named.chain(photo).chain(scene.overrides.iter().cloned()).collect();
-    if *empty {
+    let samples = samples.map(|samples| {
+        let words = format!("--samples {samples}");
+        Override::value("camera.samples", i64::from(samples)).by(words)
+    });
+    let photo = photo.as_ref().map(|photo| {
+        let path = photo.display().to_string();
+        let words = format!("--photo {path}");
+        Override::value("photograph.image", path).by(words)
+    });
+    let named = size.into_iter().chain(samples).chain(photo);
+    let mut all: Vec<Override> = named.chain(scene.overrides.iter().cloned()).collect();
+    if is_empty {
         text.scene(&all)?;
-        all.push(devices);
+        all.push(Override::value("device", Value::List(Vec::new())).by("--empty".to_owned()));
     }
     Ok(all)
 }

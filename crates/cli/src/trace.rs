@@ -5,7 +5,7 @@ use crate::arguments::TraceArguments;
 use crate::interruption::{self, STOP};
 use crate::report::{self, Failure, Result};
 use crate::scene;
-use cloakroom::input::read_up_to;
+use cloakroom::input::{read_up_to, reason};
 use cloakroom::interface_json::solve_interfaces;
 use cloakroom::ray_json::{RayError, read_rays, trace_rays};
 use cloakroom::render;
@@ -75,7 +75,7 @@ fn read(path: &Path) -> Result<(String, String)> {
     let failed = |reason: String| Failure::Failed(format!("cannot read {name}: {reason}"));
     read.map_err(|error| match error.kind() {
         ErrorKind::FileTooLarge => failed(format!("{error}; give it in parts")),
-        _ => failed(error.to_string()),
+        _ => failed(reason(&error)),
     })?;
     let text = String::from_utf8(bytes).map_err(|_| failed("it is not UTF-8 text".to_owned()))?;
     Ok((text, name))

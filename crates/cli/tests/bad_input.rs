@@ -249,9 +249,9 @@ fn swept_values_and_normals_are_pointed_at() {
     let desk = small("[[device]]\nkind = \"square-cloak\"\n");
     let animate =
         |sweep| ["animate", "scene.toml", "--sweep", sweep, "--frames", "2", "-o", "a.gif"];
-    let named = ["--set or --sweep device.0.bad=0", "unknown key `bad`"];
+    let named = ["--sweep device.0.bad=0", "unknown key `bad`"];
     desk.refuses_with(&animate("device.0.bad=0..1"), &named);
-    let metal = ["--set or --sweep camera.position=", "inside"];
+    let metal = ["--sweep camera.position=", "inside"];
     desk.refuses_with(&animate("camera.position=[0,0,0],[0,0,1]"), &metal);
     let check = |set| ["check", "scene.toml", "--set", set];
     let normal = ["error: --set photograph.normal=[0,1,0]: up is [0, 1, 0]"];

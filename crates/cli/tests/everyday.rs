@@ -247,3 +247,86 @@ fn check_tells_of_the_photograph() {
     let views = ["camera.projection=orthographic", "camera.width=40", "photograph.x=-50"];
     assert!(check(&views).contains("between the camera and device 0"));
 }
+
+#[test]
+fn faults_are_told_in_the_words_that_were_typed() {
+    let folder = folder();
+    let at = folder.path();
+    fs::write(at.join("keys.toml"), "[[keyframe]]\nframe = 0\ndevice.0.bad = 1\n").unwrap();
+    fs::write(at.join("far.toml"), "[[keyframe]]\nframe = 3e9\ndevice.0.side = 1\n").unwrap();
+    let two =
+        format!("{SCENE}name = \"left\"\n[[device]]\nkind = \"mirror\"\nposition = [0, 40, 0]\n");
+    fs::write(at.join("two.toml"), two).unwrap();
+    let animate = |words: &[&'static str]| {
+        [&["animate", "scene.toml", "-o", "a.gif", "--frames", "2"], words].concat()
+    };
+    let check = |set: &'static str| vec!["check", "two.toml", "--set", set];
+    for (arguments, told) in [
+        (animate(&["--keyframes", "keys.toml"]), "error: --keyframes, frame 0, device.0.bad=1.0: "),
+        (animate(&["--keyframes", "far.toml"]), "a film has at most 100000 frames"),
+        (animate(&["--orbit", "0..20:5"]), "--orbit 0..20:5: it takes no step"),
+        (vec!["check", "scene.toml", "--photo", "no.png"], "error: --photo no.png: there is no"),
+        (vec!["check", "gallery/prims"], "did you mean `gallery/prisms`?"),
+        (check("camera.resolution=0x0"), "the first number of resolution is 0"),
+        (
+            check("camera.resolution=160x"),
+            "`160x` is no width and height; write them as in 640x480",
+        ),
+        (check("device.lfet.side=2"), "did you mean `left`?"),
+        (check("device.1.name=left"), "error: --set device.1.name=left: "),
+        (check("device.1.position=[0,0,0]"), "\n  with --set device.1.position=[0,0,0]"),
+        (check("device.1.metal=silver"), "metal = { material = \"silver\" }"),
+        (check("device.1.metal=false"), "leave it out"),
+    ] {
+        let message = fails(at, &arguments, 1);
+        assert!(message.contains(told), "{arguments:?}\n{message}");
+    }
+    let resolved = succeeds(at, &["check", "two.toml", "--set", "camera.resolution=160X120"]);
+    assert!(resolved.contains("picture      160 x 120 pixels"));
+    let warned = succeeds(at, &["check", "two.toml", "--set", "device.1.metal.index=1.5"]);
+    assert!(warned.contains("the metal of device 1 does not absorb"), "{warned}");
+    let empty = ["render", "two.toml", "--empty", "--set", "device.0.bad=1"];
+    assert!(fails(at, &empty, 1).contains("--set device.0.bad=1"));
+}
+
+#[test]
+fn meshes_and_materials_are_of_devices_by_number_or_name() {
+    let folder = folder();
+    let at = folder.path();
+    let two = "[[device]]\nkind = \"sphere-cloak\"\nname = \"ball\"\n\
+               [[device]]\nkind = \"body\"\nshape = \"slab\"\nposition = [30, 0, 0]\nindex = 1.5\n";
+    fs::write(at.join("two.toml"), two).unwrap();
+    succeeds(at, &["export", "two.toml", "--device", "ball", "-o", "named.stl"]);
+    succeeds(at, &["export", "two.toml", "--device", "0", "-o", "numbered.stl"]);
+    let bytes = |name: &str| fs::read(at.join(name)).unwrap();
+    assert_eq!(bytes("named.stl"), bytes("numbered.stl"));
+    let no = |words: &[&str]| fails(at, &[&["export", "two.toml"], words].concat(), 1);
+    assert!(
+        no(&["--device", "bal", "-o", "a.stl"]).contains("no device of the scene is called `bal`")
+    );
+    let beyond = no(&["--device", "2", "-o", "a.stl"]);
+    assert!(beyond.contains("there is no device 2: the scene has 2 devices, 0 to 1"), "{beyond}");
+    assert!(no(&["--grid", "3x3x3", "-o", "a.stl"]).contains("--grid: a mesh has no cells"));
+    let empty = fails(at, &["export", "scene.toml", "--set", "device=[]", "-o", "a.vti"], 1);
+    assert!(empty.contains("the scene has no devices"), "{empty}");
+    assert!(!at.join("a.stl").exists() && !at.join("a.vti").exists());
+}
+
+#[test]
+fn a_floor_may_stand_alone_and_be_what_a_carpet_should_look_like() {
+    let folder = folder();
+    let at = folder.path();
+    let view = "[camera]\nresolution = [40, 30]\nsamples = 1\nposition = [-60, 12, 0]\n";
+    let floor = format!("{view}[[device]]\nkind = \"prisms\"\nfloor = 20\nlength = 20\n");
+    let bump = "prism = [{ corners = [[-2, 0], [2, 0], [0, 1]], metal = true }]\n";
+    fs::write(at.join("floor.toml"), &floor).unwrap();
+    fs::write(at.join("bump.toml"), format!("{floor}{bump}")).unwrap();
+    let sweep = ["--sweep", "camera.samples=1", "--size", "32x24", "--reference", "floor.toml"];
+    let measured = |scene: &str| {
+        let table = succeeds(at, &[&["quality", scene, "--json"], &sweep[..]].concat());
+        let table: serde_json::Value = serde_json::from_str(&table).unwrap();
+        table["rows"][0]["figures"]["in_place_share"].as_f64().unwrap()
+    };
+    assert_eq!(measured("floor.toml"), 1.0);
+    assert!(measured("bump.toml") < 0.99);
+}

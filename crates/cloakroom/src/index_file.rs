@@ -1,7 +1,7 @@
 //! Files that a scene names and a device is made of: numbers on a grid, and meshes of triangles.
 
 use crate::device::{AnyDevice, FacetedSolid, Graded};
-use crate::input::{Digest, read_file};
+use crate::input::{Digest, read_file, reason};
 use crate::keys::{Key, KeyError, KeyKind, MeshSource, Sampled, Samples, find, shape_text};
 use crate::mesh_file;
 use cloakroom_trace::key;
@@ -234,7 +234,7 @@ const MOST_DIMENSIONS: usize = 4;
 /// A message that names the file and says why it cannot be used.
 fn read(path: &Path) -> Result<Content, String> {
     let failed = |reason: String| format!("cannot read {}: {reason}", path.display());
-    let bytes = read_file(LONGEST, path).map_err(|error| failed(error.to_string()))?;
+    let bytes = read_file(LONGEST, path).map_err(|error| failed(reason(&error)))?;
     let numbers = match numbers::<f64>(&bytes) {
         Err(ViewNpyError::WrongDescriptor(_)) => numbers::<f32>(&bytes),
         numbers => numbers,
@@ -258,7 +258,7 @@ fn read(path: &Path) -> Result<Content, String> {
 /// A message that names the file and says why it cannot be used.
 fn read_mesh(path: &Path) -> Result<Content, String> {
     let failed = |reason: String| format!("cannot read {}: {reason}", path.display());
-    let bytes = read_file(LONGEST, path).map_err(|error| failed(error.to_string()))?;
+    let bytes = read_file(LONGEST, path).map_err(|error| failed(reason(&error)))?;
     let solid = mesh_file::solid(path, &bytes);
     let solid = solid.map_err(|reason| format!("{}: {reason}", path.display()))?;
     Ok(Content { data: Data::Solid(solid), digest: Digest::of(&bytes) })
@@ -302,7 +302,7 @@ mod tests {
             let message = read(&path).expect_err("must fail");
             assert!(message.contains("a.npy") && message.contains(part), "{message}");
         };
-        refused("No such file");
+        refused("there is no such file");
         fs::write(&path, b"nothing").expect("written");
         refused("no .npy file");
         Array::from_elem((2, 2), 1_i32)

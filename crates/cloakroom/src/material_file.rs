@@ -5,7 +5,7 @@
 //! wavelength in µm.
 
 use crate::device::{MaterialWord, MediumWords};
-use crate::input::{Digest, read_file};
+use crate::input::{Digest, read_file, reason};
 use crate::keys::{Field, KeyKind, Value};
 use optics::material::{Dispersion, IndexLaw, Material, Table};
 use std::borrow::Cow;
@@ -35,7 +35,7 @@ impl MaterialFile {
     /// A message that names the file and says why it cannot be used.
     pub fn read(path: &Path) -> Result<Self, String> {
         let failed = |reason: String| format!("cannot read {}: {reason}", path.display());
-        let bytes = read_file(LONGEST, path).map_err(|error| failed(error.to_string()))?;
+        let bytes = read_file(LONGEST, path).map_err(|error| failed(reason(&error)))?;
         let digest = Digest::of(&bytes);
         let text =
             String::from_utf8(bytes).map_err(|_| failed("it is not UTF-8 text".to_owned()))?;

@@ -9,7 +9,7 @@ use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Mode;
 use gltf::{Accessor, Gltf, Node, Primitive, Semantic};
 use optics::geometry::{Polyhedron, Triangles};
-use std::io::Cursor;
+use std::io::{Cursor, ErrorKind};
 use std::path::Path;
 use std::sync::Arc;
 use tobj::LoadOptions;
@@ -43,8 +43,12 @@ pub(crate) fn solid(path: &Path, bytes: &[u8]) -> Result<Arc<Polyhedron>, String
 }
 
 fn stl(bytes: &[u8]) -> Result<Triangles, String> {
-    let mesh = stl_io::read_stl(&mut Cursor::new(bytes))
-        .map_err(|error| format!("it is no STL file: {error}"))?;
+    let mesh = stl_io::read_stl(&mut Cursor::new(bytes)).map_err(|error| match error.kind() {
+        ErrorKind::UnexpectedEof => {
+            "it is no STL file, or cut short: fewer triangles follow than it says".to_owned()
+        }
+        _ => format!("it is no STL file: {error}"),
+    })?;
     let corner = |at: &stl_io::Vector<f32>| DVec3::from_array(at.0.map(f64::from));
     let mut triangles = Triangles {
         corners: mesh.vertices.iter().map(corner).collect(),

@@ -303,12 +303,12 @@ fn what_is_no_solid_is_refused_with_its_fault() {
             of("a.obj", open.as_bytes()),
             "is not closed: 4 edges are of one triangle only, as the one from (",
         ),
-        (of("b.stl", b"nothing"), "no STL file"),
+        (of("b.stl", b"nothing"), "no STL file, or cut short"),
         (of("c.obj", b"v 1 2 x\nf 1 2 3"), "no OBJ file"),
         (of("d.glb", b"glTF"), "no glTF file"),
         (of("e.gltf", cut.as_bytes()), "beyond the end of its data"),
         (of("f.gltf", elsewhere.as_bytes()), "in another file"),
-        (of("g.obj", b""), "0 triangles that are none"),
+        (of("g.obj", b""), "it has no triangles; a solid has four"),
     ] {
         assert!(error.starts_with("test:3:8") && error.contains(words), "{words}\n{error}");
     }

@@ -26,7 +26,7 @@ const LIMITS: Limits = Limits { min_power: 1e-6, tolerance: 1e-9 };
 const STRONG: Limits = Limits { min_power: 1e-4, tolerance: 1e-9 };
 
 fn scene(text: &str, changes: &[&str]) -> Scene {
-    let changes: Vec<Override> = changes.iter().map(|c| Override::Text((*c).to_owned())).collect();
+    let changes: Vec<Override> = changes.iter().map(|c| Override::from(*c)).collect();
     scene_file::parse(text, "test", Path::new(""), &changes).unwrap().scene
 }
 

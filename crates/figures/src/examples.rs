@@ -2,7 +2,7 @@
 
 use crate::gallery::EXHIBITS;
 use crate::paper::{PANELS, Panel, TITLES};
-use cloakroom::keys::hint;
+use cloakroom::keys::{hint, nearest};
 
 /// A scene file.
 #[derive(Clone, Debug)]
@@ -46,6 +46,22 @@ const OTHERS: [(&str, &str, &str); 13] = [
 
 /// Cloak (iii) of the paper, turned by 10 degrees: the scene to begin with.
 pub const FIRST: &str = include_str!("../scenes/paper/fig7d.toml");
+
+/// The example scene of that name, with or without its ending: `gallery/prisms`.
+#[must_use]
+pub fn named(name: &str) -> Option<Example> {
+    let is_it = |path: &str| path == name || path.strip_suffix(".toml") == Some(name);
+    all().into_iter().find(|example| is_it(example.path))
+}
+
+/// The end of a message about a scene of a name that is neither a file nor an example: what may be
+/// meant.
+#[must_use]
+pub fn meant_by(name: &str) -> String {
+    let all = all();
+    let known = all.iter().filter_map(|example| example.path.strip_suffix(".toml"));
+    nearest(name, known).map(|meant| format!("; did you mean `{meant}`?")).unwrap_or_default()
+}
 
 /// All example scenes: those of the paper, those of the gallery, the others.
 #[must_use]

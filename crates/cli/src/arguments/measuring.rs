@@ -1,7 +1,7 @@
 //! Arguments of the commands that measure, draw and export.
 
 use super::values::{angles, grid, point, rectangle, size, sun, tilt, view, window};
-use super::{SceneArguments, ThreadsArguments};
+use super::{PictureArguments, SceneArguments, ThreadsArguments};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use cloakroom::material::Resolution;
@@ -79,6 +79,9 @@ pub struct QualityArguments {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
+    /// The pictures that are measured.
+    #[command(flatten)]
+    pub picture: PictureArguments,
     /// A key and its values, as in device.0.rotation=0..90:5 or
     /// camera.polarizer=horizontal,vertical. May be given several times: every combination is
     /// measured.
@@ -179,9 +182,10 @@ pub struct ExportArguments {
     /// .json; the outlines of all devices as a mesh, in the world's frame, .stl (cm), .glb or .gltf.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Which device, counted from 0; the only one if absent, for meshes all of them.
-    #[arg(long, value_name = "N")]
-    pub device: Option<usize>,
+    /// Which device, by its number, counted from 0, or its name; the only one if absent, for meshes
+    /// all of them.
+    #[arg(long, value_name = "N|NAME")]
+    pub device: Option<String>,
     /// The cells of the grid: how many along x, y and z, as in 200x200x1, or the side of a cubic
     /// cell in cm, as in 0.1 [default: cubes, 64 along the longest side].
     #[arg(long, value_name = "NxNxN|CM", value_parser = grid)]

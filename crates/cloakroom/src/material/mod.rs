@@ -13,20 +13,15 @@ pub use segments::{Segment, segments, write_segments};
 use crate::assembly::{Assembly, Placed};
 use crate::device::Show;
 use crate::memory::Shortage;
-use crate::scene::{DeviceName, Scene};
+use crate::scene::{DeviceName, NoDevice, Scene};
 use crate::trace::Stopped;
 
 /// Why the material of a device cannot be given.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MaterialError {
     /// There is no device of that number.
-    #[error("there is no device {device}; the scene has {count}, counted from 0")]
-    NoDevice {
-        /// The number asked for.
-        device: usize,
-        /// How many there are.
-        count: usize,
-    },
+    #[error(transparent)]
+    NoDevice(#[from] NoDevice),
     /// It is not said which of so many devices.
     #[error("the scene has {0} devices; say which one is meant, from 0 to {last}", last = .0 - 1)]
     WhichDevice(usize),
@@ -77,7 +72,7 @@ fn chosen<'a>(
         None if count > 1 => return Err(MaterialError::WhichDevice(count)),
         None => 0,
     };
-    let none = MaterialError::NoDevice { device, count };
+    let none = NoDevice { device, count };
     let placed = assembly.devices().get(device).ok_or(none)?;
     let settings = &scene.devices[device];
     let problem = match settings.placement.show {

@@ -74,7 +74,10 @@ impl SweepPlan {
             let mut held = Vec::new();
             for (hold, target) in holds.iter().zip(&targets) {
                 let value = hold.solve(&loaded.scene, *target, &swept)?;
-                overrides.push(Override::Value { key: hold.key.clone(), value: value.into() });
+                overrides.push(
+                    Override::value(&hold.key, value)
+                        .by(format!("--hold {}={}", hold.key, hold.fact)),
+                );
                 held.push(value);
                 loaded = load(&overrides)?;
             }

@@ -13,8 +13,7 @@ pub enum QualityError {
     #[error("{0}")]
     Sweep(#[from] SweepError),
     /// A scene cannot be read or built.
-    // What is said to be wrong with an override may be so with a swept value.
-    #[error("{}", .0.to_string().replacen("--set ", "--set or --sweep ", 1))]
+    #[error("{0}")]
     Scene(Box<SceneFileError>),
     /// A picture cannot be made, or the work was stopped.
     #[error("{0}")]

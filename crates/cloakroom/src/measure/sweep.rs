@@ -98,10 +98,12 @@ impl Sweep {
     /// What sets the key to the value of that number.
     pub(crate) fn set(&self, number: usize) -> Override {
         let key = self.key.clone();
-        match self.given.get(number) {
-            Some(value) => Override::Value { key, value: value.clone() },
-            None => Override::Text(format!("{key}={}", self.values[number])),
-        }
+        let set = match self.given.get(number) {
+            Some(value) => Override::value(key, value.clone()),
+            None => format!("{key}={}", self.values[number]).into(),
+        };
+        let words = format!("--sweep {set}");
+        set.by(words)
     }
 
     /// The values as numbers, if all are.

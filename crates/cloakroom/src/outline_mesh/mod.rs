@@ -8,7 +8,7 @@ pub use files::{MeshFormat, write_mesh};
 
 use crate::assembly::{Assembly, Placed};
 use crate::device::Contour;
-use crate::scene::{Appearance, DeviceName, DeviceSettings, Scene};
+use crate::scene::{Appearance, DeviceName, DeviceSettings, NoDevice, Scene};
 use glam::DVec3;
 use optics::geometry::{Polygon, Pose, REACH, Solid};
 
@@ -43,13 +43,8 @@ pub enum OutlineError {
     #[error("there is no device whose outline could be written")]
     Nothing,
     /// There is no device of that number.
-    #[error("there is no device {device}; the scene has {count}, counted from 0")]
-    NoDevice {
-        /// The number asked for.
-        device: usize,
-        /// How many there are.
-        count: usize,
-    },
+    #[error(transparent)]
+    NoDevice(#[from] NoDevice),
     /// A device has no end.
     #[error(
         "{0} (counted from 0) is endless, and a mesh is not; give it a `length`, and take a box instead of a \
@@ -72,7 +67,7 @@ pub fn outlines(
 ) -> Result<Vec<OutlineMesh>, OutlineError> {
     let count = assembly.devices().len();
     if let Some(device) = device.filter(|device| *device >= count) {
-        return Err(OutlineError::NoDevice { device, count });
+        return Err(NoDevice { device, count }.into());
     }
     let mut meshes = Vec::new();
     for (number, (placed, settings)) in assembly.devices().iter().zip(&scene.devices).enumerate() {

@@ -126,6 +126,23 @@ impl fmt::Display for DeviceName {
     }
 }
 
+/// There is no device of that number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "there is no device {device}: {}",
+    match .count {
+        0 => "the scene has no devices".to_owned(),
+        1 => "the scene has one device, 0".to_owned(),
+        _ => format!("the scene has {count} devices, 0 to {}", count - 1),
+    }
+)]
+pub struct NoDevice {
+    /// The number asked for.
+    pub device: usize,
+    /// How many there are.
+    pub count: usize,
+}
+
 /// Whether a table or one within it names a material.
 fn has_material(keys: &[Key], entries: &[(String, Value)]) -> bool {
     let of_key = |key: &Key, value: &Value| match (key.kind, value) {
@@ -325,7 +342,8 @@ impl DeviceSettings {
     pub fn built(&self, show: Show) -> Result<Structure, KeyError> {
         let structure = self.with_files_read()?.build(self.request(show))?;
         let (key, metal) = (key!(Placement.metal), self.placement.metal.as_ref());
-        let message = "metal is false; a cloak without metal has core = \"open\"";
+        let message = "metal is false; leave it out: a body is then of no metal, and metal elsewhere a perfect \
+                       conductor; a cloak without metal has core = \"open\"";
         KeyError::refuse_if(metal == Some(&Metal::None), key, message)?;
         let metal = metal.map(|metal| metal.medium(self.wavelength_nm)).transpose()?.flatten();
         let Some(metal) = metal else {
@@ -350,6 +368,14 @@ impl DeviceSettings {
         let (device, placement) = ((entry.device)(), Placement::default());
         let wavelength_nm = Request::DESIGN_WAVELENGTH_NM;
         Self { device, placement, draw: 0, index_files: Vec::new(), wavelength_nm }
+    }
+
+    /// Whether its metal is a medium that light would go on in.
+    #[must_use]
+    pub fn has_lossless_metal(&self) -> bool {
+        let metal = self.placement.metal.as_ref();
+        let medium = metal.and_then(|metal| metal.medium(self.wavelength_nm).ok().flatten());
+        medium.is_some_and(|medium| !medium.absorbs())
     }
 
     fn request(&self, show: Show) -> Request {

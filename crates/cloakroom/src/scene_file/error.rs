@@ -14,12 +14,21 @@ pub struct SceneFileError {
     pub line: Option<u32>,
     /// The column in characters, counted from 1.
     pub column: Option<u32>,
-    /// The override at fault, such as `camera.samples=16`; `None` if the file is.
-    pub override_text: Option<String>,
+    /// The override at fault; `None` if the file is.
+    pub at_fault: Option<Box<OverrideAtFault>>,
     /// What is wrong.
     pub message: String,
-    /// The quoted line with a mark under the place.
+    /// The quoted line with a mark under the place, and what is set beside it.
     pub(super) excerpt: Option<String>,
+}
+
+/// An override that cannot be.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OverrideAtFault {
+    /// Its key and its value, such as `camera.samples=16`.
+    pub text: String,
+    /// The words on the command line that set it, such as `--set camera.samples=16`.
+    pub words: String,
 }
 
 impl SceneFileError {
@@ -29,7 +38,7 @@ impl SceneFileError {
             file: file.into(),
             line: None,
             column: None,
-            override_text: None,
+            at_fault: None,
             message: message.into(),
             excerpt: None,
         }
@@ -44,8 +53,8 @@ impl SceneFileError {
 
 impl fmt::Display for SceneFileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (&self.override_text, self.line, self.column) {
-            (Some(text), _, _) => write!(f, "--set {text}: ")?,
+        match (&self.at_fault, self.line, self.column) {
+            (Some(at_fault), _, _) => write!(f, "{}: ", at_fault.words)?,
             (None, Some(line), Some(column)) => write!(f, "{}:{line}:{column}: ", self.file)?,
             (None, Some(line), None) => write!(f, "{}:{line}: ", self.file)?,
             (None, None, _) => write!(f, "{}: ", self.file)?,

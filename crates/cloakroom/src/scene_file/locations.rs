@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::error::SceneFileError;
+use super::error::{OverrideAtFault, SceneFileError};
 use super::overrides::Override;
+use super::read::DEVICES;
 use crate::keys::{KeyError, Value};
 use std::ops::Range;
 
@@ -92,9 +93,30 @@ impl Locations {
             !matches!(origin, Origin::Override(_)) || *at == path || at.starts_with("device")
         });
         match to_blame.next() {
+            Some((_, origin @ Origin::File(_))) if path.starts_with(DEVICES) => {
+                let (mut error, set) = (self.error(origin, message), self.device_overrides());
+                if let Some(excerpt) = error.excerpt.as_mut().filter(|_| !set.is_empty()) {
+                    *excerpt += &format!("\n  with {}", set.join(", "));
+                }
+                error
+            }
             Some((_, origin)) => self.error(origin, message),
             None => SceneFileError::whole(&self.name, message),
         }
+    }
+
+    /// What sets keys of devices: a fault between two of them may be that of either.
+    fn device_overrides(&self) -> Vec<String> {
+        let places = self.places.iter().filter(|(path, _)| path.starts_with(DEVICES));
+        let mut numbers: Vec<usize> = places
+            .filter_map(|(_, place)| match place.value {
+                Origin::Override(number) => Some(number),
+                Origin::File(_) => None,
+            })
+            .collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        numbers.into_iter().map(|number| self.overrides[number].words()).collect()
     }
 
     /// An error of a table such as `device.1`, at the key the error names.
@@ -108,7 +130,9 @@ impl Locations {
         match origin {
             Origin::File(span) => error.in_text(&self.text, span.clone()),
             Origin::Override(number) => {
-                SceneFileError { override_text: Some(self.overrides[*number].to_string()), ..error }
+                let set = &self.overrides[*number];
+                let at_fault = OverrideAtFault { text: set.to_string(), words: set.words() };
+                SceneFileError { at_fault: Some(Box::new(at_fault)), ..error }
             }
         }
     }

@@ -18,7 +18,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-pub use error::SceneFileError;
+pub use error::{OverrideAtFault, SceneFileError};
 pub use locations::Locations;
 pub use overrides::Override;
 pub use schema::schema;

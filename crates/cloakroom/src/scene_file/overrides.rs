@@ -5,7 +5,7 @@ use super::key_at::key_at;
 use super::locations::{Locations, Origin, join};
 use super::read::{DEVICES, KIND};
 use super::tree::{parse_value, to_toml};
-use crate::keys::{Key, KeyKind, Value, quoted};
+use crate::keys::{Key, KeyKind, Value, hint, quoted};
 use crate::scene::Placement;
 use cloakroom_trace::key;
 use std::fmt;
@@ -16,35 +16,56 @@ const DEEPEST: usize = 16;
 
 /// What is set in a scene: one key.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Override {
+pub struct Override {
+    setting: Setting,
+    /// The words that set it, if not `--set` and what it displays as.
+    words: Option<String>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Setting {
     /// As text, `camera.samples=16`.
     Text(String),
-    /// As a key and its value.
-    Value {
-        /// The key, as in `device.0.rotation`.
-        key: String,
-        /// What it is to be.
-        value: Value,
-    },
+    /// As a key, as in `device.0.rotation`, and what it is to be.
+    Value(String, Value),
+}
+
+impl Override {
+    /// A key, as in `device.0.rotation`, and its value.
+    pub fn value(key: impl Into<String>, value: impl Into<Value>) -> Self {
+        Self { setting: Setting::Value(key.into(), value.into()), ..Self::from("") }
+    }
+
+    /// The same, set by other words on the command line than `--set`, as in `--photo room.png`:
+    /// messages say those.
+    #[must_use]
+    pub fn by(self, words: String) -> Self {
+        Self { words: Some(words), ..self }
+    }
+
+    /// The words on the command line that set it.
+    pub(super) fn words(&self) -> String {
+        self.words.clone().unwrap_or_else(|| format!("--set {self}"))
+    }
 }
 
 impl From<&str> for Override {
     fn from(text: &str) -> Self {
-        Self::Text(text.to_owned())
+        text.to_owned().into()
     }
 }
 
 impl From<String> for Override {
     fn from(text: String) -> Self {
-        Self::Text(text)
+        Self { setting: Setting::Text(text), words: None }
     }
 }
 
 impl fmt::Display for Override {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Text(text) => f.write_str(text),
-            Self::Value { key, value } => write!(f, "{key}={}", to_toml(value)),
+        match &self.setting {
+            Setting::Text(text) => f.write_str(text),
+            Setting::Value(key, value) => write!(f, "{key}={}", to_toml(value)),
         }
     }
 }
@@ -54,7 +75,7 @@ pub(super) fn apply(root: &mut Value, locations: &mut Locations) -> Result<(), S
     let mut added = Vec::new();
     for (number, each) in Arc::clone(&locations.overrides).iter().enumerate() {
         let told = |message| locations.error(&Origin::Override(number), message);
-        let (mut path, value) = key_and_value(each).map_err(told)?;
+        let (mut path, value) = key_and_value(root, each).map_err(told)?;
         if let Some((parts, device)) = called(root, &path) {
             path.splice(..parts, [DEVICES.to_owned(), device.to_string()]);
         }
@@ -80,17 +101,23 @@ pub(super) fn apply(root: &mut Value, locations: &mut Locations) -> Result<(), S
 }
 
 /// The parts of an override's key, and its value.
-fn key_and_value(each: &Override) -> Result<(Vec<String>, Value), String> {
-    let (path, value) = match each {
-        Override::Value { key, value } => (key.as_str(), Ok(value.clone())),
-        Override::Text(text) => {
-            let (path, value) = text
+fn key_and_value(root: &Value, each: &Override) -> Result<(Vec<String>, Value), String> {
+    let (path, given) = match &each.setting {
+        Setting::Value(key, value) => (key.as_str(), Ok(value)),
+        Setting::Text(text) => {
+            let (path, text) = text
                 .split_once('=')
                 .ok_or("an override is written KEY=VALUE, such as camera.samples=16")?;
-            (path, parse_value(value.trim()))
+            (path, Err(text.trim()))
         }
     };
     let path: Vec<String> = path.split('.').map(|key| key.trim().to_owned()).collect();
+    let words = given.map_or_else(Some, Value::as_text);
+    let value = match (words.and_then(|words| pair(key_at(root, &path), words)), given) {
+        (Some(pair), _) => pair,
+        (None, Ok(value)) => Ok(value.clone()),
+        (None, Err(text)) => parse_value(text),
+    };
     if path.iter().any(String::is_empty) {
         return Err("a key is missing; write it as in camera.samples=16".to_owned());
     }
@@ -143,7 +170,6 @@ fn apply_one(
     number: usize,
     locations: &mut Locations,
 ) -> Result<Option<usize>, String> {
-    let value = as_typed(key_at(root, path), value);
     // What a list is that the scene does not write: an entry of it can be set alone.
     let is_list = |end: usize| path.get(end).is_some_and(|next| next.parse::<usize>().is_ok());
     let unwritten: Vec<Option<Value>> = (1..=path.len())
@@ -189,13 +215,19 @@ fn called(root: &Value, path: &[String]) -> Option<(usize, usize)> {
     Some((parts, devices.iter().position(called)?))
 }
 
-/// A value as people type it: a resolution may be 640x480.
-fn as_typed(key: Option<&Key>, value: Value) -> Value {
+/// A resolution as people type it, 640x480; `None` where the key is another or a list is written.
+fn pair(key: Option<&Key>, text: &str) -> Option<Result<Value, String>> {
+    let text = text.trim_matches(['"', '\'', ' ']);
     let is_pair = key.is_some_and(|key| matches!(key.kind, KeyKind::IntegerPair));
-    let sides = value.as_text().filter(|_| is_pair).and_then(|text| text.split_once('x'));
+    if !is_pair || text.starts_with('[') {
+        return None;
+    }
     let side = |text: &str| text.trim().parse::<i64>().ok();
+    let sides = text.split_once(['x', 'X', '×']);
     let pair = sides.and_then(|(width, height)| Some([side(width)?, side(height)?]));
-    pair.map_or(value, Value::from)
+    Some(pair.map(Value::from).ok_or_else(|| {
+        format!("{} is no width and height; write them as in 640x480", quoted(text, '`'))
+    }))
 }
 
 /// The value of a key, made if it is not there, and whether it was. One of which an entry is set is
@@ -243,18 +275,16 @@ fn entry<'a>(
     let tables = items.iter().all(|item| item.as_table().is_some());
     let count = items.len();
     let Ok(index) = key.parse::<usize>() else {
-        let key = quoted(key, '`');
+        let (word, key) = (key, quoted(key, '`'));
         if walked.as_str() != DEVICES {
             return Err(format!(
                 "{key} is not a number; the entries of {walked} are counted from 0: {walked}.0"
             ));
         }
         let names = items.iter().filter_map(|item| item.entry(key!(Placement.name))?.as_text());
-        let names: Vec<String> = names.map(|name| quoted(name, '`')).collect();
-        let named =
-            if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) };
+        let hint = hint(word, &names.collect::<Vec<_>>(), "there are");
         return Err(format!(
-            "no device is called {key}{named}; devices are counted from 0, as in {walked}.0, and \
+            "no device is called {key}{hint}; devices are counted from 0, as in {walked}.0, and \
              {walked}.* is every one"
         ));
     };

@@ -54,7 +54,11 @@ impl Keyframes {
                 |message: &str| refuse(format!("{LIST} {number} (counted from 0): {message}"));
             let frame = keyframe.entry(FRAME).and_then(Value::as_number);
             let frame = frame.ok_or_else(|| refuse("it needs its frame, a number"))?;
-            if !(frame > frames.last && frame < MOST_FRAMES as f64) {
+            if frame >= MOST_FRAMES as f64 {
+                let message = format!("a film has at most {MOST_FRAMES} frames, counted from 0");
+                return Err(refuse(&message));
+            }
+            if frame.is_nan() || frame <= frames.last {
                 return Err(refuse("frames count from 0 and rise from keyframe to keyframe"));
             }
             frames.last = frame;

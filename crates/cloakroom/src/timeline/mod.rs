@@ -13,6 +13,8 @@ pub const MOST_FRAMES: usize = 100_000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timeline {
     sweeps: Vec<Sweep>,
+    /// What keyframes change, written as sweeps.
+    keyframes: Vec<Sweep>,
     /// How far the camera has gone round its target, frame by frame, degrees.
     orbit: Option<Vec<f64>>,
     frames: usize,
@@ -95,12 +97,12 @@ impl Timeline {
         if let Some(frames) = frames.filter(|frames| !(1..=MOST_FRAMES).contains(frames)) {
             return Err(TimelineError::Count(frames));
         }
-        let frames = frames.or(keyframes.map(Keyframes::frames));
+        let counted = frames.or(keyframes.map(Keyframes::frames));
         let mut sweeps: Vec<Sweep> = Vec::new();
         for text in texts {
             let sweep = match way(text)? {
                 Some((key, points)) => {
-                    let frames = frames.ok_or_else(|| TimelineError::NoCount(text.clone()))?;
+                    let frames = counted.ok_or_else(|| TimelineError::NoCount(text.clone()))?;
                     let points = spread(&points, key.ends_with("rotation"), frames);
                     Sweep::written(key, points.iter().map(ToString::to_string).collect())
                 }
@@ -108,15 +110,13 @@ impl Timeline {
             };
             sweeps.push(sweep);
         }
-        let counted = frames.or(sweeps.first().map(|sweep| sweep.values.len()));
-        let orbit = orbit.map(|text| {
-            let frames = counted.ok_or_else(|| TimelineError::NoOrbitCount(text.to_owned()))?;
-            azimuths(text, frames)
-        });
+        let counted = counted.or(sweeps.first().map(|sweep| sweep.values.len()));
+        let orbit = orbit.map(|text| azimuths(text, counted));
         let (orbit, frames) = (orbit.transpose()?, counted.ok_or(TimelineError::Still)?);
-        sweeps.extend(keyframes.map(|keyframes| keyframes.sweeps(frames)).unwrap_or_default());
-        for (number, sweep) in sweeps.iter().enumerate() {
-            if sweeps[..number].iter().any(|other| other.key == sweep.key) {
+        let keyframes = keyframes.map(|keyframes| keyframes.sweeps(frames)).unwrap_or_default();
+        let all = || sweeps.iter().chain(&keyframes);
+        for (number, sweep) in all().enumerate() {
+            if all().take(number).any(|other| other.key == sweep.key) {
                 return Err(SweepError::Twice(sweep.key.clone()).into());
             }
             let values = sweep.values.len();
@@ -124,10 +124,10 @@ impl Timeline {
                 return Err(TimelineError::Uneven { key: sweep.key.clone(), values, frames });
             }
         }
-        if sweeps.is_empty() && orbit.is_none() {
+        if all().next().is_none() && orbit.is_none() {
             return Err(TimelineError::Still);
         }
-        Ok(Self { sweeps, orbit, frames })
+        Ok(Self { sweeps, keyframes, orbit, frames })
     }
 
     /// How many frames there are.
@@ -145,7 +145,12 @@ impl Timeline {
     /// What a frame, counted from 0, changes in the scene, as in `device.0.rotation=3`.
     #[must_use]
     pub fn overrides(&self, frame: usize) -> Vec<Override> {
-        self.sweeps.iter().map(|sweep| sweep.set(frame)).collect()
+        let keyed = self.keyframes.iter().map(|sweep| {
+            let set = sweep.set(frame);
+            let words = format!("--keyframes, frame {frame}, {set}");
+            set.by(words)
+        });
+        self.sweeps.iter().map(|sweep| sweep.set(frame)).chain(keyed).collect()
     }
 }
 
@@ -165,13 +170,17 @@ fn way(text: &str) -> Result<Option<(String, Vec<Waypoint>)>, TimelineError> {
 }
 
 /// The angles of a way round the target, frame by frame.
-fn azimuths(text: &str, frames: usize) -> Result<Vec<f64>, TimelineError> {
+fn azimuths(text: &str, frames: Option<usize>) -> Result<Vec<f64>, TimelineError> {
     let refuse =
         |problem: &str| TimelineError::Orbit { text: text.to_owned(), problem: problem.to_owned() };
+    if text.contains(':') {
+        return Err(refuse("it takes no step: the frames are spread evenly over it"));
+    }
     let points = Waypoint::way(text).map_err(|problem| refuse(&problem))?;
     if points.len() < 2 {
         return Err(refuse("there is no .. in it"));
     }
+    let frames = frames.ok_or_else(|| TimelineError::NoOrbitCount(text.to_owned()))?;
     let angles = spread(&points, true, frames).iter().map(Waypoint::number).collect();
     let angles: Option<Vec<f64>> = angles;
     angles.ok_or_else(|| refuse("these are no angles"))

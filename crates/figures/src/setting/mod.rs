@@ -169,12 +169,13 @@ impl<'s> Devices<'s> {
 
     /// Draws devices from back to front, without their dimensions.
     fn draw_shapes(&self, drawing: &mut Drawing, view: &View, shown: &[(&Subject<'_>, bool)]) {
-        for (place, (subject, in_detail)) in shown.iter().enumerate() {
-            let mut sketch = Sketch { drawing, view, subject };
-            sketch.draw(self.bar.as_ref().map(|bar| &bar.scale));
-            if *in_detail {
-                sketch.draw_media(&shown[place + 1..]);
-            }
+        for (subject, _) in shown {
+            let scale = self.bar.as_ref().map(|bar| &bar.scale);
+            Sketch { drawing, view, subject }.draw(scale);
+        }
+        // What is written on one may reach over its neighbour.
+        for (place, (subject, _)) in shown.iter().enumerate().filter(|(_, (_, detail))| *detail) {
+            Sketch { drawing, view, subject }.draw_media(&shown[place + 1..]);
         }
     }
 }

@@ -134,17 +134,23 @@ impl Stage {
             let line = [DVec2::new(x, row - 6.0), DVec2::new(x, *y)];
             drawing.add_line("extension", line, (GRAY, 0.7 * THIN)).dashed(9.0, 5.0);
         }
-        // Labels without room go one line higher than the last.
-        let mut raised = 0.0;
+        // How far the labels of each line reach; one without room goes to the next line above.
+        let mut lines: Vec<f64> = Vec::new();
         for pair in stations.windows(2) {
             let [(from, _), (to, _)] = pair else { continue };
             let ends = [*from, *to].map(|x| DVec2::new(view.place(DVec2::new(x, 0.0)).x, row));
             dimension::double_arrow(drawing, "distance", ends);
             let words = Words::new(centimetres(to - from), (ends[0] + ends[1]) / 2.0, TEXT);
-            let fits = words.width() < ends[0].distance(ends[1]);
-            raised = if fits { 0.0 } else { raised + 1.0 };
-            let at = words.at - DVec2::Y * (0.75 + raised) * TEXT;
-            let words = within(view, Words { at, ..words });
+            let words = within(view, words);
+            let half = words.width() / 2.0;
+            let free = |reach: &f64| reach + 0.3 * TEXT < words.at.x - half;
+            let line = lines.iter().position(free).unwrap_or(lines.len());
+            match lines.get_mut(line) {
+                Some(reach) => *reach = words.at.x + half,
+                None => lines.push(words.at.x + half),
+            }
+            let at = words.at - DVec2::Y * (0.75 + line as f64) * TEXT;
+            let words = Words { at, ..words };
             drawing.add_words("distance-label", words);
         }
     }

@@ -54,9 +54,9 @@ impl Device for Prisms {
     const TITLE: &'static str = "Prisms of one's own";
 
     fn structure(&self, request: Request) -> Result<Structure, KeyError> {
-        if self.prism.is_empty() {
+        if self.prism.is_empty() && self.floor == 0.0 {
             let message = "there is no prism; give each one a table [[device.prism]] with `corners` and \
-                           `permittivity` or `metal = true`";
+                           `permittivity` or `metal = true`, or give a `floor`, which may stand alone";
             return Err(KeyError::general(message));
         }
         let floor = self.floor;

@@ -233,6 +233,13 @@ impl Key {
             KeyKind::Table { keys } => self.table(value, keys)?,
             KeyKind::FlagOrTable { keys } => match value {
                 Value::Table(_) => self.table(value, keys)?,
+                Value::Text(word) if find(keys, "material").is_ok() => {
+                    let (name, word) = (self.name, quoted(word, '"'));
+                    return Err(format!(
+                        "{name} is {word}; a material is written {name} = {{ material = {word} }}, a perfect \
+                         conductor {name} = true"
+                    ));
+                }
                 _ => self.of_type(value, value.as_flag())?.into(),
             },
             KeyKind::Tables { keys } => {

@@ -23,7 +23,7 @@ fn read_with(text: &str, overrides: &[&str]) -> Result<Loaded, SceneFileError> {
 #[test]
 fn keys_are_set_to_values_as_to_text() {
     let text = "[[device]]\nkind = \"square-cloak\"\n";
-    let set = |key: &str, value: Value| Override::Value { key: key.to_owned(), value };
+    let set = |key: &str, value: Value| Override::value(key, value);
     let with = |each: Override| parse(text, "scene.toml", Path::new(""), &[each]);
     let by_value = with(set("device.0.rotation", 5.5.into())).unwrap_or_else(|e| panic!("{e}"));
     let by_text = with("device.0.rotation=5.5".into()).unwrap_or_else(|e| panic!("{e}"));

@@ -12,7 +12,7 @@ const MOST_TRIANGLES: usize = 1 << 22;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshFault {
     /// There are fewer than four.
-    #[error("it has {0} triangles that are none; a solid has four at least")]
+    #[error("it has {} triangles; a solid has four at least", if *.0 == 0 { "no".to_owned() } else { .0.to_string() })]
     TooFew(usize),
     /// There are too many.
     #[error("it has {0} triangles; at most {MOST_TRIANGLES} are taken")]

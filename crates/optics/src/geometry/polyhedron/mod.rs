@@ -118,8 +118,8 @@ impl Polyhedron {
         let Aabb { low, high } = tree.around();
         let hidden = TOUCHING.max(1e-14 * low.abs().max(high.abs()).max_element());
         let solid = Self { corners, triangles, normals, faces, tree, volume, is_convex, hidden };
-        solid.check_shells(&shells)?;
         solid.check_crossings()?;
+        solid.check_shells(&shells)?;
         Ok(solid)
     }
 
