@@ -22,8 +22,8 @@ crate::table! {
         /// [[device.imitated]], shown with show = "mirror". A mirror, or glass on a mirror.
         imitated: Vec<PrismOfMedium>,
         /// Whole width along x of a flat mirror floor on y = 0 that the prisms stand on; 0 for none.
-        /// Without [[device.imitated]] it alone is what the device should look like. It is perfect,
-        /// or of the device's `metal`.
+        /// Without [[device.imitated]] it alone is what the device should look like. It may stand
+        /// without prisms, too. It is perfect, or of the device's `metal`.
         floor: f64, "cm", in ValueRange::LENGTH_OR_ZERO,
     }
 }
