@@ -1,5 +1,7 @@
-// The WebSocket to the server. What moves is asked for two pictures at a time, so that one is made while the other is
+// What is said to the end of the line, the server or a worker, and heard from it. What moves is asked for two pictures at a time, so that one is made while the other is
 // shown; what stands still at once, which cancels all that is under way.
+
+import { openLine } from "./line.js";
 
 // How many pictures of what moves are under way.
 const AHEAD = 2;
@@ -8,7 +10,7 @@ const AHEAD = 2;
 const PATIENCE = 3000;
 
 export class Connection {
-  // `heard` has a function for each kind of message; `closed` is told when the server is gone.
+  // `heard` has a function for each kind of message; `closed` is told when nobody is at the other end.
   constructor(heard, closed) {
     this.heard = heard;
     this.closed = closed;
@@ -18,26 +20,25 @@ export class Connection {
   }
 
   open() {
-    const socket = new WebSocket(`ws://${location.host}${location.pathname}session`);
-    socket.binaryType = "arraybuffer";
-    socket.onmessage = (event) => {
+    const line = openLine();
+    line.onmessage = (event) => {
       if (typeof event.data === "string") {
         for (const [kind, content] of Object.entries(JSON.parse(event.data))) this.heard[kind]?.(content);
       } else {
         this.#receive(event.data);
       }
     };
-    socket.onclose = () => {
-      if (this.socket === socket) this.closed();
+    line.onclose = () => {
+      if (this.line === line) this.closed();
     };
-    this.socket = socket;
+    this.line = line;
     // Pictures under way, and the look that comes next.
     this.waiting = [];
     this.next = null;
   }
 
   get isOpen() {
-    return this.socket.readyState === WebSocket.OPEN;
+    return this.line.readyState === WebSocket.OPEN;
   }
 
   #receive(buffer) {
@@ -95,10 +96,10 @@ export class Connection {
     if (!this.isOpen) return;
     const bytes = await file.arrayBuffer();
     this.#say({ photograph: { name } });
-    this.socket.send(bytes);
+    this.line.send(bytes);
   }
 
   #say(message) {
-    this.socket.send(JSON.stringify(message));
+    this.line.send(JSON.stringify(message));
   }
 }

@@ -3,6 +3,7 @@
 import { LAMPS, fillLists, showRotation, showSpectrum, showSplit, showState } from "./choices.js";
 import { Connection } from "./connection.js";
 import { watchDrops, watchKeys, watchPointer } from "./gestures.js";
+import { words } from "./line.js";
 import { ageNumbers, percent, showNumbers } from "./numbers.js";
 import { picture, watchDivider } from "./picture.js";
 import { sectionView } from "./section.js";
@@ -135,9 +136,7 @@ function clearError() {
 
 function gone() {
   stop();
-  $("banner-text").textContent = hello
-    ? "The server has ended, or cannot be reached."
-    : "No connection: ten pages may be open already, or the server has ended.";
+  $("banner-text").textContent = hello ? words.lost : words.refused;
   $("banner").hidden = false;
   $("retry").hidden = false;
 }

@@ -17,6 +17,6 @@ pub(crate) static ASSETS: &[(&str, &str, &[u8])] = assets! {
     "text/css": "/style.css" "style.css";
     "image/svg+xml": "/icon.svg" "icon.svg";
     "text/javascript": "/gestures.js" "gestures.js" "/main.js" "main.js" "/choices.js" "choices.js" "/state.js" "state.js"
-        "/orbit.js" "orbit.js" "/connection.js" "connection.js" "/picture.js" "picture.js" "/section.js" "section.js"
+        "/orbit.js" "orbit.js" "/connection.js" "connection.js" "/line.js" "line.js" "/picture.js" "picture.js" "/section.js" "section.js"
         "/controls.js" "controls.js" "/numbers.js" "numbers.js";
 };

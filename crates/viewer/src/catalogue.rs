@@ -7,8 +7,8 @@ use cloakroom::scene_file;
 use cloakroom_figures::gallery::EXHIBITS;
 use serde_json::{Map, Value, json};
 
-/// The greeting of the server.
-pub(crate) fn greeting(opened: &Opened) -> Value {
+/// What a page is told first.
+pub fn greeting(opened: &Opened) -> Value {
     let schema = scene_file::schema();
     let kinds: Map<String, Value> =
         CATALOGUE.iter().map(|entry| (entry.kind.to_owned(), kind(entry, &schema))).collect();

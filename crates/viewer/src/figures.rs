@@ -1,13 +1,12 @@
 //! Numbers for what a page shows: power, times of flight, and likeness to what should be seen.
 
-use cloakroom::measure::{
-    FlightFigures, PixelMask, View, bare, empty, ideal, structural_similarity, survey,
-};
+use crate::end::{self, End, Problem, Recipe, Subject};
+use crate::protocol::Look;
+use cloakroom::measure::{FlightFigures, PixelMask, View, bare, structural_similarity};
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, Images, PreparedScene, Supervision, render};
+use cloakroom::render::{ChannelSet, Supervision};
 use cloakroom::scene::{Camera, CameraSettings, Scene};
 use serde_json::{Value, json};
-use std::error::Error;
 use std::sync::atomic::AtomicBool;
 
 /// Width of the pictures that numbers are taken from, pixels.
@@ -17,26 +16,35 @@ const WIDTH: u32 = 160;
 /// view, of what should be seen, and of the bare metal.
 ///
 /// Means of power and time are over the silhouette, the pixels that meet a device.
-pub(crate) fn figures(
+pub(crate) async fn figures(
+    end: &impl End,
+    look: &Look,
     scene: &Scene,
-    images: &mut Images,
     stop: &AtomicBool,
-) -> Result<Value, Box<dyn Error + Send + Sync>> {
+) -> Result<Value, Problem> {
     let supervision = Supervision { rows_done: &|_| {}, stop };
-    let scene = small(scene);
-    let mut picture = |scene: &Scene| -> Result<Picture, Box<dyn Error + Send + Sync>> {
-        let prepared = prepared(scene, images)?;
-        Ok(render(&prepared, ChannelSet::Everything, &supervision)?.picture)
+    let subject = |view| {
+        let recipe = Recipe { view, ..Recipe::plain(small(scene)) };
+        Subject { look, scene, recipe }
     };
-    let wanted_scene = ideal(&scene);
-    let shown = picture(&scene)?;
-    let nothing = View::of(&picture(&empty(&scene))?)?;
-    let wanted = View::of(&picture(&wanted_scene)?)?;
-    let bare = bare(&scene).map(|bare| picture(&bare)).transpose()?;
-    let bare = bare.as_ref().map(View::of).transpose()?;
-    let view = View::of(&shown)?;
-    let (prepared, ideal) = (prepared(&scene, images)?, prepared(&wanted_scene, images)?);
-    let rays = survey(&prepared, &ideal, &supervision)?;
+    let picture = async |view| {
+        let picture = end.picture(&subject(view), ChannelSet::Everything, &supervision).await;
+        picture.map_err(|problem| match problem {
+            // Its errors are about no key of the scene that is shown.
+            Problem::Scene { message, .. } => Problem::of(message),
+            Problem::Stopped => problem,
+        })
+    };
+    let of = |picture: &Picture| View::of(picture).map_err(Problem::of);
+    let shown = picture(end::View::Scene).await?;
+    let nothing = of(&picture(end::View::Empty).await?)?;
+    let wanted = of(&picture(end::View::Mirror).await?)?;
+    let bare = match bare(scene) {
+        Some(_) => Some(of(&picture(end::View::Bare).await?)?),
+        None => None,
+    };
+    let view = of(&shown)?;
+    let rays = end.survey(&subject(end::View::Scene), &supervision).await?;
     let silhouette = PixelMask::new(view.width, rays.silhouette.clone()).ok();
     let everything = PixelMask::whole(&view);
     let likeness = |of: &View, to: &View| {
@@ -65,18 +73,11 @@ pub(crate) fn figures(
     }))
 }
 
-/// A scene of those that are compared, built; its errors are about no key of the scene that is
-/// shown.
-fn prepared<'s>(scene: &'s Scene, images: &mut Images) -> Result<PreparedScene<'s>, String> {
-    PreparedScene::with_images(scene, images).map_err(|error| error.to_string())
-}
-
-/// The same scene in few pixels.
-fn small(scene: &Scene) -> Scene {
+/// Width and height of a scene's picture in few pixels.
+fn small(scene: &Scene) -> [u32; 2] {
     let [width, height] = scene.camera.resolution;
     let share = f64::from(WIDTH) / f64::from(width.max(WIDTH));
-    let resolution = [width, height].map(|side| ((f64::from(side) * share).round() as u32).max(1));
-    resized(scene, resolution, 1)
+    [width, height].map(|side| ((f64::from(side) * share).round() as u32).max(1))
 }
 
 /// The same scene with another resolution and number of samples.

@@ -1,32 +1,24 @@
-//! The thread that renders for one page: coarsely at once, then in full, then with more samples.
-//! What it sends at each number of samples is the picture that `cloakroom render` makes with that
-//! number.
+//! Paints what a page wishes: coarsely at once, then in full, then with more samples. What it sends at
+//! each number of samples is the picture that `cloakroom render` makes with that number.
 
-use crate::client::{Client, Gone, Outbox, Space};
-use crate::cross_section::cross_section;
-use crate::figures::{figures, resized};
+use crate::end::{End, Problem, Recipe, Subject, View};
+use crate::figures::figures;
 use crate::pace::{Pace, Pass};
 use crate::protocol::{Beside, Look, error};
-use crate::slot::lock;
-use cloakroom::measure::{bare, empty, ideal};
+use crate::scenes::Opened;
+use crate::seen::Seen;
+use crate::slot::{Slot, lock};
+use cloakroom::measure::bare;
 use cloakroom::output::{RgbImage, to_srgb};
-use cloakroom::render::{
-    ChannelSet, Images, PreparedScene, PreparedSceneError, Supervision, render,
-};
+use cloakroom::render::{ChannelSet, Supervision};
 use cloakroom::scene::{DeviceSettings, PictureSettings, Placement, Scene};
-use cloakroom::trace::Stopped;
 use cloakroom_figures::{Quantity, ScalarMap};
+use futures_util::FutureExt;
 use serde_json::{Value, json};
-use std::error::Error;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::AssertUnwindSafe;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
-
-/// What coarse pictures may leave out: branches weaker than this, and places less exact than this,
-/// cm.
-const COARSE_POWER: f64 = 3e-2;
-const COARSE_TOLERANCE: f64 = 1e-2;
+use std::time::Duration;
 
 /// How long a page may take to show the first coarse picture before finer ones are begun.
 const SIGHT: Duration = Duration::from_millis(400);
@@ -36,63 +28,30 @@ const PROGRESS: Duration = Duration::from_millis(150);
 
 /// A look, and the flag that cancels it.
 #[derive(Debug)]
-pub(crate) struct Wish {
-    pub look: Look,
-    pub stop: Arc<AtomicBool>,
+pub struct Wish {
+    pub(crate) look: Look,
+    pub(crate) stop: Arc<AtomicBool>,
 }
 
-/// What a page shows now, for rays to be sent through.
-#[derive(Debug)]
-pub(crate) struct Shown {
-    /// The scene in the size of the full picture.
-    pub scene: Scene,
-    /// Its images.
-    pub images: Images,
-    /// What a photograph among them takes.
-    _space: Option<Arc<Space>>,
-}
-
-/// Why there is no picture.
-type PaintError = Box<dyn Error + Send + Sync>;
-
-/// Whether newer wishes, or the end of the page, are why.
-fn is_stop(error: &PaintError) -> bool {
-    error.is::<Gone>() || Stopped::is_in(error.as_ref())
-}
-
-/// Paints what a page wishes, until it is gone.
-pub(crate) fn paint(client: &Client, outbox: &Outbox) {
-    let mut painter = Painter {
-        client,
-        outbox,
-        images: lock(&client.server.images).clone(),
-        uploaded: None,
-        pace: Pace::default(),
-        devices: Vec::new(),
-        section: Value::Null,
-    };
-    // Of its own: the system shares the processors out among pages, and light that is trapped in the
-    // device of one keeps no other waiting.
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(rayon::current_num_threads()).build();
-    while let Some(wish) = client.looks.take() {
+/// Paints what a page wishes, until its slot is closed or it is gone.
+pub async fn paint(end: &impl End, opened: &Opened, looks: &Slot<Wish>, seen: &Seen) {
+    let pace = Pace::default();
+    let mut painter =
+        Painter { end, opened, seen, pace, devices: Vec::new(), section: Value::Null };
+    while let Some(wish) = looks.take().await {
         let id = wish.look.id;
-        let painted = catch_unwind(AssertUnwindSafe(|| match &threads {
-            Ok(threads) => threads.install(|| painter.paint(&wish)),
-            Err(_) => painter.paint(&wish),
-        }));
+        let painted = AssertUnwindSafe(painter.paint(&wish)).catch_unwind().await;
         let said = match painted {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(failure)) if is_stop(&failure) => Ok(()),
-            Ok(Err(failure)) => {
-                let mut message = error(Some(id), &failure.to_string());
-                let of_scene = failure.downcast_ref::<PreparedSceneError>();
-                message["error"]["key"] = json!(of_scene.map(PreparedSceneError::key));
-                outbox.say(&message)
+            Ok(Ok(()) | Err(Problem::Stopped)) => Ok(()),
+            Ok(Err(Problem::Scene { key, message })) => {
+                let mut message = error(Some(id), &message);
+                message["error"]["key"] = json!(key);
+                end.say(&message).await
             }
-            Err(_) => outbox.say(&error(
-                Some(id),
-                "this scene could not be rendered: a mistake in the program",
-            )),
+            Err(_) => {
+                let message = "this scene could not be rendered: a mistake in the program";
+                end.say(&error(Some(id), message)).await
+            }
         };
         if said.is_err() {
             return;
@@ -100,12 +59,10 @@ pub(crate) fn paint(client: &Client, outbox: &Outbox) {
     }
 }
 
-struct Painter<'a> {
-    client: &'a Client,
-    outbox: &'a Outbox,
-    images: Images,
-    /// The images of the page's own photograph, and its number.
-    uploaded: Option<(u64, Images, Arc<Space>)>,
+struct Painter<'a, E> {
+    end: &'a E,
+    opened: &'a Opened,
+    seen: &'a Seen,
     /// How long its pictures take.
     pace: Pace,
     /// The devices that were shown last.
@@ -114,53 +71,25 @@ struct Painter<'a> {
     section: Value,
 }
 
-impl Painter<'_> {
-    fn paint(&mut self, wish: &Wish) -> Result<(), PaintError> {
+impl<E: End> Painter<'_, E> {
+    async fn paint(&mut self, wish: &Wish) -> Result<(), Problem> {
         let look = &wish.look;
-        let uploaded = self.client.uploaded();
-        let source = uploaded.as_ref().map(|uploaded| &uploaded.source);
-        let opened = &self.client.server.opened;
-        let scene = opened.read(&look.scene, source)?.scene;
-        let Some(uploaded) = uploaded.filter(|own| own.source == scene.photograph.image) else {
-            let mut images = std::mem::take(&mut self.images);
-            let painted = self.paint_scene(wish, &scene, (&mut images, None));
-            self.images = images;
-            return painted;
-        };
-        let known = self.uploaded.take().filter(|(number, ..)| *number == uploaded.number);
-        let mut images = known.map_or(uploaded.images, |(_, images, _)| images);
-        let space = uploaded.space;
-        let painted = self.paint_scene(wish, &scene, (&mut images, Some(&space)));
-        self.uploaded = Some((uploaded.number, images, space));
-        painted
-    }
-
-    fn paint_scene(
-        &mut self,
-        wish: &Wish,
-        scene: &Scene,
-        (images, space): (&mut Images, Option<&Arc<Space>>),
-    ) -> Result<(), PaintError> {
-        let look = &wish.look;
-        let full = resized(scene, look.size, 1);
-        {
-            let prepared = PreparedScene::with_images(&full, images)?;
-            let section = cross_section(&full, &prepared);
-            if section != self.section {
-                self.outbox.say(&json!({ "section": section }))?;
-                self.section = section;
-            }
+        let uploaded = self.end.begin();
+        let loaded = self.opened.read(&look.scene, uploaded.as_ref()).map_err(Problem::of)?;
+        let scene = &loaded.scene;
+        let subject = Subject { look, scene, recipe: Recipe::plain(look.size) };
+        let section = self.end.section(&subject).await?;
+        if section != self.section {
+            self.end.say(&section).await?;
+            self.section = section;
         }
-        let shown = Shown { scene: full, images: images.clone(), _space: space.cloned() };
-        *lock(&self.client.shown) = Some(Arc::new(shown));
         let beside = match look.beside {
             Beside::Nothing => None,
-            Beside::Bare => bare(scene).map(|scene| ("bare", scene)),
-            Beside::Empty => Some(("empty", empty(scene))),
-            Beside::Mirror => Some(("mirror", ideal(scene))),
+            Beside::Bare => bare(scene).map(|_| View::Bare),
+            Beside::Empty => Some(View::Empty),
+            Beside::Mirror => Some(View::Mirror),
         };
-        let mut views = vec![("scene", scene)];
-        views.extend(beside.as_ref().map(|(name, scene)| (*name, scene)));
+        let views: Vec<View> = std::iter::once(View::Scene).chain(beside).collect();
         if !look.moving && !are_alike(&self.devices, &scene.devices) {
             // Other devices take another time: something is to be seen at once.
             self.pace = Pace::default();
@@ -168,18 +97,18 @@ impl Painter<'_> {
         self.devices.clone_from(&scene.devices);
         for pass in self.pace.passes(look) {
             let (mut time, mut range) = (Duration::ZERO, None);
-            for (number, (name, scene)) in views.iter().enumerate() {
+            for (number, view) in views.iter().enumerate() {
                 let last = number + 1 == views.len();
-                time += self.picture(wish, (name, last), scene, (pass, &mut range), images)?;
+                time += self.picture(wish, (*view, last), scene, (pass, &mut range)).await?;
             }
             self.pace.add(pass, time);
             if pass.coarse && !look.moving {
-                self.client.seen.wait(look.id, SIGHT, &wish.stop);
+                self.end.wait(self.seen.wait(look.id, &wish.stop), SIGHT).await;
             }
             if !pass.coarse && pass.samples == 1 {
-                let mut numbers = figures(scene, images, &wish.stop)?;
+                let mut numbers = figures(self.end, look, scene, &wish.stop).await?;
                 numbers["id"] = json!(look.id);
-                self.outbox.say(&json!({ "numbers": numbers }))?;
+                self.end.say(&json!({ "numbers": numbers })).await?;
             }
         }
         Ok(())
@@ -187,63 +116,60 @@ impl Painter<'_> {
 
     /// Renders and sends one picture: of a view, which may be the last of its pass. Maps of one pass have
     /// one range, that of the first. How long rendering has taken.
-    fn picture(
+    async fn picture(
         &self,
         wish: &Wish,
-        (view, last): (&'static str, bool),
+        (view, last): (View, bool),
         scene: &Scene,
         (pass, range): (Pass, &mut Option<[f64; 2]>),
-        images: &mut Images,
-    ) -> Result<Duration, PaintError> {
-        let mut scene = resized(scene, pass.size, pass.samples);
-        if pass.coarse {
-            scene.trace.min_power.value = scene.trace.min_power.value.max(COARSE_POWER);
-            scene.trace.tolerance = scene.trace.tolerance.max(COARSE_TOLERANCE);
-        }
-        let start = Instant::now();
-        let prepared = PreparedScene::with_images(&scene, images)?;
-        let (done, told) = (AtomicU64::new(0), Mutex::new(Instant::now()));
+    ) -> Result<Duration, Problem> {
+        let (end, look) = (self.end, &wish.look);
+        let Pass { size, samples, coarse, .. } = pass;
+        let recipe = Recipe { view, size, samples, coarse };
+        let start = end.now();
+        let (done, told) = (AtomicU64::new(0), Mutex::new(start));
         // The page is told now and then how far a picture is.
         let rows_done = |rows| {
             let done = done.fetch_add(rows, Ordering::Relaxed) + rows;
-            let mut told = lock(&told);
-            if !pass.coarse && told.elapsed() >= PROGRESS {
-                *told = Instant::now();
-                let (id, share) = (wish.look.id, done as f64 / prepared.rows() as f64);
-                let progress = json!({ "id": id, "samples": pass.samples, "share": share });
-                self.outbox.say_if_room(&json!({ "progress": progress }));
+            let (mut told, now) = (lock(&told), end.now());
+            if !coarse && now.saturating_sub(*told) >= PROGRESS {
+                *told = now;
+                let share = done as f64 / f64::from(size[1]);
+                let progress = json!({ "id": look.id, "samples": samples, "share": share });
+                end.say_if_room(&json!({ "progress": progress }));
             }
         };
         let supervision = Supervision { rows_done: &rows_done, stop: &wish.stop };
         let wanted = ChannelSet::for_image(&scene.picture);
-        let picture = render(&prepared, wanted, &supervision)?.picture;
+        let subject = Subject { look, scene, recipe };
+        let picture = end.picture(&subject, wanted, &supervision).await?;
         let (image, scale) = match scene.picture.map.name() {
-            None => (to_srgb(&picture)?, Value::Null),
+            None => (to_srgb(&picture).map_err(Problem::of)?, Value::Null),
             Some(channel) => {
                 let map_range = scene.picture.map_range.or(*range);
                 let settings = PictureSettings { map_range, ..scene.picture.clone() };
-                let map = ScalarMap::new(&picture, channel, &settings)?;
+                let map = ScalarMap::new(&picture, channel, &settings).map_err(Problem::of)?;
                 let shown = map.bar.scale.range.filter(|(low, high)| low < high);
                 *range = range.or(shown.map(|(low, high)| [low, high]));
                 let scale = scale(channel, map.bar.scale.range);
                 (map.image, scale)
             }
         };
-        let time = start.elapsed();
+        let time = end.now().saturating_sub(start);
         // Whether it is the best that was asked for, and the last of those that are shown beside
         // each other.
         let caption = json!({
-            "id": wish.look.id,
-            "view": view,
-            "width": pass.size[0],
-            "height": pass.size[1],
-            "samples": pass.samples,
-            "min_power": scene.trace.min_power.value,
+            "id": look.id,
+            "view": view.name(),
+            "width": size[0],
+            "height": size[1],
+            "samples": samples,
+            "min_power": recipe.least_power(scene),
             "finished": pass.finished,
             "last": last,
             "scale": scale,
         });
-        self.outbox.send_bytes(encode(&caption, &image))?;
+        end.send(encode(&caption, &image)).await?;
         Ok(time)
     }
 }

@@ -1,6 +1,6 @@
 //! What a page says: small JSON messages; and one kind of bytes, a photograph.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 /// Longest text message, bytes.
@@ -16,7 +16,7 @@ const MOST_PIXELS: u32 = 2048;
 const MOST_SAMPLES: u32 = 64;
 
 /// A scene as a page sends it: the tables of a scene file as JSON.
-pub(crate) type SceneTables = Map<String, Value>;
+pub type SceneTables = Map<String, Value>;
 
 /// A message from a page.
 #[derive(Debug, Deserialize)]
@@ -44,9 +44,9 @@ pub(crate) enum Message {
 }
 
 /// What to look at.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Look {
+pub struct Look {
     /// Comes back with every answer.
     pub id: u64,
     /// The scene; its resolution and samples are replaced by these.
@@ -64,9 +64,9 @@ pub(crate) struct Look {
 }
 
 /// What is shown beside a scene.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Beside {
+pub enum Beside {
     /// Nothing.
     #[default]
     Nothing,
@@ -79,9 +79,9 @@ pub(crate) enum Beside {
 }
 
 /// A point of the picture.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Ray {
+pub struct Ray {
     /// Comes back with the answer.
     pub id: u64,
     /// The point, as shares of width and height from the top left.
@@ -119,6 +119,6 @@ impl Message {
 }
 
 /// An error as a page gets it; `id` is that of the message at fault, where it is known.
-pub(crate) fn error(id: Option<u64>, message: &str) -> Value {
+pub fn error(id: Option<u64>, message: &str) -> Value {
     json!({ "error": { "id": id, "message": message } })
 }

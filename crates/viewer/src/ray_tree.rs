@@ -1,15 +1,11 @@
 //! The rays of one point of the picture: every branch with its power, for the cross-section.
 
-use crate::client::Outbox;
 use crate::cross_section::point;
-use crate::painter::Shown;
 use crate::protocol::Ray;
-use crate::slot::Slot;
-use cloakroom::render::{Images, PreparedScene, pulses};
+use cloakroom::render::{PreparedScene, pulses};
 use cloakroom::scene::Scene;
 use cloakroom::trace::{Launch, Limits, Line, lines};
 use serde_json::{Value, json};
-use std::sync::Arc;
 
 /// Branches weaker than this are not drawn.
 const LEAST_POWER: f64 = 1e-3;
@@ -23,29 +19,10 @@ const MOST_PULSES: usize = 8;
 /// How far light is followed that meets nothing more, cm.
 const REACH: f64 = 400.0;
 
-/// What to follow: a point of what is shown.
-pub(crate) type Wish = (Ray, Arc<Shown>);
-
-/// Follows rays until the slot is closed.
-pub(crate) fn follow(slot: &Slot<Wish>, outbox: &Outbox) {
-    let mut images = Images::default();
-    let mut next = slot.take();
-    while let Some((_, shown)) = next.clone() {
-        images.clone_from(&shown.images);
-        // The devices are built once for all points of one picture.
-        let prepared = PreparedScene::with_images(&shown.scene, &mut images);
-        while let Some((ray, same)) = &next
-            && Arc::ptr_eq(same, &shown)
-        {
-            if let Ok(prepared) = &prepared {
-                let answer = json!({ "rays": answer(&shown.scene, prepared, ray) });
-                if outbox.say(&answer).is_err() {
-                    return;
-                }
-            }
-            next = slot.take();
-        }
-    }
+/// The rays of a point of the picture, as pages are told them.
+#[must_use]
+pub fn rays(prepared: &PreparedScene<'_>, ray: &Ray) -> Value {
+    json!({ "rays": answer(prepared.scene, prepared, ray) })
 }
 
 fn answer(scene: &Scene, prepared: &PreparedScene<'_>, ray: &Ray) -> Value {

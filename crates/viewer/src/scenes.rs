@@ -25,7 +25,7 @@ const NAME: &str = "scene";
 
 /// The scene that pages begin with, and the folder and the files that came with it.
 #[derive(Clone, Debug)]
-pub(crate) struct Opened {
+pub struct Opened {
     /// Its tables.
     pub tables: Value,
     /// What it is called.

@@ -2,63 +2,85 @@
 //! browser on the same machine would show the coarse one a second late.
 
 use crate::slot::lock;
+use std::future::poll_fn;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Condvar, Mutex};
-use std::time::Duration;
+use std::task::{Poll, Waker};
 
 /// The newest look of which something has been seen.
 #[derive(Debug, Default)]
-pub(crate) struct Seen {
-    look: Mutex<u64>,
-    changed: Condvar,
+pub struct Seen(Mutex<State>);
+
+#[derive(Debug, Default)]
+struct State {
+    look: u64,
+    waits: Option<Waker>,
 }
 
 impl Seen {
     /// The page has shown a picture of this look.
-    pub fn tell(&self, look: u64) {
-        let mut seen = lock(&self.look);
-        *seen = look.max(*seen);
-        self.changed.notify_all();
+    pub(crate) fn tell(&self, look: u64) {
+        self.change(|state| state.look = look.max(state.look));
     }
 
     /// Sets a flag that somebody who waits looks at.
-    pub fn stop(&self, flag: &AtomicBool) {
-        let _seen = lock(&self.look);
-        flag.store(true, Ordering::Relaxed);
-        self.changed.notify_all();
+    pub(crate) fn stop(&self, flag: &AtomicBool) {
+        self.change(|_| flag.store(true, Ordering::Relaxed));
     }
 
-    /// Waits until a look has been seen, but no longer than `patience`, and not if `stop` is set.
-    pub fn wait(&self, look: u64, patience: Duration, stop: &AtomicBool) {
-        let unseen = |seen: &mut u64| *seen < look && !stop.load(Ordering::Relaxed);
-        // Whether it was seen or not, the work goes on.
-        let _ = self.changed.wait_timeout_while(lock(&self.look), patience, unseen);
+    /// Waits until a look has been seen, and not if `stop` is set; one at a time may wait.
+    pub(crate) async fn wait(&self, look: u64, stop: &AtomicBool) {
+        poll_fn(|context| {
+            let mut state = lock(&self.0);
+            if state.look >= look || stop.load(Ordering::Relaxed) {
+                return Poll::Ready(());
+            }
+            state.waits = Some(context.waker().clone());
+            Poll::Pending
+        })
+        .await;
+    }
+
+    fn change(&self, change: impl FnOnce(&mut State)) {
+        let mut state = lock(&self.0);
+        change(&mut state);
+        let waits = state.waits.take();
+        drop(state);
+        if let Some(waits) = waits {
+            waits.wake();
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Instant;
-
-    const LONG: Duration = Duration::from_secs(100);
+    use futures_util::FutureExt;
 
     #[test]
-    fn waiting_ends_when_seen_stopped_or_out_of_patience() {
+    fn waiting_ends_when_seen_or_stopped() {
         let (seen, stop) = (Seen::default(), AtomicBool::new(false));
-        let start = Instant::now();
-        seen.wait(7, Duration::from_millis(1), &stop);
-        std::thread::scope(|scope| {
-            scope.spawn(|| seen.wait(7, LONG, &stop));
-            seen.tell(8);
-        });
+        let is_over = |look| seen.wait(look, &stop).now_or_never().is_some();
+        assert!(!is_over(7));
+        seen.tell(8);
         // Older looks count as seen, too.
         seen.tell(3);
-        seen.wait(8, LONG, &stop);
+        assert!(is_over(7) && is_over(8) && !is_over(9));
+        seen.stop(&stop);
+        assert!(is_over(9));
+    }
+
+    #[test]
+    fn who_waits_is_woken() {
+        let (seen, stop) = (Seen::default(), AtomicBool::new(false));
+        let runtime = tokio::runtime::Builder::new_current_thread().build().expect("a runtime");
         std::thread::scope(|scope| {
-            scope.spawn(|| seen.wait(9, LONG, &stop));
-            seen.stop(&stop);
+            scope.spawn(|| seen.tell(1));
+            runtime.block_on(seen.wait(1, &stop));
         });
-        assert!(start.elapsed() < LONG);
+        std::thread::scope(|scope| {
+            scope.spawn(|| seen.stop(&stop));
+            runtime.block_on(seen.wait(2, &stop));
+        });
     }
 }

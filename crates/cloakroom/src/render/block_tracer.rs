@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Rows of a band of a picture: those of a row of patches.
-pub(crate) const BAND_ROWS: u32 = patch::SIDE as u32;
+pub const BAND_ROWS: u32 = patch::SIDE as u32;
 
 /// The most wavelengths at which a picture is traced, and once more for what is not a color.
 pub(super) const MOST_TRACERS: usize = 32;

@@ -1,0 +1,247 @@
+//! What a page talks to. There are two such ends of one protocol: the server of `cloakroom view`, and
+//! the page's own workers where it computes by itself. They differ in where work is done.
+
+use crate::cross_section::cross_section;
+use crate::figures::resized;
+use crate::protocol::{Look, SceneTables};
+use cloakroom::measure::{self, bare, empty, ideal};
+use cloakroom::output::Picture;
+use cloakroom::photograph::ImageSource;
+use cloakroom::render::{
+    ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Supervision, Tile,
+    render_part,
+};
+use cloakroom::scene::Scene;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::future::Future;
+use std::time::Duration;
+
+/// What coarse pictures may leave out: branches weaker than this, and places less exact than this,
+/// cm.
+const COARSE_POWER: f64 = 3e-2;
+const COARSE_TOLERANCE: f64 = 1e-2;
+
+/// The page has gone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the page has gone")]
+pub struct Gone;
+
+/// Why something was not done.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Problem {
+    /// Newer wishes, or the end of the page.
+    Stopped,
+    /// Something in the scene.
+    Scene {
+        /// The key at fault, where it is one.
+        key: Option<String>,
+        /// What is wrong.
+        message: String,
+    },
+}
+
+impl Problem {
+    /// One that is about no key of the scene.
+    pub fn of(error: impl ToString) -> Self {
+        Self::Scene { key: None, message: error.to_string() }
+    }
+}
+
+impl From<Gone> for Problem {
+    fn from(_: Gone) -> Self {
+        Self::Stopped
+    }
+}
+
+impl From<PreparedSceneError> for Problem {
+    fn from(error: PreparedSceneError) -> Self {
+        Self::Scene { key: Some(error.key()), message: error.to_string() }
+    }
+}
+
+impl From<RenderError> for Problem {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Stopped(_) => Self::Stopped,
+            RenderError::TooLarge { .. } => Self::of(error),
+        }
+    }
+}
+
+/// What of a scene is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum View {
+    /// All of it.
+    Scene,
+    /// The metal without its cloak.
+    Bare,
+    /// No device.
+    Empty,
+    /// What the cloak should look like.
+    Mirror,
+}
+
+impl View {
+    /// What pages call it.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Scene => "scene",
+            Self::Bare => "bare",
+            Self::Empty => "empty",
+            Self::Mirror => "mirror",
+        }
+    }
+}
+
+/// What is made of the scene that a page has sent before anything is done with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Recipe {
+    /// What of it is seen.
+    pub view: View,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// Samples a pixel.
+    pub samples: u32,
+    /// Whether weak branches may be left out.
+    pub coarse: bool,
+}
+
+impl Recipe {
+    /// The whole scene in one sample a pixel.
+    pub(crate) fn plain(size: [u32; 2]) -> Self {
+        Self { view: View::Scene, size, samples: 1, coarse: false }
+    }
+
+    /// The power of the weakest branches that are followed.
+    pub(crate) fn least_power(&self, scene: &Scene) -> f64 {
+        let power = scene.trace.min_power.value;
+        if self.coarse { power.max(COARSE_POWER) } else { power }
+    }
+
+    /// The scene that is made; a scene without a device that could be bare is so already.
+    #[must_use]
+    pub fn scene(&self, scene: &Scene) -> Scene {
+        let seen = match self.view {
+            View::Scene => None,
+            View::Bare => bare(scene),
+            View::Empty => Some(empty(scene)),
+            View::Mirror => Some(ideal(scene)),
+        };
+        let mut scene = resized(seen.as_ref().unwrap_or(scene), self.size, self.samples);
+        if self.coarse {
+            scene.trace.min_power.value = self.least_power(&scene);
+            scene.trace.tolerance = scene.trace.tolerance.max(COARSE_TOLERANCE);
+        }
+        scene
+    }
+}
+
+/// What something is to be done with.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// The look that it is for.
+    pub look: &'a Look,
+    /// Its scene, read.
+    pub scene: &'a Scene,
+    /// What is made of it.
+    pub recipe: Recipe,
+}
+
+impl Subject<'_> {
+    /// The scene as the page has sent it.
+    #[must_use]
+    pub fn tables(&self) -> &SceneTables {
+        &self.look.scene
+    }
+}
+
+/// An end of the protocol.
+#[allow(async_fn_in_trait, reason = "each is used on the thread where it was made")]
+pub trait End: Sync {
+    /// A look begins: the photograph that the page has brought, which no later one replaces until the next
+    /// look begins.
+    fn begin(&self) -> Option<ImageSource>;
+
+    /// Says something.
+    async fn say(&self, message: &Value) -> Result<(), Gone>;
+
+    /// Says something unless the page is busy.
+    fn say_if_room(&self, message: &Value);
+
+    /// Sends a picture.
+    async fn send(&self, bytes: Vec<u8>) -> Result<(), Gone>;
+
+    /// The time since some moment.
+    fn now(&self) -> Duration;
+
+    /// Waits for something, but no longer than this.
+    async fn wait(&self, what: impl Future<Output = ()>, patience: Duration);
+
+    /// Renders all channels, or those of the image.
+    async fn picture(
+        &self,
+        subject: &Subject<'_>,
+        wanted: ChannelSet,
+        supervision: &Supervision<'_>,
+    ) -> Result<Picture, Problem>;
+
+    /// The cross-section; the rays that are followed from now on go through this scene.
+    async fn section(&self, subject: &Subject<'_>) -> Result<Value, Problem>;
+
+    /// Where rays land, against where they should.
+    async fn survey(
+        &self,
+        subject: &Subject<'_>,
+        supervision: &Supervision<'_>,
+    ) -> Result<Survey, Problem>;
+}
+
+/// What the numbers of a page need of a survey.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Survey {
+    /// Whether the ray through the middle of a pixel meets a device.
+    pub silhouette: Vec<bool>,
+    /// How far from where it should light lands, cm.
+    pub displacement_rms_cm: Option<f64>,
+}
+
+/// Renders rows of a picture, from an even one on.
+///
+/// # Errors
+///
+/// If it was stopped, or does not fit into memory.
+pub fn rows(
+    prepared: &PreparedScene<'_>,
+    [top, height]: [u32; 2],
+    wanted: ChannelSet,
+    supervision: &Supervision<'_>,
+) -> Result<Picture, Problem> {
+    let width = prepared.scene.camera.resolution[0];
+    let tile = Tile { left: 0, top, width, height };
+    Ok(render_part(prepared, wanted, tile, supervision)?.picture)
+}
+
+/// The cross-section of a scene, as pages are told it.
+#[must_use]
+pub fn section(prepared: &PreparedScene<'_>) -> Value {
+    json!({ "section": cross_section(prepared.scene, prepared) })
+}
+
+/// Where the rays of a scene land, against where they should.
+///
+/// # Errors
+///
+/// If it was stopped.
+pub fn survey(
+    prepared: &PreparedScene<'_>,
+    images: &mut Images,
+    supervision: &Supervision<'_>,
+) -> Result<Survey, Problem> {
+    let wanted = ideal(prepared.scene);
+    // About no key of the scene that is shown.
+    let ideal = PreparedScene::with_images(&wanted, images).map_err(Problem::of)?;
+    let rays = measure::survey(prepared, &ideal, supervision)?;
+    let measure::Survey { silhouette, displacement_rms_cm, .. } = rays;
+    Ok(Survey { silhouette, displacement_rms_cm })
+}

@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# Makes the page that computes in the browser: web/build.sh [FOLDER], else target/web. Any web server can serve the
+# folder, under any address; nothing in it asks for anything elsewhere.
+#
+# Needs the standard library of wasm32-unknown-unknown: `rustup target add wasm32-unknown-unknown`, or packages of a
+# distribution. These have a compiler of their own, which RUSTC names (with LD_LIBRARY_PATH, where its libraries are elsewhere).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+out=$(realpath -m "${1:-target/web}")
+target=wasm32-unknown-unknown
+export CARGO_INCREMENTAL=0
+built=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+
+# With a compiler of its own, Cargo is not asked which one that is.
+has_target() {
+  compgen -G "$("${RUSTC:-rustc}" --print sysroot)/lib/rustlib/$target/lib/libstd-*.rlib" >/dev/null
+}
+if ! has_target && [[ -z ${RUSTC:-} ]] && command -v rustup >/dev/null; then
+  timeout 120 rustup target add $target || true
+fi
+if ! has_target; then
+  cat >&2 <<END
+There is no standard library of $target for ${RUSTC:-rustc}.
+With rustup:   rustup target add $target
+Without:       install one by the packages of your system (Debian: rustc-web and libstd-rust-web-dev), and set RUSTC to its compiler.
+END
+  exit 3
+fi
+# Where a distribution brings the compiler alone, the linker is that of the toolchain there is.
+if ! command -v rust-lld >/dev/null && [[ -n ${RUSTC:-} && -z ${CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER:-} ]]; then
+  for linker in "$(rustc --print sysroot)"/lib/rustlib/*/bin/rust-lld; do
+    if [[ -x $linker ]]; then export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=$linker; fi
+  done
+fi
+
+CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS="-Ctarget-feature=+simd128" \
+  cargo build -p cloakroom-wasm --profile web --target $target --locked
+# The glue runs here, whatever compiles for browsers.
+env -u RUSTC cargo build -p cloakroom-web-glue --locked
+
+rm -rf "$out"
+mkdir -p "$out"
+"$built/debug/cloakroom-web-glue" "$built/$target/web/cloakroom_wasm.wasm" "$out"
+cp crates/viewer/page/* "$out"
+cp web/line.js web/worker.js "$out"
+chmod -R u+w,a+r "$out"
+# What a server says in its headers, the page says itself: it loads what is in its folder.
+policy="default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'"
+sed -i "s|^  <meta charset=\"utf-8\">|&\n  <meta http-equiv=\"Content-Security-Policy\" content=\"$policy\">|" "$out/index.html"
+grep -q Content-Security-Policy "$out/index.html"
+du -sb "$out" | cut -f1 | xargs printf '%s bytes in '
+echo "$out"

@@ -1,0 +1,36 @@
+// The line to a worker of the page that does what the server of `cloakroom view` does. It is used as a WebSocket is.
+
+export const words = {
+  lost: "The computation has ended: a mistake in the program, or no memory left.",
+  refused: "The computation cannot begin: this browser may be too old, or a file is missing.",
+};
+
+class Line {
+  readyState = WebSocket.CONNECTING;
+  onmessage = null;
+  onclose = null;
+
+  constructor(worker) {
+    this.worker = worker;
+    worker.onmessage = ({ data }) => {
+      if (data === null) return this.#close();
+      this.readyState = WebSocket.OPEN;
+      this.onmessage?.({ data });
+    };
+    worker.onerror = () => this.#close();
+  }
+
+  send(data) {
+    this.worker.postMessage(data);
+  }
+
+  #close() {
+    if (this.readyState === WebSocket.CLOSED) return;
+    this.readyState = WebSocket.CLOSED;
+    // Its hands end with it.
+    this.worker.terminate();
+    this.onclose?.();
+  }
+}
+
+export const openLine = () => new Line(new Worker(new URL("worker.js", document.baseURI)));

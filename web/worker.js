@@ -1,0 +1,88 @@
+// A worker of the page: the one who leads, or a hand. The first says what the page says and hears; it starts the hands, which
+// share no memory with it: they get orders, and send bytes. `tell`, `show`, `order`, `giveToHands`, `pause` and `handOver` are
+// what the compiled part calls.
+
+/* global wasm_bindgen */
+
+// Each has a photograph in its memory, about 200 MB.
+const MOST_HANDS = 8;
+const MEMORY_OF_HAND_GB = 0.5;
+
+let hands = [];
+let tickets = 0;
+
+const tell = (text) => postMessage(text);
+const show = (bytes) => postMessage(bytes.buffer, [bytes.buffer]);
+const pause = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+const handOver = (ticket, bytes) => postMessage({ ticket, bytes }, [bytes.buffer]);
+
+const order = (hand, about, work) =>
+  new Promise((resolve, reject) => {
+    const { worker, waiting } = hands[hand];
+    const ticket = (tickets += 1);
+    waiting.set(ticket, { resolve, reject });
+    worker.postMessage({ ticket, about, work });
+  });
+
+const giveToHands = (name, bytes) => {
+  photograph = { name, bytes: bytes.slice() };
+  for (const { worker } of hands) worker.postMessage({ photograph });
+};
+let photograph = null;
+
+// Starts a hand; who ends by a mistake breaks the promises it has given, and another takes its place.
+function start(module, place) {
+  const worker = new Worker(self.location.href, { name: "hand" });
+  const waiting = new Map();
+  const fail = () => {
+    worker.terminate();
+    start(module, place);
+    for (const { reject } of waiting.values()) reject(new Error("a hand has ended"));
+  };
+  worker.onmessage = ({ data }) => {
+    if (data === null) return fail();
+    waiting.get(data.ticket).resolve(data.bytes);
+    waiting.delete(data.ticket);
+  };
+  worker.onerror = (event) => {
+    event.preventDefault();
+    fail();
+  };
+  worker.postMessage({ module });
+  if (photograph) worker.postMessage({ photograph });
+  hands[place] = { worker, waiting };
+}
+
+async function lead() {
+  const module = await WebAssembly.compileStreaming(fetch("cloakroom_bg.wasm"));
+  const processors = navigator.hardwareConcurrency || 2;
+  const memory = navigator.deviceMemory ?? 4;
+  const count = Math.max(1, Math.min(processors, MOST_HANDS, Math.floor(memory / MEMORY_OF_HAND_GB)));
+  for (let place = 0; place < count; place += 1) start(module, place);
+  wasm_bindgen.initSync({ module });
+  const lead = new wasm_bindgen.Lead(count);
+  self.onmessage = ({ data }) => {
+    if (typeof data === "string") lead.hear(data);
+    else lead.takePhotograph(new Uint8Array(data));
+  };
+}
+
+function work(module) {
+  wasm_bindgen.initSync({ module });
+  const hand = new wasm_bindgen.Hand();
+  self.onmessage = ({ data }) => {
+    if (data.photograph) hand.hang(data.photograph.name, data.photograph.bytes);
+    else hand.order(data.ticket, data.about, data.work);
+  };
+}
+
+// A mistake in the compiled part may come to light in a promise.
+self.onunhandledrejection = (event) => {
+  event.preventDefault();
+  postMessage(null);
+};
+
+importScripts("cloakroom.js");
+const isHand = self.name === "hand";
+if (isHand) self.onmessage = ({ data }) => work(data.module);
+else lead();
