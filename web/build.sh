@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes the page that computes in the browser: web/build.sh [FOLDER], else target/web. Any web server can serve the
-# folder, under any address; nothing in it asks for anything elsewhere.
+# folder, under any address; nothing in it asks for anything elsewhere. FOLDER.html, beside it, is the same in one file, which a
+# browser opens without a server.
 #
 # Needs the standard library of wasm32-unknown-unknown: `rustup target add wasm32-unknown-unknown`, or packages of a
 # distribution. These have a compiler of their own, which RUSTC names (with LD_LIBRARY_PATH, where its libraries are elsewhere).
@@ -40,7 +41,7 @@ env -u RUSTC cargo build -p cloakroom-web-glue --locked
 
 rm -rf "$out"
 mkdir -p "$out"
-"$built/debug/cloakroom-web-glue" "$built/$target/web/cloakroom_wasm.wasm" "$out"
+"$built/debug/cloakroom-web-glue" compiled "$built/$target/web/cloakroom_wasm.wasm" "$out"
 cp crates/viewer/page/* "$out"
 cp web/line.js web/worker.js "$out"
 chmod -R u+w,a+r "$out"
@@ -48,5 +49,8 @@ chmod -R u+w,a+r "$out"
 policy="default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; base-uri 'none'; form-action 'none'"
 sed -i "s|^  <meta charset=\"utf-8\">|&\n  <meta http-equiv=\"Content-Security-Policy\" content=\"$policy\">|" "$out/index.html"
 grep -q Content-Security-Policy "$out/index.html"
+# For those who have no web server.
+"$built/debug/cloakroom-web-glue" one-file "$out" "$out.html"
 du -sb "$out" | cut -f1 | xargs printf '%s bytes in '
 echo "$out"
+du -b "$out.html"

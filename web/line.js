@@ -33,4 +33,14 @@ class Line {
   }
 }
 
-export const openLine = () => new Line(new Worker(new URL("worker.js", document.baseURI)));
+// A page that is one file has its worker, and what is compiled, as texts.
+let address = null;
+
+export function openLine() {
+  const text = document.getElementById("worker")?.textContent;
+  address ??= text ? URL.createObjectURL(new Blob([text], { type: "text/javascript" })) : new URL("worker.js", document.baseURI);
+  const worker = new Worker(address, { name: "lead" });
+  const compiled = document.getElementById("compiled")?.textContent;
+  worker.postMessage(compiled ? { packed: compiled } : { address: new URL("cloakroom_bg.wasm", document.baseURI).href });
+  return new Line(worker);
+}

@@ -53,8 +53,21 @@ function start(module, place) {
   hands[place] = { worker, waiting };
 }
 
-async function lead() {
-  const module = await WebAssembly.compileStreaming(fetch("cloakroom_bg.wasm"));
+// What is compiled: from an address, or from text in which it is packed. Not every web server knows the type that a browser asks
+// for to compile while it loads.
+async function loaded({ address, packed }) {
+  if (!packed) {
+    const response = await fetch(address);
+    const typed = response.headers.get("content-type") === "application/wasm";
+    return typed ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
+  }
+  const bytes = Uint8Array.from(atob(packed), (character) => character.charCodeAt(0));
+  const unpacked = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return WebAssembly.compile(await new Response(unpacked).arrayBuffer());
+}
+
+async function lead(source) {
+  const module = await loaded(source);
   const processors = navigator.hardwareConcurrency || 2;
   const memory = navigator.deviceMemory ?? 4;
   const count = Math.max(1, Math.min(processors, MOST_HANDS, Math.floor(memory / MEMORY_OF_HAND_GB)));
@@ -82,7 +95,6 @@ self.onunhandledrejection = (event) => {
   postMessage(null);
 };
 
-importScripts("cloakroom.js");
-const isHand = self.name === "hand";
-if (isHand) self.onmessage = ({ data }) => work(data.module);
-else lead();
+// In a page that is one file it stands above.
+if (typeof wasm_bindgen === "undefined") importScripts("cloakroom.js");
+self.onmessage = ({ data }) => (self.name === "hand" ? work(data.module) : lead(data));

@@ -7,7 +7,7 @@ import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { decoded, difference, finished, openPage, pixels, program, startBrowser, startServer } from "./session.js";
+import { decoded, difference, finished, openPage, pixels, program, small, startBrowser, startServer } from "./session.js";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const folder = mkdtempSync(join(tmpdir(), "cloakroom-page-"));
@@ -41,17 +41,6 @@ async function open(fragment) {
   const opened = await openPage(browser.context, server.address, fragment);
   await finished(opened.page);
   return opened;
-}
-
-async function small(page) {
-  await page.evaluate(() => {
-    for (const [id, value] of [["width", "320"], ["samples", "4"]]) {
-      const select = document.getElementById(id);
-      select.value = value;
-      select.dispatchEvent(new Event("change"));
-    }
-  });
-  await finished(page);
 }
 
 test("it opens, and its picture is the command line's", async () => {

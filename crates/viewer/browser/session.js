@@ -72,6 +72,18 @@ export async function finished(page, timeout = 60000) {
   await page.waitForFunction(() => document.body.dataset.finished === "true", undefined, { timeout });
 }
 
+// Lets the page make small pictures of few samples, and waits for one.
+export async function small(page, samples = "4") {
+  await page.evaluate((samples) => {
+    for (const [id, value] of [["width", "320"], ["samples", samples]]) {
+      const select = document.getElementById(id);
+      select.value = value;
+      select.dispatchEvent(new Event("change"));
+    }
+  }, samples);
+  await finished(page);
+}
+
 // The canvas as RGBA.
 export function pixels(page) {
   return page.evaluate(() => {

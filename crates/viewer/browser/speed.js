@@ -1,5 +1,7 @@
-// How fast the page is: pictures a second while a device turns, and how soon the first one is there. `node speed.js`
+// How fast the page is: pictures a second while a device turns, and how soon the first one is there. `node speed.js`; of the
+// page that computes by itself, `node speed.js folder`. A width, as in `node speed.js folder 320`, is that of the picture.
 
+import { serveFolder } from "./folder.js";
 import { openPage, startBrowser, startServer } from "./session.js";
 
 const SECONDS = 6;
@@ -10,11 +12,12 @@ const DEVICES = {
   "(ii)": { kind: "square-cloak", material: "negative-uniaxial" },
 };
 
-const server = await startServer();
+const server = await (process.argv[2] === "folder" ? serveFolder() : startServer());
+const width = Number(process.argv[3] ?? 640);
 const browser = await startBrowser();
 const link = (device) => {
   const scene = { device: [{ ...device, rotation: 5 }] };
-  return `#${Buffer.from(JSON.stringify({ scene, samples: 1 })).toString("base64url")}`;
+  return `#${Buffer.from(JSON.stringify({ scene, samples: 1, width })).toString("base64url")}`;
 };
 
 for (const [name, device] of Object.entries(DEVICES)) {

@@ -16,7 +16,7 @@ pub use lead::Lead;
 use cloakroom::output::{encode_png, to_srgb};
 use cloakroom::photograph::ImageSource;
 use cloakroom::render::{ChannelSet, PreparedScene, Supervision, render};
-use cloakroom::scene_file;
+use cloakroom::scene_file::{self, Override};
 use cloakroom_figures::examples;
 use cloakroom_viewer::Opened;
 use std::io::Cursor;
@@ -32,14 +32,15 @@ fn first() -> Result<(Opened, ImageSource), String> {
     Ok((Opened::new(&loaded, "", folder)?, loaded.scene.photograph.image))
 }
 
-/// Renders a scene file: the PNG that `cloakroom render` makes.
+/// Renders a scene file: the PNG that `cloakroom render` makes. Each of `set` is as after `--set`.
 ///
 /// # Errors
 ///
 /// One message: what is wrong in the scene. It can open no file.
 #[wasm_bindgen]
-pub fn picture(text: &str) -> Result<Vec<u8>, String> {
-    let loaded = scene_file::parse(text, "scene", Path::new(""), &[]);
+pub fn picture(text: &str, set: Vec<String>) -> Result<Vec<u8>, String> {
+    let set: Vec<Override> = set.into_iter().map(Override::from).collect();
+    let loaded = scene_file::parse(text, "scene", Path::new(""), &set);
     let scene = loaded.map_err(|error| error.to_string())?.scene;
     let prepared = PreparedScene::new(&scene).map_err(|error| error.to_string())?;
     let supervision = Supervision { rows_done: &|_| {}, stop: &AtomicBool::new(false) };

@@ -7,6 +7,7 @@
 //! with much of that is divided, and of its parts only that is looked at again.
 
 mod grid;
+mod instructions;
 mod smooth;
 #[cfg(test)]
 mod tests;
@@ -20,7 +21,7 @@ use crate::trace::{Branch, FourTracers, Leaf, Limits, Outcome, TraceStats, Trace
 use arrayvec::ArrayVec;
 use glam::DVec3;
 use grid::{Grid, LANES, MOST, Terms, bits};
-use pulp::Arch;
+use instructions::Instructions;
 use smooth::{Functions, Rough, Smooth, smooth};
 use std::ops::Range;
 use ways::{LeftOut, ROOT, Trail, Ways};
@@ -138,7 +139,7 @@ pub(super) struct LeafPatches<'a, const N: usize> {
     /// Those of the smallest patches, of small ones and of others.
     grids: [Grid; 3],
     /// Those that the processor has; they change no number.
-    instructions: Arch,
+    instructions: Instructions,
     functions: Functions<'a>,
     /// Whether rays go through graded media.
     graded: bool,
@@ -190,7 +191,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             scouts: FourTracers::new(&tracer.clone().within(limits).watched(Trail::default())),
             tracers: FourTracers::new(&tracer.clone().watched(LeftOut::default())),
             grids: [MOST - 2, MOST - 1, MOST].map(Grid::new),
-            instructions: Arch::new(),
+            instructions: Instructions::new(),
             functions: Functions::of(prepared, detection),
             graded,
             rays_per_pixel,
@@ -481,7 +482,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             let level = self.levels.len().checked_sub(1);
             let least = self.prepared.limits.min_power;
             let instructions = self.instructions;
-            instructions.dispatch(|| self.go_further_on(level, points, least));
+            instructions.with(|| self.go_further_on(level, points, least));
             let camera = &self.prepared.scene.camera;
             self.tracers.tracers.iter_mut().for_each(|tracer| tracer.recorder().begin());
             let launches = rays.each_ref().map(|ray| self.detection.launch(camera, ray));
@@ -492,8 +493,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
         for (i, (leaves, outcome)) in samples.iter_mut().enumerate() {
             *outcome = Outcome::default();
             let traced = is_traced.then_some(i);
-            as_traced &=
-                self.instructions.dispatch(|| self.interpolated(points[i], traced, leaves));
+            as_traced &= self.instructions.with(|| self.interpolated(points[i], traced, leaves));
             if is_traced {
                 let (others, outcome) = self.tracers.tracers[i].traced();
                 leaves.extend_from_slice(others);

@@ -1,0 +1,137 @@
+// The page that computes by itself, from the folder that `web/build.sh` makes: in Node its pictures, in a browser the rest.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { gzipSync } from "node:zlib";
+import { folder, serveFolder } from "./folder.js";
+import { decoded, difference, finished, openPage, pixels, program, small, startBrowser } from "./session.js";
+
+const out = mkdtempSync(join(tmpdir(), "cloakroom-folder-"));
+const scenes = new URL("../../../scenes/", import.meta.url).pathname;
+let server;
+let browser;
+
+before(async () => {
+  server = await serveFolder();
+  browser = await startBrowser();
+});
+
+after(async () => {
+  await browser?.end();
+  await server?.end();
+  rmSync(out, { recursive: true, force: true });
+});
+
+// The compiled part, without a browser.
+function compiled() {
+  const glue = readFileSync(join(folder, "cloakroom.js"), "utf8");
+  const part = new Function(`${glue}; return wasm_bindgen;`)();
+  part.initSync({ module: readFileSync(join(folder, "cloakroom_bg.wasm")) });
+  return part;
+}
+
+function rendered(scene, set) {
+  const file = join(out, "picture.png");
+  execFileSync(program, ["render", scene, ...set.flatMap((one) => ["--set", one]), "-o", file]);
+  return readFileSync(file);
+}
+
+// Sums are not rounded everywhere alike: at most 1 step of 255, and that in few pixels.
+function assertAlike(one, other, name) {
+  const { bytes, most } = difference(one, other);
+  assert.ok(most <= 1, `${name}: ${most} steps`);
+  assert.ok(bytes <= 0.0005 * one.width * one.height, `${name}: ${bytes} bytes of ${one.width} x ${one.height} pixels`);
+}
+
+test("pictures in Node are those of the command line", async () => {
+  const part = compiled();
+  const page = await browser.context.newPage();
+  const set = ["camera.resolution=[320, 240]", "camera.samples=1"];
+  const names = [
+    "paper/fig7b", "paper/fig7d", "paper/fig3c", "paper/fig4c", "gallery/sphere-cloak", "gallery/cylinder-cloak",
+    "gallery/luneburg-lens", "gallery/gaussian-carpet", "gallery/prisms", "gallery/bodies",
+  ];
+  for (const name of names) {
+    const scene = join(scenes, `${name}.toml`);
+    const own = await decoded(page, Buffer.from(part.picture(readFileSync(scene, "utf8"), set)));
+    assertAlike(own, await decoded(page, rendered(scene, set)), name);
+  }
+  assert.throws(() => part.picture("[[device]]\nkind = 'nothing'", []), /nothing/);
+  assert.throws(() => part.picture("[photograph]\nimage = '/etc/passwd'", []));
+  await page.close();
+});
+
+test("the page in a browser is that of the server, and asks for nothing outside its folder", async () => {
+  const { page, complaints } = await openPage(browser.context, server.address);
+  await finished(page);
+  await page.waitForFunction(() => document.querySelectorAll("#numbers tr").length === 10);
+  assert.ok((await page.locator("#section path").count()) >= 5);
+  await small(page);
+  const set = ["camera.resolution=[320, 240]", "camera.samples=4"];
+  assertAlike(await pixels(page), await decoded(page, rendered(join(scenes, "paper/fig7d.toml"), set)), "the first scene");
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("it turns, shows other devices, maps and what is beside, and says what is wrong", async () => {
+  const { page, complaints } = await openPage(browser.context, server.address);
+  await finished(page);
+  await small(page, "1");
+  const before = await pixels(page);
+  const count = () => page.evaluate(() => Number(document.body.dataset.pictures));
+  await page.locator("#play").click();
+  const first = await count();
+  await page.waitForFunction((n) => Number(document.body.dataset.pictures) > n + 5, first);
+  await page.locator("#play").click();
+  await finished(page);
+  assert.ok(difference(before, await pixels(page)).most > 20);
+  await page.selectOption("#beside", "bare");
+  await finished(page);
+  await page.selectOption("#map", "time_of_flight_difference");
+  await finished(page);
+  assert.ok(await page.locator("#scale").isVisible());
+  await page.selectOption("#exhibit", "luneburg-lens");
+  await finished(page);
+  await page.fill("#keys input[aria-label='radius, exactly']", "-5");
+  await page.keyboard.press("Tab");
+  await page.waitForSelector("#banner:not([hidden])");
+  assert.match(await page.textContent("#banner-text"), /radius/);
+  const saved = page.waitForEvent("download");
+  await page.selectOption("#exhibit", "sphere-cloak");
+  await finished(page);
+  await page.locator("#save-scene").click();
+  assert.match(readFileSync(await (await saved).path(), "utf8"), /sphere-cloak/);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("a photograph that is brought hangs behind the device", async () => {
+  const { page, complaints } = await openPage(browser.context, server.address);
+  await finished(page);
+  const before = await pixels(page);
+  const picture = rendered(join(scenes, "gallery/lens.toml"), ["camera.resolution=[64, 80]", "camera.samples=1"]);
+  await page.setInputFiles("#photograph", { name: "mine.png", mimeType: "image/png", buffer: picture });
+  await page.waitForFunction(() => document.getElementById("live").textContent.includes("mine.png"));
+  await finished(page);
+  assert.ok(difference(before, await pixels(page)).most > 20);
+  await page.setInputFiles("#photograph", { name: "mine.png", mimeType: "image/png", buffer: Buffer.from("no image") });
+  await page.waitForSelector("#banner:not([hidden])");
+  assert.match(await page.textContent("#banner-text"), /not an image/);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("it is small", () => {
+  let [all, loaded] = [0, 0];
+  for (const name of readdirSync(folder)) {
+    const bytes = readFileSync(join(folder, name));
+    all += bytes.length;
+    loaded += gzipSync(bytes, { level: 9 }).length;
+  }
+  assert.ok(all <= 6e6, `${all} bytes`);
+  assert.ok(loaded <= 3e6, `${loaded} bytes compressed`);
+});
