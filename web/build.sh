@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the page that computes in the browser: web/build.sh [FOLDER], else target/web. Any web server can serve the
+# Makes the page that computes in the browser: web/build.sh [FOLDER], else target/page. Any web server can serve the
 # folder, under any address; nothing in it asks for anything elsewhere. FOLDER.html, beside it, is the same in one file, which a
 # browser opens without a server.
 #
@@ -7,7 +7,8 @@
 # distribution. These have a compiler of their own, which RUSTC names (with LD_LIBRARY_PATH, where its libraries are elsewhere).
 set -euo pipefail
 cd "$(dirname "$0")/.."
-out=$(realpath -m "${1:-target/web}")
+# Not `target/web`, where Cargo has what it runs itself while it builds by the profile of that name.
+out=$(realpath -m "${1:-target/page}")
 target=wasm32-unknown-unknown
 export CARGO_INCREMENTAL=0
 built=$(realpath -m "${CARGO_TARGET_DIR:-target}")

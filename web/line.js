@@ -40,7 +40,7 @@ export function openLine() {
   const text = document.getElementById("worker")?.textContent;
   address ??= text ? URL.createObjectURL(new Blob([text], { type: "text/javascript" })) : new URL("worker.js", document.baseURI);
   const worker = new Worker(address, { name: "lead" });
-  const compiled = document.getElementById("compiled")?.textContent;
-  worker.postMessage(compiled ? { packed: compiled } : { address: new URL("cloakroom_bg.wasm", document.baseURI).href });
+  const packed = document.getElementById("compiled")?.textContent;
+  worker.postMessage(packed ? { packed, text } : { address: new URL("cloakroom_bg.wasm", document.baseURI).href });
   return new Line(worker);
 }

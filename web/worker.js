@@ -8,7 +8,9 @@
 const MOST_HANDS = 8;
 const MEMORY_OF_HAND_GB = 0.5;
 
-let hands = [];
+// Where hands are found, and they themselves.
+let address = self.location.href;
+const hands = [];
 let tickets = 0;
 
 const tell = (text) => postMessage(text);
@@ -30,18 +32,22 @@ const giveToHands = (name, bytes) => {
 };
 let photograph = null;
 
-// Starts a hand; who ends by a mistake breaks the promises it has given, and another takes its place.
+// Starts a hand; who ends by a mistake breaks the promises it has given, and another takes its place, if it could begin at
+// all.
 function start(module, place) {
-  const worker = new Worker(self.location.href, { name: "hand" });
+  let hasBegun = false;
+  const worker = new Worker(address, { name: "hand" });
   const waiting = new Map();
   const fail = () => {
     worker.terminate();
-    start(module, place);
+    if (hasBegun) start(module, place);
+    else postMessage(null);
     for (const { reject } of waiting.values()) reject(new Error("a hand has ended"));
   };
   worker.onmessage = ({ data }) => {
     if (data === null) return fail();
-    waiting.get(data.ticket).resolve(data.bytes);
+    hasBegun = true;
+    waiting.get(data.ticket)?.resolve(data.bytes);
     waiting.delete(data.ticket);
   };
   worker.onerror = (event) => {
@@ -67,6 +73,8 @@ async function loaded({ address, packed }) {
 }
 
 async function lead(source) {
+  // From a file, a worker may start those alone whose text it has itself.
+  if (source.text) address = URL.createObjectURL(new Blob([source.text], { type: "text/javascript" }));
   const module = await loaded(source);
   const processors = navigator.hardwareConcurrency || 2;
   const memory = navigator.deviceMemory ?? 4;
@@ -83,6 +91,7 @@ async function lead(source) {
 function work(module) {
   wasm_bindgen.initSync({ module });
   const hand = new wasm_bindgen.Hand();
+  postMessage({});
   self.onmessage = ({ data }) => {
     if (data.photograph) hand.hang(data.photograph.name, data.photograph.bytes);
     else hand.order(data.ticket, data.about, data.work);
@@ -91,7 +100,7 @@ function work(module) {
 
 // A mistake in the compiled part may come to light in a promise.
 self.onunhandledrejection = (event) => {
-  event.preventDefault();
+  console.error(event.reason);
   postMessage(null);
 };
 

@@ -4,7 +4,7 @@ import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { extname, join, normalize } from "node:path";
 
-export const folder = process.env.WEB ?? "../../../target/web";
+export const folder = process.env.WEB ?? "../../../target/page";
 
 const TYPES = { ".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml", ".wasm": "application/wasm" };
 const PREFIX = "/somewhere/below/";

@@ -4,8 +4,9 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
 import { gzipSync } from "node:zlib";
 import { folder, serveFolder } from "./folder.js";
 import { decoded, difference, finished, openPage, pixels, program, small, startBrowser } from "./session.js";
@@ -121,6 +122,16 @@ test("a photograph that is brought hangs behind the device", async () => {
   await page.setInputFiles("#photograph", { name: "mine.png", mimeType: "image/png", buffer: Buffer.from("no image") });
   await page.waitForSelector("#banner:not([hidden])");
   assert.match(await page.textContent("#banner-text"), /not an image/);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("as one file it needs no server", async () => {
+  const { page, complaints } = await openPage(browser.context, pathToFileURL(`${resolve(folder)}.html`).href);
+  await finished(page);
+  await small(page);
+  const set = ["camera.resolution=[320, 240]", "camera.samples=4"];
+  assertAlike(await pixels(page), await decoded(page, rendered(join(scenes, "paper/fig7d.toml"), set)), "the first scene");
   assert.deepEqual(complaints, []);
   await page.close();
 });
