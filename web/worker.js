@@ -4,7 +4,7 @@
 
 /* global wasm_bindgen */
 
-// Each has a photograph in its memory, about 200 MB.
+// Each has the photograph in a memory of its own: 30 MB, and 300 MB if the page has brought the largest.
 const MOST_HANDS = 8;
 const MEMORY_OF_HAND_GB = 0.5;
 

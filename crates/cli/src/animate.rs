@@ -96,7 +96,7 @@ fn scenes(
     images: &mut Images,
 ) -> Result<Vec<Loaded>> {
     let (text, mut scenes) = (scene::text(&arguments.scene.scene)?, Vec::<Loaded>::new());
-    let still = scene::overrides(&text, &arguments.scene, &arguments.picture, arguments.empty)?;
+    let still = scene::overrides(&text, &arguments.scene, &arguments.picture)?;
     for frame in range {
         let mut overrides = [&still[..], &timeline.overrides(frame)].concat();
         let mut loaded = text.scene(&overrides)?;

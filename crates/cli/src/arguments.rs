@@ -155,10 +155,22 @@ pub struct SceneArguments {
     pub overrides: Vec<Override>,
 }
 
-/// The picture of a scene, in short; `--set` of the same key goes before.
+/// The picture of a scene, with its devices or without.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Picture")]
 pub struct PictureArguments {
+    /// How it is made.
+    #[command(flatten)]
+    pub format: FormatArguments,
+    /// Take every device away: the empty view.
+    #[arg(long)]
+    pub empty: bool,
+}
+
+/// The format of a picture, in short; `--set` of the same key goes before.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Picture")]
+pub struct FormatArguments {
     /// Size of the picture in pixels (camera.resolution).
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
@@ -179,9 +191,6 @@ pub struct CheckArguments {
     /// Its picture.
     #[command(flatten)]
     pub picture: PictureArguments,
-    /// Take every device away: the empty view.
-    #[arg(long, help_heading = "Picture")]
-    pub empty: bool,
 }
 
 /// How many threads work.
@@ -202,9 +211,6 @@ pub struct RenderArguments {
     /// Its picture.
     #[command(flatten)]
     pub picture: PictureArguments,
-    /// Take every device away: the empty view.
-    #[arg(long, help_heading = "Picture")]
-    pub empty: bool,
     /// A file to write; its ending decides: .png, .exr or .npz, for a map (picture.map) also .svg
     /// or .pdf. May be given several times [default: the name of the scene with .png, beside it].
     #[arg(short, long = "output", value_name = "FILE", help_heading = "Files")]
@@ -252,9 +258,6 @@ pub struct AnimateArguments {
     /// Its pictures.
     #[command(flatten)]
     pub picture: PictureArguments,
-    /// Take every device away: the empty view.
-    #[arg(long, help_heading = "Picture")]
-    pub empty: bool,
     /// A key and its way, spread evenly over the frames, as in device.0.rotation=0..360, there and
     /// back, 0..25..0, or camera.position=[-100,0,0]..[-50,20,0]; or a value a frame, as in 0..90:5
     /// or 1,2,4. May be given several times: the keys change together.

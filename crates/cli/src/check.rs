@@ -20,7 +20,7 @@ const CM_PER_NM: f64 = 1e-7;
 /// Validates a scene and prints facts about it.
 pub fn run(arguments: &CheckArguments) -> Result<()> {
     let text = scene::text(&arguments.scene.scene)?;
-    let overrides = scene::overrides(&text, &arguments.scene, &arguments.picture, arguments.empty)?;
+    let overrides = scene::overrides(&text, &arguments.scene, &arguments.picture)?;
     let loaded = scene::load_with(&arguments.scene, &text, &overrides)?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;
     report::print(&described(&prepared, &loaded.scene)?)

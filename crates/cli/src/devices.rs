@@ -1,11 +1,12 @@
 //! `cloakroom devices`: the catalogue with computed facts.
 
 use crate::arguments::{listed, wrapped};
-use crate::report::{self, Failure, Result, decimals};
+use crate::report::{self, Failure, Result};
 use cloakroom::device::{self, CATALOGUE, Entry, Fact, FactValue, Request, Structure};
 use cloakroom::json::json as value_json;
 use cloakroom::keys::{Key, KeyKind, ValueRange, hint, quoted};
 use cloakroom::scene::{Core, Placement};
+use cloakroom_figures::short;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -155,16 +156,6 @@ pub fn media_line(structure: &Structure) -> Option<String> {
     (!words.is_empty()).then(|| format!("{:<32} {}", "media", words.join(", ")))
 }
 
-/// A number to six decimals at most.
-fn shortest(number: f64) -> String {
-    let text = decimals(number, 6);
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
-}
-
 /// The computed facts of a device, a line each.
 pub fn fact_lines(facts: Vec<Fact>) -> Vec<String> {
     let line = |fact: Fact| {
@@ -172,7 +163,7 @@ pub fn fact_lines(facts: Vec<Fact>) -> Vec<String> {
             FactValue::Number(number) => vec![number],
             FactValue::Numbers(numbers) => numbers,
         };
-        let words: Vec<String> = numbers.iter().map(|n| shortest(*n)).collect();
+        let words: Vec<String> = numbers.iter().map(|n| short(*n, 6)).collect();
         format!("{:<32} {}", fact.name, words.join(", "))
     };
     facts.into_iter().map(line).collect()

@@ -32,7 +32,7 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let sweeps =
         arguments.sweeps.iter().map(|text| Sweep::parse(text)).collect::<Result<_, _>>()?;
     let written = scene::text(&arguments.scene.scene)?;
-    let set = scene::overrides(&written, &arguments.scene, &arguments.picture, false)?;
+    let set = scene::set(&arguments.scene, &arguments.format);
     let load = |further: &[Override]| written.scene(&[&set[..], further].concat());
     let holds =
         arguments.holds.iter().map(|text| Constraint::parse(text)).collect::<Result<_, _>>()?;

@@ -23,8 +23,7 @@ pub fn run(arguments: &RenderArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
     let data = formats.iter().any(|(_, format)| !format.is_shown());
     let text = scene::text(&arguments.scene.scene)?;
-    let mut overrides =
-        scene::overrides(&text, &arguments.scene, &arguments.picture, arguments.empty)?;
+    let mut overrides = scene::overrides(&text, &arguments.scene, &arguments.picture)?;
     overrides.extend(channels(&arguments.channels, data)?.map(Override::from));
     let loaded = scene::load_with(&arguments.scene, &text, &overrides)?;
     let prepared = scene::prepared(&loaded, &mut Images::default())?;

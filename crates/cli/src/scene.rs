@@ -1,6 +1,6 @@
 //! Scenes from files, and errors that point back into them.
 
-use crate::arguments::{PictureArguments, SceneArguments, ThreadsArguments};
+use crate::arguments::{FormatArguments, PictureArguments, SceneArguments, ThreadsArguments};
 use crate::report::{Failure, Result};
 use cloakroom::assembly::Assembly;
 use cloakroom::keys::Value;
@@ -45,15 +45,24 @@ pub fn example(path: &Path) -> Option<Example> {
     examples::named(name)
 }
 
-/// The overrides of a scene whose picture is asked for: what has a name of its own, then `--set`,
-/// which knows better. Devices that are taken away are looked at first.
+/// The overrides of a scene whose picture is asked for. Devices that are taken away are looked at
+/// first.
 pub fn overrides(
     text: &SceneText,
     scene: &SceneArguments,
     picture: &PictureArguments,
-    is_empty: bool,
 ) -> Result<Vec<Override>> {
-    let PictureArguments { size, samples, photo } = picture;
+    let mut all = set(scene, &picture.format);
+    if picture.empty {
+        text.scene(&all)?;
+        all.push(Override::value("device", Value::List(Vec::new())).by("--empty".to_owned()));
+    }
+    Ok(all)
+}
+
+/// What has a name of its own, then `--set`, which knows better.
+pub fn set(scene: &SceneArguments, format: &FormatArguments) -> Vec<Override> {
+    let FormatArguments { size, samples, photo } = format;
     let size = size.map(|[width, height]| {
         let sides = [width, height].map(i64::from);
         Override::value("camera.resolution", sides).by(format!("--size {width}x{height}"))
@@ -68,12 +77,7 @@ pub fn overrides(
         Override::value("photograph.image", path).by(words)
     });
     let named = size.into_iter().chain(samples).chain(photo);
-    let mut all: Vec<Override> = named.chain(scene.overrides.iter().cloned()).collect();
-    if is_empty {
-        text.scene(&all)?;
-        all.push(Override::value("device", Value::List(Vec::new())).by("--empty".to_owned()));
-    }
-    Ok(all)
+    named.chain(scene.overrides.iter().cloned()).collect()
 }
 
 /// Refuses a pipe that is to be read for two things: it gives its bytes once only. `rays` is what is

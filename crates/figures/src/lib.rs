@@ -37,7 +37,7 @@ pub use flux_pictures::{flux_map, flux_plot};
 pub use picture_file::{PictureFormat, shown, write_picture};
 pub use plot::{Curve, CurvePoint, Plot, PlotPanel};
 pub use quality_plot::{STANDARD_PLOT, TableFormat, quality_plot, write_table};
-pub use quantity::{Dimension, Quantity, Unit};
+pub use quantity::{Dimension, Quantity, Unit, short};
 pub use scalar_map::ScalarMap;
 pub use setting::{Setting, View, setting};
 pub use sheet::{SheetPanel, sheet};

@@ -114,7 +114,8 @@ pub(super) fn with_minus(digits: &str) -> String {
 }
 
 /// A number with so many decimals at most.
-pub(super) fn short(number: f64, decimals: usize) -> String {
+#[must_use]
+pub fn short(number: f64, decimals: usize) -> String {
     let digits = format!("{number:.decimals$}");
     let short = match digits.contains('.') {
         true => digits.trim_end_matches('0').trim_end_matches('.'),

@@ -23,6 +23,7 @@ mod scenes;
 mod seen;
 mod session;
 mod slot;
+mod watched;
 
 #[cfg(feature = "server")]
 mod address;
@@ -49,5 +50,6 @@ pub use seen::Seen;
 pub use server::{Settings, ViewerError, serve};
 pub use session::{Heard, Session, nothing_shown, read_photograph};
 pub use slot::Slot;
+pub use watched::{Watched, lock};
 #[cfg(feature = "server")]
 pub use way_in::WayIn;

@@ -1,54 +1,28 @@
 //! What a page has put on its screen. Finer pictures wait for that: they take all processors, and a
 //! browser on the same machine would show the coarse one a second late.
 
-use crate::slot::lock;
-use std::future::poll_fn;
-use std::sync::Mutex;
+use crate::watched::Watched;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::task::{Poll, Waker};
 
 /// The newest look of which something has been seen.
 #[derive(Debug, Default)]
-pub struct Seen(Mutex<State>);
-
-#[derive(Debug, Default)]
-struct State {
-    look: u64,
-    waits: Option<Waker>,
-}
+pub struct Seen(Watched<u64>);
 
 impl Seen {
     /// The page has shown a picture of this look.
     pub(crate) fn tell(&self, look: u64) {
-        self.change(|state| state.look = look.max(state.look));
+        self.0.change(|seen| *seen = look.max(*seen));
     }
 
     /// Sets a flag that somebody who waits looks at.
     pub(crate) fn stop(&self, flag: &AtomicBool) {
-        self.change(|_| flag.store(true, Ordering::Relaxed));
+        self.0.change(|_| flag.store(true, Ordering::Relaxed));
     }
 
     /// Waits until a look has been seen, and not if `stop` is set; one at a time may wait.
     pub(crate) async fn wait(&self, look: u64, stop: &AtomicBool) {
-        poll_fn(|context| {
-            let mut state = lock(&self.0);
-            if state.look >= look || stop.load(Ordering::Relaxed) {
-                return Poll::Ready(());
-            }
-            state.waits = Some(context.waker().clone());
-            Poll::Pending
-        })
-        .await;
-    }
-
-    fn change(&self, change: impl FnOnce(&mut State)) {
-        let mut state = lock(&self.0);
-        change(&mut state);
-        let waits = state.waits.take();
-        drop(state);
-        if let Some(waits) = waits {
-            waits.wake();
-        }
+        let is_over = |seen: &mut u64| *seen >= look || stop.load(Ordering::Relaxed);
+        self.0.until(|seen| is_over(seen).then_some(())).await;
     }
 }
 

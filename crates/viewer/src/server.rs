@@ -7,7 +7,7 @@ use crate::client;
 use crate::idle::{Attentive, Standing};
 use crate::protocol::{LARGEST_PHOTOGRAPH, LONGEST_TEXT};
 use crate::scenes::Opened;
-use crate::slot::lock;
+use crate::watched::lock;
 use axum::Router;
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{ConnectInfo, Request, State};

@@ -1,11 +1,11 @@
 //! A worker that does what the leading one orders, one after the other.
 
 use crate::order::{About, Outcome, Work, broken, encode, pack};
-use crate::queue::Queue;
 use cloakroom::photograph::ImageSource;
 use cloakroom::render::{ChannelSet, Images, PreparedScene, Supervision};
 use cloakroom_viewer::end::{self, Problem};
-use cloakroom_viewer::{Opened, rays, read_photograph};
+use cloakroom_viewer::{Opened, Watched, rays, read_photograph};
+use std::collections::VecDeque;
 use std::rc::Rc;
 use std::sync::atomic::AtomicBool;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -25,9 +25,16 @@ enum Told {
     Photograph { name: String, bytes: Vec<u8> },
 }
 
+/// What a hand is told and has not done yet, in its order.
+type Queue = Watched<VecDeque<Told>>;
+
+async fn next(queue: &Queue) -> Told {
+    queue.until(VecDeque::pop_front).await
+}
+
 /// A hand.
 #[wasm_bindgen]
-pub struct Hand(Rc<Queue<Told>>);
+pub struct Hand(Rc<Queue>);
 
 #[wasm_bindgen]
 impl Hand {
@@ -46,23 +53,23 @@ impl Hand {
 
     /// Orders something.
     pub fn order(&self, ticket: u32, about: String, work: String) {
-        self.0.put(Told::Order { ticket, about, work });
+        self.0.change(|told| told.push_back(Told::Order { ticket, about, work }));
     }
 
     /// Hangs a photograph up, in the place of the one before.
     pub fn hang(&self, name: String, bytes: Vec<u8>) {
-        self.0.put(Told::Photograph { name, bytes });
+        self.0.change(|told| told.push_back(Told::Photograph { name, bytes }));
     }
 }
 
-async fn work(opened: Opened, photograph: ImageSource, queue: Rc<Queue<Told>>) {
+async fn work(opened: Opened, photograph: ImageSource, queue: Rc<Queue>) {
     let mut images = Images::default();
     // While the page is set up: most scenes show it.
     let _ = images.photograph(&photograph);
     let mut own: Option<(ImageSource, Images)> = None;
-    let mut next = queue.take().await;
+    let mut told = next(&queue).await;
     loop {
-        next = match next {
+        told = match told {
             Told::Photograph { name, bytes } => {
                 // It has been read before, by the one who leads.
                 let source = opened.source_of(&name);
@@ -72,9 +79,9 @@ async fn work(opened: Opened, photograph: ImageSource, queue: Rc<Queue<Told>>) {
                     images.hang(source.clone(), image);
                     own = Some((source, images));
                 }
-                queue.take().await
+                next(&queue).await
             }
-            Told::Order { .. } => with_scene(&opened, (&mut images, &mut own), next, &queue).await,
+            Told::Order { .. } => with_scene(&opened, (&mut images, &mut own), told, &queue).await,
         };
     }
 }
@@ -84,7 +91,7 @@ async fn with_scene(
     opened: &Opened,
     (images, own): (&mut Images, &mut Option<(ImageSource, Images)>),
     first: Told,
-    queue: &Queue<Told>,
+    queue: &Queue,
 ) -> Told {
     let Told::Order { about: same, .. } = &first else { return first };
     let same = same.clone();
@@ -101,8 +108,8 @@ async fn with_scene(
         Ok(scene) => PreparedScene::with_images(scene, images).map_err(Problem::from),
         Err(problem) => Err(problem.clone()),
     };
-    let mut next = first;
-    while let Told::Order { ticket, about, work } = &next
+    let mut told = first;
+    while let Told::Order { ticket, about, work } = &told
         && *about == same
     {
         let done = match &prepared {
@@ -112,9 +119,9 @@ async fn with_scene(
         let (outcome, numbers) =
             done.unwrap_or_else(|problem| (Outcome::Problem(problem), Vec::new()));
         hand_over(*ticket, encode(&outcome, &numbers));
-        next = queue.take().await;
+        told = next(queue).await;
     }
-    next
+    told
 }
 
 fn done(
@@ -124,7 +131,7 @@ fn done(
 ) -> Result<(Outcome, Vec<u8>), Problem> {
     // Who orders cancels between two orders, for nothing is heard during one.
     let supervision = Supervision { rows_done: &|_| {}, stop: &AtomicBool::new(false) };
-    let rows = |rows, wanted| pack(&end::rows(prepared, rows, wanted, &supervision)?);
+    let rows = |rows, wanted| end::rows(prepared, rows, wanted, &supervision).map(|p| pack(&p));
     let outcome = match serde_json::from_str(work).map_err(|_| broken())? {
         Work::Rows(range) => return rows(range, ChannelSet::for_image(&prepared.scene.picture)),
         Work::AllOfRows(range) => return rows(range, ChannelSet::Everything),

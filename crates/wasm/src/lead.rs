@@ -6,7 +6,7 @@ use cloakroom::photograph::ImageSource;
 use cloakroom::render::{BAND_ROWS, ChannelSet, Supervision};
 use cloakroom_viewer::end::{End, Gone, Problem, Subject, Survey};
 use cloakroom_viewer::{
-    Heard, Opened, Ray, Seen, Session, Slot, Wish, error, greeting, nothing_shown, paint,
+    Heard, Opened, Ray, Seen, Session, Slot, Wish, error, greeting, lock, nothing_shown, paint,
     read_photograph,
 };
 use futures_util::future::{join_all, select};
@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::future::Future;
 use std::pin::pin;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use wasm_bindgen::prelude::{JsCast, wasm_bindgen};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
@@ -89,7 +89,7 @@ impl Lead {
     /// Hears a message of the page.
     pub fn hear(&mut self, text: &str) {
         let desk = &self.desk;
-        let uploaded = held(&desk.uploaded).clone();
+        let uploaded = lock(&desk.uploaded).clone();
         let about = (&desk.looks, &desk.seen);
         match self.session.hear(text, about, &desk.opened, uploaded.as_ref()) {
             Ok(Heard::All) => {}
@@ -106,7 +106,7 @@ impl Lead {
             let source = self.desk.opened.source_of(&name);
             let (_, said) = read_photograph(&source, &name, bytes)?;
             give_to_hands(&name, bytes);
-            *held(&self.desk.uploaded) = Some(source);
+            *lock(&self.desk.uploaded) = Some(source);
             Ok(said)
         });
         tell(&hung.unwrap_or_else(|problem| error(None, &problem)).to_string());
@@ -115,7 +115,7 @@ impl Lead {
 
 /// Lets a hand follow a ray.
 fn follow(desk: &Arc<Desk>, ray: Ray) {
-    let Some(about) = held(&desk.shown).clone() else {
+    let Some(about) = lock(&desk.shown).clone() else {
         return tell(&nothing_shown(&ray).to_string());
     };
     let desk = desk.clone();
@@ -152,7 +152,7 @@ fn about(subject: &Subject<'_>) -> Result<String, Problem> {
 
 impl End for Desk {
     fn begin(&self) -> Option<ImageSource> {
-        held(&self.uploaded).clone()
+        lock(&self.uploaded).clone()
     }
 
     async fn say(&self, message: &Value) -> Result<(), Gone> {
@@ -203,19 +203,19 @@ impl End for Desk {
                 let (Outcome::Picture(shape), numbers) = by(hand, &about, &work).await? else {
                     return Err(broken());
                 };
-                held(&done)[band] = Some((shape, numbers));
+                lock(&done)[band] = Some((shape, numbers));
                 (supervision.rows_done)(rows[1].into());
             }
         }));
         bands.await.into_iter().collect::<Result<(), Problem>>()?;
-        Ok(join(held(&done).drain(..).flatten().collect()))
+        Ok(join(lock(&done).drain(..).flatten().collect()))
     }
 
     async fn section(&self, subject: &Subject<'_>) -> Result<Value, Problem> {
         let about = about(subject)?;
         match self.by_one(&about, &Work::Section).await? {
             (Outcome::Section(section), _) => {
-                *held(&self.shown) = Some(about);
+                *lock(&self.shown) = Some(about);
                 Ok(section)
             }
             _ => Err(broken()),
@@ -235,9 +235,4 @@ impl End for Desk {
             _ => Err(broken()),
         }
     }
-}
-
-/// Holds what a mutex guards; there is one thread.
-fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

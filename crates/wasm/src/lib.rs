@@ -8,7 +8,6 @@
 mod hand;
 mod lead;
 mod order;
-mod queue;
 
 pub use hand::Hand;
 pub use lead::Lead;

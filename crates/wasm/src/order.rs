@@ -55,7 +55,7 @@ enum Kind {
 pub(crate) type Band = (Shape, Vec<u8>);
 
 /// A picture as an outcome and the bytes after it. There are no images of light in bins on the page.
-pub(crate) fn pack(picture: &Picture) -> Result<(Outcome, Vec<u8>), Problem> {
+pub(crate) fn pack(picture: &Picture) -> (Outcome, Vec<u8>) {
     let mut bytes = Vec::new();
     let mut channels = Vec::new();
     for channel in &picture.channels {
@@ -73,7 +73,7 @@ pub(crate) fn pack(picture: &Picture) -> Result<(Outcome, Vec<u8>), Problem> {
         channels.push((channel.name.clone(), kind));
     }
     let (width, height) = (picture.width, picture.height);
-    Ok((Outcome::Picture(Shape { width, height, channels }), bytes))
+    (Outcome::Picture(Shape { width, height, channels }), bytes)
 }
 
 /// Appends bands to each other, from top to bottom.
@@ -158,7 +158,7 @@ mod tests {
             }
         };
         let sent = |picture: Picture| {
-            let (outcome, numbers) = pack(&picture).expect("packed");
+            let (outcome, numbers) = pack(&picture);
             match decode(encode(&outcome, &numbers)) {
                 Ok((Outcome::Picture(shape), numbers)) => (shape, numbers),
                 other => panic!("{other:?}"),

@@ -1,7 +1,7 @@
 //! Arguments of the commands that measure, draw and export.
 
 use super::values::{angles, grid, point, rectangle, size, sun, tilt, view, window};
-use super::{PictureArguments, SceneArguments, ThreadsArguments};
+use super::{FormatArguments, SceneArguments, ThreadsArguments};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use cloakroom::material::Resolution;
@@ -81,7 +81,7 @@ pub struct QualityArguments {
     pub scene: SceneArguments,
     /// The pictures that are measured.
     #[command(flatten)]
-    pub picture: PictureArguments,
+    pub format: FormatArguments,
     /// A key and its values, as in device.0.rotation=0..90:5 or
     /// camera.polarizer=horizontal,vertical. May be given several times: every combination is
     /// measured.

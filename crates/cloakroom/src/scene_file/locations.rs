@@ -90,7 +90,7 @@ impl Locations {
         let written = around.filter_map(|at| Some((at, &self.places.get(at)?.value)));
         // An override that has made the table around is not to blame for what it does not say.
         let mut to_blame = written.filter(|(at, origin)| {
-            !matches!(origin, Origin::Override(_)) || *at == path || at.starts_with("device")
+            !matches!(origin, Origin::Override(_)) || *at == path || at.starts_with(DEVICES)
         });
         match to_blame.next() {
             Some((_, origin @ Origin::File(_))) if path.starts_with(DEVICES) => {

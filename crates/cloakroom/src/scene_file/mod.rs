@@ -24,7 +24,7 @@ pub use overrides::Override;
 pub use schema::schema;
 
 use crate::index_file::{IndexFile, IndexFiles};
-use crate::input::{read_file, read_up_to};
+use crate::input::{read_file, read_up_to, reason};
 use crate::keys::Value;
 use crate::material_file::{MaterialFile, MaterialFiles};
 use crate::scene::Scene;
@@ -210,9 +210,8 @@ pub fn read_text(path: &Path) -> Result<String, SceneFileError> {
     let path = (!is_standard_input(path)).then_some(path);
     let unreadable = |error: io::Error| {
         fail(match error.kind() {
-            ErrorKind::NotFound => "there is no such file".to_owned(),
             ErrorKind::IsADirectory => "this is a folder, not a scene file".to_owned(),
-            ErrorKind::PermissionDenied => "reading it is not permitted".to_owned(),
+            ErrorKind::NotFound | ErrorKind::PermissionDenied => reason(&error),
             ErrorKind::FileTooLarge => format!("{error}; no scene is"),
             _ => format!("it cannot be read: {error}"),
         })

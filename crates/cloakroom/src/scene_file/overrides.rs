@@ -33,7 +33,7 @@ enum Setting {
 impl Override {
     /// A key, as in `device.0.rotation`, and its value.
     pub fn value(key: impl Into<String>, value: impl Into<Value>) -> Self {
-        Self { setting: Setting::Value(key.into(), value.into()), ..Self::from("") }
+        Self { setting: Setting::Value(key.into(), value.into()), words: None }
     }
 
     /// The same, set by other words on the command line than `--set`, as in `--photo room.png`:
