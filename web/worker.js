@@ -6,7 +6,6 @@
 
 // Each has the photograph in a memory of its own: 30 MB, and 300 MB if the page has brought the largest.
 const MOST_HANDS = 8;
-const MEMORY_OF_HAND_GB = 0.5;
 
 // Where hands are found, and they themselves.
 let address = self.location.href;
@@ -39,6 +38,8 @@ function start(module, place) {
   const worker = new Worker(address, { name: "hand" });
   const waiting = new Map();
   const fail = () => {
+    // It may say so twice.
+    worker.onmessage = worker.onerror = null;
     worker.terminate();
     if (hasBegun) start(module, place);
     else postMessage(null);
@@ -76,9 +77,7 @@ async function lead(source) {
   // From a file, a worker may start those alone whose text it has itself.
   if (source.text) address = URL.createObjectURL(new Blob([source.text], { type: "text/javascript" }));
   const module = await loaded(source);
-  const processors = navigator.hardwareConcurrency || 2;
-  const memory = navigator.deviceMemory ?? 4;
-  const count = Math.max(1, Math.min(processors, MOST_HANDS, Math.floor(memory / MEMORY_OF_HAND_GB)));
+  const count = Math.min(navigator.hardwareConcurrency || 2, MOST_HANDS);
   for (let place = 0; place < count; place += 1) start(module, place);
   wasm_bindgen.initSync({ module });
   const lead = new wasm_bindgen.Lead(count);

@@ -46,11 +46,14 @@ fn halve_into<S: Copy>(
 
 /// Averages of two by two texels each.
 fn average_squares<S: Copy>(above: &[S], below: &[S], row: &mut [f32], light: impl Fn(S) -> f32) {
-    let pairs = above.chunks_exact(6).zip(below.chunks_exact(6));
-    for (texel, (a, b)) in row.chunks_exact_mut(3).zip(pairs) {
-        for (channel, average) in texel.iter_mut().enumerate() {
-            let [left, right] = [channel, channel + 3].map(|i| light(a[i]) + light(b[i]));
-            *average = 0.25 * (left + right);
+    // By indices: where code is to be small, iterators are called one by one.
+    let (above, below) = (above.as_chunks::<6>().0, below.as_chunks::<6>().0);
+    for (i, texel) in row.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+        let (a, b) = (&above[i], &below[i]);
+        for channel in 0..3 {
+            let left = light(a[channel]) + light(b[channel]);
+            let right = light(a[channel + 3]) + light(b[channel + 3]);
+            texel[channel] = 0.25 * (left + right);
         }
     }
 }
