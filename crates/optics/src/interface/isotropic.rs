@@ -2,6 +2,7 @@
 
 use super::splitting::Splitting;
 use super::{OutgoingWave, Side};
+use crate::medium::is_known_better;
 use crate::wave::{ComplexVector, Frame, Number};
 use num_complex::Complex64;
 
@@ -19,6 +20,24 @@ pub(super) struct Layer {
 impl Layer {
     pub fn new((permittivity, permeability): (f64, f64), along: f64) -> Self {
         Self { permittivity, permeability, square: permittivity * permeability - along * along }
+    }
+
+    /// That of a wave that arrives with the normal component `q`, which near grazing incidence has more
+    /// digits than what follows from the tangential one.
+    pub fn arriving(medium: (f64, f64), along: f64, q: f64) -> Self {
+        let layer = Self::new(medium, along);
+        let better = is_known_better(q, layer.square, layer.index_squared().abs() + along * along);
+        if better { Self { square: q * q, ..layer } } else { layer }
+    }
+
+    /// The other side of an interface, where the tangential components are the same.
+    fn beyond(&self, (permittivity, permeability): (f64, f64)) -> Self {
+        let square = self.square + (permittivity * permeability - self.index_squared());
+        Self { permittivity, permeability, square }
+    }
+
+    fn index_squared(&self) -> f64 {
+        self.permittivity * self.permeability
     }
 
     /// The magnitude of the normal component where waves decay.
@@ -65,9 +84,10 @@ pub(super) fn split_isotropic<const N: usize>(
     media: [(f64, f64); 2],
     mut splitting: Splitting<'_, N>,
 ) -> [f64; N] {
-    let [here, there] = media.map(|medium| Layer::new(medium, splitting.along));
-    // The incident wave is taken anew from its tangential part: near grazing incidence, where the
-    // normal part is a small difference, all waves of the matching must agree on it.
+    // The incident wave is taken anew, for all waves of the matching must agree on its tangential part.
+    let arriving = splitting.wave.wave_vector.dot(splitting.frame.normal);
+    let here = Layer::arriving(media[0], splitting.along, arriving);
+    let there = here.beyond(media[1]);
     let q = here.forward();
     let fields = splitting.fields();
     if let Some(decay) = there.decay() {

@@ -14,9 +14,10 @@ pub(super) fn split_single_wave<const N: usize>(
     mut splitting: Splitting<'_, N>,
 ) -> [f64; N] {
     let Splitting { frame, tangential, along, .. } = splitting;
-    // The incident wave is taken anew from its tangential part: near grazing incidence, where the
-    // normal part is a small difference, all waves of the matching must agree on it.
-    let (forward, backward) = surface.roots(tangential, frame.normal).real_pair();
+    // The incident wave is taken anew, for all waves of the matching must agree on its tangential part.
+    let arriving = splitting.wave.wave_vector.dot(frame.normal);
+    let roots = surface.roots_with(Some(arriving), tangential, frame.normal);
+    let (forward, backward) = roots.real_pair();
     let [here, there] = [here, there].map(|medium| FramedMedium::new(medium, &frame, along));
     let incident = here.wave(forward);
     let reflected = Branch { surface, q: backward, wave: here.wave(backward) };

@@ -22,7 +22,7 @@ pub use error::MediumError;
 pub(crate) use modes::{BOTH_MODES, LocalMode, LocalModes, Tangential, mutual_flux};
 pub use modes::{Heading, Mode, ModeKind};
 pub use principal_axes::principal_axes;
-pub(crate) use quadratic::Roots;
+pub(crate) use quadratic::{Roots, is_known_better};
 pub use ray_waves::RayWave;
 use tensor::MAGNITUDES;
 pub use tensor::Tensor;

@@ -54,6 +54,28 @@ impl Quadratic<f64> {
         };
         Roots::Real { plus, minus, root }
     }
+
+    /// The same where one of them is known, if anything is; c is the sum of terms of the size `terms`. Near
+    /// grazing incidence, where both are close to -b/a, what is known has the digits that the
+    /// discriminant, a small difference, has lost.
+    pub fn roots_with(self, known: Option<f64>, terms: f64) -> Roots {
+        let Some(known) = known else { return self.roots() };
+        let Self { a, b, c } = self.bounded();
+        let root = (a * known + b).abs();
+        if is_known_better(root, b * b - a * c, b * b + a.abs() * terms) {
+            let root = root.max(1e-15);
+            return Roots::Real { plus: (root - b) / a, minus: (-root - b) / a, root };
+        }
+        self.roots()
+    }
+}
+
+/// Whether a square root that is known from elsewhere has more digits than that of a small difference of
+/// terms of some size, and agrees with it as far as that is known.
+pub(crate) fn is_known_better(root: f64, difference: f64, size: f64) -> bool {
+    const SMALL: f64 = 1e-2;
+    const ROUNDING: f64 = 1e-14;
+    difference < SMALL * size && (root * root - difference).abs() <= ROUNDING * size
 }
 
 impl Quadratic<Complex64> {

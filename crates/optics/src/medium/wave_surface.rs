@@ -55,13 +55,16 @@ impl WaveSurface {
     /// At exact grazing, where the two coincide, they are set apart by about 1e-15, which gives the
     /// limit.
     pub fn roots(&self, tangential: DVec3, normal: DVec3) -> Roots {
+        self.roots_with(None, tangential, normal)
+    }
+
+    /// The same where one of them is known, which near grazing incidence has more digits.
+    pub fn roots_with(&self, known: Option<f64>, tangential: DVec3, normal: DVec3) -> Roots {
         let form_normal = self.form * normal;
-        Quadratic {
-            a: normal.dot(form_normal),
-            b: tangential.dot(form_normal),
-            c: tangential.dot(self.form * tangential) - self.constant,
-        }
-        .roots()
+        let along = tangential.dot(self.form * tangential);
+        let (a, b) = (normal.dot(form_normal), tangential.dot(form_normal));
+        let terms = along.abs() + self.constant.abs();
+        Quadratic { a, b, c: along - self.constant }.roots_with(known, terms)
     }
 }
 

@@ -38,7 +38,7 @@ pub(super) fn split_into_modes<const N: usize>(
         (incident_medium.scalars(), transmitted_medium, tangential)
         && !beyond.absorbs()
     {
-        let layer = Layer::new(medium, along);
+        let layer = Layer::arriving(medium, along, normal_component);
         match &beyond.onward(&frame, tangential) {
             LocalModes::Real(modes) => scattered.match_from_isotropic(layer, modes),
             LocalModes::Complex(modes) => scattered.match_from_isotropic(layer, modes),

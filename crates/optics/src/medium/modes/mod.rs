@@ -135,8 +135,9 @@ impl Medium {
         ampere / (p * h + permittivity.size() * e) + faraday / (p * e + permeability.size() * h)
     }
 
-    /// All four modes. `known` is the normal component of a wave that is known to propagate: where
-    /// by rounding at grazing incidence it seems evanescent it is given the limit's real one.
+    /// All four modes. `known` is the normal component of a wave that is known to propagate, which at
+    /// grazing incidence has more digits than what follows from the tangential one: where that by rounding
+    /// seems evanescent it is given the limit's real one.
     pub(crate) fn both_ways(
         &self,
         frame: &Frame,
@@ -145,7 +146,7 @@ impl Medium {
     ) -> BothWays {
         match (&self.class, tangential) {
             (Class::Isotropic(surface) | Class::Matched(surface), Tangential::Real(along)) => {
-                let waves = self.single_wave_modes(surface, frame, along, known.is_some());
+                let waves = self.single_wave_modes(surface, frame, along, known);
                 [true, false].map(|forward| waves.modes(forward))
             }
             (Class::Uniaxial(medium), Tangential::Real(along)) => {
@@ -183,7 +184,7 @@ impl Medium {
     pub(crate) fn onward(&self, frame: &Frame, tangential: Tangential) -> LocalModes {
         match (&self.class, tangential) {
             (Class::Isotropic(surface) | Class::Matched(surface), Tangential::Real(along)) => {
-                self.single_wave_modes(surface, frame, along, false).modes(true)
+                self.single_wave_modes(surface, frame, along, None).modes(true)
             }
             (Class::Uniaxial(medium), Tangential::Real(along)) => {
                 medium.waves(frame, along, None).modes(true)

@@ -22,9 +22,9 @@ impl Medium {
         surface: &WaveSurface,
         frame: &Frame,
         along: f64,
-        known: bool,
+        known: Option<f64>,
     ) -> SingleWave {
-        let roots = surface.roots(frame.first * along, frame.normal);
+        let roots = surface.roots_with(known, frame.first * along, frame.normal);
         let mu = self.real.permeability.x_axis;
         let (form, determinant) = if let Class::Isotropic(_) = self.class {
             ([[mu.x, 0.0, 0.0], [0.0, mu.x, 0.0], [0.0, 0.0, mu.x]], mu.x * mu.x * mu.x)
@@ -36,7 +36,7 @@ impl Medium {
             form,
             determinant,
             ratio: self.real.permittivity.x_axis.dot(mu) / mu.length_squared(),
-            roots: if known { roots.propagating() } else { roots },
+            roots: if known.is_some() { roots.propagating() } else { roots },
         }
     }
 }

@@ -105,27 +105,31 @@ pub(super) fn out_of_plane<T: Number>() -> [T; 3] {
 impl Uniaxial<f64> {
     pub(super) fn waves(&self, frame: &Frame, along: f64, known: Option<f64>) -> UniaxialWaves<'_> {
         let axis = frame.components(self.axis);
-        let [ordinary, extraordinary] = self.equations([along, 0.0], axis);
+        let equations = self.equations([along, 0.0], axis);
+        let [ordinary, extraordinary] = equations;
         let (ordinary, extraordinary) = (Roots::of_square(-ordinary.c), extraordinary.roots());
         let mut waves = UniaxialWaves { medium: self, along, axis, ordinary, extraordinary };
         if let Some(q) = known {
-            waves.keep_real(q);
+            waves.keep_real(q, equations);
         }
         waves
     }
 }
 
 impl UniaxialWaves<'_> {
-    /// Makes the roots of the wave with normal component `q` real.
-    fn keep_real(&mut self, q: f64) {
+    /// Makes the roots of the wave with normal component `q` real, and as exact as that is.
+    fn keep_real(&mut self, q: f64, [ordinary, extraordinary]: [Quadratic<f64>; 2]) {
         let distance = |roots: Roots| match roots {
             Roots::Real { plus, minus, .. } => (plus - q).abs().min((minus - q).abs()),
             Roots::Complex { re, im, .. } => (re - q).hypot(im),
         };
+        let index = self.medium.scalar * self.medium.ordinary;
+        let terms = self.along * self.along + index.abs();
         if distance(self.ordinary) <= distance(self.extraordinary) {
-            self.ordinary = self.ordinary.propagating();
+            self.ordinary = ordinary.roots_with(Some(q), terms).propagating();
         } else {
-            self.extraordinary = self.extraordinary.propagating();
+            let terms = terms * self.medium.extraordinary.abs().max(self.medium.ordinary.abs());
+            self.extraordinary = extraordinary.roots_with(Some(q), terms).propagating();
         }
     }
 
