@@ -2,7 +2,7 @@
 
 use super::{Channel, Picture, RgbImage, Samples, png_texts};
 use crate::color::BINS;
-use crate::memory;
+use crate::{input, memory};
 use ndarray::{ArrayView, Dimension, Ix1, Ix2, Ix3};
 use ndarray_npy::{ViewElement, ViewNpyError, ViewNpyExt};
 use std::error::Error;
@@ -32,6 +32,11 @@ impl ReadError {
     }
 }
 
+/// Opens a file; why not is said in words for people.
+fn opened(path: &Path) -> Result<BufReader<File>, String> {
+    File::open(path).map(BufReader::new).map_err(|error| input::reason(&error))
+}
+
 /// Reads a picture from an NPZ: every channel, and the metadata.
 ///
 /// # Errors
@@ -55,7 +60,7 @@ pub(crate) fn read_channels(
     wanted: impl Fn(&str) -> bool,
 ) -> Result<Picture, ReadError> {
     let read = || -> Result<Picture, Box<dyn Error>> {
-        let mut archive = ZipArchive::new(BufReader::new(File::open(path)?))?;
+        let mut archive = ZipArchive::new(opened(path)?)?;
         let names: Vec<String> = archive.file_names().map(str::to_owned).collect();
         let arrays: Vec<(&str, &String)> = names
             .iter()
@@ -167,7 +172,7 @@ type Plane = ([usize; 2], Samples);
 pub fn read_png(path: &Path) -> Result<(RgbImage, Vec<(String, String)>), ReadError> {
     const OTHER: &str = "it is no PNG of this program (8 bits, red, green and blue)";
     let read = || -> Result<_, Box<dyn Error>> {
-        let mut reader = png::Decoder::new(BufReader::new(File::open(path)?)).read_info()?;
+        let mut reader = png::Decoder::new(opened(path)?).read_info()?;
         if reader.output_color_type() != (png::ColorType::Rgb, png::BitDepth::Eight) {
             return Err(OTHER.into());
         }
