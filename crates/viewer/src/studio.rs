@@ -80,7 +80,7 @@ impl Studio<'_> {
                 (&mut own.1, Some(space.clone()))
             }
         };
-        let work = || work(&PreparedScene::with_images(&scene, images)?, images, space);
+        let work = || work(&subject.recipe.prepared(&scene, images)?, images, space);
         match &self.threads {
             Some(threads) => threads.install(work),
             None => work(),

@@ -98,14 +98,14 @@ async fn with_scene(
     let source = own.as_ref().map(|(source, _)| source.clone());
     let scene = serde_json::from_str(&same).map_err(|_| broken()).and_then(|about: About| {
         let read = opened.read(&about.look.scene, source.as_ref()).map_err(Problem::of)?;
-        Ok(about.recipe.scene(&read.scene))
+        Ok((about.recipe, about.recipe.scene(&read.scene)))
     });
     let images = match (&scene, own) {
-        (Ok(scene), Some((source, own))) if *source == scene.photograph.image => own,
+        (Ok((_, scene)), Some((source, own))) if *source == scene.photograph.image => own,
         _ => images,
     };
     let prepared = match &scene {
-        Ok(scene) => PreparedScene::with_images(scene, images).map_err(Problem::from),
+        Ok((recipe, scene)) => recipe.prepared(scene, images).map_err(Problem::from),
         Err(problem) => Err(problem.clone()),
     };
     let mut told = first;

@@ -24,6 +24,6 @@ pub use equirectangular::Equirectangular;
 pub use linear_image::{LinearImage, Texels};
 pub(crate) use load::load_with_digest;
 pub use load::{dimensions, load, load_bytes, over_black};
-pub use pyramid::{Edges, Pyramid};
+pub use pyramid::{Averaging, Edges, Pyramid};
 pub use source::{ImageSource, LoadError, LoadProblem};
 pub use srgb::{decode, decode_table, encode};

@@ -6,7 +6,7 @@ use super::{Images, metadata};
 use crate::assembly::{Assembly, MOST_DEVICES, Placed, Screen};
 use crate::input::Digest;
 use crate::keys::KeyError;
-use crate::photograph::{self, Equirectangular, LoadError, Pyramid};
+use crate::photograph::{self, Averaging, Equirectangular, LoadError, Pyramid};
 use crate::scene::{Border, Camera, DeviceName, DeviceSettings, Projection, Scene};
 use crate::trace::{Coherence, Limits, RaySettings};
 use glam::DVec3;
@@ -280,6 +280,8 @@ pub struct PreparedScene<'s> {
     pub screen: Screen,
     /// The photograph.
     pub image: Arc<Pyramid>,
+    /// How patches of it are averaged.
+    averaging: Averaging,
     pub(super) surroundings: Surroundings,
     /// Those of the opaque bodies, by their numbers among the devices.
     body_surfaces: Vec<Option<BodySurface>>,
@@ -358,6 +360,7 @@ impl<'s> PreparedScene<'s> {
             pixel,
             screen,
             image,
+            averaging: Averaging::Sharp,
             surroundings,
             body_surfaces,
             files,
@@ -365,6 +368,12 @@ impl<'s> PreparedScene<'s> {
         };
         prepared.spectral = Spectral::of(&prepared)?.map(Arc::new);
         Ok(prepared)
+    }
+
+    /// The same scene with the photograph averaged in another way.
+    #[must_use]
+    pub fn averaged(self, averaging: Averaging) -> Self {
+        Self { averaging, ..self }
     }
 
     /// The same scene in light of another wavelength (nm).
@@ -397,7 +406,7 @@ impl<'s> PreparedScene<'s> {
     #[inline]
     pub(super) fn photograph_light(&self, at: [f64; 2], [dx, dy]: [[f64; 2]; 2]) -> [f64; 3] {
         let edges = self.scene.photograph.border.edges();
-        self.image.sample_with(edges, at, dx, dy).map(f64::from)
+        self.image.sample_with((edges, self.averaging), at, dx, dy).map(f64::from)
     }
 
     /// The surface of an opaque body.
