@@ -3,8 +3,9 @@
 
 use super::detection::Detection;
 use super::prepared_scene::PreparedScene;
-use crate::trace::{Leaf, LeafEnd, Pair, Way};
+use crate::trace::{Coherence, Leaf, LeafEnd, Pair, Way};
 use glam::DVec3;
+use std::ops::Range;
 
 /// Leaves that see places further apart than this, in widths of a pixel, do not interfere: w is
 /// below 1e-12.
@@ -32,7 +33,14 @@ pub(super) struct Interference {
     screens: Vec<Option<f64>>,
     /// The light of each leaf, as far as it is known.
     pub lights: Vec<[f64; 3]>,
+    /// The leaves that see the same place as others, cluster by cluster, each at all wavelengths in turn.
     ways: Vec<Way>,
+    /// Where in these each cluster is.
+    gathered: Vec<Range<usize>>,
+    /// For each cluster and wavelength, how far apart places seen by one pixel may be.
+    widths: Vec<f64>,
+    /// The ways of a cluster between the wavelengths.
+    between: Vec<Way>,
     /// For each leaf the power of the cluster of which it is the first.
     alone: Vec<f64>,
     /// For each leaf, one that it interferes with: they lead to the first of a cluster.
@@ -113,41 +121,101 @@ impl Interference {
     ) {
         self.pairs.clear();
         let Some(coherence) = prepared.coherence.filter(|_| leaves.len() > 1) else { return };
-        self.screens.clear();
-        self.screens.extend(leaves.iter().map(|leaf| leaf.distance_to(&prepared.screen)));
-        self.clusters.clear();
-        self.clusters.extend((0..leaves.len()).filter(|number| leaves[*number].is_in_air()));
+        self.gather(prepared, detection, leaves, leaves.len(), camera);
+        let Self { ways, gathered, widths, pairs, .. } = self;
+        for (range, width) in gathered.iter().zip(widths) {
+            coherence.add_pairs(&mut ways[range.clone()], *width, pairs);
+        }
+    }
+
+    /// Gathers those of `count` leaves that see the same place. `leaves` has them in the light of one wavelength
+    /// after the other; each sees the same thing in all.
+    pub fn gather<const N: usize>(
+        &mut self,
+        prepared: &PreparedScene<'_>,
+        detection: &Detection<N>,
+        leaves: &[Leaf<N>],
+        count: usize,
+        camera: DVec3,
+    ) {
+        let Self { screens, clusters, ways, gathered, widths, .. } = self;
+        screens.clear();
+        screens.extend(leaves.iter().map(|leaf| leaf.distance_to(&prepared.screen)));
+        ways.clear();
+        gathered.clear();
+        widths.clear();
+        let nodes = leaves.len() / count;
+        let middle = nodes / 2 * count;
+        let sight = |number: usize| sight(&leaves[middle + number], screens[middle + number]);
+        let seen = |number: usize| seen(&leaves[number], screens[number]);
+        clusters.clear();
+        clusters.extend((0..count).filter(|number| leaves[middle + number].is_in_air()));
         // Each of the strongest with those that see the same place as it.
-        while self.clusters.len() > 1 {
-            let power = |number: usize| detection.detected(&leaves[number].power);
-            let strongest = (self.clusters.iter().copied())
+        while clusters.len() > 1 {
+            let power = |number: usize| detection.detected(&leaves[middle + number].power);
+            let strongest = (clusters.iter().copied())
                 .reduce(|best, number| if power(number) > power(best) { number } else { best });
             let Some(strongest) = strongest else { return };
-            let far = &leaves[strongest];
-            let distance = |number: usize| self.screens[number];
-            let sight = sight(far, distance(strongest));
-            let point = seen(far, distance(strongest));
-            let width = match sight {
+            let what = sight(strongest);
+            let (begin, first_width) = (ways.len(), widths.len());
+            widths.extend((0..nodes).map(|node| match what {
                 Sight::Surroundings => prepared.pixel.angle,
-                _ => prepared.pixel.width_at(point.distance(camera)),
-            };
-            self.ways.clear();
-            for &number in &self.clusters {
-                let leaf = &leaves[number];
-                let seen = seen(leaf, distance(number));
-                let same = self::sight(leaf, distance(number)) == sight;
-                if same && seen.distance(point) <= FARTHEST * width {
-                    let phase_length = match sight {
-                        Sight::Surroundings => leaf.phase_length(far.direction, DVec3::ZERO),
-                        _ => leaf.phase_length(leaf.direction, point),
+                _ => prepared.pixel.width_at(seen(node * count + strongest).distance(camera)),
+            }));
+            clusters.retain(|&number| {
+                let begin = ways.len();
+                let mut is_near = number == strongest;
+                for (node, width) in widths[first_width..].iter().enumerate() {
+                    let [far, leaf] = [strongest, number].map(|number| node * count + number);
+                    let (point, place) = (seen(far), seen(leaf));
+                    is_near |= place.distance(point) <= FARTHEST * width;
+                    let phase_length = match what {
+                        Sight::Surroundings => {
+                            leaves[leaf].phase_length(leaves[far].direction, DVec3::ZERO)
+                        }
+                        _ => leaves[leaf].phase_length(leaves[leaf].direction, point),
                     };
-                    self.ways.push(Way { leaf: number, seen, phase_length });
+                    ways.push(Way { leaf: number, seen: place, phase_length });
                 }
+                let is_in = is_near && sight(number) == what;
+                if !is_in {
+                    ways.truncate(begin);
+                }
+                !is_in
+            });
+            if ways.len() - begin > nodes {
+                gathered.push(begin..ways.len());
+            } else {
+                ways.truncate(begin);
+                widths.truncate(first_width);
             }
-            let gathered = &self.ways;
-            self.clusters.retain(|number| gathered.iter().all(|way| way.leaf != *number));
-            coherence.add_pairs(&mut self.ways, width, &mut self.pairs);
         }
+    }
+
+    /// Finds the pairs in light of a wavelength between those in which leaves have been gathered, which have
+    /// these weights.
+    pub fn pair_up_between(&mut self, coherence: &Coherence, weights: &[f64]) {
+        let Self { ways, gathered, widths, between, pairs, .. } = self;
+        pairs.clear();
+        let nodes = weights.len();
+        for (range, widths) in gathered.iter().zip(widths.chunks(nodes)) {
+            between.clear();
+            between.extend(ways[range.clone()].chunks(nodes).map(|ways| {
+                let mut way = Way { leaf: ways[0].leaf, seen: DVec3::ZERO, phase_length: 0.0 };
+                for (at, weight) in ways.iter().zip(weights) {
+                    way.seen += at.seen * *weight;
+                    way.phase_length += at.phase_length * weight;
+                }
+                way
+            }));
+            let width = widths.iter().zip(weights).map(|(width, weight)| width * weight).sum();
+            coherence.add_pairs(between, width, pairs);
+        }
+    }
+
+    /// The leaves that have been gathered, by their numbers.
+    pub fn gathered(&self, nodes: usize) -> impl Iterator<Item = usize> {
+        self.ways.iter().step_by(nodes).map(|way| way.leaf)
     }
 
     /// Remembers the light of the next leaf.

@@ -445,7 +445,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
             if expose_unhindered(self.prepared, self.colors, rays, spacing, &mut seen) {
                 let color = spectral.color();
                 for (pixel, seen) in block.pixels.iter_mut().zip(&seen) {
-                    pixel.add_colors(seen, color);
+                    pixel.add_colors(seen, color, self.colors);
                 }
                 return TraceStats::default();
             }

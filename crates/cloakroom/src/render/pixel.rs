@@ -1,6 +1,7 @@
 //! What one pixel gathers from its samples.
 
 use super::ChannelKind;
+use super::detection::Detection;
 use glam::{DMat3, DVec3};
 
 /// Running sums over the samples of one pixel.
@@ -73,21 +74,25 @@ impl Times {
 }
 
 impl Pixel {
-    /// Adds the images of another, of things whose red, green and blue light have these colors.
-    pub fn add_colors(&mut self, other: &Self, color: DMat3) {
-        let images = |pixel: &Self| {
-            let [s0, s1, s2, s3] = pixel.stokes;
-            [pixel.image, pixel.horizontal, pixel.vertical, s0, s1, s2, s3]
+    /// Adds those images of another that are wanted, of things whose red, green and blue light have these colors.
+    pub fn add_colors<const N: usize>(
+        &mut self,
+        other: &Self,
+        color: DMat3,
+        detection: &Detection<N>,
+    ) {
+        let add = |sum: &mut [f64; 3], image: [f64; 3]| {
+            let added = (color * DVec3::from_array(image)).to_array();
+            sum.iter_mut().zip(added).for_each(|(sum, added)| *sum += added);
         };
-        let added = images(other).map(|image| color * DVec3::from_array(image));
-        let [image, horizontal, vertical, stokes @ ..] = added;
-        let sum = |sum: &mut [f64; 3], added: DVec3| {
-            sum.iter_mut().zip(added.to_array()).for_each(|(sum, added)| *sum += added);
-        };
-        sum(&mut self.image, image);
-        sum(&mut self.horizontal, horizontal);
-        sum(&mut self.vertical, vertical);
-        self.stokes.iter_mut().zip(stokes).for_each(|(of, added)| sum(of, added));
+        add(&mut self.image, other.image);
+        if detection.separate {
+            add(&mut self.horizontal, other.horizontal);
+            add(&mut self.vertical, other.vertical);
+        }
+        if detection.stokes {
+            self.stokes.iter_mut().zip(other.stokes).for_each(|(of, added)| add(of, added));
+        }
     }
 
     /// The value of a channel, the pixel having had `samples` samples; `color` says which of red 0,

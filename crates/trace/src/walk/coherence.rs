@@ -87,9 +87,13 @@ impl Coherence {
     /// g exp(i k0 l) for a difference l of phase lengths, cm.
     #[must_use]
     pub fn degree(&self, difference: f64) -> Complex64 {
+        Complex64::from_polar(self.visibility(difference), self.wave_number * difference)
+    }
+
+    /// g.
+    fn visibility(&self, difference: f64) -> f64 {
         let share = PI * difference / self.length;
-        let visibility = (-share * share / (4.0 * LN_2)).exp();
-        Complex64::from_polar(visibility, self.wave_number * difference)
+        (-share * share / (4.0 * LN_2)).exp()
     }
 
     /// Adds the pairs of ways that interfere; `width` is that of w, the standard deviation of the
@@ -107,8 +111,8 @@ impl Coherence {
                 // Two that see the same point do so however narrow the width is.
                 let together =
                     if one.seen == other.seen { 1.0 } else { (-0.5 * apart * apart).exp() };
-                let degree = self.degree(-difference) * together;
-                if degree.norm() > LEAST_DEGREE {
+                if self.visibility(difference) * together > LEAST_DEGREE {
+                    let degree = self.degree(-difference) * together;
                     pairs.push(Pair { leaves: [one.leaf, other.leaf], degree });
                 }
             }

@@ -269,7 +269,8 @@ pub(super) fn expose<const N: usize>(
     let [ways, ..] = &mut working.ways;
     find_ways(nodes, 0, ways);
     let count = nodes.count();
-    if is_coherent && !all_are_whole(&spectral.nodes[0], nodes, ways) {
+    let is_whole = |way: &[Option<usize>]| is_whole(&spectral.nodes[0], nodes, way);
+    if is_coherent && !ways.chunks(count).all(is_whole) {
         expose_fringes(spectral, detection, nodes, spacing, colors, working);
         return;
     }
@@ -285,8 +286,8 @@ pub(super) fn expose<const N: usize>(
             looks.push(exposure::look(&spectral.nodes[node], rays, number));
         }
         let leaves = |node: usize| nodes.ray(node, 0).leaves;
-        let is_whole = looks.len() == count && looks.windows(2).all(|pair| pair[0].0 == pair[1].0);
-        if is_whole {
+        // Of ways that interfere it is known.
+        if is_coherent || is_whole(&ways[numbers.clone()]) {
             let prepared = &spectral.nodes[0];
             let power = ways[way * count].map_or(0.0, |number| leaves(0)[number].largest_power());
             let Some(view) = View::of(&spectral.bands, looks, power) else { continue };
@@ -326,27 +327,25 @@ pub(super) fn expose<const N: usize>(
             }
         }
     }
-    if is_coherent && ways.len() > count {
+    if is_coherent && views.len() > 1 {
         interfere(spectral, detection, nodes, colors, working);
     }
 }
 
-/// Whether all ways are taken at every node, and see the same thing there.
-fn all_are_whole<const N: usize>(
+/// Whether a way is taken at every node, and sees the same thing there.
+fn is_whole<const N: usize>(
     prepared: &PreparedScene<'_>,
     nodes: Nodes<'_, N>,
-    ways: &[Option<usize>],
+    way: &[Option<usize>],
 ) -> bool {
     let sees = |leaf: &Leaf<N>| {
         (leaf.end, leaf.body().is_none() && leaf.distance_to(&prepared.screen).is_some())
     };
-    ways.chunks(nodes.count()).all(|way| {
-        let numbers = way.iter().enumerate();
-        let mut all = numbers
-            .map(|(node, number)| number.map(|number| sees(&nodes.ray(node, 0).leaves[number])));
-        let first = all.next().flatten();
-        first.is_some() && all.all(|other| other == first)
-    })
+    let numbers = way.iter().enumerate();
+    let mut all =
+        numbers.map(|(node, number)| number.map(|number| sees(&nodes.ray(node, 0).leaves[number])));
+    let first = all.next().flatten();
+    first.is_some() && all.all(|other| other == first)
 }
 
 /// Adds to a pixel what leaves that interfere see more or less than each alone, bin by bin of fringes. All
@@ -366,18 +365,25 @@ fn interfere<const N: usize>(
     let width = if have_nearly_one_length(first_leaves) { WIDE } else { NARROW };
     let bins = spectral.bands.fringes[width].iter().zip(&spectral.fringes[width]);
     let camera = nodes.ray(0, 0).ray.origin;
-    let leaves = &mut working.leaves[0];
+    let count_of_ways = working.views.len();
+    let [leaves, between, ..] = &mut working.leaves;
+    leaves.clear();
+    leaves.extend(
+        (0..count).flat_map(|node| (0..count_of_ways).filter_map(move |way| leaf(way, node))),
+    );
     let interference = &mut working.exposure.interference;
+    interference.gather(&spectral.nodes[0], detection, leaves, count_of_ways, camera);
+    between.clear();
+    between.extend_from_slice(&leaves[..count_of_ways]);
     for (bin, prepared) in bins {
-        leaves.clear();
-        for way in 0..working.views.len() {
-            let Some(first) = leaf(way, 0) else { continue };
-            let all = (0..count).filter_map(|node| leaf(way, node));
-            leaves.push(interpolated(first, all, &bin.group.middle));
-        }
-        interference.pair_up(prepared, detection, leaves, camera);
+        let (Some(coherence), weights) = (prepared.coherence, &bin.group.middle) else { continue };
+        interference.pair_up_between(&coherence, weights);
         if interference.pairs.is_empty() {
             continue;
+        }
+        for way in interference.gathered(count) {
+            let leaves = leaves[way..].iter().step_by(count_of_ways);
+            (between[way].power, between[way].electric) = brought(leaves, weights);
         }
         interference.lights.clear();
         for (level, begin) in &working.views {
@@ -385,14 +391,19 @@ fn interfere<const N: usize>(
             interference.remember(light.to_array());
         }
         let mut seen = Pixel::default();
-        exposure::interfere(detection, leaves, interference, &mut seen);
-        add_fringe(bin, &seen, colors);
+        exposure::interfere(detection, between, interference, &mut seen);
+        add_fringe(bin, detection, &seen, colors);
     }
 }
 
 /// Adds to a pixel what is seen in a bin of fringes.
-fn add_fringe(bin: &Fringe, seen: &Pixel, colors: &mut Colors<'_>) {
-    colors.pixel.add_colors(seen, bin.color);
+fn add_fringe<const N: usize>(
+    bin: &Fringe,
+    detection: &Detection<N>,
+    seen: &Pixel,
+    colors: &mut Colors<'_>,
+) {
+    colors.pixel.add_colors(seen, bin.color, detection);
     if let Some(spectrum) = &mut colors.spectrum {
         for (number, shares) in bin.group.lights.iter().flat_map(|light| &light.bins) {
             spectrum[*number] += DVec3::from_array(*shares).dot(DVec3::from_array(seen.image));
@@ -582,7 +593,7 @@ fn expose_fringes<const N: usize>(
             &mut seen,
             &mut working.exposure,
         );
-        add_fringe(bin, &seen, colors);
+        add_fringe(bin, detection, &seen, colors);
     }
 }
 
@@ -593,28 +604,38 @@ fn interpolated<'l, const N: usize>(
     weights: &[f64],
 ) -> Leaf<N> {
     let mut found = *leaf;
-    (found.position, found.direction) = (DVec3::ZERO, DVec3::ZERO);
-    (found.optical_path, found.delay_path) = (0.0, 0.0);
-    (found.power, found.electric) = ([0.0; N], [ComplexVector::ZERO; N]);
-    for (leaf, weight) in all.zip(weights) {
+    (found.position, found.direction, found.optical_path) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+    for (leaf, weight) in all.clone().zip(weights) {
         found.position += leaf.position * *weight;
         found.direction += leaf.direction * *weight;
         found.optical_path += leaf.optical_path * weight;
-        found.delay_path += leaf.delay_path * weight;
-        for i in 0..N {
-            found.power[i] += leaf.power[i] * weight;
-            found.electric[i] = found.electric[i] + leaf.electric[i].scaled((*weight).into());
-        }
     }
     found.direction = found.direction.normalize_or_zero();
-    for i in 0..N {
-        found.power[i] = found.power[i].max(0.0);
-        let norm = found.electric[i].norm_squared();
-        // As strong as its power says.
-        let scale = if norm > 0.0 { (found.power[i] / norm).sqrt() } else { 0.0 };
-        found.electric[i] = found.electric[i].scaled(scale.into());
-    }
+    (found.power, found.electric) = brought(all, weights);
     found
+}
+
+/// The powers and fields of a leaf between the nodes.
+fn brought<'l, const N: usize>(
+    all: impl Iterator<Item = &'l Leaf<N>>,
+    weights: &[f64],
+) -> ([f64; N], [ComplexVector; N]) {
+    let (mut power, mut electric) = ([0.0; N], [ComplexVector::ZERO; N]);
+    for (leaf, &weight) in all.zip(weights) {
+        for i in 0..N {
+            power[i] += leaf.power[i] * weight;
+            electric[i].re += leaf.electric[i].re * weight;
+            electric[i].im += leaf.electric[i].im * weight;
+        }
+    }
+    for (power, electric) in power.iter_mut().zip(&mut electric) {
+        *power = power.max(0.0);
+        let norm = electric.norm_squared();
+        // As strong as its power says.
+        let scale = if norm > 0.0 { (*power / norm).sqrt() } else { 0.0 };
+        (electric.re, electric.im) = (electric.re * scale, electric.im * scale);
+    }
+    (power, electric)
 }
 
 #[cfg(test)]
