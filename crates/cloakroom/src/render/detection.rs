@@ -1,6 +1,6 @@
 //! Which polarizations are launched for a picture, and what each counts for.
 
-use super::ChannelSet;
+use super::{Arrivals, ChannelSet, Delay};
 use crate::scene::{Camera, CameraRay, PictureSettings};
 use crate::trace::Launch;
 
@@ -31,6 +31,8 @@ pub(crate) struct Detection<const N: usize> {
     pub spectrum: bool,
     /// Whether shares of the power are wanted.
     shares: bool,
+    /// When light arrives, where that is looked at.
+    pub arrivals: Option<Arrivals>,
 }
 
 const HORIZONTAL: [f64; 2] = [1.0, 0.0];
@@ -70,6 +72,7 @@ impl<const N: usize> Detection<N> {
             first_face: false,
             spectrum: false,
             shares: true,
+            arrivals: None,
         }
     }
 
@@ -90,6 +93,16 @@ impl<const N: usize> Detection<N> {
             first_face: asked("extraordinary_share") || asked("first_face_reflectance"),
             ..self
         }
+    }
+
+    /// The image alone, and when its light arrives.
+    pub fn in_flight(&self, arrivals: Arrivals) -> Self {
+        Self { separate: false, arrivals: Some(arrivals), ..self.of_colors() }
+    }
+
+    /// Whether tracers are to work out what pulses take.
+    pub fn wants_group_paths(&self) -> bool {
+        self.group_delays || self.arrivals.is_some_and(|arrivals| arrivals.delay == Delay::Group)
     }
 
     /// Whether anything is wanted that is no color.
