@@ -25,10 +25,9 @@ mod warnings;
 
 pub use channels::{ChannelKind, ChannelSet};
 pub use estimate::{Estimate, estimate};
-pub(crate) use flight::pixels_of;
 pub use flight::{
-    Arrivals, Delay, Flash, Flashed, FlightCube, FlightSettings, FlightTile, Gate, GateError, MOST_BINS,
-    arrival_times, flight, flight_steps,
+    Arrivals, Delay, Flash, Flashed, FlightCube, FlightSettings, FlightTile, Gate, GateError,
+    MOST_BINS, arrival_times, flight, flight_steps,
 };
 pub use images::Images;
 pub use prepared_scene::{

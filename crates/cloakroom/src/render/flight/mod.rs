@@ -305,8 +305,11 @@ fn expose_tiles<const N: usize, E: From<RenderError> + Send>(
     let bins = settings.gate.bins();
     let pixels = SIDE.min(width as usize) * SIDE.min(height as usize);
     let needed = rayon::current_num_threads() * pixels * bins * size_of::<Flashed>();
-    crate::memory::check(needed as u64, u64::MAX)
-        .map_err(|shortage| RenderError::TooLarge { width, height, shortage })?;
+    crate::memory::check(needed as u64, u64::MAX).map_err(|shortage| RenderError::TooLarge {
+        width,
+        height,
+        shortage,
+    })?;
     let mut tiles = tiles([width, height]);
     // In no order, so that what is done says how long the rest will take.
     tiles.sort_by_cached_key(|tile| mix(u64::from(tile.top) << 32 | u64::from(tile.left)));
@@ -319,7 +322,8 @@ fn expose_tiles<const N: usize, E: From<RenderError> + Send>(
                 (exposer, tracers)
             },
             |(exposer, tracers), tile| {
-                let exposed = exposer.expose_tile(tracers, FlightTile::new(tile, bins), supervision);
+                let exposed =
+                    exposer.expose_tile(tracers, FlightTile::new(tile, bins), supervision);
                 let (tile, stats) = exposed.map_err(RenderError::from)?;
                 let rows = u64::from(tile.tile.height);
                 take(tile)?;
@@ -345,35 +349,41 @@ impl<const N: usize> Exposer<'_, N> {
         let [left, top, width, height] = [left, top, width, height].map(|side| side as usize);
         let mut stats = TraceStats::default();
         let stop = supervision.stop;
-        BlockTracer::for_blocks(tracers, [left, top], [width, height], stop, |tracers, at, traced| {
-            let (block, samples, of_block) = self.expose_samples(tracers, at, traced, stop)?;
-            stats += of_block;
-            let Some((settings, pixels)) = &mut self.flight else { return Ok(()) };
-            let bins = settings.gate.bins();
-            for (i, pixel) in pixels.iter_mut().enumerate() {
-                let column = (at[0] + i % 2).checked_sub(left);
-                let row = (at[1] + i / 2).checked_sub(top);
-                if let (Some(x), Some(y)) = (column, row)
-                    && x < width
-                    && y < height
-                {
-                    let index = y * width + x;
-                    let mean = |sum: Flashed| sum.map(|sum| sum / samples);
-                    let [first, end] = pixel.used;
-                    for bin in first..end {
-                        flown.bins[index * bins + bin] = mean(pixel.bins[bin]);
+        BlockTracer::for_blocks(
+            tracers,
+            [left, top],
+            [width, height],
+            stop,
+            |tracers, at, traced| {
+                let (block, samples, of_block) = self.expose_samples(tracers, at, traced, stop)?;
+                stats += of_block;
+                let Some((settings, pixels)) = &mut self.flight else { return Ok(()) };
+                let bins = settings.gate.bins();
+                for (i, pixel) in pixels.iter_mut().enumerate() {
+                    let column = (at[0] + i % 2).checked_sub(left);
+                    let row = (at[1] + i / 2).checked_sub(top);
+                    if let (Some(x), Some(y)) = (column, row)
+                        && x < width
+                        && y < height
+                    {
+                        let index = y * width + x;
+                        let mean = |sum: Flashed| sum.map(|sum| sum / samples);
+                        let [first, end] = pixel.used;
+                        for bin in first..end {
+                            flown.bins[index * bins + bin] = mean(pixel.bins[bin]);
+                        }
+                        for (outside, sum) in flown.outside.iter_mut().zip(pixel.outside) {
+                            outside[index] = mean(sum);
+                        }
+                        flown.untimed[index] = mean(pixel.untimed);
+                        flown.steady[index] = pixel.steady.map(|sum| sum / samples);
+                        flown.picture[index] = block.pixels[i].image.map(|sum| sum / samples);
                     }
-                    for (outside, sum) in flown.outside.iter_mut().zip(pixel.outside) {
-                        outside[index] = mean(sum);
-                    }
-                    flown.untimed[index] = mean(pixel.untimed);
-                    flown.steady[index] = pixel.steady.map(|sum| sum / samples);
-                    flown.picture[index] = block.pixels[i].image.map(|sum| sum / samples);
+                    pixel.clear();
                 }
-                pixel.clear();
-            }
-            Ok(())
-        })?;
+                Ok(())
+            },
+        )?;
         Ok((flown, stats))
     }
 }
@@ -457,7 +467,8 @@ impl FlightCube {
 pub(crate) fn pixels_of(tile: Tile, width: usize) -> impl Iterator<Item = usize> {
     let [left, top, columns, rows] =
         [tile.left, tile.top, tile.width, tile.height].map(|side| side as usize);
-    (top..top + rows).flat_map(move |row| (left..left + columns).map(move |column| row * width + column))
+    (top..top + rows)
+        .flat_map(move |row| (left..left + columns).map(move |column| row * width + column))
 }
 
 /// The first and the last time (ns) at which more than a thousandth of a camera ray's power arrives,
@@ -470,8 +481,7 @@ pub fn arrival_times(prepared: &PreparedScene<'_>, arrivals: &Arrivals) -> Optio
     let camera = &prepared.scene.camera;
     let detection = Detection::UNPOLARIZED;
     let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
-    let tracer =
-        if arrivals.delay == Delay::Group { tracer.with_group_delays() } else { tracer };
+    let tracer = if arrivals.delay == Delay::Group { tracer.with_group_delays() } else { tracer };
     let all = (0..RAYS[1]).into_par_iter().map_init(
         || tracer.clone(),
         |tracer, row| {
@@ -481,8 +491,7 @@ pub fn arrival_times(prepared: &PreparedScene<'_>, arrivals: &Arrivals) -> Optio
                     (f64::from(number) + 0.5) / f64::from(count) * f64::from(side)
                 };
                 let [width, height] = camera.resolution;
-                let ray =
-                    camera.ray(place(column, RAYS[0], width), place(row, RAYS[1], height));
+                let ray = camera.ray(place(column, RAYS[0], width), place(row, RAYS[1], height));
                 let (leaves, _) = tracer.trace(&detection.launch(camera, &ray));
                 for leaf in leaves {
                     let distance = leaf.distance_to(&prepared.screen);
@@ -505,6 +514,3 @@ pub fn arrival_times(prepared: &PreparedScene<'_>, arrivals: &Arrivals) -> Optio
     );
     (range[0] <= range[1]).then_some(range)
 }
-
-#[cfg(test)]
-mod tests;

@@ -10,8 +10,8 @@
 
 use super::block_tracer::MOST_TRACERS;
 use super::detection::Detection;
-use super::flight::{Arrival, Arrivals};
 use super::exposure::{self, Look, Sight, Traced};
+use super::flight::{Arrival, Arrivals};
 use super::pixel::Pixel;
 use super::prepared_scene::{PreparedScene, PreparedSceneError};
 use crate::color::{BINS, Bands, Fringe, Group, Lamp, Light, chebyshev_nodes, weights};
@@ -348,7 +348,13 @@ pub(super) fn expose<const N: usize>(
                     let power = detection.detected(&leaf.power);
                     let light = cell.color * DVec3::from_array(light) * power;
                     let power = power * brightness(cell);
-                    colors.arrivals.push(Arrival::of(looked, leaf, screen, power, light.to_array()));
+                    colors.arrivals.push(Arrival::of(
+                        looked,
+                        leaf,
+                        screen,
+                        power,
+                        light.to_array(),
+                    ));
                 }
                 add(detection, leaf, std::iter::once((cell, DVec3::from_array(light))), colors);
             }
