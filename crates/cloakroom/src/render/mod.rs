@@ -26,8 +26,8 @@ mod warnings;
 pub use channels::{ChannelKind, ChannelSet};
 pub use estimate::{Estimate, estimate};
 pub use flight::{
-    Arrivals, Delay, Flash, Flashed, FlightCube, FlightSettings, FlightTile, Gate, GateError,
-    MOST_BINS, arrival_times, flight, flight_steps,
+    Arrivals, Delay, Flash, FlashError, Flashed, FlightCube, FlightSettings, FlightTile, Gate,
+    GateError, MOST_BINS, arrival_times, flight, flight_steps,
 };
 pub use images::Images;
 pub use prepared_scene::{

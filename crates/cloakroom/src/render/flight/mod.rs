@@ -19,6 +19,7 @@ use crate::trace::{Leaf, Stopped, TraceStats, Tracer};
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
 use rayon::prelude::*;
+use std::str::FromStr;
 use std::sync::Mutex;
 
 /// Which of the two times of light counts.
@@ -67,6 +68,39 @@ impl Flash {
                 (0.0, (-squared).exp2())
             }
         }
+    }
+}
+
+/// What is wrong with a flash: it is not written as one.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "`{0}` is no flash; write photograph, plane:DX,DY,DZ, point:X,Y,Z or spot:X,Y,Z,RADIUS in cm, as in \
+     point:50,0,30"
+)]
+pub struct FlashError(String);
+
+impl FromStr for Flash {
+    type Err = FlashError;
+
+    fn from_str(text: &str) -> Result<Self, FlashError> {
+        let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
+        let numbers: Option<Vec<f64>> = match rest {
+            "" => Some(Vec::new()),
+            rest => rest.split(',').map(|part| part.trim().parse().ok()).collect(),
+        };
+        let numbers = numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite()));
+        match (kind, numbers.as_deref()) {
+            ("photograph", Some([])) => Some(Self::Photograph),
+            ("plane", Some(&[x, y, z])) if [x, y, z] != [0.0; 3] => {
+                Some(Self::PlaneWave(DVec3::new(x, y, z)))
+            }
+            ("point", Some(&[x, y, z])) => Some(Self::Point(DVec3::new(x, y, z))),
+            ("spot", Some(&[x, y, z, radius])) if radius > 0.0 => {
+                Some(Self::Spot { middle: DVec3::new(x, y, z), radius })
+            }
+            _ => None,
+        }
+        .ok_or_else(|| FlashError(text.to_owned()))
     }
 }
 
@@ -447,7 +481,7 @@ impl FlightCube {
     fn place(&mut self, part: &FlightTile) {
         let bins = self.gate.bins();
         let pixels = self.size[0] * self.size[1];
-        for (number, index) in pixels_of(part.tile, self.size[0]).enumerate() {
+        for (number, index) in part.tile.places(self.size[0]).enumerate() {
             for (bin, flashed) in part.bins[number * bins..][..bins].iter().enumerate() {
                 let [red, green, blue, power] = *flashed;
                 self.light[bin * pixels + index] = [red, green, blue];
@@ -461,14 +495,6 @@ impl FlightCube {
             self.picture[index] = part.picture[number];
         }
     }
-}
-
-/// Where the pixels of a tile are in a picture of that width.
-pub(crate) fn pixels_of(tile: Tile, width: usize) -> impl Iterator<Item = usize> {
-    let [left, top, columns, rows] =
-        [tile.left, tile.top, tile.width, tile.height].map(|side| side as usize);
-    (top..top + rows)
-        .flat_map(move |row| (left..left + columns).map(move |column| row * width + column))
 }
 
 /// The first and the last time (ns) at which more than a thousandth of a camera ray's power arrives,
