@@ -8,9 +8,7 @@ use crate::render::warn_of_cut_branches;
 use crate::report::{Failure, Result, all, say};
 use crate::scene;
 use cloakroom::output::{self, FlightOrder, FlightStore};
-use cloakroom::render::{
-    self, Arrivals, Delay, FlightSettings, Gate, Images, PreparedScene,
-};
+use cloakroom::render::{self, Arrivals, Delay, FlightSettings, Gate, Images, PreparedScene};
 use cloakroom_figures::film::{
     Film, FilmFormat, FlightFilm, FrameFolder, flight_frames, frames_beside,
 };
