@@ -58,9 +58,9 @@ const SCENES: [&str; 8] = [
     "samples = 4\n[[device]]\nkind = 'square-cloak'\nmaterial = 'positive-uniaxial'\n",
     "samples = 2\npolarizer = 30\n[[device]]\nkind = 'square-cloak'\nmaterial = 'negative-uniaxial'\nrotation = 9\n",
     "samples = 2\n[[device]]\nkind = 'double-gaussian-cloak'\nrotation = 5\n",
-    "samples = 3\nadaptive = 0.01\n[surroundings]\ncolor = [0.1, 0.3, 0.2]\n[photograph]\nwidth = 30\n[[device]]\nkind = 'body'\nshape = 'sphere'\nradius = 6\nindex = 1.5\nposition = [0, 3, 0]\n[[device]]\nkind = 'body'\nshape = 'box'\nsize = [4, 4, 4]\nopaque = true\nposition = [0, -8, 5]\n",
+    "samples = 3\nadaptive = 0.01\n[surroundings]\ncolor = [0.1, 0.3, 0.2]\n[photograph]\nwidth = 30\n[[device]]\nkind = 'body'\nshape = 'sphere'\nradius = 6\nindex = 1.5\nposition = [0, 3, 0]\n[[device]]\nkind = 'body'\nshape = 'box'\nsize = [4, 4, 4]\nsurface = { color = [0.6, 0.1, 0.1] }\nposition = [0, -8, 5]\n",
     "samples = 1\n[[device]]\nkind = 'body'\nshape = 'sphere'\nradius = 9\npermittivity = [2.25, 1e-6]\n",
-    "samples = 2\n[light]\nspectrum = 'daylight'\n[[device]]\nkind = 'body'\nshape = 'sphere'\nradius = 9\nmaterial = 'bk7'\n",
+    "samples = 2\n[light]\nspectrum = 'D65'\n[[device]]\nkind = 'body'\nshape = 'sphere'\nradius = 9\nmaterial = 'bk7'\n",
     "samples = 2\n[light]\nbandwidth_nm = 20\n[[device]]\nkind = 'body'\nshape = 'slab'\nthickness = 0.001\nindex = 1.5\n",
     "samples = 1\n",
 ];
@@ -221,7 +221,7 @@ fn a_centimeter_of_calcite_parts_a_pulse_by_6_453_picoseconds() {
         let time = |polarizer: &str| {
             let text = format!(
                 "[camera]\nresolution = [3, 3]\nsamples = 1\nfield_of_view = 0.001\npolarizer = '{polarizer}'\n\
-                 [light]\nwavelength_nm = 590\n[[device]]\nkind = 'body'\nshape = 'slab'\nthickness = 1\n\
+                 [light]\nspectrum = 590\n[[device]]\nkind = 'body'\nshape = 'slab'\nthickness = 1\n\
                  material = 'calcite'\noptic_axis = [0, 1, 0]\n"
             );
             // Light that has gone to and fro in the slab comes later than this gate.

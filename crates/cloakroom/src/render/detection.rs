@@ -23,6 +23,8 @@ pub(crate) struct Detection<const N: usize> {
     pub exact_times: bool,
     /// Whether what pulses take is wanted.
     pub group_delays: bool,
+    /// Whether depths that a LIDAR would tell are wanted, for which what pulses take is.
+    pub depths: bool,
     /// Whether the Stokes parameters are wanted: for those the first two are needed.
     pub stokes: bool,
     /// Whether the first surface is looked at on its own.
@@ -68,6 +70,7 @@ impl<const N: usize> Detection<N> {
             times: true,
             exact_times: true,
             group_delays: false,
+            depths: false,
             stokes: false,
             first_face: false,
             spectrum: false,
@@ -85,7 +88,9 @@ impl<const N: usize> Detection<N> {
             separate: self.separate && (everything || wanted == ChannelSet::Polarizers),
             times: everything || wanted == ChannelSet::Measures,
             exact_times: everything,
-            group_delays: everything && picture.asks_for_group_delay(),
+            group_delays: everything
+                && (picture.asks_for_group_delay() || picture.asks_for_pulse_depth()),
+            depths: everything && picture.asks_for_pulse_depth(),
             alone: wanted == ChannelSet::Polarizers,
             stokes: self.separate && asked("stokes"),
             spectrum: asked("spectrum"),
@@ -113,7 +118,8 @@ impl<const N: usize> Detection<N> {
     /// The same for colors alone.
     pub fn of_colors(&self) -> Self {
         let (times, exact_times, shares) = (false, false, false);
-        Self { times, exact_times, shares, group_delays: false, first_face: false, ..*self }
+        let (group_delays, depths, first_face) = (false, false, false);
+        Self { times, exact_times, shares, group_delays, depths, first_face, ..*self }
     }
 
     /// The ray to launch for a camera ray.

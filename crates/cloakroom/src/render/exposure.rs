@@ -29,6 +29,8 @@ pub(super) struct Working {
     pub interference: Interference,
     /// What arrives, where that is looked at.
     pub arrivals: Vec<Arrival>,
+    /// What a LIDAR gets back: paths (cm) and powers.
+    returns: Vec<(f64, f64)>,
 }
 
 /// Adds to a pixel what one camera ray sees. `across` and `down` are its neighbours one pixel away
@@ -40,10 +42,11 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
     [here, across, down]: [&Traced<'_, N>; 3],
     spacing: f64,
     pixel: &mut Pixel,
-    Working { pulses, group_pulses, interference, arrivals }: &mut Working,
+    Working { pulses, group_pulses, interference, arrivals, returns }: &mut Working,
 ) {
     pulses.clear();
     group_pulses.clear();
+    returns.clear();
     let absorbed = detection.detected(&here.outcome.absorbed);
     if COHERENT {
         interference.find(prepared, detection, here.leaves, here.ray.origin, absorbed);
@@ -67,6 +70,10 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
                 }
             }
             (None, None) => pixel.escaped += arriving,
+        }
+        if detection.depths && (leaf.body().is_some() || screen.is_some()) {
+            let path = leaf.group_path.unwrap_or(f64::NAN) + screen.unwrap_or(0.0);
+            returns.push((path, arriving));
         }
         let beside = |alone| {
             [across, down].map(|neighbour| Neighbour { here, number, leaf, neighbour, alone })
@@ -115,6 +122,9 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
         let empty = empty_time_of_flight(prepared, &here.ray);
         pixel.times.add(pulses, empty);
         pixel.group_delays.add(group_pulses, empty);
+    }
+    if detection.depths {
+        pixel.depths.add(returns, prepared.limits.tolerance);
     }
 }
 
