@@ -295,3 +295,67 @@ fn the_range_of_times_holds_nearly_all_light() {
         assert!(beside < 2e-3 * within, "{text}: {within} {beside}");
     }
 }
+
+/// Depths by the first and by the strongest pulse, cm.
+fn depths(text: &str) -> (Scene, [Vec<f64>; 2]) {
+    let scene = scene(&format!("{text}\n[picture]\nchannels = ['pulse_depth']\n"));
+    let prepared = PreparedScene::new(&scene).unwrap();
+    let picture = supervised(|supervision| {
+        render(&prepared, ChannelSet::Everything, supervision).unwrap().picture
+    });
+    let depths = ["first_pulse_depth", "strongest_pulse_depth"].map(|name| {
+        let samples = &picture.channel(name).unwrap().samples;
+        (0..samples.len()).map(|pixel| samples.get(pixel)).collect()
+    });
+    (scene, depths)
+}
+
+#[test]
+fn a_lidar_finds_the_invisible_sphere_and_what_stands_before_the_photograph() {
+    let text = "[camera]\nresolution = [40, 30]\nsamples = 1\nposition = [-60, 0, 0]\n[photograph]\nwidth = 40\n\
+        [[device]]\nkind = 'invisible-sphere'\n[[device]]\nkind = 'body'\nshape = 'box'\nsize = [2, 2, 40]\n\
+        surface = { color = [1, 0, 0] }\nposition = [20, -14, 0]\n";
+    let (scene, [first, strongest]) = depths(text);
+    let mut found = [0; 4];
+    for pixel in 0..40 * 30 {
+        let ray = scene.camera.ray((pixel % 40) as f64 + 0.5, (pixel / 40) as f64 + 0.5);
+        let straight = 110.0 / ray.direction.x;
+        let depth = strongest[pixel];
+        assert!(depth == first[pixel] || depth.is_nan() && first[pixel].is_nan());
+        let late = depth - straight;
+        let kind = if depth.is_nan() {
+            0
+        } else if late.abs() < 1e-9 {
+            1
+        } else if (late - 20.0 * PI).abs() < 1e-8 {
+            2
+        } else {
+            // On the front or the top of the box.
+            let point = ray.origin + ray.direction * depth;
+            assert!((point.x - 19.0).abs() < 1e-9 || (point.y + 13.0).abs() < 1e-9, "{point}");
+            3
+        };
+        found[kind] += 1;
+    }
+    assert!(found.iter().all(|count| *count > 10), "{found:?}");
+}
+
+#[test]
+fn the_first_pulse_through_calcite_is_not_the_strongest() {
+    // 30 degrees from horizontal: three quarters of the light take the one way, a quarter the other.
+    let text = |angle: f64| {
+        format!(
+            "[camera]\nresolution = [3, 3]\nsamples = 1\nfield_of_view = 0.001\npolarizer = {angle:?}\n\
+             [light]\nspectrum = 590\n[[device]]\nkind = 'body'\nshape = 'slab'\nthickness = 1\n\
+             material = 'calcite'\noptic_axis = [0, 1, 0]\n"
+        )
+    };
+    let split = 6.453e-3 * LIGHT;
+    for (angle, apart) in [(30.0, true), (60.0, false)] {
+        let (_, [first, strongest]) = depths(&text(angle));
+        let late = strongest[4] - first[4];
+        // The extraordinary wave, whose field is vertical, is the faster one.
+        let expected = if apart { split } else { 0.0 };
+        assert!((late - expected).abs() < 1e-4, "{angle}: {late}");
+    }
+}
