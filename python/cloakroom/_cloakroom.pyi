@@ -21,6 +21,7 @@ __all__ = [
     "fail_on_purpose",
     "figures",
     "fit",
+    "flight",
     "flux",
     "interface",
     "key_names",
@@ -138,6 +139,9 @@ def render(
 ) -> tuple[dict[str, NDArray[Any]], list[tuple[str, str]], tuple[int, int]]: ...
 def estimate(scene: Scene) -> tuple[float, float, int, int, int]: ...
 def pulses(scene: Scene, pixel: Sequence[int]) -> str: ...
+def flight(
+    scene: Scene, gate: str | None, pulse: float, delay: str, flash: str, progress: _Tell
+) -> tuple[dict[str, NDArray[Any]], tuple[int, int]]: ...
 def setting(scene: Scene) -> Drawing: ...
 def diagram(
     scene: Scene,

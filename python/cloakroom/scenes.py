@@ -15,6 +15,7 @@ from . import _cloakroom
 from ._arrays import image_of, is_image_array, numbers
 from ._progress import Progress, told
 from .drawings import Drawing
+from .labelled import Arrays
 from .pages import Page
 from .pictures import Picture
 from .tables import (
@@ -493,6 +494,79 @@ class Scene:
             channels, metadata, (endless, lost) = _cloakroom.render(scene._native, image_only, place, tell)
         rarities = {"endless": endless, "lost": lost}
         return Picture(channels, dict(metadata), **shown, rarities=rarities)
+
+    def flight(
+        self,
+        gate: str | tuple[float, float, float] | None = None,
+        *,
+        pulse: float = 0.0,
+        delay: str = "group",
+        flash: str = "photograph",
+        samples: int | None = None,
+        resolution: tuple[int, int] | None = None,
+        progress: Progress = False,
+    ) -> Arrays:
+        """Looks at light in flight: what a camera with a time gate sees when the photograph flashes.
+
+        Leaves are added by power; the photograph alone is timed. The bins together with ``before``, ``after``,
+        ``untimed`` and ``steady`` are the ``picture``; the mean of ``time``, weighted by ``power``, is the time of
+        flight.
+
+        Parameters
+        ----------
+        gate : str or (float, float, float), optional
+            The middles of the first and the last bin and the length of each, ns, as in ``"5.0..5.4:0.005"`` or
+            ``(5.0, 5.4, 0.005)``; about 120 bins that hold what arrives if absent.
+        pulse : float, default 0
+            How long the flash is at half its height, ns, of the shape cos².
+        delay : str, default "group"
+            ``"group"`` for what a pulse takes, ``"phase"`` for what the phase takes, as in the paper.
+        flash : str, default "photograph"
+            What flashes: ``"photograph"``, ``"plane:DX,DY,DZ"``, ``"point:X,Y,Z"`` or ``"spot:X,Y,Z,RADIUS"``.
+        samples : int, optional
+            Camera rays per pixel, instead of ``camera.samples``.
+        resolution : (int, int), optional
+            Width and height in pixels, instead of ``camera.resolution``.
+        progress : bool or callable, default False
+            ``True`` for a line on standard error, or a function that is called with the steps done and all steps.
+
+        Returns
+        -------
+        Arrays
+            ``light`` (time, height, width, color) and ``power`` (time, height, width); ``time``, the middles of the
+            bins, ns; ``before``, ``after`` and ``untimed`` with their powers, ``steady`` and ``picture``
+            (height, width, color).
+
+        Raises
+        ------
+        ValueError
+            If the gate or the flash cannot be read, or the scene cannot be.
+        MemoryError
+            If it would not fit into the memory that is free.
+
+        Examples
+        --------
+        >>> from cloakroom import Camera, Scene, SquareCloak
+        >>> scene = Scene(camera=Camera(resolution=[16, 12]), devices=SquareCloak())
+        >>> flown = scene.flight((4.9, 7.9, 0.01))
+        >>> flown["light"].shape
+        (301, 12, 16, 3)
+        >>> bool(abs(flown["power"].sum(axis=0) + flown["after_power"] - 1).max() < 1e-6)
+        True
+        """
+        keys = {"camera.samples": samples, "camera.resolution": resolution}
+        keys = {key: value for key, value in keys.items() if value is not None}
+        scene = self.replace(keys) if keys else self
+        if gate is not None and not isinstance(gate, str):
+            start, end, step = (float(part) for part in gate)
+            gate = f"{start!r}..{end!r}:{step!r}"
+        with told(progress, "rendering") as tell:
+            arrays, _ = _cloakroom.flight(scene._native, gate, float(pulse), delay, flash, tell)
+        image = ("height", "width")
+        axes = {name: (*image, "color") for name in ("before", "after", "untimed", "steady", "picture")}
+        axes |= {name: image for name in ("before_power", "after_power", "untimed_power")}
+        axes |= {"time": ("time",), "light": ("time", *image, "color"), "power": ("time", *image)}
+        return Arrays(arrays, axes)
 
     def animate(
         self,

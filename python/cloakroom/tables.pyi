@@ -1438,17 +1438,17 @@ class PictureSettings(Table):
     def __init__(
         self,
         *,
-        channels: Sequence[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay", "spectrum"]] | None = ...,
-        map: Literal["none", "time_of_flight", "time_of_flight_spread", "time_of_flight_difference", "group_delay", "group_delay_spread", "group_delay_difference", "delivered", "escaped", "absorbed", "pruned", "extraordinary_share", "first_face_reflectance"] | None = ...,
+        channels: Sequence[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay", "pulse_depth", "spectrum"]] | None = ...,
+        map: Literal["none", "time_of_flight", "time_of_flight_spread", "time_of_flight_difference", "group_delay", "group_delay_spread", "group_delay_difference", "first_pulse_depth", "strongest_pulse_depth", "delivered", "escaped", "absorbed", "pruned", "extraordinary_share", "first_face_reflectance"] | None = ...,
         color_bar: bool | None = ...,
         map_range: ArrayLike | None = ...,
         map_percentile: float | None = ...,
         colormap: Literal["auto", "viridis", "cividis", "magma", "blue-red"] | None = ...,
     ) -> None: ...
     @property
-    def channels(self) -> list[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay", "spectrum"]]: ...
+    def channels(self) -> list[Literal["stokes", "extraordinary_share", "first_face_reflectance", "group_delay", "pulse_depth", "spectrum"]]: ...
     @property
-    def map(self) -> Literal["none", "time_of_flight", "time_of_flight_spread", "time_of_flight_difference", "group_delay", "group_delay_spread", "group_delay_difference", "delivered", "escaped", "absorbed", "pruned", "extraordinary_share", "first_face_reflectance"]: ...
+    def map(self) -> Literal["none", "time_of_flight", "time_of_flight_spread", "time_of_flight_difference", "group_delay", "group_delay_spread", "group_delay_difference", "first_pulse_depth", "strongest_pulse_depth", "delivered", "escaped", "absorbed", "pruned", "extraordinary_share", "first_face_reflectance"]: ...
     @property
     def color_bar(self) -> bool: ...
     @property

@@ -5,6 +5,7 @@
 mod drawings;
 mod errors;
 mod films;
+mod flights;
 mod images;
 mod interfaces;
 mod materials;
@@ -25,6 +26,8 @@ mod _cloakroom {
     use super::drawings::{Drawing, diagram, setting};
     #[pymodule_export]
     use super::films::{animate, figures};
+    #[pymodule_export]
+    use super::flights::flight;
     #[pymodule_export]
     use super::images::Image;
     #[pymodule_export]

@@ -5,14 +5,14 @@ mod measuring;
 mod values;
 
 use clap::builder::PossibleValuesParser;
-use clap::{ArgGroup, Args, Parser, Subcommand};
-use cloakroom::render::Tile;
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
+use cloakroom::render::{Flash, Gate, Tile};
 use cloakroom::scene::OPTIONAL_CHANNELS;
 use cloakroom::scene_file::Override;
 pub use groups::{listed, wrapped};
 pub use measuring::*;
 use std::path::PathBuf;
-use values::{frames_only, map_range, pixel, size};
+use values::{exposure, frames_only, map_range, pixel, pulse, size};
 
 /// What stands below the help of a command: how it is used first.
 macro_rules! example {
@@ -44,6 +44,9 @@ pub enum Command {
     /// folder of frames.
     #[command(after_help = example!("animate scene.toml --sweep device.0.rotation=0..360 --frames 120 -o turn.gif"))]
     Animate(AnimateArguments),
+    /// Film light in flight: what a camera with a time gate sees when the photograph flashes.
+    #[command(after_help = example!("flight paper/fig2c --size 320x240 -o pulses.gif"))]
+    Flight(FlightArguments),
     /// Validate a scene and print facts and an estimate of the time, without rendering.
     #[command(after_help = example!("check scene.toml --set camera.samples=16"))]
     Check(CheckArguments),
@@ -291,6 +294,66 @@ pub struct AnimateArguments {
     /// The range of a map's colors (`picture.map`), in ns for times and as shares for powers.
     #[arg(long, help_heading = "Picture", value_name = "LOW,HIGH", allow_hyphen_values = true, value_parser = map_range)]
     pub map_range: Option<[f64; 2]>,
+    /// How many threads work.
+    #[command(flatten)]
+    pub threads: ThreadsArguments,
+}
+
+/// The heading of when light arrives.
+const TIME: &str = "Time";
+
+/// Which time of light counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FlightDelay {
+    /// What a pulse takes.
+    Group,
+    /// What the phase takes, as in the paper.
+    Phase,
+}
+
+/// Arguments of `flight`.
+#[derive(Args, Debug)]
+pub struct FlightArguments {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Its picture.
+    #[command(flatten)]
+    pub picture: PictureArguments,
+    /// When the gate is open: the middles of the first and the last bin of time, ns after the flash,
+    /// and how long each is, as in 5.0..5.4:0.005 [default: about 120 bins that hold what arrives].
+    #[arg(long, value_name = "START..END:STEP", help_heading = TIME, allow_hyphen_values = true)]
+    pub gate: Option<Gate>,
+    /// How long the flash is at half its height, ns, of the shape cos².
+    #[arg(long, value_name = "NS", help_heading = TIME, default_value_t = 0.0, value_parser = pulse)]
+    pub pulse: f64,
+    /// Which time counts.
+    #[arg(long, value_name = "TIME", help_heading = TIME, default_value = "group")]
+    pub delay: FlightDelay,
+    /// What flashes: the whole photograph at once; where a plane wave along a direction comes to it,
+    /// plane:DX,DY,DZ; where light from a point does, point:X,Y,Z; or a spot of a laser on it alone,
+    /// spot:X,Y,Z,RADIUS in cm.
+    #[arg(long, value_name = "WHAT", help_heading = TIME, default_value = "photograph")]
+    pub flash: Flash,
+    /// Show all light up to the time of a frame, and not what arrives in it alone.
+    #[arg(long, help_heading = "Film")]
+    pub accumulate: bool,
+    /// How bright the flash is: 1 as the picture.
+    #[arg(long, value_name = "X", help_heading = "Film", default_value_t = 1.0, value_parser = exposure)]
+    pub exposure: f64,
+    /// Frames a second.
+    #[arg(long, help_heading = "Film", value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=100))]
+    pub fps: u32,
+    /// Keep the folder of frames beside the film.
+    #[arg(long, help_heading = "Files")]
+    pub keep_frames: bool,
+    /// A file to write; its ending decides: .npz for arrays, .gif, .apng, .png, .webp, .mp4 or .webm (with
+    /// ffmpeg) for a film, none for a folder of frames. May be given several times.
+    #[arg(short, long = "output", value_name = "FILE", help_heading = "Files", required = true)]
+    pub outputs: Vec<PathBuf>,
+    /// Order the arrays of .npz as mitransient does: (height, width, time, color).
+    #[arg(long, help_heading = "Files")]
+    pub time_last: bool,
     /// How many threads work.
     #[command(flatten)]
     pub threads: ThreadsArguments,

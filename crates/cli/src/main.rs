@@ -12,6 +12,7 @@ mod diagram;
 mod export;
 mod figures;
 mod files;
+mod flight;
 mod flux;
 mod gallery;
 mod interruption;
@@ -66,6 +67,7 @@ fn run(command: &Command) -> Result<()> {
         Command::Render(arguments) => render::run(arguments),
         Command::Merge(arguments) => merge::run(arguments),
         Command::Animate(arguments) => animate::run(arguments),
+        Command::Flight(arguments) => flight::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Trace(arguments) => trace::run(arguments),
         Command::Pulses(arguments) => pulses::run(arguments),

@@ -7,6 +7,7 @@ mod book;
 mod commands;
 mod everyday;
 mod faults;
+mod flying;
 #[path = "../../optics/tests/long.rs"]
 mod long;
 mod measuring;

@@ -15,6 +15,7 @@ mod devices;
 mod double_gaussian_cloak;
 mod equation_of_motion;
 mod first_face;
+mod flight;
 mod glass_prism;
 mod graded;
 mod group_delay;

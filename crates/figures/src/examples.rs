@@ -23,7 +23,7 @@ macro_rules! other {
 }
 
 /// Scenes that are neither a panel of the paper nor an exhibit: path, words, text.
-const OTHERS: [(&str, &str, &str); 13] = [
+const OTHERS: [(&str, &str, &str); 17] = [
     other!("flux/solar-cell" => "For `cloakroom flux`: a contact on a solar cell, under a cloak"),
     other!("flux/window" => "For `cloakroom flux`: an advertising column before a window"),
     other!("real/calcite-carpet" =>
@@ -40,6 +40,12 @@ const OTHERS: [(&str, &str, &str); 13] = [
     other!("real/rochester-cloak-singlets" => "The same of single lenses of BK7: its colors"),
     other!("real/glass-prism" => "A prism of heavy flint glass in daylight"),
     other!("real/newtons-colors" => "A wedge of quartz between crossed polarizers: Newton's colors"),
+    other!("unmask/square-cloak" =>
+        "A LIDAR finds the perfect cloak, design (iii): pulses take longer through it"),
+    other!("unmask/double-gaussian-cloak" => "A LIDAR finds the double-Gaussian cloak, design (iv)"),
+    other!("unmask/invisible-sphere" =>
+        "A LIDAR finds the invisible sphere: pulses are late by its circumference"),
+    other!("unmask/calcite-carpet" => "A LIDAR finds the calcite carpet"),
     other!("shop-window" =>
         "For `cloakroom animate`: a cloak with an open core that turns in a shop window"),
 ];
@@ -96,7 +102,7 @@ pub fn select(names: &[String]) -> Result<Vec<Example>, String> {
     let examples = all();
     if let Some(name) = names.iter().find(|name| !examples.iter().any(|e| named(e, name))) {
         let mut known: Vec<&str> = examples.iter().map(|example| example.path).collect();
-        known.extend(["paper", "gallery", "flux", "real"]);
+        known.extend(["paper", "gallery", "flux", "real", "unmask"]);
         let hint = hint(name, &known, "there are");
         return Err(format!("there is no example scene `{name}`{hint}"));
     }

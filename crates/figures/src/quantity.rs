@@ -44,6 +44,8 @@ impl Quantity {
             "group_delay" => ("group delay", Dimension::Time),
             "group_delay_spread" => ("group-delay spread", Dimension::Time),
             "group_delay_difference" => ("group-delay difference", Dimension::Time),
+            "first_pulse_depth" => ("depth by the first pulse, cm", Dimension::Number),
+            "strongest_pulse_depth" => ("depth by the strongest pulse, cm", Dimension::Number),
             "delivered" => ("power delivered", Dimension::Share),
             "escaped" => ("power escaped", Dimension::Share),
             "absorbed" => ("power absorbed", Dimension::Share),

@@ -7,7 +7,10 @@ use textwrap::{Options, WordSplitter, termwidth};
 
 /// What the commands are for.
 const GROUPS: [(&str, &[&str]); 4] = [
-    ("Make pictures", &["render", "animate", "view", "diagram", "figures", "gallery", "merge"]),
+    (
+        "Make pictures",
+        &["render", "animate", "flight", "view", "diagram", "figures", "gallery", "merge"],
+    ),
     (
         "Measure",
         &["quality", "compare", "flux", "pulses", "trace", "interface", "verify", "export"],

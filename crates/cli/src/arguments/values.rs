@@ -44,6 +44,22 @@ pub(super) fn angles(text: &str) -> Result<[f64; 3], &'static str> {
         )
 }
 
+/// Reads how long a pulse is, ns.
+pub(super) fn pulse(text: &str) -> Result<f64, &'static str> {
+    numbers(text)
+        .map(|[width]: [f64; 1]| width)
+        .filter(|width| (0.0..=1e6).contains(width))
+        .ok_or("write ns, from 0 to 1000000, as in 0.02")
+}
+
+/// Reads how bright a flash is.
+pub(super) fn exposure(text: &str) -> Result<f64, &'static str> {
+    numbers(text)
+        .map(|[factor]: [f64; 1]| factor)
+        .filter(|factor| *factor > 0.0)
+        .ok_or("write a factor above 0, as in 2")
+}
+
 /// Reads the first and the last of some frames, such as 0..29.
 pub(super) fn frames_only(text: &str) -> Result<[usize; 2], &'static str> {
     parsed(text, "..")

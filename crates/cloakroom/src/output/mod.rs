@@ -2,6 +2,7 @@
 //! and pictures back from PNG and NPZ.
 
 mod exr_file;
+mod flight_file;
 mod grid_file;
 mod npz_file;
 mod path_file;
@@ -11,12 +12,13 @@ mod reading;
 mod vtk_file;
 mod whole_file;
 
+pub use flight_file::{FlightOrder, FlightStore};
 pub use grid_file::{Grid, GridArray, GridFile, GridFormat, GridValues, ShapedArray, write_grid};
 pub use image::RgbImage;
 pub(crate) use npz_file::write_npz;
 pub use path_file::write_paths;
 pub use picture::{Channel, Picture, Samples};
-pub use png_file::{encode_png, to_srgb, write_png, write_png_in_strips};
+pub use png_file::{encode_png, light_to_srgb, to_srgb, write_png, write_png_in_strips};
 pub use png_file::{encoder as png_encoder, texts as png_texts};
 pub(crate) use reading::read_channels;
 pub use reading::{ReadError, read_npz, read_png};

@@ -43,7 +43,7 @@ impl Npz<'_> {
 
 /// Takes all that comes after an error as if it were written, and where: an archive that is given
 /// up is ended all the same, and would tell on standard error that it cannot be.
-struct UntilError<'o> {
+pub(super) struct UntilError<'o> {
     out: &'o mut dyn WriteSeek,
     has_failed: bool,
     position: u64,
@@ -51,7 +51,7 @@ struct UntilError<'o> {
 }
 
 impl<'o> UntilError<'o> {
-    fn new(out: &'o mut dyn WriteSeek) -> Self {
+    pub(super) fn new(out: &'o mut dyn WriteSeek) -> Self {
         Self { out, has_failed: false, position: 0, length: 0 }
     }
 

@@ -35,6 +35,15 @@ pub fn to_srgb(picture: &Picture) -> Result<RgbImage, OutputError> {
         .ok_or_else(|| OutputError::MissingChannel("R".to_owned()))
 }
 
+/// Linear light of pixels, red, green and blue, as 8-bit sRGB, clamped to what that can show; `None` if
+/// they are not that many.
+#[must_use]
+pub fn light_to_srgb([width, height]: [u32; 2], pixels: &[[f32; 3]]) -> Option<RgbImage> {
+    let codes = Codes::new();
+    let bytes = pixels.as_flattened().iter().map(|light| codes.nearest((*light).into()));
+    RgbImage::from_raw(width, height, bytes.collect())
+}
+
 /// The sRGB codes of linear light.
 struct Codes {
     /// The linear light from which on the next code is nearer: entry n lies between the codes n and

@@ -35,7 +35,8 @@ impl<'a, const N: usize> BlockTracer<'a, N> {
     /// For so many rays of each pixel.
     pub fn new(prepared: &'a PreparedScene<'a>, detection: &'a Detection<N>, samples: u32) -> Self {
         let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
-        let tracer = if detection.group_delays { tracer.with_group_delays() } else { tracer };
+        let tracer =
+            if detection.wants_group_paths() { tracer.with_group_delays() } else { tracer };
         Self {
             prepared,
             detection,

@@ -53,6 +53,12 @@ pub enum ChannelKind {
     GroupDelaySpread,
     /// It less the time of flight of the same camera ray in the empty scene, ns.
     GroupDelayDifference,
+    /// How far away a LIDAR at the camera finds the photograph or an opaque body, by the first pulse that
+    /// comes back: the speed of light times what a pulse takes one way, cm; NaN where none comes back of
+    /// which it is known when.
+    FirstPulseDepth,
+    /// The same by the strongest pulse.
+    StrongestPulseDepth,
     /// Share of the power that reaches the photograph.
     Delivered,
     /// Share of the power that goes to the surroundings.
@@ -77,7 +83,7 @@ pub enum ChannelKind {
 impl ChannelKind {
     /// All channels in the order of files, with their names there: those that every file of data
     /// holds, then those that a scene must ask for.
-    const NAMES: [(Self, &str); 26] = [
+    const NAMES: [(Self, &str); 28] = [
         (Self::Image(0), "R"),
         (Self::Image(1), "G"),
         (Self::Image(2), "B"),
@@ -103,6 +109,8 @@ impl ChannelKind {
         (Self::GroupDelay, "group_delay"),
         (Self::GroupDelaySpread, "group_delay_spread"),
         (Self::GroupDelayDifference, "group_delay_difference"),
+        (Self::FirstPulseDepth, "first_pulse_depth"),
+        (Self::StrongestPulseDepth, "strongest_pulse_depth"),
         (Self::Spectrum, "spectrum"),
     ];
 
@@ -135,7 +143,9 @@ impl ChannelKind {
             | Self::TimeOfFlightDifference
             | Self::GroupDelay
             | Self::GroupDelaySpread
-            | Self::GroupDelayDifference => Samples::F64(vec![0.0; pixels]),
+            | Self::GroupDelayDifference
+            | Self::FirstPulseDepth
+            | Self::StrongestPulseDepth => Samples::F64(vec![0.0; pixels]),
             Self::Stokes(_) => Samples::Rgb(vec![[0.0; 3]; pixels]),
             Self::Spectrum => Samples::Bins(vec![[0.0; BINS]; pixels]),
             _ => Samples::F32(vec![0.0; pixels]),
@@ -170,6 +180,7 @@ impl ChannelKind {
             Self::GroupDelay | Self::GroupDelaySpread | Self::GroupDelayDifference => {
                 picture.asks_for_group_delay()
             }
+            Self::FirstPulseDepth | Self::StrongestPulseDepth => picture.asks_for_pulse_depth(),
             Self::ExtraordinaryShare | Self::FirstFaceReflectance => {
                 picture.asks_for(channel.name())
             }

@@ -1,6 +1,6 @@
 //! Which polarizations are launched for a picture, and what each counts for.
 
-use super::ChannelSet;
+use super::{Arrivals, ChannelSet, Delay};
 use crate::scene::{Camera, CameraRay, PictureSettings};
 use crate::trace::Launch;
 
@@ -23,6 +23,8 @@ pub(crate) struct Detection<const N: usize> {
     pub exact_times: bool,
     /// Whether what pulses take is wanted.
     pub group_delays: bool,
+    /// Whether depths that a LIDAR would tell are wanted, for which what pulses take is.
+    pub depths: bool,
     /// Whether the Stokes parameters are wanted: for those the first two are needed.
     pub stokes: bool,
     /// Whether the first surface is looked at on its own.
@@ -31,6 +33,8 @@ pub(crate) struct Detection<const N: usize> {
     pub spectrum: bool,
     /// Whether shares of the power are wanted.
     shares: bool,
+    /// When light arrives, where that is looked at.
+    pub arrivals: Option<Arrivals>,
 }
 
 const HORIZONTAL: [f64; 2] = [1.0, 0.0];
@@ -66,10 +70,12 @@ impl<const N: usize> Detection<N> {
             times: true,
             exact_times: true,
             group_delays: false,
+            depths: false,
             stokes: false,
             first_face: false,
             spectrum: false,
             shares: true,
+            arrivals: None,
         }
     }
 
@@ -82,7 +88,9 @@ impl<const N: usize> Detection<N> {
             separate: self.separate && (everything || wanted == ChannelSet::Polarizers),
             times: everything || wanted == ChannelSet::Measures,
             exact_times: everything,
-            group_delays: everything && picture.asks_for_group_delay(),
+            group_delays: everything
+                && (picture.asks_for_group_delay() || picture.asks_for_pulse_depth()),
+            depths: everything && picture.asks_for_pulse_depth(),
             alone: wanted == ChannelSet::Polarizers,
             stokes: self.separate && asked("stokes"),
             spectrum: asked("spectrum"),
@@ -90,6 +98,16 @@ impl<const N: usize> Detection<N> {
             first_face: asked("extraordinary_share") || asked("first_face_reflectance"),
             ..self
         }
+    }
+
+    /// The image alone, and when its light arrives.
+    pub fn in_flight(&self, arrivals: Arrivals) -> Self {
+        Self { separate: false, arrivals: Some(arrivals), ..self.of_colors() }
+    }
+
+    /// Whether tracers are to work out what pulses take.
+    pub fn wants_group_paths(&self) -> bool {
+        self.group_delays || self.arrivals.is_some_and(|arrivals| arrivals.delay == Delay::Group)
     }
 
     /// Whether anything is wanted that is no color.
@@ -100,7 +118,8 @@ impl<const N: usize> Detection<N> {
     /// The same for colors alone.
     pub fn of_colors(&self) -> Self {
         let (times, exact_times, shares) = (false, false, false);
-        Self { times, exact_times, shares, group_delays: false, first_face: false, ..*self }
+        let (group_delays, depths, first_face) = (false, false, false);
+        Self { times, exact_times, shares, group_delays, depths, first_face, ..*self }
     }
 
     /// The ray to launch for a camera ray.

@@ -1,6 +1,7 @@
 //! From leaves to light: what each leaf sees, through a filter as wide as its share of the pixel.
 
 use super::detection::Detection;
+use super::flight::Arrival;
 use super::interference::Interference;
 use super::pixel::{Pixel, Pulses};
 use super::prepared_scene::{PreparedScene, Surroundings};
@@ -26,6 +27,10 @@ pub(super) struct Working {
     /// The same, with what each takes as a pulse.
     group_pulses: Pulses,
     pub interference: Interference,
+    /// What arrives, where that is looked at.
+    pub arrivals: Vec<Arrival>,
+    /// What a LIDAR gets back: paths (cm) and powers.
+    returns: Vec<(f64, f64)>,
 }
 
 /// Adds to a pixel what one camera ray sees. `across` and `down` are its neighbours one pixel away
@@ -37,10 +42,11 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
     [here, across, down]: [&Traced<'_, N>; 3],
     spacing: f64,
     pixel: &mut Pixel,
-    Working { pulses, group_pulses, interference }: &mut Working,
+    Working { pulses, group_pulses, interference, arrivals, returns }: &mut Working,
 ) {
     pulses.clear();
     group_pulses.clear();
+    returns.clear();
     let absorbed = detection.detected(&here.outcome.absorbed);
     if COHERENT {
         interference.find(prepared, detection, here.leaves, here.ray.origin, absorbed);
@@ -65,6 +71,10 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
             }
             (None, None) => pixel.escaped += arriving,
         }
+        if detection.depths && (leaf.body().is_some() || screen.is_some()) {
+            let path = leaf.group_path.unwrap_or(f64::NAN) + screen.unwrap_or(0.0);
+            returns.push((path, arriving));
+        }
         let beside = |alone| {
             [across, down].map(|neighbour| Neighbour { here, number, leaf, neighbour, alone })
         };
@@ -74,6 +84,10 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
             interference.remember(light);
         }
         add(&mut pixel.image, power, light);
+        if let Some(looked) = &detection.arrivals {
+            let light = light.map(|light| power * light);
+            arrivals.push(Arrival::of(looked, leaf, (&prepared.screen, screen), power, light));
+        }
         if detection.separate {
             for (i, sum) in [&mut pixel.horizontal, &mut pixel.vertical].into_iter().enumerate() {
                 let is_in = |leaf: &Leaf<N>| leaf.survives_alone[i] || !detection.alone;
@@ -108,6 +122,9 @@ pub(super) fn expose<const N: usize, const COHERENT: bool>(
         let empty = empty_time_of_flight(prepared, &here.ray);
         pixel.times.add(pulses, empty);
         pixel.group_delays.add(group_pulses, empty);
+    }
+    if detection.depths {
+        pixel.depths.add(returns, prepared.limits.tolerance);
     }
 }
 
@@ -254,21 +271,24 @@ pub(super) fn interfere<const N: usize>(
 
 /// Adds to the pixels of a 2 x 2 block what they see past every device, where all its rays end on
 /// the photograph or none does; whether that is so. The same as [`expose`] with those rays as leaves,
-/// but for what is worked out once for the block.
+/// but for what is worked out once for the block. Where it is looked at when light arrives, `arrive` gets
+/// that with the number of the pixel.
 pub(super) fn expose_unhindered<const N: usize>(
     prepared: &PreparedScene<'_>,
     detection: &Detection<N>,
     rays: &[CameraRay; 4],
     spacing: f64,
     pixels: &mut [Pixel; 4],
+    mut arrive: impl FnMut(usize, Arrival),
 ) -> bool {
     let screen = &prepared.screen;
-    let (mut places, mut distances) = ([[0.0; 2]; 4], [0.0; 4]);
+    let (mut places, mut points) = ([[0.0; 2]; 4], [None; 4]);
     let mut on_screen = 0;
     for (i, ray) in rays.iter().enumerate() {
         if let Some(distance) = screen.hit(ray.origin, ray.direction, 0.0) {
             let point = ray.origin + ray.direction * distance;
-            (places[i], distances[i]) = (screen.image_position(ray.direction)(point), distance);
+            places[i] = screen.image_position(ray.direction)(point);
+            points[i] = Some((point, distance));
             on_screen += 1;
         }
     }
@@ -284,8 +304,8 @@ pub(super) fn expose_unhindered<const N: usize>(
                 beside.map(|j| [(places[j][0] - u) * spacing, (places[j][1] - v) * spacing]);
             pixel.delivered += power;
             if detection.times {
-                let time = distances[i] / SPEED_OF_LIGHT;
-                pixel.times.add(&[(time, power)], Some(time));
+                let time = points[i].map(|(_, distance)| distance / SPEED_OF_LIGHT);
+                pixel.times.add(&[(time.unwrap_or(f64::NAN), power)], time);
             }
             prepared.photograph_light(places[i], steps)
         } else {
@@ -295,6 +315,10 @@ pub(super) fn expose_unhindered<const N: usize>(
             prepared.surroundings.light(direction, steps)
         };
         add(&mut pixel.image, power, light);
+        if let Some(arrivals) = &detection.arrivals {
+            let light = light.map(|light| power * light);
+            arrive(i, arrivals.unhindered(points[i], screen, power, light));
+        }
         if detection.separate {
             add(&mut pixel.horizontal, 1.0, light);
             add(&mut pixel.vertical, 1.0, light);

@@ -11,6 +11,7 @@ mod detection;
 mod estimate;
 mod exposure;
 mod film;
+mod flight;
 mod images;
 mod interference;
 mod patch;
@@ -24,6 +25,10 @@ mod warnings;
 
 pub use channels::{ChannelKind, ChannelSet};
 pub use estimate::{Estimate, estimate};
+pub use flight::{
+    Arrivals, Delay, Flash, FlashError, Flashed, FlightCube, FlightSettings, FlightTile, Gate,
+    GateError, MOST_BINS, arrival_times, flight, flight_steps,
+};
 pub use images::Images;
 pub use prepared_scene::{
     INPUTS, PreparedScene, PreparedSceneError, assembly, coherence, limits, ray_settings,
@@ -46,6 +51,8 @@ pub(crate) use detection::Detection;
 pub(crate) use exposure::Traced;
 use exposure::{Working, expose, expose_unhindered};
 use film::{Band, Film};
+use flight::{Arrival, FlightPixel};
+use glam::DVec3;
 use pixel::Pixel;
 use rayon::prelude::*;
 use spectral::{Colors, Nodes, Spectral};
@@ -280,6 +287,8 @@ struct Exposer<'a, const N: usize> {
     spectral: spectral::Working<N>,
     /// The light of the pixels of a block in each bin, where it is wanted.
     spectra: Option<[[f64; BINS]; 4]>,
+    /// How light in flight is looked at, and what has arrived at the pixels of a block.
+    flight: Option<(FlightSettings, Vec<FlightPixel>)>,
 }
 
 impl<'a, const N: usize> Exposer<'a, N> {
@@ -302,7 +311,7 @@ impl<'a, const N: usize> Exposer<'a, N> {
         let spectral = spectral::Working::default();
         let spectra = detection.spectrum.then(Default::default);
         let working = Working::default();
-        (Self { prepared, detection, colors, working, spectral, spectra }, tracers)
+        (Self { prepared, detection, colors, working, spectral, spectra, flight: None }, tracers)
     }
 
     /// Exposes a band, patch by patch.
@@ -321,15 +330,15 @@ impl<'a, const N: usize> Exposer<'a, N> {
         Ok(stats)
     }
 
-    /// Exposes the pixels of a block, in a patch of which so much is traced by each tracer.
-    fn expose_pixels(
+    /// Takes the samples of the pixels of a block, in a patch of which so much is traced by each
+    /// tracer: what they see together, and how many there were.
+    fn expose_samples(
         &mut self,
         tracers: &mut [BlockTracer<'_, N>],
         [left, top]: [usize; 2],
         traced: &[f64],
-        band: &mut Band<'_>,
         stop: &AtomicBool,
-    ) -> Result<TraceStats, Stopped> {
+    ) -> Result<(Block, f64, TraceStats), Stopped> {
         let camera = &self.prepared.scene.camera;
         let samples = camera.samples;
         let look = if camera.adaptive > 0.0 { first_look(samples) } else { 0 };
@@ -352,8 +361,20 @@ impl<'a, const N: usize> Exposer<'a, N> {
                 break;
             }
         }
+        Ok((block, f64::from(taken), stats))
+    }
+
+    /// Exposes the pixels of a block.
+    fn expose_pixels(
+        &mut self,
+        tracers: &mut [BlockTracer<'_, N>],
+        [left, top]: [usize; 2],
+        traced: &[f64],
+        band: &mut Band<'_>,
+        stop: &AtomicBool,
+    ) -> Result<TraceStats, Stopped> {
+        let (block, samples, stats) = self.expose_samples(tracers, [left, top], traced, stop)?;
         let Band { width, rows, corner: [first_column, first_row], .. } = *band;
-        let samples = f64::from(taken);
         for (i, pixel) in block.pixels.iter().enumerate() {
             let column = (left + i % 2).checked_sub(first_column);
             let row = (top + i / 2).checked_sub(first_row);
@@ -398,7 +419,14 @@ impl<'a, const N: usize> Exposer<'a, N> {
         if !tracer.interpolate(&points, &rays, traced[0]) {
             if !(detection.group_delays || detection.stokes || detection.first_face)
                 && tracer.meet_nothing(&rays)
-                && expose_unhindered(prepared, detection, &rays, spacing, &mut block.pixels)
+                && expose_unhindered(
+                    prepared,
+                    detection,
+                    &rays,
+                    spacing,
+                    &mut block.pixels,
+                    |pixel, arrival| arrive(&mut self.flight, pixel, &[arrival]),
+                )
             {
                 return TraceStats::default();
             }
@@ -423,6 +451,8 @@ impl<'a, const N: usize> Exposer<'a, N> {
         for (i, pixel) in pixels.iter_mut().enumerate() {
             let rays = [&block[i], &block[i ^ 1], &block[i ^ 2]];
             expose(prepared, detection, rays, spacing, pixel, &mut self.working);
+            arrive(&mut self.flight, i, &self.working.arrivals);
+            self.working.arrivals.clear();
         }
     }
 
@@ -442,8 +472,12 @@ impl<'a, const N: usize> Exposer<'a, N> {
             && tracers[0].meet_nothing(rays)
         {
             let mut seen = [Pixel::default(); 4];
-            if expose_unhindered(self.prepared, self.colors, rays, spacing, &mut seen) {
-                let color = spectral.color();
+            let color = spectral.color();
+            let of_light = |pixel, arrival: Arrival| {
+                let light = (color * DVec3::from_array(arrival.light)).to_array();
+                arrive(&mut self.flight, pixel, &[Arrival { light, ..arrival }]);
+            };
+            if expose_unhindered(self.prepared, self.colors, rays, spacing, &mut seen, of_light) {
                 for (pixel, seen) in block.pixels.iter_mut().zip(&seen) {
                     pixel.add_colors(seen, color, self.colors);
                 }
@@ -466,7 +500,8 @@ impl<'a, const N: usize> Exposer<'a, N> {
         for (i, pixel) in block.pixels.iter_mut().enumerate() {
             let nodes = Nodes { blocks: &blocks, pixel: i };
             let spectrum = self.spectra.as_mut().map(|spectra| &mut spectra[i]);
-            let mut colors = Colors { pixel, spectrum };
+            let arrivals = &mut self.working.arrivals;
+            let mut colors = Colors { pixel, spectrum, arrivals };
             spectral::expose(
                 spectral,
                 self.colors,
@@ -475,7 +510,20 @@ impl<'a, const N: usize> Exposer<'a, N> {
                 &mut colors,
                 &mut self.spectral,
             );
+            arrive(&mut self.flight, i, &self.working.arrivals);
+            self.working.arrivals.clear();
         }
         stats
+    }
+}
+
+/// Puts into its bins what arrives at a pixel of a block, where that is looked at.
+fn arrive(
+    flight: &mut Option<(FlightSettings, Vec<FlightPixel>)>,
+    pixel: usize,
+    arrivals: &[Arrival],
+) {
+    if let Some((settings, pixels)) = flight {
+        arrivals.iter().for_each(|arrival| pixels[pixel].add(settings, arrival));
     }
 }

@@ -23,6 +23,16 @@ pub(super) struct Pixel {
     /// Times of flight, and what pulses take.
     pub times: Times,
     pub group_delays: Times,
+    /// What a LIDAR would tell.
+    pub depths: Depths,
+}
+
+/// How far away (cm) a LIDAR finds what sends its pulse back.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Depths {
+    first: Option<f64>,
+    /// The depth, and the share of the power that comes back from there.
+    strongest: Option<(f64, f64)>,
 }
 
 /// Running sums over times (ns), each weighted by power.
@@ -37,6 +47,30 @@ pub(super) struct Times {
 
 /// The pulses of one camera ray: time of flight (ns) and power of each leaf on the photograph.
 pub(super) type Pulses = Vec<(f64, f64)>;
+
+impl Depths {
+    /// Adds what comes back of one camera ray: paths (cm) and shares of power, of which those are one
+    /// pulse that differ by less than `tolerance`.
+    pub fn add(&mut self, returns: &mut [(f64, f64)], tolerance: f64) {
+        /// Weaker returns are lost in the noise.
+        const LEAST_POWER: f64 = 0.01;
+        returns.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut rest = &returns[..];
+        while let Some((path, _)) = rest.first() {
+            let together = rest.iter().take_while(|other| other.0 - path <= tolerance).count();
+            // What is no number is no pulse, and stands last.
+            let (pulse, later) = rest.split_at(together.max(1));
+            let power: f64 = pulse.iter().map(|(_, power)| power).sum();
+            if path.is_finite() && power >= LEAST_POWER {
+                self.first = Some(self.first.map_or(*path, |first| first.min(*path)));
+                if self.strongest.is_none_or(|(_, strongest)| power > strongest) {
+                    self.strongest = Some((*path, power));
+                }
+            }
+            rest = later;
+        }
+    }
+}
 
 impl Times {
     /// Adds the pulses of one camera ray; `empty` is its time of flight in the empty scene, ns.
@@ -108,6 +142,10 @@ impl Pixel {
             ChannelKind::GroupDelay => self.group_delays.mean(),
             ChannelKind::GroupDelaySpread => self.group_delays.spread(),
             ChannelKind::GroupDelayDifference => self.group_delays.difference(),
+            ChannelKind::FirstPulseDepth => self.depths.first.unwrap_or(f64::NAN),
+            ChannelKind::StrongestPulseDepth => {
+                self.depths.strongest.map_or(f64::NAN, |(depth, _)| depth)
+            }
             ChannelKind::Delivered => self.delivered / samples,
             ChannelKind::Escaped => self.escaped / samples,
             ChannelKind::Absorbed => self.absorbed / samples,

@@ -389,6 +389,12 @@ impl<'s> PreparedScene<'s> {
         Self { coherence, spectral: None, ..self.clone() }
     }
 
+    /// The same scene with leaves that never interfere.
+    pub(super) fn added_by_power(&self) -> Self {
+        let spectral = self.spectral.as_deref().map(|spectral| Arc::new(spectral.added_by_power()));
+        Self { coherence: None, limits: limits(self.scene), spectral, ..self.clone() }
+    }
+
     /// What every file carries: program, scene, version and seed, and where the scene names files,
     /// `inputs`, the digest of each.
     #[must_use]

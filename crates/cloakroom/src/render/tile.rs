@@ -68,6 +68,14 @@ impl Tile {
             .map(|(key, text)| (key.to_owned(), text))
     }
 
+    /// Where its pixels are in a picture of that width, row by row.
+    pub(crate) fn places(self, width: usize) -> impl Iterator<Item = usize> {
+        let [left, top, columns, rows] =
+            [self.left, self.top, self.width, self.height].map(|side| side as usize);
+        (top..top + rows)
+            .flat_map(move |row| (left..left + columns).map(move |column| row * width + column))
+    }
+
     fn pixels(self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }

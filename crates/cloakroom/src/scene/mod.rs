@@ -246,6 +246,14 @@ impl PictureSettings {
         self.channels.iter().any(|held| held.word() == channel) || self.map.name() == Some(channel)
     }
 
+    /// Whether it asks for a depth that a LIDAR would tell.
+    #[must_use]
+    pub fn asks_for_pulse_depth(&self) -> bool {
+        ["pulse_depth", "first_pulse_depth", "strongest_pulse_depth"]
+            .iter()
+            .any(|channel| self.asks_for(channel))
+    }
+
     /// Whether it asks for any channel of what pulses take.
     #[must_use]
     pub fn asks_for_group_delay(&self) -> bool {

@@ -189,6 +189,8 @@ choice! {
         FirstFaceReflectance = "first_face_reflectance",
         /// What a pulse takes, its spread and its difference to the empty scene.
         GroupDelay = "group_delay",
+        /// How far away a LIDAR at the camera would find what sends its pulse back.
+        PulseDepth = "pulse_depth",
         /// The light in bins of wavelengths.
         Spectrum = "spectrum",
     }
@@ -211,6 +213,10 @@ choice! {
         GroupDelaySpread = "group_delay_spread",
         /// How much longer a pulse is on its way than without devices.
         GroupDelayDifference = "group_delay_difference",
+        /// How far away a LIDAR finds what sends back its first pulse.
+        FirstPulseDepth = "first_pulse_depth",
+        /// The same of its strongest pulse.
+        StrongestPulseDepth = "strongest_pulse_depth",
         /// The share of power that comes from the photograph.
         Delivered = "delivered",
         /// The share of power that comes from the surroundings.
@@ -239,7 +245,7 @@ table! {
     pub struct PictureSettings {
         /// Channels that EXR and NPZ files hold beside those they always do; `stokes` stands for
         /// `stokes.S0` to `stokes.S3`, `group_delay` for that, its spread and its difference,
-        /// `spectrum` for the light in 16 bins of wavelengths, where the scene has a spectrum.
+        /// `pulse_depth` for `first_pulse_depth` and `strongest_pulse_depth`, `spectrum` for the light in 16 bins of wavelengths, where the scene has a spectrum.
         channels: Vec<OptionalChannel>,
         /// A channel that a PNG shows in false colors instead of what the camera sees.
         map: MapChannel,

@@ -85,9 +85,24 @@ pub(super) fn wavefronts(
             matches!(material, MaterialAt::Metal | MaterialAt::Opaque)
         })
     };
-    // Near, and without metal between them.
-    let are_one = |a: DVec3, b: DVec3| {
-        a.distance(b) < apart && [0.2, 0.5, 0.8].iter().all(|share| !is_metal(a.lerp(b, *share)))
+    let is_air = |at: DVec3| {
+        assembly.devices().iter().all(|placed| {
+            let material = placed.structure.material_at(placed.pose.to_local(at));
+            matches!(material, MaterialAt::Air | MaterialAt::HiddenAir)
+        })
+    };
+    // Near, without metal between them, and, in air, where fronts are across rays, across both: a ray that
+    // a mirror has sent back and one that has missed it are of no front.
+    let are_one = |(a, along_a): (DVec3, DVec3), (b, along_b): (DVec3, DVec3)| {
+        /// The cosine of 73 degrees.
+        const STEEPEST: f64 = 0.3;
+        const BETWEEN: u32 = 16;
+        let between = (1..BETWEEN).map(|i| a.lerp(b, f64::from(i) / f64::from(BETWEEN)));
+        let chord = (b - a).normalize_or_zero();
+        let is_across = |along: DVec3| chord.dot(along).abs() < STEEPEST;
+        a.distance(b) < apart
+            && (!is_air(a) || !is_air(b) || is_across(along_a) && is_across(along_b))
+            && !between.into_iter().any(is_metal)
     };
     let longest = trees.iter().flatten().filter_map(|line| line.points.last());
     let longest = longest.map(|point| point.optical_path).fold(0.0, f64::max);
@@ -101,26 +116,27 @@ pub(super) fn wavefronts(
             met.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, point)| point)
         };
         let mut front: Vec<DVec3> = Vec::new();
-        let mut last: Option<DVec3> = None;
+        let mut last: Option<(DVec3, DVec3)> = None;
         for point in trees.iter().map(strongest).chain([None]) {
             if !matches!((last, point), (Some(a), Some(b)) if are_one(a, b)) {
                 let whole = std::mem::take(&mut front);
                 fronts.extend(Some(whole).filter(|front| front.len() > 1));
             }
-            front.extend(point);
+            front.extend(point.map(|(point, _)| point));
             last = point;
         }
     }
     fronts
 }
 
-/// Where the optical path along a line has a value.
-fn point_at(line: &Line, path: f64) -> Option<DVec3> {
+/// Where the optical path along a line has a value, and the line's direction there.
+fn point_at(line: &Line, path: f64) -> Option<(DVec3, DVec3)> {
     let between = |pair: &&[PathPoint]| {
         let [a, b] = [pair[0].optical_path, pair[1].optical_path];
         a.min(b) <= path && path < a.max(b)
     };
     let pair = line.points.windows(2).find(between)?;
     let share = (path - pair[0].optical_path) / (pair[1].optical_path - pair[0].optical_path);
-    Some(pair[0].position.lerp(pair[1].position, share))
+    let [from, to] = [pair[0].position, pair[1].position];
+    Some((from.lerp(to, share), (to - from).normalize_or_zero()))
 }

@@ -146,6 +146,28 @@ fn wavefronts_are_drawn_in_space_too() {
     assert!(plane > 10 && fronts.iter().all(|front| (front[0].y - front[1].y).abs() < 1e-6));
 }
 
+/// Plane waves and a mirror's flat sides make plane fronts, each across light that comes or goes: never
+/// through the metal, nor from what it sends back to what has missed it.
+#[test]
+fn wavefronts_at_a_mirror_are_those_of_one_wave_each() {
+    let settings = DiagramSettings {
+        source: Source::Parallel { degrees: -60.0 },
+        wavefronts: Some(3.0),
+        rays: 15,
+        ..DiagramSettings::default()
+    };
+    let scene = "[[device]]\nkind = \"prisms\"\n[[device.prism]]\n\
+                 corners = [[-9, -1], [9, -1], [9, 0], [-9, 0]]\nmetal = true\n";
+    let drawing = drawn(scene, &settings).expect("drawn");
+    let fronts = fronts(&drawing);
+    assert!(fronts.len() > 10, "{}", fronts.len());
+    for pair in fronts.iter().flat_map(|front| front.windows(2)) {
+        let chord = (pair[1] - pair[0]).normalize();
+        // Across 60 degrees, whichever way it runs.
+        assert!((chord.x.abs() - 0.75_f64.sqrt()).abs() < 1e-6, "{chord}");
+    }
+}
+
 #[test]
 fn nonsense_is_refused() {
     let refused = |settings: DiagramSettings, part: &str| {

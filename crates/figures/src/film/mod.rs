@@ -6,12 +6,14 @@
 
 mod animation;
 mod apng_file;
+mod flight;
 mod frames;
 mod gif_file;
 mod video;
 mod webp_file;
 
 pub use animation::{RenderedFrames, frame_metadata, frames_beside, render_frames};
+pub use flight::{FlightFilm, FlightFilmError, flight_frames};
 pub use frames::FrameFolder;
 
 use cloakroom::output::{self, OutputError, RgbImage};

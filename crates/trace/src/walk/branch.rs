@@ -47,7 +47,7 @@ pub struct Branch<const N: usize> {
     pub backwards: f64,
     /// What dispersion adds to the optical path for a pulse, cm; NaN where it is not known, or
     /// nobody asks.
-    pub(super) dispersion: f64,
+    pub dispersion: f64,
     /// What it has just left, if it runs outside of it now: in air or in the body around it.
     pub(super) departed: Option<DepartedSurface>,
     /// How many borders in a row it has crossed without getting anywhere.
@@ -74,7 +74,6 @@ impl<const N: usize> Branch<N> {
     pub fn is_movable(&self) -> bool {
         matches!(self.place, Place::Region { .. })
             && self.attenuation == DVec3::ZERO
-            && self.dispersion.is_nan()
             && self.departed.is_none()
             && self.standstills == 0
             && self.virtual_point.is_none()

@@ -177,7 +177,7 @@ impl<'a, const N: usize> LeafPatches<'a, N> {
             || prepared.coherence.is_some()
             || prepared.assembly.absorbs()
             || detection.first_face
-            || detection.group_delays
+            || detection.group_delays // More than two polarizations, of all channels.
             || detection.exact_times && !graded;
         if exact {
             return None;

@@ -75,14 +75,25 @@ impl<T: Interpolated> Smooth<T> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Functions<'a> {
     prepared: &'a PreparedScene<'a>,
-    /// Whether paths and fields of leaves are asked for.
+    /// Whether paths of leaves are asked for, those of pulses, and fields.
     paths: bool,
+    group_paths: bool,
     fields: bool,
 }
 
 impl<'a> Functions<'a> {
     pub fn of<const N: usize>(prepared: &'a PreparedScene<'a>, detection: &Detection<N>) -> Self {
-        Self { prepared, paths: detection.times, fields: detection.stokes }
+        Self {
+            prepared,
+            paths: detection.times || detection.arrivals.is_some(),
+            group_paths: detection.wants_group_paths(),
+            fields: detection.stokes,
+        }
+    }
+
+    /// How many paths of a leaf are kept.
+    fn paths(&self) -> usize {
+        if self.paths { 2 + usize::from(self.group_paths) } else { 0 }
     }
 
     /// The largest error of places and paths of what has that power, cm.
@@ -151,26 +162,31 @@ fn all_near(one: &[f64], other: &[f64], tolerance: f64) -> bool {
     one.iter().zip(other).all(|(one, other)| (one - other).abs() <= tolerance)
 }
 
+/// The optical path of a leaf, and what light and a pulse take.
+fn paths_of<const N: usize>(leaf: &Leaf<N>) -> [f64; 3] {
+    [leaf.optical_path, leaf.delay_path, leaf.group_path.unwrap_or(f64::NAN)]
+}
+
 impl<const N: usize> Interpolated for Leaf<N> {
     fn lanes(kept: Functions<'_>) -> usize {
-        let count = 6 + N + if kept.paths { 2 } else { 0 } + if kept.fields { 6 * N } else { 0 };
+        let count = 6 + N + kept.paths() + if kept.fields { 6 * N } else { 0 };
         count.div_ceil(LANES)
     }
 
     fn values(&self, kept: Functions<'_>) -> Lanes {
         let places = self.position.to_array().into_iter().chain(self.direction.to_array());
-        let paths = [self.optical_path, self.delay_path].into_iter();
+        let paths = paths_of(self).into_iter();
         let fields = numbers_of(&self.electric).take(if kept.fields { 6 * N } else { 0 });
-        let paths = paths.take(if kept.paths { 2 } else { 0 });
+        let paths = paths.take(kept.paths());
         in_order(places.chain(self.power).chain(paths).chain(fields))
     }
 
     fn tolerances(&self, kept: Functions<'_>, power: f64) -> Lanes {
         let [place, power] = [kept.place_tolerance(power), kept.power_tolerance()];
         let reach = self.distance_to(&kept.prepared.screen).unwrap_or(REACH);
-        let paths = if kept.paths { 2 } else { 0 };
+        let paths = kept.paths();
         let places = [place, place, place].into_iter().chain([place / reach; 3]);
-        let paths = [place; 2].into_iter().take(paths);
+        let paths = std::iter::repeat_n(place, paths);
         in_order(places.chain([power; N]).chain(paths).chain(std::iter::repeat(power)))
     }
 
@@ -183,7 +199,10 @@ impl<const N: usize> Interpolated for Leaf<N> {
         let mut rest = &numbers[6 + N..];
         if kept.paths {
             [self.optical_path, self.delay_path] = [rest[0], rest[1]];
-            rest = &rest[2..];
+            if kept.group_paths {
+                self.group_path = Some(rest[2]);
+            }
+            rest = &rest[kept.paths()..];
         }
         if kept.fields {
             put_fields(&mut self.electric, rest);
@@ -195,11 +214,11 @@ impl<const N: usize> Interpolated for Leaf<N> {
         let power_tolerance = kept.power_tolerance();
         let distance = other.distance_to(&kept.prepared.screen).unwrap_or(REACH);
         let place = |leaf: &Self| leaf.position + leaf.direction * distance;
-        let paths = |leaf: &Self| [leaf.optical_path, leaf.delay_path];
+        let paths = kept.paths();
         self.is_like(other)
             && place(self).distance(place(other)) <= tolerance
             && all_near(&self.power, &other.power, power_tolerance)
-            && (!kept.paths || all_near(&paths(self), &paths(other), tolerance))
+            && all_near(&paths_of(self)[..paths], &paths_of(other)[..paths], tolerance)
             && (!kept.fields || are_near(&self.electric, &other.electric, power_tolerance))
     }
 
@@ -213,14 +232,16 @@ impl<const N: usize> Interpolated for Leaf<N> {
 }
 
 impl<const N: usize> Interpolated for Branch<N> {
-    fn lanes(_: Functions<'_>) -> usize {
-        (6 + N + 5 + 6 * N).div_ceil(LANES)
+    fn lanes(kept: Functions<'_>) -> usize {
+        (6 + N + 5 + 6 * N + usize::from(kept.group_paths)).div_ceil(LANES)
     }
 
-    fn values(&self, _: Functions<'_>) -> Lanes {
+    fn values(&self, kept: Functions<'_>) -> Lanes {
         let places = self.position.to_array().into_iter().chain(self.direction.to_array());
         let rest =
             self.wave_vector.to_array().into_iter().chain([self.optical_path, self.backwards]);
+        let dispersion = kept.group_paths.then_some(self.dispersion);
+        let rest = rest.chain(dispersion);
         in_order(places.chain(self.power).chain(rest).chain(numbers_of(&self.electric)))
     }
 
@@ -228,12 +249,13 @@ impl<const N: usize> Interpolated for Branch<N> {
         let [place, power] = [kept.place_tolerance(power), kept.power_tolerance()];
         let direction = place / REACH;
         let places = [place, place, place, direction, direction, direction];
-        let rest = [direction, direction, direction, place, place];
+        let rest = [direction, direction, direction, place, place].into_iter();
+        let rest = rest.chain(kept.group_paths.then_some(place));
         in_order(places.into_iter().chain([power; N]).chain(rest).chain(std::iter::repeat(power)))
     }
 
     #[inline(always)]
-    fn put(&mut self, _: Functions<'_>, lanes: &Lanes) {
+    fn put(&mut self, kept: Functions<'_>, lanes: &Lanes) {
         let numbers = lanes.as_flattened();
         self.position = DVec3::from_slice(&numbers[..3]);
         self.direction = DVec3::from_slice(&numbers[3..6]).normalize();
@@ -241,14 +263,22 @@ impl<const N: usize> Interpolated for Branch<N> {
         let rest = &numbers[6 + N..];
         self.wave_vector = DVec3::from_slice(&rest[..3]);
         [self.optical_path, self.backwards] = [rest[3], rest[4]];
-        put_fields(&mut self.electric, &rest[5..]);
+        let mut rest = &rest[5..];
+        if kept.group_paths {
+            self.dispersion = rest[0];
+            rest = &rest[1..];
+        }
+        put_fields(&mut self.electric, rest);
     }
 
     fn agrees(&self, other: &Self, kept: Functions<'_>) -> bool {
         let tolerance = kept.place_tolerance(other.largest_power());
         let power_tolerance = kept.power_tolerance();
         let place = |branch: &Self| branch.position + branch.direction * REACH;
-        let paths = |branch: &Self| [branch.optical_path, branch.backwards];
+        let paths = |branch: &Self| {
+            let dispersion = if kept.group_paths { branch.dispersion } else { 0.0 };
+            [branch.optical_path, branch.backwards, dispersion]
+        };
         self.is_like(other)
             && place(self).distance(place(other)) <= tolerance
             && self.wave_vector.distance(other.wave_vector) * REACH <= tolerance

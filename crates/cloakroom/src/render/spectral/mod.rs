@@ -11,6 +11,7 @@
 use super::block_tracer::MOST_TRACERS;
 use super::detection::Detection;
 use super::exposure::{self, Look, Sight, Traced};
+use super::flight::{Arrival, Arrivals};
 use super::pixel::Pixel;
 use super::prepared_scene::{PreparedScene, PreparedSceneError};
 use crate::color::{BINS, Bands, Fringe, Group, Lamp, Light, chebyshev_nodes, weights};
@@ -64,6 +65,12 @@ impl<'s> Spectral<'s> {
     pub fn color(&self) -> DMat3 {
         let all = self.bands.levels.first().into_iter().flatten();
         all.flat_map(|group| &group.lights).map(|light| light.color).sum()
+    }
+
+    /// The same with leaves that never interfere.
+    pub fn added_by_power(&self) -> Self {
+        let nodes = self.nodes.iter().map(PreparedScene::added_by_power).collect();
+        Self { bands: self.bands.clone(), nodes, fringes: [Vec::new(), Vec::new()] }
     }
 
     /// Of a scene, if its light is that of a lamp.
@@ -253,6 +260,8 @@ pub(super) struct Colors<'a> {
     pub pixel: &'a mut Pixel,
     /// The light in each bin, where it is wanted.
     pub spectrum: Option<&'a mut [f64; BINS]>,
+    /// What arrives, where that is looked at.
+    pub arrivals: &'a mut Vec<Arrival>,
 }
 
 /// Adds to a pixel the colors of one camera ray, as [`exposure::expose`] does what it sees: `nodes` are the
@@ -310,6 +319,17 @@ pub(super) fn expose<const N: usize>(
                     colors,
                 );
             }
+            if let Some(looked) = &detection.arrivals {
+                let of_way = &ways[way * count..(way + 1) * count];
+                let leaves = || {
+                    let numbers = of_way.iter().enumerate();
+                    numbers.filter_map(|(node, number)| Some(&leaves(node)[(*number)?]))
+                };
+                let all = groups.iter().zip(&lights[begin..]);
+                colors.arrivals.extend(all.map(|(group, light)| {
+                    arrival_of_group(prepared, detection, looked, group, leaves(), *light)
+                }));
+            }
         } else {
             let mut looks = looks.iter();
             for (node, number) in numbers.enumerate() {
@@ -323,12 +343,64 @@ pub(super) fn expose<const N: usize>(
                 });
                 let cell = &spectral.bands.cells[node];
                 let leaf = &leaves(node)[number];
+                if let Some(looked) = &detection.arrivals {
+                    let screen = &spectral.nodes[node].screen;
+                    let screen = (screen, leaf.distance_to(screen));
+                    let power = detection.detected(&leaf.power);
+                    let light = cell.color * DVec3::from_array(light) * power;
+                    let power = power * brightness(cell);
+                    colors.arrivals.push(Arrival::of(
+                        looked,
+                        leaf,
+                        screen,
+                        power,
+                        light.to_array(),
+                    ));
+                }
                 add(detection, leaf, std::iter::once((cell, DVec3::from_array(light))), colors);
             }
         }
     }
     if is_coherent && views.len() > 1 {
         interfere(spectral, detection, nodes, colors, working);
+    }
+}
+
+/// How bright a white thing is in some light, as a share of all light.
+fn brightness(light: &Light) -> f64 {
+    /// Of red, green and blue (ITU-R BT.709).
+    const BRIGHTNESS: DVec3 = DVec3::new(0.2126, 0.7152, 0.0722);
+    BRIGHTNESS.dot(light.color * DVec3::ONE)
+}
+
+/// What arrives in the light of a group of wavelengths by a way, whose leaves at all nodes see the same thing.
+fn arrival_of_group<'l, const N: usize>(
+    prepared: &PreparedScene<'_>,
+    detection: &Detection<N>,
+    looked: &Arrivals,
+    group: &Group,
+    leaves: impl Iterator<Item = &'l Leaf<N>>,
+    seen: DVec3,
+) -> Arrival {
+    let screen = &prepared.screen;
+    let (mut power, mut light) = (0.0, DVec3::ZERO);
+    let (mut time, mut flash) = (Some(0.0), 0.0);
+    for ((leaf, of_node), weight) in leaves.zip(&group.lights).zip(&group.middle) {
+        let of_leaf = detection.detected(&leaf.power);
+        power += of_leaf * brightness(of_node);
+        light += of_node.color * seen * of_leaf;
+        let arrives = match (leaf.body(), leaf.distance_to(screen)) {
+            (None, Some(distance)) => Some(looked.of(leaf, distance, screen)),
+            _ => None,
+        };
+        time = time.zip(arrives).map(|(sum, (time, bright))| {
+            flash += weight * bright;
+            sum + weight * time
+        });
+    }
+    match time {
+        Some(time) => Arrival::flashed(time, flash, power, light.to_array()),
+        None => Arrival { time, power, light: light.to_array() },
     }
 }
 

@@ -70,7 +70,8 @@ fn unknown_words_are_answered_with_known_ones() {
             "[picture]\nmap = 'time_of_fligth'",
             "2:7: map is \"time_of_fligth\"; it must be \"none\", \"time_of_flight\", \
              \"time_of_flight_spread\", \"time_of_flight_difference\", \"group_delay\", \
-             \"group_delay_spread\", \"group_delay_difference\", \"delivered\", \
+             \"group_delay_spread\", \"group_delay_difference\", \"first_pulse_depth\", \
+             \"strongest_pulse_depth\", \"delivered\", \
              \"escaped\", \"absorbed\", \"pruned\", \"extraordinary_share\" or \
              \"first_face_reflectance\"; did you mean \"time_of_flight\"?",
         ),

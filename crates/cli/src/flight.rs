@@ -1,0 +1,175 @@
+//! `cloakroom flight`: what a camera with a time gate sees when the photograph flashes.
+
+use crate::arguments::{FlightArguments, FlightDelay};
+use crate::files::check_outputs;
+use crate::interruption::{self, STOP};
+use crate::progress::supervised;
+use crate::render::warn_of_cut_branches;
+use crate::report::{Failure, Result, all, say};
+use crate::scene;
+use cloakroom::output::{self, FlightOrder, FlightStore};
+use cloakroom::render::{self, Arrivals, Delay, FlightSettings, Gate, Images, PreparedScene};
+use cloakroom_figures::film::{
+    Film, FilmFormat, FlightFilm, FrameFolder, flight_frames, frames_beside,
+};
+use std::path::Path;
+
+/// Bins of a gate that is not given, about.
+const BINS: usize = 120;
+
+/// What a file of light in flight is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FlightFormat {
+    Arrays,
+    Film(FilmFormat),
+}
+
+/// Looks at light in flight and writes every file asked for.
+pub fn run(arguments: &FlightArguments) -> Result<()> {
+    let formats: Vec<(&Path, FlightFormat)> = arguments
+        .outputs
+        .iter()
+        .map(|path| Ok((path.as_path(), format(path)?)))
+        .collect::<Result<_>>()?;
+    let text = scene::text(&arguments.scene.scene)?;
+    let overrides = scene::overrides(&text, &arguments.scene, &arguments.picture)?;
+    let loaded = scene::load_with(&arguments.scene, &text, &overrides)?;
+    scene::use_threads(&arguments.threads)?;
+    let prepared = scene::prepared(&loaded, &mut Images::default())?;
+    let settings = settings(arguments, &prepared)?;
+    let inputs = scene::inputs(&arguments.scene, &loaded);
+    let files = arguments
+        .outputs
+        .iter()
+        .filter(|path| format(path).is_ok_and(|it| it != FlightFormat::Film(FilmFormat::Frames)));
+    check_outputs(files, &inputs)?;
+    let _busy = interruption::busy();
+    let folder = arguments.outputs[0].parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    let store = FlightStore::new(folder, loaded.scene.camera.resolution, settings.gate)?;
+    let stats = supervised(render::flight_steps(&prepared), "rendering", |_, supervision| {
+        render::flight(&prepared, &settings, supervision, |tile| {
+            store.put(&tile).map_err(|error| {
+                let folder = folder.display();
+                Failure::Failed(format!("cannot keep the light in the folder {folder}: {error}"))
+            })
+        })
+    });
+    warn_of_cut_branches(&stats?);
+    tell_what_is_beside(&store, &settings.gate);
+    let mut metadata = prepared.metadata();
+    metadata.extend(words(&settings));
+    all(formats.iter().map(|(path, format)| match format {
+        FlightFormat::Arrays => {
+            let order =
+                if arguments.time_last { FlightOrder::TimeLast } else { FlightOrder::TimeFirst };
+            Ok(store.write_npz(path, order, &metadata)?)
+        }
+        FlightFormat::Film(format) => film(arguments, &store, (path, *format), &metadata),
+    }))
+}
+
+fn format(path: &Path) -> Result<FlightFormat> {
+    if output::ending(path).as_deref() == Some("npz") && !path.is_dir() {
+        return Ok(FlightFormat::Arrays);
+    }
+    let format = FilmFormat::of(path)
+        .map_err(|message| Failure::Failed(message.replace("use .gif", "use .npz, .gif")))?;
+    format.check()?;
+    Ok(FlightFormat::Film(format))
+}
+
+/// What is looked at: the gate is that which is given, or holds what arrives.
+fn settings(arguments: &FlightArguments, prepared: &PreparedScene<'_>) -> Result<FlightSettings> {
+    let delay = match arguments.delay {
+        FlightDelay::Group => Delay::Group,
+        FlightDelay::Phase => Delay::Phase,
+    };
+    let arrivals = Arrivals { delay, flash: arguments.flash };
+    let width = arguments.pulse;
+    let gate = match arguments.gate {
+        Some(gate) => gate,
+        None => {
+            let times = render::arrival_times(prepared, &arrivals).ok_or_else(|| {
+                let message = "no light of the photograph arrives at any time that is known; give --gate \
+                               START..END:STEP in ns, or, behind media that absorb, --delay phase";
+                Failure::Failed(message.to_owned())
+            })?;
+            let gate = Gate::around([times[0] - width, times[1] + width], BINS);
+            say(&format!("--gate {gate}"));
+            gate
+        }
+    };
+    Ok(FlightSettings { gate, width, arrivals })
+}
+
+/// Says how much light no bin has.
+fn tell_what_is_beside(store: &FlightStore, gate: &Gate) {
+    let words = [
+        "comes before",
+        "comes after",
+        "comes nobody knows when, behind media that absorb, and not in",
+    ];
+    for (share, words) in store.shares_beside().into_iter().zip(words) {
+        if share > 5e-4 {
+            say(&format!("note: {:.1} % of the light {words} the gate {gate}", 100.0 * share));
+        }
+    }
+}
+
+/// What a file carries beside what a picture does.
+fn words(settings: &FlightSettings) -> Vec<(String, String)> {
+    let FlightSettings { gate, width, arrivals } = settings;
+    let delay = match arrivals.delay {
+        Delay::Group => "group",
+        Delay::Phase => "phase",
+    };
+    [
+        ("gate", gate.to_string()),
+        ("pulse", width.to_string()),
+        ("delay", delay.to_owned()),
+        ("flash", format!("{:?}", arrivals.flash)),
+    ]
+    .map(|(key, words)| (key.to_owned(), words))
+    .to_vec()
+}
+
+/// Makes a film.
+fn film(
+    arguments: &FlightArguments,
+    store: &FlightStore,
+    (path, format): (&Path, FilmFormat),
+    metadata: &[(String, String)],
+) -> Result<()> {
+    let is_folder = format == FilmFormat::Frames;
+    let folder = if is_folder { path.to_owned() } else { frames_beside(path) };
+    let bins = store.gate().bins();
+    let frames = FrameFolder::new(&folder, bins)?;
+    if is_folder {
+        frames.check_none_beyond()?;
+    }
+    // As bright as in the picture, where a pulse arrives in the middle of a bin.
+    let as_in_picture = match arguments.accumulate {
+        true => 1.0,
+        false => 1.0 / store.gate().largest_share(arguments.pulse),
+    };
+    let look = FlightFilm {
+        exposure: arguments.exposure * as_in_picture,
+        accumulated: arguments.accumulate,
+    };
+    supervised(bins as u64, "frames", |_, supervision| {
+        flight_frames(store, &look, &frames, metadata, supervision)
+    })?;
+    if is_folder {
+        return Ok(());
+    }
+    supervised(bins as u64, "writing", |bar, _| {
+        let frame_done = &|| bar.inc(1);
+        let rate = arguments.fps;
+        Film { frames: &frames, path, rate, metadata, frame_done, stop: &STOP }.write(format)
+    })?;
+    if !arguments.keep_frames {
+        frames.remove();
+    }
+    Ok(())
+}

@@ -1,0 +1,4 @@
+//! One.
+#![allow(clippy::unwrap_used, dead_code)]
+mod flying;
+mod running;

@@ -1,0 +1,542 @@
+//! Light in flight: what a camera with a time gate sees when the photograph flashes.
+//!
+//! Each leaf of each sample arrives at its own time, and goes into the bins of that pixel with its
+//! light and its power. Leaves are added by power: light that interferes in a picture does not here.
+//! The photograph alone is timed; bodies and surroundings stand before it as a steady picture.
+
+mod gate;
+
+pub use gate::{Gate, GateError, MOST_BINS};
+
+use super::block_tracer::BlockTracer;
+use super::detection::Detection;
+use super::exposure::{group_delay, time_of_flight};
+use super::patch::SIDE;
+use super::{Exposer, PreparedScene, RenderError, Supervision, Tile};
+use crate::assembly::Screen;
+use crate::split_mix::mix;
+use crate::trace::{Leaf, Stopped, TraceStats, Tracer};
+use glam::DVec3;
+use optics::wave::SPEED_OF_LIGHT;
+use rayon::prelude::*;
+use std::str::FromStr;
+use std::sync::Mutex;
+
+/// Which of the two times of light counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Delay {
+    /// What a pulse takes, as the channel `group_delay` has it.
+    #[default]
+    Group,
+    /// What the phase takes, as the paper and the channel `time_of_flight` have it.
+    Phase,
+}
+
+/// What flashes, at the time 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Flash {
+    /// The whole photograph at once.
+    #[default]
+    Photograph,
+    /// The photograph, where a plane wave comes to it that runs along this direction through air:
+    /// its middle at the time 0.
+    PlaneWave(DVec3),
+    /// The photograph, where light comes to it from a point (cm) through air.
+    Point(DVec3),
+    /// A spot of a laser on it, as bright as the photograph there: a Gaussian about the point of
+    /// the photograph nearest to `middle` (cm), which is half as bright at `radius` (cm).
+    Spot {
+        /// Its middle.
+        middle: DVec3,
+        /// Where it is half as bright.
+        radius: f64,
+    },
+}
+
+impl Flash {
+    /// How much later (ns) a point of the photograph flashes, and how bright it is.
+    fn at(&self, point: DVec3, screen: &Screen) -> (f64, f64) {
+        match *self {
+            Self::Photograph => (0.0, 1.0),
+            Self::PlaneWave(direction) => {
+                let along = (point - screen.middle).dot(direction.normalize_or_zero());
+                (along / SPEED_OF_LIGHT, 1.0)
+            }
+            Self::Point(source) => (point.distance(source) / SPEED_OF_LIGHT, 1.0),
+            Self::Spot { middle, radius } => {
+                let squared = point.distance_squared(screen.foot(middle)) / (radius * radius);
+                (0.0, (-squared).exp2())
+            }
+        }
+    }
+}
+
+/// What is wrong with a flash: it is not written as one.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "`{0}` is no flash; write photograph, plane:DX,DY,DZ, point:X,Y,Z or spot:X,Y,Z,RADIUS in cm, as in \
+     point:50,0,30"
+)]
+pub struct FlashError(String);
+
+impl FromStr for Flash {
+    type Err = FlashError;
+
+    fn from_str(text: &str) -> Result<Self, FlashError> {
+        let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
+        let numbers: Option<Vec<f64>> = match rest {
+            "" => Some(Vec::new()),
+            rest => rest.split(',').map(|part| part.trim().parse().ok()).collect(),
+        };
+        let numbers = numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite()));
+        match (kind, numbers.as_deref()) {
+            ("photograph", Some([])) => Some(Self::Photograph),
+            ("plane", Some(&[x, y, z])) if [x, y, z] != [0.0; 3] => {
+                Some(Self::PlaneWave(DVec3::new(x, y, z)))
+            }
+            ("point", Some(&[x, y, z])) => Some(Self::Point(DVec3::new(x, y, z))),
+            ("spot", Some(&[x, y, z, radius])) if radius > 0.0 => {
+                Some(Self::Spot { middle: DVec3::new(x, y, z), radius })
+            }
+            _ => None,
+        }
+        .ok_or_else(|| FlashError(text.to_owned()))
+    }
+}
+
+/// How light in flight is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlightSettings {
+    /// When the camera's gate is open.
+    pub gate: Gate,
+    /// How long the flash is at half its height, ns: of the shape cos². 0 for no time at all.
+    pub width: f64,
+    /// When light arrives, and what flashes.
+    pub arrivals: Arrivals,
+}
+
+/// When light arrives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Arrivals {
+    /// Which time counts.
+    pub delay: Delay,
+    /// What flashes.
+    pub flash: Flash,
+}
+
+impl Arrivals {
+    /// When a leaf arrives that meets the photograph `distance` (cm) on, ns, NaN where that is not
+    /// known; and how bright the flash is where it comes from.
+    pub(super) fn of<const N: usize>(
+        &self,
+        leaf: &Leaf<N>,
+        distance: f64,
+        screen: &Screen,
+    ) -> (f64, f64) {
+        let flight = match self.delay {
+            Delay::Group => group_delay(leaf, distance),
+            Delay::Phase => time_of_flight(leaf, distance),
+        };
+        let (later, brightness) = self.flash.at(leaf.position + leaf.direction * distance, screen);
+        (flight + later, brightness)
+    }
+
+    /// What a camera ray that meets nothing but the photograph, or not even that, sees of a point so
+    /// far away (cm).
+    pub(super) fn unhindered(
+        &self,
+        seen: Option<(DVec3, f64)>,
+        screen: &Screen,
+        power: f64,
+        light: [f64; 3],
+    ) -> Arrival {
+        let Some((point, distance)) = seen else { return Arrival { time: None, power, light } };
+        let (later, brightness) = self.flash.at(point, screen);
+        Arrival::flashed(distance / SPEED_OF_LIGHT + later, brightness, power, light)
+    }
+}
+
+/// Something that one camera ray sees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arrival {
+    /// When it arrives, ns, NaN where that is not known; `None` if it is steady.
+    pub time: Option<f64>,
+    pub power: f64,
+    pub light: [f64; 3],
+}
+
+impl Arrival {
+    /// What a leaf of a ray sees, of which it has that power and light.
+    pub fn of<const N: usize>(
+        arrivals: &Arrivals,
+        leaf: &Leaf<N>,
+        screen: (&Screen, Option<f64>),
+        power: f64,
+        light: [f64; 3],
+    ) -> Self {
+        let (Some(distance), None) = (screen.1, leaf.body()) else {
+            return Self { time: None, power, light };
+        };
+        let (time, brightness) = arrivals.of(leaf, distance, screen.0);
+        Self::flashed(time, brightness, power, light)
+    }
+
+    /// Of the photograph, which flashes so bright there.
+    pub fn flashed(time: f64, brightness: f64, power: f64, light: [f64; 3]) -> Self {
+        let light = light.map(|light| light * brightness);
+        Self { time: Some(time), power: power * brightness, light }
+    }
+}
+
+/// Light of the flash: red, green and blue, and the share of the power.
+pub type Flashed = [f64; 4];
+
+/// A part of a picture of light in flight. All arrays go pixel by pixel, row by row from the top
+/// left.
+#[derive(Clone, Debug)]
+pub struct FlightTile {
+    /// Which part it is.
+    pub tile: Tile,
+    /// What is in the bins of each pixel, one after the other.
+    pub bins: Vec<Flashed>,
+    /// What comes before all bins, and after them.
+    pub outside: [Vec<Flashed>; 2],
+    /// What comes nobody knows when: as pulses, behind media that absorb.
+    pub untimed: Vec<Flashed>,
+    /// What does not flash: bodies and surroundings.
+    pub steady: Vec<[f64; 3]>,
+    /// The picture without any gate, its leaves added by power.
+    pub picture: Vec<[f64; 3]>,
+}
+
+impl FlightTile {
+    fn new(tile: Tile, bins: usize) -> Self {
+        let pixels = tile.width as usize * tile.height as usize;
+        let flashed = || vec![[0.0; 4]; pixels];
+        Self {
+            tile,
+            bins: vec![[0.0; 4]; pixels * bins],
+            outside: [flashed(), flashed()],
+            untimed: flashed(),
+            steady: vec![[0.0; 3]; pixels],
+            picture: vec![[0.0; 3]; pixels],
+        }
+    }
+}
+
+/// What a pixel gathers from its samples.
+#[derive(Clone, Debug)]
+pub(super) struct FlightPixel {
+    bins: Vec<Flashed>,
+    /// Of the bins, the first that has got something and the one after the last.
+    used: [usize; 2],
+    outside: [Flashed; 2],
+    untimed: Flashed,
+    steady: [f64; 3],
+}
+
+impl FlightPixel {
+    fn new(bins: usize) -> Self {
+        Self {
+            bins: vec![[0.0; 4]; bins],
+            used: [bins, 0],
+            outside: [[0.0; 4]; 2],
+            untimed: [0.0; 4],
+            steady: [0.0; 3],
+        }
+    }
+
+    fn clear(&mut self) {
+        let [first, end] = self.used;
+        self.bins[first.min(end)..end].fill([0.0; 4]);
+        self.used = [self.bins.len(), 0];
+        self.outside = [[0.0; 4]; 2];
+        (self.untimed, self.steady) = ([0.0; 4], [0.0; 3]);
+    }
+
+    /// Adds what arrives.
+    pub fn add(&mut self, settings: &FlightSettings, arrival: &Arrival) {
+        let Arrival { time, power, light: [red, green, blue] } = *arrival;
+        let flashed = [red, green, blue, power];
+        let Some(time) = time else {
+            self.steady.iter_mut().zip(flashed).for_each(|(sum, light)| *sum += light);
+            return;
+        };
+        if time.is_nan() {
+            add(&mut self.untimed, flashed, 1.0);
+            return;
+        }
+        let Self { bins, used: [first, end], .. } = self;
+        let [before, after] = settings.gate.shares(time, settings.width, |bin, share| {
+            (*first, *end) = ((*first).min(bin), (*end).max(bin + 1));
+            add(&mut bins[bin], flashed, share);
+        });
+        for (sum, share) in self.outside.iter_mut().zip([before, after]) {
+            add(sum, flashed, share);
+        }
+    }
+}
+
+fn add(sum: &mut Flashed, flashed: Flashed, share: f64) {
+    sum.iter_mut().zip(flashed).for_each(|(sum, light)| *sum += share * light);
+}
+
+/// The parts of a picture of light in flight, which need little memory each.
+fn tiles([width, height]: [u32; 2]) -> Vec<Tile> {
+    let side = SIDE as u32;
+    let rows = (0..height).step_by(SIDE);
+    let tile = |left: u32, top: u32| Tile {
+        left,
+        top,
+        width: side.min(width - left),
+        height: side.min(height - top),
+    };
+    let tiles = rows.flat_map(|top| (0..width).step_by(SIDE).map(move |left| tile(left, top)));
+    tiles.collect()
+}
+
+/// How many steps of progress a picture of light in flight has.
+#[must_use]
+pub fn flight_steps(prepared: &PreparedScene<'_>) -> u64 {
+    tiles(prepared.scene.camera.resolution).iter().map(|tile| u64::from(tile.height)).sum()
+}
+
+/// Looks at light in flight, and gives `take` part by part of the picture, each once and in no order,
+/// from any thread.
+///
+/// # Errors
+///
+/// That of `take`; if the bins of the parts at work would not fit into memory, or the work was
+/// stopped.
+pub fn flight<E: From<RenderError> + Send>(
+    prepared: &PreparedScene<'_>,
+    settings: &FlightSettings,
+    supervision: &Supervision<'_>,
+    take: impl Fn(FlightTile) -> Result<(), E> + Sync,
+) -> Result<TraceStats, E> {
+    let prepared = &prepared.added_by_power();
+    let arrivals = settings.arrivals;
+    match prepared.scene.camera.polarizer.amplitudes() {
+        None => {
+            let detection = Detection::UNPOLARIZED.in_flight(arrivals);
+            expose_tiles(prepared, settings, supervision, detection, take)
+        }
+        Some(amplitudes) => {
+            let detection = Detection::image(amplitudes).in_flight(arrivals);
+            expose_tiles(prepared, settings, supervision, detection, take)
+        }
+    }
+}
+
+fn expose_tiles<const N: usize, E: From<RenderError> + Send>(
+    prepared: &PreparedScene<'_>,
+    settings: &FlightSettings,
+    supervision: &Supervision<'_>,
+    detection: Detection<N>,
+    take: impl Fn(FlightTile) -> Result<(), E> + Sync,
+) -> Result<TraceStats, E> {
+    let [width, height] = prepared.scene.camera.resolution;
+    let bins = settings.gate.bins();
+    let pixels = SIDE.min(width as usize) * SIDE.min(height as usize);
+    let needed = rayon::current_num_threads() * pixels * bins * size_of::<Flashed>();
+    crate::memory::check(needed as u64, u64::MAX).map_err(|shortage| RenderError::TooLarge {
+        width,
+        height,
+        shortage,
+    })?;
+    let mut tiles = tiles([width, height]);
+    // In no order, so that what is done says how long the rest will take.
+    tiles.sort_by_cached_key(|tile| mix(u64::from(tile.top) << 32 | u64::from(tile.left)));
+    tiles
+        .into_par_iter()
+        .map_init(
+            || {
+                let (mut exposer, tracers) = Exposer::new(prepared, [&detection, &detection]);
+                exposer.flight = Some((*settings, vec![FlightPixel::new(bins); 4]));
+                (exposer, tracers)
+            },
+            |(exposer, tracers), tile| {
+                let exposed =
+                    exposer.expose_tile(tracers, FlightTile::new(tile, bins), supervision);
+                let (tile, stats) = exposed.map_err(RenderError::from)?;
+                let rows = u64::from(tile.tile.height);
+                take(tile)?;
+                (supervision.rows_done)(rows);
+                Ok(stats)
+            },
+        )
+        .try_reduce(TraceStats::default, |mut a, b| {
+            a += b;
+            Ok(a)
+        })
+}
+
+impl<const N: usize> Exposer<'_, N> {
+    /// Exposes a tile, patch by patch.
+    fn expose_tile(
+        &mut self,
+        tracers: &mut [BlockTracer<'_, N>],
+        mut flown: FlightTile,
+        supervision: &Supervision<'_>,
+    ) -> Result<(FlightTile, TraceStats), Stopped> {
+        let Tile { left, top, width, height } = flown.tile;
+        let [left, top, width, height] = [left, top, width, height].map(|side| side as usize);
+        let mut stats = TraceStats::default();
+        let stop = supervision.stop;
+        BlockTracer::for_blocks(
+            tracers,
+            [left, top],
+            [width, height],
+            stop,
+            |tracers, at, traced| {
+                let (block, samples, of_block) = self.expose_samples(tracers, at, traced, stop)?;
+                stats += of_block;
+                let Some((settings, pixels)) = &mut self.flight else { return Ok(()) };
+                let bins = settings.gate.bins();
+                for (i, pixel) in pixels.iter_mut().enumerate() {
+                    let column = (at[0] + i % 2).checked_sub(left);
+                    let row = (at[1] + i / 2).checked_sub(top);
+                    if let (Some(x), Some(y)) = (column, row)
+                        && x < width
+                        && y < height
+                    {
+                        let index = y * width + x;
+                        let mean = |sum: Flashed| sum.map(|sum| sum / samples);
+                        let [first, end] = pixel.used;
+                        for bin in first..end {
+                            flown.bins[index * bins + bin] = mean(pixel.bins[bin]);
+                        }
+                        for (outside, sum) in flown.outside.iter_mut().zip(pixel.outside) {
+                            outside[index] = mean(sum);
+                        }
+                        flown.untimed[index] = mean(pixel.untimed);
+                        flown.steady[index] = pixel.steady.map(|sum| sum / samples);
+                        flown.picture[index] = block.pixels[i].image.map(|sum| sum / samples);
+                    }
+                    pixel.clear();
+                }
+                Ok(())
+            },
+        )?;
+        Ok((flown, stats))
+    }
+}
+
+/// Light in flight in memory: every array frame by frame, row by row from the top left.
+#[derive(Clone, Debug)]
+pub struct FlightCube {
+    /// Width and height in pixels.
+    pub size: [usize; 2],
+    /// When the gate was open.
+    pub gate: Gate,
+    /// Red, green and blue in each bin: (time, height, width, color).
+    pub light: Vec<[f64; 3]>,
+    /// The share of the power in each bin: (time, height, width).
+    pub power: Vec<f64>,
+    /// What comes before all bins, after them, and nobody knows when.
+    pub beside: [Vec<Flashed>; 3],
+    /// What does not flash.
+    pub steady: Vec<[f64; 3]>,
+    /// The picture without any gate, its leaves added by power.
+    pub picture: Vec<[f64; 3]>,
+}
+
+impl FlightCube {
+    /// Looks at light in flight.
+    ///
+    /// # Errors
+    ///
+    /// If it would not fit into memory, or the work was stopped.
+    pub fn new(
+        prepared: &PreparedScene<'_>,
+        settings: &FlightSettings,
+        supervision: &Supervision<'_>,
+    ) -> Result<(Self, TraceStats), RenderError> {
+        let [width, height] = prepared.scene.camera.resolution;
+        let (gate, bins) = (settings.gate, settings.gate.bins());
+        let pixels = width as usize * height as usize;
+        crate::memory::check((pixels * bins * size_of::<Flashed>()) as u64, u64::MAX)
+            .map_err(|shortage| RenderError::TooLarge { width, height, shortage })?;
+        let flashed = || vec![[0.0; 4]; pixels];
+        let cube = Mutex::new(Self {
+            size: [width as usize, height as usize],
+            gate,
+            light: vec![[0.0; 3]; pixels * bins],
+            power: vec![0.0; pixels * bins],
+            beside: [flashed(), flashed(), flashed()],
+            steady: vec![[0.0; 3]; pixels],
+            picture: vec![[0.0; 3]; pixels],
+        });
+        let stats = flight(prepared, settings, supervision, |tile| {
+            // A thread that panicked has taken the program with it.
+            if let Ok(mut cube) = cube.lock() {
+                cube.place(&tile);
+            }
+            Ok::<_, RenderError>(())
+        })?;
+        let cube = cube.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        Ok((cube, stats))
+    }
+
+    fn place(&mut self, part: &FlightTile) {
+        let bins = self.gate.bins();
+        let pixels = self.size[0] * self.size[1];
+        for (number, index) in part.tile.places(self.size[0]).enumerate() {
+            for (bin, flashed) in part.bins[number * bins..][..bins].iter().enumerate() {
+                let [red, green, blue, power] = *flashed;
+                self.light[bin * pixels + index] = [red, green, blue];
+                self.power[bin * pixels + index] = power;
+            }
+            let [before, after] = &part.outside;
+            for (all, part) in self.beside.iter_mut().zip([before, after, &part.untimed]) {
+                all[index] = part[number];
+            }
+            self.steady[index] = part.steady[number];
+            self.picture[index] = part.picture[number];
+        }
+    }
+}
+
+/// The first and the last time (ns) at which more than a thousandth of a camera ray's power arrives,
+/// as some rays all over the picture tell; `None` where none of them sees the photograph.
+#[must_use]
+pub fn arrival_times(prepared: &PreparedScene<'_>, arrivals: &Arrivals) -> Option<[f64; 2]> {
+    /// Rays across and down.
+    const RAYS: [u32; 2] = [64, 48];
+    const LEAST_POWER: f64 = 1e-3;
+    let camera = &prepared.scene.camera;
+    let detection = Detection::UNPOLARIZED;
+    let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
+    let tracer = if arrivals.delay == Delay::Group { tracer.with_group_delays() } else { tracer };
+    let all = (0..RAYS[1]).into_par_iter().map_init(
+        || tracer.clone(),
+        |tracer, row| {
+            let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+            for column in 0..RAYS[0] {
+                let place = |number: u32, count: u32, side: u32| {
+                    (f64::from(number) + 0.5) / f64::from(count) * f64::from(side)
+                };
+                let [width, height] = camera.resolution;
+                let ray = camera.ray(place(column, RAYS[0], width), place(row, RAYS[1], height));
+                let (leaves, _) = tracer.trace(&detection.launch(camera, &ray));
+                for leaf in leaves {
+                    let distance = leaf.distance_to(&prepared.screen);
+                    let Some(distance) = distance.filter(|_| leaf.body().is_none()) else {
+                        continue;
+                    };
+                    let (time, brightness) = arrivals.of(leaf, distance, &prepared.screen);
+                    let power = detection.detected(&leaf.power) * brightness;
+                    if power >= LEAST_POWER && !time.is_nan() {
+                        range = [range[0].min(time), range[1].max(time)];
+                    }
+                }
+            }
+            range
+        },
+    );
+    let range = all.reduce(
+        || [f64::INFINITY, f64::NEG_INFINITY],
+        |one, other| [one[0].min(other[0]), one[1].max(other[1])],
+    );
+    (range[0] <= range[1]).then_some(range)
+}

@@ -1,0 +1,46 @@
+"""Light in flight."""
+
+import numpy as np
+import pytest
+
+from cloakroom import Camera, Scene, SquareCloak
+
+LIGHT = 29.9792458
+
+
+def scene(*devices: object) -> Scene:
+    return Scene(camera=Camera(resolution=[24, 18], samples=1), devices=list(devices))
+
+
+def test_all_light_is_accounted_for_and_arrives_when_it_should():
+    flown = scene().flight((5.0, 5.2, 0.01))
+    total = flown["light"].sum(axis=0) + sum(flown[name] for name in ("before", "after", "untimed", "steady"))
+    assert np.abs(total - flown["picture"]).max() < 1e-12
+    mean = np.tensordot(flown["time"], flown["power"], 1) / flown["power"].sum(axis=0)
+    assert mean.min() == pytest.approx(150 / LIGHT, abs=2e-3)
+    render = scene().render()["time_of_flight"]
+    inside = flown["after_power"] == 0
+    assert np.abs(mean - render)[inside].max() < 1e-12
+
+
+def test_phases_through_the_perfect_cloak_are_on_time_and_pulses_are_not():
+    gate = "4.9..7.9:0.01"
+    empty = scene().flight(gate)["light"]
+    assert np.abs(scene(SquareCloak()).flight(gate, delay="phase")["light"] - empty).max() < 1e-9
+    assert np.abs(scene(SquareCloak()).flight(gate)["light"] - empty).max() > 0.1
+
+
+def test_axes_have_names():
+    xarray = pytest.importorskip("xarray")
+    dataset = scene().flight(pulse=0.02).to_xarray()
+    assert isinstance(dataset, xarray.Dataset)
+    assert dataset["light"].dims == ("time", "height", "width", "color")
+    assert dataset["light"].sel(time=150 / LIGHT, method="nearest").shape == (18, 24, 3)
+
+
+@pytest.mark.parametrize(
+    "words", [{"gate": "5..4:1"}, {"gate": (1, 2, 0)}, {"delay": "late"}, {"flash": "lamp"}, {"pulse": -1.0}]
+)
+def test_what_cannot_be_is_refused(words):
+    with pytest.raises(ValueError, match=next(iter(words))):
+        scene().flight(**words)
