@@ -30,7 +30,9 @@ pub fn run(arguments: &ViewArguments) -> Result<()> {
         busy = Some(interruption::busy());
         told = print(&format!("{address}\n"));
         if !host.is_loopback() {
-            say("whoever on this network has the link can use the page, and others on it can read along: it is not encrypted");
+            say(
+                "whoever on this network has the link can use the page, and others on it can read along: it is not encrypted",
+            );
         }
         say("Ctrl-C ends it");
         if !arguments.no_open {

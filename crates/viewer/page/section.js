@@ -103,7 +103,7 @@ export const sectionView = {
           clips.push(clip);
           drawn.push(group);
           area.style.fill = "none";
-          indices.push(...region.index.rows.flat().filter((index) => index !== null));
+          indices.push(...region.index.range.filter((index) => index !== null));
         } else if (typeof region.index === "number") {
           area.style.fill = `rgb(${color(region.index).join(" ")})`;
           indices.push(region.index);

@@ -58,7 +58,8 @@ const CELLS: f64 = 24.0;
 /// The mean index of a region: a number, or, where it is graded, a picture of it, whose `rows` from the bottom up lie within
 /// the parallelogram of a `corner` and two sides in world coordinates; `null` where the region is not.
 fn index(section: &Section<'_>, pose: &Pose) -> Value {
-    let at = |point| section.region.medium_at(point).map(|medium| rounded(medium.mean_index(), 1e3));
+    let at =
+        |point| section.region.medium_at(point).map(|medium| rounded(medium.mean_index(), 1e3));
     let corners = || section.border.iter().flat_map(|contour| &contour.points);
     if !section.region.is_graded() {
         return json!(corners().next().and_then(|corner| at(*corner)));
@@ -72,6 +73,10 @@ fn index(section: &Section<'_>, pose: &Pose) -> Value {
         (0..cells.x as u32).map(|x| at(least + size * place(x))).collect()
     };
     let rows: Vec<_> = (0..cells.y as u32).map(row).collect();
+    let all = rows.iter().flatten().copied().chain(corners().map(|corner| at(*corner))).flatten();
+    let range = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], index| {
+        [least.min(index), most.max(index)]
+    });
     let corner = pose.point_to_world(least);
     let side = |to: DVec2| {
         let side = pose.point_to_world(to) - corner;
@@ -82,6 +87,7 @@ fn index(section: &Section<'_>, pose: &Pose) -> Value {
         "across": side(DVec2::new(most.x, least.y)),
         "up": side(DVec2::new(least.x, most.y)),
         "rows": rows,
+        "range": range,
     })
 }
 

@@ -151,7 +151,9 @@ impl<E: End> Painter<'_, E> {
                 let settings = PictureSettings { map_range, ..scene.picture.clone() };
                 let map = ScalarMap::new(&picture, channel, &settings).map_err(Problem::of)?;
                 let map = match nothing(channel, map.bar.scale.range) {
-                    Some(settings) => ScalarMap::new(&picture, channel, &settings).map_err(Problem::of)?,
+                    Some(settings) => {
+                        ScalarMap::new(&picture, channel, &settings).map_err(Problem::of)?
+                    }
                     None => map,
                 };
                 let shown = map.bar.scale.range.filter(|(low, high)| low < high);
@@ -197,7 +199,10 @@ fn nothing(channel: &str, range: Option<(f64, f64)>) -> Option<PictureSettings> 
     let is_number = Quantity::of_channel(channel).dimension == Dimension::Number;
     let (low, high) = range.filter(|_| !is_number)?;
     let is_nothing = low.abs().max(high.abs()) < NOTHING;
-    is_nothing.then(|| PictureSettings { map_range: Some([-NOTHING, NOTHING]), ..PictureSettings::default() })
+    is_nothing.then(|| PictureSettings {
+        map_range: Some([-NOTHING, NOTHING]),
+        ..PictureSettings::default()
+    })
 }
 
 /// The scale of a map, which colors stand for which numbers, in a unit for people; no ends if no

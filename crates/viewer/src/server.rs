@@ -59,7 +59,9 @@ pub struct Settings {
 #[derive(Debug, thiserror::Error)]
 pub enum ViewerError {
     /// Not one address, but all of them at once.
-    #[error("--host takes one address of this machine, not {0}, which stands for all of them: `ip address`, or `ipconfig`, says which it has")]
+    #[error(
+        "--host takes one address of this machine, not {0}, which stands for all of them: `ip address`, or `ipconfig`, says which it has"
+    )]
     AllAddresses(IpAddr),
     /// No port is free, or the address is none of this machine's.
     #[error("cannot listen on port {port} of {host} or on one of the next: {reason}")]
@@ -117,7 +119,8 @@ pub fn serve(
     if host.is_unspecified() {
         return Err(ViewerError::AllAddresses(host));
     }
-    let listener = listen(host, port).map_err(|reason| ViewerError::Listen { host, port, reason })?;
+    let listener =
+        listen(host, port).map_err(|reason| ViewerError::Listen { host, port, reason })?;
     listener.set_nonblocking(true).map_err(ViewerError::Run)?;
     let address = listener.local_addr().map_err(ViewerError::Run)?;
     let most_pages = if host.is_loopback() { MOST_PAGES } else { MOST_PAGES_OF_A_CLASS };
