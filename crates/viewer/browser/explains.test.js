@@ -74,6 +74,7 @@ test("everything is said in English and German, from the browser's language or t
   await page.addInitScript(() => Object.defineProperty(navigator, "language", { get: () => "de-AT" }));
   await page.goto(server.address);
   await finished(page);
+  await small(page, "1");
   assert.equal(await page.getAttribute("html", "lang"), "de");
   assert.match(await says(page), /Ein 11,5 cm hoher Metallstab steht vor der Person\..*um 10° gedreht/);
   assert.deepEqual(await violations(page), []);
@@ -92,6 +93,8 @@ test("everything is said in English and German, from the browser's language or t
   assert.ok(said.en.length > 35);
   assert.equal(new Set([...said.en, ...said.de]).size, 2 * said.en.length);
   await page.selectOption("#language", "en");
+  await choose(page, "exhibit", "square-cloak");
+  await small(page, "1");
   await page.reload();
   await finished(page);
   assert.equal(await page.getAttribute("html", "lang"), "en");
@@ -160,13 +163,10 @@ test("the first numbers are the share of light in its place, of the metal, too; 
   const cells = () => page.locator("#plain-numbers td").allTextContents();
   const share = (text) => Number(text.replace("< ", "").replace(" %", "")) / 100;
   // As the command line counts it.
-  const wanted = ["cloak", "bare"].map((show) => {
-    const set = ["camera.resolution=[160, 120]", "camera.samples=1", `device.0.show=${show}`, "device.0.rotation=10"];
-    const scene = join(folder, "cloak.toml");
-    writeFileSync(scene, "[[device]]\nkind = 'square-cloak'\n");
-    const said = execFileSync(program, ["quality", scene, "--json", ...set.flatMap((one) => ["--set", one])]);
-    return JSON.parse(said).rows[0].figures.in_place_share;
-  });
+  const scene = join(folder, "cloak.toml");
+  writeFileSync(scene, "[camera]\nresolution = [160, 120]\nsamples = 1\n[[device]]\nkind = 'square-cloak'\nrotation = 10\n");
+  const { rows } = JSON.parse(execFileSync(program, ["quality", scene, "--json", "--sweep", "device.0.show=cloak,bare"]));
+  const wanted = rows.map(({ figures }) => figures.in_place_share);
   const shown = (await cells()).slice(0, 2).map(share);
   for (const i of [0, 1]) assert.ok(Math.abs(shown[i] - wanted[i]) < 0.001, `${shown} for ${wanted}`);
   assert.ok(shown[0] > shown[1] + 0.5);
