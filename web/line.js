@@ -1,9 +1,7 @@
 // The line to a worker of the page that does what the server of `cloakroom view` does. It is used as a WebSocket is.
 
-export const words = {
-  lost: "The computation has ended: a mistake in the program, or no memory left.",
-  refused: "The computation cannot begin: this browser may be too old, or a file is missing.",
-};
+// What is said when it has ended, and of links, which are good wherever the page can be reached.
+export const words = { lost: "lost.worker", refused: "refused.worker", copied: "copied" };
 
 class Line {
   readyState = WebSocket.CONNECTING;

@@ -11,6 +11,7 @@ use cloakroom::scene::OPTIONAL_CHANNELS;
 use cloakroom::scene_file::Override;
 pub use groups::{listed, wrapped};
 pub use measuring::*;
+use std::net::{IpAddr, Ipv4Addr};
 use std::path::PathBuf;
 use values::{exposure, frames_only, map_range, pixel, pulse, size};
 
@@ -456,6 +457,10 @@ pub struct ViewArguments {
     /// The port on this machine; the next free one if it is taken, any free one if 0.
     #[arg(long, value_name = "N", default_value_t = 8420)]
     pub port: u16,
+    /// Show the page to others on a network, too: the address of this machine there, as in 192.168.1.20. Whoever has
+    /// the link that is printed can open it.
+    #[arg(long, value_name = "ADDRESS", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST), hide_default_value = true)]
+    pub host: IpAddr,
     /// Do not open the browser; the address is printed.
     #[arg(long)]
     pub no_open: bool,

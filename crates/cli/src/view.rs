@@ -20,7 +20,8 @@ pub fn run(arguments: &ViewArguments) -> Result<()> {
         None => scene_file::parse(examples::FIRST, "the first scene", folder, overrides)?,
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let settings = Settings { scene, name, folder: folder.to_owned(), port: arguments.port };
+    let (host, port) = (arguments.host, arguments.port);
+    let settings = Settings { scene, name, folder: folder.to_owned(), host, port };
     // While the server is being set up there is nothing to end in good order.
     let mut busy = None;
     let mut told = Ok(());
@@ -28,6 +29,11 @@ pub fn run(arguments: &ViewArguments) -> Result<()> {
     let ready = |address: &str| {
         busy = Some(interruption::busy());
         told = print(&format!("{address}\n"));
+        if !host.is_loopback() {
+            say(
+                "whoever on this network has the link can use the page, and others on it can read along: it is not encrypted",
+            );
+        }
         say("Ctrl-C ends it");
         if !arguments.no_open {
             way = WayIn::new(address).ok().filter(|way| open::that_detached(way.path()).is_ok());

@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
+import { createServer } from "node:http";
 import { mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
@@ -9,7 +10,7 @@ import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { gzipSync } from "node:zlib";
 import { folder, serveFolder } from "./folder.js";
-import { decoded, difference, finished, openPage, pixels, program, small, startBrowser } from "./session.js";
+import { decoded, difference, finished, openPage, pixels, program, small, startBrowser, unfold } from "./session.js";
 
 const out = mkdtempSync(join(tmpdir(), "cloakroom-folder-"));
 const scenes = new URL("../../../scenes/", import.meta.url).pathname;
@@ -69,7 +70,7 @@ test("pictures in Node are those of the command line", async () => {
 test("the page in a browser is that of the server, and asks for nothing outside its folder", async () => {
   const { page, complaints } = await openPage(browser.context, server.address);
   await finished(page);
-  await page.waitForFunction(() => document.querySelectorAll("#numbers tr").length === 10);
+  await page.waitForFunction(() => document.querySelectorAll("#plain-numbers tr, #numbers tr").length === 12);
   assert.ok((await page.locator("#section path").count()) >= 5);
   await small(page);
   const set = ["camera.resolution=[320, 240]", "camera.samples=4"];
@@ -81,6 +82,7 @@ test("the page in a browser is that of the server, and asks for nothing outside 
 test("it turns, shows other devices, maps and what is beside, and says what is wrong", async () => {
   const { page, complaints } = await openPage(browser.context, server.address);
   await finished(page);
+  await unfold(page);
   await small(page, "1");
   const before = await pixels(page);
   const count = () => page.evaluate(() => Number(document.body.dataset.pictures));
@@ -116,7 +118,7 @@ test("a photograph that is brought hangs behind the device", async () => {
   const before = await pixels(page);
   const picture = rendered(join(scenes, "gallery/lens.toml"), ["camera.resolution=[64, 80]", "camera.samples=1"]);
   await page.setInputFiles("#photograph", { name: "mine.png", mimeType: "image/png", buffer: picture });
-  await page.waitForFunction(() => document.getElementById("live").textContent.includes("mine.png"));
+  await page.waitForFunction(() => document.getElementById("toast-text").textContent.includes("mine.png"));
   await finished(page);
   assert.ok(difference(before, await pixels(page)).most > 20);
   await page.setInputFiles("#photograph", { name: "mine.png", mimeType: "image/png", buffer: Buffer.from("no image") });
@@ -134,6 +136,35 @@ test("as one file it needs no server", async () => {
   assertAlike(await pixels(page), await decoded(page, rendered(join(scenes, "paper/fig7d.toml"), set)), "the first scene");
   assert.deepEqual(complaints, []);
   await page.close();
+});
+
+test("a link shows the same from the folder and from the one file, and in a page of another", async () => {
+  const { page, complaints } = await openPage(browser.context, server.address, "#square-cloak-positive-uniaxial&rotation=12&polarizer=horizontal");
+  await finished(page);
+  await small(page, "1");
+  const shown = await pixels(page);
+  const { hash } = new URL(page.url());
+  assert.ok(hash.length > 100);
+  const file = await openPage(browser.context, pathToFileURL(`${resolve(folder)}.html`).href, hash);
+  await finished(file.page);
+  assert.equal(difference(shown, await pixels(file.page)).bytes, 0);
+  assert.equal(await file.page.textContent("#caption"), await page.textContent("#caption"));
+  // Another host's page has it in a frame.
+  const other = createServer((_, response) => {
+    response.writeHead(200, { "content-type": "text/html" });
+    response.end(`<!doctype html><title>A lesson</title><iframe src="${server.address}${hash}&embed=rotation&lang=de" width="480" height="520"></iframe>`);
+  });
+  await new Promise((ready) => other.listen(0, "127.0.0.1", ready));
+  const lesson = await browser.context.newPage();
+  await lesson.goto(`http://localhost:${other.address().port}/`);
+  const frame = lesson.frames()[1];
+  await frame.waitForFunction(() => document.body?.dataset.finished === "true", undefined, { timeout: 60000 });
+  assert.match(await frame.textContent("#caption"), /um 12° gedreht/);
+  assert.equal(await frame.locator("#exhibit").isVisible(), false);
+  assert.ok(await frame.locator("#rotation").isVisible());
+  other.close();
+  assert.deepEqual([...complaints, ...file.complaints], []);
+  for (const one of [lesson, file.page, page]) await one.close();
 });
 
 test("it is small", () => {

@@ -1,7 +1,8 @@
 // A server and a browser for the tests. CLOAKROOM names the program, CHROMIUM the browser.
 
 import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
@@ -65,6 +66,21 @@ export async function openPage(context, address, fragment = "") {
   });
   await page.goto(address + fragment);
   return { page, complaints };
+}
+
+// Opens what is folded on the page, but for the tables among the parameters.
+export async function unfold(page) {
+  await page.locator("main section > details, #keys > details[data-name=place]").evaluateAll((all) => all.forEach((one) => (one.open = true)));
+}
+
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+
+// What axe finds wrong with a page.
+export async function violations(page) {
+  // The policy of the page forbids foreign scripts; the browser's own evaluation does not ask it.
+  await page.evaluate(axe);
+  const result = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+  return result.violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join("; ")}`);
 }
 
 // Waits until the finished picture of the last wish is there.

@@ -1,32 +1,25 @@
 // The controls that say what is shown, and how they follow the state.
 
+import { groups, nameOf } from "./caption.js";
 import { buildControls } from "./controls.js";
+import { showCorners } from "./corners.js";
 import { picture } from "./picture.js";
+import { has, number, say } from "./words.js";
 
 const $ = (id) => document.getElementById(id);
 
-// Fills the lists of devices and maps.
+// Fills the lists of devices and maps. The scene that was opened is listed where it is another than the exhibit it is from.
 export function fillLists(hello) {
-  const list = $("exhibit");
-  const kinds = document.createElement("optgroup");
-  kinds.label = "Devices";
-  const others = document.createElement("optgroup");
-  others.label = "More from the gallery";
-  for (const kind of hello.order) {
-    const { title } = hello.kinds[kind];
-    const exhibit = hello.exhibits.find(({ scene }) => scene.device?.[0]?.kind === kind);
-    if (!exhibit) continue;
-    kinds.append(new Option(title, exhibit.name));
-  }
-  const listed = new Set(Array.from(kinds.children, (option) => option.value));
-  for (const { name } of hello.exhibits) {
-    if (!listed.has(name)) others.append(new Option(name.replaceAll("-", " "), name));
-  }
-  const opened = new Option(hello.name || "First scene", "opened");
-  list.replaceChildren(opened, kinds, others);
-  const map = $("map");
-  const titles = { none: "as seen", delivered: "power delivered", escaped: "power escaped", absorbed: "power absorbed", pruned: "power pruned" };
-  map.replaceChildren(...hello.maps.map((name) => new Option(titles[name] ?? name.replaceAll("_", " "), name)));
+  const opened = hello.first ? [] : [new Option(hello.name || say("opened"), "opened")];
+  const lists = groups(hello).map(([group, names]) => {
+    const list = document.createElement("optgroup");
+    list.label = say(`group.${group}`);
+    list.append(...names.map((name) => new Option(nameOf(name), name)));
+    return list;
+  });
+  $("exhibit").replaceChildren(...opened, ...lists);
+  const word = (map) => (has(`map.${map}`) ? say(`map.${map}`) : map.replaceAll("_", " "));
+  $("map").replaceChildren(...hello.maps.map((map) => new Option(word(map), map)));
 }
 
 // Brings every control to the state; `changed` and `setShow` are told what is done with them.
@@ -35,8 +28,7 @@ export function showState(state, hello, { changed, setShow }) {
   const kind = hello.kinds[device?.kind];
   const exhibit = hello.exhibits.find(({ name }) => name === state.exhibit);
   $("exhibit").value = exhibit ? exhibit.name : "opened";
-  $("about").textContent = exhibit?.words ?? kind?.title ?? "";
-  $("summary").textContent = kind?.summary ?? "There is no device in this scene.";
+  $("about").textContent = [kind?.summary, exhibit?.words].filter(Boolean).join(" ");
   $("which-label").hidden = state.devices.length < 2;
   $("which").replaceChildren(...state.devices.map(({ kind, name }, i) => new Option(`${i + 1}: ${name ? `${name}, ` : ""}${kind}`, i)));
   $("which").value = String(Math.min(state.which, state.devices.length - 1));
@@ -53,7 +45,8 @@ export function showState(state, hello, { changed, setShow }) {
   $("samples").value = String(state.samples);
   $("min-power").value = String(state.scene.trace?.min_power ?? 0.0001);
   $("exact").value = String(state.scene.trace?.exact ?? false);
-  buildControls(device, kind, changed);
+  buildControls(device, kind, changed, state.embed);
+  showCorners(device, changed);
   showShows(state, hello, setShow);
   showRotation(state);
   showSplit(state, hello);
@@ -78,11 +71,10 @@ export function showSpectrum(spectrum = "auto") {
 // The ways in which the scene's devices can be shown: each those that can.
 function showShows(state, hello, setShow) {
   const can = (show) => state.devices.some(({ kind }) => hello.kinds[kind]?.shows.includes(show));
-  const names = { cloak: "Cloak", bare: "Bare metal", mirror: "Mirror", empty: "Nothing" };
   const segments = document.createElement("div");
   segments.className = "segments";
   const shown = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1)?.show ?? "cloak";
-  for (const [show, name] of Object.entries(names)) {
+  for (const show of ["cloak", "bare", "mirror", "empty"]) {
     if (show !== "cloak" && !can(show)) continue;
     const label = document.createElement("label");
     const radio = document.createElement("input");
@@ -92,13 +84,15 @@ function showShows(state, hello, setShow) {
     radio.checked = show === shown;
     radio.addEventListener("change", () => setShow(show));
     const word = document.createElement("span");
-    word.textContent = name;
+    word.textContent = say(`show.${show}`);
     label.append(radio, word);
     segments.append(label);
   }
   const legend = $("shows").querySelector("legend");
   const focused = $("shows").contains(document.activeElement);
   $("shows").replaceChildren(legend, segments);
+  // What cannot be shown otherwise asks for no choice.
+  $("shows").hidden = segments.childElementCount < 2;
   if (focused) segments.querySelector("input:checked")?.focus();
 }
 
@@ -106,13 +100,12 @@ export function showRotation(state) {
   const degrees = state.device?.rotation ?? 0;
   const wrapped = ((((degrees + 180) % 360) + 360) % 360) - 180;
   $("rotation").value = String(wrapped);
-  $("rotation").setAttribute("aria-valuetext", `${Number(wrapped.toFixed(1))} degrees`);
+  $("rotation").setAttribute("aria-valuetext", say("rotation.says", { r: number(wrapped) }));
   $("rotation-number").value = String(Number(wrapped.toFixed(2)));
   $("rotation").disabled = $("rotation-number").disabled = $("play").disabled = !state.device;
 }
 
 export function showSplit(state, hello) {
   const cloak = state.devices.find(({ kind }) => hello.kinds[kind]?.shows.length > 1);
-  const words = { bare: "bare metal", mirror: "mirror", cloak: "cloak", empty: "nothing" };
-  picture.layOut(state, cloak ? words[cloak.show ?? "cloak"] : "the scene");
+  picture.layOut(state, say(cloak ? `side.${cloak.show ?? "cloak"}` : "side.scene"));
 }

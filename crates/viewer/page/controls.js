@@ -1,8 +1,14 @@
 // The parameters of a device as sliders, built from the catalogue.
 
+import { has, say } from "./words.js";
+
 const keys = document.getElementById("keys");
 
-const words = (name) => name.replaceAll("_", " ");
+// What a key is called: it may be followed by a component of it.
+function words(name) {
+  const [, key, rest] = /^(\S+)(.*)$/.exec(name);
+  return (has(`key.${key}`) ? say(`key.${key}`) : key.replaceAll("_", " ")) + rest;
+}
 
 // The range of a slider: the limits of the key where it has two, else around its default.
 function range(schema) {
@@ -27,9 +33,9 @@ function number(name, schema, value, set) {
   field.type = "number";
   field.step = whole ? 1 : "any";
   field.value = value ?? "";
-  field.placeholder = "none";
+  field.placeholder = say("none");
   slider.setAttribute("aria-label", words(name));
-  field.setAttribute("aria-label", `${words(name)}, exactly`);
+  field.setAttribute("aria-label", say("exactly", { name: words(name) }));
   const shown = (value) => Number(Number(value).toPrecision(4));
   slider.addEventListener("input", () => {
     field.value = shown(slider.value);
@@ -47,7 +53,7 @@ function number(name, schema, value, set) {
 
 function choice(options, value, set) {
   const select = document.createElement("select");
-  for (const option of options) select.add(new Option(option, option));
+  for (const option of options) select.add(new Option(option === OWN ? say("written") : option, option));
   select.value = value;
   select.addEventListener("change", () => set(select.value, false));
   return [select];
@@ -77,7 +83,7 @@ function rowsOf(name, schema, value, set) {
   if (schema.type === "object") return [group(name, schema, value, set)];
   if (schema.type === "array" && schema.maxItems === 3 && schema.items.type === "number") {
     if (!(value ?? schema.default)) return [row(name, schema, parts(name, ["1", "2", "3"], [], (all) => set(all, false)))];
-    const components = name === "color" ? ["red", "green", "blue"] : ["x", "y", "z"];
+    const components = name === "color" ? ["red", "green", "blue"].map((one) => say(one)) : ["x", "y", "z"];
     const all = [...(value ?? schema.default)];
     const limits = { color: { maximum: 1 }, axis: { minimum: -1, maximum: 1 } }[name];
     return components.map((component, i) => {
@@ -185,9 +191,9 @@ function layers(name, schema, value, set) {
       if (key === "permittivity" && layer.index !== undefined) continue;
       grid.append(...rowsOf(key, one, layer[key], setter(key)));
     }
-    grid.append(button(`Remove layer ${i + 1}`, () => all.splice(i, 1)));
+    grid.append(button(say("removed", { n: i + 1 }), () => all.splice(i, 1)));
   });
-  grid.append(button("Add a layer", () => all.push({ ...NEW_LAYER })));
+  grid.append(button(say("added"), () => all.push({ ...NEW_LAYER })));
   return details;
 }
 
@@ -207,15 +213,17 @@ function group(name, schema, value, set) {
 }
 
 // What opens to show the keys of a table, and where they go.
-function folded(name, schema) {
+function folded(name, schema, called = words(name)) {
   const details = document.createElement("details");
   details.dataset.name = name;
   details.open = keys.querySelector(`details[data-name="${name}"]`)?.open ?? false;
   const summary = document.createElement("summary");
-  summary.textContent = words(name);
+  summary.textContent = called;
   const hint = document.createElement("p");
   hint.className = "hint";
+  hint.lang = "en";
   hint.textContent = schema.description ?? "";
+  hint.hidden = !schema.description;
   const grid = document.createElement("div");
   grid.className = "keys";
   details.append(summary, hint, grid);
@@ -258,8 +266,8 @@ function row(name, schema, controls) {
 // Ways to say what a medium is.
 const MEDIUM = ["permittivity", "index", "uniaxial", "biaxial", "material"];
 
-// Builds the controls of a device; `changed` is told whether more changes will follow.
-export function buildControls(device, kind, changed) {
+// Builds the controls of a device, or the `only` one; `changed` is told whether more changes will follow.
+export function buildControls(device, kind, changed, only = null) {
   const rows = [];
   if (device && kind) {
     const setter = (name) => (value, moving) => {
@@ -271,11 +279,15 @@ export function buildControls(device, kind, changed) {
       }
       changed(moving);
     };
-    const core = kind.core_can_be_open ? ["core"] : [];
-    const materials = ["metal", "coating", "dispersion", "imperfection"];
-    const placement = ["length", ...core, "position", "axis", ...materials];
-    for (const name of [...kind.own_keys, ...placement]) {
-      if (kind.keys[name]) rows.push(...rowsOf(name, kind.keys[name], device[name], setter(name)));
+    const rowsFor = (names) =>
+      names.filter((name) => kind.keys[name]).flatMap((name) => rowsOf(name, kind.keys[name], device[name], setter(name)));
+    if (only) {
+      rows.push(...rowsFor([only]));
+    } else {
+      const core = kind.core_can_be_open ? ["core"] : [];
+      const { details, grid } = folded("place", { description: "" }, say("place"));
+      grid.append(...rowsFor(["length", "position", "axis", "metal", "coating", "dispersion", "imperfection"]));
+      rows.push(...rowsFor([...kind.own_keys, ...core]), details);
     }
   }
   keys.replaceChildren(...rows);

@@ -61,7 +61,7 @@ export function watchPointer(state, { changed, follow, resetCamera, say }) {
     } else if (event.key === "Enter") {
       choosing = !choosing;
       if (choosing) follow(chosen);
-      say(choosing ? "Arrow keys move the point to follow" : "Arrow keys orbit the camera");
+      say(choosing ? "choosing" : "orbiting");
     } else {
       return;
     }
@@ -69,17 +69,22 @@ export function watchPointer(state, { changed, follow, resetCamera, say }) {
   });
 }
 
-// The keys that work everywhere on the page.
-export function watchKeys({ ready, play, rotate, show, split }) {
+// The keys that work everywhere on the page. Space turns the device, unless the keyboard has gone to something that Space presses:
+// what was clicked on does not count.
+export function watchKeys({ ready, play, rotate, show, split, full }) {
+  let tabbed = false;
+  document.addEventListener("pointerdown", () => (tabbed = false), true);
   document.addEventListener("keydown", (event) => {
+    if (event.key === "Tab") tabbed = true;
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
     const at = event.target;
-    const typing = at instanceof HTMLInputElement && at.type === "number";
-    if (typing || at instanceof HTMLSelectElement) return;
-    const pressing = at instanceof HTMLButtonElement || at instanceof HTMLInputElement || at.tagName === "SUMMARY";
+    const isSpace = event.key === " ";
+    const typing = at.matches("input[type=number], select");
+    if (typing && !(isSpace && (!tabbed || at.type === "number"))) return;
+    if (isSpace && tabbed && at.matches("button, summary, a, input[type=checkbox], input[type=file]")) return;
     const step = event.shiftKey ? 10 : 1;
     const done = {
-      " ": () => (pressing ? false : play()),
+      " ": () => play(),
       "[": () => rotate(-step),
       "{": () => rotate(-10),
       "]": () => rotate(step),
@@ -88,8 +93,15 @@ export function watchKeys({ ready, play, rotate, show, split }) {
       b: () => show("bare"),
       m: () => show("mirror"),
       s: () => split(),
+      f: () => full(),
     }[event.key.toLowerCase()];
-    if (ready() && done && done() !== false) event.preventDefault();
+    if (!ready() || !done) return;
+    done();
+    event.preventDefault();
+  });
+  // Firefox presses a button when Space is released.
+  document.addEventListener("keyup", (event) => {
+    if (event.key === " " && !tabbed && event.target.matches("button, summary, input[type=checkbox]")) event.preventDefault();
   });
 }
 

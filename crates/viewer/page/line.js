@@ -1,9 +1,7 @@
 // The line to the server.
 
-export const words = {
-  lost: "The server has ended, or cannot be reached.",
-  refused: "No connection: ten pages may be open already, or the server has ended.",
-};
+// What is said when nobody is at the other end, and whether its links are good elsewhere.
+export const words = { lost: "lost.server", refused: "refused.server", copied: "copied.here" };
 
 export function openLine() {
   const line = new WebSocket(`ws://${location.host}${location.pathname}session`);

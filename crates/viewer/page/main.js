@@ -1,13 +1,19 @@
 // The page: what is done with it becomes a look, and what comes back is shown.
 
+import { caption, isOwn, plainCaption } from "./caption.js";
 import { LAMPS, fillLists, showRotation, showSpectrum, showSplit, showState } from "./choices.js";
 import { Connection } from "./connection.js";
+import { canFilm, film } from "./film.js";
+import { gallery } from "./gallery.js";
 import { watchDrops, watchKeys, watchPointer } from "./gestures.js";
 import { words } from "./line.js";
-import { ageNumbers, percent, showNumbers } from "./numbers.js";
+import { tell, watchTerms } from "./notes.js";
+import { ageNumbers, showNumbers, writeNumbers } from "./numbers.js";
 import { picture, watchDivider } from "./picture.js";
 import { sectionView } from "./section.js";
 import { State, copy } from "./state.js";
+import { guide, watchTour } from "./tour.js";
+import { has, language, number, plain, say, setLanguage, write, writeAll } from "./words.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -20,6 +26,8 @@ let wanted = 0;
 let settle = 0;
 // Whether the link was none, which is said until something else is wished.
 let damaged = false;
+// The film that is being made: what waits for its next picture, and whether something else has been wished since.
+let filming = null;
 
 // How fast the device turns, degrees a second; how long after the last change the picture is finished, ms.
 const SPEED = 12;
@@ -35,60 +43,135 @@ const look = () => ({ scene: state.scene, size: state.size, samples: state.sampl
 function changed(moving = false) {
   clearTimeout(settle);
   damaged = false;
+  filming?.stop();
   document.body.dataset.finished = "false";
   ageNumbers();
+  showCaption();
+  if (gallery.isOpen) return;
   if (moving) {
     connection.look(look, true);
     settle = setTimeout(() => changed(false), REST);
     return;
   }
-  if (playing) return connection.look(look, true);
+  if (playing) {
+    connection.look(look, true);
+    return;
+  }
   wanted = connection.look(look, false) ?? wanted;
-  history.replaceState(null, "", `#${state.toFragment()}`);
+  history.replaceState(null, "", state.address());
+  document.querySelector("#whole-page a").href = state.address(null);
+}
+
+function showCaption() {
+  const text = caption(state, hello);
+  if ($("caption").dataset.text === text) return;
+  $("caption").dataset.text = text;
+  write($("caption"), text);
 }
 
 function greeted(content) {
   hello = content;
-  fillLists(hello);
+  const same = hello.exhibits.find(({ scene }) => JSON.stringify(scene) === JSON.stringify(hello.scene));
+  hello.first = hello.name ? null : (same?.name ?? null);
+  follow(probing);
+  enter();
+}
+
+// Shows what the address says.
+function enter() {
+  if (location.hash === "#gallery") {
+    if (!state.exhibit) state.open(hello.first ?? "opened", hello.scene);
+    writePage();
+    gallery.open(hello);
+    connection.seen(wanted);
+    nextCard();
+    return;
+  }
+  gallery.close();
   const named = location.hash.length > 1;
-  const linked = named && state.fromFragment(location.hash.slice(1));
-  if (named ? !linked : !state.exhibit) state.open("opened", hello.scene);
+  const before = state.embed;
+  const linked = named && state.read(location.hash.slice(1), hello);
+  if (named ? !linked : !state.exhibit) state.open(hello.first ?? "opened", hello.scene);
+  if (state.embed !== before && document.body.dataset.pictures) return location.reload();
+  embed(new URLSearchParams(location.hash.slice(1)).get("lang"));
   $("banner").hidden = true;
-  showControls();
+  writePage();
   picture.mark(probing);
   changed();
   if (named && !linked) {
     damaged = true;
-    $("banner-text").textContent = "This link is damaged: it holds no scene. Here is the one that was opened.";
+    $("banner-text").textContent = say("damaged");
     $("retry").hidden = true;
     $("banner").hidden = false;
   }
 }
 
+// All words, in the language that is chosen.
+function writePage() {
+  writeAll();
+  $("language").value = language;
+  if (!hello) return;
+  fillLists(hello);
+  showControls();
+  $("play-word").textContent = say(playing ? "stop" : "turn");
+  guide.write();
+  showCaption();
+  writeNumbers();
+  sectionView.say();
+}
+
+// A view for a page of another: the picture, its caption, and one control.
+function embed(asked) {
+  if (asked) setLanguage(asked, false);
+  if (!state.embed) return;
+  const key = state.embed;
+  document.body.dataset.embed = key;
+  if (key === "rotation") return;
+  if (key === "wavelength") {
+    if (typeof state.scene.light?.spectrum !== "number") state.set("light", "spectrum", 550);
+    document.querySelector(".rotation").replaceWith($("wavelength-label"));
+  } else {
+    document.querySelector(".rotation").hidden = true;
+    $("caption").after($("keys"));
+  }
+}
+
 // --- What comes back ---------------------------------------------------------------------------------------------
 
-function received(caption, image) {
-  picture.show(caption, image, state);
+function received(about, image) {
+  if (gallery.isOpen) {
+    if (gallery.show(about, image)) nextCard();
+    else connection.seen(about.id);
+    return;
+  }
+  picture.show(about, image, state);
   document.body.dataset.pictures = String(Number(document.body.dataset.pictures ?? 0) + 1);
   // Finer ones are made from then on.
-  if (caption.last && caption.id === wanted && !caption.finished) requestAnimationFrame(() => setTimeout(() => connection.seen(caption.id)));
-  if (caption.last && caption.finished) {
-    $("progress").hidden = true;
-    document.body.dataset.finished = String(caption.id === wanted);
+  if (about.last && about.id === wanted && !about.finished) requestAnimationFrame(() => setTimeout(() => connection.seen(about.id)));
+  if (about.last && about.finished && filming && about.id === wanted) {
+    filming.shown();
+    return;
   }
-  if (caption.view !== "scene") return;
+  if (about.last && about.finished) {
+    $("progress").hidden = true;
+    document.body.dataset.finished = String(about.id === wanted);
+  }
+  if (about.view !== "scene") return;
   clearError();
-  const { width, height, samples, min_power: power, finished } = caption;
-  const each = samples === 1 ? "1 sample" : `${samples} samples`;
-  const coarse = width < state.size[0];
-  $("quality").textContent = coarse || power > 0.001
-    ? `Preview: ${width} × ${height}, ${each} a pixel, branches above ${percent(power)}`
-    : `${width} × ${height}, ${each} a pixel${finished ? "" : ` of ${state.samples}`}`;
+  const { width: w, height: h, samples: n, min_power: power, finished } = about;
+  const coarse = w < state.size[0] || power > 0.001;
+  $("quality").textContent = plain(coarse ? "preview" : finished ? "done" : "state", { w, h, n, all: state.samples });
   if (!finished) $("progress").hidden = false;
-  if (!finished && !coarse) $("progress").value = samples / state.samples;
-  if (finished && !playing) $("live").textContent = `Finished: ${each} a pixel`;
-  showScale(caption.scale);
+  if (!finished && !coarse) $("progress").value = n / state.samples;
+  // What one sees, for those who do not see it.
+  if (finished && !playing) $("live").textContent = `${plain("finished", { n })}. ${plainCaption(state, hello)}`;
+  showScale(about.scale);
   if (probing && (playing || finished || coarse)) connection.follow(probing);
+}
+
+function nextCard() {
+  const look = gallery.next();
+  if (look) connection.look(() => look, false);
 }
 
 function showScale(scale) {
@@ -96,11 +179,17 @@ function showScale(scale) {
   if (!scale) return;
   // What rounding leaves of nothing is nothing.
   const least = 1e-4 * Math.max(Math.abs(scale.low), Math.abs(scale.high));
-  const number = (value) =>
-    value === null ? "–" : Number((Math.abs(value) < least ? 0 : value).toPrecision(3)).toString().replace("-", "−");
-  $("scale-low").textContent = number(scale.low);
-  $("scale-high").textContent = number(scale.high);
-  $("scale-title").textContent = scale.unit ? `${scale.title}, ${scale.unit}` : scale.title;
+  const end = (value) => (value === null ? "–" : number(Number((Math.abs(value) < least ? 0 : value).toPrecision(3)), 9).replace("-", "−"));
+  const [low, high] = [end(scale.low), end(scale.high)];
+  const map = `map.${state.scene.picture?.map}`;
+  const title = has(map) ? plain(map) : scale.title;
+  const unit = scale.unit && scale.low !== scale.high ? `, ${scale.unit}` : "";
+  // One number has no range of colors.
+  const isOne = low === high;
+  $("scale").classList.toggle("one", isOne);
+  $("scale-low").textContent = low;
+  $("scale-high").textContent = isOne ? "" : high;
+  $("scale-title").textContent = isOne ? `${scale.unit && low !== "0" ? scale.unit : ""} ${say("same")}: ${title}`.trim() : `${title}${unit}`;
 }
 
 function section(content) {
@@ -123,6 +212,8 @@ function progress({ id, samples, share }) {
 
 function failed({ id, message, key }) {
   connection.failed(id);
+  if (gallery.isOpen) return nextCard();
+  filming?.stop();
   if (id !== null && id < wanted) return;
   $("banner-text").textContent = key ? `${key}: ${message}` : message;
   $("retry").hidden = true;
@@ -136,7 +227,8 @@ function clearError() {
 
 function gone() {
   stop();
-  $("banner-text").textContent = hello ? words.lost : words.refused;
+  filming?.stop();
+  $("banner-text").textContent = say(hello ? words.lost : words.refused);
   $("banner").hidden = false;
   $("retry").hidden = false;
 }
@@ -150,8 +242,8 @@ function hung({ name }) {
   const photograph = state.table("photograph");
   photograph.image = name;
   delete photograph.width;
-  $("live").textContent = `The photograph ${name} hangs behind the device`;
   changed();
+  tell(say("hangs", { name }));
 }
 
 // --- What is chosen ----------------------------------------------------------------------------------------------
@@ -188,7 +280,7 @@ function stop() {
   if (!playing) return;
   playing = false;
   $("play").setAttribute("aria-pressed", "false");
-  $("play-word").textContent = "Turn";
+  $("play-word").textContent = say("turn");
 }
 
 function play() {
@@ -200,7 +292,7 @@ function play() {
   if (!state.device || !connection.isOpen) return;
   playing = true;
   $("play").setAttribute("aria-pressed", "true");
-  $("play-word").textContent = "Stop";
+  $("play-word").textContent = say("stop");
   let before = performance.now();
   const turn = (now) => {
     if (!playing) return;
@@ -224,7 +316,7 @@ function download(blob, name) {
 function bring(file) {
   if (!file) return;
   if (hello && file.size > hello.largest_photograph_bytes) {
-    failed({ id: null, message: `a photograph may have ${hello.largest_photograph_bytes >> 20} MiB` });
+    failed({ id: null, message: say("too_large", { n: hello.largest_photograph_bytes >> 20 }) });
     return;
   }
   // The server takes plain names of 200 bytes: the end, with what kind of file it is.
@@ -251,6 +343,7 @@ function follow(at) {
 }
 
 $("exhibit").addEventListener("change", () => {
+  guide.close();
   const name = $("exhibit").value;
   const exhibit = hello.exhibits.find((one) => one.name === name);
   state.open(name, exhibit?.scene ?? hello.scene);
@@ -336,31 +429,115 @@ $("save-scene").addEventListener("click", () => {
   scene.camera = { ...scene.camera, resolution: state.size, samples: state.samples };
   connection.save(scene);
 });
-$("copy-link").addEventListener("click", async () => {
-  history.replaceState(null, "", `#${state.toFragment()}`);
+// Copies a text, and says so.
+async function copyText(text, said) {
   try {
-    await navigator.clipboard.writeText(location.href);
-    $("live").textContent = "The link is copied";
-    $("quality").textContent = "The link is copied";
+    await navigator.clipboard.writeText(text);
+    tell(said);
   } catch {
-    $("quality").textContent = "The link is in the address bar";
+    tell(say("copied.not"));
   }
+}
+$("copy-link").addEventListener("click", () => {
+  history.replaceState(null, "", state.address());
+  copyText(location.href, say(words.copied) + (isOwn(state.scene.photograph?.image) ? say("copied.photograph") : ""));
 });
+$("copy-embed").hidden = words.copied !== "copied" || location.protocol === "file:";
+$("copy-embed").addEventListener("click", () => {
+  const source = `${location.href.split("#")[0]}${state.address("rotation")}&lang=${language}`;
+  copyText(`<iframe src="${source}" width="480" height="520" style="border: 0" title="cloakroom"></iframe>`, say("embedded"));
+});
+$("save-film").addEventListener("click", async () => {
+  if (!canFilm()) return tell(say("filmed.not"));
+  if (filming || !state.device) return undefined;
+  stop();
+  const before = state.device.rotation ?? 0;
+  // Twice the pixels, which the canvas makes smaller, are four samples a pixel.
+  const size = state.size.map((side) => Math.min(2048, 2 * side));
+  const turn = (degrees) =>
+    new Promise((resolve, reject) => {
+      filming.shown = resolve;
+      filming.stop = () => reject(new Error("stopped"));
+      state.device.rotation = degrees;
+      showRotation(state);
+      wanted = connection.look(() => ({ ...look(), size, samples: 1 }), false) ?? wanted;
+    });
+  filming = { shown: () => {}, stop: () => {} };
+  document.body.dataset.finished = "false";
+  try {
+    const blob = await film(picture.canvas, before, turn, (share) => tell(say("filming", { p: Math.round(100 * share) }), true));
+    download(blob, blob.type === "video/mp4" ? "cloakroom.mp4" : "cloakroom.webm");
+    tell(say("filmed"));
+  } catch (error) {
+    $("toast").hidden = true;
+    if (error.message !== "stopped") tell(String(error.message));
+  }
+  filming = null;
+  state.device.rotation = before;
+  showRotation(state);
+  return changed();
+});
+function fullScreen() {
+  const view = document.querySelector(".view");
+  if (document.fullscreenElement) document.exitFullscreen();
+  else view.requestFullscreen?.();
+}
+$("full").addEventListener("click", fullScreen);
+$("gallery").addEventListener("click", () => {
+  guide.close();
+  stop();
+  if (gallery.isOpen) leaveGallery();
+  else location.hash = "gallery";
+});
+function leaveGallery() {
+  gallery.close();
+  history.replaceState(null, "", state.address());
+  changed();
+}
+$("cards-close").addEventListener("click", () => {
+  leaveGallery();
+  $("gallery").focus();
+});
+$("language").addEventListener("change", () => {
+  setLanguage($("language").value);
+  writePage();
+  if (gallery.isOpen) gallery.open(hello);
+});
+watchTour(
+  ({ exhibit, device, beside = "nothing", polarizer }) => {
+    stop();
+    if (gallery.isOpen) gallery.close();
+    const scene = copy(hello.exhibits.find(({ name }) => name === exhibit).scene);
+    Object.assign(scene.device[0], { show: "cloak", ...device });
+    state.open(exhibit, scene);
+    state.set("camera", "polarizer", polarizer);
+    setBeside(beside);
+    showControls();
+  },
+  () => {
+    state.set("camera", "polarizer", state.scene.camera?.polarizer === "horizontal" ? "none" : "horizontal");
+    showControls();
+    changed();
+  },
+);
+watchTerms();
 $("reset-camera").addEventListener("click", resetCamera);
 watchDivider(state, () => {
   showSplit(state, hello);
   picture.draw(state);
 });
 
-watchPointer(state, { changed, follow, resetCamera, say: (words) => ($("live").textContent = words) });
+watchPointer(state, { changed, follow, resetCamera, say: (word) => tell(say(word)) });
 watchKeys({
   ready: () => hello !== null,
   play,
   rotate: (by) => rotate((state.device?.rotation ?? 0) + by, true),
   show: (show) => $("shows").querySelector(`input[value="${show}"]`)?.click(),
   split: () => setBeside(state.beside === "nothing" ? "bare" : "nothing"),
+  full: fullScreen,
 });
 watchDrops(bring);
 addEventListener("hashchange", () => {
-  if (hello) greeted(hello);
+  if (hello) enter();
 });
+writePage();

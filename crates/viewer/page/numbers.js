@@ -1,71 +1,90 @@
-// Numbers for people, and the table of them.
+// Numbers for people, and the tables of them.
 
-const body = document.querySelector("#numbers tbody");
+import { number, say, write } from "./words.js";
+
+const tables = { plain: document.getElementById("plain-numbers"), expert: document.getElementById("numbers") };
 const note = document.getElementById("numbers-note");
 
 const NONE = "–";
 
-const RAISED = { "+": "", "-": "⁻", ...Object.fromEntries([..."⁰¹²³⁴⁵⁶⁷⁸⁹"].map((c, i) => [i, c])) };
+// Below this, ns or shares of all light, a number is what rounding leaves of nothing.
+const NOTHING = 1e-9;
+
+const isNone = (value) => value === null || value === undefined;
 
 export function percent(share) {
-  if (share === null || share === undefined) return NONE;
+  if (isNone(share)) return NONE;
   const value = 100 * share;
-  if (value !== 0 && Math.abs(value) < 0.01) {
-    const [digits, exponent] = value.toExponential(0).split("e");
-    return `${digits} × 10${exponent.replace(/./g, (c) => RAISED[c])} %`;
-  }
-  return `${value.toFixed(value >= 99.995 || value === 0 ? 0 : value < 1 ? 2 : 1)} %`;
+  if (Math.abs(share) < NOTHING) return "0 %";
+  if (Math.abs(value) < 0.01) return `< ${number(0.01, 2)} %`;
+  // All is said of what is all: 99.97 % are not.
+  const shown = value < 100 && value > 99.9 ? Math.floor(value * 100) / 100 : value;
+  return `${number(shown, value < 1 || (value > 99.9 && value < 99.995) ? 2 : 1)} %`;
 }
 
-const UNITS = [[1, "ns"], [1e-3, "ps"], [1e-6, "fs"], [1e-9, "as"], [1e-12, "zs"], [1e-15, "ys"]];
+const UNITS = [[1, "ns"], [1e-3, "ps"], [1e-6, "fs"], [1e-9, "as"]];
 
 // A time in ns, in a unit that suits it.
 export function time(ns, signed = false) {
-  if (ns === null || ns === undefined) return NONE;
-  if (ns === 0) return "0 ns";
-  const [size, unit] = UNITS.find(([size]) => Math.abs(ns) >= size) ?? UNITS[UNITS.length - 1];
-  const value = ns / size;
-  const sign = value < 0 ? "−" : signed ? "+" : "";
-  return `${sign}${Math.abs(value).toPrecision(3)} ${unit}`;
+  if (isNone(ns)) return NONE;
+  if (Math.abs(ns) < NOTHING) return "0";
+  const [size, unit] = UNITS.find(([size]) => Math.abs(ns) >= size);
+  const sign = ns < 0 ? "−" : signed ? "+" : "";
+  return `${sign}${number(Number((Math.abs(ns) / size).toPrecision(3)), 3)} ${unit}`;
 }
 
-const plain = (value, digits) => (value === null || value === undefined ? NONE : value.toFixed(digits));
+const fixed = (value, digits) => (isNone(value) ? NONE : number(Number(value.toFixed(digits)), digits));
 
-// Says that something has changed since the numbers came.
+// The numbers that are shown, and whether something has changed since they came.
+let shown = null;
+let isOld = false;
+
 export function ageNumbers() {
-  if (body.childElementCount === 0) return;
-  body.parentElement.classList.add("old");
-  note.textContent = "Of the view before; those of this one come when it rests.";
+  if (!shown || isOld) return;
+  isOld = true;
+  writeNumbers();
 }
 
 export function showNumbers(numbers) {
-  body.parentElement.classList.remove("old");
-  const rows = [
-    ["Delivered from the photograph", percent(numbers.delivered)],
-    ["Light from the surroundings", percent(numbers.escaped)],
-    ["Absorbed", percent(numbers.absorbed)],
-    ["Pruned, not followed", percent(numbers.pruned)],
-    ["Time-of-flight difference, mean", time(numbers.time_of_flight_difference_mean_ns, true)],
-    ["Time-of-flight difference, largest", time(numbers.time_of_flight_difference_maximum_ns, true)],
-    ["Light misses its place by, rms", numbers.displacement_rms_cm === null ? NONE : `${plain(numbers.displacement_rms_cm, 2)} cm`],
-    ["Likeness to what it should look like", plain(numbers.to_ideal.structural_similarity, 3)],
-    ["Likeness to the empty view", plain(numbers.to_empty.structural_similarity, 3)],
-    ["Bare metal’s likeness to the empty view", plain(numbers.bare_to_empty?.structural_similarity, 3)],
-  ];
-  body.replaceChildren(
+  shown = numbers;
+  isOld = false;
+  writeNumbers();
+}
+
+function fill(table, rows) {
+  table.classList.toggle("old", isOld);
+  table.tBodies[0].replaceChildren(
     ...rows.map(([name, value]) => {
       const row = document.createElement("tr");
       const head = document.createElement("th");
       head.scope = "row";
-      head.textContent = name;
+      write(head, say(name));
       const cell = document.createElement("td");
       cell.textContent = value;
       row.append(head, cell);
       return row;
     }),
   );
-  const share = percent(numbers.silhouette_share);
-  note.textContent =
-    `Means over the pixels that meet a device (${share} of ${numbers.width_pixels} × ${numbers.height_pixels}). ` +
-    "Likeness is the structural similarity (SSIM): 1 is the same.";
+}
+
+export function writeNumbers() {
+  if (!shown) return;
+  const misses = shown.displacement_rms_cm;
+  fill(tables.plain, [
+    ["n.place", percent(shown.in_place_share)],
+    ...(isNone(shown.bare_in_place_share) ? [] : [["n.bare", percent(shown.bare_in_place_share)]]),
+    ["n.late", time(shown.time_of_flight_difference_mean_ns, true)],
+  ]);
+  fill(tables.expert, [
+    ["n.delivered", percent(shown.delivered)],
+    ["n.escaped", percent(shown.escaped)],
+    ["n.absorbed", percent(shown.absorbed)],
+    ["n.pruned", percent(shown.pruned)],
+    ["n.most", time(shown.time_of_flight_difference_maximum_ns, true)],
+    ["n.misses", isNone(misses) ? NONE : `${fixed(misses, 2)} cm`],
+    ["n.ideal", fixed(shown.to_ideal.structural_similarity, 3)],
+    ["n.empty", fixed(shown.to_empty.structural_similarity, 3)],
+    ["n.bare.empty", fixed(shown.bare_to_empty?.structural_similarity, 3)],
+  ]);
+  note.textContent = isOld ? say("n.old") : say("n.note", { s: percent(shown.silhouette_share), w: shown.width_pixels, h: shown.height_pixels });
 }

@@ -1,12 +1,12 @@
 // The rendered view: one picture, or two on the sides of a divider.
 
+import { say } from "./words.js";
+
 const canvas = document.getElementById("picture");
 const divider = document.getElementById("divider");
 const probe = document.getElementById("probe");
 const labels = { left: document.getElementById("left-label"), right: document.getElementById("right-label") };
 const context = canvas.getContext("2d");
-
-const words = { bare: "bare metal", empty: "empty view", mirror: "what it should look like" };
 
 const views = new Map();
 
@@ -35,6 +35,7 @@ export const picture = {
     if (canvas.width !== width || canvas.height !== height) {
       canvas.width = width;
       canvas.height = height;
+      canvas.parentElement.parentElement.style.setProperty("--ratio", width / height);
     }
     const put = (name, from, to) => {
       const view = views.get(name);
@@ -61,8 +62,8 @@ export const picture = {
     if (!split) return;
     divider.style.left = `${100 * state.divider}%`;
     divider.setAttribute("aria-valuenow", String(Math.round(100 * state.divider)));
-    const left = words[state.beside];
-    divider.setAttribute("aria-valuetext", `${Math.round(100 * state.divider)} % ${left}, the rest ${shown}`);
+    const left = say(`beside.${state.beside}`);
+    divider.setAttribute("aria-valuetext", say("side.says", { p: Math.round(100 * state.divider), left, right: shown }));
     labels.left.textContent = left;
     labels.right.textContent = shown;
   },

@@ -2,6 +2,8 @@
 
 export const copy = (value) => JSON.parse(JSON.stringify(value));
 
+const BESIDE = ["bare", "empty", "mirror"];
+
 export class State {
   constructor() {
     this.exhibit = "";
@@ -11,6 +13,8 @@ export class State {
     this.width = 640;
     this.samples = 16;
     this.which = 0;
+    // The one key that an embedded view lets one change; none on the whole page.
+    this.embed = null;
   }
 
   // The scene's devices.
@@ -57,6 +61,37 @@ export class State {
     return btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
   }
 
+  // The fragment of the address, with what is said beside the state.
+  address(embed = this.embed) {
+    return `#${this.toFragment()}${embed ? `&embed=${embed}` : ""}`;
+  }
+
+  // Reads the fragment of an address: the name of an exhibit or a state, and, each after `&`, what is changed in it. Returns whether
+  // it says what to show; one that changes the scene that is open does.
+  read(fragment, hello) {
+    const parts = fragment.split("&");
+    const said = new URLSearchParams(parts.filter((part) => part.includes("=")).join("&"));
+    const shown = parts.find((part) => !part.includes("="));
+    const exhibit = hello.exhibits.find(({ name }) => name === shown);
+    this.embed = /^\w+$/.exec(said.get("embed") ?? "")?.[0] ?? null;
+    if (exhibit) {
+      this.beside = "nothing";
+      this.open(exhibit.name, exhibit.scene);
+    } else if (!shown) {
+      if (!this.exhibit) this.open(hello.first, hello.scene);
+    } else if (!this.fromFragment(shown)) {
+      return false;
+    }
+    const rotation = Number(said.get("rotation") ?? NaN);
+    if (this.device && Number.isFinite(rotation)) this.device.rotation = rotation;
+    const polarizer = said.get("polarizer");
+    if (polarizer) this.set("camera", "polarizer", Number.isFinite(Number(polarizer)) ? Number(polarizer) : polarizer);
+    if (BESIDE.includes(said.get("split"))) this.beside = said.get("split");
+    const show = said.get("show");
+    for (const device of this.devices) if (show && hello.kinds[device.kind]?.shows.includes(show)) device.show = show;
+    return true;
+  }
+
   // Reads an address; whether it says a state.
   fromFragment(fragment) {
     try {
@@ -69,7 +104,7 @@ export class State {
         Number.isFinite(value) ? Math.min(high, Math.max(low, value)) : fallback;
       this.scene = said.scene;
       this.exhibit = String(said.exhibit ?? "");
-      this.beside = ["bare", "empty", "mirror"].includes(said.beside) ? said.beside : "nothing";
+      this.beside = BESIDE.includes(said.beside) ? said.beside : "nothing";
       this.divider = number(said.divider, 0, 1, 0.5);
       this.width = Math.round(number(said.width, 16, 2048, 640));
       this.samples = Math.round(number(said.samples, 1, 64, 16));

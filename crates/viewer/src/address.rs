@@ -1,21 +1,22 @@
-//! Where the server listens, and who may ask: loopback alone, and who was told the address.
+//! Where the server listens, and who may ask: loopback alone, unless another address of this machine is given, and
+//! who was told the link.
 
 use axum::http::{HeaderMap, header};
-use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::net::{IpAddr, SocketAddr, TcpListener};
 
 /// Ports tried after the one asked for.
 const MORE_PORTS: u16 = 100;
 
-/// Listens on a port of the loopback interface, or on the next one that is free; 0 stands for any.
+/// Listens on a port of an address of this machine, or on the next one that is free; 0 stands for any.
 ///
 /// # Errors
 ///
 /// The last error, if none of them is free.
-pub(crate) fn listen(port: u16) -> std::io::Result<TcpListener> {
+pub(crate) fn listen(host: IpAddr, port: u16) -> std::io::Result<TcpListener> {
     let last = if port == 0 { 0 } else { port.saturating_add(MORE_PORTS) };
     let mut result = Err(std::io::Error::from(std::io::ErrorKind::AddrInUse));
     for port in port..=last {
-        result = TcpListener::bind(SocketAddr::from((Ipv4Addr::LOCALHOST, port)));
+        result = TcpListener::bind(SocketAddr::from((host, port)));
         match &result {
             Err(error) if error.kind() == std::io::ErrorKind::AddrInUse => {}
             _ => break,
@@ -26,12 +27,20 @@ pub(crate) fn listen(port: u16) -> std::io::Result<TcpListener> {
 
 /// The names under which the server answers.
 #[derive(Clone, Debug)]
-pub(crate) struct Names([String; 2]);
+pub(crate) struct Names(Vec<String>);
 
 impl Names {
-    /// Those of a port.
-    pub fn of(port: u16) -> Self {
-        Self(["127.0.0.1", "localhost"].map(|name| format!("{name}:{port}")))
+    /// Those of an address; browsers leave the usual port out.
+    pub fn of(address: SocketAddr) -> Self {
+        let mut names = vec![address.to_string()];
+        if address.ip().is_loopback() {
+            names.push(format!("localhost:{}", address.port()));
+        }
+        if address.port() == 80 {
+            let bare = |name: &String| name.strip_suffix(":80").map(str::to_owned);
+            names.extend(names.clone().iter().filter_map(bare));
+        }
+        Self(names)
     }
 
     /// Whether a request was meant for this server. A page from elsewhere whose name has been made
@@ -108,7 +117,7 @@ mod tests {
 
     #[test]
     fn only_loopback_names_are_ours() {
-        let names = Names::of(8420);
+        let names = Names::of(SocketAddr::from(([127, 0, 0, 1], 8420)));
         for host in ["127.0.0.1:8420", "localhost:8420", "LocalHost:8420"] {
             assert!(names.host_is_ours(&with(header::HOST, host)), "{host}");
             let origin = format!("http://{host}");
@@ -129,6 +138,20 @@ mod tests {
         let mut two = with(header::HOST, "localhost:8420");
         two.append(header::HOST, HeaderValue::from_static("evil.example"));
         assert!(!names.host_is_ours(&two));
+    }
+
+    #[test]
+    fn of_another_address_only_that_is_ours() {
+        let names = |text: &str| Names::of(text.parse().expect("an address"));
+        let has = |names: &Names, host: &str| names.host_is_ours(&with(header::HOST, host));
+        let network = names("192.168.1.20:8420");
+        assert!(has(&network, "192.168.1.20:8420"));
+        for foreign in ["127.0.0.1:8420", "localhost:8420", "192.168.1.20", "192.168.1.21:8420"] {
+            assert!(!has(&network, foreign), "{foreign}");
+        }
+        assert!(has(&names("[fd00::1]:8420"), "[fd00::1]:8420"));
+        let usual = names("192.168.1.20:80");
+        assert!(has(&usual, "192.168.1.20") && has(&usual, "192.168.1.20:80"));
     }
 
     #[test]
@@ -157,9 +180,10 @@ mod tests {
 
     #[test]
     fn a_port_that_is_taken_is_passed_over() {
-        let first = listen(0).expect("a port");
+        let host = IpAddr::from([127, 0, 0, 1]);
+        let first = listen(host, 0).expect("a port");
         let port = first.local_addr().expect("an address").port();
-        let second = listen(port).expect("the next one");
+        let second = listen(host, port).expect("the next one");
         let address = second.local_addr().expect("an address");
         assert!(address.ip().is_loopback() && address.port() > port);
     }

@@ -218,6 +218,8 @@ pub struct Survey {
     pub silhouette: Vec<bool>,
     /// How far from where it should light lands, cm.
     pub displacement_rms_cm: Option<f64>,
+    /// The share of light that lands where, and as, it should.
+    pub in_place_share: Option<f64>,
 }
 
 /// Renders rows of a picture, from an even one on.
@@ -256,6 +258,7 @@ pub fn survey(
     // About no key of the scene that is shown.
     let ideal = PreparedScene::with_images(&wanted, images).map_err(Problem::of)?;
     let rays = measure::survey(prepared, &ideal, supervision)?;
+    let in_place_share = rays.in_place_share();
     let measure::Survey { silhouette, displacement_rms_cm, .. } = rays;
-    Ok(Survey { silhouette, displacement_rms_cm })
+    Ok(Survey { silhouette, displacement_rms_cm, in_place_share })
 }

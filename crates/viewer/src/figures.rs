@@ -39,11 +39,14 @@ pub(crate) async fn figures(
     let shown = picture(end::View::Scene).await?;
     let nothing = of(&picture(end::View::Empty).await?)?;
     let wanted = of(&picture(end::View::Mirror).await?)?;
-    let bare = match bare(scene) {
-        Some(_) => Some(of(&picture(end::View::Bare).await?)?),
-        None => None,
-    };
     let view = of(&shown)?;
+    let (bare, bare_in_place) = match bare(scene) {
+        Some(_) => {
+            let bare = of(&picture(end::View::Bare).await?)?;
+            (Some(bare), end.survey(&subject(end::View::Bare), &supervision).await?.in_place_share)
+        }
+        None => (None, None),
+    };
     let rays = end.survey(&subject(end::View::Scene), &supervision).await?;
     let silhouette = PixelMask::new(view.width, rays.silhouette.clone()).ok();
     let everything = PixelMask::whole(&view);
@@ -67,6 +70,8 @@ pub(crate) async fn figures(
         "time_of_flight_difference_maximum_ns": flight.map(|flight| flight.maximum_ns),
         "time_of_flight_difference_mean_ns": flight.map(|flight| flight.mean_ns),
         "displacement_rms_cm": rays.displacement_rms_cm,
+        "in_place_share": rays.in_place_share,
+        "bare_in_place_share": bare_in_place,
         "to_ideal": likeness(&view, &wanted),
         "to_empty": likeness(&view, &nothing),
         "bare_to_empty": bare.map(|bare| likeness(&bare, &nothing)),

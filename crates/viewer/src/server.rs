@@ -19,14 +19,16 @@ use axum::serve::ListenerExt;
 use cloakroom::render::{Images, PreparedScene};
 use cloakroom::scene::Scene;
 use cloakroom::scene_file::Loaded;
+use std::net::IpAddr;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::sync::{Semaphore, watch};
 
-/// Most pages open at once.
+/// Most pages open at once: of those who use this machine, and of a class.
 const MOST_PAGES: usize = 10;
+const MOST_PAGES_OF_A_CLASS: usize = 40;
 
 /// How often the server looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(50);
@@ -47,6 +49,8 @@ pub struct Settings {
     pub name: String,
     /// The folder that names of files in it are relative to.
     pub folder: PathBuf,
+    /// The address of this machine to listen on: loopback, or one under which others on its network reach it.
+    pub host: IpAddr,
     /// The port; the next free one is taken if it is not free. 0 stands for any.
     pub port: u16,
 }
@@ -54,9 +58,16 @@ pub struct Settings {
 /// Why there is no server.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewerError {
-    /// No port is free.
-    #[error("cannot listen on port {port} of this machine or on one of the next: {reason}")]
+    /// Not one address, but all of them at once.
+    #[error(
+        "--host takes one address of this machine, not {0}, which stands for all of them: `ip address`, or `ipconfig`, says which it has"
+    )]
+    AllAddresses(IpAddr),
+    /// No port is free, or the address is none of this machine's.
+    #[error("cannot listen on port {port} of {host} or on one of the next: {reason}")]
     Listen {
+        /// The address asked for.
+        host: IpAddr,
         /// The port asked for.
         port: u16,
         /// Why not.
@@ -85,11 +96,12 @@ pub(crate) struct Server {
     /// Tells pages that the server ends.
     pub closing: watch::Sender<()>,
     pages: Arc<Semaphore>,
+    most_pages: usize,
     names: Names,
     secret: Secret,
 }
 
-/// Serves the page on this machine until `stop` is set. `ready` is told the address once it can be
+/// Serves the page on this machine, or on the network of the address given, until `stop` is set. `ready` is told the address once it can be
 /// opened.
 ///
 /// # Errors
@@ -102,10 +114,16 @@ pub fn serve(
 ) -> Result<(), ViewerError> {
     let opened = Opened::new(&settings.scene, &settings.name, &settings.folder)
         .map_err(ViewerError::Scene)?;
-    let listener = listen(settings.port)
-        .map_err(|reason| ViewerError::Listen { port: settings.port, reason })?;
+    let (host, port) = (settings.host, settings.port);
+    // Under which names it may be asked would not be known.
+    if host.is_unspecified() {
+        return Err(ViewerError::AllAddresses(host));
+    }
+    let listener =
+        listen(host, port).map_err(|reason| ViewerError::Listen { host, port, reason })?;
     listener.set_nonblocking(true).map_err(ViewerError::Run)?;
-    let port = listener.local_addr().map_err(ViewerError::Run)?.port();
+    let address = listener.local_addr().map_err(ViewerError::Run)?;
+    let most_pages = if host.is_loopback() { MOST_PAGES } else { MOST_PAGES_OF_A_CLASS };
     let server = Arc::new(Server {
         greeting: greeting(&opened).to_string(),
         opened,
@@ -113,8 +131,9 @@ pub fn serve(
         reading: Mutex::default(),
         uploaded_pixels: AtomicU64::new(0),
         closing: watch::Sender::new(()),
-        pages: Arc::new(Semaphore::new(MOST_PAGES)),
-        names: Names::of(port),
+        pages: Arc::new(Semaphore::new(most_pages)),
+        most_pages,
+        names: Names::of(address),
         secret: Secret::new().map_err(ViewerError::Run)?,
     });
     let runtime = tokio::runtime::Builder::new_multi_thread()
@@ -138,7 +157,7 @@ pub fn serve(
             .layer(from_fn_with_state(server.clone(), guard))
             .with_state(server.clone())
             .into_make_service_with_connect_info::<Standing>();
-        ready(&format!("http://127.0.0.1:{port}/{}/", server.secret.digits()));
+        ready(&format!("http://{address}/{}/", server.secret.digits()));
         let closing = server.clone();
         let end = async move {
             stopped(stop).await;
@@ -184,7 +203,7 @@ async fn guard(
 ) -> Response {
     let refuse = |words: &'static str| (StatusCode::FORBIDDEN, words).into_response();
     let mut response = if !server.names.host_is_ours(request.headers()) {
-        refuse("this server answers on this machine alone\n")
+        refuse("this server answers to its own address alone\n")
     } else if server.secret.path_within(request.uri().path()).is_none() {
         refuse("open the whole address, as `cloakroom view` has printed it\n")
     } else {
@@ -224,7 +243,7 @@ async fn session(
             .into_response();
     }
     let Ok(place) = server.pages.clone().try_acquire_owned() else {
-        let message = format!("{MOST_PAGES} pages are open already; close one\n");
+        let message = format!("{} pages are open already; close one\n", server.most_pages);
         return (StatusCode::SERVICE_UNAVAILABLE, message).into_response();
     };
     let largest = LARGEST_PHOTOGRAPH.max(LONGEST_TEXT);

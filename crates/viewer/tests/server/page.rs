@@ -29,7 +29,8 @@ impl Server {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
         let scene = scene_file::parse(SCENE, "mine", folder, &[]).unwrap();
         let folder = folder.to_owned();
-        let settings = Settings { scene, name: "mine".to_owned(), folder, port };
+        let (name, host) = ("mine".to_owned(), [127, 0, 0, 1].into());
+        let settings = Settings { scene, name, folder, host, port };
         let stop: &'static AtomicBool = Box::leak(Box::new(AtomicBool::new(false)));
         let (sender, receiver) = mpsc::channel();
         let thread = std::thread::spawn(move || {

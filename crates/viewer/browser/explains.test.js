@@ -1,0 +1,368 @@
+// What the page says of what it shows, and how one finds one's way on it.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { networkInterfaces, tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { difference, finished, openPage, pixels, program, small, startBrowser, startServer, unfold, violations } from "./session.js";
+
+const folder = mkdtempSync(join(tmpdir(), "cloakroom-explains-"));
+let server;
+let browser;
+
+before(async () => {
+  server = await startServer();
+  browser = await startBrowser();
+});
+
+after(async () => {
+  await browser?.end();
+  await server?.end();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+async function open(fragment = "") {
+  const opened = await openPage(browser.context, server.address, fragment);
+  await finished(opened.page);
+  return opened;
+}
+
+const says = (page) => page.textContent("#caption");
+
+// Sets a field or a list at once, folded or not.
+const choose = (page, id, value) =>
+  page.locator(`#${id}`).evaluate((control, to) => {
+    control.value = to;
+    control.dispatchEvent(new Event("change"));
+  }, value);
+
+test("the caption says what one sees, of the scene as it is", async () => {
+  const { page, complaints } = await open();
+  await small(page, "1");
+  // The rhombus is kappa = tan 30 degrees times as high as wide: 14.1 cm times the root of 2 times that.
+  assert.match(await says(page), /A metal bar 11\.5 cm high stands in front of the person\..*turned by 10° it looks like a mirror/);
+  await page.fill("#keys input[aria-label='side, exactly']", "28.2");
+  await page.keyboard.press("Tab");
+  assert.match(await says(page), /23 cm high/);
+  await page.fill("#rotation-number", "0");
+  await page.keyboard.press("Tab");
+  assert.match(await says(page), /as if nothing were there/);
+  await page.keyboard.press("b");
+  assert.match(await says(page), /no cloak: it hides/);
+  await page.keyboard.press("m");
+  assert.match(await says(page), /edge-on/);
+  await page.keyboard.press("c");
+  await choose(page, "beside", "bare");
+  assert.match(await says(page), /Left of the divider: bare metal/);
+  // The description follows the material, and this the polarizer.
+  await page.selectOption("#keys select", "negative-uniaxial");
+  assert.match(await says(page), /one polarization only.*A horizontal polarizer/);
+  await choose(page, "polarizer", "horizontal");
+  assert.match(await says(page), /horizontal polarizer lets only that polarization pass that is led around/);
+  await choose(page, "polarizer", "vertical");
+  assert.match(await says(page), /that is not led around/);
+  await choose(page, "exhibit", "sphere-cloak");
+  assert.match(await says(page), /metal ball 8 cm across.*whichever way it comes/);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("everything is said in English and German, from the browser's language or the one that was chosen", async () => {
+  const page = await browser.context.newPage();
+  await page.addInitScript(() => Object.defineProperty(navigator, "language", { get: () => "de-AT" }));
+  await page.goto(server.address);
+  await finished(page);
+  await small(page, "1");
+  assert.equal(await page.getAttribute("html", "lang"), "de");
+  assert.match(await says(page), /Ein 11,5 cm hoher Metallstab steht vor der Person\..*um 10° gedreht/);
+  assert.deepEqual(await violations(page), []);
+  const said = { en: [], de: [] };
+  for (const language of ["en", "de"]) {
+    await page.selectOption("#language", language);
+    for (const name of await page.locator("#exhibit option").evaluateAll((all) => all.map(({ value }) => value))) {
+      await choose(page, "exhibit", name);
+      const title = await page.locator("#exhibit option:checked").textContent();
+      said[language].push(`${title}: ${await says(page)}`);
+    }
+    // What has no words shows its key.
+    const shown = `${said[language].join("\n")}\n${await page.evaluate(() => document.body.innerText)}`;
+    assert.doesNotMatch(shown, /\b(name|thing|see|cloak|photo|map|group|key|tour|n)\.[a-z]|\[\[|\{\w+\}|undefined|NaN/);
+  }
+  assert.ok(said.en.length > 35);
+  assert.equal(new Set([...said.en, ...said.de]).size, 2 * said.en.length);
+  await page.selectOption("#language", "en");
+  await choose(page, "exhibit", "square-cloak");
+  await small(page, "1");
+  await page.reload();
+  await finished(page);
+  assert.equal(await page.getAttribute("html", "lang"), "en");
+  assert.equal(await page.textContent("#tour"), "Tour");
+  await page.evaluate(() => localStorage.clear());
+  await page.close();
+});
+
+test("the tour goes from nothing to the polarizer", async () => {
+  const { page, complaints } = await open();
+  await small(page, "1");
+  await page.click("#tour");
+  const steps = [];
+  for (let step = 1; step <= 5; step += 1) {
+    assert.match(await page.textContent("#guide-number"), new RegExp(`Step ${step} of 5`));
+    await finished(page);
+    steps.push({ caption: await says(page), pixels: await pixels(page) });
+    if (step === 1) assert.deepEqual(await violations(page), []);
+    if (step < 5) await page.click("#guide-next");
+  }
+  assert.match(steps[0].caption, /^Nothing/);
+  assert.match(steps[1].caption, /no cloak/);
+  assert.match(steps[2].caption, /as if nothing were there/);
+  assert.match(steps[3].caption, /turned by 10°/);
+  assert.match(steps[4].caption, /horizontal polarizer/);
+  assert.ok(difference(steps[0].pixels, steps[1].pixels).most > 50);
+  assert.ok(difference(steps[0].pixels, steps[3].pixels).most > 50);
+  await page.click("#guide-polarizer");
+  await finished(page);
+  assert.match(await says(page), /one polarization only/);
+  assert.ok(difference(steps[4].pixels, await pixels(page)).most > 20);
+  await page.click("#guide-close");
+  assert.ok(await page.locator("#guide").isHidden());
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("words are explained where one points at them, and for the keyboard", async () => {
+  const { page, complaints } = await open();
+  const gloss = page.locator("#gloss");
+  assert.ok(await gloss.isHidden());
+  await page.hover("#caption .term[data-term=cloak]");
+  assert.match(await gloss.textContent(), /leads light around what it hides/);
+  await page.mouse.move(5, 5);
+  assert.ok(await gloss.isHidden());
+  await page.focus("#caption .term[data-term=sheet]");
+  assert.match(await gloss.textContent(), /without thickness/);
+  assert.equal(await page.getAttribute("#caption .term[data-term=sheet]", "aria-describedby"), "gloss");
+  assert.deepEqual(await violations(page), []);
+  await page.keyboard.press("Escape");
+  assert.ok(await gloss.isHidden());
+  // Each term there is has words.
+  const terms = await page.locator(".term").evaluateAll((all) => all.map(({ dataset }) => dataset.term));
+  for (const term of new Set(terms)) {
+    await page.locator(`.term[data-term=${term}]`).first().evaluate((one) => one.dispatchEvent(new MouseEvent("click", { bubbles: true })));
+    assert.doesNotMatch(await gloss.textContent(), /^term\./);
+  }
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("the first numbers are the share of light in its place, of the metal, too; nothing is 0", async () => {
+  const { page, complaints } = await open();
+  await small(page, "1");
+  await page.waitForFunction(() => document.querySelectorAll("#plain-numbers:not(.old) tr").length === 3);
+  const cells = () => page.locator("#plain-numbers td").allTextContents();
+  const share = (text) => Number(text.replace("< ", "").replace(" %", "")) / 100;
+  // As the command line counts it.
+  const scene = join(folder, "cloak.toml");
+  writeFileSync(scene, "[camera]\nresolution = [160, 120]\nsamples = 1\n[[device]]\nkind = 'square-cloak'\nrotation = 10\n");
+  const { rows } = JSON.parse(execFileSync(program, ["quality", scene, "--json", "--sweep", "device.0.show=cloak,bare"]));
+  const wanted = rows.map(({ figures }) => figures.in_place_share);
+  const shown = (await cells()).slice(0, 2).map(share);
+  for (const i of [0, 1]) assert.ok(Math.abs(shown[i] - wanted[i]) < 0.001, `${shown} for ${wanted}`);
+  assert.ok(shown[0] > shown[1] + 0.5);
+  assert.match(await page.textContent("#numbers-note"), /What counts is the first number/);
+  // On its axis the perfect cloak delays nothing: not even by rounding.
+  await page.fill("#rotation-number", "0");
+  await page.keyboard.press("Tab");
+  await page.waitForFunction(() => document.querySelector("#plain-numbers:not(.old) tr:last-child td")?.textContent === "0");
+  await choose(page, "map", "time_of_flight_difference");
+  await finished(page);
+  assert.equal(await page.textContent("#scale-low"), "0");
+  assert.match(await page.textContent("#scale-title"), /everywhere the same/);
+  const { data } = await pixels(page);
+  assert.equal(new Set(data.filter((_, i) => i % 4 === 0)).size, 1);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("links say what they show, and an embedded view has one control", async () => {
+  const { page, complaints } = await open("#square-cloak&rotation=30&show=bare&split=mirror");
+  assert.equal(await page.inputValue("#rotation-number"), "30");
+  assert.ok(await page.isChecked("#shows input[value=bare]"));
+  assert.equal(await page.inputValue("#beside"), "mirror");
+  await page.setViewportSize({ width: 480, height: 520 });
+  const embedded = await open("#sphere-cloak&embed=inner&lang=de");
+  await embedded.page.setViewportSize({ width: 480, height: 560 });
+  const fields = await embedded.page.locator("input:visible, select:visible").evaluateAll((all) => all.map((one) => one.getAttribute("aria-label")));
+  assert.deepEqual(fields, ["innen", "innen, genau"]);
+  await embedded.page.fill("input[type=number]:visible", "6");
+  await embedded.page.keyboard.press("Tab");
+  assert.match(await says(embedded.page), /Eine 12 cm große Metallkugel/);
+  assert.match(embedded.page.url(), /&embed=inner$/);
+  await finished(embedded.page);
+  assert.deepEqual(await violations(embedded.page), []);
+  // The language of a link is not remembered.
+  assert.equal(await embedded.page.evaluate(() => localStorage.length), 0);
+  const whole = await embedded.page.getAttribute("#whole-page a", "href");
+  const other = await open(whole);
+  assert.ok(await other.page.locator("#exhibit").isVisible());
+  assert.match(await says(other.page), /A metal ball 12 cm across/);
+  assert.deepEqual([...complaints, ...embedded.complaints, ...other.complaints], []);
+  for (const one of [other, embedded, { page }]) await one.page.close();
+});
+
+test("all devices are a page of pictures, each opening live", async () => {
+  const { page, complaints } = await open();
+  await page.click("#gallery");
+  const cards = await page.locator(".cards a").count();
+  assert.equal(cards, await page.locator("#exhibit option").count());
+  await page.waitForFunction((n) => document.querySelectorAll(".cards canvas[data-made]").length === n, cards, { timeout: 240000 });
+  const blank = await page.locator(".cards canvas").evaluateAll(
+    (all) => all.filter((one) => !one.getContext("2d").getImageData(0, 0, one.width, one.height).data.some((byte, i) => i % 4 < 3 && byte > 60)).length,
+  );
+  assert.equal(blank, 0);
+  assert.deepEqual(await violations(page), []);
+  await page.click(".cards a[href='#luneburg-lens']");
+  await finished(page);
+  assert.ok(await page.locator("main").isVisible());
+  assert.equal(await page.inputValue("#exhibit"), "luneburg-lens");
+  await page.goBack();
+  assert.ok(await page.locator("#cards").isVisible());
+  await page.click("#cards-close");
+  await finished(page);
+  assert.deepEqual(complaints.filter((one) => !one.includes("willReadFrequently")), []);
+  await page.close();
+});
+
+test("what one needs first is in sight, and the picture stays so", async () => {
+  const { page, complaints } = await open();
+  const box = async (selector) => {
+    const { x, y, width, height } = await page.locator(selector).boundingBox();
+    return { left: x, top: y, right: x + width, bottom: y + height };
+  };
+  for (const [width, height] of [[1280, 720], [1366, 768], [1920, 1080]]) {
+    await page.setViewportSize({ width, height });
+    for (const id of ["exhibit", "stage", "caption", "rotation", "play", "shows", "beside", "polarizer", "quality", "section"]) {
+      assert.ok((await box(`#${id}`)).bottom <= height, `${id} at ${width} x ${height}`);
+    }
+    const [stage, parameters] = [await box("#stage"), await box("#parameters-title")];
+    assert.ok(parameters.left > stage.right && parameters.bottom < height);
+    assert.ok(stage.right - stage.left > (width >= 1920 ? 900 : 500));
+    await page.evaluate(() => scrollTo(0, document.documentElement.scrollHeight));
+    assert.ok((await box("#stage")).top >= 0, String(width));
+    await page.evaluate(() => scrollTo(0, 0));
+  }
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.locator("#copy-link").scrollIntoViewIfNeeded();
+  const [stage, link] = [await box("#stage"), await box("#copy-link")];
+  assert.ok(stage.top >= 0 && stage.bottom < link.top);
+  for (const colorScheme of ["light", "dark"]) {
+    await page.emulateMedia({ colorScheme });
+    assert.deepEqual(await violations(page), [], colorScheme);
+  }
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("Space turns whatever was clicked, toasts stay until they are closed", async () => {
+  const { page, complaints } = await open();
+  await small(page, "1");
+  const turns = () => page.getAttribute("#play", "aria-pressed");
+  for (const selector of ["#whole", "#copy-link", "#rotation", "#shows input[value=bare]", "#polarizer", "#rotation-number"]) {
+    await page.locator(selector).click({ force: true });
+    await page.keyboard.press("Escape");
+    const whole = await page.isChecked("#whole");
+    await page.keyboard.press("Space");
+    assert.equal(await turns(), "true", selector);
+    assert.equal(await page.isChecked("#whole"), whole);
+    await page.keyboard.press("Space");
+    assert.equal(await turns(), "false", selector);
+  }
+  // Where the keyboard has gone to, Space presses.
+  await page.focus("#gallery");
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Shift+Tab");
+  await page.keyboard.press("Space");
+  assert.ok(await page.locator("#cards").isVisible());
+  await page.click("#cards-close");
+  await page.click("#copy-link");
+  assert.match(await page.textContent("#toast-text"), /link/);
+  assert.deepEqual(await violations(page), []);
+  await page.waitForTimeout(4000);
+  assert.ok(await page.locator("#toast").isVisible());
+  await page.click("#toast-close");
+  assert.ok(await page.locator("#toast").isHidden());
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("one turn is saved as a film", async () => {
+  const { page, complaints } = await open();
+  await small(page, "1");
+  const download = page.waitForEvent("download", { timeout: 240000 });
+  await page.click("#save-film");
+  const file = readFileSync(await (await download).path());
+  // The mark of Matroska, of which WebM is a kind.
+  assert.deepEqual([...file.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3]);
+  assert.ok(file.length > 20000, String(file.length));
+  await finished(page);
+  assert.equal(await page.inputValue("#rotation-number"), "10");
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("corners of one's own prisms are moved, all prisms that share one together", async () => {
+  const { page, complaints } = await open("#prisms");
+  await small(page, "1");
+  assert.equal(await page.locator(".corner").count(), 6);
+  const before = await pixels(page);
+  const prisms = () => page.evaluate(() => JSON.parse(atob(location.hash.slice(1).replaceAll("-", "+").replaceAll("_", "/"))).scene.device[0].prism);
+  const corners = (list) => list.flatMap((one) => one.corners.map((corner) => corner.join()));
+  const was = corners(await prisms());
+  // The upper one, of two prisms.
+  const upper = page.locator(".corner").nth(1);
+  const { x, y, width } = await upper.boundingBox();
+  await page.mouse.move(x + width / 2, y + width / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width / 2, y + width / 2 - 15, { steps: 3 });
+  await page.mouse.up();
+  await finished(page);
+  const is = corners(await prisms());
+  assert.equal(is.filter((one, i) => one !== was[i]).length, 2);
+  assert.ok(difference(before, await pixels(page)).most > 20);
+  await upper.focus();
+  await page.keyboard.press("ArrowUp");
+  await finished(page);
+  assert.equal(corners(await prisms()).filter((one, i) => one !== is[i]).length, 2);
+  assert.deepEqual(await violations(page), []);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+test("a graded index is seen in the cross-section, with its key", async () => {
+  const { page, complaints } = await open("#luneburg-lens");
+  // From the root of 2 in the middle to 1 at the border.
+  assert.ok(Math.abs(Number(await page.textContent("#index-high")) - Math.SQRT2) < 0.01);
+  assert.equal(await page.textContent("#index-low"), "1");
+  assert.equal(await page.locator("#shapes image").count(), 1);
+  assert.match(await page.textContent("#ruler-words"), /^\d+ cm$/);
+  await unfold(page);
+  assert.deepEqual(await violations(page), []);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
+const network = Object.values(networkInterfaces()).flat().find(({ family, internal }) => family === "IPv4" && !internal)?.address;
+
+test("a class on one network opens the link, and nobody without it", { skip: !network }, async () => {
+  const shared = await startServer("--host", network);
+  assert.ok(shared.address.startsWith(`http://${network}:`));
+  const { page, complaints } = await openPage(browser.context, shared.address);
+  await finished(page);
+  assert.deepEqual(complaints, []);
+  const { origin, port } = new URL(shared.address);
+  assert.equal((await fetch(`${origin}/`)).status, 403);
+  await assert.rejects(fetch(`http://127.0.0.1:${port}/`));
+  await page.close();
+  await shared.end();
+});
