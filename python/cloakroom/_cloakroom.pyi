@@ -193,6 +193,24 @@ def trace(
     paths: float | None,
     progress: _Tell,
 ) -> dict[str, Any]: ...
+def scatter(
+    scene: Scene,
+    origins: NDArray[Any],
+    directions: NDArray[Any],
+    draws: NDArray[Any] | None,
+    fields: NDArray[np.complex128] | None,
+    want_fields: bool,
+    rotation: NDArray[np.float64],
+    place: NDArray[np.float64],
+    unit: float,
+    min_power: float,
+) -> dict[str, Any]: ...
+def device_bounds(
+    scene: Scene, unit: float
+) -> list[tuple[NDArray[np.float64], list[float], list[float], bool]]: ...
+def outline_meshes(
+    scene: Scene, unit: float
+) -> list[tuple[str, Literal["medium", "metal", "polarizer", "opaque"], NDArray[np.float64]]]: ...
 def interface(
     incident: _Tensors,
     transmitted: _Tensors | None,
