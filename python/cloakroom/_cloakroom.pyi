@@ -1,5 +1,5 @@
 from collections.abc import Callable, Sequence
-from typing import Any, final
+from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ __all__ = [
     "Scene",
     "animate",
     "check_memory",
+    "device_bounds",
     "diagram",
     "estimate",
     "export_grid",
@@ -25,12 +26,14 @@ __all__ = [
     "interface",
     "key_names",
     "merge",
+    "outline_meshes",
     "png_bytes",
     "pulses",
     "quality",
     "read",
     "render",
     "save",
+    "scatter",
     "schema",
     "set_threads",
     "setting",
