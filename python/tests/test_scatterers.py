@@ -59,7 +59,12 @@ def test_fields_are_jones_columns() -> None:
     sign = np.sign(own.electric_field[own.status == MISSED][:, 1] @ vertical[0].real)[0].real
     assert own.electric_field is not None and circular.electric_field is not None
     expected = (own.electric_field[:, 0] + 1j * sign * own.electric_field[:, 1]) / np.sqrt(2)
-    np.testing.assert_allclose(circular.electric_field[:, 0], expected, atol=1e-9)
+    # Weak branches are pruned by the powers of what was launched, so that each has some that the other has not.
+    places = {(ray, path): place for place, (ray, path) in enumerate(zip(circular.ray, circular.path))}
+    both = [(place, places[way]) for place, way in enumerate(zip(own.ray, own.path)) if way in places]
+    assert len(both) > 0.8 * len(own.ray)
+    here, there = np.array(both).T
+    np.testing.assert_allclose(circular.electric_field[there, 0], expected[here], atol=1e-9)
 
 
 def test_single_precision_stays_single() -> None:

@@ -10,8 +10,8 @@ import mitsuba as mi
 import numpy as np
 from numpy.typing import NDArray
 
-from ..scatterers import ABSORBED, ENDED, LEFT, REFUSED, Scatterer, rigid
-from ._shape import MARGIN, bounding, keys_of, scatterer_of
+from ..scatterers import LEFT, MISSED, Scatterer, rigid
+from ._shape import MARGIN, Box, box_of, keys_of, scatterer_of
 
 __all__ = ["register"]
 
@@ -55,12 +55,13 @@ def _bsdf() -> Callable[[Any], Any]:
             self.see_through = plain.pop("see_through", "auto")
             if self.see_through not in ("auto", "yes", "no"):
                 raise ValueError(f'see_through is {self.see_through!r}; expected "auto", "yes" or "no"')
-            if "kind" not in plain:
-                raise ValueError("a BSDF of the type cloakroom has a kind, such as sphere-cloak")
             matrix = rigid("to_world", matrix)
-            self.scatterer = scatterer_of(keys_of(plain), matrix, unit, wavelength_nm, min_power)
-            # An endless one is refused here.
-            self.placed = bounding(self.scatterer)[1]
+            keys = keys_of(plain)
+            if "scene" in keys:
+                keys["scene"] = str(mi.file_resolver().resolve(keys["scene"]))
+            self.scatterer = scatterer_of(keys, matrix, unit, wavelength_nm, min_power)
+            # Endless ones are refused here.
+            self.box = box_of(self.scatterer)
             self.m_flags = mi.BSDFFlags.Null | mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide
             self.m_components = [self.m_flags]
 
@@ -101,6 +102,7 @@ class _Room:
         self.scatterers: list[Scatterer] = []
         self.clear: list[bool] = []
         self.shapes: list[Any] = []
+        self.boxes: list[Box] = []
         numbers: dict[int, int] = {}
         for shape in scene.shapes():
             bsdf = shape.bsdf()
@@ -109,6 +111,7 @@ class _Room:
             self._check_bounds(shape, bsdf)
             self.scatterers.append(bsdf.scatterer)
             self.shapes.append(shape)
+            self.boxes.append(bsdf.box)
             numbers[_place(shape)] = len(self.shapes)
             self.clear.append(bsdf.see_through == "yes" or bsdf.see_through == "auto" and _is_clear(bsdf))
         if self.shapes:
@@ -121,32 +124,26 @@ class _Room:
 
     @staticmethod
     def _check_bounds(shape: Any, bsdf: Any) -> None:
-        corners = np.array(np.meshgrid(*[[-1, 1]] * 3)).reshape(3, -1)
-        placed = bsdf.placed
-        box = shape.bbox()
-        low, high = np.array(box.min).ravel(), np.array(box.max).ravel()
-        if bsdf.scatterer.bounds[0].ball:
-            reach = np.linalg.norm(placed[:3, :3], axis=1)
-        else:
-            reach = np.abs(placed[:3, :3] @ corners).max(axis=1)
-        spare = 0.5 * MARGIN * reach.max()
-        if (placed[:3, 3] - reach < low - spare).any() or (placed[:3, 3] + reach > high + spare).any():
+        bounds, box = shape.bbox(), bsdf.box
+        low, high = np.array(bounds.min).ravel(), np.array(bounds.max).ravel()
+        middle, reach = box.to_world[:3, 3], box.extent
+        # It has been grown; single numbers are off by less.
+        if (middle - reach < low).any() or (middle + reach > high).any():
             raise ValueError(
                 f"the shape {shape.id()!r} does not hold its device: it goes from {low} to {high}, and the device from "
-                f"{placed[:3, 3] - reach} to {placed[:3, 3] + reach}; cloakroom.mitsuba.device() makes a shape that does"
+                f"{middle - reach} to {middle + reach}; cloakroom.mitsuba.device() makes a shape that does"
             )
 
     def _check_inside(self, scene: Any) -> None:
         """Refuses what stands within the bounds of a device, by rays from side to side."""
         rng = np.random.default_rng(0)
-        for shape, scatterer in zip(self.shapes, self.scatterers):
-            ball, placed = scatterer.bounds[0].ball, bounding(scatterer)[1]
-            ends = []
+        for shape, box in zip(self.shapes, self.boxes):
+            # Furniture may touch the device, and be within rounding of it.
+            placed, ends = box.shape(-10 * MARGIN), []
             for _ in range(2):
                 points = rng.uniform(-1, 1, (3, TRIALS))
-                points /= np.linalg.norm(points, axis=0) if ball else np.abs(points).max(axis=0)
-                # Furniture may touch the device, and be within rounding of it.
-                ends.append(placed[:3, :3] @ (points * (1 - 4 * MARGIN)) + placed[:3, 3:])
+                points /= np.linalg.norm(points, axis=0) if box.ball else np.abs(points).max(axis=0)
+                ends.append(placed[:3, :3] @ points + placed[:3, 3:])
             start, end = (mi.Point3f(points.astype(np.float32)) for points in ends)
             way = end - start
             length = dr.norm(way)
@@ -178,13 +175,13 @@ def _place(shape: Any) -> int:
 def _is_clear(bsdf: Any) -> bool:
     """Whether nearly all of the light that comes to a device goes on along its own line."""
     rng = np.random.default_rng(0)
-    placed, bounds = bsdf.placed, bsdf.scatterer.bounds[0]
+    box, placed = bsdf.box, bsdf.box.shape()
     points, ends = rng.uniform(-1, 1, (2, 3, TRIALS // 4))
-    ends /= np.linalg.norm(ends, axis=0) if bounds.ball else np.abs(ends).max(axis=0)
-    points /= np.maximum(1, np.linalg.norm(points, axis=0)) if bounds.ball else 1
+    ends /= np.linalg.norm(ends, axis=0) if box.ball else np.abs(ends).max(axis=0)
+    points /= np.maximum(1, np.linalg.norm(points, axis=0)) if box.ball else 1
     start, through = (placed[:3, :3] @ at + placed[:3, 3:] for at in (2 * ends, points))
     scattered = bsdf.scatterer.scatter(start.T, (through - start).T, u=0.5)
-    met = (scattered.status == LEFT) | (scattered.status == ENDED) | (scattered.status == ABSORBED)
+    met = scattered.status != MISSED
     return bool(met.any()) and bool(scattered.transmitted[met].mean() >= CLEAR)
 
 
@@ -287,7 +284,7 @@ def _integrator() -> Callable[[Any], Any]:
                 for number in range(passes):
                     if self.progress is not None:
                         self.progress(number, passes)
-                    of_pass = seed if number == 0 else int(mi.sample_tea_32(int(seed), number)[0][0])
+                    of_pass = seed if number == 0 else int(mi.sample_tea_32(int(seed), number)[0])
                     sampler, _ = Common.prepare(self, sensor, of_pass, at_once, self.aov_names())
                     ray, weight, pos = Common.sample_rays(self, scene, sensor, sampler)
                     light, valid, _ = self.sample(scene, sampler, ray, None, mi.Bool(True))
@@ -527,14 +524,9 @@ def _integrator() -> Callable[[Any], Any]:
                 own, crossings = dr.gather(mi.UInt32, state["own"], rows), dr.gather(mi.UInt32, state["crossings"], rows)
                 u = mi.sample_tea_float32(own, crossings)
                 scattered = scatterer.scatter(_rows(o), _rows(d), np.array(u))
-                if (scattered.status == REFUSED).any():
-                    first = int(np.flatnonzero(scattered.status == REFUSED)[0])
-                    raise ValueError(
-                        f"a ray at {_rows(o)[first]} along {_rows(d)[first]} comes from within {scatterer}: something "
-                        "scatters light inside it"
-                    )
-                gone = (scattered.status == ABSORBED) | (scattered.status == ENDED)
-                here = mi.Bool(~gone) & (crossings < self.max_crossings)
+                # Where furniture touches metal, rays may start within it, by rounding: they end.
+                goes = (scattered.status == MISSED) | (scattered.status == LEFT)
+                here = mi.Bool(goes) & (crossings < self.max_crossings)
                 weight = mi.Float(scattered.weight)
                 straight = dr.gather(mi.Bool, state["straight"], rows)
                 on_line = mi.Bool(scattered.straight)

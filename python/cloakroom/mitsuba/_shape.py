@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from ..scatterers import Scatterer, rigid
 from ..scenes import Scene
 from ..tables import Device
 
-__all__ = ["MARGIN", "bounding", "device"]
+__all__ = ["MARGIN", "Box", "box_of", "device", "keys_of", "scatterer_of"]
 
 #: How far a bounding shape goes beyond its device, as a share of its size: rays are single numbers outside.
 MARGIN = 1e-4
@@ -61,10 +62,9 @@ def device(
     matrix = rigid("to_world", np.eye(4) if to_world is None else _matrix(to_world))
     listed = {"kind": given.kind, **given.given()} if isinstance(given, Device) else dict(given)
     scatterer = scatterer_of(listed, matrix, unit, wavelength_nm, min_power)
-    kind = listed.pop("kind")
     bsdf = {
         "type": "cloakroom",
-        "kind": kind,
+        "kind": listed.pop("kind"),
         "keys": json.dumps(listed),
         "to_world": mi.ScalarTransform4f(matrix),
         "unit": float(unit),
@@ -72,34 +72,69 @@ def device(
         "see_through": see_through,
         "min_power": float(min_power),
     }
-    shape, placed = bounding(scatterer)
-    return {"type": shape, "to_world": mi.ScalarTransform4f(placed), "bsdf": bsdf}
+    box = box_of(scatterer)
+    shape = "sphere" if box.ball else "cube"
+    return {"type": shape, "to_world": mi.ScalarTransform4f(box.shape()), "bsdf": bsdf}
 
 
 def scatterer_of(
     keys: Mapping[str, Any], to_world: NDArray[np.float64], unit: float, wavelength_nm: float, min_power: float
 ) -> Scatterer:
-    """The one device of a kind and keys, at its place."""
-    if "surface" in keys:
+    """The one device of a kind and keys, or the devices of the scene file ``scene``, at their place."""
+    if "scene" in keys:
+        if set(keys) != {"scene"}:
+            raise ValueError(f"a device of a scene file has no keys of its own, but {', '.join(sorted(set(keys) - {'scene'}))}")
+        scene = Scene.load(keys["scene"])
+    elif "kind" not in keys:
+        raise ValueError("a device has a kind, such as sphere-cloak, or a scene, the name of a scene file")
+    else:
+        scene = Scene(devices=keys, light={"wavelength_nm": wavelength_nm})
+    if any(getattr(device, "surface", None) for device in scene.devices):
         raise ValueError("surface: an opaque body in a room is a shape of Mitsuba's own, with a BSDF of its own")
-    scene = Scene(devices=keys, light={"wavelength_nm": wavelength_nm})
     return Scatterer(scene, to_world=to_world, unit=unit, min_power=min_power)
 
 
-def bounding(scatterer: Scatterer) -> tuple[str, NDArray[np.float64]]:
-    """The kind of Mitsuba's shape around the one device of a scatterer, and the matrix that places it."""
+@dataclass(frozen=True)
+class Box:
+    """The least box around the devices of a scatterer, or the ball in it."""
+
+    #: From the box's frame to the world; (4, 4), a rotation and a shift.
+    to_world: NDArray[np.float64]
+    #: The halves of its sides; (3,).
+    halves: NDArray[np.float64]
+    #: Whether it is a ball.
+    ball: bool
+
+    @property
+    def extent(self) -> NDArray[np.float64]:
+        """How far it reaches along the world's axes from its middle; (3,)."""
+        turn = self.to_world[:3, :3]
+        return np.full(3, self.halves[0]) if self.ball else np.abs(turn) @ self.halves
+
+    def shape(self, grown: float = MARGIN) -> NDArray[np.float64]:
+        """The matrix that makes Mitsuba's cube or sphere of it, grown by a share of its size."""
+        matrix = self.to_world.copy()
+        matrix[:3, :3] *= self.halves + grown * self.halves.max()
+        return matrix
+
+
+def box_of(scatterer: Scatterer) -> Box:
+    """The box around devices: of one in its own frame, of several in that which they share."""
     bounds = scatterer.bounds
-    if len(bounds) != 1:
-        raise ValueError(f"a bounding shape is around one device; there are {len(bounds)}: take one shape for each")
-    (only,) = bounds
-    if only.ball:
-        centre, half = (only.low + only.high) / 2, (only.high - only.low).max() / 2 * (1 + MARGIN)
-        halves = np.full(3, half)
+    to_world, ball = scatterer.to_world, False
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    if len(bounds) == 1:
+        to_world, low, high, ball = bounds[0].to_world, bounds[0].low, bounds[0].high, bounds[0].ball
     else:
-        centre, halves = (only.low + only.high) / 2, (only.high - only.low) / 2
-        halves = halves + MARGIN * halves.max()
-    placed = only.to_world @ np.block([[np.diag(halves), centre[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]])
-    return "sphere" if only.ball else "cube", placed
+        for each in bounds:
+            local = np.linalg.inv(to_world) @ each.to_world
+            middle = local[:3, :3] @ (each.low + each.high) / 2 + local[:3, 3]
+            half = (each.high - each.low) / 2
+            reach = half if each.ball else np.abs(local[:3, :3]) @ half
+            low, high = np.minimum(low, middle - reach), np.maximum(high, middle + reach)
+    placed = to_world.copy()
+    placed[:3, 3] += to_world[:3, :3] @ (low + high) / 2
+    return Box(placed, (high - low) / 2, ball)
 
 
 def _matrix(given: Any) -> ArrayLike:
