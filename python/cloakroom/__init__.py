@@ -27,11 +27,13 @@ from .pages import Page
 from .papers import figures
 from .pictures import Picture
 from .rays import Paths, Traced, trace
+from .scatterers import Bounds, Outline, Scattered, Scatterer
 from .scenes import Estimate, Scene
 from .tables import *  # noqa: F403
 
 __all__ = [
     "Arrays",
+    "Bounds",
     "Drawing",
     "Estimate",
     "Finding",
@@ -40,9 +42,12 @@ __all__ = [
     "Medium",
     "Modes",
     "Optimum",
+    "Outline",
     "Page",
     "Paths",
     "Picture",
+    "Scattered",
+    "Scatterer",
     "Scene",
     "Traced",
     "__version__",

@@ -1,5 +1,5 @@
 from collections.abc import Callable, Sequence
-from typing import Any, final
+from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ __all__ = [
     "Scene",
     "animate",
     "check_memory",
+    "device_bounds",
     "diagram",
     "estimate",
     "export_grid",
@@ -26,12 +27,14 @@ __all__ = [
     "interface",
     "key_names",
     "merge",
+    "outline_meshes",
     "png_bytes",
     "pulses",
     "quality",
     "read",
     "render",
     "save",
+    "scatter",
     "schema",
     "set_threads",
     "setting",
@@ -197,6 +200,24 @@ def trace(
     paths: float | None,
     progress: _Tell,
 ) -> dict[str, Any]: ...
+def scatter(
+    scene: Scene,
+    origins: NDArray[Any],
+    directions: NDArray[Any],
+    draws: NDArray[Any] | None,
+    fields: NDArray[np.complex128] | None,
+    want_fields: bool,
+    rotation: NDArray[np.float64],
+    place: NDArray[np.float64],
+    unit: float,
+    min_power: float,
+) -> dict[str, Any]: ...
+def device_bounds(
+    scene: Scene, unit: float
+) -> list[tuple[NDArray[np.float64], list[float], list[float], bool]]: ...
+def outline_meshes(
+    scene: Scene, unit: float
+) -> list[tuple[str, Literal["medium", "metal", "polarizer", "opaque"], NDArray[np.float64]]]: ...
 def interface(
     incident: _Tensors,
     transmitted: _Tensors | None,

@@ -14,6 +14,7 @@ mod memory;
 mod page;
 mod pictures;
 mod rays;
+mod scatterers;
 mod scenes;
 mod supervision;
 mod tables;
@@ -44,6 +45,8 @@ mod _cloakroom {
     use super::pictures::{estimate, merge, png_bytes, pulses, read, render, save, srgb};
     #[pymodule_export]
     use super::rays::{export_paths, trace};
+    #[pymodule_export]
+    use super::scatterers::{device_bounds, outline_meshes, scatter};
     #[pymodule_export]
     use super::scenes::Scene;
     #[pymodule_export]

@@ -5,3 +5,4 @@ mod further_on;
 mod graded_space;
 mod numbers;
 mod paths;
+mod scatter;

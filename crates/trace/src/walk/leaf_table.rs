@@ -17,6 +17,11 @@ const BATCH: [usize; 2] = [64, 4096];
 /// Batches a thread, so that all end at about the same time.
 const BATCHES: usize = 16;
 
+/// How many of `count` rays one thread takes at a time.
+pub(super) fn batch_size(count: usize) -> usize {
+    (count / (BATCHES * crate::parallel::threads())).clamp(BATCH[0], BATCH[1])
+}
+
 /// Work was stopped from outside before it was done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("stopped")]
@@ -115,7 +120,7 @@ impl<const N: usize> LeafTable<N> {
         let settings = settings.into();
         let alone = settings.coherence.is_none() && settings.pick.is_none();
         let reach = settings.paths.filter(|_| alone);
-        let size = (count / (BATCHES * crate::parallel::threads())).clamp(BATCH[0], BATCH[1]);
+        let size = batch_size(count);
         let batches = crate::parallel::map(count.div_ceil(size), |batch| {
             if stop.load(Ordering::Relaxed) {
                 return Err(E::from(Stopped));

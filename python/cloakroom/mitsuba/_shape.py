@@ -1,0 +1,158 @@
+"""The shape that bounds a device, with the device on it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..scatterers import Scatterer, rigid
+from ..scenes import Scene
+from ..tables import Device
+
+__all__ = ["MARGIN", "Box", "box_of", "device", "keys_of", "scatterer_of"]
+
+#: How far a bounding shape goes beyond its device, as a share of its size: rays are single numbers outside.
+MARGIN = 1e-4
+
+
+def device(
+    given: Device | Mapping[str, Any],
+    to_world: Any = None,
+    *,
+    unit: float = 1.0,
+    wavelength_nm: float = 550.0,
+    see_through: str = "auto",
+    min_power: float = 1e-4,
+) -> dict[str, Any]:
+    """A device as a shape for ``mitsuba.load_dict``: the least box or ball around it, with the BSDF ``cloakroom`` on it.
+
+    Parameters
+    ----------
+    given : device or mapping
+        A device, ``SquareCloak(length=40)``, or its kind and keys.
+    to_world : transform or array_like, (4, 4), optional
+        Where it stands: a rotation and a shift. The device's own frame is x forward, y up, z right.
+    unit : float, default 1
+        How many cm the scene's unit of length is: 100 for a scene in metres.
+    wavelength_nm : float, default 550
+        The wavelength in vacuum at which the device is traced, for all colors.
+    see_through : {"auto", "yes", "no"}, default "auto"
+        Whether shadow rays go through the device, on as far as its leaves go on along their line. ``"auto"`` lets them
+        where nearly all leaves do.
+    min_power : float, default 1e-4
+        Branches within the device below this share of a ray's power are pruned.
+
+    Returns
+    -------
+    dict
+        The shape. In XML it reads the same: see the book.
+
+    Raises
+    ------
+    ValueError
+        If the device does not fit, or is endless: a cloak along an axis needs a ``length``.
+    """
+    import mitsuba as mi
+
+    matrix = rigid("to_world", np.eye(4) if to_world is None else _matrix(to_world))
+    listed = {"kind": given.kind, **given.given()} if isinstance(given, Device) else dict(given)
+    scatterer = scatterer_of(listed, matrix, unit, wavelength_nm, min_power)
+    bsdf = {
+        "type": "cloakroom",
+        "kind": listed.pop("kind"),
+        "keys": json.dumps(listed),
+        "to_world": mi.ScalarTransform4f(matrix),
+        "unit": float(unit),
+        "wavelength_nm": float(wavelength_nm),
+        "see_through": see_through,
+        "min_power": float(min_power),
+    }
+    box = box_of(scatterer)
+    shape = "sphere" if box.ball else "cube"
+    return {"type": shape, "to_world": mi.ScalarTransform4f(box.shape()), "bsdf": bsdf}
+
+
+def scatterer_of(
+    keys: Mapping[str, Any], to_world: NDArray[np.float64], unit: float, wavelength_nm: float, min_power: float
+) -> Scatterer:
+    """The one device of a kind and keys, or the devices of the scene file ``scene``, at their place."""
+    if "scene" in keys:
+        if set(keys) != {"scene"}:
+            raise ValueError(f"a device of a scene file has no keys of its own, but {', '.join(sorted(set(keys) - {'scene'}))}")
+        scene = Scene.load(keys["scene"])
+    elif "kind" not in keys:
+        raise ValueError("a device has a kind, such as sphere-cloak, or a scene, the name of a scene file")
+    else:
+        scene = Scene(devices=keys, light={"wavelength_nm": wavelength_nm})
+    if any(getattr(device, "surface", None) for device in scene.devices):
+        raise ValueError("surface: an opaque body in a room is a shape of Mitsuba's own, with a BSDF of its own")
+    return Scatterer(scene, to_world=to_world, unit=unit, min_power=min_power)
+
+
+@dataclass(frozen=True)
+class Box:
+    """The least box around the devices of a scatterer, or the ball in it."""
+
+    #: From the box's frame to the world; (4, 4), a rotation and a shift.
+    to_world: NDArray[np.float64]
+    #: The halves of its sides; (3,).
+    halves: NDArray[np.float64]
+    #: Whether it is a ball.
+    ball: bool
+
+    @property
+    def extent(self) -> NDArray[np.float64]:
+        """How far it reaches along the world's axes from its middle; (3,)."""
+        turn = self.to_world[:3, :3]
+        return np.full(3, self.halves[0]) if self.ball else np.abs(turn) @ self.halves
+
+    def shape(self, grown: float = MARGIN) -> NDArray[np.float64]:
+        """The matrix that makes Mitsuba's cube or sphere of it, grown by a share of its size."""
+        matrix = self.to_world.copy()
+        matrix[:3, :3] *= self.halves + grown * self.halves.max()
+        return matrix
+
+
+def box_of(scatterer: Scatterer) -> Box:
+    """The box around devices: of one in its own frame, of several in that which they share."""
+    bounds = scatterer.bounds
+    to_world, ball = scatterer.to_world, False
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    if len(bounds) == 1:
+        to_world, low, high, ball = bounds[0].to_world, bounds[0].low, bounds[0].high, bounds[0].ball
+    else:
+        for each in bounds:
+            local = np.linalg.inv(to_world) @ each.to_world
+            middle = local[:3, :3] @ (each.low + each.high) / 2 + local[:3, 3]
+            half = (each.high - each.low) / 2
+            reach = half if each.ball else np.abs(local[:3, :3]) @ half
+            low, high = np.minimum(low, middle - reach), np.maximum(high, middle + reach)
+    placed = to_world.copy()
+    placed[:3, 3] += to_world[:3, :3] @ (low + high) / 2
+    return Box(placed, (high - low) / 2, ball)
+
+
+def _matrix(given: Any) -> ArrayLike:
+    """A transform of Mitsuba, or an array."""
+    matrix = getattr(given, "matrix", given)
+    return np.array(matrix, dtype=np.float64).reshape(4, 4)
+
+
+def keys_of(properties: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of a device among the plain properties of a plugin: each by its name, lists in the JSON of ``keys``."""
+    keys = dict(properties)
+    text = keys.pop("keys", None)
+    if text is not None:
+        try:
+            more = json.loads(text)
+        except (TypeError, json.JSONDecodeError) as error:
+            raise ValueError(f'keys is no JSON object such as {{"rotation": 10}}: {error}') from None
+        if not isinstance(more, dict):
+            raise ValueError(f"keys is no JSON object, but {text}")
+        keys.update(more)
+    return keys
