@@ -17,7 +17,7 @@ const BUILT_IN: [(&str, &[u8]); 2] = [
     ("room", include_bytes!("../../assets/room.jpg")),
 ];
 
-/// In a browser they are loaded each time: the same, made 1024 pixels wide.
+/// In a browser they are loaded each time: the same, averaged over two by two pixels.
 #[cfg(target_arch = "wasm32")]
 const BUILT_IN: [(&str, &[u8]); 2] = [
     ("bookshelf", include_bytes!("../../assets/reduced/bookshelf.jpg")),
