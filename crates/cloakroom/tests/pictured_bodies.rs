@@ -232,3 +232,57 @@ fn images_are_read_once_and_kept_while_they_are_shown() {
     PreparedScene::with_images(&blocks, &mut images).unwrap();
     assert!(PreparedScene::with_images(&ramp, &mut images).is_err());
 }
+
+/// Under a white sky over black ground, a matt surface shows a share of (1 + n.y) / 2 of what it scatters: a ball from above to
+/// below, turned or not, a box and a cylinder by their faces. What is not lit shows what it always does.
+#[test]
+fn the_surroundings_light_what_is_lit() {
+    let folder = folder();
+    let sky = RgbImage::from_fn(512, 256, |_, y| Rgb([if y < 128 { 255 } else { 0 }; 3]));
+    sky.save(folder.path().join("sky.png")).unwrap();
+    let seen = |around: &str, eye: [f64; 3], body: &str| {
+        let up = if eye[1] == 0.0 { "[0, 1, 0]" } else { "[1, 0, 0]" };
+        let text = format!(
+            "[camera]\nprojection = \"orthographic\"\nposition = {eye:?}\ntarget = [0, 0, 0]\nup = {up}\n\
+             width = 8\nresolution = [32, 32]\nsamples = 1\n[photograph]\nx = 500\n[surroundings]\n{around}\n\
+             [[device]]\nkind = \"body\"\n{body}\n"
+        );
+        picture_in(folder.path(), &text)
+    };
+    let sky = "image = \"sky.png\"";
+    let red = |lit: &str| format!("surface = {{ color = [0.8, 0.2, 0.4]{lit} }}");
+    let lit = red(", lit = true");
+    for turn in ["", "rotation = 70\n"] {
+        let ball = format!("shape = \"sphere\"\nradius = 4\n{turn}{lit}");
+        let picture = seen(sky, [-90.0, 0.0, 0.0], &ball);
+        for row in 2..30_u32 {
+            let up = (15.5 - f64::from(row)) / 4.0 / 4.0;
+            let light = pixel(&picture, [16, row]);
+            for (light, color) in light.into_iter().zip([0.8, 0.2, 0.4]) {
+                let expected = color * 0.5 * (1.0 + up);
+                // Samples lie anywhere in their pixel.
+                assert!((light - expected).abs() < 0.03 * color, "{row}: {light} {expected}");
+            }
+        }
+    }
+    for (shape, eye, share) in [
+        ("shape = \"box\"\nsize = [9, 9, 9]", [-90.0, 0.0, 0.0], 0.5),
+        ("shape = \"box\"\nsize = [9, 9, 9]", [0.0, 90.0, 0.0], 1.0),
+        ("shape = \"box\"\nsize = [9, 9, 9]\nrotation = 90", [0.0, 90.0, 0.0], 1.0),
+        ("shape = \"cylinder\"\nradius = 6\nlength = 9\naxis = [0, 1, 0]", [0.0, 90.0, 0.0], 1.0),
+        ("shape = \"slab\"\nthickness = 3", [-90.0, 0.0, 0.0], 0.5),
+    ] {
+        let light = pixel(&seen(sky, eye, &format!("{shape}\n{lit}")), [16, 16]);
+        for (light, color) in light.into_iter().zip([0.8, 0.2, 0.4]) {
+            assert!((light / (color * share) - 1.0).abs() < 0.01, "{shape}: {light}");
+        }
+        let own = pixel(&seen(sky, eye, &format!("{shape}\n{}", red(""))), [16, 16]);
+        assert!((own[0] - 0.8).abs() < 1e-6, "{shape}: {own:?}");
+        // Light that is the same all around is what a surface scatters of it; none is black.
+        let even = pixel(&seen("color = [0.5, 1, 2]", eye, &format!("{shape}\n{lit}")), [16, 16]);
+        for (light, expected) in even.into_iter().zip([0.4, 0.2, 0.8]) {
+            assert!((light - expected).abs() < 1e-6, "{shape}: {even:?}");
+        }
+        assert_eq!(pixel(&seen("", eye, &format!("{shape}\n{lit}")), [16, 16]), [0.0; 3]);
+    }
+}

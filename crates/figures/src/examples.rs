@@ -50,8 +50,12 @@ const OTHERS: [(&str, &str, &str); 17] = [
         "For `cloakroom animate`: a cloak with an open core that turns in a shop window"),
 ];
 
-/// Cloak (iii) of the paper, turned by 10 degrees: the scene to begin with.
-pub const FIRST: &str = include_str!("../scenes/paper/fig7d.toml");
+/// Cloak (iii) of the paper, turned by 10 degrees, in the room around its photograph: the scene to
+/// begin with.
+pub const FIRST: &str = concat!(
+    include_str!("../scenes/paper/fig7d.toml"),
+    "\n[surroundings]\nimage = \"builtin:room\"\n"
+);
 
 /// The example scene of that name, with or without its ending: `gallery/prisms`.
 #[must_use]

@@ -36,8 +36,15 @@ function compiled() {
   return part;
 }
 
+// The page has the built-in images at half the size: the command line is given the same ones.
+const reduced = new URL("../../cloakroom/assets/reduced/", import.meta.url).pathname;
+const room = `surroundings.image=${reduced}room.jpg`;
+
 function rendered(scene, set) {
   const file = join(out, "picture.png");
+  const images = [`photograph.image=${reduced}bookshelf.jpg`, "photograph.width=110"];
+  if (readFileSync(scene, "utf8").includes("builtin:room")) images.push(room);
+  set = [...images, ...set];
   execFileSync(program, ["render", scene, ...set.flatMap((one) => ["--set", one]), "-o", file]);
   return readFileSync(file);
 }
@@ -73,7 +80,7 @@ test("the page in a browser is that of the server, and asks for nothing outside 
   await page.waitForFunction(() => document.querySelectorAll("#plain-numbers tr, #numbers tr").length === 12);
   assert.ok((await page.locator("#section path").count()) >= 5);
   await small(page);
-  const set = ["camera.resolution=[320, 240]", "camera.samples=4"];
+  const set = ["camera.resolution=[320, 240]", "camera.samples=4", room];
   assertAlike(await pixels(page), await decoded(page, rendered(join(scenes, "paper/fig7d.toml"), set)), "the first scene");
   assert.deepEqual(complaints, []);
   await page.close();
@@ -132,7 +139,7 @@ test("as one file it needs no server", async () => {
   const { page, complaints } = await openPage(browser.context, pathToFileURL(`${resolve(folder)}.html`).href);
   await finished(page);
   await small(page);
-  const set = ["camera.resolution=[320, 240]", "camera.samples=4"];
+  const set = ["camera.resolution=[320, 240]", "camera.samples=4", room];
   assertAlike(await pixels(page), await decoded(page, rendered(join(scenes, "paper/fig7d.toml"), set)), "the first scene");
   assert.deepEqual(complaints, []);
   await page.close();

@@ -7,6 +7,9 @@ use cloakroom::scene_file;
 use cloakroom_figures::gallery::EXHIBITS;
 use serde_json::{Map, Value, json};
 
+/// What is around the scenes that a page offers.
+const ROOM: &str = "builtin:room";
+
 /// What a page is told first.
 pub fn greeting(opened: &Opened) -> Value {
     let schema = scene_file::schema();
@@ -17,7 +20,9 @@ pub fn greeting(opened: &Opened) -> Value {
     let exhibits: Vec<Value> = EXHIBITS
         .iter()
         .filter_map(|exhibit| {
-            let scene = tables(exhibit.scene).ok()?;
+            let mut scene = tables(exhibit.scene).ok()?;
+            // Who turns a device looks past the photograph: the paper's scenes do not say what is there.
+            scene.entry("surroundings").or_insert_with(|| json!({ "image": ROOM }));
             let words = format!("{}. {}", exhibit.map, exhibit.reference);
             Some(json!({ "name": exhibit.name, "words": words, "scene": scene }))
         })
@@ -85,6 +90,9 @@ mod tests {
         );
         assert_eq!(hello["kinds"]["square-cloak"]["core_can_be_open"], true);
         assert_eq!(hello["kinds"]["luneburg-lens"]["shows"], json!(["cloak"]));
-        assert_eq!(hello["exhibits"].as_array().map(Vec::len), Some(EXHIBITS.len()));
+        let exhibits = hello["exhibits"].as_array().expect("exhibits");
+        assert_eq!(exhibits.len(), EXHIBITS.len());
+        let around = |exhibit: &Value| exhibit["scene"]["surroundings"]["image"] == ROOM;
+        assert!(exhibits.iter().filter(|exhibit| around(exhibit)).count() + 4 > EXHIBITS.len());
     }
 }

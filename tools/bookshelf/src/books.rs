@@ -182,7 +182,7 @@ impl Compartment {
     }
 
     /// A pile of lying books with its left edge at `x`.
-    fn stack(&self, random: &mut Random, x: f32, shapes: &mut Vec<Shape>) {
+    pub fn stack(&self, random: &mut Random, x: f32, shapes: &mut Vec<Shape>) {
         let mut y = self.floor;
         let across = Mat3::from_cols(Vec3::Y, Vec3::NEG_X, Vec3::Z);
         for level in 0..3 + random.bits() % 3 {
@@ -200,7 +200,7 @@ impl Compartment {
 }
 
 /// A globe on a wooden foot, standing at `middle`.
-fn globe(middle: Vec3, shapes: &mut Vec<Shape>) {
+pub fn globe(middle: Vec3, shapes: &mut Vec<Shape>) {
     let foot = Finish::Wood { along: 0, tone: Vec3::new(0.22, 0.10, 0.05), seed: 77 };
     let profile = [4.2, 3.4, 1.0, 0.8, 1.1];
     shapes.push(Shape::Vessel(Vessel { foot: middle, height: 5.0, profile, finish: foot }));
@@ -222,7 +222,7 @@ fn globe(middle: Vec3, shapes: &mut Vec<Shape>) {
 }
 
 /// A potted plant standing at `middle`.
-fn plant(random: &mut Random, middle: Vec3, shapes: &mut Vec<Shape>) {
+pub fn plant(random: &mut Random, middle: Vec3, shapes: &mut Vec<Shape>) {
     let finish = Finish::Glaze(Vec3::new(0.62, 0.56, 0.47));
     let profile = [3.3, 4.0, 4.5, 4.8, 4.9];
     shapes.push(Shape::Vessel(Vessel { foot: middle, height: 7.6, profile, finish }));

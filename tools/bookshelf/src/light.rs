@@ -3,6 +3,7 @@
 
 use glam::Vec3;
 
+use crate::fields::ramp;
 use crate::materials::{Kind, Surface};
 
 /// A rectangular lamp, bright on both sides.
@@ -49,6 +50,16 @@ impl Lamp {
         let u = q.dot(self.across) / self.across.length_squared();
         let v = q.dot(self.upward) / self.upward.length_squared();
         t > 0.0 && u.abs() < 1.4 && v.abs() < 1.4
+    }
+
+    /// The share of its light that goes towards `point`, for the reflector directs it: all within
+    /// some 40 degrees.
+    pub fn beam(&self, source: Vec3, point: Vec3) -> f32 {
+        let axis = self.across.cross(self.upward).normalize();
+        let to = source - point;
+        // Right before a lamp, it would outshine all else.
+        let near = (to.length_squared() / 250.0_f32.powi(2)).min(1.0);
+        ramp(0.1, 0.75, to.normalize().dot(axis)) * near
     }
 
     /// Irradiance at normal incidence from the lamp's `source` point.

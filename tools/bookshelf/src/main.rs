@@ -1,8 +1,10 @@
-//! Makes cloakroom's default photograph: a person before a bookshelf.
+//! Makes cloakroom's default photograph, a person before a bookshelf, and the panorama of the room
+//! around it.
 //!
-//! `bookshelf [--width N] [--samples N] [-o FILE]` builds a scene from
-//! geometry and procedural materials and traces light through it. The picture
-//! stands for a plane 110 cm wide and 137.5 cm high. It is the same, byte for
+//! `bookshelf [--panorama] [--width N] [--samples N] [-o FILE]` builds a scene from
+//! geometry and procedural materials and traces light through it. The photograph
+//! stands for a plane 110 cm wide and 137.5 cm high; the panorama is what a device 50 cm before
+//! it sees, all around, and continues the photograph over its edges. It is the same, byte for
 //! byte, however many threads work on it.
 
 mod books;
@@ -15,8 +17,10 @@ mod head;
 mod hierarchy;
 mod light;
 mod materials;
+mod panorama;
 mod person;
 mod random;
+mod room;
 mod scene;
 mod shapes;
 mod shelf;
@@ -40,6 +44,8 @@ const QUALITY: u8 = 93;
 
 /// What the command line asks for.
 struct Request {
+    /// All around instead of the photograph.
+    panorama: bool,
     /// Pixels a row.
     width: usize,
     /// Samples of a pixel.
@@ -52,18 +58,26 @@ impl Request {
     /// Reads the command line.
     fn read(mut words: impl Iterator<Item = String>) -> Result<Self, Box<dyn Error>> {
         let effort = Effort { least: 6, most: 24 };
-        let mut request = Self { width: 2048, effort, output: PathBuf::from("bookshelf.jpg") };
+        let mut output = None;
+        let mut request = Self { panorama: false, width: 2048, effort, output: PathBuf::new() };
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| format!("{word} needs a value"));
             match word.as_str() {
+                "--panorama" => request.panorama = true,
                 "--width" => request.width = value()?.parse()?,
                 "--samples" => request.effort.most = value()?.parse()?,
-                "-o" => request.output = value()?.into(),
+                "-o" => output = Some(value()?.into()),
                 _ => return Err(format!(
-                    "unknown argument {word}; usage: bookshelf [--width N] [--samples N] [-o FILE]"
+                    "unknown argument {word}; usage: bookshelf [--panorama] [--width N] [--samples N] [-o FILE]"
                 )
                 .into()),
             }
+        }
+        let name = if request.panorama { "room.jpg" } else { "bookshelf.jpg" };
+        request.output = output.unwrap_or_else(|| name.into());
+        if request.panorama {
+            // Its ceiling and walls show the noise that books hide.
+            request.effort.least = 10;
         }
         let effort = &mut request.effort;
         effort.least = effort.least.min(effort.most);
@@ -91,8 +105,11 @@ fn write(picture: &RgbImage, path: &Path) -> Result<(), Box<dyn Error>> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let request = Request::read(std::env::args().skip(1))?;
-    let scene = Scene::new(Detail::FINE);
-    let film = tracer::render(&scene, request.width, request.effort);
+    let film = if request.panorama {
+        tracer::render_panorama(&Scene::with_room(Detail::FINE), request.width, request.effort)
+    } else {
+        tracer::render(&Scene::new(Detail::FINE), request.width, request.effort)
+    };
     write(&film.develop(), &request.output)
 }
 
@@ -111,6 +128,8 @@ mod tests {
         assert_eq!((request.width, request.effort.most, request.effort.least), (64, 3, 3));
         assert_eq!(request.output, Path::new("shelf.png"));
         assert_eq!(read("")?.width, 2048);
+        assert_eq!(read("--width 64")?.output, Path::new("bookshelf.jpg"));
+        assert_eq!(read("--panorama")?.output, Path::new("room.jpg"));
         Ok(())
     }
 

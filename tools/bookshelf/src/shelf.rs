@@ -6,26 +6,27 @@ use glam::{Mat3, Vec3};
 use crate::books::Accent::{Carton, Gap, Globe, Plant, Stack, Vase};
 use crate::books::{Accent, Compartment};
 use crate::materials::Finish;
+use crate::room::FILLED;
 use crate::shapes::{Block, Ellipsoid, Shape};
 
 /// Where the boards' front edges are, behind the person.
 pub const FRONT: f32 = -28.0;
 /// Where the back panel is.
-const BACK: f32 = -53.0;
+pub const BACK: f32 = -53.0;
 /// Heights of the middles of the boards, from the top one down.
 pub const BOARDS: [f32; 5] = [57.5, 29.5, 1.5, -26.5, -54.5];
 /// Half the thickness of a board.
 pub const HALF_BOARD: f32 = 1.15;
 /// Places of the middles of the uprights.
-const UPRIGHTS: [f32; 4] = [-97.0, -33.0, 33.0, 97.0];
+pub const UPRIGHTS: [f32; 4] = [-97.0, -33.0, 33.0, 97.0];
 /// Half the width of an upright.
-const HALF_UPRIGHT: f32 = 1.2;
+pub const HALF_UPRIGHT: f32 = 1.2;
 
 /// Honey-coloured oak.
-const OAK: Vec3 = Vec3::new(0.47, 0.285, 0.145);
+pub const OAK: Vec3 = Vec3::new(0.47, 0.285, 0.145);
 
 /// Adds a block between two corners.
-fn block(shapes: &mut Vec<Shape>, low: Vec3, high: Vec3, bevel: f32, finish: Finish) {
+pub fn block(shapes: &mut Vec<Shape>, low: Vec3, high: Vec3, bevel: f32, finish: Finish) {
     let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
     shapes.push(Shape::Block(Block { centre, half, axes: Mat3::IDENTITY, bevel, finish }));
 }
@@ -81,8 +82,8 @@ fn fill(shapes: &mut Vec<Shape>) {
         let clear = BOARDS[row] - HALF_BOARD - floor;
         for (bay, accents) in accents.iter().enumerate() {
             // Only what can be seen of the outer bays is filled.
-            let left = (UPRIGHTS[bay] + HALF_UPRIGHT).max(-64.0);
-            let right = (UPRIGHTS[bay + 1] - HALF_UPRIGHT).min(64.0);
+            let left = (UPRIGHTS[bay] + HALF_UPRIGHT).max(-FILLED);
+            let right = (UPRIGHTS[bay + 1] - HALF_UPRIGHT).min(FILLED);
             let place = Compartment { left, right, floor, clear, front: FRONT };
             place.fill(40 + 10 * row as u32 + bay as u32, accents, shapes);
         }
@@ -123,33 +124,36 @@ fn cornice(shapes: &mut Vec<Shape>) {
 fn cabinet(shapes: &mut Vec<Shape>) {
     rail(shapes, BOARDS[4] - HALF_BOARD, BOARDS[4] + HALF_BOARD, FRONT + 4.5, 500);
     rail(shapes, -58.0, BOARDS[4] - HALF_BOARD, FRONT + 2.6, 501);
-    let wood = |along, tone: f32, seed| Finish::Wood { along, tone: OAK * tone, seed };
-    for door in 0..6_u32 {
-        let x = -66.0 + 22.0 * door as f32;
-        let seed = 510 + 10 * door;
-        let z = FRONT + 2.0;
-        let slab = |x0: f32, x1: f32, y0: f32, y1: f32, z1: f32| {
-            (Vec3::new(x0, y0, BACK), Vec3::new(x1, y1, z1))
-        };
-        let (low, high) = slab(x + 0.15, x + 21.85, -95.0, -58.2, z - 0.9);
-        block(shapes, low, high, 0.1, wood(1, 0.86, seed));
-        for (x0, x1, along, y0, y1) in [
-            (x + 0.15, x + 3.4, 1, -95.0, -58.2),
-            (x + 18.6, x + 21.85, 1, -95.0, -58.2),
-            (x + 3.4, x + 18.6, 0, -61.6, -58.2),
-        ] {
-            let (low, high) = slab(x0, x1, y0, y1, z);
-            block(shapes, low, high, 0.18, wood(along, 0.95, seed + x0 as u32));
-        }
-        let (low, high) = slab(x + 5.6, x + 16.4, -95.0, -63.8, z - 0.3);
-        block(shapes, low, high, 0.5, wood(1, 0.9, seed + 5));
-        let side = if door % 2 == 0 { x + 20.2 } else { x + 1.8 };
-        let knob = Ellipsoid {
-            centre: Vec3::new(side, -66.0, z + 0.9),
-            radii: Vec3::splat(0.95),
-            axes: Mat3::IDENTITY,
-            finish: Finish::Brass,
-        };
-        shapes.push(Shape::Ellipsoid(knob));
+    for k in 0..6_u32 {
+        door(shapes, -66.0 + 22.0 * k as f32, 22.0, 510 + 10 * k, k % 2 == 0);
     }
+}
+
+/// A panelled door of the cabinet with its left edge at `x`, its knob at the `right` or the left.
+pub fn door(shapes: &mut Vec<Shape>, x: f32, width: f32, seed: u32, right: bool) {
+    let wood = |along, tone: f32, seed| Finish::Wood { along, tone: OAK * tone, seed };
+    let z = FRONT + 2.0;
+    let slab = |x0: f32, x1: f32, y0: f32, y1: f32, z1: f32| {
+        (Vec3::new(x0, y0, BACK), Vec3::new(x1, y1, z1))
+    };
+    let (low, high) = slab(x + 0.15, x + (width - 0.15), -95.0, -58.2, z - 0.9);
+    block(shapes, low, high, 0.1, wood(1, 0.86, seed));
+    for (x0, x1, along, y0, y1) in [
+        (x + 0.15, x + 3.4, 1, -95.0, -58.2),
+        (x + (width - 3.4), x + (width - 0.15), 1, -95.0, -58.2),
+        (x + 3.4, x + (width - 3.4), 0, -61.6, -58.2),
+    ] {
+        let (low, high) = slab(x0, x1, y0, y1, z);
+        block(shapes, low, high, 0.18, wood(along, 0.95, seed + x0 as u32));
+    }
+    let (low, high) = slab(x + 5.6, x + (width - 5.6), -95.0, -63.8, z - 0.3);
+    block(shapes, low, high, 0.5, wood(1, 0.9, seed + 5));
+    let side = if right { x + (width - 1.8) } else { x + 1.8 };
+    let knob = Ellipsoid {
+        centre: Vec3::new(side, -66.0, z + 0.9),
+        radii: Vec3::splat(0.95),
+        axes: Mat3::IDENTITY,
+        finish: Finish::Brass,
+    };
+    shapes.push(Shape::Ellipsoid(knob));
 }

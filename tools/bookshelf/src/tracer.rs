@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::film::{Film, Pixel};
 use crate::light::{Answer, FILL, KEY, Lamp, answer, fresnel, room};
 use crate::materials::{Kind, Surface};
+use crate::panorama;
 use crate::random::{hash2, hash3, unit};
 use crate::scene::Scene;
 use crate::shapes::Ray;
@@ -16,7 +17,7 @@ pub const WIDTH: f32 = 110.0;
 /// Height of the picture's plane, in centimetres.
 pub const HEIGHT: f32 = 137.5;
 /// Distance of the camera from the picture's plane `z = 0`.
-const DISTANCE: f32 = 480.0;
+pub const DISTANCE: f32 = 480.0;
 
 /// The ray from the camera through a point of the plane `z = 0`.
 pub fn camera(x: f32, y: f32) -> Ray {
@@ -78,12 +79,17 @@ fn lit(scene: &Scene, surface: &Surface, view: Vec3, lamp: &Lamp, at: (f32, f32)
     let start = lift(surface);
     let to = source - start;
     let reach = to.length();
-    if scene.blocked(&Ray { origin: start, direction: to / reach }, reach) {
+    if scene.shaded(surface.point, &Ray { origin: start, direction: to / reach }, reach) {
         given = Answer::default();
         // Hair lets some light through between its strands.
         if let Kind::Hair(_) = surface.kind {
             given.scattered = answer(surface, view, lamp, source).scattered * 0.12;
         }
+    }
+    if scene.has_room() {
+        let beam = lamp.beam(source, surface.point);
+        given.scattered *= beam;
+        given.mirrored *= beam;
     }
     given
 }
@@ -91,8 +97,9 @@ fn lit(scene: &Scene, surface: &Surface, view: Vec3, lamp: &Lamp, at: (f32, f32)
 /// Light that reaches a surface from its surroundings rather than the lamps.
 fn surroundings(scene: &Scene, from: &Surface, spread: &Spread) -> Vec3 {
     let ray = Ray { origin: lift(from), direction: scatter(from.normal, spread.pair(3)) };
-    match scene.meet(&ray, 400.0) {
+    match scene.meet_from(from.point, &ray, 400.0) {
         None => room(ray.direction),
+        Some(other) if other.kind == Kind::Bright => Vec3::ZERO,
         Some(other) => {
             let direct = lit(scene, &other, -ray.direction, &KEY, spread.stray(4)).scattered;
             let dim = 0.5 * room(other.normal) + Vec3::splat(0.04);
@@ -116,9 +123,15 @@ fn mirror(surface: &Surface, direction: Vec3) -> Vec3 {
 
 /// One sample of a pixel.
 fn sample(scene: &Scene, ray: &Ray, spread: &Spread) -> Pixel {
-    let Some(surface) = scene.meet(ray, 2000.0) else {
+    let Some(surface) = scene.see(ray, 2000.0) else {
         return Pixel::default();
     };
+    // All around, depth is that of the surface's plane, so that what is flat is known to be so.
+    let depth = if scene.has_room() { surface.point.dot(surface.normal) } else { surface.point.z };
+    if surface.kind == Kind::Bright {
+        let (albedo, normal) = (surface.albedo, surface.normal);
+        return Pixel { albedo, lit: albedo, normal, depth, ..Pixel::default() };
+    }
     let view = -ray.direction;
     let key = lit(scene, &surface, view, &KEY, spread.pair(1));
     let fill = lit(scene, &surface, view, &FILL, spread.pair(2));
@@ -132,7 +145,7 @@ fn sample(scene: &Scene, ray: &Ray, spread: &Spread) -> Pixel {
         lit: surface.albedo * (key.scattered + fill.scattered + around),
         shine,
         normal: surface.normal,
-        depth: surface.point.z,
+        depth,
         skin: if surface.kind == Kind::Skin { 1.0 } else { 0.0 },
     }
 }
@@ -158,39 +171,62 @@ fn differ(a: &Pixel, b: &Pixel) -> bool {
         || a.normal.dot(b.normal) < 0.97
 }
 
-/// The pixel at this row and column.
-fn expose(scene: &Scene, row: usize, column: usize, pitch: f32, effort: Effort) -> Pixel {
-    let turn = hash3(row as u32, column as u32, 0x5eed);
-    let mut total = Pixel::default();
-    let mut first = None;
-    let (mut taken, mut wanted) = (0, effort.least);
-    while taken < wanted {
-        let spread = Spread { turn, index: taken };
-        let (du, dv) = spread.pair(0);
-        let x = (column as f32 + du) * pitch - 0.5 * WIDTH;
-        let y = 0.5 * HEIGHT - (row as f32 + dv) * pitch;
-        let seen = sample(scene, &camera(x, y), &spread);
-        if differ(first.get_or_insert(seen), &seen) {
-            wanted = effort.most.max(effort.least);
-        }
-        total.add(&seen);
-        taken += 1;
-    }
-    total.scale(1.0 / taken as f32);
-    total
+/// A picture: the ray behind each of its points, given from its left and top in pixels.
+struct View<R> {
+    width: usize,
+    height: usize,
+    /// Centimetres a pixel, where the person is.
+    pitch: f32,
+    ray: R,
 }
 
-/// Renders a picture `width` pixels wide.
+impl<R: Fn(f32, f32) -> Ray + Sync> View<R> {
+    /// The pixel at this row and column.
+    fn expose(&self, scene: &Scene, row: usize, column: usize, effort: Effort) -> Pixel {
+        let turn = hash3(row as u32, column as u32, 0x5eed);
+        let mut total = Pixel::default();
+        let mut first = None;
+        let (mut taken, mut wanted) = (0, effort.least);
+        while taken < wanted {
+            let spread = Spread { turn, index: taken };
+            let (du, dv) = spread.pair(0);
+            let ray = (self.ray)(column as f32 + du, row as f32 + dv);
+            let seen = sample(scene, &ray, &spread);
+            if differ(first.get_or_insert(seen), &seen) {
+                wanted = effort.most.max(effort.least);
+            }
+            total.add(&seen);
+            taken += 1;
+        }
+        total.scale(1.0 / taken as f32);
+        total
+    }
+
+    fn render(&self, scene: &Scene, effort: Effort) -> Film {
+        let mut pixels = vec![Pixel::default(); self.width * self.height];
+        pixels.par_chunks_mut(self.width).enumerate().for_each(|(row, line)| {
+            for (column, pixel) in line.iter_mut().enumerate() {
+                *pixel = self.expose(scene, row, column, effort);
+            }
+        });
+        Film { width: self.width, height: self.height, pitch: self.pitch, pixels }
+    }
+}
+
+/// Renders the photograph `width` pixels wide.
 pub fn render(scene: &Scene, width: usize, effort: Effort) -> Film {
     let height = (width as f32 * HEIGHT / WIDTH).round() as usize;
     let pitch = WIDTH / width as f32;
-    let mut pixels = vec![Pixel::default(); width * height];
-    pixels.par_chunks_mut(width).enumerate().for_each(|(row, line)| {
-        for (column, pixel) in line.iter_mut().enumerate() {
-            *pixel = expose(scene, row, column, pitch, effort);
-        }
-    });
-    Film { width, height, pitch, pixels }
+    let ray = |x: f32, y: f32| camera(x * pitch - 0.5 * WIDTH, 0.5 * HEIGHT - y * pitch);
+    View { width, height, pitch, ray }.render(scene, effort)
+}
+
+/// Renders the panorama `width` pixels wide, half as high.
+pub fn render_panorama(scene: &Scene, width: usize, effort: Effort) -> Film {
+    let height = (width / 2).max(1);
+    let ray = |x: f32, y: f32| panorama::ray(x / width as f32, y / height as f32);
+    let pitch = panorama::PLACE * std::f32::consts::TAU / width as f32;
+    View { width, height, pitch, ray }.render(scene, effort)
 }
 
 #[cfg(test)]
@@ -227,7 +263,7 @@ mod tests {
             let top = board + HALF_BOARD;
             let edge = top * DISTANCE / (DISTANCE - FRONT);
             let wood = |x: f32, y: f32| {
-                let seen = scene.meet(&camera(x, y), 2000.0);
+                let seen = scene.see(&camera(x, y), 2000.0);
                 seen.is_some_and(|s| s.point.z > FRONT - 0.1 && s.point.y < top + 0.1)
             };
             for x in [-54.0, -27.0, 27.0, 54.0] {

@@ -26,14 +26,13 @@ const SMALLER: [(&str, &str); 10] = [
 ];
 
 /// How commands begin that are not run here, and where they are.
-const ELSEWHERE: [(&str, &str); 16] = [
+const ELSEWHERE: [(&str, &str); 15] = [
     ("cargo test", "runs this test"),
     ("cargo bench", ".ci/long"),
     ("cargo install", "installs into the home folder; by hand"),
-    ("CC_x86_64_unknown_linux_musl=cc", "by hand, a static program"),
-    ("rustup target add", "by hand, a static program"),
+    ("./release.sh", "by hand, before a release"),
+    ("SKIP=windows ./release.sh", "the same"),
     ("pip install ./python", ".ci/run"),
-    ("pip wheel ./python", "by hand, before a release"),
     ("python -m venv", "CONTRIBUTING's set-up; .ci/run does the same"),
     ("cd python", "the same"),
     ("../venv/bin", "the same"),

@@ -11,7 +11,18 @@ use super::linear_image::{LinearImage, MAX_MEMORY, MAX_PIXELS, Texels};
 
 /// The images that come with the program, by name: those of
 /// [`BUILT_IN_IMAGES`](crate::keys::BUILT_IN_IMAGES).
-const BUILT_IN: [(&str, &[u8]); 1] = [("bookshelf", include_bytes!("../../assets/bookshelf.jpg"))];
+#[cfg(not(target_arch = "wasm32"))]
+const BUILT_IN: [(&str, &[u8]); 2] = [
+    ("bookshelf", include_bytes!("../../assets/bookshelf.jpg")),
+    ("room", include_bytes!("../../assets/room.jpg")),
+];
+
+/// In a browser they are loaded each time: the same, averaged over two by two pixels.
+#[cfg(target_arch = "wasm32")]
+const BUILT_IN: [(&str, &[u8]); 2] = [
+    ("bookshelf", include_bytes!("../../assets/reduced/bookshelf.jpg")),
+    ("room", include_bytes!("../../assets/reduced/room.jpg")),
+];
 
 /// Light beyond this would be infinite in a picture that adds it up in single precision.
 const BRIGHTEST: f32 = 1e30;

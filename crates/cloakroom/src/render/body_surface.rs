@@ -5,8 +5,12 @@
 //! up and down from the face that looks along -x, towards the usual camera. Around a ball and the
 //! side of a cylinder the image goes once: its middle column is on the side of -x, and its top row
 //! at the pole +y of a ball, at the end +z of a cylinder.
+//!
+//! A surface that is lit scatters what comes from the surroundings evenly to all sides, a share of it
+//! that the color or the image says; other bodies and devices neither light nor shade it.
 
 use super::Images;
+use super::prepared_scene::LightAround;
 use crate::assembly::Placed;
 use crate::device::Convex;
 use crate::photograph::{Equirectangular, LoadError, Pyramid};
@@ -21,6 +25,8 @@ use std::sync::Arc;
 pub(super) struct BodySurface {
     pose: Pose,
     texture: Texture,
+    /// Its shape and what lights it; none where it shines by itself.
+    lit: Option<(Convex, LightAround)>,
 }
 
 #[derive(Clone, Debug)]
@@ -56,6 +62,7 @@ impl BodySurface {
         device: &DeviceSettings,
         placed: &Placed,
         images: &mut Images,
+        light: Option<&LightAround>,
     ) -> Result<Option<Self>, LoadError> {
         let (Some(body), Some(appearance)) = (placed.structure.hull.body, device.appearance())
         else {
@@ -73,7 +80,9 @@ impl BodySurface {
                 Texture::Box(half, images.face(image)?)
             }
         };
-        Ok(Some(Self { pose: placed.pose, texture }))
+        let light = light.filter(|_| device.is_lit());
+        let lit = light.map(|light| (body.shape, light.clone()));
+        Ok(Some(Self { pose: placed.pose, texture, lit }))
     }
 
     /// The outward unit normal at a point of the surface, where that matters for what it shows.
@@ -92,8 +101,16 @@ impl BodySurface {
     /// there, how far away (cm) rays one sample further along the axes of the camera's picture come
     /// to that plane.
     pub fn light(&self, point: DVec3, steps: impl Fn(DVec3) -> [DVec3; 2]) -> [f64; 3] {
-        let Self { pose, texture } = self;
-        let local = pose.to_local(point);
+        let local = self.pose.to_local(point);
+        let own = self.own(local, steps);
+        let Some((shape, light)) = &self.lit else { return own };
+        let around = light.at(self.pose.vector_to_world(outward(local, *shape)));
+        std::array::from_fn(|color| own[color] * around[color])
+    }
+
+    /// The color or the image at a point in the body's frame.
+    fn own(&self, local: DVec3, steps: impl Fn(DVec3) -> [DVec3; 2]) -> [f64; 3] {
+        let Self { pose, texture, .. } = self;
         let steps_from = |normal: DVec3| {
             steps(pose.vector_to_world(normal)).map(|step| pose.vector_to_local(step))
         };
@@ -115,6 +132,15 @@ impl BodySurface {
         };
         let [dx, dy] = steps_from(spot.normal).map(change);
         image.sample(spot.position, dx, dy).map(f64::from)
+    }
+}
+
+/// The outward unit normal of a shape.
+fn outward(point: DVec3, shape: Convex) -> DVec3 {
+    match shape {
+        Convex::Ball(_) | Convex::CutBall(_) => point.normalize_or_zero(),
+        Convex::Cylinder(cylinder) => on_cylinder(point, &cylinder).normal,
+        Convex::Box { half } => on_box(point, half).normal,
     }
 }
 

@@ -6,7 +6,7 @@ use super::{Images, metadata};
 use crate::assembly::{Assembly, MOST_DEVICES, Placed, Screen};
 use crate::input::Digest;
 use crate::keys::KeyError;
-use crate::photograph::{self, Averaging, Equirectangular, LoadError, Pyramid};
+use crate::photograph::{self, Averaging, Equirectangular, Irradiance, LoadError, Pyramid};
 use crate::scene::{Border, Camera, DeviceName, DeviceSettings, Projection, Scene};
 use crate::trace::{Coherence, Limits, RaySettings};
 use glam::DVec3;
@@ -249,7 +249,31 @@ pub(super) enum Surroundings {
     Image(Arc<Equirectangular>),
 }
 
+/// What matt surfaces get from the surroundings.
+#[derive(Clone, Debug)]
+pub(super) enum LightAround {
+    Even([f64; 3]),
+    Directed(Arc<Irradiance>),
+}
+
+impl LightAround {
+    /// Linear RGB that a white matt surface with this unit normal sends out.
+    pub fn at(&self, normal: DVec3) -> [f64; 3] {
+        match self {
+            Self::Even(color) => *color,
+            Self::Directed(irradiance) => irradiance.at(normal),
+        }
+    }
+}
+
 impl Surroundings {
+    fn light_around(&self) -> LightAround {
+        match self {
+            Self::Color(color) => LightAround::Even(*color),
+            Self::Image(image) => LightAround::Directed(Arc::new(Irradiance::new(image))),
+        }
+    }
+
     /// The light that comes against a direction, given what that changes by from sample to sample.
     pub fn light(&self, direction: DVec3, steps: impl FnOnce() -> [DVec3; 2]) -> [f64; 3] {
         match self {
@@ -334,8 +358,10 @@ impl<'s> PreparedScene<'s> {
                 Surroundings::Image(image)
             }
         };
+        let lit = scene.devices.iter().any(DeviceSettings::is_lit);
+        let light_around = lit.then(|| surroundings.light_around());
         let surface = |(device, placed): (usize, &Placed)| {
-            BodySurface::of(&scene.devices[device], placed, images)
+            BodySurface::of(&scene.devices[device], placed, images, light_around.as_ref())
                 .map_err(unreadable(&format!("device.{device}.surface.image")))
         };
         let body_surfaces =

@@ -281,6 +281,13 @@ impl DeviceSettings {
         })
     }
 
+    /// Whether it is an opaque body that the surroundings light.
+    #[must_use]
+    pub fn is_lit(&self) -> bool {
+        let AnyDevice::SolidBody(body) = &self.device else { return false };
+        body.surface.as_ref().is_some_and(|surface| surface.lit)
+    }
+
     /// Whether its hidden region is air instead of metal.
     #[must_use]
     pub fn has_open_core(&self) -> bool {

@@ -159,8 +159,9 @@ table! {
     pub struct SurroundingsSettings {
         /// Linear red, green and blue seen by rays that hit nothing.
         color: Given<[f64; 3]> = Given::by_default([0.0; 3]), in ValueRange::Within(0.0, 1e30),
-        /// An equirectangular image of the surroundings instead of a color, relative to the scene
-        /// file.
+        /// An equirectangular image of the surroundings instead of a color: `builtin:room`, the room
+        /// of `builtin:bookshelf`, which goes on over the edges of that photograph for who looks from
+        /// the origin, or a file (PNG, JPEG, EXR), relative to the scene file.
         image: Option<ImageSource>,
     }
 }

@@ -70,6 +70,10 @@ crate::table! {
         /// An image on it instead of a color: `builtin:bookshelf` or a file (PNG, JPEG, EXR),
         /// relative to the scene file.
         image: Option<PathBuf>,
+        /// Whether the surroundings light it: color or image are then the shares of light that it
+        /// scatters, evenly to all sides, of what comes from the surroundings to a surface with its
+        /// normal. Nothing else lights it, and nothing shades it.
+        lit: bool,
     }
 }
 

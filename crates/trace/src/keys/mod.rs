@@ -30,7 +30,7 @@ pub use value::{Value, number_text, quoted, vector_text};
 pub const BUILT_IN_PREFIX: &str = "builtin:";
 
 /// The images that come with the program, as written in a scene.
-pub const BUILT_IN_IMAGES: [&str; 1] = ["builtin:bookshelf"];
+pub const BUILT_IN_IMAGES: [&str; 2] = ["builtin:bookshelf", "builtin:room"];
 
 /// One key of a table.
 #[derive(Clone, Copy, Debug)]

@@ -213,7 +213,7 @@ fn a_refusal_names_quantity_value_unit_and_what_is_allowed() {
     assert_eq!(refusal("image", ""), "image is empty");
     assert_eq!(
         refusal("sky", "builtin:bookself"),
-        "there is no built-in image `builtin:bookself`; there is `builtin:bookshelf`"
+        "there is no built-in image `builtin:bookself`; there is `builtin:bookshelf`, `builtin:room`"
     );
     assert_eq!(
         refusal("show", "bear"),
