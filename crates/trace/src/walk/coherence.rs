@@ -111,8 +111,10 @@ impl Coherence {
                 // Two that see the same point do so however narrow the width is.
                 let together =
                     if one.seen == other.seen { 1.0 } else { (-0.5 * apart * apart).exp() };
-                if self.visibility(difference) * together > LEAST_DEGREE {
-                    let degree = self.degree(-difference) * together;
+                let visibility = self.visibility(difference);
+                if visibility * together > LEAST_DEGREE {
+                    let phase = self.wave_number * -difference;
+                    let degree = Complex64::from_polar(visibility, phase) * together;
                     pairs.push(Pair { leaves: [one.leaf, other.leaf], degree });
                 }
             }
