@@ -258,7 +258,7 @@ fn a_mirror_makes_the_way_longer_as_its_image_says() {
 fn what_flashes_is_seen_when_its_light_comes() {
     let scene = scene("[camera]\nresolution = [24, 18]\nsamples = 1\n");
     let of = |flash: Flash| {
-        let gate: Gate = "4..12:0.01".parse().unwrap();
+        let gate: Gate = "0..20:0.01".parse().unwrap();
         let arrivals = Arrivals { delay: Delay::Group, flash };
         cube(&scene, &FlightSettings { gate, width: 0.0, arrivals })
     };
