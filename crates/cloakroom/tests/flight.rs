@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use cloakroom::render::{
-    Arrivals, ChannelSet, Delay, Flash, FlightCube, FlightSettings, FlightTile, Gate,
+    Arrivals, ChannelSet, Delay, Flash, FlightCube, FlightSettings, FlightTile, Gate, PixelBins,
     PreparedScene, RenderError, Supervision, arrival_times, flight, render,
 };
 use cloakroom::scene::Scene;
@@ -93,8 +93,9 @@ fn all_light_is_before_in_or_after_the_bins_or_steady() {
                     let column = part.tile.left as usize + index % part.tile.width as usize;
                     let row = part.tile.top as usize + index / part.tile.width as usize;
                     for (color, name) in ["R", "G", "B"].into_iter().enumerate() {
-                        let in_bins: f64 =
-                            part.bins[index * bins..][..bins].iter().map(|bin| bin[color]).sum();
+                        let PixelBins { first, light } = &part.bins[index];
+                        assert!(first + light.len() <= bins || light.is_empty());
+                        let in_bins: f64 = light.iter().map(|bin| bin[color]).sum();
                         let [before, after] = part.outside.each_ref().map(|all| all[index][color]);
                         let sum = in_bins
                             + before
@@ -125,8 +126,10 @@ fn all_light_is_before_in_or_after_the_bins_or_steady() {
 
 #[test]
 fn light_arrives_in_the_mean_when_the_maps_say() {
+    // The branches that a picture through a polarizer follows are others where all channels are wanted.
     let scenes = SCENES[..5]
         .iter()
+        .filter(|text| !text.contains("polarizer"))
         .map(|text| format!("{SIZE}{text}[picture]\nchannels = ['group_delay']\n"));
     for text in scenes {
         let scene = scene(&text);
@@ -258,7 +261,7 @@ fn a_mirror_makes_the_way_longer_as_its_image_says() {
 fn what_flashes_is_seen_when_its_light_comes() {
     let scene = scene("[camera]\nresolution = [24, 18]\nsamples = 1\n");
     let of = |flash: Flash| {
-        let gate: Gate = "4..12:0.01".parse().unwrap();
+        let gate: Gate = "0..20:0.01".parse().unwrap();
         let arrivals = Arrivals { delay: Delay::Group, flash };
         cube(&scene, &FlightSettings { gate, width: 0.0, arrivals })
     };

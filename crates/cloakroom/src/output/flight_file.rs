@@ -2,7 +2,7 @@
 
 use super::npz_file::UntilError;
 use super::{OutputError, write_whole};
-use crate::render::{Flashed, FlightTile, Gate, Tile};
+use crate::render::{Flashed, FlightTile, Gate, PixelBins, Tile};
 use bytemuck::{cast_slice, cast_slice_mut};
 use ndarray::{ArrayView, Dimension, StrideShape};
 use ndarray_npy::{WritableElement, WriteNpyExt};
@@ -97,21 +97,28 @@ impl FlightStore {
     pub fn put(&self, part: &FlightTile) -> io::Result<()> {
         let (pixels, bins) = (part.steady.len(), self.gate.bins());
         let kept = |flashed: &Flashed| flashed.map(|part| part as f32);
-        let (mut places, mut bytes) = (Vec::with_capacity(bins), Vec::new());
-        for bin in 0..bins {
-            let plane = || (0..pixels).map(|pixel| &part.bins[pixel * bins + bin]);
-            let is_dark = plane().all(|flashed| *flashed == [0.0; 4]);
-            places.push((!is_dark).then_some(bytes.len() as u64));
-            if !is_dark {
-                plane().for_each(|flashed| bytes.extend_from_slice(cast_slice(&kept(flashed))));
+        // The planes of the bins that have anything, and where each begins among all planes.
+        let (mut begins, mut planes) = (vec![None; bins], Vec::new());
+        for (pixel, PixelBins { first, light }) in part.bins.iter().enumerate() {
+            for (begin, flashed) in begins.iter_mut().skip(*first).zip(light) {
+                if *flashed == [0.0; 4] {
+                    continue;
+                }
+                let begin = *begin.get_or_insert_with(|| {
+                    let begin = planes.len();
+                    planes.resize(begin + pixels, [0.0; 4]);
+                    begin
+                });
+                planes[begin + pixel] = kept(flashed);
             }
         }
         let mut all = self.kept();
         let length = all.length;
         all.file.seek(SeekFrom::Start(length))?;
-        all.file.write_all(&bytes)?;
-        all.length += bytes.len() as u64;
-        places.iter_mut().flatten().for_each(|place| *place += length);
+        all.file.write_all(cast_slice(&planes))?;
+        all.length += size_of_val(&planes[..]) as u64;
+        let byte = |begin: usize| length + (begin * size_of::<Kept>()) as u64;
+        let places = begins.into_iter().map(|begin| begin.map(byte)).collect();
         for (number, index) in part.tile.places(self.width).enumerate() {
             let [before, after] = &part.outside;
             for (all, part) in all.beside.iter_mut().zip([before, after, &part.untimed]) {
@@ -334,7 +341,10 @@ mod tests {
                     tile,
                     bins: places
                         .iter()
-                        .flat_map(|index| (0..5).map(move |bin| flashed(*index, bin)))
+                        .map(|index| PixelBins {
+                            first: 0,
+                            light: (0..5).map(|bin| flashed(*index, bin)).collect(),
+                        })
                         .collect(),
                     outside: [beside(), beside()],
                     untimed: beside(),

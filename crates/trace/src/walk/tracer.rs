@@ -110,6 +110,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
     #[must_use]
     pub fn watched<W: PathRecorder<N>>(self, recorder: W) -> Tracer<'a, N, W> {
         let tracer = Tracer::watching(self.assembly, self.limits, recorder);
+        let tracer = Tracer { group_delays: self.group_delays, ..tracer };
         match self.screen {
             Some(screen) => tracer.with_screen(screen),
             None => tracer,
@@ -231,6 +232,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             } else {
                 self.lose(further_on.power);
             }
+        }
+        if self.group_delays {
+            branch.dispersion = 0.0;
         }
         if !(launched && self.start(branch)) {
             self.take_next(branch)?;

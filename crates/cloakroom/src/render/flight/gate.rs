@@ -158,7 +158,13 @@ fn arrived(after: f64, width: f64) -> f64 {
 
 impl fmt::Display for Gate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}..{}:{}", self.start, self.middle(self.bins - 1), self.step)
+        // Without the rounding of the last digits.
+        let number = |number: f64| {
+            let digits = format!("{number:.12}");
+            digits.trim_end_matches('0').trim_end_matches('.').to_owned()
+        };
+        let [start, end] = [self.start, self.middle(self.bins - 1)].map(number);
+        write!(f, "{start}..{end}:{}", number(self.step))
     }
 }
 
@@ -204,6 +210,9 @@ mod tests {
         assert!(gate.middle(0) <= 5.013 - 0.005 && gate.middle(gate.bins() - 1) >= 5.397 + 0.005);
         assert!(gate.bins() <= 131);
         assert_eq!(Gate::around([5.0, 5.0], 128).step(), 1e-3);
+        let gate = Gate::around([5.1004, 5.6451], 120);
+        assert_eq!(gate.to_string(), "5.095..5.65:0.005");
+        assert_eq!(gate.to_string().parse::<Gate>().map(|gate| gate.bins()), Ok(gate.bins()));
     }
 
     #[test]

@@ -197,8 +197,8 @@ pub type Flashed = [f64; 4];
 pub struct FlightTile {
     /// Which part it is.
     pub tile: Tile,
-    /// What is in the bins of each pixel, one after the other.
-    pub bins: Vec<Flashed>,
+    /// What is in the bins of each pixel.
+    pub bins: Vec<PixelBins>,
     /// What comes before all bins, and after them.
     pub outside: [Vec<Flashed>; 2],
     /// What comes nobody knows when: as pulses, behind media that absorb.
@@ -209,13 +209,22 @@ pub struct FlightTile {
     pub picture: Vec<[f64; 3]>,
 }
 
+/// What is in the bins of a pixel from the first that has anything to the last; all others are dark.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PixelBins {
+    /// The number of the first of them.
+    pub first: usize,
+    /// What is in them, one after the other.
+    pub light: Vec<Flashed>,
+}
+
 impl FlightTile {
-    fn new(tile: Tile, bins: usize) -> Self {
+    fn new(tile: Tile) -> Self {
         let pixels = tile.width as usize * tile.height as usize;
         let flashed = || vec![[0.0; 4]; pixels];
         Self {
             tile,
-            bins: vec![[0.0; 4]; pixels * bins],
+            bins: vec![PixelBins::default(); pixels],
             outside: [flashed(), flashed()],
             untimed: flashed(),
             steady: vec![[0.0; 3]; pixels],
@@ -356,8 +365,7 @@ fn expose_tiles<const N: usize, E: From<RenderError> + Send>(
                 (exposer, tracers)
             },
             |(exposer, tracers), tile| {
-                let exposed =
-                    exposer.expose_tile(tracers, FlightTile::new(tile, bins), supervision);
+                let exposed = exposer.expose_tile(tracers, FlightTile::new(tile), supervision);
                 let (tile, stats) = exposed.map_err(RenderError::from)?;
                 let rows = u64::from(tile.tile.height);
                 take(tile)?;
@@ -391,8 +399,7 @@ impl<const N: usize> Exposer<'_, N> {
             |tracers, at, traced| {
                 let (block, samples, of_block) = self.expose_samples(tracers, at, traced, stop)?;
                 stats += of_block;
-                let Some((settings, pixels)) = &mut self.flight else { return Ok(()) };
-                let bins = settings.gate.bins();
+                let Some((_, pixels)) = &mut self.flight else { return Ok(()) };
                 for (i, pixel) in pixels.iter_mut().enumerate() {
                     let column = (at[0] + i % 2).checked_sub(left);
                     let row = (at[1] + i / 2).checked_sub(top);
@@ -403,9 +410,9 @@ impl<const N: usize> Exposer<'_, N> {
                         let index = y * width + x;
                         let mean = |sum: Flashed| sum.map(|sum| sum / samples);
                         let [first, end] = pixel.used;
-                        for bin in first..end {
-                            flown.bins[index * bins + bin] = mean(pixel.bins[bin]);
-                        }
+                        let used = pixel.bins.get(first..end).unwrap_or_default();
+                        let light = used.iter().copied().map(mean).collect();
+                        flown.bins[index] = PixelBins { first, light };
                         for (outside, sum) in flown.outside.iter_mut().zip(pixel.outside) {
                             outside[index] = mean(sum);
                         }
@@ -479,10 +486,10 @@ impl FlightCube {
     }
 
     fn place(&mut self, part: &FlightTile) {
-        let bins = self.gate.bins();
         let pixels = self.size[0] * self.size[1];
         for (number, index) in part.tile.places(self.size[0]).enumerate() {
-            for (bin, flashed) in part.bins[number * bins..][..bins].iter().enumerate() {
+            let PixelBins { first, light } = &part.bins[number];
+            for (bin, flashed) in (*first..).zip(light) {
                 let [red, green, blue, power] = *flashed;
                 self.light[bin * pixels + index] = [red, green, blue];
                 self.power[bin * pixels + index] = power;

@@ -1,7 +1,7 @@
 //! Interpolated leaves against those of the same rays traced one by one.
 
 use super::*;
-use crate::render::{ChannelSet, sampling};
+use crate::render::{Arrivals, ChannelSet, sampling};
 use crate::scene::Scene;
 use crate::scene_file;
 use std::path::Path;
@@ -31,6 +31,7 @@ fn errors<const N: usize>(
 ) -> Errors {
     let prepared = PreparedScene::new(scene).expect("sound");
     let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
+    let tracer = if detection.wants_group_paths() { tracer.with_group_delays() } else { tracer };
     let mut exact = tracer.clone();
     let mut patches = LeafPatches::new(&prepared, detection, &tracer, 4).expect("interpolated");
     let mut errors = Errors::default();
@@ -91,6 +92,13 @@ fn compare<const N: usize>(
                     errors.place = errors.place.max(off);
                     let path = (leaf.optical_path - found.optical_path).abs() * power;
                     errors.path = errors.path.max(path);
+                    // One that is known and one that is not are infinitely far apart.
+                    let group_path = match (leaf.group_path, found.group_path) {
+                        (Some(leaf), Some(found)) => (leaf - found).abs() * power,
+                        (None, None) => 0.0,
+                        _ => f64::INFINITY,
+                    };
+                    errors.path = errors.path.max(group_path);
                     let powers = leaf.power.iter().zip(found.power);
                     errors.power = powers.map(|(a, b)| (a - b).abs()).fold(errors.power, f64::max);
                 }
@@ -143,4 +151,21 @@ fn interpolated_paths_are_those_of_traced_rays() {
     let errors = errors(&scene, &detection, [320, 416], (4, 11));
     let is_true = errors.place < 1e-6 && errors.path < 1e-6 && errors.others == 0;
     assert!(is_true && errors.rays > 1000, "{errors:?}");
+}
+
+/// Those of pulses.
+#[test]
+fn interpolated_paths_of_pulses_are_those_of_traced_rays() {
+    let mut rays = 0;
+    for device in DEVICES {
+        let text =
+            format!("[camera]\nresolution = [1024, 1024]\nsamples = 4\n[[device]]\n{device}\n");
+        let scene = scene(&text);
+        let detection = Detection::UNPOLARIZED.in_flight(Arrivals::default());
+        let errors = errors(&scene, &detection, [320, 416], (2, 13));
+        rays += errors.rays;
+        let is_true = errors.place < 1e-6 && errors.path < 1e-6 && errors.others == 0;
+        assert!(is_true, "{device}: {errors:?}");
+    }
+    assert!(rays > 1000, "{rays} rays are hardly a trial");
 }
