@@ -97,6 +97,8 @@ pub(crate) struct Server {
     pub closing: watch::Sender<()>,
     pages: Arc<Semaphore>,
     most_pages: usize,
+    /// Whether it is reached from this machine alone.
+    is_local: bool,
     names: Names,
     secret: Secret,
 }
@@ -133,6 +135,7 @@ pub fn serve(
         closing: watch::Sender::new(()),
         pages: Arc::new(Semaphore::new(most_pages)),
         most_pages,
+        is_local: host.is_loopback(),
         names: Names::of(address),
         secret: Secret::new().map_err(ViewerError::Run)?,
     });
@@ -210,14 +213,19 @@ async fn guard(
         standing.introduce();
         next.run(request).await
     };
+    // Browsers warn of one of them where the line is not theirs alone.
+    let openers = (header::HeaderName::from_static("cross-origin-opener-policy"), "same-origin");
+    let openers = server.is_local.then_some(openers);
     for (name, value) in [
         (header::CONTENT_SECURITY_POLICY, POLICY),
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
         (header::REFERRER_POLICY, "no-referrer"),
         (header::CACHE_CONTROL, "no-store"),
         (header::HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
-        (header::HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
-    ] {
+    ]
+    .into_iter()
+    .chain(openers)
+    {
         response.headers_mut().insert(name, HeaderValue::from_static(value));
     }
     response

@@ -26,7 +26,7 @@ const SMALLER: [(&str, &str); 10] = [
 ];
 
 /// How commands begin that are not run here, and where they are.
-const ELSEWHERE: [(&str, &str); 15] = [
+const ELSEWHERE: [(&str, &str); 16] = [
     ("cargo test", "runs this test"),
     ("cargo bench", ".ci/long"),
     ("cargo install", "installs into the home folder; by hand"),
@@ -44,6 +44,7 @@ const ELSEWHERE: [(&str, &str); 15] = [
     ("benches/", "by hand: other programs, a quiet machine"),
     ("target/full_wave/venv", "by hand: full-wave solvers"),
     ("python3 conformance/generate.py", "python/tests/test_conformance.py"),
+    ("cloakroom view --host", "crates/viewer/browser/explains.test.js, on the network there is"),
     ("web/build.sh", ".ci/run, where there is what compiles for browsers"),
 ];
 

@@ -7,14 +7,30 @@ mod malformed;
 mod page;
 mod pictures;
 
+use cloakroom::scene_file;
+use cloakroom_viewer::{Settings, ViewerError, serve};
 use page::{Heard, Server, look};
 use serde_json::json;
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use tokio_tungstenite::tungstenite::Message;
 
 fn status(answer: &str) -> &str {
     answer.split(' ').nth(1).unwrap_or("none")
+}
+
+#[test]
+fn one_address_is_asked_for_not_all_at_once() {
+    let scene = scene_file::parse(page::SCENE, "mine", Path::new(""), &[]).unwrap();
+    let host = [0, 0, 0, 0].into();
+    let settings = Settings { scene, name: String::new(), folder: PathBuf::new(), host, port: 0 };
+    static STOP: AtomicBool = AtomicBool::new(true);
+    let served = serve(&settings, |address| panic!("{address}"), &STOP);
+    let refused = served.expect_err("all addresses");
+    assert!(matches!(refused, ViewerError::AllAddresses(_)), "{refused}");
+    assert!(refused.to_string().contains("one address of this machine"), "{refused}");
 }
 
 #[test]
