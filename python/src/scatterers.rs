@@ -114,7 +114,8 @@ pub fn scatter<'py>(
     let work = Work { py, scene, limits, placement, want_fields: want_fields || fields.is_some() };
     if let Ok(origins) = origins.extract::<PyReadonlyArray2<'py, f32>>() {
         let directions: PyReadonlyArray2<'py, f32> = directions.extract()?;
-        let draws: Option<PyReadonlyArray1<'py, f32>> = draws.map(PyAnyMethods::extract).transpose()?;
+        let draws: Option<PyReadonlyArray1<'py, f32>> =
+            draws.map(PyAnyMethods::extract).transpose()?;
         let draws = draws.as_ref().map(PyReadonlyArray1::as_array);
         let (origins, directions) = (origins.as_array(), directions.as_array());
         return work.of(&Rays { origins, directions, draws, fields });
@@ -220,14 +221,14 @@ pub fn device_bounds<'py>(
         let hull = &placed.structure.hull;
         let mirror = hull.thin_mirror.as_ref().and_then(Solid::bounds);
         let ends = [hull.bounds(&Pose::IDENTITY), mirror].into_iter().flatten();
-        let [low, high] =
-            ends.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).ok_or_else(endless)?;
+        let [low, high] = ends.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).ok_or_else(endless)?;
         if low.min_element() <= -REACH || high.max_element() >= REACH {
             return Err(endless());
         }
         let ball = mirror.is_none() && matches!(hull.solids[..], [Solid::Ball { .. }]);
         let rotation = placed.pose.rotation();
-        let columns = [rotation.x_axis, rotation.y_axis, rotation.z_axis, placed.pose.origin / unit];
+        let columns =
+            [rotation.x_axis, rotation.y_axis, rotation.z_axis, placed.pose.origin / unit];
         let frame = Array2::from_shape_fn((3, 4), |(row, column)| columns[column][row]);
         let [low, high] = [low, high].map(|corner| (corner / unit).to_array());
         Ok((frame.into_pyarray(py), low, high, ball))

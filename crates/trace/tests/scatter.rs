@@ -3,10 +3,12 @@
 
 use cloakroom_trace::assembly::{Assembly, Placed};
 use cloakroom_trace::device::{
-    Device, DoubleGaussianCloak, InvisibleSphere, Request, SegmentMaterial, SphereCloak, SquareCloak,
+    Device, DoubleGaussianCloak, InvisibleSphere, Request, SegmentMaterial, SphereCloak,
+    SquareCloak,
 };
 use cloakroom_trace::walk::{
-    Launch, LeafTable, Limits, Placement, RayStatus, ScatterRay, Scattered, Stopped, Tracer, scatter,
+    Launch, LeafTable, Limits, Placement, RayStatus, ScatterRay, Scattered, Stopped, Tracer,
+    scatter,
 };
 use glam::{DMat3, DVec3};
 use optics::geometry::Pose;
