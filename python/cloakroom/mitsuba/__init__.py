@@ -9,14 +9,14 @@ Importing it registers two plugins in every variant that computes wavefronts (``
 >>> import cloakroom.mitsuba as rooms
 >>> mi.set_variant("llvm_ad_rgb")
 >>> room = mi.cornell_box()
->>> room["cloak"] = rooms.device({"kind": "sphere-cloak"}, mi.ScalarTransform4f().translate([0, -0.4, 0]), unit=25)
+>>> room["cloak"] = rooms.device({"kind": "sphere-cloak"}, mi.ScalarTransform4f().translate([0.2, 0.6, 0.3]), unit=32)
 >>> room["integrator"] = {"type": "cloakroom_path", "max_depth": 8}
 >>> image = mi.render(mi.load_dict(room), spp=4)
 >>> image.shape
 (256, 256, 3)
 
 What cannot be: variants without wavefronts (``scalar_...``), since devices are traced many rays at a time; polarized
-variants; geometry within the bounding shape of a device, but in an open core of its own scene file; light tracing
+variants; geometry within the bounding shape of a device; light tracing
 (``ptracer``), photons and derivatives through a device; participating media.
 """
 

@@ -57,7 +57,7 @@ def main(words: list[str] | None = None) -> int:
         return 130
     except (ImportError, OSError, RuntimeError, ValueError, TypeError) as error:
         # Mitsuba tells what went wrong in a plugin as the cause of an error of its own.
-        cause = error
+        cause: BaseException = error
         while cause.__cause__ is not None:
             cause = cause.__cause__
         print(f"{PROGRAM}: {cause}", file=sys.stderr)

@@ -41,7 +41,8 @@ def tone_mapped(image: NDArray[Any], exposure: float | None = None) -> NDArray[n
     luminance = luminance * scale
     white = max(1.0, float(np.quantile(luminance, 0.995)))
     mapped = (1 + luminance / white**2) / (1 + luminance)
-    return np.clip(light * (scale * mapped)[..., None], 0, 1)
+    shown: NDArray[np.float64] = np.clip(light * (scale * mapped)[..., None], 0, 1)
+    return shown
 
 
 def denoised(image: NDArray[np.float32]) -> NDArray[np.float32] | None:

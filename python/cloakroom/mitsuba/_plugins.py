@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..scatterers import LEFT, MISSED, Scatterer, rigid
-from ._shape import MARGIN, Box, box_of, keys_of, scatterer_of
+from ._shape import MARGIN, MIN_POWER, Box, box_of, keys_of, scatterer_of
 
 __all__ = ["register"]
 
@@ -51,7 +51,7 @@ def _bsdf() -> Callable[[Any], Any]:
             to_world = plain.pop("to_world", None)
             matrix = np.eye(4) if to_world is None else np.array(to_world.matrix, dtype=np.float64).reshape(4, 4)
             unit = float(plain.pop("unit", 1.0))
-            wavelength_nm, min_power = float(plain.pop("wavelength_nm", 550.0)), float(plain.pop("min_power", 1e-4))
+            wavelength_nm, min_power = float(plain.pop("wavelength_nm", 550.0)), float(plain.pop("min_power", MIN_POWER))
             self.see_through = plain.pop("see_through", "auto")
             if self.see_through not in ("auto", "yes", "no"):
                 raise ValueError(f'see_through is {self.see_through!r}; expected "auto", "yes" or "no"')
@@ -153,11 +153,10 @@ class _Room:
             hit = found.is_valid()
             if dr.any(hit):
                 first = int(np.flatnonzero(np.array(hit))[0])
-                hit_at = int(np.array(dr.reinterpret_array(mi.UInt32, found.shape))[first])
-                ids = [other.id() for other in scene.shapes() if _place(other) == hit_at]
+                at = np.array(ray.o + ray.d * found.t)[:, first].round(4).tolist()
                 raise ValueError(
-                    f"the shape {ids[0] if ids else ''!r} reaches into the bounding shape {shape.id()!r} of a "
-                    "device; shapes may touch it, but not stand in it"
+                    f"something reaches into the bounding shape {shape.id()!r} of a device, at {at}: shapes may touch it, "
+                    "but not stand in it"
                 )
 
     def number(self, shape: Any, active: Any) -> Any:
@@ -325,7 +324,9 @@ def _integrator() -> Callable[[Any], Any]:
             """The light along rays: a loop on the device that goes on until all paths end or come to a device."""
             room = self._devices(scene)
             width = max(dr.width(ray), sampler.wavefront_size())
-            state = self._launched(ray, active, width)
+            # As with `path`: where there is a sky, no ray goes to nowhere.
+            sky = not self.hide and scene.environment() is not None
+            state = self._launched(ray, active, width, sky)
             clear = self.see_through and any(getattr(room, "clear", []))
             if not room.shapes:
                 state, _, _ = self._follow(scene, sampler, state, room, False)
@@ -350,9 +351,9 @@ def _integrator() -> Callable[[Any], Any]:
                 sampler = _sampler_at(sampler, further)
                 dr.eval(state)
                 self._cross(room, state)
-            return result, valid, []
+            return dr.select(valid, result, 0), valid, []
 
-        def _launched(self, ray: Any, active: Any, width: int) -> dict[str, Any]:
+        def _launched(self, ray: Any, active: Any, width: int, sky: bool) -> dict[str, Any]:
             """The state of paths that begin."""
             full = {
                 "o": mi.Point3f(ray.o),
@@ -373,7 +374,7 @@ def _integrator() -> Callable[[Any], Any]:
                 # The device, counted from 1, in whose bounding shape it is, after its rays have been traced.
                 "left": mi.UInt32(0),
                 "crossings": mi.UInt32(0),
-                "valid": mi.Bool(False),
+                "valid": mi.Bool(sky),
                 "active": mi.Bool(active),
                 # The device that it has come to.
                 "parked": mi.UInt32(0),

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..scatterers import rigid
-from ._shape import box_of, device, scatterer_of
+from ._shape import MIN_POWER, box_of, device, scatterer_of
 
 __all__ = ["Room", "device_of"]
 
@@ -99,7 +99,7 @@ class Room:
             given = {**given, "scene": str(self._file(given["scene"]))}
         to_world = np.eye(4)
         to_world[:3, :3] = turn
-        box = box_of(scatterer_of(given, to_world, unit, 550.0, 1e-4))
+        box = box_of(scatterer_of(given, to_world, unit, 550.0, MIN_POWER))
         # The device's own middle may be anywhere in its frame.
         to_world[:3, 3] = middle - box.to_world[:3, 3]
         if stands:
@@ -181,7 +181,7 @@ class Room:
     @staticmethod
     def _write(shape: Any, given: dict[str, Any], to_world: NDArray[np.float64], unit: float, see_through: str) -> None:
         if "scene" in given:
-            box = box_of(scatterer_of(given, to_world, unit, 550.0, 1e-4))
+            box = box_of(scatterer_of(given, to_world, unit, 550.0, MIN_POWER))
             kind, bounding = "sphere" if box.ball else "cube", box.shape()
             properties = {"scene": given["scene"]}
         else:
@@ -258,7 +258,8 @@ def _translate(step: Any) -> NDArray[np.float64]:
 
 
 def _rotate(step: Any) -> NDArray[np.float64]:
-    axis = mi.ScalarVector3f(*_numbers(step, 0))
+    numbers = _numbers(step, 0)
+    axis = mi.ScalarVector3f(*(numbers / np.linalg.norm(numbers)))
     return np.array(mi.ScalarTransform4f().rotate(axis, float(step.get("angle", "0"))).matrix, np.float64).reshape(4, 4)
 
 

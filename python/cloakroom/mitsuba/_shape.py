@@ -14,10 +14,13 @@ from ..scatterers import Scatterer, rigid
 from ..scenes import Scene
 from ..tables import Device
 
-__all__ = ["MARGIN", "Box", "box_of", "device", "keys_of", "scatterer_of"]
+__all__ = ["MARGIN", "MIN_POWER", "Box", "box_of", "device", "keys_of", "scatterer_of"]
 
 #: How far a bounding shape goes beyond its device, as a share of its size: rays are single numbers outside.
 MARGIN = 1e-4
+
+#: Weaker branches of a ray's tree are pruned, and what they carry is given to the others.
+MIN_POWER = 1e-3
 
 
 def device(
@@ -27,7 +30,7 @@ def device(
     unit: float = 1.0,
     wavelength_nm: float = 550.0,
     see_through: str = "auto",
-    min_power: float = 1e-4,
+    min_power: float = MIN_POWER,
 ) -> dict[str, Any]:
     """A device as a shape for ``mitsuba.load_dict``: the least box or ball around it, with the BSDF ``cloakroom`` on it.
 
@@ -44,7 +47,7 @@ def device(
     see_through : {"auto", "yes", "no"}, default "auto"
         Whether shadow rays go through the device, on as far as its leaves go on along their line. ``"auto"`` lets them
         where nearly all leaves do.
-    min_power : float, default 1e-4
+    min_power : float, default 1e-3
         Branches within the device below this share of a ray's power are pruned.
 
     Returns
@@ -125,6 +128,8 @@ def box_of(scatterer: Scatterer) -> Box:
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     if len(bounds) == 1:
         to_world, low, high, ball = bounds[0].to_world, bounds[0].low, bounds[0].high, bounds[0].ball
+        if not ball:
+            to_world, low, high = _turned(scatterer, to_world, low, high)
     else:
         for each in bounds:
             local = np.linalg.inv(to_world) @ each.to_world
@@ -135,6 +140,26 @@ def box_of(scatterer: Scatterer) -> Box:
     placed = to_world.copy()
     placed[:3, 3] += to_world[:3, :3] @ (low + high) / 2
     return Box(placed, (high - low) / 2, ball)
+
+
+def _turned(
+    scatterer: Scatterer, to_world: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """The same box turned about its own z axis, if that makes it smaller: the square cloak stands on an edge."""
+    corners = np.concatenate([outline.triangles.reshape(-1, 3) for outline in scatterer.outlines()])
+    local = (corners - to_world[:3, 3]) @ to_world[:3, :3]
+    best = (to_world, low, high)
+    area = 0.99 * np.prod((high - low)[:2])
+    for angle in np.radians([15, 30, 45, 60, 75]):
+        turn = np.eye(4)
+        turn[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+        turned = local @ turn[:3, :3]
+        middle, half = (turned.min(axis=0) + turned.max(axis=0)) / 2, np.ptp(turned, axis=0) / 2
+        # What is round reaches beyond the pieces of its outline, 96 all around, by this.
+        half[:2] /= np.cos(np.pi / 96)
+        if np.prod(2 * half[:2]) < area:
+            area, best = np.prod(2 * half[:2]), (to_world @ turn, middle - half, middle + half)
+    return best
 
 
 def _matrix(given: Any) -> ArrayLike:

@@ -26,7 +26,7 @@ const SMALLER: [(&str, &str); 10] = [
 ];
 
 /// How commands begin that are not run here, and where they are.
-const ELSEWHERE: [(&str, &str); 16] = [
+const ELSEWHERE: [(&str, &str); 17] = [
     ("cargo test", "runs this test"),
     ("cargo bench", ".ci/long"),
     ("cargo install", "installs into the home folder; by hand"),
@@ -44,7 +44,11 @@ const ELSEWHERE: [(&str, &str); 16] = [
     ("benches/", "by hand: other programs, a quiet machine"),
     ("target/full_wave/venv", "by hand: full-wave solvers"),
     ("python3 conformance/generate.py", "python/tests/test_conformance.py"),
+<<<<<<< HEAD
     ("cloakroom view --host", "crates/viewer/browser/explains.test.js, on the network there is"),
+=======
+    ("python -m cloakroom.mitsuba", "python/tests/test_mitsuba.py"),
+>>>>>>> rooms
     ("web/build.sh", ".ci/run, where there is what compiles for browsers"),
 ];
 
