@@ -230,9 +230,15 @@ fn value(draws: &mut Draws<'_>, key: &'static Key) -> Value {
             let low = draws.number(number, limits);
             vec![low, low + draws.between(-0.2, 2.0)].into()
         }
-        KeyKind::Image => {
-            (*draws.pick(&["builtin:bookshelf", "builtin:room", "nowhere.png", "builtin:", "", "/"])).into()
-        }
+        KeyKind::Image => (*draws.pick(&[
+            "builtin:bookshelf",
+            "builtin:room",
+            "nowhere.png",
+            "builtin:",
+            "",
+            "/",
+        ]))
+        .into(),
         KeyKind::ChoiceOrNumber { options } => match draws.below(2) {
             0 => (*draws.pick(options)).into(),
             _ => draws.number(30.0, ValueRange::Finite).into(),

@@ -40,8 +40,7 @@ fn harmonics(DVec3 { x, y, z }: DVec3) -> [f64; 9] {
 
 /// What the average over a hemisphere, weighted by the cosine, leaves of the functions of degree 0,
 /// 1 and 2.
-const DEGREES: [f64; 9] =
-    [1.0, 2.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 0.25, 0.25, 0.25, 0.25, 0.25];
+const DEGREES: [f64; 9] = [1.0, 2.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 0.25, 0.25, 0.25, 0.25, 0.25];
 
 impl Irradiance {
     /// From an image of all directions.
