@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pictures of docs/devices and docs/real: each device as it looks (JPEG), and rays through it (PNG).
+# Makes the pictures of docs/devices and docs/real, each device as it looks (JPEG) and rays through it (PNG), and frames of the shop
+# window.
 # Needs cloakroom on the path and Python with Pillow.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -63,6 +64,11 @@ real_rays prism-cloak --width 6
 real_rays water-cloak --width 10
 real_rays four-mirrors --camera --rays 40
 
+# Frames of the shop window.
+for angle in 0 8 16 30 45 60 75 90; do
+  cloakroom render scenes/shop-window.toml --size 320x240 --samples 4 --set "device.0.rotation=$angle" -o "$work/window-$(printf %02d "$angle").png"
+done
+
 # A photograph is far smaller as JPEG.
 python3 - "$work" "$out" docs/real <<'PYTHON'
 import pathlib, sys
@@ -82,4 +88,9 @@ for path in sorted((work / "real").glob("*.png")):
         image.quantize(128).save(real / path.name, optimize=True)
     else:
         image.save(real / f"{path.stem}.jpg", quality=84, optimize=True, progressive=True)
+frames = [Image.open(path).convert("RGB") for path in sorted(work.glob("window-*.png"))]
+window = Image.new("RGB", (4 * 326 - 6, 2 * 246 - 6), "white")
+for number, frame in enumerate(frames):
+    window.paste(frame, (326 * (number % 4), 246 * (number // 4)))
+window.quantize(256).save("docs/shop-window.png", optimize=True)
 PYTHON
