@@ -44,11 +44,8 @@ const ELSEWHERE: [(&str, &str); 17] = [
     ("benches/", "by hand: other programs, a quiet machine"),
     ("target/full_wave/venv", "by hand: full-wave solvers"),
     ("python3 conformance/generate.py", "python/tests/test_conformance.py"),
-<<<<<<< HEAD
     ("cloakroom view --host", "crates/viewer/browser/explains.test.js, on the network there is"),
-=======
     ("python -m cloakroom.mitsuba", "python/tests/test_mitsuba.py"),
->>>>>>> rooms
     ("web/build.sh", ".ci/run, where there is what compiles for browsers"),
 ];
 
