@@ -51,6 +51,7 @@ fn scattered(
 
 #[test]
 fn all_leaves_are_those_of_the_tracer() {
+    let mut missed = 0;
     for assembly in [alone(&crystal()), alone(&DoubleGaussianCloak::default())] {
         let count = 300;
         let whole = |number: usize| ScatterRay { launch: fan(number), draw: None };
@@ -73,8 +74,9 @@ fn all_leaves_are_those_of_the_tracer() {
                 other => panic!("{other:?}"),
             }
         }
-        assert!(rows.iter().any(|row| row.status == RayStatus::Missed));
+        missed += rows.iter().filter(|row| row.status == RayStatus::Missed).count();
     }
+    assert!(missed > 0);
 }
 
 #[test]
