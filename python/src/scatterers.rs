@@ -202,14 +202,20 @@ fn arrays<'py, T: Real>(
     Ok(arrays)
 }
 
-/// The space that each device takes up, in the unit of a world of so many cm: the axes and the origin of a
-/// frame (3, 4), the least and the greatest coordinates in it, and whether it is a ball that touches them.
+/// The axes and the origin of a frame (3, 4), the least and the greatest coordinates in it, and whether it
+/// is a ball that touches them.
+type DeviceBounds<'py> = (Bound<'py, PyArray2<f64>>, [f64; 3], [f64; 3], bool);
+
+/// The name of a part, what it is of, and its triangles (N, 9).
+type Outline<'py> = (String, &'static str, Bound<'py, PyArray2<f64>>);
+
+/// The space that each device takes up, in the unit of a world of so many cm.
 #[pyfunction]
 pub fn device_bounds<'py>(
     py: Python<'py>,
     scene: &Scene,
     unit: f64,
-) -> Result<Vec<(Bound<'py, PyArray2<f64>>, [f64; 3], [f64; 3], bool)>, Failure> {
+) -> Result<Vec<DeviceBounds<'py>>, Failure> {
     let assembly = scene.assembly()?;
     let bounds = |(number, placed): (usize, &Placed)| {
         let name = scene.scene().device_name(number);
@@ -236,14 +242,13 @@ pub fn device_bounds<'py>(
     assembly.devices().iter().enumerate().map(bounds).collect()
 }
 
-/// The outlines of all devices, in the unit of a world of so many cm: names, what they are of, and
-/// triangles (N, 9).
+/// The outlines of all devices, in the unit of a world of so many cm.
 #[pyfunction]
 pub fn outline_meshes<'py>(
     py: Python<'py>,
     scene: &Scene,
     unit: f64,
-) -> Result<Vec<(String, &'static str, Bound<'py, PyArray2<f64>>)>, Failure> {
+) -> Result<Vec<Outline<'py>>, Failure> {
     let meshes = outlines(scene.scene(), scene.assembly()?, None)?;
     let mesh = |mesh: cloakroom::outline_mesh::OutlineMesh| {
         let matter = match mesh.matter {
