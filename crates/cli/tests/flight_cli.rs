@@ -1,4 +1,0 @@
-//! One.
-#![allow(clippy::unwrap_used, dead_code)]
-mod flying;
-mod running;
