@@ -5,6 +5,7 @@ use crate::scenes::Scene;
 use cloakroom_viewer::{Settings, ViewerError, WayIn, serve};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
+use std::net::Ipv4Addr;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::channel;
@@ -33,7 +34,8 @@ impl Page {
             ));
         }
         let (scene, folder) = (scene.loaded().clone(), scene.folder().to_owned());
-        let settings = Settings { scene, name, folder, port };
+        let host = Ipv4Addr::LOCALHOST.into();
+        let settings = Settings { scene, name, folder, host, port };
         let stop: &'static AtomicBool = Box::leak(Box::new(AtomicBool::new(false)));
         let (ready, news) = channel::<Result<String, ViewerError>>();
         let server = thread::spawn(move || {

@@ -5,7 +5,7 @@ use cloakroom::scene_file;
 use cloakroom_viewer::{Settings, serve};
 use serde_json::{Value, json};
 use std::io::ErrorKind;
-use std::net::TcpStream;
+use std::net::{Ipv4Addr, TcpStream};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::sync::{LazyLock, mpsc};
@@ -31,7 +31,8 @@ static STOP: AtomicBool = AtomicBool::new(false);
 static ADDRESS: LazyLock<String> = LazyLock::new(|| {
     let folder = PathBuf::from("/nowhere");
     let scene = scene_file::parse(SCENE, "a", &folder, &[]).expect("a scene");
-    let settings = Settings { scene, name: "a".to_owned(), folder, port: 0 };
+    let (name, host) = ("a".to_owned(), Ipv4Addr::LOCALHOST.into());
+    let settings = Settings { scene, name, folder, host, port: 0 };
     let (sender, receiver) = mpsc::channel();
     std::thread::spawn(move || {
         serve(&settings, |address| sender.send(address.to_owned()).expect("heard"), &STOP)
