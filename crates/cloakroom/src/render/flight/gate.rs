@@ -211,7 +211,7 @@ mod tests {
         assert!(gate.bins() <= 131);
         assert_eq!(Gate::around([5.0, 5.0], 128).step(), 1e-3);
         let gate = Gate::around([5.1004, 5.6451], 120);
-        assert_eq!(gate.to_string(), "5.095..5.65:0.005");
+        assert_eq!(gate.to_string(), "5.095..5.655:0.005");
         assert_eq!(gate.to_string().parse::<Gate>().map(|gate| gate.bins()), Ok(gate.bins()));
     }
 
