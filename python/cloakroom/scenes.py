@@ -563,7 +563,8 @@ class Scene:
         with told(progress, "rendering") as tell:
             arrays, _ = _cloakroom.flight(scene._native, gate, float(pulse), delay, flash, tell)
         image = ("height", "width")
-        axes = {name: (*image, "color") for name in ("before", "after", "untimed", "steady", "picture")}
+        axes: dict[str, tuple[str, ...]] = {}
+        axes |= {name: (*image, "color") for name in ("before", "after", "untimed", "steady", "picture")}
         axes |= {name: image for name in ("before_power", "after_power", "untimed_power")}
         axes |= {"time": ("time",), "light": ("time", *image, "color"), "power": ("time", *image)}
         return Arrays(arrays, axes)

@@ -403,9 +403,9 @@ def test_the_room_lights_bodies() -> None:
     """A lit ball shows its share of the light around: of an even one that light, of the room as much as is there."""
     camera = Camera(projection="orthographic", width=6.0, position=[-100, 0, 0], resolution=(9, 9), samples=1)
     ball = cloakroom.Body(shape="sphere", radius=5.0, surface={"color": [0.8, 0.4, 0.2], "lit": True})
-    even = Scene(camera=camera, devices=ball, surroundings=[0.5, 0.5, 0.5]).render().image
+    even = Scene(camera=camera, devices=ball, surroundings=[0.5, 0.5, 0.5]).render().linear
     np.testing.assert_allclose(even, np.broadcast_to([0.4, 0.2, 0.1], even.shape), atol=1e-6)
-    room = Scene(camera=camera, devices=ball, surroundings="builtin:room").render().image
+    room = Scene(camera=camera, devices=ball, surroundings="builtin:room").render().linear
     white = room / np.array([0.8, 0.4, 0.2])
     assert 0.05 < white.min() and white.max() < 1.0
     # The ceiling is brighter than the desk.
