@@ -55,18 +55,23 @@ impl Quadratic<f64> {
         Roots::Real { plus, minus, root }
     }
 
-    /// The same where one of them is known, if anything is; c is the sum of terms of the size `terms`. Near
+    /// The same where one of them is known, if anything is; see [`Self::refined`].
+    pub fn roots_with(self, known: Option<f64>, terms: f64) -> Roots {
+        let roots = self.roots();
+        known.map_or(roots, |known| self.refined(roots, known, terms))
+    }
+
+    /// The roots of the equation where one of them is known; c is the sum of terms of the size `terms`. Near
     /// grazing incidence, where both are close to -b/a, what is known has the digits that the
     /// discriminant, a small difference, has lost.
-    pub fn roots_with(self, known: Option<f64>, terms: f64) -> Roots {
-        let Some(known) = known else { return self.roots() };
+    pub fn refined(self, roots: Roots, known: f64, terms: f64) -> Roots {
         let Self { a, b, c } = self.bounded();
         let root = (a * known + b).abs();
-        if is_known_better(root, b * b - a * c, b * b + a.abs() * terms) {
-            let root = root.max(1e-15);
-            return Roots::Real { plus: (root - b) / a, minus: (-root - b) / a, root };
+        if !is_known_better(root, b * b - a * c, b * b + a.abs() * terms) {
+            return roots;
         }
-        self.roots()
+        let root = root.max(1e-15);
+        Roots::Real { plus: (root - b) / a, minus: (-root - b) / a, root }
     }
 }
 

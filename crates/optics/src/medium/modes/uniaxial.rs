@@ -126,10 +126,10 @@ impl UniaxialWaves<'_> {
         let index = self.medium.scalar * self.medium.ordinary;
         let terms = self.along * self.along + index.abs();
         if distance(self.ordinary) <= distance(self.extraordinary) {
-            self.ordinary = ordinary.roots_with(Some(q), terms).propagating();
+            self.ordinary = ordinary.refined(self.ordinary, q, terms).propagating();
         } else {
             let terms = terms * self.medium.extraordinary.abs().max(self.medium.ordinary.abs());
-            self.extraordinary = extraordinary.roots_with(Some(q), terms).propagating();
+            self.extraordinary = extraordinary.refined(self.extraordinary, q, terms).propagating();
         }
     }
 
