@@ -4,9 +4,7 @@ use crate::errors::{Failure, value_error};
 use crate::scenes::Scene;
 use crate::supervision::supervised;
 use cloakroom::render::{self, ChannelSet, Images, PreparedScene};
-use cloakroom_figures::film::{
-    Film, FilmFormat, FrameFolder, frame_metadata, frames_beside, render_frames,
-};
+use cloakroom_figures::film::{Film, FilmFormat, FrameFolder, frame_metadata, render_frames};
 use cloakroom_figures::panels::{PanelMaker, PanelSettings};
 use cloakroom_figures::{paper, paper_figures};
 use pyo3::exceptions::PyOSError;
@@ -37,14 +35,10 @@ pub fn animate(
     if is_film {
         cloakroom::output::check_writable(&path)?;
     }
-    let folder = if is_film { frames_beside(&path) } else { path.clone() };
     supervised(py, progress.as_ref(), |watch, supervision| {
         let rows = u64::from(first.scene().camera.resolution[1]) * count as u64;
         watch.begin(if is_film { rows + count as u64 } else { rows });
-        let frames = FrameFolder::new(&folder, count)?;
-        if !is_film {
-            frames.check_none_beyond()?;
-        }
+        let frames = FrameFolder::of_film(&path, format, count)?;
         let mut images = Images::default();
         let mut prepared = |frame: usize| scenes[frame].prepared_with(&mut images);
         let done = render_frames(0..count, &mut prepared, &frames, map_range, supervision)?;

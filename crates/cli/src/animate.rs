@@ -11,7 +11,7 @@ use cloakroom::output;
 use cloakroom::render::Images;
 use cloakroom::scene_file::{self, Loaded, Override};
 use cloakroom::timeline::{Changes, Keyframes, Timeline};
-use cloakroom_figures::film::{self, Film, FilmFormat, FrameFolder, frame_metadata, frames_beside};
+use cloakroom_figures::film::{self, Film, FilmFormat, FrameFolder, frame_metadata};
 use std::ops::Range;
 use std::path::Path;
 
@@ -36,16 +36,13 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
     scene::use_threads(&arguments.threads)?;
     let mut images = Images::default();
     let scenes = scenes(arguments, &timeline, range.clone(), &mut images)?;
-    let folder = if format == FilmFormat::Frames { path.clone() } else { frames_beside(path) };
     let inputs = scenes.iter().flat_map(|loaded| scene::inputs(&arguments.scene, loaded));
     let inputs: Vec<_> = inputs.collect();
     if makes_film {
         check_writable([path], &inputs)?;
     }
-    let frames = FrameFolder::new(&folder, count)?;
-    if format == FilmFormat::Frames {
-        frames.check_none_beyond()?;
-    }
+    let frames = FrameFolder::of_film(path, format, count)?;
+    let folder = frames.path();
     check_writable(
         (0..count).map(|frame| frames.file(frame)).filter(|file| file.exists()),
         &inputs,
@@ -69,14 +66,35 @@ pub fn run(arguments: &AnimateArguments) -> Result<()> {
     let first = scenes.first().map(|loaded| scene::prepared(loaded, &mut images)).transpose()?;
     let metadata = first.map(|first| frame_metadata(&first, arguments.map_range));
     let (rate, metadata) = (arguments.fps, &metadata.unwrap_or_default());
-    supervised(count as u64, "writing", |bar, _| {
-        let frame_done = &|| bar.inc(1);
-        Film { frames: &frames, path, rate, metadata, frame_done, stop: &STOP }.write(format)
-    })?;
-    if !arguments.keep_frames {
-        frames.remove();
+    let film = Written { path, format, rate, metadata, keep_frames: arguments.keep_frames };
+    film.write(&frames)
+}
+
+/// A film that is to be made of frames.
+#[derive(Clone, Copy, Debug)]
+pub struct Written<'a> {
+    pub path: &'a Path,
+    pub format: FilmFormat,
+    /// Frames a second.
+    pub rate: u32,
+    pub metadata: &'a [(String, String)],
+    /// Whether the frames stay when it is made.
+    pub keep_frames: bool,
+}
+
+impl Written<'_> {
+    /// Makes it, and removes the frames unless they stay.
+    pub fn write(&self, frames: &FrameFolder) -> Result<()> {
+        let Self { path, format, rate, metadata, keep_frames } = *self;
+        supervised(frames.count() as u64, "writing", |bar, _| {
+            let frame_done = &|| bar.inc(1);
+            Film { frames, path, rate, metadata, frame_done, stop: &STOP }.write(format)
+        })?;
+        if !keep_frames {
+            frames.remove();
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// Where the camera stands.

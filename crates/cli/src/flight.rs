@@ -1,17 +1,16 @@
 //! `cloakroom flight`: what a camera with a time gate sees when the photograph flashes.
 
+use crate::animate::Written;
 use crate::arguments::{FlightArguments, FlightDelay};
 use crate::files::check_outputs;
-use crate::interruption::{self, STOP};
+use crate::interruption;
 use crate::progress::supervised;
 use crate::render::warn_of_cut_branches;
 use crate::report::{Failure, Result, all, say};
 use crate::scene;
 use cloakroom::output::{self, FlightOrder, FlightStore};
 use cloakroom::render::{self, Arrivals, Delay, FlightSettings, Gate, Images, PreparedScene};
-use cloakroom_figures::film::{
-    Film, FilmFormat, FlightFilm, FrameFolder, flight_frames, frames_beside,
-};
+use cloakroom_figures::film::{FilmFormat, FlightFilm, FrameFolder, flight_frames};
 use std::path::Path;
 
 /// Bins of a gate that is not given, about.
@@ -141,13 +140,8 @@ fn film(
     (path, format): (&Path, FilmFormat),
     metadata: &[(String, String)],
 ) -> Result<()> {
-    let is_folder = format == FilmFormat::Frames;
-    let folder = if is_folder { path.to_owned() } else { frames_beside(path) };
     let bins = store.gate().bins();
-    let frames = FrameFolder::new(&folder, bins)?;
-    if is_folder {
-        frames.check_none_beyond()?;
-    }
+    let frames = FrameFolder::of_film(path, format, bins)?;
     // As bright as in the picture, where a pulse arrives in the middle of a bin.
     let as_in_picture = match arguments.accumulate {
         true => 1.0,
@@ -160,16 +154,9 @@ fn film(
     supervised(bins as u64, "frames", |_, supervision| {
         flight_frames(store, &look, &frames, metadata, supervision)
     })?;
-    if is_folder {
+    if format == FilmFormat::Frames {
         return Ok(());
     }
-    supervised(bins as u64, "writing", |bar, _| {
-        let frame_done = &|| bar.inc(1);
-        let rate = arguments.fps;
-        Film { frames: &frames, path, rate, metadata, frame_done, stop: &STOP }.write(format)
-    })?;
-    if !arguments.keep_frames {
-        frames.remove();
-    }
-    Ok(())
+    let (rate, keep_frames) = (arguments.fps, arguments.keep_frames);
+    Written { path, format, rate, metadata, keep_frames }.write(&frames)
 }

@@ -79,7 +79,7 @@ pub fn frame_metadata(
 
 /// The folder of the frames of a film: its name and `.frames`.
 #[must_use]
-pub fn frames_beside(path: &Path) -> PathBuf {
+pub(super) fn frames_beside(path: &Path) -> PathBuf {
     let mut name = OsString::from(path);
     name.push(".frames");
     name.into()

@@ -1,7 +1,8 @@
 //! A folder of frames: PNG files, each of which says what it shows, so that work can be taken up
 //! again.
 
-use super::FilmError;
+use super::animation::frames_beside;
+use super::{FilmError, FilmFormat};
 use cloakroom::output::{RgbImage, png_texts};
 use std::fs;
 use std::io::BufReader;
@@ -28,12 +29,33 @@ impl FrameFolder {
         Ok(Self { folder: folder.to_owned(), count })
     }
 
+    /// The folder for the frames of a film, made if it is not there: the film itself where it is one, which
+    /// then has no frames beyond, of a longer one; else one beside it.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be made, or has frames beyond.
+    pub fn of_film(path: &Path, format: FilmFormat, count: usize) -> Result<Self, FilmError> {
+        if format != FilmFormat::Frames {
+            return Self::new(&frames_beside(path), count);
+        }
+        let frames = Self::new(path, count)?;
+        frames.check_none_beyond()?;
+        Ok(frames)
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.folder
+    }
+
     /// Refuses a folder that holds frames beyond its own, of a longer film.
     ///
     /// # Errors
     ///
     /// If there is one.
-    pub fn check_none_beyond(&self) -> Result<(), FilmError> {
+    fn check_none_beyond(&self) -> Result<(), FilmError> {
         let number = |name: &str| {
             let digits = name.strip_prefix("frame-")?.strip_suffix(".png")?;
             digits.parse::<usize>().ok().filter(|number| *number >= self.count)
@@ -44,6 +66,12 @@ impl FrameFolder {
             Some(path) => Err(FilmError::Beyond { path, count: self.count }),
             None => Ok(()),
         }
+    }
+
+    /// How many frames it is for.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
     }
 
     /// The file of a frame, counted from 0: `frame-000000.png` and so on.

@@ -12,7 +12,7 @@ mod gif_file;
 mod video;
 mod webp_file;
 
-pub use animation::{RenderedFrames, frame_metadata, frames_beside, render_frames};
+pub use animation::{RenderedFrames, frame_metadata, render_frames};
 pub use flight::{FlightFilm, FlightFilmError, flight_frames};
 pub use frames::FrameFolder;
 
