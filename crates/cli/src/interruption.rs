@@ -32,7 +32,9 @@ fn asked_to_end() {
 
 #[cfg(unix)]
 fn watch_signals() -> std::io::Result<()> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+    // A file that grows over the limit of the system is told of as one that cannot be written.
+    signal_hook::flag::register(SIGXFSZ, std::sync::Arc::default())?;
     let ignored = ignored();
     let watched = [SIGINT, SIGTERM, SIGHUP].into_iter();
     let watched = watched.filter(|signal| ignored >> (signal - 1) & 1 == 0);

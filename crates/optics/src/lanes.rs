@@ -19,7 +19,7 @@ pub(crate) const LANES: usize = 4;
 /// All that it calls must be inlined into it.
 #[inline]
 pub(crate) fn side_by_side<W: WithSimd>(work: W) -> Result<W::Output, W> {
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(target_arch = "x86_64", not(feature = "portable")))]
     if let Some(simd) = pulp::x86::V3::try_new() {
         return Ok(Simd::vectorize(simd, work));
     }

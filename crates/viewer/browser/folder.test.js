@@ -40,12 +40,16 @@ function compiled() {
 const reduced = new URL("../../cloakroom/assets/reduced/", import.meta.url).pathname;
 const room = `surroundings.image=${reduced}room.jpg`;
 
+function withImages(text, set) {
+  const images = [`photograph.image=${reduced}bookshelf.jpg`, "photograph.width=110"];
+  if (text.includes("builtin:room")) images.push(room);
+  return [...images, ...set];
+}
+
 function rendered(scene, set) {
   const file = join(out, "picture.png");
-  const images = [`photograph.image=${reduced}bookshelf.jpg`, "photograph.width=110"];
-  if (readFileSync(scene, "utf8").includes("builtin:room")) images.push(room);
-  set = [...images, ...set];
-  execFileSync(program, ["render", scene, ...set.flatMap((one) => ["--set", one]), "-o", file]);
+  const all = withImages(readFileSync(scene, "utf8"), set);
+  execFileSync(program, ["render", scene, ...all.flatMap((one) => ["--set", one]), "-o", file]);
   return readFileSync(file);
 }
 
@@ -56,21 +60,39 @@ function assertAlike(one, other, name) {
   assert.ok(bytes <= 0.0005 * one.width * one.height, `${name}: ${bytes} bytes of ${one.width} x ${one.height} pixels`);
 }
 
+const ten = [
+  "paper/fig7b", "paper/fig7d", "paper/fig3c", "paper/fig4c", "gallery/sphere-cloak", "gallery/cylinder-cloak",
+  "gallery/luneburg-lens", "gallery/gaussian-carpet", "gallery/prisms", "gallery/bodies",
+];
+const tiny = ["camera.resolution=[320, 240]", "camera.samples=1"];
+
 test("pictures in Node are those of the command line", async () => {
   const part = compiled();
   const page = await browser.context.newPage();
-  const set = ["camera.resolution=[320, 240]", "camera.samples=1"];
-  const names = [
-    "paper/fig7b", "paper/fig7d", "paper/fig3c", "paper/fig4c", "gallery/sphere-cloak", "gallery/cylinder-cloak",
-    "gallery/luneburg-lens", "gallery/gaussian-carpet", "gallery/prisms", "gallery/bodies",
-  ];
-  for (const name of names) {
+  for (const name of ten) {
     const scene = join(scenes, `${name}.toml`);
-    const own = await decoded(page, Buffer.from(part.picture(readFileSync(scene, "utf8"), set)));
-    assertAlike(own, await decoded(page, rendered(scene, set)), name);
+    const own = await decoded(page, Buffer.from(part.picture(readFileSync(scene, "utf8"), tiny)));
+    assertAlike(own, await decoded(page, rendered(scene, tiny)), name);
   }
   assert.throws(() => part.picture("[[device]]\nkind = 'nothing'", []), /nothing/);
   assert.throws(() => part.picture("[photograph]\nimage = '/etc/passwd'", []));
+  await page.close();
+});
+
+// The program of web/portable, where it has been built.
+const portable = process.env.PORTABLE;
+
+test("pictures in Node are to the last bit those of a portable program", { skip: !portable }, async () => {
+  const part = compiled();
+  const page = await browser.context.newPage();
+  for (const name of ten) {
+    const scene = join(scenes, `${name}.toml`);
+    const text = readFileSync(scene, "utf8");
+    const own = await decoded(page, Buffer.from(part.picture(text, tiny)));
+    const other = await decoded(page, execFileSync(portable, [scene, ...withImages(text, tiny)]));
+    const { bytes, most } = difference(own, other);
+    assert.equal(bytes, 0, `${name}: ${bytes} bytes, ${most} steps`);
+  }
   await page.close();
 });
 

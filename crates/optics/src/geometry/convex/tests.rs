@@ -95,15 +95,17 @@ fn way_out(a: &Solid, b: &Solid, towards: DVec3) -> f64 {
     let mut few: Vec<(f64, DVec3)> = starts.map(|n| (needed(n), n)).collect();
     few.sort_by(|x, y| x.0.total_cmp(&y.0));
     for (mut least, mut direction) in few.into_iter().take(5) {
-        let mut step = 0.05;
+        let (mut step, mut first) = (0.05, 0.0);
         while step > 1e-12 && least.is_finite() {
             let (x, y) = direction.any_orthonormal_pair();
-            let tries = (0..12).map(|k| DVec2::from_angle(TAU * f64::from(k) / 12.0));
+            // Other ways each time: along a narrow ridge few of them go down.
+            first += 2.4;
+            let tries = (0..12).map(|k| DVec2::from_angle(first + TAU * f64::from(k) / 12.0));
             let tries = tries.map(|way| allowed(direction + step * (x * way.x + y * way.y)));
             let better = tries.map(|n| (needed(n), n)).min_by(|x, y| x.0.total_cmp(&y.0));
             match better {
                 Some(better) if better.0 < least => (least, direction) = better,
-                _ => step *= 0.7,
+                _ => step *= 0.9,
             }
         }
         if least < best.0 {
