@@ -30,7 +30,7 @@ fn scene(text: &str) -> Scene {
 }
 
 fn drawn(text: &str, settings: &DiagramSettings) -> Result<Drawing, DiagramError> {
-    diagram(&scene(text), settings, &AtomicBool::new(false))
+    Ok(RayDiagram::new(&scene(text), settings, &AtomicBool::new(false))?.draw(None))
 }
 
 /// The points of the wavefronts on the sheet, front by front.

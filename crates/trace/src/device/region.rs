@@ -290,10 +290,13 @@ impl Region {
             length * waves.flatten().filter(|index| index.is_finite()).unwrap_or(isotropic)
         };
         let mut sum = 0.0;
-        let mut paths: Vec<f64> = [0.0].into_iter().chain(path.windows(2).map(|pair| {
-            sum += piece(pair);
-            sum
-        })).collect();
+        let mut paths: Vec<f64> = [0.0]
+            .into_iter()
+            .chain(path.windows(2).map(|pair| {
+                sum += piece(pair);
+                sum
+            }))
+            .collect();
         for path in &mut paths {
             // On no way at all it takes no time.
             *path = if sum > 0.0 { whole * (*path / sum) } else { 0.0 };

@@ -229,7 +229,8 @@ impl<const N: usize> Branch<N> {
         let start = self.time();
         let time = |(number, point): (usize, &PathPoint)| {
             // Evenly where it runs backwards: in homogeneous media.
-            let share = if backwards == 0.0 { 0.0 } else { point.optical_path / passage.optical_path };
+            let share =
+                if backwards == 0.0 { 0.0 } else { point.optical_path / passage.optical_path };
             PathTime {
                 phase: start.phase + point.optical_path + backwards * share,
                 pulse: start.pulse + pulse.map_or(f64::NAN, |pulse| pulse[number]),

@@ -32,6 +32,23 @@ pub enum Delay {
     Phase,
 }
 
+impl Delay {
+    /// What it is called: `group` or `phase`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Group => "group",
+            Self::Phase => "phase",
+        }
+    }
+
+    /// That of a name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        [Self::Group, Self::Phase].into_iter().find(|delay| delay.name() == name)
+    }
+}
+
 /// What flashes, at the time 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Flash {
