@@ -160,9 +160,10 @@ impl RayDiagram {
             rays::wavefronts(trees, &joints, distance)
         };
         let fronts = |trees: &[Vec<Line>]| {
-            let Some(pulse) = pulse else { return Vec::new() };
-            let joints = Joints { assembly, apart: apart(trees.len()) };
-            pulse::fronts(trees, &joints, pulse::way(pulse.time) + self.before(), pulse.delay)
+            pulse.map_or_else(Vec::new, |pulse| {
+                let joints = Joints { assembly, apart: apart(trees.len()) };
+                pulse::fronts(trees, &joints, self.way(pulse.time), pulse.delay)
+            })
         };
         let devices = Devices::new(assembly);
         let sheet = sheet(settings.size);
@@ -204,6 +205,11 @@ impl RayDiagram {
     pub fn seen(&self, delay: Delay) -> Option<[f64; 2]> {
         let seen = pulse::seen(&self.trees, &self.scenery, delay)?;
         Some(seen.map(|way| (way - self.before()) / SPEED_OF_LIGHT))
+    }
+
+    /// How far a pulse has come at a time (ns), from where the rays start, cm.
+    fn way(&self, time: f64) -> f64 {
+        time * SPEED_OF_LIGHT + self.before()
     }
 
     /// The way of the rays up to where a pulse is at the time 0, cm.

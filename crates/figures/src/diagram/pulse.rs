@@ -1,6 +1,6 @@
 //! A pulse on its way through a diagram: the points that it has come to at one time.
 
-use super::super::drawing::{Drawing, Ink};
+use super::super::drawing::{Drawing, Ink, Shape};
 use super::super::film::time_in_words;
 use super::super::setting::PAPER;
 use super::rays::{Joints, RayPoint, between};
@@ -8,7 +8,6 @@ use super::view::Scenery;
 use cloakroom::render::Delay;
 use cloakroom::trace::{Line, PathTime};
 use glam::{DVec2, DVec3};
-use optics::wave::SPEED_OF_LIGHT;
 
 /// A pulse at one time of its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,7 +104,7 @@ pub(super) fn fronts(
 }
 
 /// Where a pulse is on a line, if it is.
-fn point_at(line: &Line, way: f64, delay: Delay) -> Option<RayPoint> {
+pub(super) fn point_at(line: &Line, way: f64, delay: Delay) -> Option<RayPoint> {
     let counted = counted(delay);
     let mut pieces = line.points.windows(2).zip(line.times.windows(2));
     pieces.find_map(|(points, times)| {
@@ -163,7 +162,7 @@ pub(super) fn draw(
     for (points, (ink, width)) in drawn {
         match points[..] {
             [centre] => {
-                let dot = super::super::drawing::Shape::Circle { centre, radius: DOT };
+                let dot = Shape::Circle { centre, radius: DOT };
                 drawing.add("pulse", dot).filled(ink).within(vec![frame.to_vec()]);
             }
             _ => {
@@ -171,9 +170,4 @@ pub(super) fn draw(
             }
         }
     }
-}
-
-/// The way in vacuum of so many ns, cm.
-pub(super) fn way(time: f64) -> f64 {
-    time * SPEED_OF_LIGHT
 }
