@@ -4,8 +4,12 @@
 //! light and its power. Leaves are added by power: light that interferes in a picture does not here.
 //! The photograph alone is timed; bodies and surroundings stand before it as a steady picture.
 
+mod cube;
+mod flash;
 mod gate;
 
+pub use cube::FlightCube;
+pub use flash::{Flash, FlashError};
 pub use gate::{Gate, GateError, MOST_BINS};
 
 use super::block_tracer::BlockTracer;
@@ -19,8 +23,6 @@ use crate::trace::{Leaf, Stopped, TraceStats, Tracer};
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
 use rayon::prelude::*;
-use std::str::FromStr;
-use std::sync::Mutex;
 
 /// Which of the two times of light counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,78 +48,6 @@ impl Delay {
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         [Self::Group, Self::Phase].into_iter().find(|delay| delay.name() == name)
-    }
-}
-
-/// What flashes, at the time 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Flash {
-    /// The whole photograph at once.
-    #[default]
-    Photograph,
-    /// The photograph, where a plane wave comes to it that runs along this direction through air:
-    /// its middle at the time 0.
-    PlaneWave(DVec3),
-    /// The photograph, where light comes to it from a point (cm) through air.
-    Point(DVec3),
-    /// A spot of a laser on it, as bright as the photograph there: a Gaussian about the point of
-    /// the photograph nearest to `middle` (cm), which is half as bright at `radius` (cm).
-    Spot {
-        /// Its middle.
-        middle: DVec3,
-        /// Where it is half as bright.
-        radius: f64,
-    },
-}
-
-impl Flash {
-    /// How much later (ns) a point of the photograph flashes, and how bright it is.
-    fn at(&self, point: DVec3, screen: &Screen) -> (f64, f64) {
-        match *self {
-            Self::Photograph => (0.0, 1.0),
-            Self::PlaneWave(direction) => {
-                let along = (point - screen.middle).dot(direction.normalize_or_zero());
-                (along / SPEED_OF_LIGHT, 1.0)
-            }
-            Self::Point(source) => (point.distance(source) / SPEED_OF_LIGHT, 1.0),
-            Self::Spot { middle, radius } => {
-                let squared = point.distance_squared(screen.foot(middle)) / (radius * radius);
-                (0.0, (-squared).exp2())
-            }
-        }
-    }
-}
-
-/// What is wrong with a flash: it is not written as one.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "`{0}` is no flash; write photograph, plane:DX,DY,DZ, point:X,Y,Z or spot:X,Y,Z,RADIUS in cm, as in \
-     point:50,0,30"
-)]
-pub struct FlashError(String);
-
-impl FromStr for Flash {
-    type Err = FlashError;
-
-    fn from_str(text: &str) -> Result<Self, FlashError> {
-        let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
-        let numbers: Option<Vec<f64>> = match rest {
-            "" => Some(Vec::new()),
-            rest => rest.split(',').map(|part| part.trim().parse().ok()).collect(),
-        };
-        let numbers = numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite()));
-        match (kind, numbers.as_deref()) {
-            ("photograph", Some([])) => Some(Self::Photograph),
-            ("plane", Some(&[x, y, z])) if [x, y, z] != [0.0; 3] => {
-                Some(Self::PlaneWave(DVec3::new(x, y, z)))
-            }
-            ("point", Some(&[x, y, z])) => Some(Self::Point(DVec3::new(x, y, z))),
-            ("spot", Some(&[x, y, z, radius])) if radius > 0.0 => {
-                Some(Self::Spot { middle: DVec3::new(x, y, z), radius })
-            }
-            _ => None,
-        }
-        .ok_or_else(|| FlashError(text.to_owned()))
     }
 }
 
@@ -443,81 +373,6 @@ impl<const N: usize> Exposer<'_, N> {
             },
         )?;
         Ok((flown, stats))
-    }
-}
-
-/// Light in flight in memory: every array frame by frame, row by row from the top left.
-#[derive(Clone, Debug)]
-pub struct FlightCube {
-    /// Width and height in pixels.
-    pub size: [usize; 2],
-    /// When the gate was open.
-    pub gate: Gate,
-    /// Red, green and blue in each bin: (time, height, width, color).
-    pub light: Vec<[f64; 3]>,
-    /// The share of the power in each bin: (time, height, width).
-    pub power: Vec<f64>,
-    /// What comes before all bins, after them, and nobody knows when.
-    pub beside: [Vec<Flashed>; 3],
-    /// What does not flash.
-    pub steady: Vec<[f64; 3]>,
-    /// The picture without any gate, its leaves added by power.
-    pub picture: Vec<[f64; 3]>,
-}
-
-impl FlightCube {
-    /// Looks at light in flight.
-    ///
-    /// # Errors
-    ///
-    /// If it would not fit into memory, or the work was stopped.
-    pub fn new(
-        prepared: &PreparedScene<'_>,
-        settings: &FlightSettings,
-        supervision: &Supervision<'_>,
-    ) -> Result<(Self, TraceStats), RenderError> {
-        let [width, height] = prepared.scene.camera.resolution;
-        let (gate, bins) = (settings.gate, settings.gate.bins());
-        let pixels = width as usize * height as usize;
-        crate::memory::check((pixels * bins * size_of::<Flashed>()) as u64, u64::MAX)
-            .map_err(|shortage| RenderError::TooLarge { width, height, shortage })?;
-        let flashed = || vec![[0.0; 4]; pixels];
-        let cube = Mutex::new(Self {
-            size: [width as usize, height as usize],
-            gate,
-            light: vec![[0.0; 3]; pixels * bins],
-            power: vec![0.0; pixels * bins],
-            beside: [flashed(), flashed(), flashed()],
-            steady: vec![[0.0; 3]; pixels],
-            picture: vec![[0.0; 3]; pixels],
-        });
-        let stats = flight(prepared, settings, supervision, |tile| {
-            // A thread that panicked has taken the program with it.
-            if let Ok(mut cube) = cube.lock() {
-                cube.place(&tile);
-            }
-            Ok::<_, RenderError>(())
-        })?;
-        let cube = cube.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-        Ok((cube, stats))
-    }
-
-    fn place(&mut self, part: &FlightTile) {
-        let pixels = self.size[0] * self.size[1];
-        for (number, index) in part.tile.places(self.size[0]).enumerate() {
-            let PixelBins { first, light } = &part.bins[number];
-            for (bin, flashed) in (*first..).zip(light) {
-                let [red, green, blue, power] = *flashed;
-                self.light[bin * pixels + index] = [red, green, blue];
-                self.power[bin * pixels + index] = power;
-            }
-            let [before, after] = &part.outside;
-            for (all, part) in self.beside.iter_mut().zip([before, after, &part.untimed]) {
-                all[index] = part[number];
-            }
-            self.steady[index] = part.steady[number];
-            self.picture[index] = part.picture[number];
-        }
     }
 }
 
