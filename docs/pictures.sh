@@ -71,7 +71,7 @@ done
 
 # Light in flight: films of the cloaks (ii) and (iii), and a pulse in (i) from the side.
 for pair in ii:4c iii:6c; do
-  cloakroom flight "scenes/paper/fig${pair#*:}.toml" --size 200x150 --pulse 0.1 --gate 4.85..6.85:0.05 --fps 10 -o "docs/flight-${pair%:*}.gif"
+  cloakroom flight "scenes/paper/fig${pair#*:}.toml" --size 160x120 --pulse 0.1 --gate 4.85..6.85:0.05 --fps 10 -o "docs/flight-${pair%:*}.gif"
 done
 cloakroom diagram scenes/paper/fig2c.toml --size 640x480 --pulse 0.9 --z 6 --rays 40 --min-power 0.03 -o "$work/flight-side.png"
 

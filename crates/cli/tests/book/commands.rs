@@ -19,7 +19,7 @@ const SMALLER: [(&str, &str); 12] = [
     ("--frames 50", "--frames 3"),
     ("--frames-only 0..29", "--frames-only 0..1"),
     ("--size 1600x1200", "--size 80x60"),
-    ("--size 200x150", "--size 60x45"),
+    ("--size 160x120", "--size 60x45"),
     ("--size 400x300 --pulse", "--size 80x60 --pulse 0..1:0.5"),
     ("--draws 20", "--draws 2"),
     ("--draws 8", "--draws 2"),
