@@ -394,7 +394,7 @@ class Scene:
         >>> from cloakroom import Scene, SquareCloak
         >>> Scene(devices=SquareCloak()).diagram(10, wavefronts=4).svg.count('class="wavefront"') > 5
         True
-        >>> Scene(devices=SquareCloak()).diagram(10, pulse=0.4).svg.count('class="pulse"') > 0
+        >>> Scene(devices=SquareCloak()).diagram(10, pulse=0.4).svg.count('<g class="pulse"') > 0
         True
         """
         sources = {"parallel": parallel is not None, "point": point is not None, "camera": camera}

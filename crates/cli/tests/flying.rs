@@ -115,7 +115,7 @@ fn a_pulse_is_filmed_from_the_side() {
     let output = diagram(folder.path(), &["--pulse", "-0.1", "--delay", "phase", "-o", "a.svg"]);
     assert!(output.status.success(), "{output:?}");
     let drawing = fs::read_to_string(at("a.svg")).unwrap();
-    assert!(drawing.contains("class=\"pulse\"") && drawing.contains("phase"), "{drawing}");
+    assert!(drawing.contains("<g class=\"pulse\"") && drawing.contains("phase"), "{drawing}");
     // Without times it is looked at while it is seen.
     let output = diagram(folder.path(), &["-o", "b.webp", "--pulse"]);
     assert!(output.status.success() && said(&output).contains("--pulse=-0."), "{output:?}");
