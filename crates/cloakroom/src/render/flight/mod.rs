@@ -238,23 +238,30 @@ fn add(sum: &mut Flashed, flashed: Flashed, share: f64) {
 }
 
 /// The parts of a picture of light in flight, which need little memory each.
-fn tiles([width, height]: [u32; 2]) -> Vec<Tile> {
+fn tiles(part: Tile) -> Vec<Tile> {
     let side = SIDE as u32;
-    let rows = (0..height).step_by(SIDE);
+    let [right, bottom] = [part.left + part.width, part.top + part.height];
+    let rows = (part.top..bottom).step_by(SIDE);
     let tile = |left: u32, top: u32| Tile {
         left,
         top,
-        width: side.min(width - left),
-        height: side.min(height - top),
+        width: side.min(right - left),
+        height: side.min(bottom - top),
     };
-    let tiles = rows.flat_map(|top| (0..width).step_by(SIDE).map(move |left| tile(left, top)));
+    let tiles =
+        rows.flat_map(|top| (part.left..right).step_by(SIDE).map(move |left| tile(left, top)));
     tiles.collect()
+}
+
+fn whole(prepared: &PreparedScene<'_>) -> Tile {
+    let [width, height] = prepared.scene.camera.resolution;
+    Tile { left: 0, top: 0, width, height }
 }
 
 /// How many steps of progress a picture of light in flight has.
 #[must_use]
 pub fn flight_steps(prepared: &PreparedScene<'_>) -> u64 {
-    tiles(prepared.scene.camera.resolution).iter().map(|tile| u64::from(tile.height)).sum()
+    tiles(whole(prepared)).iter().map(|tile| u64::from(tile.height)).sum()
 }
 
 /// Looks at light in flight, and gives `take` part by part of the picture, each once and in no order,
@@ -270,28 +277,44 @@ pub fn flight<E: From<RenderError> + Send>(
     supervision: &Supervision<'_>,
     take: impl Fn(FlightTile) -> Result<(), E> + Sync,
 ) -> Result<TraceStats, E> {
+    flight_part(prepared, settings, whole(prepared), supervision, take)
+}
+
+/// The same for a part of the picture. Its first column and row are multiples of [`BAND_ROWS`](super::BAND_ROWS), for what
+/// is in it to be as in the whole picture.
+///
+/// # Errors
+///
+/// As [`flight`].
+pub fn flight_part<E: From<RenderError> + Send>(
+    prepared: &PreparedScene<'_>,
+    settings: &FlightSettings,
+    part: Tile,
+    supervision: &Supervision<'_>,
+    take: impl Fn(FlightTile) -> Result<(), E> + Sync,
+) -> Result<TraceStats, E> {
     let prepared = &prepared.added_by_power();
     let arrivals = settings.arrivals;
     match prepared.scene.camera.polarizer.amplitudes() {
         None => {
             let detection = Detection::UNPOLARIZED.in_flight(arrivals);
-            expose_tiles(prepared, settings, supervision, detection, take)
+            expose_tiles(prepared, (settings, part), supervision, detection, take)
         }
         Some(amplitudes) => {
             let detection = Detection::image(amplitudes).in_flight(arrivals);
-            expose_tiles(prepared, settings, supervision, detection, take)
+            expose_tiles(prepared, (settings, part), supervision, detection, take)
         }
     }
 }
 
 fn expose_tiles<const N: usize, E: From<RenderError> + Send>(
     prepared: &PreparedScene<'_>,
-    settings: &FlightSettings,
+    (settings, part): (&FlightSettings, Tile),
     supervision: &Supervision<'_>,
     detection: Detection<N>,
     take: impl Fn(FlightTile) -> Result<(), E> + Sync,
 ) -> Result<TraceStats, E> {
-    let [width, height] = prepared.scene.camera.resolution;
+    let Tile { width, height, .. } = part;
     let bins = settings.gate.bins();
     let pixels = SIDE.min(width as usize) * SIDE.min(height as usize);
     let needed = rayon::current_num_threads() * pixels * bins * size_of::<Flashed>();
@@ -300,7 +323,7 @@ fn expose_tiles<const N: usize, E: From<RenderError> + Send>(
         height,
         shortage,
     })?;
-    let mut tiles = tiles([width, height]);
+    let mut tiles = tiles(part);
     // In no order, so that what is done says how long the rest will take.
     tiles.sort_by_cached_key(|tile| mix(u64::from(tile.top) << 32 | u64::from(tile.left)));
     tiles
