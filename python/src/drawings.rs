@@ -101,6 +101,10 @@ pub fn diagram(
         });
         Ok(diagram?.draw(pulse.as_ref()))
     })?;
-    let metadata = metadata(scene.scene());
+    let mut metadata = metadata(scene.scene());
+    if let Some(Pulse { time, delay, .. }) = pulse {
+        let words = [("pulse", time.to_string()), ("delay", delay.name().to_owned())];
+        metadata.extend(words.map(|(key, word)| (key.to_owned(), word)));
+    }
     Ok(Drawing { drawing, title: "Ray diagram", metadata, pixels: size })
 }
