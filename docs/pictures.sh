@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pictures of docs/devices and docs/real, each device as it looks (JPEG) and rays through it (PNG), and frames of the shop
-# window.
+# Makes the pictures of docs/devices and docs/real, each device as it looks (JPEG) and rays through it (PNG), frames of the shop
+# window, and films and a picture of light in flight.
 # Needs cloakroom on the path and Python with Pillow.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -69,6 +69,12 @@ for angle in 0 8 16 30 45 60 75 90; do
   cloakroom render scenes/shop-window.toml --size 320x240 --samples 4 --set "device.0.rotation=$angle" -o "$work/window-$(printf %02d "$angle").png"
 done
 
+# Light in flight: films of the cloaks (ii) and (iii), and a pulse in (i) from the side.
+for pair in ii:4c iii:6c; do
+  cloakroom flight "scenes/paper/fig${pair#*:}.toml" --size 160x120 --pulse 0.1 --gate 4.85..6.85:0.05 --fps 10 -o "docs/flight-${pair%:*}.gif"
+done
+cloakroom diagram scenes/paper/fig2c.toml --size 640x480 --pulse 0.9 --z 6 --rays 40 --min-power 0.03 -o "$work/flight-side.png"
+
 # A photograph is far smaller as JPEG.
 python3 - "$work" "$out" docs/real <<'PYTHON'
 import pathlib, sys
@@ -93,4 +99,5 @@ window = Image.new("RGB", (4 * 326 - 6, 2 * 246 - 6), "white")
 for number, frame in enumerate(frames):
     window.paste(frame, (326 * (number % 4), 246 * (number // 4)))
 window.quantize(256).save("docs/shop-window.png", optimize=True)
+Image.open(work / "flight-side.png").convert("RGB").quantize(128).save("docs/flight-side.png", optimize=True)
 PYTHON

@@ -159,6 +159,8 @@ def diagram(
     min_power: float,
     space: Sequence[float] | None,
     size: Sequence[int],
+    pulse: float | None,
+    delay: str,
 ) -> Drawing: ...
 def animate(
     scenes: Sequence[Scene],

@@ -343,6 +343,8 @@ class Scene:
         space: tuple[float, float] | None = None,
         layers: int = 1,
         size: tuple[int, int] = (1024, 768),
+        pulse: float | None = None,
+        delay: str = "group",
     ) -> Drawing:
         """Draws rays through the devices, as ``cloakroom diagram`` does.
 
@@ -376,6 +378,11 @@ class Scene:
             With `space`, layers of rays one behind the other along z.
         size : (int, int), default (1024, 768)
             Width and height in pixels of a ``.png``; their ratio is that of the sheet.
+        pulse : float, optional
+            Draws where a pulse is at that time, ns: after it has left the point or the camera, and of parallel rays after
+            it would be in the middle of the devices, were there nothing in its way.
+        delay : str, default "group"
+            With `pulse`, ``"group"`` for what a pulse takes, ``"phase"`` for what the phase takes, as in the paper.
 
         Raises
         ------
@@ -386,6 +393,8 @@ class Scene:
         --------
         >>> from cloakroom import Scene, SquareCloak
         >>> Scene(devices=SquareCloak()).diagram(10, wavefronts=4).svg.count('class="wavefront"') > 5
+        True
+        >>> Scene(devices=SquareCloak()).diagram(10, pulse=0.4).svg.count('<g class="pulse"') > 0
         True
         """
         sources = {"parallel": parallel is not None, "point": point is not None, "camera": camera}
@@ -409,6 +418,8 @@ class Scene:
                 _number("min_power", min_power),
                 None if space is None else _numbers("space", space, 2, "degrees"),
                 [_count("size", side) for side in size],
+                None if pulse is None else _number("pulse", pulse),
+                delay,
             )
         )
 

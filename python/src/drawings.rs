@@ -1,10 +1,13 @@
 //! Drawings: settings and ray diagrams.
 
 use crate::errors::{Failure, value_error};
+use crate::flights;
 use crate::scenes::Scene;
 use crate::supervision::supervised;
 use cloakroom::render::metadata;
-use cloakroom_figures::{self as figures, DiagramError, DiagramSettings, DrawingFormat, Source};
+use cloakroom_figures::{
+    self as figures, DiagramError, DiagramSettings, DrawingFormat, Pulse, RayDiagram, Source,
+};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -63,6 +66,8 @@ pub fn diagram(
     min_power: f64,
     space: Option<[f64; 2]>,
     size: [u32; 2],
+    pulse: Option<f64>,
+    delay: &str,
 ) -> Result<Drawing, Failure> {
     let source = match (parallel, point) {
         (Some(degrees), _) => Source::Parallel { degrees },
@@ -86,12 +91,20 @@ pub fn diagram(
     if size.contains(&0) {
         return Err(value_error("size must be one pixel at least each way"));
     }
+    let delay = flights::delay(delay)?;
+    let pulse = pulse.map(|time| Pulse { time, delay, step: 1e-3 });
     let drawing = supervised(py, None, |_, supervision| {
-        figures::diagram(scene.scene(), &settings, supervision.stop).map_err(|error| match error {
+        let diagram = RayDiagram::new(scene.scene(), &settings, supervision.stop);
+        let diagram = diagram.map_err(|error| match error {
             DiagramError::Scene(error) => scene.located(&error),
             error => error.into(),
-        })
+        });
+        Ok(diagram?.draw(pulse.as_ref()))
     })?;
-    let metadata = metadata(scene.scene());
+    let mut metadata = metadata(scene.scene());
+    if let Some(Pulse { time, delay, .. }) = pulse {
+        let words = [("pulse", time.to_string()), ("delay", delay.name().to_owned())];
+        metadata.extend(words.map(|(key, word)| (key.to_owned(), word)));
+    }
     Ok(Drawing { drawing, title: "Ray diagram", metadata, pixels: size })
 }

@@ -12,6 +12,13 @@ use pyo3::types::PyDict;
 /// Bins of a gate that is not given, about.
 const BINS: usize = 120;
 
+/// The delay of a name.
+pub fn delay(name: &str) -> Result<Delay, Failure> {
+    Delay::named(name).ok_or_else(|| {
+        value_error(format!("delay is \"{name}\"; it must be \"group\" or \"phase\""))
+    })
+}
+
 /// What a camera with a time gate sees when the photograph flashes. Gives the arrays by their names, the
 /// middles of the bins as `time`, and how many branches were cut and lost.
 #[pyfunction]
@@ -32,15 +39,7 @@ pub fn flight<'py>(
     if !(0.0..=1e6).contains(&pulse) {
         return Err(value_error(format!("pulse is {pulse}; it must be from 0 to 1000000 ns")));
     }
-    let delay = match delay {
-        "group" => Delay::Group,
-        "phase" => Delay::Phase,
-        other => {
-            return Err(value_error(format!(
-                "delay is \"{other}\"; it must be \"group\" or \"phase\""
-            )));
-        }
-    };
+    let delay = self::delay(delay)?;
     let arrivals = Arrivals { delay, flash };
     let (cube, stats) = supervised(py, progress.as_ref(), |watch, supervision| {
         let prepared = scene.prepared()?;

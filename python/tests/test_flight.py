@@ -44,3 +44,12 @@ def test_axes_have_names():
 def test_what_cannot_be_is_refused(words):
     with pytest.raises(ValueError, match=next(iter(words))):
         scene().flight(**words)
+
+
+def test_a_pulse_is_drawn_from_the_side():
+    front = '<g class="pulse"'
+    cloak = scene(SquareCloak())
+    assert front in cloak.diagram(pulse=-0.2).svg and front not in cloak.diagram().svg
+    assert cloak.diagram(pulse=0.7).svg != cloak.diagram(pulse=0.7, delay="phase").svg
+    with pytest.raises(ValueError, match="delay"):
+        cloak.diagram(pulse=0.7, delay="late")

@@ -69,6 +69,8 @@ def test_settings_and_diagrams_are_those_of_the_command(command, cloak: Scene, t
     assert drawn.svg == drawn._repr_svg_() == (tmp_path / "a.svg").read_text()
     command("diagram", tmp_path / "scene.toml", "--point=-30,2,0", "--space", "30,20", "--layers", 2, "-o", tmp_path / "b.svg")
     assert cloak.diagram(point=[-30, 2, 0], space=(30, 20), layers=2).svg == (tmp_path / "b.svg").read_text()
+    command("diagram", tmp_path / "scene.toml", "--pulse", 0.4, "--delay", "phase", "-o", tmp_path / "pulse.svg")
+    assert cloak.diagram(pulse=0.4, delay="phase").svg == (tmp_path / "pulse.svg").read_text()
     command("diagram", tmp_path / "scene.toml", "--setting", "--size", "40x30", "-o", tmp_path / "setting.svg")
     assert cloak.setting().svg == cloak._repr_svg_() == (tmp_path / "setting.svg").read_text()
     cloak.diagram(camera=True).save(tmp_path / "c.pdf")

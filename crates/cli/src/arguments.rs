@@ -6,13 +6,14 @@ mod values;
 
 use clap::builder::PossibleValuesParser;
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
-use cloakroom::render::{Flash, Gate, Tile};
+use cloakroom::render::{Delay, Flash, Gate, Tile};
 use cloakroom::scene::OPTIONAL_CHANNELS;
 use cloakroom::scene_file::Override;
 pub use groups::{listed, wrapped};
 pub use measuring::*;
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::PathBuf;
+pub use values::PulseTimes;
 use values::{exposure, frames_only, map_range, pixel, pulse, size};
 
 /// What stands below the help of a command: how it is used first.
@@ -74,7 +75,7 @@ pub enum Command {
     /// and the cloak.
     #[command(after_help = example!("flux flux/solar-cell -o angles.svg"))]
     Flux(FluxArguments),
-    /// Draw a ray diagram of a scene, or its setting, as SVG, PDF or PNG.
+    /// Draw a ray diagram of a scene, or its setting, as SVG, PDF or PNG, or a film of a pulse on its way through it.
     #[command(after_help = example!("diagram scene.toml -o rays.svg"))]
     Diagram(DiagramArguments),
     /// Write what a device is made of, for fabrication and full-wave solvers: its index and tensors
@@ -310,6 +311,15 @@ pub enum FlightDelay {
     Group,
     /// What the phase takes, as in the paper.
     Phase,
+}
+
+impl From<FlightDelay> for Delay {
+    fn from(delay: FlightDelay) -> Self {
+        match delay {
+            FlightDelay::Group => Self::Group,
+            FlightDelay::Phase => Self::Phase,
+        }
+    }
 }
 
 /// Arguments of `flight`.

@@ -1,7 +1,7 @@
 //! `cloakroom flight`: what a camera with a time gate sees when the photograph flashes.
 
 use crate::animate::Written;
-use crate::arguments::{FlightArguments, FlightDelay};
+use crate::arguments::FlightArguments;
 use crate::files::check_outputs;
 use crate::interruption;
 use crate::progress::supervised;
@@ -9,7 +9,7 @@ use crate::render::warn_of_cut_branches;
 use crate::report::{Failure, Result, all, say};
 use crate::scene;
 use cloakroom::output::{self, FlightOrder, FlightStore};
-use cloakroom::render::{self, Arrivals, Delay, FlightSettings, Gate, Images, PreparedScene};
+use cloakroom::render::{self, Arrivals, FlightSettings, Gate, Images, PreparedScene};
 use cloakroom_figures::film::{FilmFormat, FlightFilm, FrameFolder, flight_frames};
 use std::path::Path;
 
@@ -80,11 +80,7 @@ fn format(path: &Path) -> Result<FlightFormat> {
 
 /// What is looked at: the gate is that which is given, or holds what arrives.
 fn settings(arguments: &FlightArguments, prepared: &PreparedScene<'_>) -> Result<FlightSettings> {
-    let delay = match arguments.delay {
-        FlightDelay::Group => Delay::Group,
-        FlightDelay::Phase => Delay::Phase,
-    };
-    let arrivals = Arrivals { delay, flash: arguments.flash };
+    let arrivals = Arrivals { delay: arguments.delay.into(), flash: arguments.flash };
     let width = arguments.pulse;
     let gate = match arguments.gate {
         Some(gate) => gate,
@@ -119,14 +115,10 @@ fn tell_what_is_beside(store: &FlightStore, gate: &Gate) {
 /// What a file carries beside what a picture does.
 fn words(settings: &FlightSettings) -> Vec<(String, String)> {
     let FlightSettings { gate, width, arrivals } = settings;
-    let delay = match arrivals.delay {
-        Delay::Group => "group",
-        Delay::Phase => "phase",
-    };
     [
         ("gate", gate.to_string()),
         ("pulse", width.to_string()),
-        ("delay", delay.to_owned()),
+        ("delay", arrivals.delay.name().to_owned()),
         ("flash", format!("{:?}", arrivals.flash)),
     ]
     .map(|(key, words)| (key.to_owned(), words))

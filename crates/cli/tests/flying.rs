@@ -1,4 +1,4 @@
-//! `cloakroom flight`: films and arrays of light in flight.
+//! `cloakroom flight`: films and arrays of light in flight; `cloakroom diagram --pulse`: pulses from the side.
 
 use crate::running::cloakroom;
 use image::RgbImage;
@@ -89,4 +89,50 @@ fn what_cannot_be_is_refused() {
         assert!(said(&output).contains(message), "{words:?}: {}", said(&output));
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+fn diagram(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = cloakroom();
+    let small = ["--size", "120x90", "--rays", "6"];
+    command.current_dir(folder).args(["diagram", "scene.toml"]).args(small).args(arguments);
+    command.output().unwrap()
+}
+
+#[test]
+fn a_pulse_is_filmed_from_the_side() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let words = ["--pulse", "0..1:0.25", "-o", "a.gif", "-o", "frames", "--fps", "5"];
+    let output = diagram(folder.path(), &words);
+    assert!(output.status.success() && output.stdout.is_empty(), "{output:?}");
+    let bytes = fs::read(at("a.gif")).unwrap();
+    assert!(bytes.starts_with(b"GIF89a") && bytes[6..10] == [120, 0, 90, 0]);
+    assert_eq!(fs::read_dir(at("frames")).unwrap().count(), 5);
+    let frames =
+        [0, 4].map(|number| fs::read(at("frames").join(format!("frame-00000{number}.png"))));
+    assert_ne!(frames[0].as_ref().unwrap(), frames[1].as_ref().unwrap());
+    // A single time is a drawing.
+    let output = diagram(folder.path(), &["--pulse", "-0.1", "--delay", "phase", "-o", "a.svg"]);
+    assert!(output.status.success(), "{output:?}");
+    let drawing = fs::read_to_string(at("a.svg")).unwrap();
+    assert!(drawing.contains("<g class=\"pulse\"") && drawing.contains("phase"), "{drawing}");
+    // Without times it is looked at while it is seen.
+    let output = diagram(folder.path(), &["-o", "b.webp", "--pulse"]);
+    assert!(output.status.success() && said(&output).contains("--pulse=-0."), "{output:?}");
+    assert!(fs::read(at("b.webp")).unwrap().starts_with(b"RIFF"));
+    // Nothing else is left.
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 5);
+    for (words, message) in [
+        (vec!["--pulse", "-o", "c.svg"], "give --pulse a single time"),
+        (vec!["--pulse", "soon", "-o", "c.svg"], "write ns, as in 1.2, or START..END:STEP"),
+        (vec!["--pulse", "2..1:1", "-o", "c.gif"], "the gate 2..1:1 has no bins"),
+        (vec!["--pulse", "1", "--setting", "-o", "c.svg"], "cannot be used with"),
+        (vec!["--delay", "phase", "-o", "c.svg"], "--pulse"),
+        (vec!["--pulse", "-o", "nowhere/c.gif"], "there is no folder nowhere"),
+    ] {
+        let output = diagram(folder.path(), &words);
+        assert!(!output.status.success() && output.stdout.is_empty(), "{words:?} {output:?}");
+        assert!(said(&output).contains(message), "{words:?}: {}", said(&output));
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 5);
 }

@@ -31,7 +31,7 @@ pub mod verification;
 
 pub use color_bar::ColorBar;
 pub use color_scale::ColorScale;
-pub use diagram::{DiagramError, DiagramSettings, Source, diagram};
+pub use diagram::{DiagramError, DiagramSettings, Pulse, RayDiagram, Source};
 pub use drawing::{Drawing, DrawingFormat, Element, Face, Ink, Shape, Stroke, Words};
 pub use flux_pictures::{flux_map, flux_plot};
 pub use picture_file::{PictureFormat, shown, write_picture};

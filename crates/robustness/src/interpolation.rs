@@ -1,8 +1,7 @@
 //! Pictures whose rays share their neighbours' work, against those of rays traced one by one.
 
 use crate::draws::Draws;
-use crate::scenes::scene_of;
-use cloakroom::device::CATALOGUE;
+use crate::scenes::scene_seen;
 use cloakroom::output::to_srgb;
 use cloakroom::render::{ChannelSet, PreparedScene, Supervision, render};
 use cloakroom::scene_file;
@@ -22,19 +21,8 @@ const ROUNDED: usize = 3;
 ///
 /// If the picture differs from that of rays traced one by one.
 pub fn interpolate(draws: &mut Draws<'_>) -> u64 {
-    let entry = draws.pick(CATALOGUE);
-    let mut scene = scene_of(draws, entry);
-    let from = draws.direction() * 10f64.powf(draws.between(1.5, 2.2));
-    // On the side from which it is before the photograph.
-    let from = from.with_x(-from.x.abs());
     let samples = 4;
-    let camera = Table::from_iter([
-        ("resolution".to_owned(), SIZE.to_vec().into()),
-        ("samples".to_owned(), samples.into()),
-        ("position".to_owned(), from.to_array().to_vec().into()),
-        ("target".to_owned(), vec![0.0; 3].into()),
-    ]);
-    scene.insert("camera".to_owned(), camera.into());
+    let scene = scene_seen(draws, SIZE, samples);
     // Pictures differ within the tolerance: coarser ones would show.
     let tolerance = 10f64.powf(draws.between(-9.0, -6.0));
     let looked_at = |exact: bool| {

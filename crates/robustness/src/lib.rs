@@ -8,6 +8,7 @@
 
 mod cuts;
 mod draws;
+mod flights;
 mod interpolation;
 mod page;
 mod rays;
@@ -18,6 +19,7 @@ mod trials;
 
 pub use cuts::cut_glass;
 pub use draws::Draws;
+pub use flights::fly;
 pub use interpolation::interpolate;
 pub use rays::{Fault, examine, launch, starts_in_air, timed};
 pub use scenes::{SoundScene, sound_scene};

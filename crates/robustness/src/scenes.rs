@@ -63,6 +63,23 @@ pub(crate) fn scene_of(draws: &mut Draws<'_>, entry: &'static Entry) -> Table {
     ])
 }
 
+/// A scene of any device, seen from anywhere before the photograph: a picture of that size.
+pub(crate) fn scene_seen(draws: &mut Draws<'_>, size: [i64; 2], samples: i64) -> Table {
+    let entry = draws.pick(CATALOGUE);
+    let mut scene = scene_of(draws, entry);
+    let from = draws.direction() * 10f64.powf(draws.between(1.5, 2.2));
+    // On the side from which the device is before the photograph.
+    let from = from.with_x(-from.x.abs());
+    let camera = Table::from_iter([
+        ("resolution".to_owned(), size.to_vec().into()),
+        ("samples".to_owned(), samples.into()),
+        ("position".to_owned(), from.to_array().to_vec().into()),
+        ("target".to_owned(), vec![0.0; 3].into()),
+    ]);
+    scene.insert("camera".to_owned(), camera.into());
+    scene
+}
+
 /// A random scene that is not refused.
 #[derive(Debug)]
 pub struct SoundScene {

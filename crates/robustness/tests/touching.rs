@@ -1,7 +1,8 @@
-//! Devices that touch: light is never in metal, and glass is one however it is cut.
+//! Devices that touch: light is never in metal, and glass is one however it is cut. Pictures of random
+//! devices, and light in flight through them.
 
 use crate::long::count;
-use robustness::{Draws, cut_glass, interpolate, stack, touch, touching_kinds};
+use robustness::{Draws, cut_glass, fly, interpolate, stack, touch, touching_kinds};
 
 #[test]
 fn light_never_goes_through_metal_that_touches_a_device() {
@@ -45,4 +46,13 @@ fn pictures_of_shared_rays_are_those_of_traced_ones() {
     for _ in 0..count(30, 600) {
         interpolate(&mut draws);
     }
+}
+
+#[test]
+fn all_light_in_flight_comes_when_the_maps_say() {
+    let mut draws = Draws::Seed(41);
+    let scenes = count(12, 600);
+    let rays: u64 = (0..scenes).map(|_| fly(&mut draws)).sum();
+    // Few are refused.
+    assert!(rays > 10_000 * scenes as u64, "{rays}");
 }

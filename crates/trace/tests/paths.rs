@@ -4,7 +4,7 @@
 use crate::numbers::Numbers;
 use cloakroom_trace::assembly::{Assembly, Placed};
 use cloakroom_trace::device::{Device, Request, SegmentMaterial, SquareCloak};
-use cloakroom_trace::walk::{Launch, LeafTable, Limits, RaySettings, Stopped, lines};
+use cloakroom_trace::walk::{Launch, LeafTable, Limits, Line, RaySettings, Stopped, Tracer, lines};
 use glam::DVec3;
 use optics::geometry::Pose;
 use optics::wave::transverse_basis;
@@ -135,5 +135,35 @@ fn leaves_are_drawn_by_their_power() {
         let count = drawn.optical_path.iter().filter(|path| same(path)).count();
         let drawn = count as f64 / 20_000.0;
         assert!((drawn - share).abs() < 6.0 * (share / 20_000.0).sqrt() + 1e-4, "{drawn} {share}");
+    }
+}
+
+#[test]
+fn pieces_know_when_light_comes_and_no_pulse_is_faster_than_light() {
+    let assembly = assembly();
+    let mut tracer = Tracer::new(&assembly, LIMITS).with_group_delays();
+    for launch in launches(60) {
+        let (leaves, _) = tracer.trace(&launch);
+        let drawn = lines(&assembly, LIMITS, &launch, [0.5; 2], REACH);
+        let (away, inner): (Vec<_>, Vec<_>) = drawn.iter().partition(|line| line.leaves);
+        assert_eq!(away.len(), leaves.len());
+        for (line, leaf) in away.iter().zip(leaves) {
+            assert_eq!((line.branch, line.times[0]), (leaf.path, leaf.time()));
+            assert_eq!(line.times[0].pulse, leaf.group_path.unwrap());
+        }
+        for line in &drawn {
+            assert_eq!(line.times.len(), line.points.len());
+            for (ends, times) in line.points.windows(2).zip(line.times.windows(2)) {
+                let way = ends[0].position.distance(ends[1].position);
+                assert!(times[1].pulse - times[0].pulse > way - 1e-9, "{line:?}");
+            }
+            // It begins when another comes to its end, or at the origin.
+            let start = line.times[0];
+            let ends = |other: &&&Line| {
+                let end = other.times.last().unwrap();
+                (end.pulse - start.pulse).abs() < 1e-9 && (end.phase - start.phase).abs() < 1e-9
+            };
+            assert!(start.pulse == 0.0 || inner.iter().find(ends).is_some(), "{line:?}");
+        }
     }
 }

@@ -121,6 +121,10 @@ test("it turns, shows other devices, maps and what is beside, and says what is w
   await page.locator("#play").click();
   await finished(page);
   assert.ok(difference(before, await pixels(page)).most > 20);
+  await page.locator("#flight").check();
+  await finished(page);
+  assert.match(await page.textContent("#moment-words"), /^\d\S* ns$/);
+  await page.locator("#flight").uncheck();
   await page.selectOption("#beside", "bare");
   await finished(page);
   await page.selectOption("#map", "time_of_flight_difference");

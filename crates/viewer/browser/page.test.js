@@ -69,6 +69,35 @@ test("it rotates, plays and stops", async () => {
   await page.close();
 });
 
+test("light in flight has a slider of time", async () => {
+  const { page, complaints } = await open();
+  await small(page);
+  const whole = await pixels(page);
+  assert.equal(await page.locator("#moment").isVisible(), false);
+  await page.locator("#flight").check();
+  await finished(page);
+  const shown = [];
+  for (const share of ["0", "0.1", "0.9"]) {
+    await page.locator("#moment").fill(share);
+    await finished(page);
+    shown.push([parseFloat(await page.textContent("#moment-words")), await pixels(page)]);
+  }
+  assert.ok(shown[0][0] < shown[1][0] && shown[1][0] < shown[2][0]);
+  assert.ok(difference(shown[0][1], shown[1][1]).most > 20);
+  assert.ok(difference(shown[1][1], shown[2][1]).most > 20);
+  assert.match(await page.textContent("#caption"), /flashes once/);
+  // The link carries it.
+  const again = await open(new URL(page.url()).hash);
+  assert.equal(await again.page.inputValue("#moment"), "0.9");
+  assert.equal(difference(shown[2][1], await pixels(again.page)).bytes, 0);
+  await again.page.close();
+  await page.locator("#flight").uncheck();
+  await finished(page);
+  assert.equal(difference(whole, await pixels(page)).bytes, 0);
+  assert.deepEqual(complaints, []);
+  await page.close();
+});
+
 test("devices and their parameters are switched", async () => {
   const { page, complaints } = await open();
   await small(page);

@@ -127,7 +127,8 @@ export function caption(state, hello) {
   const { spectrum } = scene.light ?? {};
   if (typeof spectrum === "number") said.push(["see.wavelength", { n: number(spectrum) }]);
   const map = scene.picture?.map ?? "none";
-  if (map !== "none") said.push(["see.map", { map: say(`map.${map}`) }]);
+  if (state.moment !== null) said.push("see.flight");
+  else if (map !== "none") said.push(["see.map", { map: say(`map.${map}`) }]);
   if (state.beside !== "nothing") said.push(["see.beside", { left: say(`beside.${state.beside}`) }]);
   return said.filter(Boolean).map((one) => (Array.isArray(one) ? say(...one) : say(one))).join(" ");
 }

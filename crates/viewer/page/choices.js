@@ -49,6 +49,7 @@ export function showState(state, hello, { changed, setShow }) {
   showCorners(device, changed);
   showShows(state, hello, setShow);
   showRotation(state);
+  showMoment(state);
   showSplit(state, hello);
 }
 
@@ -103,6 +104,23 @@ export function showRotation(state) {
   $("rotation").setAttribute("aria-valuetext", say("rotation.says", { r: number(wrapped) }));
   $("rotation-number").value = String(Number(wrapped.toFixed(2)));
   $("rotation").disabled = $("rotation-number").disabled = $("play").disabled = !state.device;
+}
+
+export function showMoment(state) {
+  const isShown = state.moment !== null;
+  $("flight").checked = isShown;
+  document.querySelector(".moment").hidden = !isShown;
+  if (isShown) $("moment").value = String(state.moment);
+  // It has no false colors.
+  $("map").disabled = isShown;
+}
+
+// The moment of the picture that is shown: as many digits as its length has.
+export function showTime(time, open) {
+  const digits = Math.max(0, Math.ceil(-Math.log10(open)) + 1);
+  const words = `${number(Number(time.toFixed(digits)), digits)} ns`;
+  $("moment-words").textContent = words;
+  $("moment").setAttribute("aria-valuetext", words);
 }
 
 export function showSplit(state, hello) {

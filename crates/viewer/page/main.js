@@ -1,7 +1,7 @@
 // The page: what is done with it becomes a look, and what comes back is shown.
 
 import { caption, isOwn, plainCaption } from "./caption.js";
-import { LAMPS, fillLists, showRotation, showSpectrum, showSplit, showState } from "./choices.js";
+import { LAMPS, fillLists, showMoment, showRotation, showSpectrum, showSplit, showState, showTime } from "./choices.js";
 import { Connection } from "./connection.js";
 import { canFilm, film } from "./film.js";
 import { gallery } from "./gallery.js";
@@ -32,12 +32,14 @@ let filming = null;
 // How fast the device turns, degrees a second; how long after the last change the picture is finished, ms.
 const SPEED = 12;
 const REST = 180;
+// The moment at which light in flight is seen first: when some has come, and more is to come.
+const EARLY = 0.15;
 
 const connection = new Connection({ hello: greeted, picture: received, section, rays, numbers, progress, error: failed, saved, photograph: hung }, gone);
 
 // --- What is asked for -------------------------------------------------------------------------------------------
 
-const look = () => ({ scene: state.scene, size: state.size, samples: state.samples, beside: state.beside });
+const look = () => ({ scene: state.scene, size: state.size, samples: state.samples, beside: state.beside, moment: state.moment });
 
 // Something has changed: a coarse picture now if it goes on, else the finished one.
 function changed(moving = false) {
@@ -127,7 +129,10 @@ function embed(asked) {
   const key = state.embed;
   document.body.dataset.embed = key;
   if (key === "rotation") return;
-  if (key === "wavelength") {
+  if (key === "moment") {
+    state.moment ??= EARLY;
+    document.querySelector(".rotation").hidden = true;
+  } else if (key === "wavelength") {
     if (typeof state.scene.light?.spectrum !== "number") state.set("light", "spectrum", 550);
     document.querySelector(".rotation").replaceWith($("wavelength-label"));
   } else {
@@ -166,6 +171,7 @@ function received(about, image) {
   // What one sees, for those who do not see it.
   if (finished && !playing) $("live").textContent = `${plain("finished", { n })}. ${plainCaption(state, hello)}`;
   showScale(about.scale);
+  if (about.time_ns !== null) showTime(about.time_ns, about.open_ns);
   if (probing && (playing || finished || coarse)) connection.follow(probing);
 }
 
@@ -389,6 +395,14 @@ $("spectrum").addEventListener("change", () => {
 });
 $("wavelength").addEventListener("input", () => setSpectrum($("wavelength").valueAsNumber, true));
 $("wavelength").addEventListener("change", () => setSpectrum($("wavelength").valueAsNumber, false));
+function setMoment(moment, moving) {
+  state.moment = moment;
+  showMoment(state);
+  changed(moving);
+}
+$("flight").addEventListener("change", () => setMoment($("flight").checked ? EARLY : null, false));
+$("moment").addEventListener("input", () => setMoment($("moment").valueAsNumber, true));
+$("moment").addEventListener("change", () => setMoment($("moment").valueAsNumber, false));
 $("map").addEventListener("change", () => {
   const map = $("map").value;
   state.set("picture", "map", map === "none" ? undefined : map);

@@ -13,6 +13,8 @@ export class State {
     this.width = 640;
     this.samples = 16;
     this.which = 0;
+    // Light in flight: the moment, as a share of the time in which it arrives; null for the picture.
+    this.moment = null;
     // The one key that an embedded view lets one change; none on the whole page.
     this.embed = null;
   }
@@ -54,8 +56,8 @@ export class State {
   }
 
   toFragment() {
-    const { exhibit, scene, beside, divider, width, samples, which } = this;
-    const text = JSON.stringify({ exhibit, scene, beside, divider, width, samples, which });
+    const { exhibit, scene, beside, divider, width, samples, which, moment } = this;
+    const text = JSON.stringify({ exhibit, scene, beside, divider, width, samples, which, moment });
     const bytes = new TextEncoder().encode(text);
     const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join("");
     return btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
@@ -76,6 +78,7 @@ export class State {
     this.embed = /^\w+$/.exec(said.get("embed") ?? "")?.[0] ?? null;
     if (exhibit) {
       this.beside = "nothing";
+      this.moment = null;
       this.open(exhibit.name, exhibit.scene);
     } else if (!shown) {
       if (!this.exhibit) this.open(hello.first, hello.scene);
@@ -87,6 +90,8 @@ export class State {
     const polarizer = said.get("polarizer");
     if (polarizer) this.set("camera", "polarizer", Number.isFinite(Number(polarizer)) ? Number(polarizer) : polarizer);
     if (BESIDE.includes(said.get("split"))) this.beside = said.get("split");
+    const moment = Number(said.get("moment") ?? NaN);
+    if (moment >= 0 && moment <= 1) this.moment = moment;
     const show = said.get("show");
     for (const device of this.devices) if (show && hello.kinds[device.kind]?.shows.includes(show)) device.show = show;
     return true;
@@ -109,6 +114,7 @@ export class State {
       this.width = Math.round(number(said.width, 16, 2048, 640));
       this.samples = Math.round(number(said.samples, 1, 64, 16));
       this.which = Math.round(number(said.which, 0, 1000, 0));
+      this.moment = Number.isFinite(said.moment) ? number(said.moment, 0, 1, 0) : null;
       return true;
     } catch {
       return false;

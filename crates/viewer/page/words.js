@@ -43,6 +43,10 @@ const TABLE = {
   "polarizer.vertical": ["vertical", "senkrecht"],
   "polarizer.angle": ["at an angle", "schräg"],
   angle: ["Angle (°)", "Winkel (°)"],
+  flight: ["Light in flight", "Licht unterwegs"],
+  "flight.title": ["The photograph flashes: what arrives at one moment, by the time that a pulse takes.",
+    "Das Foto blitzt auf: was in einem Augenblick ankommt, nach der Zeit, die ein Lichtpuls braucht."],
+  moment: ["Time after the flash", "Zeit nach dem Blitz"],
   fullscreen: ["Full screen", "Vollbild"],
   "photograph.choose": ["Photograph …", "Foto …"],
   "save.picture": ["Save picture", "Bild speichern"],
@@ -359,6 +363,8 @@ const TABLE = {
   "see.polarizer.camera": ["One looks through a {p} polarizer.", "Man schaut durch einen {p} gestellten Polfilter."],
   "see.wavelength": ["The light has one color, of {n} nm.", "Das Licht hat eine Farbe, von {n} nm."],
   "see.map": ["The colors are no picture but a map: {map}.", "Die Farben sind kein Bild, sondern eine Karte: {map}."],
+  "see.flight": ["The photograph flashes once: only what arrives at that moment is bright.",
+    "Das Foto blitzt einmal auf: Hell ist nur, was in diesem Augenblick ankommt."],
   "see.beside": ["Left of the divider: {left}.", "Links vom Teiler: {left}."],
 
   // The tour.

@@ -4,17 +4,20 @@
 use crate::cross_section::cross_section;
 use crate::figures::resized;
 use crate::protocol::{Look, SceneTables};
+use crate::watched::lock;
 use cloakroom::measure::{self, bare, empty, ideal};
-use cloakroom::output::Picture;
+use cloakroom::output::{Channel, Picture, Samples};
 use cloakroom::photograph::{Averaging, ImageSource};
 use cloakroom::render::{
-    ChannelSet, Images, PreparedScene, PreparedSceneError, RenderError, Supervision, Tile,
-    render_part,
+    Arrivals, BAND_ROWS, ChannelSet, FlightSettings, Gate, Images, PreparedScene,
+    PreparedSceneError, RenderError, Supervision, Tile, arrival_times, flight_part, render_part,
 };
 use cloakroom::scene::Scene;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::future::Future;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 /// What coarse pictures may leave out: branches weaker than this, and places less exact than this,
@@ -151,6 +154,39 @@ impl Recipe {
     }
 }
 
+/// What of a scene is rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Wanted {
+    /// What its picture shows: the image, or a map.
+    Picture,
+    /// Every channel.
+    Everything,
+    /// What a camera sees that is open for a moment after the photograph has flashed.
+    Moment(Moment),
+}
+
+/// When a camera is open, after the photograph has flashed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Moment {
+    /// The middle of that time, ns.
+    pub time_ns: f64,
+    /// How long it is, ns.
+    pub open_ns: f64,
+}
+
+impl Moment {
+    /// At a share, 0 to 1, of the time from before light arrives first until after it does last (ns).
+    pub(crate) fn at(share: f64, [first, last]: [f64; 2]) -> Self {
+        /// So many moments one after the other hold all light.
+        const MOMENTS: f64 = 24.0;
+        /// Light takes so long for 3 mm.
+        const SHORTEST: f64 = 1e-2;
+        let open_ns = ((last - first) / MOMENTS).max(SHORTEST);
+        let [first, last] = [first - open_ns, last + open_ns];
+        Self { time_ns: first + share * (last - first), open_ns }
+    }
+}
+
 /// What something is to be done with.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
@@ -192,13 +228,17 @@ pub trait End: Sync {
     /// Waits for something, but no longer than this.
     async fn wait(&self, what: impl Future<Output = ()>, patience: Duration);
 
-    /// Renders all channels, or those of the image.
+    /// Renders a scene.
     async fn picture(
         &self,
         subject: &Subject<'_>,
-        wanted: ChannelSet,
+        wanted: Wanted,
         supervision: &Supervision<'_>,
     ) -> Result<Picture, Problem>;
+
+    /// The first and the last time (ns) at which light of the photograph arrives, if any does at a time
+    /// that is known.
+    async fn times(&self, subject: &Subject<'_>) -> Result<Option<[f64; 2]>, Problem>;
 
     /// The cross-section; the rays that are followed from now on go through this scene.
     async fn section(&self, subject: &Subject<'_>) -> Result<Value, Problem>;
@@ -222,7 +262,7 @@ pub struct Survey {
     pub in_place_share: Option<f64>,
 }
 
-/// Renders rows of a picture, from an even one on.
+/// Renders rows of a picture, from a multiple of [`BAND_ROWS`] on.
 ///
 /// # Errors
 ///
@@ -230,12 +270,63 @@ pub struct Survey {
 pub fn rows(
     prepared: &PreparedScene<'_>,
     [top, height]: [u32; 2],
-    wanted: ChannelSet,
+    wanted: Wanted,
     supervision: &Supervision<'_>,
 ) -> Result<Picture, Problem> {
     let width = prepared.scene.camera.resolution[0];
     let tile = Tile { left: 0, top, width, height };
-    Ok(render_part(prepared, wanted, tile, supervision)?.picture)
+    let channels = match wanted {
+        Wanted::Picture => ChannelSet::for_image(&prepared.scene.picture),
+        Wanted::Everything => ChannelSet::Everything,
+        Wanted::Moment(moment) => return moment_of(prepared, tile, moment, supervision),
+    };
+    Ok(render_part(prepared, channels, tile, supervision)?.picture)
+}
+
+/// Renders what is seen of whole rows in a moment of light in flight: red, green and blue, which are as bright as in the picture
+/// where all light arrives then.
+fn moment_of(
+    prepared: &PreparedScene<'_>,
+    tile: Tile,
+    Moment { time_ns, open_ns }: Moment,
+    supervision: &Supervision<'_>,
+) -> Result<Picture, Problem> {
+    let gate = Gate::new([time_ns; 2], open_ns).map_err(Problem::of)?;
+    let settings = FlightSettings { gate, width: 0.0, arrivals: Arrivals::default() };
+    let [width, height] = [tile.width, tile.height].map(|side| side as usize);
+    let planes = Mutex::new([0; 3].map(|_| vec![0.0; width * height]));
+    // Of the parts that lie side by side the last one done ends their rows.
+    let (beside, done) = (u64::from(tile.width.div_ceil(BAND_ROWS)), AtomicU64::new(0));
+    let rows_done = |rows: u64| {
+        let before = done.fetch_add(rows, Ordering::Relaxed);
+        (supervision.rows_done)((before + rows) / beside - before / beside);
+    };
+    let supervision = Supervision { rows_done: &rows_done, stop: supervision.stop };
+    flight_part(prepared, &settings, tile, &supervision, |part| {
+        let mut planes = lock(&planes);
+        let Tile { left, top, .. } = part.tile;
+        let corner = (top - tile.top) as usize * width + left as usize;
+        for (number, (bins, steady)) in part.bins.iter().zip(&part.steady).enumerate() {
+            let across = part.tile.width as usize;
+            let index = corner + number / across * width + number % across;
+            let light = bins.light.first().copied().unwrap_or_default();
+            for (color, plane) in planes.iter_mut().enumerate() {
+                plane[index] = (steady[color] + light[color]) as f32;
+            }
+        }
+        Ok::<_, Problem>(())
+    })?;
+    let planes = planes.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let channel =
+        |(name, plane): (&str, _)| Channel { name: name.to_owned(), samples: Samples::F32(plane) };
+    let channels = ["R", "G", "B"].into_iter().zip(planes).map(channel).collect();
+    Ok(Picture { width, height, channels, metadata: Vec::new() })
+}
+
+/// When light of the photograph arrives first and last; see [`End::times`].
+#[must_use]
+pub fn times(prepared: &PreparedScene<'_>) -> Option<[f64; 2]> {
+    arrival_times(prepared, &Arrivals::default())
 }
 
 /// The cross-section of a scene, as pages are told it.

@@ -1,10 +1,10 @@
 //! Numbers for what a page shows: power, times of flight, and likeness to what should be seen.
 
-use crate::end::{self, End, Problem, Recipe, Subject};
+use crate::end::{self, End, Problem, Recipe, Subject, Wanted};
 use crate::protocol::Look;
 use cloakroom::measure::{FlightFigures, PixelMask, View, bare, structural_similarity};
 use cloakroom::output::Picture;
-use cloakroom::render::{ChannelSet, Supervision};
+use cloakroom::render::Supervision;
 use cloakroom::scene::{Camera, CameraSettings, Scene};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
@@ -28,7 +28,7 @@ pub(crate) async fn figures(
         Subject { look, scene, recipe }
     };
     let picture = async |view| {
-        let picture = end.picture(&subject(view), ChannelSet::Everything, &supervision).await;
+        let picture = end.picture(&subject(view), Wanted::Everything, &supervision).await;
         picture.map_err(|problem| match problem {
             // Its errors are about no key of the scene that is shown.
             Problem::Scene { message, .. } => Problem::of(message),

@@ -108,7 +108,15 @@ mod tests {
 
     fn look(moving: bool, samples: u32) -> Look {
         let scene = crate::protocol::SceneTables::new();
-        Look { id: 1, scene, size: [640, 480], samples, moving, beside: Beside::Nothing }
+        Look {
+            id: 1,
+            scene,
+            size: [640, 480],
+            samples,
+            moving,
+            beside: Beside::Nothing,
+            moment: None,
+        }
     }
 
     /// After a full picture, or none, that took so many nanoseconds a pixel.

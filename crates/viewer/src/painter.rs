@@ -1,17 +1,17 @@
 //! Paints what a page wishes: coarsely at once, then in full, then with more samples. What it sends at
 //! each number of samples is the picture that `cloakroom render` makes with that number.
 
-use crate::end::{End, Problem, Recipe, Subject, View};
+use crate::end::{End, Moment, Problem, Recipe, Subject, View, Wanted};
 use crate::figures::figures;
 use crate::pace::{Pace, Pass};
-use crate::protocol::{Beside, Look, error};
+use crate::protocol::{Beside, Look, SceneTables, error};
 use crate::scenes::Opened;
 use crate::seen::Seen;
 use crate::slot::Slot;
 use crate::watched::lock;
 use cloakroom::measure::bare;
 use cloakroom::output::{RgbImage, to_srgb};
-use cloakroom::render::{ChannelSet, Supervision};
+use cloakroom::render::Supervision;
 use cloakroom::scene::{DeviceSettings, PictureSettings, Placement, Scene};
 use cloakroom_figures::{Dimension, Quantity, ScalarMap};
 use futures_util::FutureExt;
@@ -38,7 +38,7 @@ pub struct Wish {
 pub async fn paint(end: &impl End, opened: &Opened, looks: &Slot<Wish>, seen: &Seen) {
     let pace = Pace::default();
     let mut painter =
-        Painter { end, opened, seen, pace, devices: Vec::new(), section: Value::Null };
+        Painter { end, opened, seen, pace, devices: Vec::new(), section: Value::Null, times: None };
     while let Some(wish) = looks.take().await {
         let id = wish.look.id;
         let painted = AssertUnwindSafe(painter.paint(&wish)).catch_unwind().await;
@@ -70,6 +70,8 @@ struct Painter<'a, E> {
     devices: Vec<DeviceSettings>,
     /// The cross-section that was sent last.
     section: Value,
+    /// A scene with what was beside it, and when its light arrives first and last.
+    times: Option<(SceneTables, Beside, [f64; 2])>,
 }
 
 impl<E: End> Painter<'_, E> {
@@ -96,11 +98,16 @@ impl<E: End> Painter<'_, E> {
             self.pace = Pace::default();
         }
         self.devices.clone_from(&scene.devices);
+        let wanted = match look.moment {
+            None => Wanted::Picture,
+            Some(share) => Wanted::Moment(Moment::at(share, self.times(&subject, &views).await?)),
+        };
         for pass in self.pace.passes(look) {
             let (mut time, mut range) = (Duration::ZERO, None);
             for (number, view) in views.iter().enumerate() {
                 let last = number + 1 == views.len();
-                time += self.picture(wish, (*view, last), scene, (pass, &mut range)).await?;
+                time +=
+                    self.picture(wish, (*view, last, wanted), scene, (pass, &mut range)).await?;
             }
             self.pace.add(pass, time);
             if pass.coarse && !look.moving {
@@ -115,12 +122,35 @@ impl<E: End> Painter<'_, E> {
         Ok(())
     }
 
+    /// When light of the photograph arrives first and last in any of these views of a scene.
+    async fn times(&mut self, subject: &Subject<'_>, views: &[View]) -> Result<[f64; 2], Problem> {
+        let look = subject.look;
+        if let Some((scene, beside, times)) = &self.times
+            && (scene, *beside) == (&look.scene, look.beside)
+        {
+            return Ok(*times);
+        }
+        let mut all: Option<[f64; 2]> = None;
+        for view in views {
+            let subject = Subject { recipe: Recipe { view: *view, ..subject.recipe }, ..*subject };
+            if let Some([first, last]) = self.end.times(&subject).await? {
+                let [start, end] = all.unwrap_or([first, last]);
+                all = Some([start.min(first), end.max(last)]);
+            }
+        }
+        let times = all.ok_or_else(|| {
+            Problem::of("no light of the photograph arrives at any time that is known")
+        })?;
+        self.times = Some((look.scene.clone(), look.beside, times));
+        Ok(times)
+    }
+
     /// Renders and sends one picture: of a view, which may be the last of its pass. Maps of one pass have
     /// one range, that of the first. How long rendering has taken.
     async fn picture(
         &self,
         wish: &Wish,
-        (view, last): (View, bool),
+        (view, last, wanted): (View, bool, Wanted),
         scene: &Scene,
         (pass, range): (Pass, &mut Option<[f64; 2]>),
     ) -> Result<Duration, Problem> {
@@ -141,10 +171,14 @@ impl<E: End> Painter<'_, E> {
             }
         };
         let supervision = Supervision { rows_done: &rows_done, stop: &wish.stop };
-        let wanted = ChannelSet::for_image(&scene.picture);
         let subject = Subject { look, scene, recipe };
         let picture = end.picture(&subject, wanted, &supervision).await?;
-        let (image, scale) = match scene.picture.map.name() {
+        let moment = match wanted {
+            Wanted::Moment(moment) => Some(moment),
+            _ => None,
+        };
+        let map = scene.picture.map.name().filter(|_| moment.is_none());
+        let (image, scale) = match map {
             None => (to_srgb(&picture).map_err(Problem::of)?, Value::Null),
             Some(channel) => {
                 let map_range = scene.picture.map_range.or(*range);
@@ -175,6 +209,8 @@ impl<E: End> Painter<'_, E> {
             "finished": pass.finished,
             "last": last,
             "scale": scale,
+            "time_ns": moment.map(|moment| moment.time_ns),
+            "open_ns": moment.map(|moment| moment.open_ns),
         });
         end.send(encode(&caption, &image)).await?;
         Ok(time)

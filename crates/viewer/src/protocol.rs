@@ -61,6 +61,10 @@ pub struct Look {
     /// What else is shown beside the scene.
     #[serde(default)]
     pub beside: Beside,
+    /// Light in flight after the photograph has flashed, instead of the picture: when, as a share, 0 to 1, of the time in
+    /// which it arrives.
+    #[serde(default)]
+    pub moment: Option<f64>,
 }
 
 /// What is shown beside a scene.
@@ -107,6 +111,9 @@ impl Message {
                 }
                 if !(1..=MOST_SAMPLES).contains(&look.samples) {
                     return Err(format!("samples must be 1 to {MOST_SAMPLES}"));
+                }
+                if look.moment.is_some_and(|share| !(0.0..=1.0).contains(&share)) {
+                    return Err("moment must be a share from 0 to 1".to_owned());
                 }
             }
             Self::Ray(ray) if ray.at.iter().any(|share| !(0.0..=1.0).contains(share)) => {

@@ -1,7 +1,7 @@
 //! The end of the protocol that the server is: the two threads of a page, which render and follow rays.
 
 use crate::client::{Client, Outbox, Space, Uploaded};
-use crate::end::{self, End, Gone, Problem, Subject, Survey};
+use crate::end::{self, End, Gone, Problem, Subject, Survey, Wanted};
 use crate::painter;
 use crate::protocol::Ray;
 use crate::ray_tree::rays;
@@ -9,7 +9,7 @@ use crate::slot::Slot;
 use crate::watched::lock;
 use cloakroom::output::Picture;
 use cloakroom::photograph::ImageSource;
-use cloakroom::render::{ChannelSet, Images, PreparedScene, Supervision};
+use cloakroom::render::{Images, PreparedScene, Supervision};
 use cloakroom::scene::Scene;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde_json::Value;
@@ -120,11 +120,15 @@ impl End for Studio<'_> {
     async fn picture(
         &self,
         subject: &Subject<'_>,
-        wanted: ChannelSet,
+        wanted: Wanted,
         supervision: &Supervision<'_>,
     ) -> Result<Picture, Problem> {
         let all = [0, subject.recipe.size[1]];
         self.with(subject, |prepared, _, _| end::rows(prepared, all, wanted, supervision))
+    }
+
+    async fn times(&self, subject: &Subject<'_>) -> Result<Option<[f64; 2]>, Problem> {
+        self.with(subject, |prepared, _, _| Ok(end::times(prepared)))
     }
 
     async fn section(&self, subject: &Subject<'_>) -> Result<Value, Problem> {

@@ -2,7 +2,7 @@
 
 use crate::order::{About, Outcome, Work, broken, encode, pack};
 use cloakroom::photograph::ImageSource;
-use cloakroom::render::{ChannelSet, Images, PreparedScene, Supervision};
+use cloakroom::render::{Images, PreparedScene, Supervision};
 use cloakroom_viewer::end::{self, Problem};
 use cloakroom_viewer::{Opened, Watched, rays, read_photograph};
 use std::collections::VecDeque;
@@ -131,10 +131,11 @@ fn done(
 ) -> Result<(Outcome, Vec<u8>), Problem> {
     // Who orders cancels between two orders, for nothing is heard during one.
     let supervision = Supervision { rows_done: &|_| {}, stop: &AtomicBool::new(false) };
-    let rows = |rows, wanted| end::rows(prepared, rows, wanted, &supervision).map(|p| pack(&p));
     let outcome = match serde_json::from_str(work).map_err(|_| broken())? {
-        Work::Rows(range) => return rows(range, ChannelSet::for_image(&prepared.scene.picture)),
-        Work::AllOfRows(range) => return rows(range, ChannelSet::Everything),
+        Work::Rows(rows, wanted) => {
+            return end::rows(prepared, rows, wanted, &supervision).map(|picture| pack(&picture));
+        }
+        Work::Times => Outcome::Times(end::times(prepared)),
         Work::Section => Outcome::Section(end::section(prepared)),
         Work::Survey => Outcome::Survey(end::survey(prepared, images, &supervision)?),
         Work::Ray(ray) => Outcome::Ray(rays(prepared, &ray)),

@@ -3,8 +3,8 @@
 use crate::order::{About, Band, Outcome, Work, broken, decode, join};
 use cloakroom::output::Picture;
 use cloakroom::photograph::ImageSource;
-use cloakroom::render::{BAND_ROWS, ChannelSet, Supervision};
-use cloakroom_viewer::end::{End, Gone, Problem, Subject, Survey};
+use cloakroom::render::{BAND_ROWS, Supervision};
+use cloakroom_viewer::end::{End, Gone, Problem, Subject, Survey, Wanted};
 use cloakroom_viewer::{
     Heard, Opened, Ray, Seen, Session, Slot, Wish, error, greeting, lock, nothing_shown, paint,
     read_photograph,
@@ -181,7 +181,7 @@ impl End for Desk {
     async fn picture(
         &self,
         subject: &Subject<'_>,
-        wanted: ChannelSet,
+        wanted: Wanted,
         supervision: &Supervision<'_>,
     ) -> Result<Picture, Problem> {
         let about = about(subject)?;
@@ -198,8 +198,7 @@ impl End for Desk {
                     return Err(Problem::Stopped);
                 }
                 let rows = [*top, BAND_ROWS.min(height - top)];
-                let everything = wanted == ChannelSet::Everything;
-                let work = if everything { Work::AllOfRows(rows) } else { Work::Rows(rows) };
+                let work = Work::Rows(rows, wanted);
                 let (Outcome::Picture(shape), numbers) = by(hand, &about, &work).await? else {
                     return Err(broken());
                 };
@@ -209,6 +208,13 @@ impl End for Desk {
         }));
         bands.await.into_iter().collect::<Result<(), Problem>>()?;
         Ok(join(lock(&done).drain(..).flatten().collect()))
+    }
+
+    async fn times(&self, subject: &Subject<'_>) -> Result<Option<[f64; 2]>, Problem> {
+        match self.by_one(&about(subject)?, &Work::Times).await? {
+            (Outcome::Times(times), _) => Ok(times),
+            _ => Err(broken()),
+        }
     }
 
     async fn section(&self, subject: &Subject<'_>) -> Result<Value, Problem> {

@@ -2,7 +2,7 @@
 //! be done, and what comes of it as bytes.
 
 use cloakroom::output::{Channel, Picture, Samples};
-use cloakroom_viewer::end::{Problem, Recipe, Survey};
+use cloakroom_viewer::end::{Problem, Recipe, Survey, Wanted};
 use cloakroom_viewer::{Look, Ray};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -18,9 +18,8 @@ pub(crate) struct About {
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum Work {
     /// Render these rows, `[top, height]`.
-    Rows([u32; 2]),
-    /// The same with every channel.
-    AllOfRows([u32; 2]),
+    Rows([u32; 2], Wanted),
+    Times,
     Section,
     Survey,
     Ray(Ray),
@@ -30,6 +29,7 @@ pub(crate) enum Work {
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum Outcome {
     Picture(Shape),
+    Times(Option<[f64; 2]>),
     Section(Value),
     Survey(Survey),
     Ray(Value),

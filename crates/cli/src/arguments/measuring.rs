@@ -1,7 +1,7 @@
 //! Arguments of the commands that measure, draw and export.
 
-use super::values::{angles, grid, point, rectangle, size, sun, tilt, view, window};
-use super::{FormatArguments, SceneArguments, ThreadsArguments};
+use super::values::{PulseTimes, angles, grid, point, rectangle, size, sun, tilt, view, window};
+use super::{FlightDelay, FormatArguments, SceneArguments, ThreadsArguments};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use cloakroom::material::Resolution;
@@ -123,7 +123,8 @@ pub struct DiagramArguments {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// A file to write, .svg, .pdf or .png. May be given several times.
+    /// A file to write, .svg, .pdf or .png; a film as .gif, .apng, .png, .webp, .mp4 or .webm (with ffmpeg),
+    /// or with no ending as a folder of frames. May be given several times.
     #[arg(short, long = "output", value_name = "FILE", required = true)]
     pub outputs: Vec<PathBuf>,
     /// How many rays.
@@ -154,6 +155,26 @@ pub struct DiagramArguments {
     /// Mark the points of equal optical path, as often as that (cm): the wavefronts.
     #[arg(long, value_name = "CM")]
     pub wavefronts: Option<f64>,
+    /// A film of a pulse on its way along the rays, while it is seen; or with times, a frame for each, as in
+    /// -0.5..1.5:0.02, ns; or a drawing for a single one. It leaves a point or the camera at 0; parallel rays
+    /// would be in the middle of the devices then, were there nothing in their way.
+    #[arg(long, help_heading = "Pulse", value_name = "NS|START..END:STEP", num_args = 0..=1, default_missing_value = "", allow_negative_numbers = true, conflicts_with = "setting")]
+    pub pulse: Option<PulseTimes>,
+    /// Which time counts.
+    #[arg(
+        long,
+        value_name = "TIME",
+        help_heading = "Pulse",
+        default_value = "group",
+        requires = "pulse"
+    )]
+    pub delay: FlightDelay,
+    /// Frames a second.
+    #[arg(long, help_heading = "Pulse", value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=100), requires = "pulse")]
+    pub fps: u32,
+    /// Keep the folder of frames beside the film.
+    #[arg(long, help_heading = "Pulse", requires = "pulse")]
+    pub keep_frames: bool,
     /// Leave out branches below this share of a ray's power.
     #[arg(long, value_name = "P", default_value_t = 0.01)]
     pub min_power: f64,

@@ -1,7 +1,36 @@
 //! Values on the command line, read.
 
 use cloakroom::material::Resolution;
+use cloakroom::render::{Gate, GateError};
 use std::str::FromStr;
+
+/// At which times a pulse is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PulseTimes {
+    /// While it is seen.
+    Seen,
+    /// At one, ns.
+    At(f64),
+    /// In the middle of each bin.
+    Bins(Gate),
+}
+
+impl FromStr for PulseTimes {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.is_empty() {
+            return Ok(Self::Seen);
+        }
+        if text.contains("..") {
+            return text.parse().map(Self::Bins).map_err(|error: GateError| error.to_string());
+        }
+        let time = numbers(text).map(|[time]: [f64; 1]| Self::At(time));
+        time.ok_or_else(|| {
+            "write ns, as in 1.2, or START..END:STEP, as in -0.5..1.5:0.02".to_owned()
+        })
+    }
+}
 
 /// Reads a point such as -30,0,0.
 pub(super) fn point(text: &str) -> Result<[f64; 3], &'static str> {

@@ -12,13 +12,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 /// What is written smaller before a command is run; `small.sh` does the rest.
-const SMALLER: [(&str, &str); 10] = [
+const SMALLER: [(&str, &str); 12] = [
     ("cargo run --release -- ", "cloakroom "),
     ("--frames 120", "--frames 3"),
     ("--frames 100", "--frames 3"),
     ("--frames 50", "--frames 3"),
     ("--frames-only 0..29", "--frames-only 0..1"),
     ("--size 1600x1200", "--size 80x60"),
+    ("--size 160x120", "--size 60x45"),
+    ("--size 400x300 --pulse", "--size 80x60 --pulse 0..1:0.5"),
     ("--draws 20", "--draws 2"),
     ("--draws 8", "--draws 2"),
     ("--tile 0,0,2048,2048", "--tile 0,0,40,30"),

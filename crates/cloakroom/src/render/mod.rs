@@ -27,7 +27,7 @@ pub use channels::{ChannelKind, ChannelSet};
 pub use estimate::{Estimate, estimate};
 pub use flight::{
     Arrivals, Delay, Flash, FlashError, Flashed, FlightCube, FlightSettings, FlightTile, Gate,
-    GateError, MOST_BINS, PixelBins, arrival_times, flight, flight_steps,
+    GateError, MOST_BINS, PixelBins, arrival_times, flight, flight_part, flight_steps,
 };
 pub use images::Images;
 pub use prepared_scene::{

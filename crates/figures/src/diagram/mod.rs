@@ -1,20 +1,26 @@
 //! Ray diagrams as in books: the devices, a fan or bundle of rays through them, and marks of equal
 //! optical path.
 
+mod pulse;
 mod rays;
 mod solids;
 mod source;
 mod view;
 
+pub use pulse::Pulse;
 pub use source::Source;
 
 use super::drawing::Drawing;
 use super::setting::{AXES, Devices, MARGIN, TEXT, draw_axes, sheet};
-use cloakroom::render::{PreparedSceneError, RenderError, assembly};
+use cloakroom::assembly::Assembly;
+use cloakroom::render::{Delay, PreparedSceneError, RenderError, assembly};
 use cloakroom::scene::Scene;
 use cloakroom::trace::{Limits, Line, Stopped, lines};
 use glam::{DVec2, DVec3};
+use optics::wave::SPEED_OF_LIGHT;
 use rayon::prelude::*;
+use rays::Joints;
+use solids::Light;
 use std::sync::atomic::{AtomicBool, Ordering};
 use view::{Scenery, SpaceView};
 
@@ -85,83 +91,134 @@ const LEAST_WINDOW: f64 = 1e-3;
 /// More rays than this are no diagram.
 const MOST_RAYS: u32 = 2000;
 
-/// Draws the ray diagram of a scene; `stop` ends the work.
-///
-/// # Errors
-///
-/// If the scene is impossible or empty, a setting makes no sense, or the work was stopped.
-pub fn diagram(
-    scene: &Scene,
-    settings: &DiagramSettings,
-    stop: &AtomicBool,
-) -> Result<Drawing, DiagramError> {
-    check(settings)?;
-    let assembly = assembly(scene)?;
-    let devices = Devices::new(&assembly);
-    let bounds =
-        view::bounds(&assembly).or_else(|| devices.bounds()).ok_or(DiagramError::NoDevice)?;
-    let least = LEAST_WINDOW * (bounds[1] - bounds[0]).max_element();
-    if let Some(side) = settings.window.map(|[low, high]| (high - low).min_element())
-        && side < least
-    {
-        let (name, allowed) = (WINDOW, "a thousandth of the size of the devices, at least");
-        return Err(DiagramError::Setting { name, value: side, allowed });
+/// A ray diagram whose rays have been followed, ready to be drawn.
+#[derive(Debug)]
+pub struct RayDiagram {
+    settings: DiagramSettings,
+    assembly: Assembly,
+    scenery: Scenery,
+    /// The pieces of the tree of each ray.
+    trees: Vec<Vec<Line>>,
+}
+
+impl RayDiagram {
+    /// Follows the rays; `stop` ends the work.
+    ///
+    /// # Errors
+    ///
+    /// If the scene is impossible or empty, a setting makes no sense, or the work was stopped.
+    pub fn new(
+        scene: &Scene,
+        settings: &DiagramSettings,
+        stop: &AtomicBool,
+    ) -> Result<Self, DiagramError> {
+        check(settings)?;
+        let assembly = assembly(scene)?;
+        let bounds = view::bounds(&assembly).or_else(|| Devices::new(&assembly).bounds());
+        let bounds = bounds.ok_or(DiagramError::NoDevice)?;
+        let least = LEAST_WINDOW * (bounds[1] - bounds[0]).max_element();
+        if let Some(side) = settings.window.map(|[low, high]| (high - low).min_element())
+            && side < least
+        {
+            let (name, allowed) = (WINDOW, "a thousandth of the size of the devices, at least");
+            return Err(DiagramError::Setting { name, value: side, allowed });
+        }
+        let z = settings.z.unwrap_or_else(|| assembly.devices()[0].pose.origin.z);
+        let scenery = Scenery::new(bounds, z, settings);
+        let launches = settings.source.launches(scene, settings, &scenery);
+        if let Some(device) =
+            launches.iter().find_map(|launch| assembly.device_containing(launch.origin))
+        {
+            return Err(DiagramError::Inside { device });
+        }
+        let limits = Limits { min_power: settings.min_power, tolerance: scene.trace.tolerance };
+        // How far leaves are followed.
+        let reach = 2.0 * scenery.start();
+        let trees: Vec<Vec<Line>> = launches
+            .par_iter()
+            .map(|launch| {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(RenderError::from(Stopped));
+                }
+                let mut tree = lines(&assembly, limits, launch, settings.polarization, reach);
+                tree.retain(|line| line.power >= settings.min_power);
+                Ok(tree)
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { settings: settings.clone(), assembly, scenery, trees })
     }
-    let z = settings.z.unwrap_or_else(|| assembly.devices()[0].pose.origin.z);
-    let scenery = Scenery::new(bounds, z, settings);
-    let launches = settings.source.launches(scene, settings, &scenery);
-    if let Some(device) =
-        launches.iter().find_map(|launch| assembly.device_containing(launch.origin))
-    {
-        return Err(DiagramError::Inside { device });
-    }
-    let limits = Limits { min_power: settings.min_power, tolerance: scene.trace.tolerance };
-    // How far leaves are followed.
-    let reach = 2.0 * scenery.start();
-    let trees: Vec<Vec<Line>> = launches
-        .par_iter()
-        .map(|launch| {
-            if stop.load(Ordering::Relaxed) {
-                return Err(RenderError::from(Stopped));
-            }
-            let mut tree = lines(&assembly, limits, launch, settings.polarization, reach);
-            tree.retain(|line| line.power >= settings.min_power);
-            Ok(tree)
-        })
-        .collect::<Result<_, _>>()?;
-    let fronts = |trees: &[Vec<Line>]| {
-        let Some(distance) = settings.wavefronts else { return Vec::new() };
+
+    /// Draws it, with a pulse on its way or without.
+    #[must_use]
+    pub fn draw(&self, pulse: Option<&Pulse>) -> Drawing {
+        let Self { settings, assembly, scenery, trees } = self;
         // How far apart the points of a front may be on so many neighbouring rays.
-        let apart = 6.0 * scenery.depth() / trees.len().max(4) as f64;
-        rays::wavefronts(trees, &assembly, [distance, apart])
-    };
-    let sheet = sheet(settings.size);
-    let mut drawing = Drawing::new(sheet, TEXT);
-    match settings.space {
-        None => {
-            let view = scenery.section_view(sheet, devices.has_bar());
-            devices.draw(&mut drawing, &view);
-            let place = |at: DVec3| view.place(at.truncate());
-            let frame = view.frame();
-            for front in fronts(&trees) {
-                let front: Vec<DVec2> = front.into_iter().map(place).collect();
-                drawing.add_line("wavefront", front, rays::FRONT).within(vec![frame.to_vec()]);
+        let apart = |rays: usize| 6.0 * scenery.depth() / rays.max(4) as f64;
+        let wavefronts = |trees: &[Vec<Line>]| {
+            let Some(distance) = settings.wavefronts else { return Vec::new() };
+            let joints = Joints { assembly, apart: apart(trees.len()) };
+            rays::wavefronts(trees, &joints, distance)
+        };
+        let fronts = |trees: &[Vec<Line>]| {
+            pulse.map_or_else(Vec::new, |pulse| {
+                let joints = Joints { assembly, apart: apart(trees.len()) };
+                pulse::fronts(trees, &joints, self.way(pulse.time), pulse.delay)
+            })
+        };
+        let devices = Devices::new(assembly);
+        let sheet = sheet(settings.size);
+        let mut drawing = Drawing::new(sheet, TEXT);
+        match settings.space {
+            None => {
+                let view = scenery.section_view(sheet, devices.has_bar());
+                devices.draw(&mut drawing, &view);
+                let place = |at: DVec3| view.place(at.truncate());
+                let frame = view.frame();
+                for front in wavefronts(trees) {
+                    let front: Vec<DVec2> = front.into_iter().map(place).collect();
+                    drawing.add_line("wavefront", front, rays::FRONT).within(vec![frame.to_vec()]);
+                }
+                rays::draw(&mut drawing, &place, &frame, trees);
+                pulse::draw(&mut drawing, &place, &frame, &fronts(trees));
+                if settings.window.is_some() {
+                    view::cover_margins(&mut drawing, &frame);
+                }
+                devices.draw_bar(&mut drawing, view::bar(sheet));
+                draw_axes(&mut drawing, sheet - AXES - DVec2::new(MARGIN, 4.0));
             }
-            rays::draw(&mut drawing, &place, &frame, &trees);
-            if settings.window.is_some() {
-                view::cover_margins(&mut drawing, &frame);
+            Some(from) => {
+                let view = SpaceView::new(scenery, sheet, from);
+                let layers = || trees.chunks(settings.rays as usize);
+                let wavefronts: Vec<_> = layers().flat_map(wavefronts).collect();
+                let pulse: Vec<_> = layers().flat_map(fronts).collect();
+                let light = Light { trees, wavefronts: &wavefronts, pulse: &pulse };
+                solids::draw(&mut drawing, &view, assembly, &light, scenery);
             }
-            devices.draw_bar(&mut drawing, view::bar(sheet));
-            draw_axes(&mut drawing, sheet - AXES - DVec2::new(MARGIN, 4.0));
         }
-        Some(from) => {
-            let view = SpaceView::new(&scenery, sheet, from);
-            let fronts: Vec<_> = trees.chunks(settings.rays as usize).flat_map(fronts).collect();
-            solids::draw(&mut drawing, &view, &assembly, (&trees, &fronts), &scenery);
+        view::draw_key(&mut drawing, settings, pulse);
+        drawing
+    }
+
+    /// From when to when a pulse is in the part of the cross-section that is shown, ns: until the last of
+    /// the light that leaves the devices has left it. `None` if it never is, or nobody knows when.
+    #[must_use]
+    pub fn seen(&self, delay: Delay) -> Option<[f64; 2]> {
+        let seen = pulse::seen(&self.trees, &self.scenery, delay)?;
+        Some(seen.map(|way| (way - self.before()) / SPEED_OF_LIGHT))
+    }
+
+    /// How far a pulse has come at a time (ns), from where the rays start, cm.
+    fn way(&self, time: f64) -> f64 {
+        time * SPEED_OF_LIGHT + self.before()
+    }
+
+    /// The way of the rays up to where a pulse is at the time 0, cm.
+    fn before(&self) -> f64 {
+        match self.settings.source {
+            Source::Parallel { .. } => self.scenery.start(),
+            Source::Point(_) | Source::Camera => 0.0,
         }
     }
-    view::draw_key(&mut drawing, settings);
-    Ok(drawing)
 }
 
 fn check(settings: &DiagramSettings) -> Result<(), DiagramError> {

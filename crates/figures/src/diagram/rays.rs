@@ -6,7 +6,6 @@ use cloakroom::assembly::Assembly;
 use cloakroom::device::MaterialAt;
 use cloakroom::trace::Line;
 use glam::{DVec2, DVec3};
-use optics::propagation::PathPoint;
 
 /// The colour of rays.
 const RAY: Ink = Ink::new([192, 32, 0]);
@@ -68,42 +67,79 @@ fn draw_head(drawing: &mut Drawing, frame: &[DVec2; 4], points: &[DVec2], power:
     }
 }
 
+/// A point of a ray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RayPoint {
+    pub at: DVec3,
+    /// The unit vector of the ray there.
+    pub along: DVec3,
+    /// Its share of the power launched.
+    pub power: f64,
+    /// The fingerprint of its turns.
+    pub branch: u64,
+}
+
+impl RayPoint {
+    /// That of a line between two of its points.
+    pub fn on(line: &Line, [from, to]: [DVec3; 2], share: f64) -> Self {
+        let along = (to - from).normalize_or_zero();
+        Self { at: from.lerp(to, share), along, power: line.power, branch: line.branch }
+    }
+}
+
+/// Tells which points of neighbouring rays are of one wavefront.
+pub(super) struct Joints<'a> {
+    pub assembly: &'a Assembly,
+    /// Points of neighbouring rays further from each other than this, cm, are not of one front.
+    pub apart: f64,
+}
+
+impl Joints<'_> {
+    fn any_is(&self, at: DVec3, is: fn(MaterialAt) -> bool) -> bool {
+        self.assembly
+            .devices()
+            .iter()
+            .any(|placed| is(placed.structure.material_at(placed.pose.to_local(at))))
+    }
+
+    fn is_air(&self, at: DVec3) -> bool {
+        !self.any_is(at, |material| !matches!(material, MaterialAt::Air | MaterialAt::HiddenAir))
+    }
+
+    /// Near, without metal between them.
+    pub fn are_near(&self, a: &RayPoint, b: &RayPoint) -> bool {
+        const BETWEEN: u32 = 16;
+        let mut between = (1..BETWEEN).map(|i| a.at.lerp(b.at, f64::from(i) / f64::from(BETWEEN)));
+        a.at.distance(b.at) < self.apart
+            && !between.any(|at| {
+                self.any_is(at, |material| {
+                    matches!(material, MaterialAt::Metal | MaterialAt::Opaque)
+                })
+            })
+    }
+
+    /// Near and, in air, where fronts are across rays, across both: a ray that a mirror has sent back and
+    /// one that has missed it are of no front.
+    pub fn are_one(&self, a: &RayPoint, b: &RayPoint) -> bool {
+        /// The cosine of 73 degrees.
+        const STEEPEST: f64 = 0.3;
+        let chord = (b.at - a.at).normalize_or_zero();
+        let is_across = |point: &RayPoint| chord.dot(point.along).abs() < STEEPEST;
+        let are_across = is_across(a) && is_across(b);
+        (are_across || !self.is_air(a.at) || !self.is_air(b.at)) && self.are_near(a, b)
+    }
+}
+
 /// Lines in space through the points of equal optical path of neighbouring rays: of each the
-/// strongest branch there. They are `distance` apart in optical path, cm; points of neighbouring
-/// rays further than `apart` from each other, cm, are not of one front.
+/// strongest branch there. They are `distance` apart in optical path, cm.
 pub(super) fn wavefronts(
     trees: &[Vec<Line>],
-    assembly: &Assembly,
-    [distance, apart]: [f64; 2],
+    joints: &Joints<'_>,
+    distance: f64,
 ) -> Vec<Vec<DVec3>> {
     /// Weaker branches have no wavefronts of their own.
     const LEAST_POWER: f64 = 0.2;
     const MOST: u32 = 4000;
-    let is_metal = |at: DVec3| {
-        assembly.devices().iter().any(|placed| {
-            let material = placed.structure.material_at(placed.pose.to_local(at));
-            matches!(material, MaterialAt::Metal | MaterialAt::Opaque)
-        })
-    };
-    let is_air = |at: DVec3| {
-        assembly.devices().iter().all(|placed| {
-            let material = placed.structure.material_at(placed.pose.to_local(at));
-            matches!(material, MaterialAt::Air | MaterialAt::HiddenAir)
-        })
-    };
-    // Near, without metal between them, and, in air, where fronts are across rays, across both: a ray that
-    // a mirror has sent back and one that has missed it are of no front.
-    let are_one = |(a, along_a): (DVec3, DVec3), (b, along_b): (DVec3, DVec3)| {
-        /// The cosine of 73 degrees.
-        const STEEPEST: f64 = 0.3;
-        const BETWEEN: u32 = 16;
-        let between = (1..BETWEEN).map(|i| a.lerp(b, f64::from(i) / f64::from(BETWEEN)));
-        let chord = (b - a).normalize_or_zero();
-        let is_across = |along: DVec3| chord.dot(along).abs() < STEEPEST;
-        a.distance(b) < apart
-            && (!is_air(a) || !is_air(b) || is_across(along_a) && is_across(along_b))
-            && !between.into_iter().any(is_metal)
-    };
     let longest = trees.iter().flatten().filter_map(|line| line.points.last());
     let longest = longest.map(|point| point.optical_path).fold(0.0, f64::max);
     let count = ((longest / distance) as u32).min(MOST);
@@ -112,31 +148,32 @@ pub(super) fn wavefronts(
         let path = f64::from(number) * distance;
         let strongest = |tree: &Vec<Line>| {
             let strong = tree.iter().filter(|line| line.power > LEAST_POWER);
-            let met = strong.filter_map(|line| Some((line.power, point_at(line, path)?)));
-            met.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, point)| point)
+            let met = strong.filter_map(|line| point_at(line, path));
+            met.max_by(|a, b| a.power.total_cmp(&b.power))
         };
         let mut front: Vec<DVec3> = Vec::new();
-        let mut last: Option<(DVec3, DVec3)> = None;
+        let mut last: Option<RayPoint> = None;
         for point in trees.iter().map(strongest).chain([None]) {
-            if !matches!((last, point), (Some(a), Some(b)) if are_one(a, b)) {
+            if !matches!((&last, &point), (Some(a), Some(b)) if joints.are_one(a, b)) {
                 let whole = std::mem::take(&mut front);
                 fronts.extend(Some(whole).filter(|front| front.len() > 1));
             }
-            front.extend(point.map(|(point, _)| point));
+            front.extend(point.map(|point| point.at));
             last = point;
         }
     }
     fronts
 }
 
-/// Where the optical path along a line has a value, and the line's direction there.
-fn point_at(line: &Line, path: f64) -> Option<(DVec3, DVec3)> {
-    let between = |pair: &&[PathPoint]| {
-        let [a, b] = [pair[0].optical_path, pair[1].optical_path];
-        a.min(b) <= path && path < a.max(b)
-    };
-    let pair = line.points.windows(2).find(between)?;
-    let share = (path - pair[0].optical_path) / (pair[1].optical_path - pair[0].optical_path);
-    let [from, to] = [pair[0].position, pair[1].position];
-    Some((from.lerp(to, share), (to - from).normalize_or_zero()))
+/// Where the optical path along a line has a value.
+fn point_at(line: &Line, path: f64) -> Option<RayPoint> {
+    line.points.windows(2).find_map(|pair| {
+        let share = between([pair[0].optical_path, pair[1].optical_path], path)?;
+        Some(RayPoint::on(line, [pair[0].position, pair[1].position], share))
+    })
+}
+
+/// Which share of the way from one value to the other another one is, if it is between them.
+pub(super) fn between([from, to]: [f64; 2], value: f64) -> Option<f64> {
+    (from.min(to) <= value && value < from.max(to)).then(|| (value - from) / (to - from))
 }

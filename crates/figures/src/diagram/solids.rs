@@ -1,7 +1,8 @@
 //! Devices and rays in space, painted from back to front.
 
-use super::super::drawing::{Drawing, Ink};
+use super::super::drawing::{Drawing, Ink, Shape};
 use super::super::setting::{INK, MEDIUM, METAL, THIN};
+use super::pulse::{self, Front};
 use super::rays;
 use super::view::{Scenery, SpaceView};
 use cloakroom::assembly::{Assembly, Placed};
@@ -21,6 +22,15 @@ enum Paint {
     Face(Ink),
     /// Of a class, in a colour of a width.
     Line(&'static str, (Ink, f64)),
+    /// Of a pulse, at the only point.
+    Dot(Ink),
+}
+
+/// What runs among the devices.
+pub(super) struct Light<'a> {
+    pub trees: &'a [Vec<Line>],
+    pub wavefronts: &'a [Vec<DVec3>],
+    pub pulse: &'a [Front],
 }
 
 /// Draws the devices, and the rays and wavefronts among them; what is nearer hides what is behind
@@ -29,18 +39,25 @@ pub(super) fn draw(
     drawing: &mut Drawing,
     view: &SpaceView,
     assembly: &Assembly,
-    (trees, fronts): (&[Vec<Line>], &[Vec<DVec3>]),
+    light: &Light<'_>,
     scenery: &Scenery,
 ) {
     let mut solids = Solids { items: Vec::new(), view, scenery };
     for placed in assembly.devices() {
         solids.add_device(placed);
     }
-    for line in trees.iter().flatten() {
+    for line in light.trees.iter().flatten() {
         solids.add_ray(line);
     }
-    for front in fronts {
+    for front in light.wavefronts {
         solids.add_line(front, "wavefront", rays::FRONT);
+    }
+    for front in light.pulse {
+        let stroke = pulse::stroke(front.power);
+        match front.points[..] {
+            [_] => solids.items.push((front.points.clone(), Paint::Dot(stroke.0))),
+            _ => solids.add_line(&front.points, "pulse", stroke),
+        }
     }
     let mut items = solids.items;
     let depth = |(points, _): &Item| {
@@ -54,6 +71,9 @@ pub(super) fn draw(
         match paint {
             Paint::Face(ink) => drawing.add_area("face", at).filled(ink),
             Paint::Line(class, stroke) => drawing.add_line(class, at, stroke),
+            Paint::Dot(ink) => drawing
+                .add("pulse", Shape::Circle { centre: at[0], radius: pulse::DOT })
+                .filled(ink),
         }
         .within(vec![frame.to_vec()]);
     }

@@ -30,7 +30,7 @@ fn scene(text: &str) -> Scene {
 }
 
 fn drawn(text: &str, settings: &DiagramSettings) -> Result<Drawing, DiagramError> {
-    diagram(&scene(text), settings, &AtomicBool::new(false))
+    Ok(RayDiagram::new(&scene(text), settings, &AtomicBool::new(false))?.draw(None))
 }
 
 /// The points of the wavefronts on the sheet, front by front.
@@ -185,4 +185,138 @@ fn nonsense_is_refused() {
     refused(DiagramSettings { source: Source::Point(DVec3::ZERO), ..usual.clone() }, "device 0");
     let empty = drawn("[camera]\nseed = 1", &usual).expect_err("refused");
     assert!(matches!(empty, DiagramError::NoDevice));
+}
+
+/// cm/ns.
+const LIGHT: f64 = 29.979_245_8;
+
+fn followed(text: &str, settings: &DiagramSettings) -> RayDiagram {
+    RayDiagram::new(&scene(text), settings, &AtomicBool::new(false)).expect("followed")
+}
+
+/// The pieces of a pulse at a time, ns.
+fn pulse(diagram: &RayDiagram, time: f64, delay: Delay) -> Vec<pulse::Front> {
+    let joints = Joints { assembly: &diagram.assembly, apart: 10.0 };
+    pulse::fronts(&diagram.trees, &joints, diagram.way(time), delay)
+}
+
+const CLOAK: &str = "[[device]]\nkind = \"square-cloak\"\n";
+
+#[test]
+fn in_air_a_pulse_comes_as_far_as_light_does() {
+    let from = DVec3::new(-60.0, 5.0, 0.0);
+    for (source, time) in [
+        (Source::Point(from), 1.2),
+        (Source::Parallel { degrees: 0.0 }, -0.5),
+        (Source::Parallel { degrees: 90.0 }, -0.4),
+    ] {
+        for delay in [Delay::Group, Delay::Phase] {
+            let settings = DiagramSettings { source, ..DiagramSettings::default() };
+            let fronts = pulse(&followed(CLOAK, &settings), time, delay);
+            assert_eq!(fronts.len(), 1);
+            assert_eq!((fronts[0].points.len(), fronts[0].power), (20, 1.0));
+            for point in &fronts[0].points {
+                let way = match source {
+                    Source::Point(from) => point.distance(from),
+                    Source::Parallel { degrees } if degrees > 45.0 => point.y,
+                    _ => point.x,
+                };
+                assert!((way - time * LIGHT).abs() < 1e-9, "{source:?} {way}");
+            }
+        }
+    }
+}
+
+#[test]
+fn behind_the_perfect_cloak_the_phase_is_on_time_and_a_pulse_is_late() {
+    let settings = DiagramSettings { rays: 40, ..DiagramSettings::default() };
+    let fronts = pulse(&followed(CLOAK, &settings), 15.0 / LIGHT, Delay::Phase);
+    assert_eq!((fronts.len(), fronts[0].points.len()), (1, 40));
+    for (number, point) in fronts[0].points.iter().enumerate() {
+        let width = 1.06 * 2.0 * 9.970_205_614_730_32;
+        let straight = DVec3::new(15.0, width * ((number as f64 + 0.5) / 40.0 - 0.5), 0.0);
+        assert!(point.distance(straight) < 1e-9, "{point} {straight}");
+    }
+    let narrow = DiagramSettings { rays: 2, width: Some(1e-4), ..settings };
+    let diagram = followed(CLOAK, &narrow);
+    let late = 1.451_40;
+    let fronts = pulse(&diagram, 15.0 / LIGHT + late, Delay::Group);
+    for point in fronts.iter().flat_map(|front| &front.points) {
+        assert!((point.x - 15.0).abs() < 1e-5 * LIGHT, "{point}");
+    }
+    // It is seen until it has left the picture.
+    let [first, last] = diagram.seen(Delay::Group).expect("seen");
+    let [_, on_time] = diagram.seen(Delay::Phase).expect("seen");
+    assert!((last - on_time - late).abs() < 1e-5 && first < -10.0 / LIGHT, "{first} {last}");
+}
+
+/// With no loss, all power of a ray is somewhere on it at every time; where a birefringent cloak has split
+/// it, in several places.
+#[test]
+fn a_pulse_in_a_birefringent_cloak_is_many_that_have_all_power() {
+    for material in ["positive-uniaxial", "negative-uniaxial"] {
+        let settings = DiagramSettings {
+            rays: 10,
+            z: Some(6.0),
+            min_power: 1e-7,
+            ..DiagramSettings::default()
+        };
+        let diagram = followed(&format!("{CLOAK}material = \"{material}\""), &settings);
+        let mut most = 0;
+        for step in 0..40 {
+            let way = diagram.way(-0.5 + 0.05 * f64::from(step));
+            for delay in [Delay::Group, Delay::Phase] {
+                for tree in &diagram.trees {
+                    let points = tree.iter().filter_map(|line| pulse::point_at(line, way, delay));
+                    let powers: Vec<f64> = points.map(|point| point.power).collect();
+                    let sum: f64 = powers.iter().sum();
+                    assert!((sum - 1.0).abs() < 1e-4, "{material} {delay:?} {way}: {sum}");
+                    most = most.max(powers.iter().filter(|power| **power > 0.05).count());
+                }
+            }
+        }
+        assert!(most > 1, "{material}: {most}");
+        let strong = pulse(&diagram, 20.0 / LIGHT + 0.8, Delay::Group);
+        let strong = strong.iter().filter(|front| front.power > 0.05 && front.points.len() > 1);
+        assert!(strong.count() > 1, "{material}");
+    }
+}
+
+/// ∫ n dx along the axis of the lens of Luneburg, n² = 2 - (x/R)².
+#[test]
+fn in_a_graded_lens_a_pulse_is_where_the_integral_of_the_index_says() {
+    let settings = DiagramSettings { rays: 2, width: Some(1e-4), ..DiagramSettings::default() };
+    let diagram = followed("[[device]]\nkind = \"luneburg-lens\"", &settings);
+    let path = |x: f64| 0.5 * (x * (2.0 - x * x).sqrt() + 2.0 * (x / 2.0_f64.sqrt()).asin());
+    for delay in [Delay::Group, Delay::Phase] {
+        for x in [-9.0, -4.0, 0.5, 3.0, 8.0] {
+            let time = (-10.0 + 10.0 * (path(x / 10.0) - path(-1.0))) / LIGHT;
+            let fronts = pulse(&diagram, time, delay);
+            assert_eq!(fronts.len(), 1);
+            for point in &fronts[0].points {
+                assert!((point.x - x).abs() < 2e-3, "{delay:?} {x}: {point}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pulse_is_drawn_over_the_rays_with_its_time() {
+    for space in [None, Some([30.0, 20.0])] {
+        let settings = DiagramSettings { space, ..DiagramSettings::default() };
+        let diagram = followed(CLOAK, &settings);
+        let at = Pulse { time: 0.5, delay: Delay::Group, step: 0.01 };
+        let drawing = diagram.draw(Some(&at));
+        assert!(drawing.of_class("pulse").count() > 0);
+        let words = drawing.of_class("key").filter_map(|element| match &element.shape {
+            crate::Shape::Words(words) => Some(words.text()),
+            _ => None,
+        });
+        assert!(words.into_iter().any(|words| words == "pulse at 0.50 ns"));
+        // Without it, and before it comes and after it has gone, there is none.
+        for time in [None, Some(-9.0), Some(99.0)] {
+            let pulse = time.map(|time| Pulse { time, ..at });
+            assert_eq!(diagram.draw(pulse.as_ref()).of_class("pulse").count(), 0);
+        }
+    }
 }

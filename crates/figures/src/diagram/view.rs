@@ -2,7 +2,7 @@
 
 use super::super::drawing::{Drawing, Face, Shape, Words};
 use super::super::setting::{BAR, INK, MARGIN, PAPER, TEXT, THIN, View, corners};
-use super::{DiagramSettings, Source, rays};
+use super::{DiagramSettings, Pulse, Source, pulse, rays};
 use cloakroom::assembly::Assembly;
 use cloakroom::device::REACH;
 use glam::{DVec2, DVec3};
@@ -33,6 +33,7 @@ pub(super) fn bounds(assembly: &Assembly) -> Option<[DVec2; 2]> {
 }
 
 /// The devices' place, and how much around them is shown.
+#[derive(Clone, Debug)]
 pub(super) struct Scenery {
     bounds: [DVec2; 2],
     /// Least and greatest x and y that are shown, cm.
@@ -59,6 +60,22 @@ impl Scenery {
         }
         let shown = settings.window.unwrap_or(shown);
         Self { bounds: [low, high], shown, z }
+    }
+
+    /// From where to where, as shares of it, a straight line is in what is shown, if it is.
+    pub fn shown_part(&self, [from, to]: [DVec2; 2]) -> Option<[f64; 2]> {
+        let [low, high] = self.shown;
+        let way = to - from;
+        let mut part = [0.0_f64, 1.0];
+        for axis in 0..2 {
+            let ends = [(low - from)[axis] / way[axis], (high - from)[axis] / way[axis]];
+            if way[axis] != 0.0 {
+                part = [part[0].max(ends[0].min(ends[1])), part[1].min(ends[0].max(ends[1]))];
+            } else if from[axis] < low[axis] || from[axis] > high[axis] {
+                return None;
+            }
+        }
+        (part[0] < part[1]).then_some(part)
     }
 
     /// The middle of the devices.
@@ -122,7 +139,7 @@ pub(super) fn cover_margins(drawing: &mut Drawing, frame: &[DVec2; 4]) {
 }
 
 /// Draws what the strokes stand for, in a row at the lower edge.
-pub(super) fn draw_key(drawing: &mut Drawing, settings: &DiagramSettings) {
+pub(super) fn draw_key(drawing: &mut Drawing, settings: &DiagramSettings, pulse: Option<&Pulse>) {
     let mut x = MARGIN;
     let y = drawing.size.y - 0.5 * KEY;
     let mut write = |drawing: &mut Drawing, text: String, gap: f64| {
@@ -141,7 +158,12 @@ pub(super) fn draw_key(drawing: &mut Drawing, settings: &DiagramSettings) {
     if let Some(distance) = settings.wavefronts {
         drawing.add_line("key-wavefront", sample(at), rays::FRONT);
         write(drawing, String::new(), 2.1 * TEXT);
-        write(drawing, format!("equal optical path, every {distance} cm"), 0.0);
+        at = write(drawing, format!("equal optical path, every {distance} cm"), 0.9 * TEXT);
+    }
+    if let Some(pulse) = pulse {
+        drawing.add_line("key-pulse", sample(at), pulse::stroke(1.0));
+        write(drawing, String::new(), 2.1 * TEXT);
+        write(drawing, pulse.words(), 0.0);
     }
 }
 

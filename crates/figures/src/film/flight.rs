@@ -79,7 +79,7 @@ pub fn flight_frames(
 }
 
 /// A time in ns, as exact as the steps are.
-fn time_in_words(time: f64, step: f64) -> String {
+pub(in super::super) fn time_in_words(time: f64, step: f64) -> String {
     let digits = (-step.log10()).ceil().clamp(0.0, 12.0) as usize;
     // Half of a thousandth needs one more.
     let exact = (step * 10_f64.powi(digits as i32)).fract();

@@ -9,12 +9,15 @@ mod apng_file;
 mod flight;
 mod frames;
 mod gif_file;
+mod pulse;
 mod video;
 mod webp_file;
 
 pub use animation::{RenderedFrames, frame_metadata, render_frames};
+pub(super) use flight::time_in_words;
 pub use flight::{FlightFilm, FlightFilmError, flight_frames};
 pub use frames::FrameFolder;
+pub use pulse::pulse_frames;
 
 use cloakroom::output::{self, OutputError, RgbImage};
 use cloakroom::render::RenderError;

@@ -129,11 +129,12 @@ fn write_line(mut record: &File, line: &Value) -> io::Result<()> {
 type Trial = fn(&mut Draws<'_>) -> u64;
 
 /// What parcels are of beside one device each.
-const TRIALS: [(&str, Trial); 4] = [
+const TRIALS: [(&str, Trial); 5] = [
     ("devices that touch", robustness::touch_any),
     ("cut glass", robustness::cut_glass),
     ("stacks of plates", robustness::stack),
     ("pictures of shared rays", robustness::interpolate),
+    ("light in flight", robustness::fly),
 ];
 
 /// What a parcel is of: a device, or a trial.

@@ -256,6 +256,54 @@ impl Region {
         }
     }
 
+    /// The same at points of the way ([`Region::path`]) of a ray in one of the waves, all of which takes a pulse
+    /// `whole`: for drawings. Piece by piece it is as long as the group index in the middle of each has it, in
+    /// proportion.
+    #[must_use]
+    pub fn group_paths(
+        &self,
+        path: &[PathPoint],
+        mode: ModeKind,
+        whole: f64,
+        dispersion: Dispersion,
+    ) -> Vec<f64> {
+        let piece = |pair: &[PathPoint]| {
+            let way = pair[1].position - pair[0].position;
+            let optical = (pair[1].optical_path - pair[0].optical_path).abs();
+            let (length, middle) = (way.length(), pair[0].position.midpoint(pair[1].position));
+            if self.is_homogeneous() || length == 0.0 {
+                return length;
+            }
+            if dispersion == Dispersion::None {
+                return optical;
+            }
+            let ray = way / length;
+            let mut local = None;
+            let waves = self.medium(middle, None, &mut local).map(|medium| {
+                let waves = medium.waves_along_ray(ray);
+                let own = waves.iter().find(|wave| wave.kind == mode).or(waves.first())?;
+                let electric = own.electric.unwrap_or_else(|| ray.any_orthonormal_vector().into());
+                Some(medium.causal_group_index(own.wave_vector, electric))
+            });
+            // Of an isotropic medium it is n or 1/n, whichever is larger.
+            let isotropic = (optical / length).max(length / optical);
+            length * waves.flatten().filter(|index| index.is_finite()).unwrap_or(isotropic)
+        };
+        let mut sum = 0.0;
+        let mut paths: Vec<f64> = [0.0]
+            .into_iter()
+            .chain(path.windows(2).map(|pair| {
+                sum += piece(pair);
+                sum
+            }))
+            .collect();
+        for path in &mut paths {
+            // On no way at all it takes no time.
+            *path = if sum > 0.0 { whole * (*path / sum) } else { 0.0 };
+        }
+        paths
+    }
+
     /// Where the waves of the medium start as one and then part: their electric fields, of unit
     /// power. None where the ray is one of them already.
     #[must_use]

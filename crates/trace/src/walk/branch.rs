@@ -1,7 +1,7 @@
 //! A branch of a ray tree on its way.
 
 use super::event::fingerprint;
-use super::{Launch, Leaf, LeafEnd};
+use super::{Launch, Leaf, LeafEnd, PathTime};
 use crate::assembly::DepartedSurface;
 use crate::device::{InnerRay, Passage};
 use glam::DVec3;
@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use optics::geometry::Pose;
 use optics::interface::{IncidentWave, OutgoingWave};
 use optics::medium::{ModeKind, RayWave};
-use optics::propagation::VirtualPoint;
+use optics::propagation::{PathPoint, VirtualPoint};
 use optics::wave::ComplexVector;
 use std::hash::Hash;
 
@@ -186,20 +186,57 @@ impl<const N: usize> Branch<N> {
         strongest.map_or(ComplexVector::ZERO, |(field, _)| *field)
     }
 
+    /// When it is where it is.
+    pub(super) fn time(&self) -> PathTime {
+        PathTime {
+            phase: self.optical_path + self.backwards,
+            pulse: self.optical_path + self.dispersion,
+        }
+    }
+
     /// Notes what a pulse takes on a way before the branch takes it.
     #[cold]
     pub(super) fn delay(&mut self, passage: &Passage, group: f64) {
         let more = group - passage.optical_path;
         self.dispersion += more;
-        if passage.optical_path < 0.0 {
+        self.backwards += self.backwards_on(passage, group);
+    }
+
+    /// What a way adds to the optical path in the time of flight, given what a pulse takes on it.
+    fn backwards_on(&self, passage: &Passage, group: f64) -> f64 {
+        let more = group - passage.optical_path;
+        if passage.optical_path >= 0.0 {
+            0.0
+        } else if more.is_nan() {
             // Where a pulse has no velocity, in media that absorb, no slower than light.
             let straight = (passage.position - self.position).length();
-            self.backwards += if more.is_nan() {
-                (straight - passage.optical_path).max(-2.0 * passage.optical_path)
-            } else {
-                more
-            };
+            (straight - passage.optical_path).max(-2.0 * passage.optical_path)
+        } else {
+            more
         }
+    }
+
+    /// When it comes to the points of a way before it takes it. `pulse` is what a pulse takes up to each of
+    /// them, if that has been worked out.
+    pub(super) fn times(
+        &self,
+        path: &[PathPoint],
+        passage: &Passage,
+        pulse: Option<&[f64]>,
+    ) -> Vec<PathTime> {
+        let whole = pulse.and_then(|pulse| pulse.last()).copied();
+        let backwards = whole.map_or(0.0, |whole| self.backwards_on(passage, whole));
+        let start = self.time();
+        let time = |(number, point): (usize, &PathPoint)| {
+            // Evenly where it runs backwards: in homogeneous media.
+            let share =
+                if backwards == 0.0 { 0.0 } else { point.optical_path / passage.optical_path };
+            PathTime {
+                phase: start.phase + point.optical_path + backwards * share,
+                pulse: start.pulse + pulse.map_or(f64::NAN, |pulse| pulse[number]),
+            }
+        };
+        path.iter().enumerate().map(time).collect()
     }
 
     /// Comes out into air, `departed` being what it leaves: there all that decays across a beam is

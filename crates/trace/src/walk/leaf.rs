@@ -1,5 +1,6 @@
 //! Where a ray tree ends: leaves, and the account of the power.
 
+use super::PathTime;
 use super::branch::largest;
 use crate::assembly::Screen;
 use glam::DVec3;
@@ -59,6 +60,12 @@ impl<const N: usize> Leaf<N> {
             LeafEnd::Body(body) => Some(body),
             LeafEnd::Away | LeafEnd::Screen => None,
         }
+    }
+
+    /// When light that leaves the ray's origin at 0 comes to `position`.
+    #[must_use]
+    pub fn time(&self) -> PathTime {
+        PathTime { phase: self.delay_path, pulse: self.group_path.unwrap_or(f64::NAN) }
     }
 
     /// Its share of the power launched in the strongest polarization.

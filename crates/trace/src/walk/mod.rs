@@ -27,6 +27,6 @@ pub use four::FourTracers;
 pub use leaf::{Leaf, LeafEnd, Outcome, TraceStats};
 pub use leaf_table::{LeafTable, RaySettings, Stopped};
 pub use paths::{Line, PathGatherer, PathTable, TreePath, lines};
-pub use recorder::{PathRecorder, PathSegment};
+pub use recorder::{PathRecorder, PathSegment, PathTime};
 pub use scatter::{Placement, RayStatus, ScatterRay, Scattered, scatter};
 pub use tracer::{Launch, Limits, Tracer};

@@ -1,6 +1,6 @@
 //! The ways that rays take, to be drawn: the pieces of ray trees, each with the one it comes from.
 
-use super::{Launch, Leaf, LeafEnd, Limits, PathRecorder, PathSegment, Tracer};
+use super::{Launch, Leaf, LeafEnd, Limits, PathRecorder, PathSegment, PathTime, Tracer};
 use crate::assembly::Assembly;
 use glam::DVec3;
 use optics::propagation::PathPoint;
@@ -13,6 +13,10 @@ pub struct TreePath<const N: usize> {
     pub power: [f64; N],
     /// The way, with the optical path from the ray's origin.
     pub points: Vec<PathPoint>,
+    /// When light that leaves the ray's origin at 0 comes to each of its points.
+    pub times: Vec<PathTime>,
+    /// The fingerprint of the branch: rays beside each other that take the same turns have the same.
+    pub branch: u64,
     /// The place, among the leaves that the tracer gives, of the one that runs along it for ever.
     pub leaf: Option<usize>,
     /// The place among the paths of the one from whose end it goes on; `None` from the ray's origin.
@@ -72,6 +76,8 @@ impl<const N: usize> PathGatherer<N> {
                         optical_path: leaf.optical_path + way,
                     })
                     .to_vec(),
+                times: [0.0, reach].map(|way| leaf.time().after(way)).to_vec(),
+                branch: leaf.path,
                 leaf: Some(number),
                 parent: self.last.get(&leaf.path).copied(),
             })
@@ -85,7 +91,8 @@ impl<const N: usize> PathGatherer<N> {
                 optical_path: segment.optical_path + at.optical_path,
             };
             let points = segment.path.iter().map(|at| point(*at)).collect();
-            TreePath { power: segment.power, points, leaf: None, parent }
+            let PathSegment { power, times, branch, .. } = segment;
+            TreePath { power, points, times, branch, leaf: None, parent }
         });
         segments.chain(away).collect()
     }
@@ -98,6 +105,10 @@ pub struct Line {
     pub power: f64,
     /// The way, with the optical path from the ray's origin.
     pub points: Vec<PathPoint>,
+    /// When light that leaves the ray's origin at 0 comes to each of its points; of pulses, too.
+    pub times: Vec<PathTime>,
+    /// The fingerprint of the branch: rays beside each other that take the same turns have the same.
+    pub branch: u64,
     /// Whether it goes on for ever.
     pub leaves: bool,
 }
@@ -112,12 +123,15 @@ pub fn lines<const N: usize>(
     weights: [f64; N],
     reach: f64,
 ) -> Vec<Line> {
-    let mut tracer = Tracer::new(assembly, limits).watched(PathGatherer::new(reach));
+    let tracer = Tracer::new(assembly, limits).with_group_delays();
+    let mut tracer = tracer.watched(PathGatherer::new(reach));
     let leaves = tracer.trace(launch).0.to_vec();
     let paths = tracer.recorder().take(assembly, &leaves);
     let line = |path: TreePath<N>| Line {
         power: path.power.iter().zip(weights).map(|(p, w)| p * w).sum(),
         points: path.points,
+        times: path.times,
+        branch: path.branch,
         leaves: path.leaf.is_some(),
     };
     let (away, inner): (Vec<_>, Vec<_>) = paths.into_iter().partition(|path| path.leaf.is_some());

@@ -52,6 +52,26 @@ pub struct PathSegment<const N: usize> {
     pub inside: Option<(u16, u16)>,
     /// The way, in the frame of the device that it is in, else in the world's.
     pub path: Vec<PathPoint>,
+    /// When light that leaves the ray's origin at 0 comes to each of its points.
+    pub times: Vec<PathTime>,
+}
+
+/// When light comes to a point, in cm: times the speed of light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathTime {
+    /// What the phase takes; a pulse, where the phase runs backwards: see
+    /// [`Leaf::delay_path`](super::Leaf::delay_path).
+    pub phase: f64,
+    /// What a pulse takes, NaN unless it is known and [asked](super::Tracer::with_group_delays).
+    pub pulse: f64,
+}
+
+impl PathTime {
+    /// So much later, cm.
+    #[must_use]
+    pub fn after(self, way: f64) -> Self {
+        Self { phase: self.phase + way, pulse: self.pulse + way }
+    }
 }
 
 impl<const N: usize> PathRecorder<N> for () {

@@ -97,6 +97,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
                 PathPoint { position: from, optical_path: 0.0 },
                 PathPoint { position: branch.position, optical_path: hit.distance },
             ],
+            times: vec![branch.time(), branch.time().after(hit.distance)],
         });
         branch.optical_path += hit.distance;
         branch.met_device = true;
@@ -247,17 +248,28 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     {
         let region = self.assembly.device(number).region(region_number);
         let way = passage.position - branch.position;
-        self.recorder.record(|| PathSegment {
-            branch: branch.path,
-            power: branch.power,
-            optical_path: branch.optical_path,
-            inside: Some((number, region_number)),
-            path: region.path(&branch.inner_ray(), passage, self.limits.tolerance),
-        });
-        if self.wants_group_path(passage.optical_path) {
+        let group = if self.wants_group_path(passage.optical_path) {
             let dispersion = self.assembly.device(number).dispersion;
             let (ray, field) = (branch.inner_ray(), branch.strongest_field());
-            let group = region.group_path(&ray, field, passage, dispersion, self.limits.tolerance);
+            Some(region.group_path(&ray, field, passage, dispersion, self.limits.tolerance))
+        } else {
+            None
+        };
+        self.recorder.record(|| {
+            let ray = branch.inner_ray();
+            let path = region.path(&ray, passage, self.limits.tolerance);
+            let dispersion = self.assembly.device(number).dispersion;
+            let pulse = group.map(|group| region.group_paths(&path, ray.mode, group, dispersion));
+            PathSegment {
+                branch: branch.path,
+                power: branch.power,
+                optical_path: branch.optical_path,
+                inside: Some((number, region_number)),
+                times: branch.times(&path, passage, pulse.as_deref()),
+                path,
+            }
+        });
+        if let Some(group) = group {
             branch.delay(passage, group);
         }
         branch.position = passage.position;

@@ -63,7 +63,7 @@ fn spoiled(random: &mut Random) -> String {
         "device": [{ "kind": "square-cloak", "rotation": 3 }],
     });
     let messages = [
-        json!({ "look": { "id": 7, "scene": scene, "size": [8, 6], "samples": 1, "beside": "bare" } }),
+        json!({ "look": { "id": 7, "scene": scene, "size": [8, 6], "samples": 1, "beside": "bare", "moment": 0.5 } }),
         json!({ "ray": { "id": 7, "at": [0.2, 0.3] } }),
         json!({ "save": { "scene": scene } }),
         json!({ "seen": { "id": 7 } }),
@@ -95,6 +95,7 @@ fn spoiled(random: &mut Random) -> String {
                 "/look/size/0",
                 "/look/samples",
                 "/look/beside",
+                "/look/moment",
                 "/look/scene",
                 "/look/scene/camera",
                 "/look/scene/camera/position",

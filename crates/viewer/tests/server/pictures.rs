@@ -35,6 +35,30 @@ fn finished_pictures_are_those_of_the_command_line() {
 }
 
 #[test]
+fn light_in_flight_arrives_moment_by_moment() {
+    let server = Server::start(0);
+    let mut page = server.page();
+    let mut at = |id: u64, moment: f64| {
+        let mut look = look(id, 0.0, 1);
+        look["look"]["moment"] = json!(moment);
+        page.say(&look);
+        let (caption, pixels) = page.finished(id);
+        let sum = pixels.chunks_exact(4).flat_map(|pixel| &pixel[..3]).map(|code| u64::from(*code));
+        (caption["time_ns"].as_f64().unwrap(), sum.sum::<u64>())
+    };
+    let all: Vec<(f64, u64)> = (0..=8).map(|i| at(i + 1, i as f64 / 8.0)).collect();
+    assert!(all.is_sorted_by(|(one, _), (other, _)| one < other), "{all:?}");
+    // Dark before the first light and after the last; between them past the cloak, and later through it.
+    assert_eq!((all[0].1, all[8].1), (0, 0), "{all:?}");
+    assert!(all[1].1 > 0 && all[7].1 > 0, "{all:?}");
+    let mut wrong = look(10, 0.0, 1);
+    wrong["look"]["moment"] = json!(1.5);
+    page.say(&wrong);
+    let said = page.hear_of("error")["message"].to_string();
+    assert!(said.contains("share from 0 to 1"), "{said}");
+}
+
+#[test]
 fn pictures_come_coarse_first_and_with_all_else() {
     let server = Server::start(0);
     let mut page = server.page();

@@ -4,8 +4,12 @@
 //! light and its power. Leaves are added by power: light that interferes in a picture does not here.
 //! The photograph alone is timed; bodies and surroundings stand before it as a steady picture.
 
+mod cube;
+mod flash;
 mod gate;
 
+pub use cube::FlightCube;
+pub use flash::{Flash, FlashError};
 pub use gate::{Gate, GateError, MOST_BINS};
 
 use super::block_tracer::BlockTracer;
@@ -19,8 +23,6 @@ use crate::trace::{Leaf, Stopped, TraceStats, Tracer};
 use glam::DVec3;
 use optics::wave::SPEED_OF_LIGHT;
 use rayon::prelude::*;
-use std::str::FromStr;
-use std::sync::Mutex;
 
 /// Which of the two times of light counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,75 +34,20 @@ pub enum Delay {
     Phase,
 }
 
-/// What flashes, at the time 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Flash {
-    /// The whole photograph at once.
-    #[default]
-    Photograph,
-    /// The photograph, where a plane wave comes to it that runs along this direction through air:
-    /// its middle at the time 0.
-    PlaneWave(DVec3),
-    /// The photograph, where light comes to it from a point (cm) through air.
-    Point(DVec3),
-    /// A spot of a laser on it, as bright as the photograph there: a Gaussian about the point of
-    /// the photograph nearest to `middle` (cm), which is half as bright at `radius` (cm).
-    Spot {
-        /// Its middle.
-        middle: DVec3,
-        /// Where it is half as bright.
-        radius: f64,
-    },
-}
-
-impl Flash {
-    /// How much later (ns) a point of the photograph flashes, and how bright it is.
-    fn at(&self, point: DVec3, screen: &Screen) -> (f64, f64) {
-        match *self {
-            Self::Photograph => (0.0, 1.0),
-            Self::PlaneWave(direction) => {
-                let along = (point - screen.middle).dot(direction.normalize_or_zero());
-                (along / SPEED_OF_LIGHT, 1.0)
-            }
-            Self::Point(source) => (point.distance(source) / SPEED_OF_LIGHT, 1.0),
-            Self::Spot { middle, radius } => {
-                let squared = point.distance_squared(screen.foot(middle)) / (radius * radius);
-                (0.0, (-squared).exp2())
-            }
+impl Delay {
+    /// What it is called: `group` or `phase`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Group => "group",
+            Self::Phase => "phase",
         }
     }
-}
 
-/// What is wrong with a flash: it is not written as one.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "`{0}` is no flash; write photograph, plane:DX,DY,DZ, point:X,Y,Z or spot:X,Y,Z,RADIUS in cm, as in \
-     point:50,0,30"
-)]
-pub struct FlashError(String);
-
-impl FromStr for Flash {
-    type Err = FlashError;
-
-    fn from_str(text: &str) -> Result<Self, FlashError> {
-        let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
-        let numbers: Option<Vec<f64>> = match rest {
-            "" => Some(Vec::new()),
-            rest => rest.split(',').map(|part| part.trim().parse().ok()).collect(),
-        };
-        let numbers = numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite()));
-        match (kind, numbers.as_deref()) {
-            ("photograph", Some([])) => Some(Self::Photograph),
-            ("plane", Some(&[x, y, z])) if [x, y, z] != [0.0; 3] => {
-                Some(Self::PlaneWave(DVec3::new(x, y, z)))
-            }
-            ("point", Some(&[x, y, z])) => Some(Self::Point(DVec3::new(x, y, z))),
-            ("spot", Some(&[x, y, z, radius])) if radius > 0.0 => {
-                Some(Self::Spot { middle: DVec3::new(x, y, z), radius })
-            }
-            _ => None,
-        }
-        .ok_or_else(|| FlashError(text.to_owned()))
+    /// That of a name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        [Self::Group, Self::Phase].into_iter().find(|delay| delay.name() == name)
     }
 }
 
@@ -291,23 +238,30 @@ fn add(sum: &mut Flashed, flashed: Flashed, share: f64) {
 }
 
 /// The parts of a picture of light in flight, which need little memory each.
-fn tiles([width, height]: [u32; 2]) -> Vec<Tile> {
+fn tiles(part: Tile) -> Vec<Tile> {
     let side = SIDE as u32;
-    let rows = (0..height).step_by(SIDE);
+    let [right, bottom] = [part.left + part.width, part.top + part.height];
+    let rows = (part.top..bottom).step_by(SIDE);
     let tile = |left: u32, top: u32| Tile {
         left,
         top,
-        width: side.min(width - left),
-        height: side.min(height - top),
+        width: side.min(right - left),
+        height: side.min(bottom - top),
     };
-    let tiles = rows.flat_map(|top| (0..width).step_by(SIDE).map(move |left| tile(left, top)));
+    let tiles =
+        rows.flat_map(|top| (part.left..right).step_by(SIDE).map(move |left| tile(left, top)));
     tiles.collect()
+}
+
+fn whole(prepared: &PreparedScene<'_>) -> Tile {
+    let [width, height] = prepared.scene.camera.resolution;
+    Tile { left: 0, top: 0, width, height }
 }
 
 /// How many steps of progress a picture of light in flight has.
 #[must_use]
 pub fn flight_steps(prepared: &PreparedScene<'_>) -> u64 {
-    tiles(prepared.scene.camera.resolution).iter().map(|tile| u64::from(tile.height)).sum()
+    tiles(whole(prepared)).iter().map(|tile| u64::from(tile.height)).sum()
 }
 
 /// Looks at light in flight, and gives `take` part by part of the picture, each once and in no order,
@@ -323,28 +277,44 @@ pub fn flight<E: From<RenderError> + Send>(
     supervision: &Supervision<'_>,
     take: impl Fn(FlightTile) -> Result<(), E> + Sync,
 ) -> Result<TraceStats, E> {
+    flight_part(prepared, settings, whole(prepared), supervision, take)
+}
+
+/// The same for a part of the picture. Its first column and row are multiples of [`BAND_ROWS`](super::BAND_ROWS), for what
+/// is in it to be as in the whole picture.
+///
+/// # Errors
+///
+/// As [`flight`].
+pub fn flight_part<E: From<RenderError> + Send>(
+    prepared: &PreparedScene<'_>,
+    settings: &FlightSettings,
+    part: Tile,
+    supervision: &Supervision<'_>,
+    take: impl Fn(FlightTile) -> Result<(), E> + Sync,
+) -> Result<TraceStats, E> {
     let prepared = &prepared.added_by_power();
     let arrivals = settings.arrivals;
     match prepared.scene.camera.polarizer.amplitudes() {
         None => {
             let detection = Detection::UNPOLARIZED.in_flight(arrivals);
-            expose_tiles(prepared, settings, supervision, detection, take)
+            expose_tiles(prepared, (settings, part), supervision, detection, take)
         }
         Some(amplitudes) => {
             let detection = Detection::image(amplitudes).in_flight(arrivals);
-            expose_tiles(prepared, settings, supervision, detection, take)
+            expose_tiles(prepared, (settings, part), supervision, detection, take)
         }
     }
 }
 
 fn expose_tiles<const N: usize, E: From<RenderError> + Send>(
     prepared: &PreparedScene<'_>,
-    settings: &FlightSettings,
+    (settings, part): (&FlightSettings, Tile),
     supervision: &Supervision<'_>,
     detection: Detection<N>,
     take: impl Fn(FlightTile) -> Result<(), E> + Sync,
 ) -> Result<TraceStats, E> {
-    let [width, height] = prepared.scene.camera.resolution;
+    let Tile { width, height, .. } = part;
     let bins = settings.gate.bins();
     let pixels = SIDE.min(width as usize) * SIDE.min(height as usize);
     let needed = rayon::current_num_threads() * pixels * bins * size_of::<Flashed>();
@@ -353,7 +323,7 @@ fn expose_tiles<const N: usize, E: From<RenderError> + Send>(
         height,
         shortage,
     })?;
-    let mut tiles = tiles([width, height]);
+    let mut tiles = tiles(part);
     // In no order, so that what is done says how long the rest will take.
     tiles.sort_by_cached_key(|tile| mix(u64::from(tile.top) << 32 | u64::from(tile.left)));
     tiles
@@ -426,81 +396,6 @@ impl<const N: usize> Exposer<'_, N> {
             },
         )?;
         Ok((flown, stats))
-    }
-}
-
-/// Light in flight in memory: every array frame by frame, row by row from the top left.
-#[derive(Clone, Debug)]
-pub struct FlightCube {
-    /// Width and height in pixels.
-    pub size: [usize; 2],
-    /// When the gate was open.
-    pub gate: Gate,
-    /// Red, green and blue in each bin: (time, height, width, color).
-    pub light: Vec<[f64; 3]>,
-    /// The share of the power in each bin: (time, height, width).
-    pub power: Vec<f64>,
-    /// What comes before all bins, after them, and nobody knows when.
-    pub beside: [Vec<Flashed>; 3],
-    /// What does not flash.
-    pub steady: Vec<[f64; 3]>,
-    /// The picture without any gate, its leaves added by power.
-    pub picture: Vec<[f64; 3]>,
-}
-
-impl FlightCube {
-    /// Looks at light in flight.
-    ///
-    /// # Errors
-    ///
-    /// If it would not fit into memory, or the work was stopped.
-    pub fn new(
-        prepared: &PreparedScene<'_>,
-        settings: &FlightSettings,
-        supervision: &Supervision<'_>,
-    ) -> Result<(Self, TraceStats), RenderError> {
-        let [width, height] = prepared.scene.camera.resolution;
-        let (gate, bins) = (settings.gate, settings.gate.bins());
-        let pixels = width as usize * height as usize;
-        crate::memory::check((pixels * bins * size_of::<Flashed>()) as u64, u64::MAX)
-            .map_err(|shortage| RenderError::TooLarge { width, height, shortage })?;
-        let flashed = || vec![[0.0; 4]; pixels];
-        let cube = Mutex::new(Self {
-            size: [width as usize, height as usize],
-            gate,
-            light: vec![[0.0; 3]; pixels * bins],
-            power: vec![0.0; pixels * bins],
-            beside: [flashed(), flashed(), flashed()],
-            steady: vec![[0.0; 3]; pixels],
-            picture: vec![[0.0; 3]; pixels],
-        });
-        let stats = flight(prepared, settings, supervision, |tile| {
-            // A thread that panicked has taken the program with it.
-            if let Ok(mut cube) = cube.lock() {
-                cube.place(&tile);
-            }
-            Ok::<_, RenderError>(())
-        })?;
-        let cube = cube.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-        Ok((cube, stats))
-    }
-
-    fn place(&mut self, part: &FlightTile) {
-        let pixels = self.size[0] * self.size[1];
-        for (number, index) in part.tile.places(self.size[0]).enumerate() {
-            let PixelBins { first, light } = &part.bins[number];
-            for (bin, flashed) in (*first..).zip(light) {
-                let [red, green, blue, power] = *flashed;
-                self.light[bin * pixels + index] = [red, green, blue];
-                self.power[bin * pixels + index] = power;
-            }
-            let [before, after] = &part.outside;
-            for (all, part) in self.beside.iter_mut().zip([before, after, &part.untimed]) {
-                all[index] = part[number];
-            }
-            self.steady[index] = part.steady[number];
-            self.picture[index] = part.picture[number];
-        }
     }
 }
 

@@ -1,0 +1,78 @@
+//! What flashes.
+
+use crate::assembly::Screen;
+use glam::DVec3;
+use optics::wave::SPEED_OF_LIGHT;
+use std::str::FromStr;
+
+/// What flashes, at the time 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Flash {
+    /// The whole photograph at once.
+    #[default]
+    Photograph,
+    /// The photograph, where a plane wave comes to it that runs along this direction through air:
+    /// its middle at the time 0.
+    PlaneWave(DVec3),
+    /// The photograph, where light comes to it from a point (cm) through air.
+    Point(DVec3),
+    /// A spot of a laser on it, as bright as the photograph there: a Gaussian about the point of
+    /// the photograph nearest to `middle` (cm), which is half as bright at `radius` (cm).
+    Spot {
+        /// Its middle.
+        middle: DVec3,
+        /// Where it is half as bright.
+        radius: f64,
+    },
+}
+
+impl Flash {
+    /// How much later (ns) a point of the photograph flashes, and how bright it is.
+    pub(super) fn at(&self, point: DVec3, screen: &Screen) -> (f64, f64) {
+        match *self {
+            Self::Photograph => (0.0, 1.0),
+            Self::PlaneWave(direction) => {
+                let along = (point - screen.middle).dot(direction.normalize_or_zero());
+                (along / SPEED_OF_LIGHT, 1.0)
+            }
+            Self::Point(source) => (point.distance(source) / SPEED_OF_LIGHT, 1.0),
+            Self::Spot { middle, radius } => {
+                let squared = point.distance_squared(screen.foot(middle)) / (radius * radius);
+                (0.0, (-squared).exp2())
+            }
+        }
+    }
+}
+
+/// What is wrong with a flash: it is not written as one.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "`{0}` is no flash; write photograph, plane:DX,DY,DZ, point:X,Y,Z or spot:X,Y,Z,RADIUS in cm, as in \
+     point:50,0,30"
+)]
+pub struct FlashError(String);
+
+impl FromStr for Flash {
+    type Err = FlashError;
+
+    fn from_str(text: &str) -> Result<Self, FlashError> {
+        let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
+        let numbers: Option<Vec<f64>> = match rest {
+            "" => Some(Vec::new()),
+            rest => rest.split(',').map(|part| part.trim().parse().ok()).collect(),
+        };
+        let numbers = numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite()));
+        match (kind, numbers.as_deref()) {
+            ("photograph", Some([])) => Some(Self::Photograph),
+            ("plane", Some(&[x, y, z])) if [x, y, z] != [0.0; 3] => {
+                Some(Self::PlaneWave(DVec3::new(x, y, z)))
+            }
+            ("point", Some(&[x, y, z])) => Some(Self::Point(DVec3::new(x, y, z))),
+            ("spot", Some(&[x, y, z, radius])) if radius > 0.0 => {
+                Some(Self::Spot { middle: DVec3::new(x, y, z), radius })
+            }
+            _ => None,
+        }
+        .ok_or_else(|| FlashError(text.to_owned()))
+    }
+}

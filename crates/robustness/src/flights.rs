@@ -1,0 +1,91 @@
+//! Light in flight: all of it is in some bin or beside them, and it arrives when the maps of times say.
+
+use crate::draws::Draws;
+use crate::scenes::scene_seen;
+use cloakroom::render::{
+    Arrivals, ChannelSet, Delay, Flash, FlightCube, FlightSettings, Gate, PreparedScene,
+    Supervision, arrival_times, render,
+};
+use cloakroom::scene_file;
+use optics::wave::SPEED_OF_LIGHT;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use toml::{Table, Value};
+
+/// Width and height of the pictures: six patches.
+const SIZE: [i64; 2] = [96, 64];
+
+/// Bins of a gate, about: a cube of them is small.
+const BINS: usize = 40;
+
+/// What sums may be off by: of light that is 1 where it is brightest.
+const CLOSED: f64 = 1e-12;
+
+/// What times may be off by, cm of vacuum: ways are interpolated where a picture is made, and not where
+/// light is timed.
+const INTERPOLATED: f64 = 1e-6;
+
+/// Looks at a random device when the photograph flashes; how many rays that takes.
+///
+/// # Panics
+///
+/// If light is missing, or comes at another time than the map of times has it.
+pub fn fly(draws: &mut Draws<'_>) -> u64 {
+    let samples = 2;
+    let mut scene = scene_seen(draws, SIZE, samples);
+    // Coarser ways differ by more than is looked for.
+    let trace: [(_, Value); 1] = [("tolerance", 1e-8.into())];
+    let picture: [(_, Value); 1] = [("channels", vec!["group_delay"].into())];
+    for (table, keys) in [("trace", trace), ("picture", picture)] {
+        let keys = keys.map(|(key, value)| (key.to_owned(), value));
+        scene.insert(table.to_owned(), Value::Table(Table::from_iter(keys)));
+    }
+    let text = scene.to_string();
+    let delay = if draws.chance(128) { Delay::Group } else { Delay::Phase };
+    // The whole flight, or a part of it.
+    let part =
+        if draws.chance(128) { [0.0, 1.0] } else { [draws.between(0.0, 0.4), draws.share()] };
+    let long = if draws.chance(128) { 0.0 } else { draws.between(0.1, 3.0) };
+    let Ok(loaded) = scene_file::parse(&text, "soak", Path::new("/nowhere"), &[]) else { return 1 };
+    let Ok(prepared) = PreparedScene::new(&loaded.scene) else { return 1 };
+    let arrivals = Arrivals { delay, flash: Flash::Photograph };
+    let Some([first, last]) = arrival_times(&prepared, &arrivals) else { return 1 };
+    let [from, to] = part.map(|share| first + share * (last - first));
+    let gate = Gate::around([from.min(to), from.max(to)], BINS);
+    let settings = FlightSettings { gate, width: long * gate.step(), arrivals };
+    let stop = AtomicBool::new(false);
+    let supervision = Supervision { rows_done: &|_| {}, stop: &stop };
+    let (cube, _) = FlightCube::new(&prepared, &settings, &supervision).expect("light in flight");
+    let picture =
+        render(&prepared, ChannelSet::Everything, &supervision).expect("a picture").picture;
+    let channel = |name: &str| &picture.channel(name).expect("a channel").samples;
+    let times = channel(match delay {
+        Delay::Group => "group_delay",
+        Delay::Phase => "time_of_flight",
+    });
+    let pixels = cube.size[0] * cube.size[1];
+    for pixel in 0..pixels {
+        let told = || format!("pixel {pixel}, {settings:?}:\n{text}");
+        let bins = || (pixel..cube.light.len()).step_by(pixels);
+        for color in 0..3 {
+            let within: f64 = bins().map(|bin| cube.light[bin][color]).sum();
+            let beside: f64 = cube.beside.iter().map(|all| all[pixel][color]).sum();
+            let (sum, all) =
+                (within + beside + cube.steady[pixel][color], cube.picture[pixel][color]);
+            assert!((sum - all).abs() <= CLOSED, "{sum} and not {all} of light: {}", told());
+        }
+        let power: f64 = bins().map(|bin| cube.power[bin]).sum();
+        let beside: f64 = cube.beside.iter().map(|all| all[pixel][3]).sum();
+        let time = times.get(pixel);
+        if beside != 0.0 || power < CLOSED || !time.is_finite() {
+            continue;
+        }
+        let moments = gate.middles().into_iter().zip(bins());
+        let mean = moments.map(|(time, bin)| time * cube.power[bin]).sum::<f64>() / power;
+        let off = (mean - time).abs() * SPEED_OF_LIGHT;
+        // Of long ways and of weak light there are fewer digits.
+        let most = INTERPOLATED * time.abs().max(1.0) / power.min(1.0);
+        assert!(off < most, "light comes at {mean} and not at {time} ns: {}", told());
+    }
+    (2 * samples * SIZE[0] * SIZE[1]).unsigned_abs()
+}
