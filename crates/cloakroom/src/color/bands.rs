@@ -12,6 +12,9 @@ pub const BIN_EDGES_NM: [f64; BINS + 1] = [
     670.0, 690.0, 720.0, 780.0,
 ];
 
+/// Into how many groups, of as many bins each, light of all wavelengths is parted.
+const GROUPS: [usize; 8] = [1, 2, 3, 4, 6, 8, 12, BINS];
+
 /// The widths of bins within which light interferes, nm: for ways of nearly one length, and for others.
 const FRINGE_BINS_NM: [f64; 2] = [20.0, 10.0];
 
@@ -21,7 +24,7 @@ const FRINGE_BINS_NM: [f64; 2] = [20.0, 10.0];
 pub(crate) struct Bands {
     /// The wavelengths, nm: the nodes.
     pub nodes_nm: Vec<f64>,
-    /// From coarse to fine, all wavelengths together, in two groups, and so on; lines each by itself.
+    /// From coarse to fine, all wavelengths together, in two groups, and so on to the bins; lines each by itself.
     pub levels: Vec<Vec<Group>>,
     /// The bins within which light interferes, wide and narrow ones.
     pub fringes: [Vec<Fringe>; 2],
@@ -114,10 +117,15 @@ impl Bands {
         let levels = if lines {
             vec![of_lines()]
         } else {
-            let steps = std::iter::successors(Some(BINS), |step| (*step > 1).then_some(step / 2));
-            let edges =
-                |step: usize| -> Vec<f64> { BIN_EDGES_NM.iter().copied().step_by(step).collect() };
-            steps.map(|step| of_edges(&edges(step))).collect()
+            let edge = |bins: f64| {
+                let bin = (bins as usize).min(BINS - 1);
+                let [low, high] = [BIN_EDGES_NM[bin], BIN_EDGES_NM[bin + 1]];
+                low + (bins - bin as f64) * (high - low)
+            };
+            let edges = |count: usize| -> Vec<f64> {
+                (0..=count).map(|i| edge((i * BINS) as f64 / count as f64)).collect()
+            };
+            GROUPS.into_iter().map(|count| of_edges(&edges(count))).collect()
         };
         let fringe = |group: Group| Fringe {
             color: group.lights.iter().map(|light| light.color).sum(),

@@ -6,6 +6,10 @@ use super::*;
 fn things_keep_their_color_in_daylight() {
     let bands = Bands::new(&Lamp::D65, 4, [390.0, 730.0]);
     let of_group = |group: &Group| group.lights.iter().map(|light| light.color).sum::<DMat3>();
-    let off = of_group(&bands.levels[0][0]) - DMat3::IDENTITY;
-    assert!(off.to_cols_array().iter().all(|entry| entry.abs() < 1e-14), "{off}");
+    for groups in &bands.levels {
+        let off = groups.iter().map(of_group).sum::<DMat3>() - DMat3::IDENTITY;
+        assert!(off.to_cols_array().iter().all(|entry| entry.abs() < 1e-14), "{off}");
+        // Each has its own light, from where the one before it ends.
+        assert!(groups.windows(2).all(|pair| pair[0].edges_nm[1] == pair[1].edges_nm[0]));
+    }
 }

@@ -186,23 +186,23 @@ impl Pyramid {
     /// the image is magnified, it is interpolated without overshoot. The result is continuous in
     /// all arguments.
     pub fn sample(&self, position: [f64; 2], dx: [f64; 2], dy: [f64; 2]) -> [f32; 3] {
-        self.sample_with((self.edges, Averaging::Sharp), position, dx, dy)
+        self.sample_with((self.edges, Averaging::Sharp), position, [dx, dy])
     }
 
-    /// The same with something else beyond the edges, or averaged in another way.
-    pub fn sample_with(
+    /// The same with something else beyond the edges, averaged in another way, or over a patch that is drawn out further by
+    /// more steps than the two derivatives.
+    pub fn sample_with<const N: usize>(
         &self,
         (edges, averaging): (Edges, Averaging),
         position: [f64; 2],
-        dx: [f64; 2],
-        dy: [f64; 2],
+        steps: [[f64; 2]; N],
     ) -> [f32; 3] {
         let size = [self.width() as f64, self.height() as f64];
         let texels = |[u, v]: [f64; 2]| [u * size[0], v * size[1]];
         let within = position.map(|x| edges.within(x));
         let [u, v] = texels(within.map(|[place, _]| if place.is_nan() { 0.5 } else { place }));
         let turned = |[du, dv]: [f64; 2]| texels([du * within[0][1], dv * within[1][1]]);
-        let footprint = Footprint::new(turned(dx), turned(dy), self.max_ratio);
+        let footprint = Footprint::new(steps.map(turned), self.max_ratio);
         let plan = self.plan(&footprint, averaging);
         let mut sum = [0.0; 3];
         if footprint.row.is_none() {

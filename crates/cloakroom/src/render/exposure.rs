@@ -188,23 +188,58 @@ pub(super) fn look<const N: usize>(
     }
 }
 
-/// The light that is seen there, through a filter as wide as these steps.
+/// The light that is seen there, through a filter as wide as these steps, and drawn out further by a `spread`.
 pub(super) fn seen(
     prepared: &PreparedScene<'_>,
     look: Look,
     at: DVec3,
-    steps: impl Fn() -> [DVec3; 2],
+    steps: [DVec3; 2],
+    spread: Option<DVec3>,
 ) -> [f64; 3] {
+    let both = || spread.map_or(steps, |spread| drawn_out(steps, spread));
     match look {
         Look::Photograph => {
-            prepared.photograph_light([at.x, at.y], steps().map(|step| [step.x, step.y]))
+            let [across, down] = steps.map(|step| [step.x, step.y]);
+            match spread {
+                None => prepared.photograph_light([at.x, at.y], [across, down]),
+                Some(spread) => {
+                    let steps = [across, down, [spread.x, spread.y]];
+                    prepared.photograph_light([at.x, at.y], steps)
+                }
+            }
         }
         Look::Body(body) => {
             let surface = prepared.body_surface(body);
-            surface.map_or([0.0; 3], |surface| surface.light(at, |_| steps()))
+            surface.map_or([0.0; 3], |surface| surface.light(at, |_| both()))
         }
-        Look::Surroundings => prepared.surroundings.light(at, steps),
+        Look::Surroundings => prepared.surroundings.light(at, both),
     }
+}
+
+/// The two steps of an ellipse drawn out in a direction: its second moments are those of both.
+fn drawn_out([across, down]: [DVec3; 2], spread: DVec3) -> [DVec3; 2] {
+    let scale = across.length_squared().max(down.length_squared());
+    if spread.length_squared() <= 1e-6 * scale {
+        return [across, down];
+    }
+    // Axes of the plane in which all three are: along the spread, and across it.
+    let along = spread.normalize_or_zero();
+    let rest = [across, down].map(|step| step - along * along.dot(step));
+    let longest =
+        if rest[0].length_squared() > rest[1].length_squared() { rest[0] } else { rest[1] };
+    let beside = longest.normalize_or_zero();
+    let all = [across, down, spread].map(|step| [along.dot(step), beside.dot(step)]);
+    let moment = |i: usize, j: usize| all.iter().map(|step| step[i] * step[j]).sum::<f64>();
+    let (a, b, c) = (moment(0, 0), moment(0, 1), moment(1, 1));
+    // The axes of the ellipse: (off + half, b) is along the longer one.
+    let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
+    let off = (half * half + b * b).sqrt();
+    let (x, y) = if half >= 0.0 { (off + half, b) } else { (b, off - half) };
+    let length = (x * x + y * y).sqrt();
+    let (cos, sin) = if length > 0.0 { (x / length, y / length) } else { (1.0, 0.0) };
+    let axis = along * cos + beside * sin;
+    let other = beside * cos - along * sin;
+    [axis * (mean + off).sqrt(), other * (mean - off).max(0.0).sqrt()]
 }
 
 /// Adds to the images of a pixel what a leaf of that power brings of some light.

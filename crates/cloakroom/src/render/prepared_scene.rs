@@ -436,9 +436,13 @@ impl<'s> PreparedScene<'s> {
     /// The light of the photograph at (u, v), on it or beyond its edge, through a filter as wide as
     /// these steps.
     #[inline]
-    pub(super) fn photograph_light(&self, at: [f64; 2], [dx, dy]: [[f64; 2]; 2]) -> [f64; 3] {
+    pub(super) fn photograph_light<const N: usize>(
+        &self,
+        at: [f64; 2],
+        steps: [[f64; 2]; N],
+    ) -> [f64; 3] {
         let edges = self.scene.photograph.border.edges();
-        self.image.sample_with((edges, self.averaging), at, dx, dy).map(f64::from)
+        self.image.sample_with((edges, self.averaging), at, steps).map(f64::from)
     }
 
     /// The surface of an opaque body.

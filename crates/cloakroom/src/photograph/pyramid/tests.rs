@@ -46,7 +46,7 @@ fn constant_images_stay_constant() {
         let (dx, dy) = (derivative(), derivative());
         let at = [random(), random()];
         for averaging in [Averaging::Sharp, Averaging::Quick] {
-            let light = flat.sample_with((Edges::Clamp, averaging), at, dx, dy);
+            let light = flat.sample_with((Edges::Clamp, averaging), at, [dx, dy]);
             let even = light.iter().all(|value| (value - 0.25).abs() < 1e-6);
             assert!(even, "{averaging:?} {dx:?} {dy:?} {light:?}");
         }
@@ -64,7 +64,7 @@ fn ramps_stay_ramps() {
         let [u, v] = [0.3 + 0.4 * random(), 0.3 + 0.4 * random()];
         let expected = (u + v / 2.0) as f32;
         for averaging in [Averaging::Sharp, Averaging::Quick] {
-            let light = ramp.sample_with((Edges::Clamp, averaging), [u, v], dx, dy)[0];
+            let light = ramp.sample_with((Edges::Clamp, averaging), [u, v], [dx, dy])[0];
             let off = (light - expected).abs();
             assert!(off < 2e-5, "{averaging:?} {u} {v} {dx:?} {dy:?}: {light} {expected}");
         }
@@ -284,12 +284,11 @@ fn beyond_its_edges_an_image_is_seen_as_a_larger_one() {
             let at = [3.0 * random() - 1.0, 3.0 * random() - 1.0];
             let [dx, dy] = [0, 1].map(|_| [0.1 * (random() - 0.5), 0.1 * (random() - 0.5)]);
             let third = |pair: [f64; 2]| pair.map(|x| x / 3.0);
-            let seen = small.sample_with((edges, Averaging::Sharp), at, dx, dy)[0];
+            let seen = small.sample_with((edges, Averaging::Sharp), at, [dx, dy])[0];
             let expected = large.sample_with(
                 (Edges::Clamp, Averaging::Sharp),
                 third(at.map(|x| x + 1.0)),
-                third(dx),
-                third(dy),
+                [third(dx), third(dy)],
             )[0];
             // At the outer edge the larger image ends.
             if at.iter().all(|x| (-0.7..1.7).contains(x)) {
@@ -298,7 +297,7 @@ fn beyond_its_edges_an_image_is_seen_as_a_larger_one() {
         }
         for at in [[1e9, -1e9], [f64::INFINITY, 0.3], [f64::NAN, 1e300]] {
             assert!((0.0..=1.0).contains(
-                &small.sample_with((edges, Averaging::Sharp), at, [1e9, 0.0], [0.0, 3.0])[0]
+                &small.sample_with((edges, Averaging::Sharp), at, [[1e9, 0.0], [0.0, 3.0]])[0]
             ));
         }
     }

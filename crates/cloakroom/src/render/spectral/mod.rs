@@ -338,9 +338,9 @@ pub(super) fn expose<const N: usize>(
                 else {
                     continue;
                 };
-                let light = exposure::seen(&spectral.nodes[node], *look, sight.at, || {
-                    sight.steps.map(|step| step * spacing)
-                });
+                let steps = sight.steps.map(|step| step * spacing);
+                let prepared = &spectral.nodes[node];
+                let light = exposure::seen(prepared, *look, sight.at, steps, None);
                 let cell = &spectral.bands.cells[node];
                 let leaf = &leaves(node)[number];
                 if let Some(looked) = &detection.arrivals {
@@ -569,35 +569,8 @@ fn light_of(
     let look = looks[0].0;
     let at = sum(&group.middle, looks, |sight| sight.at);
     let at = if look == Look::Surroundings { at.normalize_or_zero() } else { at };
-    exposure::seen(prepared, look, at, || {
-        drawn_out(steps, sum(&group.spread, looks, |sight| sight.at))
-    })
-}
-
-/// The two steps of an ellipse drawn out in a direction: its second moments are those of both.
-fn drawn_out([across, down]: [DVec3; 2], spread: DVec3) -> [DVec3; 2] {
-    let scale = across.length_squared().max(down.length_squared());
-    if spread.length_squared() <= 1e-6 * scale {
-        return [across, down];
-    }
-    // Axes of the plane in which all three are: along the spread, and across it.
-    let along = spread.normalize_or_zero();
-    let rest = [across, down].map(|step| step - along * along.dot(step));
-    let longest =
-        if rest[0].length_squared() > rest[1].length_squared() { rest[0] } else { rest[1] };
-    let beside = longest.normalize_or_zero();
-    let all = [across, down, spread].map(|step| [along.dot(step), beside.dot(step)]);
-    let moment = |i: usize, j: usize| all.iter().map(|step| step[i] * step[j]).sum::<f64>();
-    let (a, b, c) = (moment(0, 0), moment(0, 1), moment(1, 1));
-    // The axes of the ellipse: (off + half, b) is along the longer one.
-    let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
-    let off = (half * half + b * b).sqrt();
-    let (x, y) = if half >= 0.0 { (off + half, b) } else { (b, off - half) };
-    let length = (x * x + y * y).sqrt();
-    let (cos, sin) = if length > 0.0 { (x / length, y / length) } else { (1.0, 0.0) };
-    let axis = along * cos + beside * sin;
-    let other = beside * cos - along * sin;
-    [axis * (mean + off).sqrt(), other * (mean - off).max(0.0).sqrt()]
+    let spread = sum(&group.spread, looks, |sight| sight.at);
+    exposure::seen(prepared, look, at, steps, Some(spread))
 }
 
 /// Adds to a pixel what a leaf brings, which counts for some light each with what is seen in it.
