@@ -135,6 +135,10 @@ impl Arrival {
     }
 }
 
+/// Ways need be no more exact than this, cm, or than this share of a bin: neither is seen.
+const TOLERANCE: f64 = 1e-4;
+const SHARE_OF_BIN: f64 = 1e-3;
+
 /// Light of the flash: red, green and blue, and the share of the power.
 pub type Flashed = [f64; 4];
 
@@ -293,7 +297,8 @@ pub fn flight_part<E: From<RenderError> + Send>(
     supervision: &Supervision<'_>,
     take: impl Fn(FlightTile) -> Result<(), E> + Sync,
 ) -> Result<TraceStats, E> {
-    let prepared = &prepared.added_by_power();
+    let tolerance = TOLERANCE.min(SHARE_OF_BIN * settings.gate.step() * SPEED_OF_LIGHT);
+    let prepared = &prepared.added_by_power(tolerance);
     let arrivals = settings.arrivals;
     match prepared.scene.camera.polarizer.amplitudes() {
         None => {

@@ -11,6 +11,9 @@ use num_complex::Complex64;
 /// Points per length over which the map varies.
 const DENSITY: f64 = 24.0;
 
+/// The fewest of them between which the way is Hermite's cubic.
+const LEAST_DENSITY: f64 = 4.0;
+
 impl ConformalFlow {
     /// Points along the ray that [`Self::advance_from`] follows, from its start to its end, close
     /// enough for a smooth drawing.
@@ -44,11 +47,19 @@ impl ConformalFlow {
                 })
                 .collect());
         }
-        let way = self.waypoints(start, wave_vector, tolerance)?;
+        let way = self.waypoints(start, wave_vector, tolerance, spacing)?;
         Ok(way.into_iter().map(|at| point(at.jet.f, at.z, at.tau)).collect())
     }
 
-    /// Points of a ray from its start to its end, close enough for a smooth drawing.
+    /// How far apart points of a way may be for Hermite's cubic, which is of the fourth order, to follow it to within a
+    /// tolerance, cm.
+    fn spacing(&self, tolerance: f64) -> f64 {
+        let scale = self.map.scale();
+        let share = 2.0 * (tolerance / scale).sqrt().sqrt();
+        scale * share.clamp(1.0 / DENSITY, 1.0 / LEAST_DENSITY)
+    }
+
+    /// Points of a ray from its start to its end, no farther apart than `spacing`, cm.
     ///
     /// A ray that grazes a border may meet it by small steps and not by those of
     /// [`Self::advance_from`]: then the points are of the latter.
@@ -57,8 +68,8 @@ impl ConformalFlow {
         start: &VirtualPoint,
         wave_vector: DVec3,
         tolerance: f64,
+        spacing: f64,
     ) -> Result<Vec<Point>, FlowError> {
-        let spacing = self.map.scale() / DENSITY;
         let known = self.advance_from(start, wave_vector, tolerance)?;
         let is_same = |way: &Vec<Point>| {
             let last = way.last().map_or(0.0, |end| end.tau);
@@ -131,7 +142,7 @@ impl ConformalFlow {
             let tau = end.optical_path / speed;
             return Ok(over(&|share| (from + (to - from) * share, tau * share), tolerance));
         }
-        let way = self.waypoints(start, wave_vector, tolerance)?;
+        let way = self.waypoints(start, wave_vector, tolerance, self.spacing(tolerance))?;
         let pieces = way.len() as f64;
         let piece = |ends: &[Point]| {
             // Hermite's cubic; the way is nearly straight.
