@@ -173,8 +173,8 @@ impl Batch<'_> {
             let launch = self.placement.to_local(&ray.launch);
             if is_ray(&ray) {
                 tracer.draw_by(ray.draw);
-                let (leaves, outcome) = tracer.trace(&launch);
-                let drawn = tracer.drawn();
+                tracer.trace(&launch);
+                let ((leaves, outcome), drawn) = (tracer.traced(), tracer.drawn());
                 self.add(number, (&ray, drawn), &launch, leaves, outcome, &mut scattered);
             } else {
                 scattered.push(unchanged(number, &ray.launch, RayStatus::Refused));
