@@ -320,3 +320,15 @@ def test_colors_take_their_own_ways_in_spectral_variants() -> None:
         one, many = (picture(with_device(device, wavelengths=bins), 64) for bins in (1, 4))
         spread = np.std((one - many).reshape(-1, 3), axis=0) / np.sqrt(one[..., 0].size)
         assert (np.abs(one.mean(axis=(0, 1)) - many.mean(axis=(0, 1))) < 4 * spread + 1e-4).all()
+
+
+def test_noise_is_taken_away_by_open_image_denoise() -> None:
+    pytest.importorskip("pyoidn")
+    from cloakroom.mitsuba._picture import denoised
+
+    noisy, clean = picture(box(pixels=64), 4), picture(box(pixels=64), 256)
+    found = denoised(noisy)
+    assert found is not None and found.shape == noisy.shape and found.dtype == np.float32
+    # The lamp apart, which is far brighter than all else.
+    dim = clean.max(axis=-1) < 2
+    assert np.square(found - clean)[dim].mean() < 0.3 * np.square(noisy - clean)[dim].mean()
