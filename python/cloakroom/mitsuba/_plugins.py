@@ -275,7 +275,8 @@ def _integrator() -> Callable[[Any], Any]:
             if mi.is_polarized:
                 raise ValueError(
                     "the integrator cloakroom_path does not go with polarized variants: it takes unpolarized light through "
-                    "devices; `cloakroom render` has pictures through polarizers and of Stokes parameters"
+                    "devices; set one without, such as llvm_ad_rgb or llvm_ad_spectral. `cloakroom render` has pictures through "
+                    "polarizers and of Stokes parameters"
                 )
             max_depth = int(props.get("max_depth", -1))
             if max_depth < -1:

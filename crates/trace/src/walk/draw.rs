@@ -6,7 +6,7 @@ use super::{PathRecorder, Tracer};
 use crate::split_mix::{STEP, mix};
 
 /// A way that has met so many surfaces is cut: trapped light comes back, and each surface costs.
-pub(super) const MOST_EVENTS_DRAWN: u32 = 1_000;
+pub(super) const MOST_EVENTS_DRAWN: u32 = 256;
 
 /// Where a way ends in a branch that is pruned, another one is drawn, so that what is pruned is given to the
 /// leaves as their powers are; but no more than so many. What is drawn in vain then is lost.
