@@ -132,7 +132,8 @@ impl<const N: usize, W: PathRecorder<N>> Tracer<'_, N, W> {
                 }
             }
             // Where nothing was pruned, rounding leaves nothing to it either.
-            let drawn = last.filter(|(_, share, below)| pruned == 0.0 || draw.number < below + share);
+            let drawn =
+                last.filter(|(_, share, below)| pruned == 0.0 || draw.number < below + share);
             if let Some((place, share, below)) = drawn {
                 draw.fall_into(share, below);
                 *branch = self.waiting[place];

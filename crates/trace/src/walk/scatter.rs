@@ -236,9 +236,8 @@ impl Batch<'_> {
             scattered.push(Scattered { pruned, ..unchanged(number, &ray.launch, status) });
             return;
         }
-        let weight = |leaf: &Leaf<2>| {
-            mean(&leaf.power) / drawn.map_or(1.0, |drawn| drawn.probability)
-        };
+        let weight =
+            |leaf: &Leaf<2>| mean(&leaf.power) / drawn.map_or(1.0, |drawn| drawn.probability);
         let straight = |leaf: &Leaf<2>| self.is_straight(launch, leaf);
         // From nothing that is positive: a sum of none is -0.
         let transmitted =
