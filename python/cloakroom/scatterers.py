@@ -46,13 +46,17 @@ class Scattered:
     #: Its direction, a unit vector; (M, 3).
     direction: NDArray[Any]
     #: What the leaf is to be weighed with in unpolarized light; (M,). A drawn one stands for all of them and for what
-    #: was pruned, so that it is 1 in devices that absorb nothing; else its share of the power. 0 where nothing goes on.
+    #: was pruned: what has not been absorbed on its way, so 1 in devices that absorb nothing; else its share of the
+    #: power. 0 where nothing goes on.
     weight: NDArray[Any]
-    #: With which probability the leaf was drawn; (M,).
+    #: With which probability the leaf was drawn, what is pruned being among what may be: times ``weight`` it is its
+    #: share of the power; (M,).
     probability: NDArray[Any]
-    #: How much of the ray's power, unpolarized, goes on along the ray's own line in all leaves together; (M,).
+    #: How much of the ray's power, unpolarized, goes on along the ray's own line in all leaves together; (M,). Of a
+    #: drawn leaf what it says, its weight or 0: the mean of many draws is that.
     transmitted: NDArray[Any]
-    #: The share of power in branches too weak to follow; (M,).
+    #: The share of power in branches too weak to follow; (M,). Where a leaf is drawn, what the first way says that was
+    #: drawn, all or nothing of what it carries: the mean of many draws is that.
     pruned: NDArray[Any]
     #: Optical path length from the ray's origin to ``position``; (M,).
     optical_path: NDArray[Any]
@@ -166,8 +170,8 @@ class Scatterer:
         directions : array_like, (N, 3) or (3,)
             Where they go, of any length; one direction stands for all rays.
         u : array_like, (N,) or number, optional
-            Numbers from 0 to 1, by which one leaf of each ray is drawn with a probability of its power. Without them
-            all leaves are given, the strongest of each ray first.
+            Numbers from 0 to 1, by which one leaf of each ray is drawn with a probability of its power; only the way to
+            it is traced. Without them all leaves are given, the strongest of each ray first.
         fields : bool or complex array_like, (N, 2, 3), default False
             Whether the electric fields of the leaves are wanted; or two fields across each ray, of unit norm, instead of
             those in the plane of the ray and z, and perpendicular to it.

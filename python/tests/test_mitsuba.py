@@ -5,6 +5,7 @@ All numbers are drawn from fixed seeds, so that what is asserted comes out the s
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -21,6 +22,8 @@ try:
     import cloakroom.mitsuba as rooms
 except ImportError as error:
     pytest.skip(str(error), allow_module_level=True)
+
+import drjit as dr  # noqa: E402
 
 Image = NDArray[np.float32]
 
@@ -263,3 +266,69 @@ def test_a_scene_of_blenders_takes_devices_by_the_names_of_shapes(tmp_path: Path
     assert red[0] > 0.05 and red[1] == 0
     wrong = command(sample, *options, "--replace", "Cube.002=sphere-cloak", "-o", out)
     assert wrong.returncode == 1 and "no shape called 'Cube.002'; there are: mesh-Floor" in wrong.stderr
+
+
+def test_a_box_of_blenders_says_how_it_is_turned(tmp_path: Path) -> None:
+    """The committed sample, with its cube turned about the vertical as Blender would write it: in its corners."""
+    from cloakroom.mitsuba._room import Room
+
+    turn = np.array(mi.ScalarTransform4f().rotate([0, 1, 0], 25).rotate([1, 0, 0], 10).matrix, np.float64).reshape(4, 4)[:3, :3]
+    source = REPOSITORY / "scenes/rooms/blender"
+    shutil.copytree(source, tmp_path, dirs_exist_ok=True)
+    mesh = tmp_path / "meshes" / "Cube_001.ply"
+    lines = mesh.read_text().splitlines()
+    first = lines.index("end_header") + 1
+    corners = np.array([line.split() for line in lines[first : first + 8]], float)
+    turned = (corners - corners.mean(axis=0)) @ turn.T + corners.mean(axis=0)
+    lines[first : first + 8] = [" ".join(map(repr, map(float, corner))) for corner in turned]
+    mesh.write_text("\n".join(lines) + "\n")
+
+    def placed(folder: Path, name: str) -> np.ndarray:
+        room = Room(folder / "sample.xml")
+        room.replace(name, {"kind": "square-cloak", "length": 40})
+        (bsdf,) = room.root.findall("shape/bsdf[@type='cloakroom']")
+        return np.array(bsdf.find("transform/matrix").get("value").split(), float).reshape(4, 4)
+
+    np.testing.assert_allclose(placed(tmp_path, "Cube.001")[:3, :3], turn, atol=1e-6)
+    np.testing.assert_allclose(placed(tmp_path, "Cube.001")[:3, 3], corners.mean(axis=0), atol=1e-6)
+    np.testing.assert_allclose(placed(source, "Cube.001")[:3, :3], np.eye(3), atol=1e-12)
+    # A ball says nothing.
+    np.testing.assert_allclose(placed(source, "Suzanne.Ball")[:3, :3], np.eye(3), atol=1e-12)
+
+
+def test_another_seed_compiles_nothing() -> None:
+    """What was compiled for one picture does for all others of its size."""
+    scene = mi.load_dict(with_device({"kind": "square-cloak", "length": 16, "rotation": 20}))
+    integrator = scene.integrator()
+    for seed in (1, 2):
+        np.array(integrator.render(scene, seed=seed, spp=4))
+    with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
+        dr.kernel_history_clear()
+        np.array(integrator.render(scene, seed=3, spp=4))
+        history = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
+    assert history and not [entry for entry in history if not entry["cache_hit"]]
+
+
+def test_colors_take_their_own_ways_in_spectral_variants() -> None:
+    mi.set_variant("llvm_ad_rgb")
+    with pytest.raises(Exception, match="llvm_ad_rgb traces red, green and blue together") as told:
+        mi.load_dict(with_device({"kind": "sphere-cloak"}, wavelengths=4))
+    assert "llvm_ad_spectral" in str(told.value)
+    mi.set_variant("llvm_ad_spectral")
+    # Where nothing disperses, one wavelength that stands for all gives the same light in the mean.
+    for device in ({"kind": "sphere-cloak"}, {"kind": "body", "shape": "sphere", "radius": 8, "permittivity": 2.25}):
+        one, many = (picture(with_device(device, wavelengths=bins), 64) for bins in (1, 4))
+        spread = np.std((one - many).reshape(-1, 3), axis=0) / np.sqrt(one[..., 0].size)
+        assert (np.abs(one.mean(axis=(0, 1)) - many.mean(axis=(0, 1))) < 4 * spread + 1e-4).all()
+
+
+def test_noise_is_taken_away_by_open_image_denoise() -> None:
+    pytest.importorskip("pyoidn")
+    from cloakroom.mitsuba._picture import denoised
+
+    noisy, clean = picture(box(pixels=64), 4), picture(box(pixels=64), 256)
+    found = denoised(noisy)
+    assert found is not None and found.shape == noisy.shape and found.dtype == np.float32
+    # The lamp apart, which is far brighter than all else.
+    dim = clean.max(axis=-1) < 2
+    assert np.square(found - clean)[dim].mean() < 0.3 * np.square(noisy - clean)[dim].mean()

@@ -32,7 +32,7 @@ def arguments() -> argparse.ArgumentParser:
     parser.add_argument("--samples", type=int, metavar="N", help="samples per pixel")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="the seed (0); the same one gives the same bytes")
     parser.add_argument("--exposure", type=float, metavar="STOPS", help="of the PNG; by default as bright as suits the eye")
-    parser.add_argument("--denoise", action="store_true", help="takes the noise away, where OptiX or oidnDenoise is there")
+    parser.add_argument("--denoise", action="store_true", help="takes the noise away, by OptiX or Open Image Denoise (pip install pyoidn)")
     parser.add_argument("--variant", default="llvm_ad_rgb", help="of Mitsuba, one that computes wavefronts (llvm_ad_rgb)")
     parser.add_argument("--shapes", action="store_true", help="lists the names of the room's shapes, and ends")
     parser.add_argument("-q", "--quiet", action="store_true", help="no progress")
@@ -115,7 +115,7 @@ def _render(given: argparse.Namespace, size: tuple[int, int] | None) -> int:
     if given.denoise:
         clean = denoised(image)
         if clean is None:
-            print(f"{PROGRAM}: --denoise: there is neither oidnDenoise nor a variant for OptiX; not denoised", file=sys.stderr)
+            print(f"{PROGRAM}: --denoise: Open Image Denoise is not there (pip install pyoidn), nor a variant for OptiX; not denoised", file=sys.stderr)
         else:
             image = clean
     write(image, given.output, given.exposure)

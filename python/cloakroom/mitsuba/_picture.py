@@ -46,11 +46,17 @@ def tone_mapped(image: NDArray[Any], exposure: float | None = None) -> NDArray[n
 
 
 def denoised(image: NDArray[np.float32]) -> NDArray[np.float32] | None:
-    """The picture without its noise, by OptiX in variants for its GPUs or by the command of Open Image Denoise; ``None``
-    where there is neither."""
+    """The picture without its noise, by OptiX in variants for its GPUs or by Open Image Denoise, as the package ``pyoidn`` or
+    its command; ``None`` where there is none of them."""
     height, width = image.shape[:2]
     if mi.variant().startswith("cuda_"):
         return np.array(mi.OptixDenoiser(mi.ScalarVector2u(width, height))(mi.TensorXf(image)))
+    try:
+        import pyoidn
+    except ImportError:
+        pass
+    else:
+        return np.asarray(pyoidn.denoise(np.ascontiguousarray(image, np.float32), hdr=True))
     program = shutil.which("oidnDenoise")
     if program is None:
         return None

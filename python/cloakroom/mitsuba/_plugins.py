@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from typing import Any
 
@@ -26,6 +27,9 @@ CLEAR = 0.9
 
 #: Rays that find out how much that is, and that look for furniture within devices.
 TRIALS = 4096
+
+#: The ends of the wavelengths at which devices are traced by themselves; what is beyond goes with the next one.
+SHORTEST_NM, LONGEST_NM = 400.0, 700.0
 
 #: Variants in which the plugins are registered.
 _registered: set[str] = set()
@@ -55,11 +59,24 @@ def _bsdf() -> Callable[[Any], Any]:
             self.see_through = plain.pop("see_through", "auto")
             if self.see_through not in ("auto", "yes", "no"):
                 raise ValueError(f'see_through is {self.see_through!r}; expected "auto", "yes" or "no"')
+            bins = int(plain.pop("wavelengths", 1))
+            if bins < 1:
+                raise ValueError(f"wavelengths is {bins}; expected 1, which is wavelength_nm for all colors, or more")
+            if bins > 1 and not mi.is_spectral:
+                raise ValueError(
+                    f"wavelengths is {bins}, but {mi.variant()} traces red, green and blue together; each color takes its own "
+                    "way through a device in spectral variants, such as llvm_ad_spectral"
+                )
             matrix = rigid("to_world", matrix)
             keys = keys_of(plain)
             if "scene" in keys:
                 keys["scene"] = str(mi.file_resolver().resolve(keys["scene"]))
             self.scatterer = scatterer_of(keys, matrix, unit, wavelength_nm, min_power)
+            # One for each of so many equal bins of wavelengths, at its middle; or one for all.
+            self.scatterers = [self.scatterer]
+            if bins > 1:
+                at = SHORTEST_NM + (LONGEST_NM - SHORTEST_NM) * (np.arange(bins) + 0.5) / bins
+                self.scatterers = [scatterer_of(keys, matrix, unit, each, min_power, of_light=True) for each in at.tolist()]
             # Endless ones are refused here.
             self.box = box_of(self.scatterer)
             self.m_flags = mi.BSDFFlags.Null | mi.BSDFFlags.FrontSide | mi.BSDFFlags.BackSide
@@ -99,7 +116,8 @@ class _Room:
     """The devices of a scene, and how to know them from its other shapes."""
 
     def __init__(self, scene: Any) -> None:
-        self.scatterers: list[Scatterer] = []
+        #: Of each device one scatterer for all light, or one for each of equal bins of wavelengths.
+        self.scatterers: list[list[Scatterer]] = []
         self.clear: list[bool] = []
         self.shapes: list[Any] = []
         self.boxes: list[Box] = []
@@ -109,7 +127,7 @@ class _Room:
             if not hasattr(bsdf, "scatterer"):
                 continue
             self._check_bounds(shape, bsdf)
-            self.scatterers.append(bsdf.scatterer)
+            self.scatterers.append(bsdf.scatterers)
             self.shapes.append(shape)
             self.boxes.append(bsdf.box)
             numbers[_place(shape)] = len(self.shapes)
@@ -171,6 +189,33 @@ def _place(shape: Any) -> int:
     return int(dr.reinterpret_array(mi.UInt32, mi.ShapePtr(shape))[0])
 
 
+def _scatter(scatterers: list[Scatterer], o: Any, d: Any, u: Any, wavelengths: Any) -> dict[str, NDArray[Any]]:
+    """What becomes of rays at a device, of each by the bin of its first wavelength."""
+    names = ("status", "straight", "position", "direction", "weight", "transmitted")
+    starts, ways, draws = _rows(o), _rows(d), np.array(u)
+    if len(scatterers) == 1:
+        (scatterer,) = scatterers
+        scattered = scatterer.scatter(starts, ways, draws)
+        return {name: getattr(scattered, name) for name in names}
+    share = (np.array(wavelengths) - SHORTEST_NM) / (LONGEST_NM - SHORTEST_NM)
+    bins = np.clip((share * len(scatterers)).astype(int), 0, len(scatterers) - 1)
+    found: dict[str, NDArray[Any]] = {}
+    for number in np.unique(bins):
+        own = bins == number
+        scattered = scatterers[number].scatter(starts[own], ways[own], draws[own])
+        for name in names:
+            part = getattr(scattered, name)
+            found.setdefault(name, np.empty((len(draws), *part.shape[1:]), part.dtype))[own] = part
+    return found
+
+
+def _first_only(light: Any, alone: Any) -> Any:
+    """Light of which only the first wavelength goes on, for all others; ``alone`` says where that has been done."""
+    first = mi.Spectrum(0)
+    first[0] = light[0] * dr.select(alone, 1, len(light))
+    return first
+
+
 def _is_clear(bsdf: Any) -> bool:
     """Whether nearly all of the light that comes to a device goes on along its own line."""
     rng = np.random.default_rng(0)
@@ -179,7 +224,7 @@ def _is_clear(bsdf: Any) -> bool:
     ends /= np.linalg.norm(ends, axis=0) if box.ball else np.abs(ends).max(axis=0)
     points /= np.maximum(1, np.linalg.norm(points, axis=0)) if box.ball else 1
     start, through = (placed[:3, :3] @ at + placed[:3, 3:] for at in (2 * ends, points))
-    scattered = bsdf.scatterer.scatter(start.T, (through - start).T, u=0.5)
+    scattered = bsdf.scatterer.scatter(start.T, (through - start).T, u=rng.random(TRIALS // 4))
     met = scattered.status != MISSED
     return bool(met.any()) and bool(scattered.transmitted[met].mean() >= CLEAR)
 
@@ -230,7 +275,8 @@ def _integrator() -> Callable[[Any], Any]:
             if mi.is_polarized:
                 raise ValueError(
                     "the integrator cloakroom_path does not go with polarized variants: it takes unpolarized light through "
-                    "devices; `cloakroom render` has pictures through polarizers and of Stokes parameters"
+                    "devices; set one without, such as llvm_ad_rgb or llvm_ad_spectral. `cloakroom render` has pictures through "
+                    "polarizers and of Stokes parameters"
                 )
             max_depth = int(props.get("max_depth", -1))
             if max_depth < -1:
@@ -283,7 +329,9 @@ def _integrator() -> Callable[[Any], Any]:
                 for number in range(passes):
                     if self.progress is not None:
                         self.progress(number, passes)
-                    of_pass = seed if number == 0 else int(mi.sample_tea_32(int(seed), number)[0])
+                    of_pass = mi.UInt32(seed if number == 0 else int(mi.sample_tea_32(int(seed), number)[0]))
+                    # As a number of the program, each seed would compile kernels of its own.
+                    dr.make_opaque(of_pass)
                     sampler, _ = Common.prepare(self, sensor, of_pass, at_once, self.aov_names())
                     ray, weight, pos = Common.sample_rays(self, scene, sensor, sampler)
                     light, valid, _ = self.sample(scene, sampler, ray, None, mi.Bool(True))
@@ -338,10 +386,10 @@ def _integrator() -> Callable[[Any], Any]:
             state["own"] = own
             result = dr.zeros(mi.Spectrum, width)
             valid = dr.zeros(mi.Bool, width)
-            while True:
+            for turn in itertools.count():
                 state, shadows, sampler = self._follow(scene, sampler, state, room, clear)
                 if shadows is not None:
-                    self._shed(scene, room, state, shadows)
+                    self._shed(scene, room, state, shadows, turn)
                 dr.scatter(result, state["result"], state["lane"])
                 dr.scatter(valid, state["valid"], state["lane"])
                 further = dr.compress((state["parked"] != 0) | state["waits"])
@@ -361,6 +409,8 @@ def _integrator() -> Callable[[Any], Any]:
                 "maxt": mi.Float(ray.maxt),
                 "time": mi.Float(ray.time),
                 "wavelengths": ray.wavelengths,
+                # Whether only the first wavelength is left, which stands for all.
+                "alone": mi.Bool(False),
                 "throughput": mi.Spectrum(1),
                 "result": mi.Spectrum(0),
                 "eta": mi.Float(1),
@@ -383,7 +433,7 @@ def _integrator() -> Callable[[Any], Any]:
             }
             spread = {}
             for name, value in full.items():
-                if name == "wavelengths" and not mi.is_spectral:
+                if name in ("wavelengths", "alone") and not mi.is_spectral:
                     continue
                 spread[name] = value + dr.zeros(type(value), width) if not dr.is_mask_v(value) else value
             dr.make_opaque(spread)
@@ -401,6 +451,8 @@ def _integrator() -> Callable[[Any], Any]:
                     "device": dr.zeros(mi.UInt32, width * SLOTS),
                     "light": dr.zeros(mi.Spectrum, width * SLOTS),
                 }
+                if mi.is_spectral:
+                    shadows["alone"] = dr.zeros(mi.Bool, width * SLOTS)
                 state["slots"] = dr.zeros(mi.UInt32, width)
             row = dr.arange(mi.UInt32, width) * SLOTS if clear else mi.UInt32(0)
             dr.make_opaque(state)
@@ -480,7 +532,10 @@ def _integrator() -> Callable[[Any], Any]:
                     ("maxt", shadow.maxt),
                     ("device", screen),
                     ("light", light),
+                    ("alone", now.get("alone")),
                 ):
+                    if what is None:
+                        continue
                     dr.scatter(shadows[name], what, slot, queued, mode=dr.ReduceMode.Permute)
                 now["slots"] = dr.select(queued, now["slots"] + 1, now["slots"])
             # On along the BSDF.
@@ -516,26 +571,33 @@ def _integrator() -> Callable[[Any], Any]:
             """Takes the rays that have come to devices through them."""
             parked = state["parked"]
             state["active"] = mi.Bool(state["waits"])
-            for number, scatterer in enumerate(room.scatterers, 1):
+            for number, scatterers in enumerate(room.scatterers, 1):
                 rows = dr.compress(parked == number)
                 count = dr.width(rows)
                 if count == 0:
                     continue
                 o, d = dr.gather(mi.Point3f, state["o"], rows), dr.gather(mi.Vector3f, state["d"], rows)
                 own, crossings = dr.gather(mi.UInt32, state["own"], rows), dr.gather(mi.UInt32, state["crossings"], rows)
-                u = mi.sample_tea_float32(own, crossings)
-                scattered = scatterer.scatter(_rows(o), _rows(d), np.array(u))
+                throughput = dr.gather(mi.Spectrum, state["throughput"], rows)
+                disperses = len(scatterers) > 1
+                of_first = dr.gather(mi.Float, state["wavelengths"][0], rows) if disperses else None
+                scattered = _scatter(scatterers, o, d, mi.sample_tea_float32(own, crossings), of_first)
+                status = scattered["status"]
                 # Where furniture touches metal, rays may start within it, by rounding: they end.
-                goes = (scattered.status == MISSED) | (scattered.status == LEFT)
+                goes = (status == MISSED) | (status == LEFT)
                 here = mi.Bool(goes) & (crossings < self.max_crossings)
-                weight = mi.Float(scattered.weight)
                 straight = dr.gather(mi.Bool, state["straight"], rows)
-                on_line = mi.Bool(scattered.straight)
+                on_line = mi.Bool(scattered["straight"])
                 if not (self.see_through and room.clear[number - 1]):
-                    on_line &= mi.Bool(scattered.status != LEFT)
-                dr.scatter(state["o"], _columns(mi.Point3f, scattered.position), rows)
-                dr.scatter(state["d"], _columns(mi.Vector3f, scattered.direction), rows)
-                dr.scatter(state["throughput"], dr.gather(mi.Spectrum, state["throughput"], rows) * weight, rows)
+                    on_line &= mi.Bool(status != LEFT)
+                if disperses:
+                    # Other wavelengths take other ways.
+                    met, alone = mi.Bool(status != MISSED), dr.gather(mi.Bool, state["alone"], rows)
+                    throughput = dr.select(met, _first_only(throughput, alone), throughput)
+                    dr.scatter(state["alone"], alone | met, rows)
+                dr.scatter(state["o"], _columns(mi.Point3f, scattered["position"]), rows)
+                dr.scatter(state["d"], _columns(mi.Vector3f, scattered["direction"]), rows)
+                dr.scatter(state["throughput"], throughput * mi.Float(scattered["weight"]), rows)
                 dr.scatter(state["straight"], straight & on_line, rows)
                 dr.scatter(state["left"], mi.UInt32(number) + dr.zeros(mi.UInt32, count), rows)
                 dr.scatter(state["maxt"], dr.full(mi.Float, dr.largest(mi.Float), count), rows)
@@ -544,8 +606,8 @@ def _integrator() -> Callable[[Any], Any]:
             state["parked"] = dr.zeros(mi.UInt32, dr.width(parked))
             state["waits"] = dr.zeros(mi.Bool, dr.width(parked))
 
-        def _shed(self, scene: Any, room: _Room, state: dict[str, Any], shadows: dict[str, Any]) -> None:
-            """Adds the light that comes to paths through devices along their shadow rays."""
+        def _shed(self, scene: Any, room: _Room, state: dict[str, Any], shadows: dict[str, Any], turn: int) -> None:
+            """Adds the light that comes to paths through devices along their shadow rays; it is done in turns."""
             width = dr.width(state["slots"])
             slot = dr.arange(mi.UInt32, width * SLOTS)
             used = (slot % SLOTS) < dr.gather(mi.UInt32, state["slots"], slot // SLOTS)
@@ -555,16 +617,28 @@ def _integrator() -> Callable[[Any], Any]:
             ways = {name: dr.gather(type(value), value, rows) for name, value in shadows.items()}
             dr.eval(ways)
             light = dr.zeros(mi.Spectrum, width * SLOTS)
-            for _ in range(self.max_crossings):
-                for number, scatterer in enumerate(room.scatterers, 1):
+            for crossing in range(self.max_crossings):
+                # Other numbers than those that draw leaves for paths, and none that a kernel would be compiled for.
+                count = dr.opaque(mi.UInt32, (turn * self.max_crossings + crossing) * SLOTS)
+                own = dr.gather(mi.UInt32, state["own"], rows // SLOTS) ^ mi.UInt32(0x85EBCA6B)
+                draws = mi.sample_tea_float32(own, count + rows % SLOTS)
+                for number, scatterers in enumerate(room.scatterers, 1):
                     of_device = dr.compress(ways["device"] == number)
                     if dr.width(of_device) == 0:
                         continue
                     o = dr.gather(mi.Point3f, ways["o"], of_device)
                     d = dr.gather(mi.Vector3f, ways["d"], of_device)
-                    share = scatterer.scatter(_rows(o), _rows(d), np.full(dr.width(o), 0.5, np.float32)).transmitted
-                    taken = dr.gather(mi.Spectrum, ways["light"], of_device) * mi.Float(share)
-                    dr.scatter(ways["light"], taken, of_device)
+                    u = dr.gather(mi.Float, draws, of_device)
+                    light_there, of_first = dr.gather(mi.Spectrum, ways["light"], of_device), None
+                    if len(scatterers) > 1:
+                        lanes = dr.gather(mi.UInt32, rows, of_device) // SLOTS
+                        of_first = dr.gather(mi.Float, state["wavelengths"][0], lanes)
+                        alone = dr.gather(mi.Bool, ways["alone"], of_device)
+                        light_there = _first_only(light_there, alone)
+                        dr.scatter(ways["alone"], mi.Bool(True) | alone, of_device)
+                    # What of the ray goes on along its line is the mean of what leaves that are drawn say.
+                    share = _scatter(scatterers, o, d, u, of_first)["transmitted"]
+                    dr.scatter(ways["light"], light_there * mi.Float(share), of_device)
                 arrived = self._on_to_light(scene, room, ways)
                 dr.scatter(light, ways["light"], rows, arrived)
                 left = dr.compress(ways["device"] != 0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
 from collections.abc import Callable, Iterable
@@ -23,6 +24,9 @@ PLACE = "place"
 
 #: A device stands so far above what it stands on, as a share of its size: rays from there start outside it.
 GAP = 1e-3
+
+#: How far the faces of a box may be from square; meshes are written in single precision.
+SQUARE = 1e-4
 
 
 def device_of(text: str) -> dict[str, Any]:
@@ -169,6 +173,8 @@ class Room:
         columns = matrix / np.linalg.norm(matrix, axis=0)
         turn, _, other = np.linalg.svd(columns)
         turn = turn @ np.diag([1, 1, np.linalg.det(turn @ other)]) @ other
+        if np.array_equal(matrix, np.eye(3)) and only.is_mesh():
+            turn = _turn_of_box(only)
         if own is not None:
             written = own.find("transform[@name='to_world']")
             turn = np.eye(3) if written is None else _turn_of(written)
@@ -234,6 +240,29 @@ def _matrix(shape: Any) -> NDArray[np.float64]:
 
 def _turn_of(transform: Any) -> NDArray[np.float64]:
     return rigid("to_world", _composed(transform))[:3, :3]
+
+
+def _turn_of_box(mesh: Any) -> NDArray[np.float64]:
+    """How a box is turned whose corners are written in the frame of the world: of the turns that its faces allow the
+    least one, below 45 degrees about each axis. Of other meshes none."""
+    corners = np.array(mesh.vertex_positions_buffer(), np.float64).reshape(-1, 3)
+    faces = corners[np.array(mesh.faces_buffer()).reshape(-1, 3)]
+    normals = np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0])
+    sizes = np.linalg.norm(normals, axis=1)
+    normals = normals[sizes > 0] / sizes[sizes > 0, None]
+    axes: list[NDArray[np.float64]] = []
+    for normal in normals:
+        if all(abs(normal @ axis) < 1 - SQUARE for axis in axes):
+            axes.append(normal)
+    if len(axes) != 3 or any(abs(axes[one] @ axes[other]) > SQUARE for one, other in ((0, 1), (0, 2), (1, 2))):
+        return np.eye(3)
+    # Each axis of the world goes to that of the box which is next to it.
+    orders = list(itertools.permutations(range(3)))
+    near = max(orders, key=lambda order: sum(abs(axes[order[at]][at]) for at in range(3)))
+    columns = np.column_stack([axes[near[at]] * np.sign(axes[near[at]][at] or 1) for at in range(3)])
+    turn, _, other = np.linalg.svd(columns)
+    found: NDArray[np.float64] = turn @ np.diag([1, 1, np.linalg.det(turn @ other)]) @ other
+    return found
 
 
 def _composed(steps: Iterable[Any]) -> NDArray[np.float64]:

@@ -29,6 +29,7 @@ def device(
     *,
     unit: float = 1.0,
     wavelength_nm: float = 550.0,
+    wavelengths: int = 1,
     see_through: str = "auto",
     min_power: float = MIN_POWER,
 ) -> dict[str, Any]:
@@ -44,6 +45,9 @@ def device(
         How many cm the scene's unit of length is: 100 for a scene in metres.
     wavelength_nm : float, default 550
         The wavelength in vacuum at which the device is traced, for all colors.
+    wavelengths : int, default 1
+        In spectral variants, at how many wavelengths it is traced instead: at the middles of so many equal bins from 400
+        to 700 nm, so that its materials show their colors. A path that meets it goes on with one of its wavelengths.
     see_through : {"auto", "yes", "no"}, default "auto"
         Whether shadow rays go through the device, on as far as its leaves go on along their line. ``"auto"`` lets them
         where nearly all leaves do.
@@ -75,19 +79,30 @@ def device(
         "see_through": see_through,
         "min_power": float(min_power),
     }
+    if wavelengths != 1:
+        bsdf["wavelengths"] = int(wavelengths)
     box = box_of(scatterer)
     shape = "sphere" if box.ball else "cube"
     return {"type": shape, "to_world": mi.ScalarTransform4f(box.shape()), "bsdf": bsdf}
 
 
 def scatterer_of(
-    keys: Mapping[str, Any], to_world: NDArray[np.float64], unit: float, wavelength_nm: float, min_power: float
+    keys: Mapping[str, Any],
+    to_world: NDArray[np.float64],
+    unit: float,
+    wavelength_nm: float,
+    min_power: float,
+    *,
+    of_light: bool = False,
 ) -> Scatterer:
-    """The one device of a kind and keys, or the devices of the scene file ``scene``, at their place."""
+    """The one device of a kind and keys, or the devices of the scene file ``scene``, at their place: that has a wavelength
+    of its own, unless ``of_light`` says otherwise."""
     if "scene" in keys:
         if set(keys) != {"scene"}:
             raise ValueError(f"a device of a scene file has no keys of its own, but {', '.join(sorted(set(keys) - {'scene'}))}")
         scene = Scene.load(keys["scene"])
+        if of_light:
+            scene = scene.replace({"light.wavelength_nm": wavelength_nm})
     elif "kind" not in keys:
         raise ValueError("a device has a kind, such as sphere-cloak, or a scene, the name of a scene file")
     else:

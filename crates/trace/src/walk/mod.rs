@@ -7,6 +7,7 @@
 mod borders;
 mod branch;
 mod coherence;
+mod draw;
 mod event;
 mod first_face;
 mod four;

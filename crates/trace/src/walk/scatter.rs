@@ -1,6 +1,7 @@
 //! What a renderer of its own asks of devices: for each of many rays the leaves, or one of them, drawn by
 //! its power.
 
+use super::draw::Drawn;
 use super::leaf_table::batch_size;
 use super::neighbours::side_by_side;
 use super::{FourTracers, Launch, Leaf, LeafEnd, Limits, Outcome, Stopped, Tracer};
@@ -87,14 +88,17 @@ pub struct Scattered {
     /// Its direction, a unit vector.
     pub direction: DVec3,
     /// What the leaf is to be weighed with in unpolarized light. One that was drawn stands for all of them
-    /// and for what was pruned, whose way is not known: 1 in devices that absorb nothing. Else its share of
-    /// the power.
+    /// and for what was pruned, whose way is not known: what has not been absorbed on its way, so 1 in
+    /// devices that absorb nothing. Else its share of the power.
     pub weight: f64,
-    /// With which probability the leaf was drawn.
+    /// With which probability the leaf was drawn, what is pruned being among what may be: times `weight` it
+    /// is its share of the power.
     pub probability: f64,
-    /// How much of the power of the ray, unpolarized, goes on along its own line in all leaves.
+    /// How much of the power of the ray, unpolarized, goes on along its own line in all leaves. Of a ray
+    /// whose leaf is drawn what that leaf says, all or nothing of its weight: the mean of many draws.
     pub transmitted: f64,
-    /// The share of the power in branches too weak to follow, unpolarized.
+    /// The share of the power in branches too weak to follow, unpolarized. Of a ray whose leaf is drawn what
+    /// the first way that is drawn says, all or nothing of what it carries: the mean of many draws.
     pub pruned: f64,
     /// Optical path length from the ray's origin to `position`.
     pub optical_path: f64,
@@ -168,8 +172,10 @@ impl Batch<'_> {
             let ray = ray(number);
             let launch = self.placement.to_local(&ray.launch);
             if is_ray(&ray) {
-                let (leaves, outcome) = tracer.trace(&launch);
-                self.add(number, &ray, &launch, leaves, outcome, &mut scattered);
+                tracer.draw_by(ray.draw);
+                tracer.trace(&launch);
+                let ((leaves, outcome), drawn) = (tracer.traced(), tracer.drawn());
+                self.add(number, (&ray, drawn), &launch, leaves, outcome, &mut scattered);
             } else {
                 scattered.push(unchanged(number, &ray.launch, RayStatus::Refused));
             }
@@ -194,10 +200,15 @@ impl Batch<'_> {
             }
         }
         for four in side_by_side(&launches).chunks(4) {
-            tracers.trace(&std::array::from_fn(|i| launches[four[i.min(four.len() - 1)]]));
+            let places: [usize; 4] = std::array::from_fn(|i| four[i.min(four.len() - 1)]);
+            for (place, tracer) in places.iter().zip(&mut tracers.tracers) {
+                tracer.draw_by(rays[numbers[*place]].draw);
+            }
+            tracers.trace(&places.map(|place| launches[place]));
             for (place, tracer) in four.iter().zip(&tracers.tracers) {
                 let (leaves, outcome) = tracer.traced();
                 let (ray, number) = (&rays[numbers[*place]], self.rays.start + numbers[*place]);
+                let ray = (ray, tracer.drawn());
                 self.add(number, ray, &launches[*place], leaves, outcome, &mut scattered);
             }
         }
@@ -210,27 +221,28 @@ impl Batch<'_> {
     fn add(
         &self,
         number: usize,
-        ray: &ScatterRay,
+        (ray, drawn): (&ScatterRay, Option<Drawn>),
         launch: &Launch<2>,
         leaves: &[Leaf<2>],
         outcome: &Outcome<2>,
         scattered: &mut Vec<Scattered>,
     ) {
         let mean = |of: &[f64; 2]| 0.5 * (of[0] + of[1]);
-        let total: f64 = leaves.iter().map(|leaf| mean(&leaf.power)).sum();
-        if leaves.is_empty() || total <= 0.0 {
+        let pruned = drawn.map_or(mean(&outcome.pruned), |drawn| drawn.pruned);
+        if leaves.iter().all(|leaf| mean(&leaf.power) <= 0.0) {
             let refused = outcome.stats.lost > 0
                 && self.assembly.region_around(launch.origin, launch.direction).is_err();
             let status = if refused { RayStatus::Refused } else { RayStatus::Absorbed };
-            scattered.push(unchanged(number, &ray.launch, status));
+            scattered.push(Scattered { pruned, ..unchanged(number, &ray.launch, status) });
             return;
         }
+        let weight =
+            |leaf: &Leaf<2>| mean(&leaf.power) / drawn.map_or(1.0, |drawn| drawn.probability);
         let straight = |leaf: &Leaf<2>| self.is_straight(launch, leaf);
-        let on_line = leaves.iter().filter(|leaf| straight(leaf)).map(|leaf| mean(&leaf.power));
         // From nothing that is positive: a sum of none is -0.
-        let transmitted = on_line.sum::<f64>() + 0.0;
-        let pruned = mean(&outcome.pruned);
-        let of_leaf = |leaf: &Leaf<2>, weight, probability| {
+        let transmitted =
+            leaves.iter().filter(|leaf| straight(leaf)).map(weight).sum::<f64>() + 0.0;
+        let of_leaf = |leaf: &Leaf<2>| {
             if !leaf.met_device {
                 let missed = unchanged(number, &ray.launch, RayStatus::Missed);
                 return Scattered { straight: true, weight: 1.0, transmitted: 1.0, ..missed };
@@ -244,8 +256,8 @@ impl Batch<'_> {
                 body: body.unwrap_or_default(),
                 position: leaf.position,
                 direction: leaf.direction,
-                weight,
-                probability,
+                weight: weight(leaf),
+                probability: drawn.map_or(1.0, |drawn| drawn.probability),
                 transmitted,
                 pruned,
                 optical_path: leaf.optical_path,
@@ -253,21 +265,9 @@ impl Batch<'_> {
                 electric: leaf.electric,
             })
         };
-        let Some(draw) = ray.draw else {
-            let mut order: Vec<&Leaf<2>> = leaves.iter().collect();
-            order.sort_by(|a, b| b.total_power().total_cmp(&a.total_power()));
-            scattered.extend(order.into_iter().map(|leaf| of_leaf(leaf, mean(&leaf.power), 1.0)));
-            return;
-        };
-        let mut left = draw * total;
-        let drawn = leaves.iter().find(|leaf| {
-            left -= mean(&leaf.power);
-            left < 0.0
-        });
-        // Where rounding has left something, it is of the last leaf that has any power.
-        let last = || leaves.iter().rfind(|leaf| mean(&leaf.power) > 0.0);
-        let drawn = drawn.or_else(last).unwrap_or(&leaves[0]);
-        scattered.push(of_leaf(drawn, total + pruned, mean(&drawn.power) / total));
+        let mut order: Vec<&Leaf<2>> = leaves.iter().collect();
+        order.sort_by(|a, b| b.total_power().total_cmp(&a.total_power()));
+        scattered.extend(order.into_iter().map(of_leaf));
     }
 
     fn is_straight(&self, launch: &Launch<2>, leaf: &Leaf<2>) -> bool {

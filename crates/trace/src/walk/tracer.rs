@@ -1,6 +1,7 @@
 //! The walk along the ray tree.
 
 use super::branch::{Branch, Place, largest};
+use super::draw::{Draw, MOST_EVENTS_DRAWN};
 use super::{Coherence, Leaf, Outcome, PathRecorder};
 use crate::assembly::{Assembly, Screen};
 use crate::device::{InnerRay, NoPassage, Passage};
@@ -88,6 +89,8 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     pub(super) recorder: W,
     /// The light whose branches become one where they run together.
     joining: Option<Coherence>,
+    /// How one of its leaves is drawn, if only that is wanted.
+    pub(super) draw: Option<Draw<N>>,
     /// Whether leaves are to know what a pulse takes.
     group_delays: bool,
     /// Whether the screen touches a device.
@@ -125,6 +128,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             limits,
             screen: None,
             joining: None,
+            draw: None,
             group_delays: false,
             screen_touches: false,
             stands_alone: assembly.simple,
@@ -209,6 +213,10 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         if self.group_delays {
             branch.dispersion = 0.0;
         }
+        if let Some(draw) = &mut self.draw {
+            draw.begin(branch);
+            self.most_events = MOST_EVENTS_DRAWN;
+        }
         if !self.start(branch) {
             self.take_next(branch)?;
         }
@@ -246,7 +254,13 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         self.leaves.clear();
         self.outcome = Outcome::default();
         self.waiting.clear();
-        (self.events, self.most_events, self.heaped) = (0, MANY_EVENTS, None);
+        (self.most_events, self.heaped) = (MANY_EVENTS, None);
+        self.start_anew();
+    }
+
+    /// Counts events from here on.
+    pub(super) fn start_anew(&mut self) {
+        self.events = 0;
         (self.next_look, self.looked_at) = (EVENTS_PER_LOOK, None);
     }
 
@@ -259,7 +273,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     ) -> Option<(u16, u16)> {
         if !self.pass(branch, region, passage.as_ref()) {
             self.take_next(branch)?;
-        } else if self.heaped.is_some() {
+        } else if self.heaped.is_some() || self.has_forked() {
             self.waiting.push(*branch);
             self.take_next(branch)?;
         }
@@ -309,7 +323,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             };
             if !goes_on {
                 self.take_next(branch)?;
-            } else if self.joining.is_some() || self.heaped.is_some() {
+            } else if self.joining.is_some() || self.heaped.is_some() || self.has_forked() {
                 self.waiting.push(*branch);
                 self.take_next(branch)?;
             }
@@ -334,7 +348,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// deserves that still waits.
     #[cold]
     fn may_go_on(&mut self, branch: &Branch<N>) -> bool {
-        if self.heaped.is_some() {
+        if self.heaped.is_some() || self.draw.is_some() {
             return false;
         }
         self.heaped = Some(0);
@@ -387,10 +401,13 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
 
     /// Puts in place of a branch the one to be followed next: the last that waits, or the strongest
     /// in large trees, or where branches are joined the one of the shortest path with all that run
-    /// together with it. None if none waits.
+    /// together with it, or where a leaf is drawn the one that is. None if none waits.
     #[inline(always)]
     fn take_next(&mut self, branch: &mut Branch<N>) -> Option<()> {
         self.looked_at = None;
+        if self.draw.is_some() {
+            return self.take_drawn(branch);
+        }
         if let Some(coherence) = self.joining {
             return self.take_joined(branch, coherence);
         }
