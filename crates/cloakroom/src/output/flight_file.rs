@@ -137,7 +137,9 @@ impl FlightStore {
     ///
     /// If it cannot be read.
     pub fn frame(&self, bin: usize) -> io::Result<Vec<Kept>> {
-        self.rows(bin, [0, self.height])
+        let mut frame = Vec::new();
+        self.read_rows(bin, [0, self.height], &mut frame)?;
+        Ok(frame)
     }
 
     /// What does not flash.
@@ -166,9 +168,16 @@ impl FlightStore {
         })
     }
 
-    /// The rows from one to another of what is in a bin.
-    fn rows(&self, bin: usize, [first, end]: [usize; 2]) -> io::Result<Vec<Kept>> {
-        let mut rows = vec![[0.0; 4]; self.width * (end - first)];
+    /// Puts the rows from one to another of what is in a bin in the place of others: memory for them is not
+    /// asked for again and again.
+    fn read_rows(
+        &self,
+        bin: usize,
+        [first, end]: [usize; 2],
+        rows: &mut Vec<Kept>,
+    ) -> io::Result<()> {
+        rows.clear();
+        rows.resize(self.width * (end - first), [0.0; 4]);
         let mut kept = self.kept();
         let Tiles { file, tiles, .. } = &mut *kept;
         for (tile, places) in tiles {
@@ -186,7 +195,7 @@ impl FlightStore {
                 rows[(row - first) * self.width + left..][..width].copy_from_slice(pixels);
             }
         }
-        Ok(rows)
+        Ok(())
     }
 
     /// Gives all that is in the bins, in that order, piece by piece.
@@ -196,8 +205,12 @@ impl FlightStore {
         mut take: impl FnMut(&[Kept]) -> io::Result<()>,
     ) -> io::Result<()> {
         let bins = self.gate.bins();
+        let mut rows = Vec::new();
         if order == FlightOrder::TimeFirst {
-            return (0..bins).try_for_each(|bin| take(&self.frame(bin)?));
+            return (0..bins).try_for_each(|bin| {
+                self.read_rows(bin, [0, self.height], &mut rows)?;
+                take(&rows)
+            });
         }
         let at_once = (MOST_IN_MEMORY / (self.width * bins)).max(1);
         let mut pixels = Vec::new();
@@ -206,8 +219,9 @@ impl FlightStore {
             pixels.clear();
             pixels.resize(self.width * (end - first) * bins, [0.0; 4]);
             for bin in 0..bins {
-                for (pixel, light) in self.rows(bin, [first, end])?.into_iter().enumerate() {
-                    pixels[pixel * bins + bin] = light;
+                self.read_rows(bin, [first, end], &mut rows)?;
+                for (pixel, light) in rows.iter().enumerate() {
+                    pixels[pixel * bins + bin] = *light;
                 }
             }
             take(&pixels)?;
@@ -237,13 +251,17 @@ impl FlightStore {
                 FlightOrder::TimeLast => [height, width, bins],
             };
             zip.begin("light", &[axes[0], axes[1], axes[2], 3])?;
+            let mut light: Vec<[f32; 3]> = Vec::new();
             self.in_order(order, |all| {
-                let light: Vec<[f32; 3]> = all.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
+                light.clear();
+                light.extend(all.iter().map(|[r, g, b, _]| [*r, *g, *b]));
                 zip.go_on(light.as_flattened())
             })?;
             zip.begin("power", &axes)?;
+            let mut power: Vec<f32> = Vec::new();
             self.in_order(order, |all| {
-                let power: Vec<f32> = all.iter().map(|light| light[3]).collect();
+                power.clear();
+                power.extend(all.iter().map(|light| light[3]));
                 zip.go_on(&power)
             })?;
             let kept = self.kept();
