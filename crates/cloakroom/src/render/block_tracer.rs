@@ -35,8 +35,10 @@ impl<'a, const N: usize> BlockTracer<'a, N> {
     /// For so many rays of each pixel.
     pub fn new(prepared: &'a PreparedScene<'a>, detection: &'a Detection<N>, samples: u32) -> Self {
         let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
-        let tracer =
-            if detection.wants_group_paths() { tracer.with_group_delays() } else { tracer };
+        let tracer = match detection.wants_group_paths() {
+            true => tracer.with_group_delays_to(detection.pulse_tolerance),
+            false => tracer,
+        };
         Self {
             prepared,
             detection,

@@ -35,6 +35,8 @@ pub(crate) struct Detection<const N: usize> {
     shares: bool,
     /// When light arrives, where that is looked at.
     pub arrivals: Option<Arrivals>,
+    /// What pulses take need be no more exact, cm.
+    pub pulse_tolerance: f64,
 }
 
 const HORIZONTAL: [f64; 2] = [1.0, 0.0];
@@ -76,6 +78,7 @@ impl<const N: usize> Detection<N> {
             spectrum: false,
             shares: true,
             arrivals: None,
+            pulse_tolerance: 0.0,
         }
     }
 
@@ -100,9 +103,10 @@ impl<const N: usize> Detection<N> {
         }
     }
 
-    /// The image alone, and when its light arrives.
-    pub fn in_flight(&self, arrivals: Arrivals) -> Self {
-        Self { separate: false, arrivals: Some(arrivals), ..self.of_colors() }
+    /// The image alone, and when its light arrives, as a pulse to within a tolerance (cm).
+    pub fn in_flight(&self, arrivals: Arrivals, pulse_tolerance: f64) -> Self {
+        let arrivals = Some(arrivals);
+        Self { separate: false, arrivals, pulse_tolerance, ..self.of_colors() }
     }
 
     /// Whether tracers are to work out what pulses take.

@@ -415,13 +415,10 @@ impl<'s> PreparedScene<'s> {
         Self { coherence, spectral: None, ..self.clone() }
     }
 
-    /// The same scene with leaves that never interfere, and paths that need be no more exact than `tolerance`, cm.
-    pub(super) fn added_by_power(&self, tolerance: f64) -> Self {
-        let spectral = self.spectral.as_deref();
-        let spectral = spectral.map(|spectral| Arc::new(spectral.added_by_power(tolerance)));
-        let mut limits = limits(self.scene);
-        limits.tolerance = limits.tolerance.max(tolerance);
-        Self { coherence: None, limits, spectral, ..self.clone() }
+    /// The same scene with leaves that never interfere.
+    pub(super) fn added_by_power(&self) -> Self {
+        let spectral = self.spectral.as_deref().map(|spectral| Arc::new(spectral.added_by_power()));
+        Self { coherence: None, limits: limits(self.scene), spectral, ..self.clone() }
     }
 
     /// What every file carries: program, scene, version and seed, and where the scene names files,

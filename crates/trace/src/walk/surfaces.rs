@@ -251,7 +251,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         let group = if self.wants_group_path(passage.optical_path) {
             let dispersion = self.assembly.device(number).dispersion;
             let (ray, field) = (branch.inner_ray(), branch.strongest_field());
-            Some(region.group_path(&ray, field, passage, dispersion, self.limits.tolerance))
+            Some(region.group_path(&ray, field, passage, dispersion, self.pulse_tolerance()))
         } else {
             None
         };

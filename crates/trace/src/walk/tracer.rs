@@ -93,6 +93,8 @@ pub struct Tracer<'a, const N: usize, W = ()> {
     pub(super) draw: Option<Draw<N>>,
     /// Whether leaves are to know what a pulse takes.
     group_delays: bool,
+    /// To within how much, cm, if that is more than for other paths.
+    pulse_tolerance: f64,
     /// Whether the screen touches a device.
     pub(super) screen_touches: bool,
     /// Whether nothing touches what rays leave: there is one device at most, no body, and the
@@ -113,7 +115,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
     #[must_use]
     pub fn watched<W: PathRecorder<N>>(self, recorder: W) -> Tracer<'a, N, W> {
         let tracer = Tracer::watching(self.assembly, self.limits, recorder);
-        let tracer = Tracer { group_delays: self.group_delays, ..tracer };
+        let Self { group_delays, pulse_tolerance, .. } = self;
+        let tracer = Tracer { group_delays, pulse_tolerance, ..tracer };
         match self.screen {
             Some(screen) => tracer.with_screen(screen),
             None => tracer,
@@ -130,6 +133,7 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
             joining: None,
             draw: None,
             group_delays: false,
+            pulse_tolerance: 0.0,
             screen_touches: false,
             stands_alone: assembly.simple,
             waiting: Vec::new(),
@@ -182,7 +186,18 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
     /// Works out what a pulse takes, too, [`Leaf::group_path`].
     #[must_use]
     pub fn with_group_delays(self) -> Self {
-        Self { group_delays: true, ..self }
+        self.with_group_delays_to(0.0)
+    }
+
+    /// The same to within `tolerance` (cm), if that is more than for other paths.
+    #[must_use]
+    pub fn with_group_delays_to(self, tolerance: f64) -> Self {
+        Self { group_delays: true, pulse_tolerance: tolerance, ..self }
+    }
+
+    /// To within how much (cm) it is worked out what a pulse takes.
+    pub(super) fn pulse_tolerance(&self) -> f64 {
+        self.pulse_tolerance.max(self.limits.tolerance)
     }
 
     /// Follows one ray to the end of every branch: the leaves, in the order the tree was walked,

@@ -135,7 +135,7 @@ impl Arrival {
     }
 }
 
-/// Ways need be no more exact than this, cm, or than this share of a bin: neither is seen.
+/// What a pulse takes need be no more exact than this, cm, or than this share of a bin: neither is seen.
 const TOLERANCE: f64 = 1e-4;
 const SHARE_OF_BIN: f64 = 1e-3;
 
@@ -297,16 +297,16 @@ pub fn flight_part<E: From<RenderError> + Send>(
     supervision: &Supervision<'_>,
     take: impl Fn(FlightTile) -> Result<(), E> + Sync,
 ) -> Result<TraceStats, E> {
-    let tolerance = TOLERANCE.min(SHARE_OF_BIN * settings.gate.step() * SPEED_OF_LIGHT);
-    let prepared = &prepared.added_by_power(tolerance);
+    let prepared = &prepared.added_by_power();
     let arrivals = settings.arrivals;
+    let tolerance = TOLERANCE.min(SHARE_OF_BIN * settings.gate.step() * SPEED_OF_LIGHT);
     match prepared.scene.camera.polarizer.amplitudes() {
         None => {
-            let detection = Detection::UNPOLARIZED.in_flight(arrivals);
+            let detection = Detection::UNPOLARIZED.in_flight(arrivals, tolerance);
             expose_tiles(prepared, (settings, part), supervision, detection, take)
         }
         Some(amplitudes) => {
-            let detection = Detection::image(amplitudes).in_flight(arrivals);
+            let detection = Detection::image(amplitudes).in_flight(arrivals, tolerance);
             expose_tiles(prepared, (settings, part), supervision, detection, take)
         }
     }

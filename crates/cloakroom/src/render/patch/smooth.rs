@@ -78,6 +78,8 @@ pub(super) struct Functions<'a> {
     /// Whether paths of leaves are asked for, those of pulses, and fields.
     paths: bool,
     group_paths: bool,
+    /// The largest error of those of pulses, cm, if that is more than for other paths.
+    pulse_tolerance: f64,
     fields: bool,
 }
 
@@ -87,6 +89,7 @@ impl<'a> Functions<'a> {
             prepared,
             paths: detection.times || detection.arrivals.is_some(),
             group_paths: detection.wants_group_paths(),
+            pulse_tolerance: detection.pulse_tolerance,
             fields: detection.stokes,
         }
     }
@@ -184,9 +187,8 @@ impl<const N: usize> Interpolated for Leaf<N> {
     fn tolerances(&self, kept: Functions<'_>, power: f64) -> Lanes {
         let [place, power] = [kept.place_tolerance(power), kept.power_tolerance()];
         let reach = self.distance_to(&kept.prepared.screen).unwrap_or(REACH);
-        let paths = kept.paths();
         let places = [place, place, place].into_iter().chain([place / reach; 3]);
-        let paths = std::iter::repeat_n(place, paths);
+        let paths = [place, place, place.max(kept.pulse_tolerance)].into_iter().take(kept.paths());
         in_order(places.chain([power; N]).chain(paths).chain(std::iter::repeat(power)))
     }
 
@@ -214,11 +216,12 @@ impl<const N: usize> Interpolated for Leaf<N> {
         let power_tolerance = kept.power_tolerance();
         let distance = other.distance_to(&kept.prepared.screen).unwrap_or(REACH);
         let place = |leaf: &Self| leaf.position + leaf.direction * distance;
-        let paths = kept.paths();
+        let (paths, own, others) = (kept.paths(), paths_of(self), paths_of(other));
         self.is_like(other)
             && place(self).distance(place(other)) <= tolerance
             && all_near(&self.power, &other.power, power_tolerance)
-            && all_near(&paths_of(self)[..paths], &paths_of(other)[..paths], tolerance)
+            && all_near(&own[..paths.min(2)], &others[..paths.min(2)], tolerance)
+            && (paths < 3 || (own[2] - others[2]).abs() <= tolerance.max(kept.pulse_tolerance))
             && (!kept.fields || are_near(&self.electric, &other.electric, power_tolerance))
     }
 
@@ -250,7 +253,8 @@ impl<const N: usize> Interpolated for Branch<N> {
         let direction = place / REACH;
         let places = [place, place, place, direction, direction, direction];
         let rest = [direction, direction, direction, place, place].into_iter();
-        let rest = rest.chain(kept.group_paths.then_some(place));
+        let pulse = place.max(kept.pulse_tolerance);
+        let rest = rest.chain(kept.group_paths.then_some(pulse));
         in_order(places.into_iter().chain([power; N]).chain(rest).chain(std::iter::repeat(power)))
     }
 
@@ -275,15 +279,14 @@ impl<const N: usize> Interpolated for Branch<N> {
         let tolerance = kept.place_tolerance(other.largest_power());
         let power_tolerance = kept.power_tolerance();
         let place = |branch: &Self| branch.position + branch.direction * REACH;
-        let paths = |branch: &Self| {
-            let dispersion = if kept.group_paths { branch.dispersion } else { 0.0 };
-            [branch.optical_path, branch.backwards, dispersion]
-        };
+        let paths = |branch: &Self| [branch.optical_path, branch.backwards];
+        let late = self.dispersion - other.dispersion;
         self.is_like(other)
             && place(self).distance(place(other)) <= tolerance
             && self.wave_vector.distance(other.wave_vector) * REACH <= tolerance
             && all_near(&self.power, &other.power, power_tolerance)
             && all_near(&paths(self), &paths(other), tolerance)
+            && (!kept.group_paths || late.abs() <= tolerance.max(kept.pulse_tolerance))
             && are_near(&self.electric, &other.electric, power_tolerance)
     }
 

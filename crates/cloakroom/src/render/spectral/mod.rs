@@ -67,9 +67,9 @@ impl<'s> Spectral<'s> {
         all.flat_map(|group| &group.lights).map(|light| light.color).sum()
     }
 
-    /// The same with leaves that never interfere, and paths that need be no more exact than `tolerance`, cm.
-    pub fn added_by_power(&self, tolerance: f64) -> Self {
-        let nodes = self.nodes.iter().map(|node| node.added_by_power(tolerance)).collect();
+    /// The same with leaves that never interfere.
+    pub fn added_by_power(&self) -> Self {
+        let nodes = self.nodes.iter().map(PreparedScene::added_by_power).collect();
         Self { bands: self.bands.clone(), nodes, fringes: [Vec::new(), Vec::new()] }
     }
 
