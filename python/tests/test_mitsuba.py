@@ -23,7 +23,6 @@ try:
 except ImportError as error:
     pytest.skip(str(error), allow_module_level=True)
 
-import drjit as dr  # noqa: E402
 
 Image = NDArray[np.float32]
 
@@ -294,19 +293,6 @@ def test_a_box_of_blenders_says_how_it_is_turned(tmp_path: Path) -> None:
     np.testing.assert_allclose(placed(source, "Cube.001")[:3, :3], np.eye(3), atol=1e-12)
     # A ball says nothing.
     np.testing.assert_allclose(placed(source, "Suzanne.Ball")[:3, :3], np.eye(3), atol=1e-12)
-
-
-def test_another_seed_compiles_nothing() -> None:
-    """What was compiled for one picture does for all others of its size."""
-    scene = mi.load_dict(with_device({"kind": "square-cloak", "length": 16, "rotation": 20}))
-    integrator = scene.integrator()
-    for seed in (1, 2):
-        np.array(integrator.render(scene, seed=seed, spp=4))
-    with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
-        dr.kernel_history_clear()
-        np.array(integrator.render(scene, seed=3, spp=4))
-        history = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
-    assert history and not [entry for entry in history if not entry["cache_hit"]]
 
 
 def test_colors_take_their_own_ways_in_spectral_variants() -> None:

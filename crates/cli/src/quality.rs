@@ -44,7 +44,9 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let plan = match &reference {
         Some(reference) => {
             scene::assembly(reference)?;
-            plan.with_reference(reference.scene.clone())
+            let plan = plan.with_reference(reference.scene.clone());
+            plan.reference_stands().map_err(|error| scene::located(reference, &error))?;
+            plan
         }
         None => plan,
     };

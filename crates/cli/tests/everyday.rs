@@ -329,4 +329,11 @@ fn a_floor_may_stand_alone_and_be_what_a_carpet_should_look_like() {
     };
     assert_eq!(measured("floor.toml"), 1.0);
     assert!(measured("bump.toml") < 0.99);
+    // What is wrong with the reference is told of its file.
+    let long =
+        "kind = \"mirror\"\nrotation = 90\nposition = [0, -40, 0]\nwidth = 400\nheight = 400\n";
+    fs::write(at.join("long.toml"), format!("{view}[[device]]\n{long}")).unwrap();
+    let long = ["quality", "bump.toml", "--sweep", "camera.samples=1", "--reference", "long.toml"];
+    let said = fails(at, &long, 1);
+    assert!(said.contains("long.toml") && !said.contains("bump.toml"), "{said}");
 }

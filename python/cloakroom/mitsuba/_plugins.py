@@ -236,7 +236,9 @@ def _rows(vectors: Any) -> NDArray[np.float32]:
 
 
 def _columns(kind: Any, rows: NDArray[np.float32]) -> Any:
-    return kind(np.ascontiguousarray(rows.T))
+    """Vectors from their rows."""
+    # One by one: of all in one array they would be parts that begin at numbers of it, for which kernels are compiled.
+    return kind(*(mi.Float(np.ascontiguousarray(column)) for column in rows.T))
 
 
 def _sampler_at(sampler: Any, places: Any) -> Any:
@@ -657,7 +659,7 @@ def _integrator() -> Callable[[Any], Any]:
             """Takes shadow rays that have been traced through a device on to their lamps or the next device."""
             dr.make_opaque(ways)
             active = dr.any(ways["light"] != 0)
-            wavelengths = mi.Ray3f().wavelengths
+            wavelengths = dr.zeros(type(mi.Ray3f().wavelengths))
 
             def goes_on(o: Any, maxt: Any, left: Any, next_one: Any, lit: Any, active: Any) -> Any:
                 return active

@@ -7,7 +7,7 @@ use super::measured::columns;
 use super::quality_error::{QualityError, located};
 use super::sweep::{Sweep, SweepError, combinations};
 use crate::device::Imperfection;
-use crate::render::assembly;
+use crate::render::{PreparedScene, PreparedSceneError, assembly};
 use crate::scene::{DeviceSettings, Scene};
 use crate::scene_file::{Loaded, Override, SceneFileError};
 
@@ -95,6 +95,20 @@ impl SweepPlan {
     #[must_use]
     pub fn with_reference(self, reference: Scene) -> Self {
         Self { reference: Some(reference.devices), ..self }
+    }
+
+    /// Checks that the reference can stand in the place of the first scene.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with it there, such as that it cuts through the photograph.
+    pub fn reference_stands(&self) -> Result<(), PreparedSceneError> {
+        match self.scenes.first() {
+            Some(one) if self.reference.is_some() => {
+                PreparedScene::new(&self.wanted(&one.loaded.scene)).map(drop)
+            }
+            _ => Ok(()),
+        }
     }
 
     /// What should be seen in the place of a scene.

@@ -10,7 +10,7 @@ mod view;
 pub use pulse::Pulse;
 pub use source::Source;
 
-use super::drawing::Drawing;
+use super::drawing::{Drawing, Shape};
 use super::setting::{AXES, Devices, MARGIN, TEXT, draw_axes, sheet};
 use cloakroom::assembly::Assembly;
 use cloakroom::render::{Delay, PreparedSceneError, RenderError, assembly};
@@ -180,6 +180,8 @@ impl RayDiagram {
                 }
                 rays::draw(&mut drawing, &place, &frame, trees);
                 pulse::draw(&mut drawing, &place, &frame, &fronts(trees));
+                // Words are read whatever runs over the things that they are about.
+                drawing.elements.sort_by_key(|element| matches!(element.shape, Shape::Words(_)));
                 if settings.window.is_some() {
                     view::cover_margins(&mut drawing, &frame);
                 }

@@ -36,7 +36,7 @@ fn drawn(text: &str, settings: &DiagramSettings) -> Result<Drawing, DiagramError
 /// The points of the wavefronts on the sheet, front by front.
 fn fronts(drawing: &Drawing) -> Vec<Vec<DVec2>> {
     let line = |element: &super::super::drawing::Element| match &element.shape {
-        super::super::drawing::Shape::Line(points) => points.clone(),
+        Shape::Line(points) => points.clone(),
         _ => panic!("a front is a line"),
     };
     drawing.of_class("wavefront").map(line).collect()
@@ -309,7 +309,7 @@ fn a_pulse_is_drawn_over_the_rays_with_its_time() {
         let drawing = diagram.draw(Some(&at));
         assert!(drawing.of_class("pulse").count() > 0);
         let words = drawing.of_class("key").filter_map(|element| match &element.shape {
-            crate::Shape::Words(words) => Some(words.text()),
+            Shape::Words(words) => Some(words.text()),
             _ => None,
         });
         assert!(words.into_iter().any(|words| words == "pulse at 0.50 ns"));

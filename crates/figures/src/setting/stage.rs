@@ -4,7 +4,7 @@ use super::super::drawing::{Drawing, Face, Shape, Words};
 use super::super::shrink::srgb;
 use super::subject::{Subject, bounds};
 use super::view::View;
-use super::{BLUE, GRAY, INK, PAPER, SKY, TEXT, THICK, THIN, centimetres, dimension};
+use super::{BLUE, GRAY, INK, PAPER, SKY, TEXT, THICK, THIN, centimetres, dimension, write};
 use cloakroom::assembly::Screen;
 use cloakroom::output::RgbImage;
 use cloakroom::photograph::Pyramid;
@@ -251,11 +251,11 @@ pub(crate) fn draw_axes(drawing: &mut Drawing, corner: DVec2) {
         drawing.add_line("coordinate", shaft, (INK, THIN));
         drawing.add("head", dimension::arrow_head(tip, -direction, dimension::HEAD)).filled(INK);
         let name = Words::of(Face::Italic, name, tip + 0.55 * TEXT * direction, TEXT);
-        drawing.add_words("coordinate-name", name);
+        write(drawing, "coordinate-name", name, PAPER);
     }
     // z comes out of the page.
     drawing.add("coordinate", Shape::Circle { centre: origin, radius: 7.0 }).stroked(INK, THIN);
     drawing.add("coordinate", Shape::Circle { centre: origin, radius: 2.2 }).filled(INK);
     let name = Words::of(Face::Italic, "z", origin + DVec2::new(-0.65, 0.65) * TEXT, TEXT);
-    drawing.add_words("coordinate-name", name);
+    write(drawing, "coordinate-name", name, PAPER);
 }

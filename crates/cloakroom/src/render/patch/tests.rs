@@ -161,7 +161,7 @@ fn interpolated_paths_of_pulses_are_those_of_traced_rays() {
         let text =
             format!("[camera]\nresolution = [1024, 1024]\nsamples = 4\n[[device]]\n{device}\n");
         let scene = scene(&text);
-        let detection = Detection::UNPOLARIZED.in_flight(Arrivals::default());
+        let detection = Detection::UNPOLARIZED.in_flight(Arrivals::default(), 0.0);
         let errors = errors(&scene, &detection, [320, 416], (2, 13));
         rays += errors.rays;
         let is_true = errors.place < 1e-6 && errors.path < 1e-6 && errors.others == 0;
