@@ -283,7 +283,7 @@ test("Space turns whatever was clicked, toasts stay until they are closed", asyn
   await page.keyboard.press("Tab");
   await page.keyboard.press("Shift+Tab");
   await page.keyboard.press("Space");
-  assert.ok(await page.locator("#cards").isVisible());
+  await page.locator("#cards").waitFor({ timeout: 5000 });
   await page.click("#cards-close");
   await page.click("#copy-link");
   assert.match(await page.textContent("#toast-text"), /link/);
