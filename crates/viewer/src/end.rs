@@ -304,14 +304,13 @@ fn moment_of(
     let supervision = Supervision { rows_done: &rows_done, stop: supervision.stop };
     flight_part(prepared, &settings, tile, &supervision, |part| {
         let mut planes = lock(&planes);
-        let Tile { left, top, .. } = part.tile;
-        let corner = (top - tile.top) as usize * width + left as usize;
-        for (number, (bins, steady)) in part.bins.iter().zip(&part.steady).enumerate() {
-            let across = part.tile.width as usize;
-            let index = corner + number / across * width + number % across;
+        let above = tile.top as usize * width;
+        for (place, (bins, steady)) in
+            part.tile.places(width).zip(part.bins.iter().zip(&part.steady))
+        {
             let light = bins.light.first().copied().unwrap_or_default();
             for (color, plane) in planes.iter_mut().enumerate() {
-                plane[index] = (steady[color] + light[color]) as f32;
+                plane[place - above] = (steady[color] + light[color]) as f32;
             }
         }
         Ok::<_, Problem>(())

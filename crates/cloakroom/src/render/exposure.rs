@@ -194,19 +194,13 @@ pub(super) fn seen(
     look: Look,
     at: DVec3,
     steps: [DVec3; 2],
-    spread: Option<DVec3>,
+    spread: DVec3,
 ) -> [f64; 3] {
-    let both = || spread.map_or(steps, |spread| drawn_out(steps, spread));
+    let both = || drawn_out(steps, spread);
     match look {
         Look::Photograph => {
-            let [across, down] = steps.map(|step| [step.x, step.y]);
-            match spread {
-                None => prepared.photograph_light([at.x, at.y], [across, down]),
-                Some(spread) => {
-                    let steps = [across, down, [spread.x, spread.y]];
-                    prepared.photograph_light([at.x, at.y], steps)
-                }
-            }
+            let steps = [steps[0], steps[1], spread].map(|step| [step.x, step.y]);
+            prepared.photograph_light([at.x, at.y], steps)
         }
         Look::Body(body) => {
             let surface = prepared.body_surface(body);

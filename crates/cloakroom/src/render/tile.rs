@@ -69,7 +69,7 @@ impl Tile {
     }
 
     /// Where its pixels are in a picture of that width, row by row.
-    pub(crate) fn places(self, width: usize) -> impl Iterator<Item = usize> {
+    pub fn places(self, width: usize) -> impl Iterator<Item = usize> {
         let [left, top, columns, rows] =
             [self.left, self.top, self.width, self.height].map(|side| side as usize);
         (top..top + rows)

@@ -340,7 +340,7 @@ pub(super) fn expose<const N: usize>(
                 };
                 let steps = sight.steps.map(|step| step * spacing);
                 let prepared = &spectral.nodes[node];
-                let light = exposure::seen(prepared, *look, sight.at, steps, None);
+                let light = exposure::seen(prepared, *look, sight.at, steps, DVec3::ZERO);
                 let cell = &spectral.bands.cells[node];
                 let leaf = &leaves(node)[number];
                 if let Some(looked) = &detection.arrivals {
@@ -570,7 +570,7 @@ fn light_of(
     let at = sum(&group.middle, looks, |sight| sight.at);
     let at = if look == Look::Surroundings { at.normalize_or_zero() } else { at };
     let spread = sum(&group.spread, looks, |sight| sight.at);
-    exposure::seen(prepared, look, at, steps, Some(spread))
+    exposure::seen(prepared, look, at, steps, spread)
 }
 
 /// Adds to a pixel what a leaf brings, which counts for some light each with what is seen in it.
