@@ -106,11 +106,12 @@ def image_of(name: str, value: Any, encoding: Any = None) -> _cloakroom.Image:
         if encoding != "linear":
             return _cloakroom.Image(_required(name, array, np.uint8), True)
         array = np.asarray(array, np.float32) / np.float32(255)
-    elif encoding is None and _looks_like_srgb(array):
-        warnings.warn(
-            f"{name} has floats on the steps of 8-bit codes, as sRGB images divided by 255 have, but floats are taken as "
-            'linear light; say encoding="srgb", or encoding="linear" if they are',
-            stacklevel=4,
+    elif encoding is None and (doubt := _doubt(array)):
+        warnings.warn(f'{name} {doubt}, or encoding="linear" if it is linear light', stacklevel=4)
+    elif encoding == "srgb" and ((array < 0) | (array > 1)).any():
+        raise ValueError(
+            f"{name} has numbers from {array.min():g} to {array.max():g}; floats in sRGB are from 0 to 1: divide by 255, "
+            "or give uint8"
         )
     with np.errstate(over="ignore"):
         return _cloakroom.Image(_required(name, array, np.float32), encoding == "srgb")
@@ -119,14 +120,29 @@ def image_of(name: str, value: Any, encoding: Any = None) -> _cloakroom.Image:
 #: An image has more codes than this, a test pattern fewer.
 _FEWEST_CODES = 24
 
+#: Half of an image in linear light is hardly brighter than so many times white.
+_BRIGHT = 2.0
 
-def _looks_like_srgb(array: NDArray[Any]) -> bool:
-    """Whether all of its numbers are n/255, or whole numbers up to 255, of many different n."""
+
+def _doubt(array: NDArray[Any]) -> str | None:
+    """Why floats are hardly linear light in which 1 is white, and what to do, if they are not."""
     step = max(1, array.size // 65536)
     sample = np.asarray(array.reshape(-1)[::step], np.float64)
-    largest = sample.max()
-    if not 0 < largest <= 255 or sample.min() < 0:
-        return False
+    if not np.isfinite(sample).all():
+        # What is no number is refused in any case.
+        return None
+    if (lowest := sample.min()) < 0:
+        return f"has negative numbers, {lowest:g} among them, and there is no negative light; scale them to 0..1"
+    eight_bit, largest = "give uint8, or divide by 255 and say encoding=\"srgb\"", sample.max()
     codes = sample * 255 if largest <= 1 else sample
     whole = np.round(codes)
-    return bool((np.abs(codes - whole) < 1e-3).all()) and len(np.unique(whole)) > _FEWEST_CODES
+    if largest <= 255 and (np.abs(codes - whole) < 1e-3).all() and len(np.unique(whole)) > _FEWEST_CODES:
+        if largest <= 1:
+            return (
+                "has floats on the steps of 8-bit codes, as sRGB images divided by 255 have, but floats are taken as "
+                'linear light; say encoding="srgb"'
+            )
+        return f"has floats that are whole numbers up to 255, as 8-bit images have, but 1 is white; {eight_bit}"
+    if largest <= 255 and (middle := np.median(sample)) > _BRIGHT:
+        return f"has floats half of which are above {middle:g}, and 1 is white; if they are 8-bit codes, {eight_bit}"
+    return None

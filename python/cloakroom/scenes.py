@@ -126,6 +126,13 @@ class Scene:
         self._overrides: list[tuple[str, Any]] = []
         self._native = _cloakroom.Scene.of_tables(given, os.getcwd(), self._images)
 
+    def __setattr__(self, name: str, value: object) -> None:
+        if not name.startswith("_"):
+            raise AttributeError(
+                "scenes do not change; .replace({\"camera.samples\": 16}) gives another one, and Scene(...) takes its tables"
+            )
+        super().__setattr__(name, value)
+
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Scene:
         """Reads a scene file, or one of the examples.

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import os
 import textwrap
 from collections.abc import Mapping
 from typing import Any
@@ -16,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from . import _cloakroom
-from ._arrays import image_of, is_image_array
+from ._arrays import image_of, is_image_array, numbers
 from ._index import SPACING, check_shapes, grid_array, index_array
 
 _SCHEMA: dict[str, Any] = json.loads(_cloakroom.schema())
@@ -76,6 +77,17 @@ class Table:
         image = {} if self._image is None else {"image": self._image}
         return type(self)(**{**self._given, **image, **keys})
 
+    def __setattr__(self, name: str, value: object) -> None:
+        # What is set would be kept and never read.
+        if not name.startswith("_"):
+            if name not in self._properties:
+                try:
+                    _cloakroom.fit(self._table, {name: value})
+                except TypeError as error:
+                    raise AttributeError(str(error)) from None
+            raise AttributeError(f"tables do not change; .replace({name}=...) gives another one")
+        super().__setattr__(name, value)
+
     def __repr__(self) -> str:
         keys = ", ".join(f"{name}={value!r}" for name, value in self._given.items())
         return f"{type(self).__name__}({keys})"
@@ -126,6 +138,25 @@ class _Graded(Device):
                 words[name] = f"<{' x '.join(map(str, np.shape(values)))} samples>"
         keys = ", ".join(f"{name}={word}" for name, word in words.items())
         return f"{type(self).__name__}({keys})"
+
+
+class _Polyhedron(Device):
+    """A device whose corners or planes may be arrays."""
+
+    def __init__(self, **keys: Any) -> None:
+        for name, columns in (("vertices", 3), ("planes", 4)):
+            rows = keys.get(name)
+            if rows is None or isinstance(rows, (str, os.PathLike)):
+                continue
+            expected = f"real numbers of the shape (N, {columns}), four rows at least, or a path"
+            array = numbers(name, rows, expected)
+            if array.ndim != 2 or array.shape[1] != columns or len(array) < 4:
+                raise ValueError(f"{name} has the shape {array.shape}; expected {expected}")
+        super().__init__(**keys)
+
+
+#: The devices that take more than the keys of the catalogue.
+_BASES: dict[str, type[Device]] = {"graded": _Graded, "polyhedron": _Polyhedron}
 
 
 def _rebuild(name: str, keys: Mapping[str, Any], array: Any) -> Table:
@@ -237,7 +268,7 @@ for _reference in _SCHEMA["properties"]["device"]["items"]["oneOf"]:
     _kind = _reference["$ref"].rsplit("/", 1)[-1]
     _description = _SCHEMA["$defs"][_kind]
     _summary = _wrapped(_description["title"].rstrip(".") + ".", _description["description"])
-    _base = _Graded if _kind == "graded" else Device
+    _base = _BASES.get(_kind, Device)
     _class = _make(class_name(_kind), _base, _summary, _description["properties"], _kind)
     DEVICES[_kind] = globals()[_class.__name__] = _class
 for _kind, _description in _SCHEMA["properties"].items():

@@ -220,8 +220,14 @@ def test_floats_are_light_or_srgb() -> None:
         photograph = Photograph(image=floats, encoding="linear")
         assert photograph.replace(x=60).x == 60 and pickle.loads(pickle.dumps(photograph)) == photograph
         np.testing.assert_array_equal(light(codes, encoding="linear"), dark)
-    with pytest.warns(UserWarning, match="photograph"):
+    with pytest.warns(UserWarning, match="photograph has floats that are whole numbers up to 255.*divide by 255"):
         Scene(photograph=codes.astype(float))
+    with pytest.warns(UserWarning, match="half of which are above .*divide by 255"):
+        Scene(photograph=0.5 * codes + 0.3)
+    with pytest.warns(UserWarning, match="negative numbers, -1 among them"):
+        Scene(photograph=2 * floats.clip(0, 1) - 1)
+    with pytest.raises(ValueError, match="numbers from 0 to 25.*; floats in sRGB are from 0 to 1: divide by 255"):
+        Photograph(image=codes.astype(float), encoding="srgb")
     with pytest.raises(ValueError, match="encoding is 'gamma'"):
         Photograph(image=floats, encoding="gamma")
     with pytest.raises(ValueError, match="encoding is that of arrays"):

@@ -50,6 +50,26 @@ def test_the_stub_is_that_of_the_catalogue() -> None:
     assert (folder / "cloakroom" / "tables.pyi").read_text(encoding="utf-8") == stubs.stub()
 
 
+def test_what_is_set_does_not_vanish() -> None:
+    cloak = cloakroom.SquareCloak(rotation=10)
+    scene = cloakroom.Scene(devices=cloak)
+    with pytest.raises(AttributeError, match="did you mean `rotation`"):
+        cloak.rotaton = 9
+    with pytest.raises(AttributeError, match=r"\.replace\(rotation=\.\.\.\)"):
+        cloak.rotation = 9
+    with pytest.raises(AttributeError, match=r"\.replace\(samples=\.\.\.\)"):
+        scene.camera.samples = 9
+    with pytest.raises(AttributeError, match=r"\.replace\(\{"):
+        scene.samples = 9
+    assert cloak == cloakroom.SquareCloak(rotation=10) == scene.devices[0]
+
+
+@pytest.mark.parametrize(("name", "shape"), [("vertices", (4, 2)), ("vertices", (3, 3)), ("planes", (6, 3)), ("planes", (4,))])
+def test_solids_of_wrong_shapes_are_told_at_once(name: str, shape: tuple[int, ...]) -> None:
+    with pytest.raises(ValueError, match=rf"{name} has the shape \({shape[0]}"):
+        cloakroom.Polyhedron(**{name: np.ones(shape)})
+
+
 def test_keys_are_given_or_at_their_defaults() -> None:
     cloak = cloakroom.SquareCloak(material="negative-uniaxial", rotation=10, length=None)
     assert repr(cloak) == "SquareCloak(material='negative-uniaxial', rotation=10.0)"
