@@ -43,10 +43,10 @@ const MOST_EVENTS: f64 = 10_000.0;
 
 /// As often, in surfaces met, it is looked whether a branch runs in place: into a corner of media in
 /// which rays and wave vectors go different ways, say, where it never arrives.
-const EVENTS_PER_LOOK: u32 = 64;
+const EVENTS_PER_LOOK: u32 = 8;
 
 /// A branch runs in place that has as much of its power left after that.
-const LEFT_IN_PLACE: f64 = 0.99;
+const LEFT_IN_PLACE: f64 = 0.99875;
 
 /// A branch that carries more than so many times what was launched is not followed. In absorbing
 /// media beams carry what their interference takes back; where light starts in a film of such a
