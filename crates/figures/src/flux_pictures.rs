@@ -35,7 +35,7 @@ pub fn flux_plot(report: &FluxReport, axis: &str) -> Plot {
             let points = report.incidences.iter().map(point).collect();
             Curve { label: label.to_owned(), points }
         });
-        PlotPanel { title: title.to_owned(), curves: curves.to_vec() }
+        PlotPanel { title: title.to_owned(), rounding: 0.0, curves: curves.to_vec() }
     };
     let irradiance = panel("Mean irradiance", &|incidence, stand, light| {
         let total = incidence.totals[stand as usize][light];

@@ -24,6 +24,8 @@ pub struct Plot {
 pub struct PlotPanel {
     /// The quantity with its unit.
     pub title: String,
+    /// What is smaller is rounding, and drawn as 0.
+    pub rounding: f64,
     /// Its curves, in the same order in all panels.
     pub curves: Vec<Curve>,
 }
@@ -133,7 +135,7 @@ impl Plot {
         match self.categories.len() {
             0 => {
                 let curves = self.panels.iter().flat_map(|panel| &panel.curves);
-                padded(curves.flat_map(|curve| &curve.points).map(|point| point.x), 0.03)
+                padded(curves.flat_map(|curve| &curve.points).map(|point| point.x), 0.03, 0.0)
             }
             count => -0.5..count as f64 - 0.5,
         }
@@ -165,7 +167,7 @@ impl PlotPanel {
     ) {
         let points = self.curves.iter().flat_map(|curve| &curve.points);
         let numbers = points.flat_map(|point| [point.y - point.error, point.y + point.error]);
-        let along = padded(numbers, 0.08);
+        let along = padded(numbers, 0.08, self.rounding);
         let up = axis(&Quantity::named(&self.title), Some((along.start, along.end)), 6);
         frame.draw(drawing);
         frame.draw_up(drawing, &up);
@@ -223,19 +225,22 @@ fn mark(drawing: &mut Drawing, curve: usize, at: DVec2) {
     drawing.add("mark", shape).filled(color(curve));
 }
 
-/// The range of numbers, a little wider than they are.
-fn padded(numbers: impl Iterator<Item = f64>, share: f64) -> Range<f64> {
+/// The range of numbers, a little wider than they are; from 0 to 1 where all of them are `rounding`.
+fn padded(numbers: impl Iterator<Item = f64>, share: f64, rounding: f64) -> Range<f64> {
     let (low, high) = numbers
         .filter(|number| number.is_finite())
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), n| (l.min(n), h.max(n)));
     if low > high {
         return 0.0..1.0;
     }
+    let size = low.abs().max(high.abs());
+    if size <= rounding {
+        return -share..1.0;
+    }
     // Numbers that differ by rounding alone are one number.
     let width = high - low;
-    if width <= 1e-9 * low.abs().max(high.abs()) || width == 0.0 {
-        let room = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
-        return low - room..high + room;
+    if width <= rounding.max(1e-9 * size) {
+        return low - 0.1 * size..high + 0.1 * size;
     }
     low - share * width..high + share * width
 }
@@ -257,6 +262,7 @@ mod tests {
         };
         let panel = |title: &str| PlotPanel {
             title: title.to_owned(),
+            rounding: 0.0,
             curves: vec![curve("horizontal", 1.0), curve("vertical", -2.0)],
         };
         Plot {
@@ -310,8 +316,9 @@ mod tests {
 
     #[test]
     fn the_axis_suits_what_it_counts() {
-        assert_eq!(padded([3.0, f64::NAN].into_iter(), 0.1), 2.7..3.3);
-        assert_eq!(padded(std::iter::empty(), 0.1), 0.0..1.0);
+        assert_eq!(padded([3.0, f64::NAN].into_iter(), 0.1, 0.0), 2.7..3.3);
+        assert_eq!(padded([0.0, 1e-15].into_iter(), 0.1, 1e-9), -0.1..1.0);
+        assert_eq!(padded(std::iter::empty(), 0.1, 0.0), 0.0..1.0);
         let categories = vec!["horizontal".to_owned(), "vertical".to_owned()];
         let mut plot = plot();
         for panel in &mut plot.panels {

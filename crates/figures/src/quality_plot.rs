@@ -10,6 +10,9 @@ use std::path::Path;
 pub const STANDARD_PLOT: [&str; 3] =
     ["ideal_silhouette_correlation", "displacement_rms_cm", "delivered"];
 
+/// What figures of a table know no better, in their units: correlations, shares, cm.
+const ROUNDING: f64 = 1e-9;
+
 /// A format of files of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableFormat {
@@ -111,6 +114,7 @@ pub fn quality_plot(table: &QualityTable, names: &[String]) -> Result<Plot, Illu
         let column = &table.columns[index];
         Ok(PlotPanel {
             title: with_unit(&column.title, column.unit),
+            rounding: ROUNDING,
             curves: curves.iter().map(curve).collect(),
         })
     };

@@ -96,11 +96,13 @@ pub fn setting(scene: &Scene) -> Result<Setting, PreparedSceneError> {
     let whole: Vec<_> =
         order.iter().map(|index| (&subjects[*index], !layout.is_magnified(*index))).collect();
     devices.draw_measured(&mut drawing, &layout.view, &whole);
+    for inset in &layout.insets {
+        inset.draw_frame(&mut drawing, &layout.view);
+    }
     stage.draw_before(&mut drawing, &layout.view);
     stage.draw_distances(&mut drawing, &layout.view, subjects);
     draw_axes(&mut drawing, layout.axes);
     for inset in &layout.insets {
-        inset.draw_frame(&mut drawing, &layout.view);
         let is_in = |index: &&usize| inset.group.subjects.contains(*index);
         let shown: Vec<_> =
             order.iter().filter(is_in).map(|index| (&subjects[*index], true)).collect();

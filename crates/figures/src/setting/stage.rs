@@ -100,12 +100,12 @@ impl Stage {
         let name = |text: &str, at: DVec2| within(view, Words::new(text, at, TEXT));
         let back = self.forward.map_or(DVec2::ZERO, |f| 0.5 * EYE * DVec2::new(-f.x, f.y));
         let words = name("camera", eye + back + DVec2::Y * (0.62 * EYE + 0.6 * TEXT));
-        drawing.add_words("camera-label", words);
+        write(drawing, "camera-label", words, PAPER);
         let lowest =
             self.photograph().into_iter().map(|p| view.place(p).y).fold(f64::MIN, f64::max);
         let foot = view.place(self.screen.middle.truncate()).x;
         let words = name("photograph", DVec2::new(foot, lowest + 0.9 * TEXT));
-        drawing.add_words("photograph-label", words);
+        write(drawing, "photograph-label", words, PAPER);
     }
 
     /// Draws how far camera, axes of devices and photograph are from each other along x, in a row

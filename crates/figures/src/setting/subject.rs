@@ -69,15 +69,15 @@ impl<'s> Subject<'s> {
         self.section.body.is_some() && self.section.body_medium.is_none()
     }
 
-    /// Whether it is a body that lies within another device as they are drawn; of two of one size,
-    /// whether `or_alike`.
-    pub fn is_within(&self, other: &Self, or_alike: bool) -> bool {
+    /// Whether it lies within another device as they are drawn, as a body, of two of one size the one that
+    /// `stands_behind`, or hidden by an opaque one that it stands behind.
+    pub fn is_within(&self, other: &Self, stands_behind: bool) -> bool {
         let (Some([low, high]), Some([from, to])) = (self.bounds(), other.bounds()) else {
             return false;
         };
         let alike = [low, high] == [from, to];
-        self.section.body.is_some()
-            && (or_alike || !alike)
+        let is_inner = self.section.body.is_some() && (stands_behind || !alike);
+        (is_inner || stands_behind && other.is_opaque())
             && from.cmple(low).all()
             && high.cmple(to).all()
     }
