@@ -6,7 +6,7 @@ use crate::report::{self, Result};
 use crate::scene;
 use cloakroom::assembly::Placed;
 use cloakroom::render::{
-    Estimate, Images, PreparedScene, behind_photograph, estimate, share_past_edge,
+    Estimate, Images, Origins, PreparedScene, behind_photograph, estimate, origins, pixels_across,
 };
 use cloakroom::scene::{Border, Scene, Show};
 use cloakroom::threads;
@@ -16,6 +16,9 @@ use std::fmt::Write;
 const THIN: f64 = 10.0;
 
 const CM_PER_NM: f64 = 1e-7;
+
+/// Devices of fewer pixels each way are dots.
+const DOT: f64 = 4.0;
 
 /// Validates a scene and prints facts about it.
 pub fn run(arguments: &CheckArguments) -> Result<()> {
@@ -98,7 +101,30 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
              picture.map = \"time_of_flight\""
         )?;
     }
-    let past = share_past_edge(prepared);
+    for number in 0..scene.devices.len() {
+        let name = scene.device_name(number);
+        match pixels_across(prepared, number) {
+            None => writeln!(
+                text,
+                "hint         {name} is out of the camera's view; camera.target and camera.field_of_view say where \
+                 it looks"
+            )?,
+            Some(across) if across.iter().all(|pixels| *pixels < DOT) => writeln!(
+                text,
+                "hint         {name} is less than {DOT} pixels large in the picture; lengths are in cm"
+            )?,
+            Some(_) => {}
+        }
+    }
+    let Origins { photograph, past_edge: past } = origins(prepared);
+    if photograph == 0.0 {
+        writeln!(
+            text,
+            "hint         no light comes from the photograph, which is at {}; photograph.x or \
+             photograph.position moves it, camera.target turns the camera",
+            scene.photograph.place()
+        )?;
+    }
     if past > 0.0 {
         writeln!(
             text,

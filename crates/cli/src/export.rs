@@ -5,7 +5,7 @@ use crate::files::check_writable;
 use crate::progress::supervised;
 use crate::report::{Failure, Result};
 use crate::{interruption, scene};
-use cloakroom::keys::quoted;
+use cloakroom::keys::{hint, quoted};
 use cloakroom::material::{self, Frame, Resolution};
 use cloakroom::outline_mesh::{MeshFormat, outlines, write_mesh};
 use cloakroom::output;
@@ -50,6 +50,11 @@ fn numbered(scene: &Scene, word: &str) -> Result<usize> {
     let name = |number: usize| scene.devices[number].placement.name.as_deref();
     let named = (0..scene.devices.len()).find(|number| name(*number) == Some(word));
     named.or_else(|| word.parse().ok()).ok_or_else(|| {
-        Failure::Failed(format!("--device: no device of the scene is called {}", quoted(word, '`')))
+        let names: Vec<&str> = (0..scene.devices.len()).filter_map(name).collect();
+        Failure::Failed(format!(
+            "--device: no device of the scene is called {}{}; they are counted from 0",
+            quoted(word, '`'),
+            hint(word, &names, "there are")
+        ))
     })
 }

@@ -186,7 +186,11 @@ fn plot(
         };
         waves.iter().map(curve).collect::<Vec<_>>()
     };
-    let panel = |title: &str, part| PlotPanel { title: title.to_owned(), curves: curve(part) };
+    let panel = |title: &str, part| PlotPanel {
+        title: title.to_owned(),
+        rounding: 0.0,
+        curves: curve(part),
+    };
     let mut panels = vec![
         panel("Index of refraction n", |found| found.index.re),
         panel("Group index", |found| found.group_index.re),

@@ -262,7 +262,10 @@ fn faults_are_told_in_the_words_that_were_typed() {
     };
     let check = |set: &'static str| vec!["check", "two.toml", "--set", set];
     for (arguments, told) in [
-        (animate(&["--keyframes", "keys.toml"]), "error: --keyframes, frame 0, device.0.bad=1.0: "),
+        (
+            animate(&["--keyframes", "keys.toml"]),
+            "error: --keyframes keys.toml, frame 0, device.0.bad=1.0: ",
+        ),
         (animate(&["--keyframes", "far.toml"]), "a film has at most 100000 frames"),
         (animate(&["--orbit", "0..20:5"]), "--orbit 0..20:5: it takes no step"),
         (vec!["check", "scene.toml", "--photo", "no.png"], "error: --photo no.png: there is no"),

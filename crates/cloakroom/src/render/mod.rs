@@ -35,7 +35,7 @@ pub use prepared_scene::{
 };
 pub use pulses::{Landing, Pulse, PulseError, PulseList, pulses};
 pub use tile::{MergeError, Tile, TileError, merge, merge_images};
-pub use warnings::{behind_photograph, share_past_edge};
+pub use warnings::{Origins, behind_photograph, origins, pixels_across};
 
 use crate::color::BINS;
 use crate::output::Picture;

@@ -6,19 +6,27 @@ use crate::assembly::Placed;
 use crate::device::REACH;
 use crate::scene::{Border, Projection};
 use crate::trace::Tracer;
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 
 /// The rays across and down that are looked at.
 const RAYS: [u32; 2] = [48, 36];
 
-/// The share of the light that goes past the edge of the photograph, through its plane: of rays
-/// spread over the whole picture.
+/// As far as endless devices are looked at, cm.
+const FAR: f64 = 1e9;
+
+/// Where the light of a picture comes from, as shares of all of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Origins {
+    /// From the photograph, or what its border shows.
+    pub photograph: f64,
+    /// Through the photograph's plane past its edge, where nothing is.
+    pub past_edge: f64,
+}
+
+/// Where the light of the picture comes from, of rays spread over the whole of it.
 #[must_use]
-pub fn share_past_edge(prepared: &PreparedScene<'_>) -> f64 {
+pub fn origins(prepared: &PreparedScene<'_>) -> Origins {
     let (camera, screen) = (&prepared.scene.camera, &prepared.screen);
-    if prepared.scene.photograph.border != Border::None {
-        return 0.0;
-    }
     let detection = Detection::UNPOLARIZED;
     let mut tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(*screen);
     // The first and the last pixel of each side are among them.
@@ -28,17 +36,49 @@ pub fn share_past_edge(prepared: &PreparedScene<'_>) -> f64 {
         (0..count).map(place)
     });
     let [columns, rows] = places;
-    let mut past = 0.0;
+    let mut origins = Origins::default();
     for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
         let (leaves, _) = tracer.trace(&detection.launch(camera, &camera.ray(x, y)));
-        let passes = leaves.iter().filter(|leaf| {
-            leaf.body().is_none()
-                && leaf.distance_to(screen).is_none()
-                && screen.plane_distance(leaf.position, leaf.direction, 0.0).is_some()
-        });
-        past += passes.map(|leaf| detection.detected(&leaf.power)).sum::<f64>();
+        for leaf in leaves.iter().filter(|leaf| leaf.body().is_none()) {
+            let share = detection.detected(&leaf.power) / f64::from(RAYS[0]) / f64::from(RAYS[1]);
+            if leaf.distance_to(screen).is_some() {
+                origins.photograph += share;
+            } else if screen.plane_distance(leaf.position, leaf.direction, 0.0).is_some()
+                && prepared.scene.photograph.border == Border::None
+            {
+                origins.past_edge += share;
+            }
+        }
     }
-    past / f64::from(RAYS[0] * RAYS[1])
+    origins
+}
+
+/// How many pixels a device takes of the picture, across and down, as far as it is known: those of a
+/// box around it.
+///
+/// `None` if all of the box lies behind the camera or beyond one side of the picture; infinite where
+/// part of it lies behind the camera.
+#[must_use]
+pub fn pixels_across(prepared: &PreparedScene<'_>, device: usize) -> Option<[f64; 2]> {
+    let camera = &prepared.scene.camera;
+    let [low, high] = prepared.assembly.devices()[device].bounds()?;
+    let [low, high] = [low, high].map(|end| end.clamp(DVec3::splat(-FAR), DVec3::splat(FAR)));
+    let corner = |i: u32| DVec3::select(BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), low, high);
+    let seen: Vec<[f64; 3]> = (0..8).map(|i| camera.seen(corner(i))).collect();
+    let beyond = |side: usize| {
+        let far = f64::from(camera.resolution[side]);
+        seen.iter().all(|at| at[side] < 0.0) || seen.iter().all(|at| at[side] > far * at[2])
+    };
+    if seen.iter().all(|at| at[2] <= 0.0) || beyond(0) || beyond(1) {
+        return None;
+    }
+    Some([0, 1].map(|side| {
+        if seen.iter().any(|at| at[2] <= 0.0) {
+            return f64::INFINITY;
+        }
+        let places = seen.iter().map(|at| at[side] / at[2]);
+        places.clone().fold(f64::MIN, f64::max) - places.fold(f64::MAX, f64::min)
+    }))
 }
 
 /// The devices, by their numbers, that the photograph hides from the camera: their middles lie behind

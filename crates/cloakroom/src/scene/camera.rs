@@ -152,6 +152,26 @@ impl Camera {
         }
     }
 
+    /// Where a point is seen, in homogeneous coordinates [x, y, w]: at x/w, y/w in pixels as in
+    /// [`Camera::ray`] if w > 0; behind the camera, w <= 0.
+    #[must_use]
+    pub fn seen(&self, point: DVec3) -> [f64; 3] {
+        let from = point - self.settings.position;
+        let ahead = from.dot(self.forward);
+        let w = match self.settings.projection {
+            Projection::Perspective => ahead,
+            Projection::Orthographic => {
+                if ahead > 0.0 {
+                    1.0
+                } else {
+                    0.0
+                }
+            }
+        };
+        let [across, upward] = [self.right, self.up].map(|axis| from.dot(axis) / self.pixel);
+        [self.middle[0] * w + across, self.middle[1] * w - upward, w]
+    }
+
     /// The horizontal and the vertical electric field of a ray, unit vectors across it: those of
     /// [`transverse_basis`] with the camera's right-hand axis. For a ray along that axis the
     /// horizontal one is the line of sight, as it is x for a ray along z in the paper's scene.

@@ -121,6 +121,10 @@ fn key_and_value(root: &Value, each: &Override) -> Result<(Vec<String>, Value), 
     if path.iter().any(String::is_empty) {
         return Err("a key is missing; write it as in camera.samples=16".to_owned());
     }
+    if path.iter().any(|key| key.ends_with(']')) {
+        let dotted = path.join(".").replace('[', ".").replace(['"', '\'', ']'], "");
+        return Err(format!("entries of lists follow a dot: {}", quoted(&dotted, '`')));
+    }
     if path.len() > DEEPEST {
         return Err("no key lies that deep".to_owned());
     }

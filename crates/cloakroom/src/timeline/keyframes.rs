@@ -15,6 +15,8 @@ const WAY: &str = "way";
 /// Keyframes as they are written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keyframes {
+    /// The name of their file.
+    pub(super) name: String,
     /// Keys, each with its values at frames.
     keys: Vec<(String, Vec<(f64, Value)>)>,
     is_smooth: bool,
@@ -48,7 +50,7 @@ impl Keyframes {
             }
         }
         let list = root.entry(LIST).and_then(Value::as_list).unwrap_or_default();
-        let mut frames = Self { keys: Vec::new(), is_smooth, last: -1.0 };
+        let mut frames = Self { name: name.to_owned(), keys: Vec::new(), is_smooth, last: -1.0 };
         for (number, keyframe) in list.iter().enumerate() {
             let refuse =
                 |message: &str| refuse(format!("{LIST} {number} (counted from 0): {message}"));

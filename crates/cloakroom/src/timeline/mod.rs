@@ -15,6 +15,8 @@ pub struct Timeline {
     sweeps: Vec<Sweep>,
     /// What keyframes change, written as sweeps.
     keyframes: Vec<Sweep>,
+    /// The file of the keyframes.
+    file: String,
     /// How far the camera has gone round its target, frame by frame, degrees.
     orbit: Option<Vec<f64>>,
     frames: usize,
@@ -113,6 +115,7 @@ impl Timeline {
         let counted = counted.or(sweeps.first().map(|sweep| sweep.values.len()));
         let orbit = orbit.map(|text| azimuths(text, counted));
         let (orbit, frames) = (orbit.transpose()?, counted.ok_or(TimelineError::Still)?);
+        let file = keyframes.map(|keyframes| keyframes.name.clone()).unwrap_or_default();
         let keyframes = keyframes.map(|keyframes| keyframes.sweeps(frames)).unwrap_or_default();
         let all = || sweeps.iter().chain(&keyframes);
         for (number, sweep) in all().enumerate() {
@@ -127,7 +130,7 @@ impl Timeline {
         if all().next().is_none() && orbit.is_none() {
             return Err(TimelineError::Still);
         }
-        Ok(Self { sweeps, keyframes, orbit, frames })
+        Ok(Self { sweeps, keyframes, file, orbit, frames })
     }
 
     /// How many frames there are.
@@ -147,7 +150,7 @@ impl Timeline {
     pub fn overrides(&self, frame: usize) -> Vec<Override> {
         let keyed = self.keyframes.iter().map(|sweep| {
             let set = sweep.set(frame);
-            let words = format!("--keyframes, frame {frame}, {set}");
+            let words = format!("--keyframes {}, frame {frame}, {set}", self.file);
             set.by(words)
         });
         self.sweeps.iter().map(|sweep| sweep.set(frame)).chain(keyed).collect()

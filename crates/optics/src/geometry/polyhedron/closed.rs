@@ -203,9 +203,18 @@ impl Polyhedron {
             let at = first[shell as usize].map(|triangle| self.piece(triangle as u32)[0]);
             let Some(at) = at else { continue };
             // Hollows show their insides: only how often they are crossed tells on which side one is.
-            let inside = self.crossings(at, |triangle| shells[triangle as usize] != shell) % 2 == 1;
+            let within = |at: DVec3| {
+                self.crossings(at, |triangle| shells[triangle as usize] != shell) % 2 == 1
+            };
+            let inside = within(at);
             if inside != (volume < 0.0) {
-                return Err(MeshFault::Shell { at, inside });
+                // Where edges meet edges, parts cross and no edge goes through a triangle.
+                let own = (0u32..).zip(shells).filter(|(_, of)| **of == shell);
+                let mut corners = own.flat_map(|(number, _)| self.piece(number));
+                return Err(match corners.find(|corner| within(*corner) != inside) {
+                    Some(_) => MeshFault::Crossing(at),
+                    None => MeshFault::Shell { at, inside },
+                });
             }
         }
         Ok(())
