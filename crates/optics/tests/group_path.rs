@@ -6,7 +6,7 @@ use glam::DVec3;
 use optics::geometry::Extent;
 use optics::medium::ModeKind;
 use optics::propagation::{
-    Half, OpticAxis, PathPoint, RadialFlow, TransformedShell, UniaxialCylinder,
+    ConformalFlow, Half, OpticAxis, PathPoint, RadialFlow, TransformedShell, UniaxialCylinder,
 };
 use optics::transformation::{RadialMap, Symmetry};
 
@@ -171,4 +171,36 @@ fn conformal_media_delay_pulses_by_the_larger_of_n_and_its_reciprocal() {
         seen += 1;
     }
     assert!(late > 1.0, "{late}");
+}
+
+#[test]
+fn what_a_pulse_takes_is_known_from_the_steps_of_its_way() {
+    let extent = Extent { min: -40.0, max: 40.0 };
+    for scale in [1.0, 0.8] {
+        let flow = flow(extent, scale);
+        let (mut dice, mut late, mut count) = (Dice(8), 0.0, 0);
+        while count < 600 {
+            let from = DVec3::new(dice.between(-24.0, 24.0), dice.between(0.1, 28.0), 0.0);
+            // In the plane, nearly so as seen from a camera, and steep.
+            let across = [0.0, 1e-6, 0.03, 0.1, 0.3, 1.0][count % 6] * dice.between(-1.0, 1.0);
+            let way = DVec3::new(dice.between(-1.0, 1.0), dice.between(-1.0, 1.0), across);
+            let Ok(start) = flow.virtual_point(Half::Upper, from) else { continue };
+            let p = way.normalize() * start.index;
+            let exact = flow.causal_group_path(&start, p, 1e-10).expect("an end");
+            for tolerance in [1e-3, 1e-5, 1e-8] {
+                let starts = [None, Some((start, p)), None, None];
+                let [_, end, ..] = flow.advance_four(&starts, tolerance, true);
+                let end = end.expect("a ray").expect("an end");
+                let found = end.group_path.expect("asked for");
+                let error = (found - exact).abs();
+                assert!(
+                    error < ConformalFlow::KNOWN_TO.max(3.0 * tolerance),
+                    "{error} {tolerance} {from} {p}"
+                );
+                late += found - end.optical_path;
+            }
+            count += 1;
+        }
+        assert!(late > 1.0, "{late}");
+    }
 }

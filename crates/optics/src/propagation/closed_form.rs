@@ -81,6 +81,7 @@ pub fn follow(
         direction: to,
         optical_path,
         // |Re(E × H*)| = n |E|².
+        group_path: None,
         transport: turn * (before.value / after.value).powf(0.25),
         outward: surface.outward(ray.position),
     };

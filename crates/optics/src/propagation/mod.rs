@@ -52,6 +52,9 @@ pub struct PathEnd<Surface, Virtual = ()> {
     pub direction: DVec3,
     /// The optical path from start to end, cm.
     pub optical_path: f64,
+    /// The speed of light times the time that a pulse takes at the least dispersion that causality
+    /// allows, cm, where it has been asked for and is known from the way itself.
+    pub group_path: Option<f64>,
     /// What takes the electric field of the wave from start to end, |Re(E × H*)| being kept.
     pub transport: DMat3,
     /// The unit normal of the surface, out of the medium.

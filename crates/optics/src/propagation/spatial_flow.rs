@@ -345,6 +345,7 @@ impl SpatialFlow {
             wave_vector: end_wave_vector,
             direction,
             optical_path: end[6],
+            group_path: None,
             transport,
             outward,
         };

@@ -142,6 +142,9 @@ pub struct Passage {
     pub transport: Option<DMat3>,
     /// Optical path length, cm.
     pub optical_path: f64,
+    /// The speed of light times what a pulse takes at the least dispersion that causality allows, cm,
+    /// where it was asked for and is known from the way itself.
+    pub group_path: Option<f64>,
     /// ∫ Im n ds along a bent way through a medium that absorbs, cm.
     pub extinction: f64,
     /// The point in the virtual space of a conformal region, to go on from after a reflection.
@@ -238,10 +241,11 @@ impl Region {
                 straight * region.medium.causal_group_index(ray.wave_vector, electric)
             }
             Self::Conformal(region) if region.loss_tangent == 0.0 => {
-                let path = region.start(ray).and_then(|start| {
+                let path = || {
+                    let start = region.start(ray)?;
                     region.flow.causal_group_path(&start, ray.wave_vector, tolerance).ok()
-                });
-                path.unwrap_or(f64::NAN)
+                };
+                end.group_path.or_else(path).unwrap_or(f64::NAN)
             }
             Self::Conformal(_) => f64::NAN,
             Self::Radial(region) if region.inner == FarSide::Outside && region.turns_back(ray) => {
@@ -332,7 +336,8 @@ impl Region {
         let passage = match self {
             Self::Homogeneous(region) => region.advance(ray),
             Self::Conformal(region) => {
-                let [passage, ..] = region.advance_four(&[Some(*ray), None, None, None], tolerance);
+                let [passage, ..] =
+                    region.advance_four(&[Some(*ray), None, None, None], tolerance, false);
                 return passage.unwrap_or(Err(NoPassage::Lost));
             }
             Self::Radial(region) => region.advance(ray),
@@ -343,18 +348,19 @@ impl Region {
     }
 
     /// As [`Region::advance`], up to four rays at once: see [`Region::takes_four`]. Each gets what
-    /// it would get alone.
+    /// it would get alone; with `pulses` what a pulse takes, too, where that is known from the way.
     #[must_use]
     pub fn advance_four(
         &self,
         rays: &[Option<InnerRay>; 4],
         tolerance: f64,
+        pulses: bool,
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
         match self {
             Self::Homogeneous(_) | Self::Radial(_) | Self::ClosedForm(_) | Self::Spatial(_) => {
                 rays.map(|ray| ray.map(|ray| self.advance(&ray, tolerance)))
             }
-            Self::Conformal(region) => region.advance_four(rays, tolerance),
+            Self::Conformal(region) => region.advance_four(rays, tolerance, pulses),
         }
     }
 
@@ -488,6 +494,7 @@ impl Passage {
             direction: ray.direction,
             transport: None,
             optical_path: ray.wave_vector.dot(end - ray.position),
+            group_path: None,
             extinction: 0.0,
             virtual_point: None,
             face,
@@ -506,6 +513,7 @@ impl Passage {
             direction: end.direction,
             transport: Some(end.transport),
             optical_path: end.optical_path,
+            group_path: end.group_path,
             ..Self::straight(ray, end.position, face, end.outward, far)
         }
     }
@@ -529,9 +537,10 @@ impl ConformalRegion {
         &self,
         rays: &[Option<InnerRay>; 4],
         tolerance: f64,
+        pulses: bool,
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
         let starts = rays.map(|ray| Some((self.start(&ray?)?, ray?.wave_vector)));
-        let ends = self.flow.advance_four(&starts, tolerance);
+        let ends = self.flow.advance_four(&starts, tolerance, pulses);
         std::array::from_fn(|i| {
             let ray = rays[i].as_ref()?;
             Some(match ends[i].as_ref() {

@@ -7,6 +7,7 @@ use crate::assembly::{Assembly, Screen};
 use crate::device::{InnerRay, NoPassage, Passage};
 use glam::DVec3;
 use optics::interface::OutgoingWaves;
+use optics::propagation::ConformalFlow;
 use optics::wave::ComplexVector;
 
 /// A ray to launch, with `N` polarizations at once.
@@ -302,7 +303,9 @@ impl<'a, const N: usize, W: PathRecorder<N>> Tracer<'a, N, W> {
         (device, region): (u16, u16),
         rays: &[Option<InnerRay>; 4],
     ) -> [Option<Result<Passage, NoPassage>>; 4] {
-        self.assembly.device(device).region(region).advance_four(rays, self.limits.tolerance)
+        let region = self.assembly.device(device).region(region);
+        let pulses = self.group_delays && self.pulse_tolerance() >= ConformalFlow::KNOWN_TO;
+        region.advance_four(rays, self.limits.tolerance, pulses)
     }
 
     fn walk(&mut self, branch: &mut Branch<N>) -> Option<(u16, u16)> {

@@ -411,10 +411,15 @@ pub fn arrival_times(prepared: &PreparedScene<'_>, arrivals: &Arrivals) -> Optio
     /// Rays across and down.
     const RAYS: [u32; 2] = [64, 48];
     const LEAST_POWER: f64 = 1e-3;
+    /// As exactly as that, cm, where pulses go.
+    const TOLERANCE: f64 = 1e-4;
     let camera = &prepared.scene.camera;
     let detection = Detection::UNPOLARIZED;
     let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
-    let tracer = if arrivals.delay == Delay::Group { tracer.with_group_delays() } else { tracer };
+    let tracer = match arrivals.delay {
+        Delay::Group => tracer.with_group_delays_to(TOLERANCE),
+        Delay::Phase => tracer,
+    };
     let all = (0..RAYS[1]).into_par_iter().map_init(
         || tracer.clone(),
         |tracer, row| {

@@ -4,6 +4,7 @@ use glam::DVec3;
 use num_complex::Complex64;
 
 use super::crossing::{Crossing, RootRefinement, RootStatus};
+use super::lateness::Step;
 use super::points::{Point, Points};
 use super::step_control::StepControl;
 use super::strides::{Move, Rays, StepKind, StepResult};
@@ -33,6 +34,8 @@ struct RayState {
     status: RayStatus,
     stride: f64,
     steps: u32,
+    /// How much longer a pulse has taken than its phase, cm, if that is wanted.
+    lateness: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +80,7 @@ impl RayPacket {
         starts: &[Option<(VirtualPoint, DVec3)>; LANES],
         tolerance: f64,
     ) -> Self {
-        let ray = RayState { status: RayStatus::Absent, stride: 0.0, steps: 0 };
+        let ray = RayState { status: RayStatus::Absent, stride: 0.0, steps: 0, lateness: None };
         let control = flow.step_control(tolerance, false);
         let (cut, zeros) = (&flow.cut, [0.0; LANES]);
         let lever = 0.5 * (cut.x_max - cut.x_min).max(cut.y_max - flow.map.level());
@@ -183,6 +186,22 @@ impl RayPacket {
         }
     }
 
+    /// From here on works out what pulses take, where the medium is that of its map.
+    pub fn with_pulses(&mut self, flow: &ConformalFlow) {
+        for ray in &mut self.states {
+            ray.lateness = Some(0.0).filter(|_| !flow.is_uneven());
+        }
+    }
+
+    /// Puts a ray where its move has led.
+    fn arrive(&mut self, flow: &ConformalFlow, i: usize) {
+        if let Some(lateness) = &mut self.states[i].lateness {
+            let (from, to) = (self.here.at(i), self.result.end.at(i));
+            *lateness += Step { flow, from: &from, to: &to, p_z: self.controls[i].p_z }.lateness();
+        }
+        self.here.take(i, &self.result.end);
+    }
+
     /// Makes all steps of one ray short enough for a smooth drawing.
     pub fn even_out(&mut self, flow: &ConformalFlow, i: usize, longest: f64) {
         let control = &mut self.controls[i];
@@ -207,6 +226,7 @@ impl RayPacket {
                 begin: self.begin.at(i),
                 end: self.here.at(i),
                 boundary,
+                lateness: self.states[i].lateness,
             }),
             RayStatus::Failed(error) => Err(error),
             _ => Err(FlowError::Stalled),
@@ -214,16 +234,16 @@ impl RayPacket {
     }
 
     fn moved(&mut self, flow: &ConformalFlow, i: usize) {
-        let ray = &mut self.states[i];
-        match &mut ray.status {
-            &mut RayStatus::Stepping(length) => self.stepped(flow, i, length),
-            RayStatus::RefiningRoot(refinement) => {
-                self.here.take(i, &self.result.end);
-                match refinement.check(&self.here.at(i), &flow.events, self.controls[i].p_z) {
-                    RootStatus::Continue => {}
-                    RootStatus::Found(boundary) => ray.status = RayStatus::Arrived(boundary),
-                    RootStatus::Lost => ray.status = RayStatus::Failed(FlowError::Stalled),
-                }
+        match self.states[i].status {
+            RayStatus::Stepping(length) => self.stepped(flow, i, length),
+            RayStatus::RefiningRoot(mut refinement) => {
+                self.arrive(flow, i);
+                let found = refinement.check(&self.here.at(i), &flow.events, self.controls[i].p_z);
+                self.states[i].status = match found {
+                    RootStatus::Continue => RayStatus::RefiningRoot(refinement),
+                    RootStatus::Found(boundary) => RayStatus::Arrived(boundary),
+                    RootStatus::Lost => RayStatus::Failed(FlowError::Stalled),
+                };
             }
             RayStatus::Absent | RayStatus::Arrived(_) | RayStatus::Failed(_) => {}
         }
@@ -256,7 +276,7 @@ impl RayPacket {
         };
         match crossing {
             Crossing::None => {
-                self.here.take(i, &self.result.end);
+                self.arrive(flow, i);
                 self.go_on(flow, i);
             }
             Crossing::Unclear { share } => ray.status = RayStatus::Stepping(share * length),
@@ -265,11 +285,11 @@ impl RayPacket {
                 let ahead = if share < 0.5 {
                     share * length
                 } else {
-                    self.here.take(i, &self.result.end);
+                    self.arrive(flow, i);
                     (share - 1.0) * length
                 };
                 let root = RootRefinement { ahead, event, reach: length, corrections: 0 };
-                ray.status = RayStatus::RefiningRoot(root);
+                self.states[i].status = RayStatus::RefiningRoot(root);
             }
         }
     }

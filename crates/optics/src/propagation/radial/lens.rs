@@ -129,6 +129,7 @@ impl CentralLens {
             wave_vector: onward * index,
             direction: onward,
             optical_path: path * self.radius,
+            group_path: None,
             transport: turn_in_plane(normal, d, onward) * kept,
             outward: at.try_normalize().unwrap_or(onward),
         }
@@ -167,6 +168,7 @@ impl CentralLens {
             wave_vector: direction,
             direction,
             optical_path: path * self.radius,
+            group_path: None,
             transport,
             outward,
         }

@@ -52,6 +52,7 @@ impl TransformedShell {
             wave_vector: inverse * momentum,
             direction: (map.jacobian(line.position) * momentum).normalize(),
             optical_path: line.time * momentum.length_squared(),
+            group_path: None,
             transport: inverse * map.jacobian(position) * factor,
             outward: line.outward,
         }

@@ -106,6 +106,7 @@ impl TransmutedSphere {
                 wave_vector,
                 direction,
                 optical_path: index * distance,
+                group_path: None,
                 transport: DMat3::IDENTITY,
                 outward,
             };
@@ -128,6 +129,7 @@ impl TransmutedSphere {
             // Along εp, the extraordinary index at the surface being 1.
             direction: (along + onward * (index * index)).normalize(),
             optical_path: end.optical_path,
+            group_path: None,
             transport: transport(
                 field(way.from, here, wave_vector),
                 field(outward, 1.0, along + onward),

@@ -109,6 +109,7 @@ impl UniaxialCylinder {
             wave_vector: end.wave_vector,
             direction: direction.normalize(),
             optical_path: end.optical_path,
+            group_path: None,
             transport: transport(here.field(wave_vector, mode), field),
             outward: end.outward,
         }
