@@ -47,7 +47,7 @@ pub enum OutlineError {
     NoDevice(#[from] NoDevice),
     /// A device has no end.
     #[error(
-        "{0} (counted from 0) is endless, and a mesh is not; give it a `length`, and take a box instead of a \
+        "{0} is endless, and a mesh is not; give it a `length`, and take a box instead of a \
          slab"
     )]
     Endless(DeviceName),

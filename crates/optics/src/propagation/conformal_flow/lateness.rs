@@ -13,9 +13,6 @@ const NEAR: f64 = 0.1;
 /// The place where n = 1 is found to this share of a panel, the square of which counts.
 const FOUND: f64 = 1e-4;
 
-/// The least part of the wave vector along z, relative to c, at which z tells the integral of |f'|².
-const STEEP: f64 = 0.02;
-
 /// Gauss and Legendre's points on [0, 1], and their weights.
 const NODES: [(f64, f64); 5] = [
     (0.046_910_077_030_668, 0.118_463_442_528_094_54),
@@ -30,8 +27,8 @@ pub(super) struct Step<'s> {
     pub flow: &'s ConformalFlow,
     pub from: &'s Point,
     pub to: &'s Point,
-    /// The wave vector along z.
-    pub p_z: f64,
+    /// The wave vector along z, if z is known so well that it tells the integral of |f'|².
+    pub p_z: Option<f64>,
 }
 
 /// Where n is less than 1, or more.
@@ -48,12 +45,10 @@ impl Step<'_> {
         let Self { flow, from, to, p_z } = self;
         let time = to.tau - from.tau;
         let square = flow.index_scale * flow.index_scale;
-        match self.side(square) {
-            Some(Side::Denser) => return 0.0,
+        match (self.side(square), p_z) {
+            (Some(Side::Denser), _) => return 0.0,
             // dz/dτ = p_z |f'|².
-            Some(Side::Rarer) if p_z.abs() >= STEEP * flow.index_scale => {
-                return (to.z - from.z) / p_z - square * time;
-            }
+            (Some(Side::Rarer), Some(p_z)) => return (to.z - from.z) / p_z - square * time,
             _ => {}
         }
         let length = (to.zeta - from.zeta).norm().max((to.jet.f - from.jet.f).norm());

@@ -26,6 +26,8 @@ pub(super) struct RayPacket {
     begin: Points,
     here: Points,
     result: StepResult,
+    /// From which wave vector along z on z tells what pulses take: it is known to the tolerance.
+    steep: f64,
 }
 
 /// How far one of them has come.
@@ -91,6 +93,7 @@ impl RayPacket {
             begin: Points::default(),
             here: Points::default(),
             result: StepResult::default(),
+            steep: f64::INFINITY,
         };
         for (i, start) in starts.iter().enumerate() {
             let Some((start, wave_vector)) = start else { continue };
@@ -187,7 +190,8 @@ impl RayPacket {
     }
 
     /// From here on works out what pulses take, where the medium is that of its map.
-    pub fn with_pulses(&mut self, flow: &ConformalFlow) {
+    pub fn with_pulses(&mut self, flow: &ConformalFlow, tolerance: f64) {
+        self.steep = 2.0 * tolerance / ConformalFlow::KNOWN_TO * flow.index_scale;
         for ray in &mut self.states {
             ray.lateness = Some(0.0).filter(|_| !flow.is_uneven());
         }
@@ -197,7 +201,8 @@ impl RayPacket {
     fn arrive(&mut self, flow: &ConformalFlow, i: usize) {
         if let Some(lateness) = &mut self.states[i].lateness {
             let (from, to) = (self.here.at(i), self.result.end.at(i));
-            *lateness += Step { flow, from: &from, to: &to, p_z: self.controls[i].p_z }.lateness();
+            let p_z = Some(self.controls[i].p_z).filter(|p_z| p_z.abs() >= self.steep);
+            *lateness += Step { flow, from: &from, to: &to, p_z }.lateness();
         }
         self.here.take(i, &self.result.end);
     }
