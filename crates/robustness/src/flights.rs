@@ -6,6 +6,7 @@ use cloakroom::render::{
     Arrivals, ChannelSet, Delay, Flash, FlightCube, FlightSettings, Gate, PreparedScene,
     Supervision, arrival_times, render,
 };
+use cloakroom::scene::DeviceSettings;
 use cloakroom::scene_file::{self, Loaded};
 use optics::wave::SPEED_OF_LIGHT;
 use std::path::Path;
@@ -62,6 +63,8 @@ pub fn fly(draws: &mut Draws<'_>) -> u64 {
         Delay::Phase => "time_of_flight",
     });
     let pixels = cube.size[0] * cube.size[1];
+    // Each color arrives at its own time then, and the map is of one.
+    let is_colored = loaded.scene.devices.iter().any(DeviceSettings::is_dispersive);
     for pixel in 0..pixels {
         let told = || format!("pixel {pixel}, {settings:?}:\n{text}");
         let bins = || (pixel..cube.light.len()).step_by(pixels);
@@ -75,7 +78,7 @@ pub fn fly(draws: &mut Draws<'_>) -> u64 {
         let power: f64 = bins().map(|bin| cube.power[bin]).sum();
         let beside: f64 = cube.beside.iter().map(|all| all[pixel][3]).sum();
         let time = times.get(pixel);
-        if beside != 0.0 || power < CLOSED || !time.is_finite() {
+        if is_colored || beside != 0.0 || power < CLOSED || !time.is_finite() {
             continue;
         }
         let moments = gate.middles().into_iter().zip(bins());

@@ -5,13 +5,16 @@ use super::points::Point;
 use num_complex::Complex64;
 
 /// Panels are no longer than this share of the map's scale.
-const LONGEST: f64 = 0.4;
+const LONGEST: f64 = 0.3;
 
 /// Nearer to n = 1 than this, in |f'|² relative to c², it is looked in between.
 const NEAR: f64 = 0.1;
 
 /// The place where n = 1 is found to this share of a panel, the square of which counts.
-const FOUND: f64 = 1e-4;
+const FOUND: f64 = 1e-5;
+
+/// On steps of no more panels than this, values and slopes at both ends tell that n = 1 is nowhere.
+const SHORT: f64 = 4.0;
 
 /// Gauss and Legendre's points on [0, 1], and their weights.
 const NODES: [(f64, f64); 5] = [
@@ -45,14 +48,15 @@ impl Step<'_> {
         let Self { flow, from, to, p_z } = self;
         let time = to.tau - from.tau;
         let square = flow.index_scale * flow.index_scale;
-        match (self.side(square), p_z) {
+        let length = (to.zeta - from.zeta).norm().max((to.jet.f - from.jet.f).norm());
+        let panels = (length / (LONGEST * flow.scale())).ceil().clamp(1.0, 1000.0);
+        let side = if panels <= SHORT { self.side(square) } else { None };
+        match (side, p_z) {
             (Some(Side::Denser), _) => return 0.0,
             // dz/dτ = p_z |f'|².
             (Some(Side::Rarer), Some(p_z)) => return (to.z - from.z) / p_z - square * time,
             _ => {}
         }
-        let length = (to.zeta - from.zeta).norm().max((to.jet.f - from.jet.f).norm());
-        let panels = (length / (LONGEST * flow.scale())).ceil().clamp(1.0, 1000.0);
         let mut sum = 0.0;
         let mut before = (0.0, self.surplus(from.jet.f1));
         for number in 1..=panels as u32 {

@@ -277,7 +277,7 @@ impl ConformalFlow {
 
     /// As [`Self::advance_from`], up to four rays at once, which takes hardly longer than one. Each
     /// end is what it would be alone. With `pulses` the ends say what pulses take, too, but for uneven
-    /// media: to within twice the tolerance or [`Self::KNOWN_TO`], whichever is larger, where
+    /// media: to within ten times the tolerance or [`Self::KNOWN_TO`], whichever is larger, where
     /// [`Self::causal_group_path`], which takes much longer, knows it better.
     pub fn advance_four(
         &self,
