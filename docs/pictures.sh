@@ -30,7 +30,7 @@ rays fisheye-lens gallery/fisheye-lens --point=-10,0,0
 rays fisheye-hemisphere gallery/fisheye-hemisphere --wavefronts 2 --width 24
 rays graded gallery/graded --width 24
 rays graded-3d gallery/graded-3d --width 24
-rays lens gallery/lens --width 12
+rays lens gallery/lens --width 12 --z 0 --set device.0.show=empty --set device.1.show=empty
 rays graded-box gallery/graded-box --width 24
 rays mirror-detour gallery/mirror-detour-orthographic --width 40
 rays gaussian-carpet gallery/gaussian-carpet --parallel=-40 --wavefronts 4
