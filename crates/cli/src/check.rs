@@ -34,6 +34,17 @@ fn percent(share: f64) -> String {
     if share < 0.001 { "less than 0.1 %".to_owned() } else { format!("{:.1} %", 100.0 * share) }
 }
 
+/// A time for people.
+fn duration(seconds: f64) -> String {
+    const UNITS: [(f64, &str); 3] = [(86_400.0, "days"), (3600.0, "hours"), (60.0, "minutes")];
+    // Of fewer than two of them it is a smaller unit.
+    let unit = UNITS.into_iter().find(|(unit, _)| seconds >= 2.0 * unit);
+    unit.map_or_else(
+        || format!("{seconds:.1} s"),
+        |(unit, name)| format!("{:.1} {name}", seconds / unit),
+    )
+}
+
 fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     let camera = &scene.camera;
@@ -120,7 +131,7 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
     if photograph == 0.0 {
         writeln!(
             text,
-            "hint         no light comes from the photograph, which is at {}; photograph.x or \
+            "warning      no light comes from the photograph, which is at {}; photograph.x or \
              photograph.position moves it, camera.target turns the camera",
             scene.photograph.place()
         )?;
@@ -136,11 +147,25 @@ fn described(prepared: &PreparedScene<'_>, scene: &Scene) -> Result<String, std:
     let Estimate { seconds, walks, samples, .. } = estimate(prepared);
     writeln!(
         text,
-        "estimate     {seconds:.1} s to render on {} threads; {:.2} million of {:.2} million rays traced, \
+        "estimate     {} to render on {} threads; {:.2} million of {:.2} million rays traced, \
          the others seen past every device or interpolated",
+        duration(seconds),
         threads::count(),
         1e-6 * walks,
         1e-6 * samples as f64,
     )?;
     Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::duration;
+
+    #[test]
+    fn times_are_in_the_largest_unit_of_which_there_are_two() {
+        assert_eq!(
+            [0.26, 119.0, 300.0, 9000.0, 1e8].map(duration),
+            ["0.3 s", "119.0 s", "5.0 minutes", "2.5 hours", "1157.4 days"]
+        );
+    }
 }

@@ -49,7 +49,16 @@ fn draw(arguments: &DiagramArguments, pulse: Option<Pulse>) -> Result<()> {
         let setting = cloakroom_figures::setting(&scene);
         (setting.map_err(|error| scene::located(&loaded, &error))?.drawing, "Setting")
     } else {
-        (diagram(arguments, &loaded)?.draw(pulse.as_ref()), "Ray diagram")
+        let diagram = diagram(arguments, &loaded)?;
+        if let Some((z, beside)) = diagram.beside_rays().filter(|(_, beside)| !beside.is_empty()) {
+            let names = beside.iter().map(|number| loaded.scene.device_name(*number).to_string());
+            let names = names.collect::<Vec<_>>().join(", ");
+            say(&format!(
+                "note: the rays start in z = {z} cm; beside that plane is, though drawn: {names} (--z moves it, show = \
+                 \"empty\" takes devices away)"
+            ));
+        }
+        (diagram.draw(pulse.as_ref()), "Ray diagram")
     };
     let mut metadata = metadata(&loaded.scene);
     if let Some(Pulse { time, delay, .. }) = pulse {

@@ -52,7 +52,7 @@ fn numbered(scene: &Scene, word: &str) -> Result<usize> {
     named.or_else(|| word.parse().ok()).ok_or_else(|| {
         let names: Vec<&str> = (0..scene.devices.len()).filter_map(name).collect();
         Failure::Failed(format!(
-            "--device: no device of the scene is called {}{}; they are counted from 0",
+            "--device: no device of the scene is called {}, and devices are counted from 0{}",
             quoted(word, '`'),
             hint(word, &names, "there are")
         ))

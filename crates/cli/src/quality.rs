@@ -5,7 +5,7 @@ use crate::files::{check_outputs, formats, write_each};
 use crate::interruption;
 use crate::progress::supervised;
 use crate::render::warn_of_cut_branches;
-use crate::report::{self, Result, all, decimals};
+use crate::report::{self, Result, all, decimals, say};
 use crate::scene;
 use cloakroom::measure::{Constraint, QualityTable, Sweep, SweepPlan, quality};
 use cloakroom::scene_file::Override;
@@ -55,9 +55,28 @@ pub fn run(arguments: &QualityArguments) -> Result<()> {
     let inputs = inputs.chain(arguments.reference.clone());
     check_outputs(&arguments.outputs, &inputs.collect::<Vec<_>>())?;
     let _busy = interruption::busy();
-    let table =
+    let mut table =
         supervised(plan.steps(), "measuring", |_, supervision| quality(&plan, supervision))?;
+    // Files tell what they were held against.
+    let reference = reference.map(|reference| ("reference".to_owned(), reference.scene.source));
+    table.metadata.extend(reference);
     warn_of_cut_branches(&table.stats);
+    let delivered = table.column("delivered").map(|column| {
+        table.rows.iter().map(move |row| row.numbers[column]).filter(|share| !share.is_nan())
+    });
+    if let Ok(mut delivered) = delivered {
+        // In the dark all pictures are alike.
+        let brightest = delivered.clone().fold(0.0, f64::max);
+        if delivered.next().is_none() {
+            say(
+                "note: there is nothing to measure: no device is in view (`cloakroom check` says why)",
+            );
+        } else if brightest == 0.0 {
+            say(
+                "note: no light of the photograph arrives (`cloakroom check` says why): likeness tells nothing",
+            );
+        }
+    }
     let written =
         write_each(formats, |path, format| Ok(write_table(&table, format, &arguments.plot, path)?));
     let printed = if arguments.json {

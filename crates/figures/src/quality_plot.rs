@@ -121,7 +121,8 @@ pub fn quality_plot(table: &QualityTable, names: &[String]) -> Result<Plot, Illu
     // The name of the swept key in words, with the unit that keys of that name have.
     let axis_title = |i: usize| {
         let (title, unit) = name_and_unit(&table.sweeps[i].key);
-        with_unit(&title, unit)
+        // Words are of no unit.
+        with_unit(&title, if numbers.is_some() { unit } else { "" })
     };
     Ok(Plot {
         axis: axis.map_or_else(String::new, axis_title),

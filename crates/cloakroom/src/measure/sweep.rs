@@ -152,7 +152,9 @@ fn count(steps: f64, by: f64) -> Result<usize, String> {
     let steps = steps + 1e-9;
     if by == 0.0 || steps.is_nan() || steps < 0.0 {
         return Err(
-            "the range is empty: its step does not lead from its start to its end".to_owned()
+            "the range is empty: its step does not lead from its start to its end; one that goes down is \
+             negative, as in 10..0:-2.5"
+                .to_owned()
         );
     }
     if steps >= MOST as f64 {

@@ -288,8 +288,8 @@ fn entry<'a>(
         let names = items.iter().filter_map(|item| item.entry(key!(Placement.name))?.as_text());
         let hint = hint(word, &names.collect::<Vec<_>>(), "there are");
         return Err(format!(
-            "no device is called {key}{hint}; devices are counted from 0, as in {walked}.0, and \
-             {walked}.* is every one"
+            "no device is called {key}; devices are counted from 0, as in {walked}.0, and {walked}.* is \
+             every one{hint}"
         ));
     };
     if index > count || (index == count && !tables) {

@@ -7,7 +7,7 @@ use super::NamedFiles;
 use super::error::SceneFileError;
 use super::locations::{Locations, join};
 use crate::device::{AnyDevice, CATALOGUE, Request};
-use crate::keys::{Key, KeyKind, Table, Value, hint, quoted, unknown};
+use crate::keys::{Key, KeyKind, Table, Value, hint, quoted, synonym, unknown};
 use crate::scene::{Camera, CameraSettings, DeviceSettings, Placement, Scene, TABLES};
 use cloakroom_trace::key;
 
@@ -238,8 +238,18 @@ impl Reader<'_> {
 
 /// The message for a name at the top of a scene that is no table of it.
 fn unknown_table(name: &str) -> String {
-    // A bare key at the top was meant for a table that has it.
+    // A bare key at the top was meant for a table that has it, or calls it otherwise, or for a device.
     let home = TABLES.iter().find(|(_, keys)| keys.iter().any(|key| key.name == name));
+    if home.is_none() && Placement::KEYS.iter().any(|key| key.name == name) {
+        return format!("{} is a key of devices, as in {DEVICES}.0.{name}", quoted(name, '`'));
+    }
+    let meant = |(table, keys): &(&str, &[Key])| {
+        let names: Vec<&str> = keys.iter().map(|key| key.name).collect();
+        synonym(name, &names).map(|key| format!("{table}.{key}"))
+    };
+    if let Some(meant) = TABLES.iter().find_map(meant).filter(|_| home.is_none() && name != KIND) {
+        return format!("there is no {}; here it is called `{meant}`", quoted(name, '`'));
+    }
     let home = match home {
         _ if name == KIND => Some("[[device]]".to_owned()),
         home => home.map(|(name, _)| format!("[{name}]")),

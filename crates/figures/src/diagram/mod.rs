@@ -12,7 +12,7 @@ pub use source::Source;
 
 use super::drawing::{Drawing, Shape};
 use super::setting::{AXES, Devices, MARGIN, TEXT, draw_axes, sheet};
-use cloakroom::assembly::Assembly;
+use cloakroom::assembly::{Assembly, Placed};
 use cloakroom::render::{Delay, PreparedSceneError, RenderError, assembly};
 use cloakroom::scene::Scene;
 use cloakroom::trace::{Limits, Line, Stopped, lines};
@@ -146,6 +146,21 @@ impl RayDiagram {
             })
             .collect::<Result<_, _>>()?;
         Ok(Self { settings: settings.clone(), assembly, scenery, trees })
+    }
+
+    /// The plane of constant z (cm) in which parallel rays start, and the devices, by their numbers, that are
+    /// drawn and do not reach it; `None` where rays start elsewhere.
+    #[must_use]
+    pub fn beside_rays(&self) -> Option<(f64, Vec<usize>)> {
+        let Self { settings, assembly, scenery, .. } = self;
+        let is_plane = matches!(settings.source, Source::Parallel { .. });
+        let is_beside = |placed: &Placed| {
+            let reach = placed.bounds().map(|[low, high]| low.z..=high.z);
+            reach.is_some_and(|reach| !reach.contains(&scenery.z))
+        };
+        let devices = assembly.devices().iter().enumerate();
+        let beside = devices.filter(|(_, placed)| is_beside(placed)).map(|(number, _)| number);
+        (is_plane && settings.space.is_none()).then(|| (scenery.z, beside.collect()))
     }
 
     /// Draws it, with a pulse on its way or without.

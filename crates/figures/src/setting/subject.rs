@@ -70,16 +70,15 @@ impl<'s> Subject<'s> {
     }
 
     /// Whether it lies within another device as they are drawn, as a body, of two of one size the one that
-    /// `stands_behind`, or hidden by an opaque one that it stands behind.
+    /// `stands_behind`, or hidden by an opaque one, or one of metal, that it stands behind.
     pub fn is_within(&self, other: &Self, stands_behind: bool) -> bool {
         let (Some([low, high]), Some([from, to])) = (self.bounds(), other.bounds()) else {
             return false;
         };
         let alike = [low, high] == [from, to];
         let is_inner = self.section.body.is_some() && (stands_behind || !alike);
-        (is_inner || stands_behind && other.is_opaque())
-            && from.cmple(low).all()
-            && high.cmple(to).all()
+        let is_hidden = stands_behind && (other.is_opaque() || !other.section.metal.is_empty());
+        (is_inner || is_hidden) && from.cmple(low).all() && high.cmple(to).all()
     }
 
     /// Whether another device leaves no room on the sheet for its dimensions: it is beside it or reaches into it,

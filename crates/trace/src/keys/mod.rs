@@ -23,6 +23,7 @@ pub use field::{
 };
 pub use nearest::{hint, nearest, unknown};
 pub use samples::{Samples, shape_text};
+pub use synonyms::synonym;
 pub use table::{Table, find, has, joined};
 pub use value::{Value, number_text, quoted, vector_text};
 

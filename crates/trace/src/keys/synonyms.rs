@@ -73,7 +73,7 @@ const SYNONYMS: &[(&[&str], &[&str])] = &[
 
 /// The known word for what is called so elsewhere; case and the difference between `-` and `_` do
 /// not count.
-pub(super) fn synonym<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+pub fn synonym<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let word = super::nearest::fold(word);
     let meant = SYNONYMS.iter().filter(|(words, _)| words.contains(&word.as_str()));
     meant

@@ -165,6 +165,9 @@ fn overrides_point_at_themselves() {
     for (text, override_text, expected) in [
         ("", "camera.sample=16", "unknown key `sample` in [camera]; did you mean `samples`?"),
         ("", "camra.samples=16", "unknown table `camra`; did you mean `camera`?"),
+        ("", "fov=30", "there is no `fov`; here it is called `camera.field_of_view`"),
+        ("", "rotation=5", "`rotation` is a key of devices, as in device.0.rotation"),
+        ("", "device[0].rotation=5", "entries of lists follow a dot: `device.0.rotation`"),
         ("", "camera.samples=many", "samples is \"many\"; it must be a whole number"),
         ("", "camera.samples=", "samples is \"\"; it must be a whole number"),
         ("", "camera.samples", "an override is written KEY=VALUE, such as camera.samples=16"),
