@@ -411,8 +411,6 @@ pub fn arrival_times(prepared: &PreparedScene<'_>, arrivals: &Arrivals) -> Optio
     /// Rays across and down.
     const RAYS: [u32; 2] = [64, 48];
     const LEAST_POWER: f64 = 1e-3;
-    /// As exactly as that, cm, where pulses go.
-    const TOLERANCE: f64 = 1e-4;
     let camera = &prepared.scene.camera;
     let detection = Detection::UNPOLARIZED;
     let tracer = Tracer::new(&prepared.assembly, prepared.limits).with_screen(prepared.screen);
